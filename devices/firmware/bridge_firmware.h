@@ -1,7 +1,7 @@
 // The hardware-independent firmware of a board for the bridge protocol (devices/README.md#bridge). hapkit.cpp uses it
 // on an ATmega328P, paddle.ino on a Teensy, the tests on a simulated board.
 // A frame is obeyed when its drive flag is 0 or its sequence is newer than the last one. The motor is off after
-// HostWatch::kSilent_us without such a frame or without a new heartbeat, until both return, and while motor or sensor
+// HostWatch::kTimeout_us without such a frame or without a new heartbeat, until both return, and while motor or sensor
 // has a fault. Thread guarantee: one thread.
 #pragma once
 
@@ -33,7 +33,7 @@ class Firmware {
     while (board_.receive(byte)) {
       if (finder_.add(byte)) obey(finder_.frame());
     }
-    if (host_.silent(board_.now_us())) stop();
+    if (host_.host_timed_out(board_.now_us())) stop();
     if (faulty()) push(0, false);
     FromDevice in = FromDevice();
     if (!board_.sample(in.time_us, in.position_nm, in.force_uN)) return;
@@ -51,7 +51,7 @@ class Firmware {
     if (!decode(frame, out)) return;
     const bool drive = (out.flags & kDrive) != 0;
     const uint32_t now_us = board_.now_us();
-    if (!host_.accept(now_us, out.sequence, out.heartbeat, drive) || host_.silent(now_us)) return;
+    if (!host_.accept(now_us, out.sequence, out.heartbeat, drive) || host_.host_timed_out(now_us)) return;
     stopped_ = false;
     push(drive && !faulty() ? out.force_uN : 0, drive && !faulty());
   }
@@ -62,9 +62,9 @@ class Firmware {
   }
 
   void stop() {
-    stopped_ = stopped_ || host_.heard();
+    stopped_ = stopped_ || host_.any_command();
     push(0, false);
-    host_.forget();
+    host_.accept_any_sequence();
   }
 
   bool faulty() const { return (condition_ & (kMotorFault | kSensorFault)) != 0; }

@@ -44,33 +44,35 @@ inline bool later(uint32_t a, uint32_t b) { return static_cast<int32_t>(a - b) >
 class HostWatch {
  public:
   // The host is silent after this time without a valid command or without a new heartbeat.
-  static constexpr uint32_t kSilent_us = 50000;
+  static constexpr uint32_t kTimeout_us = 50000;
 
   explicit HostWatch(uint32_t now_us) : valid_us_(now_us), beat_us_(now_us) {}
 
   // Call it for each valid command. False: the command is old and must not be obeyed.
   bool accept(uint32_t now_us, uint32_t sequence, uint16_t heartbeat, bool drive) {
     if (drive && !any_sequence_ && !later(sequence, sequence_)) return false;
-    if (!heard_ || heartbeat != heartbeat_) beat_us_ = now_us;
+    if (!any_command_ || heartbeat != heartbeat_) beat_us_ = now_us;
     heartbeat_ = heartbeat;
     sequence_ = sequence;
-    heard_ = true;
+    any_command_ = true;
     any_sequence_ = false;
     valid_us_ = now_us;
     return true;
   }
 
-  bool silent(uint32_t now_us) const { return now_us - valid_us_ >= kSilent_us || now_us - beat_us_ >= kSilent_us; }
-  uint32_t sequence() const { return sequence_; }  // of the last accepted command
-  bool heard() const { return heard_; }            // whether any command was accepted
+  bool host_timed_out(uint32_t now_us) const {
+    return now_us - valid_us_ >= kTimeout_us || now_us - beat_us_ >= kTimeout_us;
+  }
+  uint32_t sequence() const { return sequence_; }    // of the last accepted command
+  bool any_command() const { return any_command_; }  // whether any command was accepted
   // Accepts any sequence next, for a restarted host. A new heartbeat is still required.
-  void forget() { any_sequence_ = true; }
+  void accept_any_sequence() { any_sequence_ = true; }
 
  private:
   uint32_t valid_us_, beat_us_;
   uint32_t sequence_ = 0;
   uint16_t heartbeat_ = 0;
-  bool heard_ = false;
+  bool any_command_ = false;
   bool any_sequence_ = true;
 };
 

@@ -74,7 +74,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   commands_ = make_commands();
   listen();
   if (find_font().empty()) notify("no font found; install fonts-dejavu-core", true);
-  for (const std::string& recording : request.recordings) files_.offer(recording);
+  for (const std::string& recording : request.recordings) files_.open_recording(recording);
   view_.time.zero_s = steady_now_s();
   frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
   look();
@@ -132,7 +132,7 @@ void DemoApp::handle_keys() {
   }
   input_.run_held(commands_, session_->replay() != nullptr);
   for (const KeyPress& press : keys) {
-    if (press.key == GLFW_KEY_ENTER && view_.dialogs.offer.any()) start_offer();
+    if (press.key == GLFW_KEY_ENTER && view_.dialogs.recording_roles.any()) use_recording_roles();
     if (view_.exhibit.on) {
       handle_exhibit_key(press);
     } else {
@@ -219,11 +219,11 @@ void DemoApp::use_device(const std::string& device) {
   next_->line_up = session_->line_up();
 }
 
-void DemoApp::start_offer() {
-  const Offer offer = std::exchange(view_.dialogs.offer, {});
-  const std::string test = offer.test().empty() ? "" : "replay:" + offer.test();
-  if (!offer.training().empty()) {
-    use_material(request_.scene, offer.training(), test.empty() ? first_device_ : test);
+void DemoApp::use_recording_roles() {
+  const RecordingRoles roles = std::exchange(view_.dialogs.recording_roles, {});
+  const std::string test = roles.test().empty() ? "" : "replay:" + roles.test();
+  if (!roles.training().empty()) {
+    use_material(request_.scene, roles.training(), test.empty() ? first_device_ : test);
   } else if (!test.empty()) {
     use_device(test);
   }
@@ -258,7 +258,7 @@ void DemoApp::reopen(const SessionRequest& request) {
   blocks_framed_ = 0;
   panel_ = SidePanel{};  // no curve of the old one
   view_.time = CurveTime{};
-  view_.feel = false;
+  view_.scales_force = false;
   view_.time.zero_s = steady_now_s();
   look();
 }

@@ -94,7 +94,7 @@ class DemoApp {
   // Replace the session after this frame.
   void use_material(const std::string& scene, const std::vector<std::string>& recordings, const std::string& device);
   void use_device(const std::string& device);  // keeps the models
-  void start_offer();
+  void use_recording_roles();
   void use_line_up(const LineUp& line_up);
   void reopen(const SessionRequest& request);
   void next_line_up();

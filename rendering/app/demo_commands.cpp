@@ -96,10 +96,10 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .help = "make the active model stiffer or more damped in the hand, and as it is again",
        .run =
            [this](std::size_t) {
-             turn(view_.feel);
+             turn(view_.scales_force);
              session_->use_scale({});
            },
-       .on = [this] { return view_.feel; }},
+       .on = [this] { return view_.scales_force; }},
       {.keys = {GLFW_KEY_B},
        .help = "one, two or four blocks side by side",
        .run = [this](std::size_t) { next_block_count(); }},
@@ -224,7 +224,7 @@ void DemoApp::next_block_count() {
   const std::vector<ModelView>& slots = shown_.models.slots;
   const auto ready =
       std::count_if(slots.begin(), slots.end(), [](const ModelView& slot) { return slot.state == SlotState::ready; });
-  const bool reference = !shown_.models.off_from.empty() && shown_.models.compared &&
+  const bool reference = !shown_.models.reference_name.empty() && shown_.models.compared &&
                          shown_.models.reference == kReferenceBlock && view_.settings.block_count > 1;
   const std::size_t shown = static_cast<std::size_t>(ready) + (reference ? 1 : 0);
   if (shown >= view_.settings.block_count) return;

@@ -76,15 +76,15 @@ void DemoFiles::update(const LiveSession& session) {
   if (is_there(arriving_)) {
     const Result<RecordingOffer> offered = arriving_.get();
     if (offered) {
-      view_.dialogs.offer.add({offered->path, offered->words});
+      view_.dialogs.recording_roles.add({offered->path, offered->words});
       remember(reading_);
     } else {
-      view_.dialogs.offer.problem = offered.error().message;
+      view_.dialogs.recording_roles.problem = offered.error().message;
     }
     if (!waiting_.empty()) {
       const std::string next = waiting_.front();
       waiting_.erase(waiting_.begin());
-      offer(next);
+      open_recording(next);
     }
   }
   if (is_there(looking_)) view_.dialogs.devices = looking_.get();
@@ -98,7 +98,8 @@ void DemoFiles::update(const LiveSession& session) {
     recording_ = status.path;
   } else if (!recording_.empty()) {
     std::error_code missing;
-    if (!view_.exhibit.on && std::filesystem::exists(recording_, missing)) view_.dialogs.offer.add({recording_, {}});
+    if (!view_.exhibit.on && std::filesystem::exists(recording_, missing))
+      view_.dialogs.recording_roles.add({recording_, {}});
     recording_.clear();
   }
 }
@@ -108,7 +109,7 @@ void DemoFiles::open(const std::string& path, LiveSession& session) {
   if (!std::filesystem::exists(path, unknown)) {
     notify_("there is no file " + path, true);
   } else if (is_offered(path)) {
-    offer(path);
+    open_recording(path);
   } else if (session.load_file(path)) {
     remember(path);
   }
@@ -124,7 +125,7 @@ void DemoFiles::remember(const std::string& path) {
 
 // A large file takes a while to read, in which the picture goes on: a future that is replaced waits for its
 // thread, and so the next file waits for the one that is read.
-void DemoFiles::offer(const std::string& path) {
+void DemoFiles::open_recording(const std::string& path) {
   const std::string into = folder();
   if (into.empty()) return;
   if (arriving_.valid()) {

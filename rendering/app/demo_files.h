@@ -34,10 +34,10 @@ class DemoFiles {
 
   // Call it once a frame: processes finished background work and recordings.
   void update(const LiveSession& session);
-  // Loads a model (.json), or calls `offer` for any other file.
+  // Loads a model (.json), or calls `open_recording` for any other file.
   void open(const std::string& path, LiveSession& session);
   // Reads a recording or another program's table in the background, then asks whether to train or to test on it.
-  void offer(const std::string& path);
+  void open_recording(const std::string& path);
   void record(LiveSession& session);
   void save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns);
   void save_model(const LiveSession& session);

@@ -49,7 +49,7 @@ void DemoApp::draw() {
                                  use_device(device);
                                },
                                [this](const std::string& name) { use_line_up(*find_line_up(name)); },
-                               [this] { start_offer(); }};
+                               [this] { use_recording_roles(); }};
   overlay_.draw(*session_, shown_, *blocks_, view_, style_, area, toasts_, actions);
   if (view_.exhibit.on) {
     exhibit_.draw(*session_, shown_, *blocks_, style_, layout);
@@ -96,7 +96,7 @@ std::vector<BlockPose> DemoApp::true_poses() const {
   pose.tool_m = frozen ? now.position_m : static_cast<float>(session_->newest().tick.position_m);
   pose.dent_m = std::max(0.0F, pose.tool_m);
   std::vector<BlockPose> poses;
-  for (const std::size_t slot : shown_.stage)
+  for (const std::size_t slot : shown_.blocks)
     poses.push_back(slot == kReferenceBlock ? reference_pose(pose) : model_pose(slot, pose));
   // Before the first model is ready: a block nobody has a model of yet.
   if (poses.empty()) {

@@ -36,7 +36,7 @@ void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const Blo
   const auto index = block_at(shown, blocks, area, mouse, aimed);
   if (!index) return;
   const glm::vec2 size(area.size.x, area.size.y);
-  const std::size_t count = std::max<std::size_t>(shown.stage.size(), 1);
+  const std::size_t count = std::max<std::size_t>(shown.blocks.size(), 1);
   const float surface_px = blocks.on_screen(*index, count, {0.0F, 0.0F, 0.0F}, size).y;
   const double below_px = static_cast<double>(mouse.y - area.at.y - surface_px);
   const double room_px = std::max(1.0, static_cast<double>(kReach * (area.size.y - surface_px)));
@@ -131,7 +131,7 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
   if (!view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {
     const auto block = block_at(shown, blocks, area, io.MousePos, true);
-    if (block && *block < shown.stage.size()) session.select(shown.stage[*block]);
+    if (block && *block < shown.blocks.size()) session.select(shown.blocks[*block]);
   }
   const bool touched = view.exhibit.on && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // twice at the same place
   if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || touched)

@@ -8,12 +8,12 @@ void CurvePainter::jnd_band(ImU32 colour) const {
       [](const CurveColumn& c) { return c.tick.reference_N + c.jnd_N; });
 }
 
-void CurvePainter::troubles(ImU32 late, ImU32 alarm, float size_px) const {
+void CurvePainter::fault_marks(ImU32 late, ImU32 alarm, float size_px) const {
   for (const CurveColumn& column : columns) {
     const float x = plot.x_px(column.time_s - zero_s);
-    if (column.trouble == TickTrouble::late) {
+    if (column.fault_level == TickFaultLevel::late) {
       plot.list().AddLine({x, plot.top()}, {x, plot.top() + size_px}, late);
-    } else if (column.trouble == TickTrouble::alarm) {
+    } else if (column.fault_level == TickFaultLevel::alarm) {
       plot.list().AddTriangleFilled({x - size_px, plot.top()}, {x + size_px, plot.top()},
                                     {x, plot.top() + 1.6F * size_px}, alarm);
     }

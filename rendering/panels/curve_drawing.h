@@ -29,7 +29,7 @@ struct CurvePainter {
   template <typename Low, typename High>
   void band(ImU32 colour, Low low, High high) const;
   // Marks at the upper edge: a line for missed deadlines, a triangle for a fault.
-  void troubles(ImU32 late, ImU32 alarm, float size_px) const;
+  void fault_marks(ImU32 late, ImU32 alarm, float size_px) const;
 };
 
 template <typename Low, typename High>

@@ -87,9 +87,9 @@ bool Exhibit::update(LiveSession& session, ViewState& view) {
   if (game_.state() == State::press && session.tool_input() != nullptr)
     session.tool_input()->nudge(0.0, steady_now_s());
   const ExhibitRound* now = pair();
-  const bool blind = game_.state() == State::press && game_.felt();
+  const bool blind = game_.state() == State::press && game_.has_force();
   view.exhibit.blind = blind;
-  view.settings.block_count = game_.state() != State::attract && game_.felt() ? 1 : 2;
+  view.settings.block_count = game_.state() != State::attract && game_.has_force() ? 1 : 2;
   if (now != nullptr) session.select(blind ? game_.rendered().slot : now->second.slot);
   return left;
 }
@@ -137,7 +137,7 @@ void Exhibit::note_result() {
   const std::string path = tally_path();
   if (!path.empty()) tally_ = read_tally(path);
   ++tally_.answers;
-  if (game_.round().right()) ++tally_.as_expected;
+  if (game_.round().correct()) ++tally_.as_expected;
   if (!path.empty()) (void)write_tally(path, tally_);
 }
 

@@ -2,8 +2,8 @@
 //
 //   attract   the simulated hand presses two blocks, the difference is drawn, and a sentence invites to play
 //   guess     a description of the model of this round; would a hand notice a difference?
-//   press     mode "seen": 15 s with one stroke on both blocks and a live plot of the difference;
-//             mode "felt": the visitor compares two blocks and answers
+//   press     without a force device: 15 s with one stroke on both blocks and a live plot of the difference;
+//             with a force device: the visitor compares two blocks and answers
 //   reveal    the result, and both forces where they differed most
 //   score     the visitor's score and a summary
 //

@@ -77,7 +77,7 @@ std::string Exhibit::number(double value) const {
 std::string Exhibit::verdict() const {
   const ExhibitRound& round = game_.round();
   if (round.is_catch()) return words()("verdict_catch");
-  if (round.on_the_edge()) return words()("verdict_edge");
+  if (round.near_jnd()) return words()("verdict_edge");
   return words()(round.noticed() ? "verdict_noticed" : "verdict_unnoticed", number(round.largest_over_jnd));
 }
 
@@ -174,7 +174,7 @@ void Exhibit::draw_guess(const Canvas& canvas) {
 
 void Exhibit::draw_press(const Canvas& canvas) {
   say_quietly(canvas, words()("round", std::to_string(game_.number()), std::to_string(game_.rounds().size())));
-  if (!game_.felt()) {
+  if (!game_.has_force()) {
     say(words()("press"));
     say_quietly(canvas, words()("press_how"));
     space(canvas.style, 0.6F);
@@ -198,8 +198,8 @@ void Exhibit::draw_press(const Canvas& canvas) {
 
 void Exhibit::draw_reveal(const Canvas& canvas) {
   const ExhibitRound& round = game_.round();
-  const bool edge = round.on_the_edge() && !round.is_catch();
-  say(words()(edge ? "edge" : round.right() ? "right" : "wrong"));
+  const bool edge = round.near_jnd() && !round.is_catch();
+  say(words()(edge ? "edge" : round.correct() ? "right" : "wrong"));
   space(canvas.style, 0.2F);
   say(verdict());
   space(canvas.style, 0.4F);
@@ -208,7 +208,7 @@ void Exhibit::draw_reveal(const Canvas& canvas) {
     return;
   }
   space(canvas.style, 0.6F);
-  if (game_.felt()) {  // which was which
+  if (game_.has_force()) {  // which was which
     draw_key(canvas, *round.first, "block_1");
     draw_key(canvas, round.second, "block_2");
   }
@@ -225,7 +225,7 @@ void Exhibit::draw_score(const Canvas& canvas) {
   const std::vector<ExhibitRound>& rounds = game_.rounds();
   say(words()("score"));
   ImGui::PushFont(canvas.style.fonts().big);
-  say(words()("score_of", std::to_string(game_.right()), std::to_string(rounds.size())));
+  say(words()("score_of", std::to_string(game_.correct_answers()), std::to_string(rounds.size())));
   ImGui::PopFont();
   space(canvas.style, 0.4F);
   for (const ExhibitRound& round : rounds) draw_bar(canvas, round);
@@ -233,8 +233,8 @@ void Exhibit::draw_score(const Canvas& canvas) {
   space(canvas.style, 0.6F);
   // All that is done within each millisecond, both blocks and the device included.
   const std::string used_us = number(canvas.session.loop().statistics().tick.p50_us);
-  say(game_.felt() ? words()("take_home_felt", used_us)
-                   : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
+  say(game_.has_force() ? words()("take_home_felt", used_us)
+                        : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
   space(canvas.style, 0.6F);
   if (button(canvas, words()("again"), "Enter", -1.0F)) begin(canvas.session);
 }
@@ -243,7 +243,7 @@ void Exhibit::draw_score(const Canvas& canvas) {
 void Exhibit::draw_bar(const Canvas& canvas, const ExhibitRound& round) {
   const std::string name = round.is_catch() ? "name_catch" : std::string("name_") + kind_of(round.second);
   say_quietly(canvas, words()(name, canvas.centres_of(round.second)) + ": " + number(round.largest_over_jnd) + ", " +
-                          words()(round.right() ? "row_right" : "row_wrong"));
+                          words()(round.correct() ? "row_right" : "row_wrong"));
   const float height = 0.8F * height_of(canvas.style.fonts().body);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float jnd = ImGui::GetContentRegionAvail().x / static_cast<float>(kMost_jnd);
@@ -353,22 +353,23 @@ void Exhibit::draw_host(const Canvas& canvas) {
 // Which block is which, at its foot.
 void Exhibit::draw_names(const Canvas& canvas, const BlockView& blocks, const SceneArea& scene) const {
   if (pair() == nullptr) return;
-  const bool felt = game_.state() != State::attract && game_.felt();
+  const bool has_force = game_.state() != State::attract && game_.has_force();
   const bool reference_last = !pair()->first;
-  const std::size_t count = felt ? 1 : 2;
+  const std::size_t count = has_force ? 1 : 2;
   const BlockGeometry& block = blocks.geometry();
   ImFont* font = canvas.style.fonts().heading;
   for (std::size_t i = 0; i < count; ++i) {
     const bool first = (i == 1) == reference_last;
-    std::string text = felt ? words()(game_.chosen() == 2 ? "block_2" : "block_1") : name_of(first, canvas.session);
-    if (felt && game_.state() != State::press) text.clear();
+    std::string text =
+        has_force ? words()(game_.chosen() == 2 ? "block_2" : "block_1") : name_of(first, canvas.session);
+    if (has_force && game_.state() != State::press) text.clear();
     const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text.c_str());
     const glm::vec2 foot = blocks.on_screen(
         i, count, {0.0F, -1.05F * static_cast<float>(block.height_m), 0.5F * static_cast<float>(block.length_m)},
         {scene.size.x, scene.size.y});
-    const Rgb colour = felt    ? canvas.style.colours().text
-                       : first ? (pair()->first ? canvas.colour_of(*pair()->first) : kReferenceColour)
-                               : canvas.colour_of(pair()->second);
+    const Rgb colour = has_force ? canvas.style.colours().text
+                       : first   ? (pair()->first ? canvas.colour_of(*pair()->first) : kReferenceColour)
+                                 : canvas.colour_of(pair()->second);
     ImGui::GetBackgroundDrawList()->AddText(
         font, height_of(font),
         {scene.at.x + std::clamp(foot.x - 0.5F * size.x, 4.0F, scene.size.x - size.x - 4.0F),

@@ -73,29 +73,29 @@ float draw_headline(const WindowView& shown, const UiStyle& style, const SceneAr
 
 void draw_labels(const WindowView& shown, const BlockView& blocks, const UiStyle& style, const SceneArea& area,
                  float lift) {
-  const std::vector<std::size_t>& stage = shown.stage;
+  const std::vector<std::size_t>& slots = shown.blocks;
   ImFont* font = style.fonts().heading;
-  for (std::size_t i = 0; i < stage.size(); ++i) {
-    const bool reference = stage[i] == kReferenceBlock;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const bool reference = slots[i] == kReferenceBlock;
     const std::string text =
         reference ? shown.reference_block
-                  : std::to_string(shown.models.number_of(stage[i])) + "  " + shown.models.slots[stage[i]].name;
+                  : std::to_string(shown.models.number_of(slots[i])) + "  " + shown.models.slots[slots[i]].name;
     const ImVec2 size = text_size(font, text);
-    const ImVec2 at = label_place(blocks, i, stage.size(), area, size, lift);
-    const bool active = stage[i] == shown.models.selected;
-    const bool best = shown.models.verdict.chosen == stage[i];
-    const Rgb colour = reference ? kReferenceColour : slot_colour(shown.models, stage[i], style.theme());
+    const ImVec2 at = label_place(blocks, i, slots.size(), area, size, lift);
+    const bool active = slots[i] == shown.models.selected;
+    const bool best = shown.models.verdict.chosen == slots[i];
+    const Rgb colour = reference ? kReferenceColour : slot_colour(shown.models, slots[i], style.theme());
     const float pad = 0.25F * height_of(font);
     draw_plate(*ImGui::GetBackgroundDrawList(), at, size, {2.0F * pad, 0.5F * pad}, ink(style.colours().panel, 0.88F),
                colour);
-    if (stage.size() > 1 && active) {
+    if (slots.size() > 1 && active) {
       ImGui::GetBackgroundDrawList()->AddRect({at.x - 2.0F * pad, at.y - 0.5F * pad},
                                               {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour),
                                               6.0F, 0, 2.0F);
     }
     text_at(font, at, ink(active || best ? style.colours().text : style.colours().quiet), text);
     if (!active && !best) continue;
-    const std::string mark = best && active ? "best, and active" : best ? "best" : stage.size() > 1 ? "active" : "";
+    const std::string mark = best && active ? "best, and active" : best ? "best" : slots.size() > 1 ? "active" : "";
     const ImVec2 below = text_size(style.fonts().body, mark);
     text_at(style.fonts().body, {at.x + 0.5F * (size.x - below.x), at.y + size.y + 0.6F * pad},
             ink(style.colours().text), mark);

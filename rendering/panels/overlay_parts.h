@@ -57,7 +57,7 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
 // Choices of the display and the comparison.
 void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions& actions);
 // Asks which recordings to train and to test on.
-void draw_offer(ViewState& view, const OverlayActions& actions);
+void draw_recording_roles(ViewState& view, const OverlayActions& actions);
 // Draws notices from `top_px` downwards.
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area, float top_px);
 void draw_data_warning(const ModelsView& models, const UiStyle& style, const SceneArea& area, float top_px);

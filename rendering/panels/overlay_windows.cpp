@@ -209,14 +209,14 @@ void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions&
 
 namespace {
 
-void draw_role(Offer& offer, std::size_t index) {
-  using Role = OfferedRecording::Role;
-  OfferedRecording& one = offer.recordings[index];
+void draw_role(RecordingRoles& roles, std::size_t index) {
+  using Role = OpenedRecording::Role;
+  OpenedRecording& one = roles.recordings[index];
   ImGui::PushID(static_cast<int>(index));
   if (ImGui::RadioButton("train", one.role == Role::train)) one.role = Role::train;
   tip("Models are fitted to it; several are one training set");
   ImGui::SameLine();
-  if (ImGui::RadioButton("test", one.role == Role::test)) offer.make_test(index);
+  if (ImGui::RadioButton("test", one.role == Role::test)) roles.make_test(index);
   tip("It is replayed, and the models are judged on it; none is fitted to it");
   ImGui::SameLine();
   if (ImGui::RadioButton("leave", one.role == Role::none)) one.role = Role::none;
@@ -228,9 +228,9 @@ void draw_role(Offer& offer, std::size_t index) {
 }
 
 // What Start will do.
-std::string offer_words(const Offer& offer) {
-  const std::size_t training = offer.training().size();
-  const bool test = !offer.test().empty();
+std::string recording_roles_words(const RecordingRoles& roles) {
+  const std::size_t training = roles.training().size();
+  const bool test = !roles.test().empty();
   if (training == 0 && !test) return "Choose a recording to train on, or one to test on.";
   if (training == 0) return "Tests the models that are here on it. None is fitted again.";
   const std::string fits =
@@ -241,31 +241,31 @@ std::string offer_words(const Offer& offer) {
 
 }  // namespace
 
-void draw_offer(ViewState& view, const OverlayActions& actions) {
-  Offer& offer = view.dialogs.offer;
-  if (!offer.any()) return;
+void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
+  RecordingRoles& roles = view.dialogs.recording_roles;
+  if (!roles.any()) return;
   bool open = true;
   begin_in_the_middle();
-  ImGui::Begin(offer.problem.empty() ? "Recordings" : "Not a recording", &open, kDialog);
+  ImGui::Begin(roles.problem.empty() ? "Recordings" : "Not a recording", &open, kDialog);
   ImGui::PushTextWrapPos(std::min(0.8F * ImGui::GetIO().DisplaySize.x, 42.0F * ImGui::GetFontSize()));
-  if (!offer.problem.empty()) {
-    ImGui::TextUnformatted(offer.problem.c_str());
+  if (!roles.problem.empty()) {
+    ImGui::TextUnformatted(roles.problem.c_str());
     ImGui::TextDisabled(
         "What it asks for is an option of `palpate import FILE --out REC.csv`; drop that recording here.");
   }
-  for (std::size_t i = 0; i < offer.recordings.size(); ++i) draw_role(offer, i);
-  if (!offer.recordings.empty()) {
-    ImGui::TextUnformatted(offer_words(offer).c_str());
-    const bool ready = !offer.training().empty() || !offer.test().empty();
+  for (std::size_t i = 0; i < roles.recordings.size(); ++i) draw_role(roles, i);
+  if (!roles.recordings.empty()) {
+    ImGui::TextUnformatted(recording_roles_words(roles).c_str());
+    const bool ready = !roles.training().empty() || !roles.test().empty();
     const bool typing = ImGui::GetIO().WantTextInput;
     if ((ImGui::Button("Start (Enter)") || (!typing && ImGui::IsKeyPressed(ImGuiKey_Enter))) && ready) {
-      actions.start_offer();
+      actions.use_recording_roles();
       open = false;
     }
   }
   ImGui::PopTextWrapPos();
   ImGui::End();
-  if (!open) offer = {};
+  if (!open) roles = {};
 }
 
 }  // namespace palpate::overlay

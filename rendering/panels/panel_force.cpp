@@ -225,7 +225,7 @@ void ForceCurves::draw_force(const Drawing& drawing, const ImVec2& size) {
   drawing.for_each_slot([&](std::size_t slot) {
     drawing.paint_slot(paint_on, slot, [slot](const CurveColumn& c) { return c.tick.force_N[slot]; });
   });
-  paint_on.troubles(ink(p.quiet), ink(p.fault), 6.0F * thin);
+  paint_on.fault_marks(ink(p.quiet), ink(p.fault), 6.0F * thin);
   finish_plot(
       drawing, plot, [](const CurveColumn& c, std::size_t slot) { return c.tick.force_N[slot]; }, " N");
 }

@@ -146,8 +146,8 @@ void draw_menu(LiveSession& session, const ModelsView& models, Slot slot, TableS
     session.rename(slot, table.name.data());
     ImGui::CloseCurrentPopup();
   }
-  if (models.slots[slot].foreign && ImGui::Selectable("It is a model of this material: compare it"))
-    session.claim(slot);
+  if (models.slots[slot].other_material && ImGui::Selectable("It is a model of this material: compare it"))
+    session.treat_as_this_material(slot);
   if (ImGui::Selectable("Take it out of the comparison")) session.remove(slot);
   ImGui::EndPopup();
 }

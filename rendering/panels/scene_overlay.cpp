@@ -41,14 +41,14 @@ void draw_title(const LiveSession& session, const ViewState& view, const SceneAr
   ImGui::Begin("title", nullptr, kFloating);
   ImGui::TextUnformatted(session.scene().title.c_str());
   tip(session.scene().description.c_str());
-  if (!view.feel) {
+  if (!view.scales_force) {
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
     ImGui::TextDisabled("dents x 2");
   }
-  if (view.feel || view.exaggerated) {
+  if (view.scales_force || view.exaggerated) {
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
     ImGui::TextColored(paint(kAboveJndColour), "%s",
-                       view.feel ? scale_words(session.scale()).c_str() : "arrows: difference x 10");
+                       view.scales_force ? scale_words(session.scale()).c_str() : "arrows: difference x 10");
   }
   ImGui::End();
 }
@@ -175,17 +175,17 @@ BigNumber big_number(const ModelsView& models, bool has_truth) {
   }
   BigNumber big;
   const std::string& name = active->name;
-  if (active->foreign) {
+  if (active->other_material) {
     big.below = models.counted;
   } else if (!models.compared) {
     const double guess = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
     if (!std::isnan(guess)) big.number = jnd_text(guess);
-    big.below = name + "'s own guess of its error (95 %); " + models.off_from;
+    big.below = name + "'s own guess of its error (95 %); " + models.reference_name;
     big.error_over_jnd = guess;
   } else if (models.selected == models.reference) {
     big.below = name + " is what the others are compared with";
   } else if (active->errors.samples == 0) {
-    big.below = "the error of " + name + " from " + models.off_from + ", from the next touch on";
+    big.below = "the error of " + name + " from " + models.reference_name + ", from the next touch on";
   } else {
     big.error_over_jnd = active->errors.p99_error_over_jnd;
     big.number = jnd_text(big.error_over_jnd);
@@ -203,7 +203,7 @@ std::string empty_scene_words(const LiveSession& session) {
 
 std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& blocks, const SceneArea& area,
                                     const ImVec2& point, bool aimed) {
-  const std::size_t count = std::max<std::size_t>(shown.stage.size(), 1);
+  const std::size_t count = std::max<std::size_t>(shown.blocks.size(), 1);
   const auto half_height = 0.5F * static_cast<float>(blocks.geometry().height_m);
   const auto half_width = 0.5F * static_cast<float>(blocks.geometry().width_m);
   const glm::vec2 size(area.size.x, area.size.y);
@@ -235,19 +235,19 @@ void SceneOverlay::draw(LiveSession& session, const WindowView& shown, const Blo
     draw_title(session, view, area);
     top_px = draw_headline(shown, style, area);
     draw_data_warning(shown.models, style, area, top_px);
-    if (view.feel) draw_feel(session, style, area);
-    if (!view.feel && data_warning(shown.models).empty()) draw_hint(session, view, style, area, top_px);
+    if (view.scales_force) draw_feel(session, style, area);
+    if (!view.scales_force && data_warning(shown.models).empty()) draw_hint(session, view, style, area, top_px);
   }
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
   if (!view.exhibit.on) buttons_height_ = draw_buttons(area, *actions.commands);
-  if (!view.dialogs.offer.any()) draw_device_words(session, style, area);
+  if (!view.dialogs.recording_roles.any()) draw_device_words(session, style, area);
   draw_toasts(toasts, style, area, top_px + 0.5F * line);
   draw_file_picker(view, actions);
   draw_device_list(view, session.device_name(), actions);
   draw_scene_list(session, view, actions);
   draw_view_list(session, view, actions);
-  draw_offer(view, actions);
+  draw_recording_roles(view, actions);
   draw_help(view, style, *actions.commands);
 }
 

@@ -24,7 +24,7 @@ namespace palpate {
 struct OverlayActions {
   const std::vector<WindowCommand>* commands = nullptr;  // for the buttons and the list of keys
   std::function<void(const std::string&)> use_scene, open, use_device, use_line_up;
-  std::function<void()> start_offer;  // trains and tests by Dialogs::offer
+  std::function<void()> use_recording_roles;  // trains and tests by Dialogs::recording_roles
 };
 
 // Sentences of the overlay; may be empty.
@@ -54,7 +54,7 @@ class SceneOverlay {
   float buttons_height_ = 0.0F;  // in the last frame
 };
 
-// The index on the stage of the block that is nearest to `point`. `aimed`: empty unless the point is on or near it.
+// Index in WindowView::blocks of the block nearest to `point`. `aimed`: empty unless the point is on or near it.
 std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& blocks, const SceneArea& area,
                                     const ImVec2& point, bool aimed);
 

@@ -5,34 +5,34 @@
 
 namespace palpate {
 
-void Offer::add(OfferedRecording recording) {
-  std::erase_if(recordings, [&](const OfferedRecording& other) { return other.path == recording.path; });
+void RecordingRoles::add(OpenedRecording recording) {
+  std::erase_if(recordings, [&](const OpenedRecording& other) { return other.path == recording.path; });
   recordings.push_back(std::move(recording));
   if (recordings.size() > 1) make_test(recordings.size() - 1);
 }
 
-void Offer::make_test(std::size_t index) {
+void RecordingRoles::make_test(std::size_t index) {
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    OfferedRecording::Role& role = recordings[i].role;
+    OpenedRecording::Role& role = recordings[i].role;
     if (i == index) {
-      role = OfferedRecording::Role::test;
-    } else if (role == OfferedRecording::Role::test) {
-      role = OfferedRecording::Role::train;
+      role = OpenedRecording::Role::test;
+    } else if (role == OpenedRecording::Role::test) {
+      role = OpenedRecording::Role::train;
     }
   }
 }
 
-std::vector<std::string> Offer::training() const {
+std::vector<std::string> RecordingRoles::training() const {
   std::vector<std::string> paths;
-  for (const OfferedRecording& one : recordings) {
-    if (one.role == OfferedRecording::Role::train) paths.push_back(one.path);
+  for (const OpenedRecording& one : recordings) {
+    if (one.role == OpenedRecording::Role::train) paths.push_back(one.path);
   }
   return paths;
 }
 
-std::string Offer::test() const {
+std::string RecordingRoles::test() const {
   const auto found = std::find_if(recordings.begin(), recordings.end(),
-                                  [](const OfferedRecording& one) { return one.role == OfferedRecording::Role::test; });
+                                  [](const OpenedRecording& one) { return one.role == OpenedRecording::Role::test; });
   return found == recordings.end() ? "" : found->path;
 }
 

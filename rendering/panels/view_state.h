@@ -55,7 +55,7 @@ struct TableState {
 };
 
 // A recording that the user opened, and its role.
-struct OfferedRecording {
+struct OpenedRecording {
   enum class Role : std::uint8_t { train, test, none };
   std::string path;
   std::vector<std::string> words;  // columns and guesses of an import
@@ -63,12 +63,12 @@ struct OfferedRecording {
 };
 
 // Recordings whose roles the user has to confirm.
-struct Offer {
-  std::vector<OfferedRecording> recordings;
+struct RecordingRoles {
+  std::vector<OpenedRecording> recordings;
   std::string problem;  // why a file could not be read
   bool any() const noexcept { return !recordings.empty() || !problem.empty(); }
   // Adds a recording. Of several the last one becomes the test.
-  void add(OfferedRecording recording);
+  void add(OpenedRecording recording);
   std::vector<std::string> training() const;
   std::string test() const;           // empty: none
   void make_test(std::size_t index);  // makes it the only test
@@ -97,11 +97,13 @@ struct Dialogs {
   bool scene_list = false;  // scenes to choose from
   bool device_list = false;
   bool view_list = false;  // choices of the display
-  Offer offer;
+  RecordingRoles recording_roles;
   FilePicker picker;
   std::vector<DeviceChoice> devices;  // empty: no search has finished
 
-  bool any() const noexcept { return help || file_list || scene_list || device_list || view_list || offer.any(); }
+  bool any() const noexcept {
+    return help || file_list || scene_list || device_list || view_list || recording_roles.any();
+  }
 };
 
 // The exhibit's control of the picture.
@@ -117,7 +119,7 @@ struct ViewState {
   ExhibitState exhibit;
   CurveTime time;
   TableState table;
-  bool feel = false;                                   // shows the sliders that scale the rendered force
+  bool scales_force = false;                           // shows the sliders that scale the rendered force
   bool exaggerated = false;                            // arrows show ten times the difference
   bool centres_together = true;                        // the slider of centres refits all models that have centres
   int requested_centres = 0;                           // last value of that slider

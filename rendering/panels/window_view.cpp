@@ -14,7 +14,7 @@ namespace {
 constexpr double kUsualOverStrongest = 1.5;
 
 // All that there is room for; where that is too little, the active model and the verdict's come before others.
-std::vector<std::size_t> on_stage(const ModelsView& models, bool reference, std::size_t block_count) {
+std::vector<std::size_t> slots_of_blocks(const ModelsView& models, bool reference, std::size_t block_count) {
   const std::size_t room = reference ? block_count - 1 : block_count;
   std::vector<std::size_t> wanted;
   if (models.active() != nullptr) wanted.push_back(models.selected);
@@ -22,13 +22,13 @@ std::vector<std::size_t> on_stage(const ModelsView& models, bool reference, std:
   for (const std::size_t slot : models.listed()) {
     if (models.slots[slot].state == SlotState::ready) wanted.push_back(slot);
   }
-  std::vector<std::size_t> stage;
+  std::vector<std::size_t> slots;
   for (const std::size_t slot : wanted) {
-    if (stage.size() < room && std::find(stage.begin(), stage.end(), slot) == stage.end()) stage.push_back(slot);
+    if (slots.size() < room && std::find(slots.begin(), slots.end(), slot) == slots.end()) slots.push_back(slot);
   }
-  std::sort(stage.begin(), stage.end());
-  if (reference) stage.push_back(kReferenceBlock);
-  return stage;
+  std::sort(slots.begin(), slots.end());
+  if (reference) slots.push_back(kReferenceBlock);
+  return slots;
 }
 
 ModelsView models_view(const LiveSession& session, double until_s) {
@@ -40,9 +40,9 @@ ModelsView models_view(const LiveSession& session, double until_s) {
   const Comparison& comparison = session.comparison();
   view.compared = session.has_reference(comparison.reference());
   if (comparison.reference() == ReferenceKind::direct && view.compared) view.reference = *session.models().reference();
-  view.off_from = session.reference_words(true);
+  view.reference_name = session.reference_words(true);
   view.counted = counted_words(session);
-  view.knows_this = session.replay() != nullptr && session.replays_training();
+  view.replays_training = session.replay() != nullptr && session.replays_training();
   view.jnd = session.jnd();
   view.verdict = session.verdict();
   if (const HistoryPoint* now = comparison.history().last_until(until_s)) {
@@ -79,7 +79,7 @@ const ModelView* ModelsView::active() const noexcept {
 
 bool ModelsView::out_of_domain() const noexcept {
   const ModelView* model = active();
-  return in_contact && model != nullptr && model->out_of_domain && !knows_this;
+  return in_contact && model != nullptr && model->out_of_domain && !replays_training;
 }
 
 std::string counted_words(const LiveSession& session) {
@@ -87,7 +87,7 @@ std::string counted_words(const LiveSession& session) {
   const std::size_t active = session.models().selected();
   if (!session.has_reference(comparison.reference())) return session.reference_words(true);
   if (active >= session.models().size()) return {};
-  if (session.models().info(active).foreign)
+  if (session.models().info(active).other_material)
     return "no truth to compare " + session.models().info(active).name + " with";
   if (session.tests_recording()) {
     return grouped(session.figures(active).errors.samples) + " samples in contact, all of " +
@@ -125,7 +125,7 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
   const ReferenceKind kind = session.comparison().reference();
   const std::size_t blocks = view.settings.block_count;
   const bool reference = blocks > 1 && kind != ReferenceKind::direct && session.has_reference(kind);
-  shown.stage = on_stage(shown.models, reference, blocks);
+  shown.blocks = slots_of_blocks(shown.models, reference, blocks);
   shown.reference_block = reference_block(session);
   shown.reference_words = session.reference_words();
   shown.reference_N = session.comparison().reference_N();

@@ -33,11 +33,11 @@ struct ModelsView {
   std::vector<ModelView> slots;
   std::size_t selected = 0;
   bool in_contact = false;
-  bool compared = true;                     // there is a reference
-  std::size_t reference = kReferenceBlock;  // its slot, if it is a model
-  std::string off_from = "the material";    // the reference in few words
-  std::string counted;                      // see counted_words
-  bool knows_this = false;                  // the replayed recording belongs to the training set
+  bool compared = true;                         // there is a reference
+  std::size_t reference = kReferenceBlock;      // its slot, if it is a model
+  std::string reference_name = "the material";  // the reference in few words
+  std::string counted;                          // see counted_words
+  bool replays_training = false;                // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
   // The last tick that the curves show.
@@ -63,7 +63,7 @@ struct HealthView {
   std::vector<std::string> alarms;  // not acknowledged yet
   std::string device_name;
   DeviceHealth device;
-  double heat_share = 0.0;                      // see LoopSnapshot
+  double heat_share = 0.0;                     // see LoopSnapshot
   double stiffness_share = 1.0, lag_ms = 0.0;  // see LoopSnapshot
 };
 
@@ -73,7 +73,7 @@ struct WindowView {
   HealthView health;
   // The slots of the blocks, ascending: the active model, then that of the verdict, then others, as far as there is
   // room. With several blocks the last one is kReferenceBlock where the reference is no model.
-  std::vector<std::size_t> stage;
+  std::vector<std::size_t> blocks;
   std::string reference_block;  // name of the block of the reference
   std::string reference_words;
   double reference_N = std::numeric_limits<double>::quiet_NaN();

@@ -72,7 +72,7 @@ bool CurveColumns::scroll(double width_s, double first, std::size_t slots, std::
 }
 
 void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
-  column.trouble = std::max(column.trouble, point.trouble);
+  column.fault_level = std::max(column.fault_level, point.fault_level);
   if (std::isnan(point.reference_N)) add_prediction(point, jnd, column);
   const auto farthest = [&](const HistoryPoint& tick) {
     double most = -1.0;

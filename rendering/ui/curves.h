@@ -13,9 +13,9 @@
 namespace palpate {
 
 struct CurveColumn {
-  double time_s = 0.0;                      // loop time of its middle
-  bool any = false;                         // whether it has ticks
-  TickTrouble trouble = TickTrouble::none;  // the worst of its ticks
+  double time_s = 0.0;                                // loop time of its middle
+  bool any = false;                                   // whether it has ticks
+  TickFaultLevel fault_level = TickFaultLevel::none;  // the worst of its ticks
   // The tick in which a model is farthest from the reference. All forces that are drawn are of this one tick, so that
   // no difference is shown that did not occur.
   HistoryPoint tick;

@@ -116,9 +116,8 @@ OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
   object["surface_offset_m"] = replayed.surface.at;
   object["surface_told"] = replayed.surface.identified;
   const PredictedErrors& predicted = replayed.predicted;
-  object["predicted_error"] = {
-      {"bound_95_held", number_or_null(!std::isnan(predicted.held_share), predicted.held_share)},
-      {"median_bound_N", number_or_null(!std::isnan(predicted.median_N), predicted.median_N)}};
+  object["predicted_error"] = {{"bound_95_held", number_or_null(!std::isnan(predicted.coverage), predicted.coverage)},
+                               {"median_bound_N", number_or_null(!std::isnan(predicted.median_N), predicted.median_N)}};
   object["bins"] = bins_json(replayed.as_recorded.bins);
   return object;
 }

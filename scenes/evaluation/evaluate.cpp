@@ -11,7 +11,7 @@ namespace {
 
 using Models = std::vector<EvaluatedModel>;
 
-// Of a model: its predicted bounds, and how often they held.
+// The predicted bounds of one model, and the number of errors within them.
 struct Bounds {
   std::vector<float> bound_N;
   std::size_t held = 0;
@@ -25,7 +25,7 @@ struct Bounds {
   }
 };
 
-// What all models made of all rows.
+// The results of all models over all rows.
 struct Passed {
   ReplaySummary summary;
   ModelErrors no_force;
@@ -33,13 +33,13 @@ struct Passed {
   std::vector<Bounds> bounds;
 };
 
-// Up to kMaxModels models at a time; `also` sees every row with the first of them. `from`: what of
-// the whole is done before.
+// Replays the rows with up to kMaxModels models at a time. `also` is called for every row with the first of these
+// groups. `from`: progress of the evaluation at the beginning.
 Result<Passed> pass_over(const RowSource& rows, const Models& models, double surface_offset_m,
                          const EvaluationRequest& request, double from, const ReplayVisitor& also) {
   Passed passed{{}, ModelErrors(models.front().jnd), {}, std::vector<Bounds>(models.size())};
   for (const EvaluatedModel& one : models) passed.errors.emplace_back(one.jnd);
-  // By row, from the first models: every model is judged on the same samples.
+  // Contact of each row, from the first group of models, so that all models have the same samples.
   std::vector<bool> contact;
   for (std::size_t first = 0; first < models.size(); first += kMaxModels) {
     const double done = static_cast<double>(first) / static_cast<double>(models.size());

@@ -49,7 +49,7 @@ struct EvaluationRequest {
 
 // Coverage and median of a model's 95 % error bounds; NaN for a model without bounds.
 struct PredictedErrors {
-  double held_share = std::numeric_limits<double>::quiet_NaN();  // coverage: share of the errors within the bound
+  double coverage = std::numeric_limits<double>::quiet_NaN();  // share of the errors within the bound
   double median_N = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -57,7 +57,7 @@ struct ModelEvaluation {
   ModelErrors as_recorded;
   ModelErrors surface_moved;
   PredictedErrors predicted;  // with the surface moved
-  OffsetEstimate surface;            // 0 where no offset is determined
+  OffsetEstimate surface;     // 0 where no offset is determined
 };
 
 struct RecordingEvaluation {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kOneSided = 0.05;
 
-// The smallest value that at least 99 % of those from `begin` to `end` do not exceed.
+// The smallest of the values from `begin` to `end` that at least 99 % of them do not exceed.
 double percentile_99(std::vector<float>::const_iterator begin, std::vector<float>::const_iterator end) {
   std::vector<float> values(begin, end);
   const std::size_t rank = (values.size() * 99 + 99) / 100;  // rounded up, from 1
@@ -19,17 +19,17 @@ double percentile_99(std::vector<float>::const_iterator begin, std::vector<float
 
 }  // namespace
 
-Interval Evidence::p99_interval() const {
+Interval UnitErrors::p99_interval() const {
   Interval interval = interval_95(p99_error_over_jnd, standard_error(unit_p99), units());
   interval.low = interval.known() ? std::max(0.0, interval.low) : interval.low;
   return interval;
 }
 
-double Evidence::p99_at_most() const { return bound_95(p99_error_over_jnd, standard_error(unit_p99), units()); }
+double UnitErrors::p99_at_most() const { return bound_95(p99_error_over_jnd, standard_error(unit_p99), units()); }
 
-double Evidence::within_at_least() const {
+double UnitErrors::within_at_least() const {
   if (!has_intervals()) return kUnknown;
-  if (beyond_units == 0) return std::pow(kOneSided, 1.0 / static_cast<double>(units()));
+  if (units_above_jnd == 0) return std::pow(kOneSided, 1.0 / static_cast<double>(units()));
   const double error = ratio_standard_error(unit_within, unit_samples);
   return std::max(0.0, bound_95(within_jnd, -error, units()));
 }
@@ -85,23 +85,23 @@ ErrorSummary ModelErrors::summary() const {
   return summary;
 }
 
-Evidence ModelErrors::evidence() const {
-  Evidence evidence;
-  static_cast<ErrorSummary&>(evidence) = summary();
-  evidence.units_are_recordings = recordings_.size() > 1;
-  std::vector<std::size_t> bounds = evidence.units_are_recordings ? recordings_ : strokes_;
+UnitErrors ModelErrors::unit_errors() const {
+  UnitErrors unit_errors;
+  static_cast<ErrorSummary&>(unit_errors) = summary();
+  unit_errors.units_are_recordings = recordings_.size() > 1;
+  std::vector<std::size_t> bounds = unit_errors.units_are_recordings ? recordings_ : strokes_;
   bounds.push_back(ratios_.size());
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
     if (bounds[i] == bounds[i + 1]) continue;  // a stroke that ended before the counted time
     const auto begin = ratios_.begin() + static_cast<std::ptrdiff_t>(bounds[i]);
     const auto end = ratios_.begin() + static_cast<std::ptrdiff_t>(bounds[i + 1]);
     const auto within = std::count_if(begin, end, [](float ratio) { return ratio <= 1.0F; });
-    evidence.unit_samples.push_back(static_cast<double>(end - begin));
-    evidence.unit_within.push_back(static_cast<double>(within));
-    evidence.unit_p99.push_back(percentile_99(begin, end));
-    evidence.beyond_units += within < end - begin ? 1 : 0;
+    unit_errors.unit_samples.push_back(static_cast<double>(end - begin));
+    unit_errors.unit_within.push_back(static_cast<double>(within));
+    unit_errors.unit_p99.push_back(percentile_99(begin, end));
+    unit_errors.units_above_jnd += within < end - begin ? 1 : 0;
   }
-  return evidence;
+  return unit_errors;
 }
 
 }  // namespace palpate

@@ -40,9 +40,9 @@ struct ErrorSummary {
 };
 
 // The figures of merit over all samples and of each unit.
-struct Evidence : ErrorSummary {
+struct UnitErrors : ErrorSummary {
   bool units_are_recordings = false;  // false: units are strokes
-  std::uint64_t beyond_units = 0;     // number of units with a sample beyond one JND
+  std::uint64_t units_above_jnd = 0;  // number of units with a sample beyond one JND
   std::vector<double> unit_samples;
   std::vector<double> unit_within;  // samples within the JND
   std::vector<double> unit_p99;     // 99 % error over the JND
@@ -52,7 +52,7 @@ struct Evidence : ErrorSummary {
   // The following are NaN with fewer than kLeastUnits units.
   Interval p99_interval() const;  // 95 %, two-sided
   double p99_at_most() const;     // 95 %, one-sided
-  // 95 % lower bound of the share of samples within the JND; of the share of units where beyond_units is 0.
+  // 95 % lower bound of the share of samples within the JND; of the share of units where units_above_jnd is 0.
   double within_at_least() const;
 };
 
@@ -64,7 +64,7 @@ struct PairedDifference {
 };
 PairedDifference paired_difference(double one_p99, const std::vector<double>& one_units, double other_p99,
                                    const std::vector<double>& other_units);
-inline PairedDifference paired_difference(const Evidence& one, const Evidence& other) {
+inline PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
   return paired_difference(one.p99_error_over_jnd, one.unit_p99, other.p99_error_over_jnd, other.unit_p99);
 }
 
@@ -91,7 +91,7 @@ class ModelErrors {
   void append(const ModelErrors& other);
 
   ErrorSummary summary() const;
-  Evidence evidence() const;
+  UnitErrors unit_errors() const;
   // Whether error / JND is the same at every sample.
   bool equals(const ModelErrors& other) const { return ratios_ == other.ratios_; }
 

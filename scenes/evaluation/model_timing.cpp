@@ -25,12 +25,12 @@ void add_blocks(std::size_t count, std::vector<double>& means_ns, const Step& st
   }
 }
 
-// Nearest rank, of values in ascending order.
+// The percentile by nearest rank. `sorted` is in ascending order.
 double percentile(const std::vector<double>& sorted, std::size_t percent) {
   return sorted[(sorted.size() * percent + 99) / 100 - 1];
 }
 
-// A round of one model.
+// The mean times of one model's blocks of calls, in one round over all samples.
 struct Round {
   std::vector<double> tick_ns;
   std::vector<double> evaluation_ns;
@@ -41,7 +41,7 @@ Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& str
   double force_N = 0.0;
   for (const TimedSamples& stretch : stretches) {
     if (stretch.samples.empty()) continue;
-    // Once for the features, which also warms caches and the clock.
+    // The first pass computes the features, and warms up caches and the processor's clock.
     std::vector<std::array<double, kMaxFeatures>> features;
     HapticsTick first(stretch.sensor, {model});
     for (const ToolSample& one : stretch.samples) {
@@ -53,11 +53,11 @@ Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& str
                [&](std::size_t i) { force_N = tick.step(stretch.samples[i]).force_N[0]; });
     add_blocks(features.size(), round.evaluation_ns, [&](std::size_t i) {
       std::array<double, kMaxFeatures> x = features[i];
-      x[0] += 0.0 * force_N;  // nothing changes but the order of things
+      x[0] += 0.0 * force_N;  // adds 0; each call depends on the last, as in the tick
       force_N = model->evaluate(x.data()).force_N;
     });
   }
-  // The forces are used, or the calls might be left out.
+  // The forces must be used, or the compiler may remove the calls.
   volatile double wanted = force_N;
   static_cast<void>(wanted);
   std::sort(round.tick_ns.begin(), round.tick_ns.end());

@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMostSamples = 10000;  // of a recording; beyond, every n-th
+constexpr std::size_t kMostSamples = 10000;  // of a recording; of a longer one every n-th is used
 
 }  // namespace
 
@@ -34,7 +34,7 @@ NoiseFloor noise_floor(const std::vector<const Recording*>& recordings, const Jn
     return inside / count;
   };
   floor.within_jnd = share(1.0);
-  // Normal errors of one deviation have 99 % within 2.576 of it.
+  // Bisection. Its upper end: 99 % of a normal distribution are within 2.576 standard deviations.
   double low = 0.0;
   double high = 2.6 * *std::max_element(noise_over_jnd.begin(), noise_over_jnd.end());
   while (high - low > 1e-3 * high) {

@@ -15,7 +15,7 @@ bool is_non_inferior(const Candidate& one, const Candidate& best) {
 
 }  // namespace
 
-Candidate candidate(const Evidence& errors, const ModelTiming& time) {
+Candidate candidate(const UnitErrors& errors, const ModelTiming& time) {
   return {errors.p99_error_over_jnd, errors.unit_p99, time.tick};
 }
 
@@ -42,11 +42,11 @@ Ranking rank(const std::vector<Candidate>& candidates) {
     const bool equal = !faster(candidates[fastest].tick, candidates[i].tick);
     if (equal && smaller_error(i, ranking.recommended)) ranking.recommended = i;
   }
-  // A model with an uncertain error may be left out above and beat the one that was taken.
+  // A model whose error is uncertain may fail the test of non-inferiority and yet dominate the recommended one.
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!dominates(candidates[i], candidates[ranking.recommended])) continue;
     ranking.recommended = i;
-    i = static_cast<std::size_t>(-1);  // from the first again: errors get smaller each time
+    i = static_cast<std::size_t>(-1);  // starts again; this ends, because each error is smaller than the last
   }
   if (std::find(ranking.qualified.begin(), ranking.qualified.end(), ranking.recommended) == ranking.qualified.end()) {
     ranking.qualified.push_back(ranking.recommended);

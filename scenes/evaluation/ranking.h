@@ -26,7 +26,7 @@ struct Candidate {
   std::vector<double> unit_errors_over_jnd;  // 99 % error of each unit; every candidate has the same units
   Timing tick;
 };
-Candidate candidate(const Evidence& errors, const ModelTiming& time);
+Candidate candidate(const UnitErrors& errors, const ModelTiming& time);
 
 struct Ranking {
   std::size_t best = 0;

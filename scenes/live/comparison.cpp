@@ -7,18 +7,18 @@
 namespace palpate {
 namespace {
 
-// A longer gap between snapshots is a stall, in which the picture stood still.
+// A longer gap between two snapshots is a stall; only this part of it counts as time.
 constexpr double kLongestStep_s = 0.1;
-// A tick takes several samples of a quick recording.
+// A stream that begins this soon after the recording's first sample is settled: one tick may take several samples.
 constexpr double kBeginning_s = 0.05;
-// After so many times its time constant a first-order filter is within 1 % of its input.
+// After 5 time constants a first-order filter has less than 1 % of its initial error.
 constexpr double kSettled_memories = 5.0;
 
 }  // namespace
 
 Comparison::Comparison(const SessionModels& models, const JndLine& jnd) : models_(models), jnd_(jnd) {
   slots_.resize(kMaxModels);
-  for (Slot& slot : slots_) slot.evidence = ModelErrors(jnd);
+  for (Slot& slot : slots_) slot.model_errors = ModelErrors(jnd);
 }
 
 void Comparison::use_reference(ReferenceKind kind) {
@@ -34,7 +34,7 @@ void Comparison::forget_errors(std::string why) {
   for (Slot& slot : slots_) {
     slot.errors = {};
     slot.quantile = {};
-    slot.evidence = ModelErrors(jnd_);
+    slot.model_errors = ModelErrors(jnd_);
     slot.outside_s = 0.0;
   }
 }
@@ -43,7 +43,7 @@ void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_
 
 void Comparison::forget_slot(std::size_t slot) {
   slots_[slot] = {};
-  slots_[slot].evidence = ModelErrors(jnd_);
+  slots_[slot].model_errors = ModelErrors(jnd_);
   history_.forget(slot);
 }
 
@@ -68,7 +68,7 @@ ModelFigures Comparison::figures(std::size_t slot) const {
   return figures;
 }
 
-void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
+void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
   const PublishedSet* set = models_.set_of(snapshot);
   const double step_s = std::clamp(snapshot.loop_time_s - last_loop_time_s_, 0.0, kLongestStep_s);
   last_loop_time_s_ = snapshot.loop_time_s;
@@ -82,8 +82,8 @@ void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
       (!snapshot.tick.in_contact || time_s > stream_began_s_ + kSettled_memories * models_.longest_memory_s()))
     settled_ = true;
   HistoryPoint point = point_of(snapshot, set);
-  point.trouble = trouble_ = std::max(trouble_, trouble);
-  // A recording that stands still says nothing new.
+  point.fault_level = fault_level_ = std::max(fault_level_, fault_level);
+  // While a replay is paused, ticks have no new sample.
   const bool fresh = snapshot.samples > 0;
   if (fresh && set != nullptr) count(point, snapshot, *set, std::clamp(time_s - last_time_s_, 0.0, kLongestStep_s));
   for (Slot& slot : slots_) slot.dent.step(snapshot.tick.depth_m, std::abs(slot.sustained_over_jnd), step_s);
@@ -94,7 +94,7 @@ void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
       point.sustained_over_jnd[i] = static_cast<float>(slots_[i].sustained_over_jnd);
   }
   history_.append(point);
-  trouble_ = TickTrouble::none;
+  fault_level_ = TickFaultLevel::none;
 }
 
 HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedSet* set) {
@@ -122,18 +122,18 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
     const std::size_t slot = set->slots[i];
     if (slot == PublishedSet::kRemoved) continue;
     point.force_N[slot] = static_cast<float>(snapshot.tick.force_N[i]);
-    if (models_.info(slot).foreign) point.foreign |= static_cast<std::uint16_t>(1U << slot);
+    if (models_.info(slot).other_material) point.other_material |= static_cast<std::uint16_t>(1U << slot);
   }
   return point;
 }
 
 void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set,
                        double step_s) {
-  // Where one model is out of domain, none is compared.
+  // Where one model is outside its training domain, the sample counts for no model.
   bool outside = false;
   for (std::size_t i = 0; i < set.slots.size(); ++i) {
     const std::size_t slot = set.slots[i];
-    if (slot == PublishedSet::kRemoved || models_.info(slot).foreign) continue;
+    if (slot == PublishedSet::kRemoved || models_.info(slot).other_material) continue;
     if ((snapshot.tick.out_of_domain_mask >> i & 1U) == 0) continue;
     outside = true;
     slots_[slot].outside_s += step_s;
@@ -145,7 +145,7 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
         slots_[slot].sustained.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
   }
   if (strokes_.begins_stroke(point.time_s, point.in_contact)) stroke_pending_ = true;
-  // Of a set before the newest: a model that joined is not in it.
+  // A snapshot of an earlier set lacks the models that joined since.
   if (&set != models_.newest_set() || std::isnan(point.reference_N) || !point.in_contact) return;
   contact_s_ += step_s;
   if (outside) outside_s_ += step_s;
@@ -167,8 +167,8 @@ void Comparison::count_errors(const HistoryPoint& point, const PublishedSet& set
     slot.errors.add(model_N, reference_N, false, jnd_);
     slot.quantile.add(std::abs(difference));
     if (counted_ > kMostJudged) continue;
-    if (begins) slot.evidence.begin_stroke();
-    slot.evidence.add(model_N, reference_N, false);
+    if (begins) slot.model_errors.begin_stroke();
+    slot.model_errors.add(model_N, reference_N, false);
   }
 }
 
@@ -189,8 +189,8 @@ double Comparison::reference_in(const LoopSnapshot& snapshot, const PublishedSet
   if (reference_ == ReferenceKind::measured) return snapshot.measured_N;
   if (reference_ == ReferenceKind::truth) return snapshot.reference_N;
   if (set == nullptr || !models_.reference()) return kNoForce;
-  const auto place = set->place_of(*models_.reference());
-  return place ? snapshot.tick.force_N[*place] : kNoForce;
+  const auto index = set->index_of(*models_.reference());
+  return index ? snapshot.tick.force_N[*index] : kNoForce;
 }
 
 }  // namespace palpate

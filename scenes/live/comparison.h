@@ -53,7 +53,7 @@ class Comparison {
   void begin_slot(std::size_t slot);   // its model became ready
   void forget_slot(std::size_t slot);  // its model was removed
   // Call it for every snapshot in order, with the return value of FaultLog::update.
-  void add(const LoopSnapshot& snapshot, TickTrouble trouble);
+  void add(const LoopSnapshot& snapshot, TickFaultLevel fault_level);
   // Call it once a frame, after `add`: sets the figures of the newest tick.
   void show(const LoopSnapshot& newest);
   // Clears the errors so far; the history stays. `why`: the reason in words, e.g. "voxel joined".
@@ -69,7 +69,7 @@ class Comparison {
 
   ModelFigures figures(std::size_t slot) const;
   // The errors of the first kMostJudged samples with their strokes, for a ranking.
-  const ModelErrors& evidence(std::size_t slot) const noexcept { return slots_[slot].evidence; }
+  const ModelErrors& model_errors(std::size_t slot) const noexcept { return slots_[slot].model_errors; }
 
   // Ten minutes of contact at 1 kHz; 2.4 MB per model.
   static constexpr std::uint64_t kMostJudged = 600'000;
@@ -82,7 +82,7 @@ class Comparison {
     double sustained_over_jnd = 0.0;  // in the last snapshot; ticks without a reference count as 0
     ErrorFigures errors;
     ErrorQuantile quantile;
-    ModelErrors evidence{JndLine{}};
+    ModelErrors model_errors{JndLine{}};
     double outside_s = 0.0;
   };
   HistoryPoint point_of(const LoopSnapshot& snapshot, const PublishedSet* set);
@@ -104,8 +104,8 @@ class Comparison {
   double stream_began_s_ = 0.0;  // device time
   double begins_at_s_ = -std::numeric_limits<double>::infinity();
   double last_loop_time_s_ = 0.0;
-  double last_time_s_ = 0.0;                 // device time
-  TickTrouble trouble_ = TickTrouble::none;  // the worst since the last point of the history
+  double last_time_s_ = 0.0;                           // device time
+  TickFaultLevel fault_level_ = TickFaultLevel::none;  // the worst since the last point of the history
   ForceHistory history_;
 };
 

@@ -52,11 +52,11 @@ double ExhibitTrace::over_jnd(std::size_t column) const noexcept {
 }
 
 std::vector<ExhibitRound> ExhibitGame::rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference,
-                                                 bool felt) {
+                                                 bool has_force) {
   const ExhibitModel* best = find_model(ready, "greedy", false);
   if (best == nullptr) best = find_model(ready, "direct", false);
   if (best == nullptr && !ready.empty()) best = &ready.front();
-  const ExhibitModel* first = felt ? best : has_reference || ready.empty() ? nullptr : &ready.front();
+  const ExhibitModel* first = has_force ? best : has_reference || ready.empty() ? nullptr : &ready.front();
   std::vector<const ExhibitModel*> others{find_model(ready, "position", false), find_model(ready, "", true), best};
   for (const ExhibitModel& model : ready) others.push_back(&model);
   std::vector<ExhibitRound> rounds;
@@ -72,10 +72,10 @@ std::vector<ExhibitRound> ExhibitGame::rounds_of(const std::vector<ExhibitModel>
   return rounds;
 }
 
-bool ExhibitGame::begin(const std::vector<ExhibitModel>& ready, bool has_reference, bool felt, double press_s) {
-  std::vector<ExhibitRound> rounds = rounds_of(ready, has_reference, felt);
+bool ExhibitGame::begin(const std::vector<ExhibitModel>& ready, bool has_reference, bool has_force, double press_s) {
+  std::vector<ExhibitRound> rounds = rounds_of(ready, has_reference, has_force);
   if (rounds.empty()) return false;
-  if (felt) {
+  if (has_force) {
     rounds.resize(std::min(rounds.size(), kMostRounds - 1));
     rounds.push_back({rounds.back().first, *rounds.back().first});
     for (std::size_t i = rounds.size(); i > 1; --i) std::swap(rounds[i - 1], rounds[random_.index(i)]);
@@ -84,7 +84,7 @@ bool ExhibitGame::begin(const std::vector<ExhibitModel>& ready, bool has_referen
     }
   }
   rounds_ = std::move(rounds);
-  felt_ = felt;
+  has_force_ = has_force;
   press_s_ = press_s;
   index_ = 0;
   begin_round();
@@ -101,7 +101,7 @@ void ExhibitGame::begin_round() {
   trace_.clear();
   chosen_ = 1;
   pressed_ = {};
-  state_ = felt_ ? State::press : State::guess;
+  state_ = has_force_ ? State::press : State::guess;
 }
 
 void ExhibitGame::guess(bool noticed) {
@@ -112,16 +112,16 @@ void ExhibitGame::guess(bool noticed) {
 }
 
 void ExhibitGame::choose(int key) noexcept {
-  if (state_ == State::press && felt_ && (key == 1 || key == 2)) chosen_ = key;
+  if (state_ == State::press && has_force_ && (key == 1 || key == 2)) chosen_ = key;
 }
 
 const ExhibitModel& ExhibitGame::rendered() const noexcept {
   const ExhibitRound& now = round();
-  return felt_ && chosen_ == 1 ? *now.first : now.second;
+  return has_force_ && chosen_ == 1 ? *now.first : now.second;
 }
 
 void ExhibitGame::answer(bool different) {
-  if (state_ != State::press || !felt_ || !pressed_both()) return;
+  if (state_ != State::press || !has_force_ || !pressed_both()) return;
   rounds_[index_].answered = true;
   rounds_[index_].said_noticed = different;
   end_round();
@@ -131,7 +131,7 @@ void ExhibitGame::add(const ExhibitTick& tick) {
   if (state_ != State::press) return;
   trace_.add(tick);
   if (tick.in_contact) pressed_[chosen_ == 2 ? 1 : 0] = true;
-  if (!felt_ && trace_.seconds() >= press_s_) end_round();
+  if (!has_force_ && trace_.seconds() >= press_s_) end_round();
 }
 
 void ExhibitGame::end_round() {
@@ -149,9 +149,9 @@ void ExhibitGame::go_on() {
   begin_round();
 }
 
-std::size_t ExhibitGame::right() const noexcept {
+std::size_t ExhibitGame::correct_answers() const noexcept {
   return static_cast<std::size_t>(
-      std::count_if(rounds_.begin(), rounds_.end(), [](const ExhibitRound& round) { return round.right(); }));
+      std::count_if(rounds_.begin(), rounds_.end(), [](const ExhibitRound& round) { return round.correct(); }));
 }
 
 }  // namespace palpate

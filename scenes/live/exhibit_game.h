@@ -1,9 +1,9 @@
 // The rules of the exhibit's game, without graphics: up to three rounds of rising difficulty, a visitor's answers and
 // the score.
-// Without a force device (mode "seen") the visitor guesses whether a hand would notice a difference, then presses two
+// Without a force device the visitor guesses whether a hand would notice a difference, then presses two
 // blocks with one stroke for 15 s: one renders the reference, the other a model. Then the result is shown:
 //   attract -> guess -> press -> reveal -> guess ... -> score
-// With a force device (mode "felt") a round is a blind comparison of two models under the keys 1 and 2: are they the
+// With a force device (`has_force`) a round is a blind comparison of two models under the keys 1 and 2: are they the
 // same or different? One round is a catch trial with the same model twice:
 //   attract -> press -> reveal -> press ... -> score
 // A difference is noticeable when the mean over 50 ms of difference / JND (HistoryPoint) exceeded 1 anywhere in the
@@ -77,8 +77,8 @@ struct ExhibitRound {
   bool is_catch() const noexcept { return first && first->slot == second.slot; }
   bool noticed() const noexcept { return largest_over_jnd > 1.0; }
   // The JND is a point on a gradual psychometric function: within a factor of 1.25 of it either answer is accepted.
-  bool on_the_edge() const noexcept { return largest_over_jnd >= 0.8 && largest_over_jnd <= 1.25; }
-  bool right() const noexcept { return answered && (on_the_edge() || said_noticed == noticed()); }
+  bool near_jnd() const noexcept { return largest_over_jnd >= 0.8 && largest_over_jnd <= 1.25; }
+  bool correct() const noexcept { return answered && (near_jnd() || said_noticed == noticed()); }
 };
 
 class ExhibitGame {
@@ -91,34 +91,35 @@ class ExhibitGame {
 
   // The rounds in order of rising difficulty, at most kMostRounds: the model of depth alone, a model of the paper's
   // recipe, the best model (greedy, else direct, else the first), then the others of `ready`. The other side is the
-  // best model when `felt`, else the reference, and without a reference the first model.
-  static std::vector<ExhibitRound> rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference, bool felt);
+  // best model when `has_force`, else the reference, and without a reference the first model.
+  static std::vector<ExhibitRound> rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference,
+                                             bool has_force);
   // Starts a game. Returns false and changes nothing when there are no two forces to compare. `press_s`: duration of
-  // pressing when not `felt`, from the first contact.
-  bool begin(const std::vector<ExhibitModel>& ready, bool has_reference, bool felt, double press_s = kPress_s);
+  // pressing when not `has_force`, from the first contact.
+  bool begin(const std::vector<ExhibitModel>& ready, bool has_reference, bool has_force, double press_s = kPress_s);
   void reset();
 
   State state() const noexcept { return state_; }
-  bool felt() const noexcept { return felt_; }
+  bool has_force() const noexcept { return has_force_; }
   const std::vector<ExhibitRound>& rounds() const noexcept { return rounds_; }
   const ExhibitRound& round() const noexcept { return rounds_[index_]; }  // not in the state attract
   std::size_t number() const noexcept { return index_ + 1; }              // of the round, from 1
   const ExhibitTrace& trace() const noexcept { return trace_; }
 
-  // Mode "seen": stores the guess whether a hand would notice a difference, and begins the pressing.
+  // Without a force device: stores the guess whether a hand would notice a difference, and begins the pressing.
   void guess(bool noticed);
-  // Mode "felt": key 1 or 2 chooses the rendered model. `answer` needs a contact with each.
+  // With a force device: key 1 or 2 chooses the rendered model. `answer` needs a contact with each.
   void choose(int key) noexcept;
   int chosen() const noexcept { return chosen_; }
   bool pressed_both() const noexcept { return pressed_[0] && pressed_[1]; }
   const ExhibitModel& rendered() const noexcept;  // the model to render
-  void answer(bool different);                    // ends a round in mode "felt"
-  // Call it in every tick. In mode "seen" the round ends after `press_s`.
+  void answer(bool different);                    // ends the round
+  // Call it in every tick. Without a force device the round ends after `press_s`.
   void add(const ExhibitTick& tick);
   // Leaves a reveal for the next round or the score.
   void go_on();
 
-  std::size_t right() const noexcept;  // number of correct answers
+  std::size_t correct_answers() const noexcept;  // number of correct answers
 
  private:
   static constexpr std::uint64_t kStream = 21;  // number of this game's random stream of the seed
@@ -127,7 +128,7 @@ class ExhibitGame {
 
   RandomStream random_;
   State state_ = State::attract;
-  bool felt_ = false;
+  bool has_force_ = false;
   double press_s_ = kPress_s;
   std::vector<ExhibitRound> rounds_;
   std::size_t index_ = 0;

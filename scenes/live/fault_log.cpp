@@ -15,27 +15,27 @@ constexpr std::size_t kStall = fault_index(FaultSource::window, window_fault::kS
 
 }  // namespace
 
-TickTrouble FaultLog::update(const LoopSnapshot& snapshot) {
-  TickTrouble trouble = TickTrouble::none;
+TickFaultLevel FaultLog::update(const LoopSnapshot& snapshot) {
+  TickFaultLevel fault_level = TickFaultLevel::none;
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
     const Fault& fault = kFaults[i];
     if (fault.source != FaultSource::loop || !fault.alarm || (snapshot.faults & fault.bit) == 0) continue;
     note(i, 1, snapshot.loop_time_s);
-    trouble = TickTrouble::alarm;
+    fault_level = TickFaultLevel::alarm;
   }
   update_device(snapshot.device.faults, snapshot.loop_time_s);
-  if (snapshot.device.faults != 0) trouble = TickTrouble::alarm;
+  if (snapshot.device.faults != 0) fault_level = TickFaultLevel::alarm;
   const auto missed = static_cast<double>(snapshot.missed_deadlines - missed_);
   missed_of_late_ += std::min(1.0, (missed + 1.0) / kRememberedDeadlines) * (missed / (missed + 1.0) - missed_of_late_);
   if (snapshot.missed_deadlines > missed_) {
     note(kDeadlineMissed, snapshot.missed_deadlines - missed_, snapshot.loop_time_s);
     missed_ = snapshot.missed_deadlines;
-    if (trouble == TickTrouble::none) trouble = TickTrouble::late;
+    if (fault_level == TickFaultLevel::none) fault_level = TickFaultLevel::late;
   }
-  return trouble;
+  return fault_level;
 }
 
-// Once when it begins, however long it lasts.
+// Logs each device fault once, when it begins.
 void FaultLog::update_device(std::uint32_t faults, double at_s) {
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
     const bool begins = (faults & ~device_faults_ & kFaults[i].bit) != 0;

@@ -21,7 +21,7 @@ struct FaultEvent {
 };
 
 // The worst fault of one tick, for a mark on the curves.
-enum class TickTrouble : std::uint8_t {
+enum class TickFaultLevel : std::uint8_t {
   none,
   late,   // deadlines were missed before the tick
   alarm,  // a fault of the loop or the device
@@ -34,7 +34,7 @@ class FaultLog {
   static constexpr double kStall_s = 0.05;
 
   // Call it for every snapshot in order. Returns the worst fault of the snapshot.
-  TickTrouble update(const LoopSnapshot& snapshot);
+  TickFaultLevel update(const LoopSnapshot& snapshot);
   // `dropped`: total number of snapshots lost so far.
   void update_dropped(std::uint64_t dropped, double now_s);
   // `age_s`: time since the last tick. A stall is logged once, at its beginning.

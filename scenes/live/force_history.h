@@ -39,15 +39,15 @@ struct HistoryPoint {
   bool counts = true;          // in contact, without a fault, and the feature filters have settled
   bool out_of_domain = false;  // of the active model
   std::uint8_t active = 0;     // its slot
-  TickTrouble trouble = TickTrouble::none;
+  TickFaultLevel fault_level = TickFaultLevel::none;
   std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready
   // By slot: mean over 50 ms of (model - reference) / JND (sustained_error.h), signed; NaN without a comparison.
   std::array<float, kMaxModels> sustained_over_jnd{};
-  std::uint16_t foreign = 0;  // bit per slot: a model of another material, which is not compared
+  std::uint16_t other_material = 0;  // bit per slot: a model of another material, which is not compared
 
   // (model - reference) / JND of this tick; 0 in the air, NaN without a comparison.
   double difference_over_jnd(std::size_t slot, const JndLine& jnd) const noexcept {
-    const bool none = std::isnan(reference_N) || std::isnan(force_N[slot]) || (foreign >> slot & 1U) != 0;
+    const bool none = std::isnan(reference_N) || std::isnan(force_N[slot]) || (other_material >> slot & 1U) != 0;
     if (none || (in_contact && !counts)) return std::numeric_limits<double>::quiet_NaN();
     const auto from_N = static_cast<double>(reference_N);
     return in_contact ? (static_cast<double>(force_N[slot]) - from_N) / jnd.at(from_N) : 0.0;

@@ -19,10 +19,10 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kSnapshotsAtOnce = 256;
-// A real-time thread wakes up some 30 us late, and a rehearsal of seven models takes 15, less
-// when it is the second one.
+// Time before a tick in which the loop rehearses it: a real-time thread wakes up about 30 us late, and a rehearsal of
+// seven models takes 15 us.
 constexpr std::int64_t kRehearse_ns = 100'000;
-// A device that fails all day does not fill the disk.
+// The number is limited, so that a device that fails all day does not fill the disk.
 constexpr int kMostFaultFiles = 50;
 
 constexpr const char* kDefaultScene = "silicone_block";
@@ -37,7 +37,7 @@ std::string replayed_file(const std::string& device) {
   return device.rfind(kReplay, 0) == 0 ? device.substr(kReplay.size()) : std::string();
 }
 
-// Recordings that are named, or the one that is replayed, are the material: nothing else is true of them.
+// Replaces the scene's material by the named recordings, or by the replayed one: no true force is known for them.
 Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings& hand) {
   const std::string replayed = replayed_file(request.device);
   scene.recordings = request.recordings;
@@ -57,15 +57,15 @@ Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings
   if (recordings.empty()) scene.title = std::filesystem::path(replayed).stem().string();
   const PressRange range = press_range(recordings);
   if (range.strongest_N <= 0.0) return {};
-  constexpr double kInside = 0.8;  // of the largest: a hand goes beyond what it aims at
+  constexpr double kInside = 0.8;  // of the largest values, because the simulated hand overshoots
   hand.strongest_press_N = scene.strongest_press_N = kInside * range.strongest_N;
   hand.deepest_m = kInside * range.deepest_m;
   hand.fastest_m_per_s = kInside * range.fastest_m_per_s;
   return {};
 }
 
-// Files alone, in a scene that nobody named: they say what they are of, and nothing that is
-// here is its truth.
+// If no scene was named and all models are files, takes the scene from the first file's provenance, without its
+// virtual material: it is not the truth of those models.
 void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& scene) {
   const auto is_file = [](const SlotPlan& plan) { return plan.origin == ModelOrigin::file; };
   if (static_cast<std::size_t>(std::count_if(plans.begin(), plans.end(), is_file)) != files) return;
@@ -79,7 +79,7 @@ void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& sce
 
 }  // namespace
 
-// Speeds over 20 ms and more, beyond an encoder's steps; the fastest hundredth is left out as noise.
+// Speeds are differences over at least 20 ms, to suppress encoder steps. The fastest 1 % are ignored as noise.
 PressRange press_range(const std::vector<Recording>& recordings) {
   constexpr double kSpan_s = 0.02;
   PressRange range;
@@ -133,12 +133,12 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
     plans = plan_slots(*scene, line_up != nullptr ? line_up->models : request.models, request.position_only);
   if (!plans) return plans.error();
   for (const SlotPlan& plan : request.kept) {
-    // What is not there can only be fitted to a material.
+    // A plan without a model needs a material to fit to.
     if (plans->size() < kMaxModels && (plan.loaded != nullptr || scene->has_material())) plans->push_back(plan);
   }
   if (request.scene.empty() && !request.models.empty() && scene->recordings.empty())
     take_provenance(*plans, request.models.size(), *scene);
-  device_request.seed = request.seed + 1;  // other gestures than those of the training recording
+  device_request.seed = request.seed + 1;  // so that the gestures differ from those of the training recording
   device_request.bus = request.bus;
   Result<std::unique_ptr<Device>> device = open_device(request.device, with_calibrations(device_request));
   if (!device) return device.error();
@@ -165,7 +165,7 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
   if (std::string note = device_->note(); !note.empty()) notices_.push_back({std::move(note), false});
   if (Status status = models_.start(plans, !request_.scene.empty()); !status) return status;
-  // The material answers from the first tick on, before there is any model of it.
+  // The first set has the true force only, so that the material is rendered before any model is ready.
   if (truth_ != nullptr) publish("the start");
   return loop_->start();
 }
@@ -180,17 +180,17 @@ LiveSession::~LiveSession() {
 }
 
 void LiveSession::update() {
-  // Before models change, so that they know the motion up to now.
+  // The snapshots come first, because new models are initialised with the motion up to now.
   read_snapshots();
   update_models();
   if (test_.update(models_)) comparison_.forget_errors("the surface was found");
   loop_->collect_models();
   newest_ = loop_->newest();
   comparison_.show(newest_);
-  judge_.update(models_, comparison_, newest_.loop_time_s);
+  background_evaluation_.update(models_, comparison_, newest_.loop_time_s);
   check_faults();
   if (std::optional<Notice> outcome = recorder_->read_outcome()) {
-    send_controls();  // it may have ended by itself
+    send_controls();  // a write error may have ended the recording
     notices_.push_back({std::move(outcome->text), outcome->problem});
   }
 }
@@ -204,10 +204,10 @@ void LiveSession::update_models() {
   publish(name.substr(0, name.size() > 16 ? name.find('-') : name.size()) + " joined");
 }
 
-// All begin to be compared together: the same samples for each.
+// Clears all errors, so that all models are compared over the same samples.
 void LiveSession::publish(std::string why) {
   comparison_.forget_errors(std::move(why));
-  judge_.forget();
+  background_evaluation_.reset();
   auto set = models_.make_set(device_->sensor(), truth_);
   history_.recall(set->tick);
   loop_->publish_models(std::move(set));
@@ -218,8 +218,8 @@ void LiveSession::remove(std::size_t slot) {
   if (models_.remove(slot)) publish(models_.info(slot).name + " was taken out");
 }
 
-void LiveSession::claim(std::size_t slot) {
-  models_.claim(slot);
+void LiveSession::treat_as_this_material(std::size_t slot) {
+  models_.treat_as_this_material(slot);
   comparison_.forget_errors(models_.info(slot).name + " joined");
 }
 
@@ -234,7 +234,7 @@ void LiveSession::use_line_up(const std::string& name) {
 }
 
 void LiveSession::read_snapshots() {
-  // At most what the ring holds: a loop that is quicker than this is not waited for.
+  // Reads at most as many snapshots as the ring holds, so that a faster loop cannot keep this thread here.
   for (std::size_t round = 0; round <= kSnapshotRing / kSnapshotsAtOnce; ++round) {
     const std::size_t count = loop_->read_snapshots(buffer_.data(), buffer_.size());
     for (std::size_t i = 0; i < count; ++i) {
@@ -252,7 +252,7 @@ void LiveSession::check_faults() {
   faults_.update_age(loop_->age_s(), at_s);
 }
 
-// The last second before a fault, in a file.
+// Writes the last second before a fault to a file.
 void LiveSession::save_fault_ticks() {
   if (fault_files_ == kMostFaultFiles) return;
   ++fault_files_;
@@ -281,7 +281,7 @@ bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
 void LiveSession::use_reference(ReferenceKind kind) {
   if (!has_reference(kind)) return;
   comparison_.use_reference(kind);
-  judge_.forget();
+  background_evaluation_.reset();
 }
 
 bool LiveSession::replays_training() const noexcept {
@@ -297,26 +297,26 @@ bool LiveSession::tests_recording() const noexcept {
 ModelFigures LiveSession::figures(std::size_t slot) const {
   ModelFigures figures = comparison_.figures(slot);
   if (!tests_recording()) return figures;
-  const Evidence* tested = test_.errors(models_.model(slot).get());
+  const UnitErrors* tested = test_.errors(models_.model(slot).get());
   figures.errors = tested != nullptr ? static_cast<const ErrorSummary&>(*tested) : ErrorSummary{};
   return figures;
 }
 
 Verdict LiveSession::verdict() const {
-  std::vector<JudgedModel> tested;
-  std::vector<const JudgedModel*> judged;
+  std::vector<EvaluatedSlot> tested;
+  std::vector<const EvaluatedSlot*> evaluated;
   if (tests_recording()) {
     for (const std::size_t slot : models_.ready_slots()) {
-      const Evidence* errors = test_.errors(models_.model(slot).get());
+      const UnitErrors* errors = test_.errors(models_.model(slot).get());
       if (errors != nullptr && errors->samples > 0) tested.push_back({slot, models_.info(slot).tick, *errors});
     }
-    for (const JudgedModel& one : tested) judged.push_back(&one);
+    for (const EvaluatedSlot& one : tested) evaluated.push_back(&one);
   } else {
-    for (const JudgedModel& one : judge_.judged()) judged.push_back(&one);
+    for (const EvaluatedSlot& one : background_evaluation_.evaluated()) evaluated.push_back(&one);
   }
-  if (judged.empty()) return {{}, {}, false, why_no_verdict(), {}};
+  if (evaluated.empty()) return {{}, {}, false, why_no_verdict(), {}};
   const bool of_model = comparison_.reference() == ReferenceKind::direct;
-  Verdict verdict = judge(judged, models_, of_model ? models_.info(*models_.reference()).name : "");
+  Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");
   if (of_model && verdict.detail.empty())
     verdict.detail = "No true force is known here: test on a second recording (M).";
   if (replay() != nullptr && replays_training()) verdict.detail += " Tested on its own training.";
@@ -329,7 +329,7 @@ std::string LiveSession::why_no_verdict() const {
   if (!has_reference(comparison_.reference())) return reference_words();
   if (replay() != nullptr && comparison_.reference() == ReferenceKind::measured)
     return "Testing the models on " + replay()->recording().name + " ...";
-  if (comparison_.outside_s() > kJudged_s) {
+  if (comparison_.outside_s() > kLeastContact_s) {
     const std::string& name = models_.info(comparison_.mostly_outside()).name;
     return "No verdict yet: these presses are deeper or faster than what " + name + " was trained on";
   }
@@ -361,7 +361,7 @@ void LiveSession::reset_figures() {
 
 std::string LiveSession::device_words() const {
   const DeviceHealth& device = newest_.device;
-  // Why it has to be zeroed again comes first: unplugged, it cannot be.
+  // The fault that made zeroing necessary comes first: an unplugged device cannot be zeroed.
   if (device.zeroing == Zeroing::needed && (device.faults & device_fault::kLosesPosition) != 0) {
     return device_fault_words(device.faults & device_fault::kLosesPosition).front();
   }

@@ -87,7 +87,7 @@ class LiveSession {
   void select(std::size_t slot);  // makes the slot's model the active one; ignored unless it is ready
   bool load_file(const std::string& path) { return models_.load_file(path); }
   Status save_model(std::size_t slot, const std::string& path) const { return models_.save(slot, path); }
-  void claim(std::size_t slot);  // see SessionModels::claim
+  void treat_as_this_material(std::size_t slot);  // see SessionModels::treat_as_this_material
   void rename(std::size_t slot, const std::string& name) { models_.rename(slot, name); }
   void refit(std::size_t slot, int centres) { models_.refit(slot, centres); }
   void remove(std::size_t slot);  // the last model stays, with a notice
@@ -165,7 +165,7 @@ class LiveSession {
   Comparison comparison_;
   MotionHistory history_;
   ReplayTest test_;
-  LiveJudge judge_;
+  BackgroundEvaluation background_evaluation_;
   FaultLog faults_;
   FaultRecorder fault_recorder_;
   std::unique_ptr<SessionRecorder> recorder_;

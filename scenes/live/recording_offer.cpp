@@ -13,8 +13,7 @@
 namespace palpate {
 namespace {
 
-// Whether its header asks to be read as a recording, so that what is wrong with it is
-// said of that.
+// Whether the file has the header of a recording, so that its errors are reported as those of a recording.
 bool has_our_columns(const std::string& path) {
   const auto descriptor = open_plain_file(path, "a recording");
   if (!descriptor) return false;

@@ -31,7 +31,7 @@ bool ReplayTest::update(const SessionModels& models) {
       return run(ready);
     });
   } catch (const std::system_error&) {
-    // No thread to be had: positions stay as recorded, and errors are those of the ticks.
+    // Without a thread, positions stay as recorded, and the errors are those of the ticks.
   }
   return false;
 }
@@ -47,11 +47,11 @@ ReplayTest::Outcome ReplayTest::run(const std::vector<std::shared_ptr<const Forc
   if (!result) return outcome;
   for (std::size_t i = 0; i < models.size(); ++i)
     outcome.models.push_back(
-        {models[i], result->models[i].as_recorded.evidence(), result->models[i].surface_moved.evidence()});
+        {models[i], result->models[i].as_recorded.unit_errors(), result->models[i].surface_moved.unit_errors()});
   return outcome;
 }
 
-const Evidence* ReplayTest::errors(const ForceModel* model) const noexcept {
+const UnitErrors* ReplayTest::errors(const ForceModel* model) const noexcept {
   const auto found = std::find_if(found_.models.begin(), found_.models.end(),
                                   [&](const Tested& one) { return one.model.get() == model; });
   if (found == found_.models.end()) return nullptr;

@@ -36,14 +36,14 @@ class ReplayTest {
   // The offset that is subtracted from the positions now.
   double offset_m() const noexcept { return moved_ ? found_m() : 0.0; }
   // The errors of a model over the whole recording; null: not tested yet.
-  const Evidence* errors(const ForceModel* model) const noexcept;
+  const UnitErrors* errors(const ForceModel* model) const noexcept;
   // Number of finished tests.
   int rounds() const noexcept { return rounds_; }
 
  private:
   struct Tested {
     std::shared_ptr<const ForceModel> model;
-    Evidence as_recorded, surface_moved;
+    UnitErrors as_recorded, surface_moved;
   };
   struct Outcome {
     OffsetEstimate surface;

@@ -23,24 +23,24 @@ std::string recordings_of(const FittedModel& model) {
 struct SessionModels::Slot {
   ModelInfo info;
   SlotPlan plan;
-  std::size_t job = 0;                       // of the worker
-  int asked_centres = 0;                     // of the plan, before it was changed by hand
+  std::size_t job = 0;                       // id of the worker's job
+  int asked_centres = 0;                     // of the plan, before the user changed the number
   std::shared_ptr<const FittedModel> model;  // null until ready
   bool removed = false;
-  bool claimed = false;  // of a file: somebody said that it is of this material
+  bool claimed = false;  // the user said that this model file is of this material
 
   bool hidden() const { return info.state == SlotState::hidden; }
   bool takes_part() const { return model != nullptr && !hidden(); }
   void show() {
     info.state = model != nullptr ? SlotState::ready : info.problem.empty() ? SlotState::waiting : SlotState::failed;
   }
-  bool is(const SlotPlan& other) const {  // which is no file
+  bool is(const SlotPlan& other) const {  // `other` is not a file
     return !removed && plan.origin == other.origin && plan.method == other.method && plan.paper == other.paper &&
            asked_centres == other.centres;
   }
 };
 
-std::optional<std::size_t> PublishedSet::place_of(std::size_t slot) const noexcept {
+std::optional<std::size_t> PublishedSet::index_of(std::size_t slot) const noexcept {
   const auto place = std::find(slots.begin(), slots.end(), slot);
   if (place == slots.end()) return std::nullopt;
   return static_cast<std::size_t>(place - slots.begin());
@@ -60,7 +60,7 @@ Status SessionModels::start(const std::vector<SlotPlan>& plans, bool claimed) {
   return worker_->start();
 }
 
-// In the place of one that was removed, else of one that is hidden, as long as there are enough places.
+// Reuses the slot of a removed model; if all kMaxModels slots exist, that of a hidden model; else appends a slot.
 SessionModels::Slot& SessionModels::add_slot(const SlotPlan& plan) {
   const auto usable = [&](bool removed) {
     return std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) {
@@ -91,9 +91,9 @@ std::vector<std::size_t> SessionModels::update() {
   std::vector<std::size_t> ready = std::exchange(loaded_, {});
   for (FinishedModel& finished : worker_->read_finished()) {
     const std::optional<std::size_t> index = slot_of_job(finished.job_id);
-    if (!index) continue;  // it was removed meanwhile
+    if (!index) continue;  // the model was removed meanwhile
     Slot& slot = *slots_[*index];
-    // Asked for again while it was made: the newer one counts.
+    // The user has asked for another number of centres meanwhile: another fit follows.
     const bool old = slot.info.refitting && finished.plan.centres != slot.plan.centres;
     if (join(*index, finished)) ready.push_back(*index);
     slot.info.refitting = old;
@@ -117,13 +117,13 @@ void SessionModels::show_progress() {
   if (info.state == SlotState::fitting) info.progress = progress.share;
 }
 
-// A truth is one of a material: a model of something else is not wrong where it differs.
-// A recording was named together with the models that are held against it.
-bool SessionModels::is_foreign(const Slot& slot) const {
+// A model file of another material is not wrong where it differs from the true force of this one. Recordings that the
+// user named count as the material of all models.
+bool SessionModels::is_of_other_material(const Slot& slot) const {
   if (!scene_.material || slot.claimed || slot.plan.origin != ModelOrigin::file) return false;
   const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
   return std::any_of(recordings.begin(), recordings.end(), [&](const std::string& name) {
-    const std::string start = *scene_.material + "_";  // as the rig names its own
+    const std::string start = *scene_.material + "_";  // the rig names its recordings MATERIAL_SEED
     return name.rfind(start, 0) != 0 || name.find_first_not_of("0123456789", start.size()) != std::string::npos;
   });
 }
@@ -165,7 +165,7 @@ bool SessionModels::join(std::size_t index, FinishedModel& finished) {
   if (finished.model == nullptr) {
     notices_.push_back({slot.info.name + ": " + finished.problem, true});
     slot.info.problem = finished.problem;
-    if (!slot.hidden()) slot.show();  // an old one stays
+    if (!slot.hidden()) slot.show();  // an earlier model stays in use
     return false;
   }
   const bool first = ready_slots().empty();
@@ -174,7 +174,7 @@ bool SessionModels::join(std::size_t index, FinishedModel& finished) {
   slot.info.progress = 1.0;
   slot.info.centres = slot.model->centre_count();
   slot.info.tick = finished.tick;
-  slot.info.foreign = is_foreign(slot);
+  slot.info.other_material = is_of_other_material(slot);
   if (slot.plan.origin != ModelOrigin::position) {
     slot.info.method = slot.model->method();
     std::string name = slot.model->name();
@@ -207,7 +207,7 @@ void SessionModels::use_plans(const std::vector<SlotPlan>& plans) {
   select_what_is_there();
 }
 
-// The active model must be one that takes part, as soon as there is one.
+// If the active model is not shown, selects the first shown model, if there is one.
 void SessionModels::select_what_is_there() {
   const auto shown = ready_slots();
   if (!shown.empty() && !slots_[selected_]->takes_part()) selected_ = shown.front();
@@ -222,12 +222,12 @@ bool SessionModels::remove(std::size_t index) {
   }
   slot.removed = true;
   slot.info.state = SlotState::hidden;
-  if (direct_ != index) free(index);  // which stays as the reference
+  if (direct_ != index) free(index);  // the reference keeps its slot
   select_what_is_there();
   return true;
 }
 
-// Another model may have its place from now on.
+// Removes the slot from all published sets, so that another model may use it.
 void SessionModels::free(std::size_t index) {
   freed_.push_back(index);
   for (PublishedSet& set : sets_) std::replace(set.slots.begin(), set.slots.end(), index, PublishedSet::kRemoved);
@@ -287,15 +287,15 @@ std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
   set.id = sets_.empty() ? 1 : sets_.back().id + 1;
   std::vector<std::shared_ptr<const ForceModel>> models;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    // The reference stays, also where it is not shown.
+    // The reference is in every set, even when it is hidden.
     if (!slots_[i]->takes_part() && !(direct_ == i && slots_[i]->model != nullptr)) continue;
     models.push_back(slots_[i]->model);
     set.slots.push_back(i);
   }
   auto next = std::make_unique<LiveModels>(set.id, sensor, std::move(models), std::move(reference));
-  next->selected = static_cast<std::uint32_t>(set.place_of(selected_).value_or(0));
-  if (const auto model = this->reference(); model && set.place_of(*model)) {
-    next->written_model = static_cast<std::uint32_t>(*set.place_of(*model));
+  next->selected = static_cast<std::uint32_t>(set.index_of(selected_).value_or(0));
+  if (const auto model = this->reference(); model && set.index_of(*model)) {
+    next->written_model = static_cast<std::uint32_t>(*set.index_of(*model));
   }
   sets_.push_back(std::move(set));
   return next;
@@ -310,7 +310,7 @@ const PublishedSet* SessionModels::set_of(const LoopSnapshot& snapshot) const no
 void SessionModels::write_selection(LoopControls& controls) const {
   if (sets_.empty()) return;
   controls.models_id = sets_.back().id;
-  controls.selected = static_cast<std::uint32_t>(sets_.back().place_of(selected_).value_or(sets_.back().slots.size()));
+  controls.selected = static_cast<std::uint32_t>(sets_.back().index_of(selected_).value_or(sets_.back().slots.size()));
 }
 
 std::size_t SessionModels::size() const noexcept { return slots_.size(); }
@@ -318,7 +318,7 @@ const ModelInfo& SessionModels::info(std::size_t slot) const noexcept { return s
 const std::shared_ptr<const FittedModel>& SessionModels::model(std::size_t slot) const noexcept {
   return slots_[slot]->model;
 }
-void SessionModels::claim(std::size_t slot) noexcept { slots_[slot]->info.foreign = false; }
+void SessionModels::treat_as_this_material(std::size_t slot) noexcept { slots_[slot]->info.other_material = false; }
 
 std::vector<SlotPlan> SessionModels::plans() const {
   std::vector<SlotPlan> plans;
@@ -358,7 +358,7 @@ bool SessionModels::load_file(const std::string& path) {
   join(loaded_.back(), finished);
   notices_.push_back(
       {"loaded " + slot.info.name + " from " + path +
-           (slot.info.foreign ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
+           (slot.info.other_material ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
        false});
   return true;
 }

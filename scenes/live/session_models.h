@@ -33,10 +33,10 @@ struct ModelInfo {
   std::string method;  // name of a method; "position": the depth is the only feature
   int centres = 0;     // nodes for a grid; 0 until ready
   SlotState state = SlotState::waiting;
-  double progress = 0.0;  // of the fit, 0..1
-  std::string problem;    // when failed
-  bool foreign = false;   // fitted to another material than the virtual one: it is not compared
-  Timing tick;            // a whole tick with this model alone
+  double progress = 0.0;        // of the fit, 0..1
+  std::string problem;          // when failed
+  bool other_material = false;  // fitted to another material than the virtual one: it is not compared
+  Timing tick;                  // a whole tick with this model alone
   double tick_ns() const noexcept { return tick.low_ns; }  // the minimum, because other programs only add time
   bool refitting = false;      // with another number of centres; the present model stays until then
   bool takes_centres = false;  // the number of centres can be changed
@@ -57,7 +57,7 @@ struct PublishedSet {
   std::vector<std::size_t> slots;
 
   // Index of the slot's model in the set; empty when it has none.
-  std::optional<std::size_t> place_of(std::size_t slot) const noexcept;
+  std::optional<std::size_t> index_of(std::size_t slot) const noexcept;
 };
 
 class SessionModels {
@@ -105,7 +105,7 @@ class SessionModels {
   // Whether any model is fitted in this session, not read from a file.
   bool fits() const noexcept;
   // Treats the model as one of this material, whatever its provenance.
-  void claim(std::size_t slot) noexcept;
+  void treat_as_this_material(std::size_t slot) noexcept;
 
   // Shows the models of these plans, fits those that are missing and hides all others except models from files.
   // The active model stays active if it is shown; else the first model becomes active.
@@ -136,7 +136,7 @@ class SessionModels {
 
   void show_progress();
   Slot& add_slot(const SlotPlan& plan);
-  bool is_foreign(const Slot& slot) const;
+  bool is_of_other_material(const Slot& slot) const;
   bool join(std::size_t index, FinishedModel& finished);
   bool has_room(const std::string& what);
   void select_what_is_there();

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kSamplesAtOnce = 1024;
 constexpr auto kPause = std::chrono::milliseconds(20);
-constexpr int kRoundsToDisk = 10;  // of so many pauses
+constexpr int kRoundsToDisk = 10;  // the file is published after so many rounds
 
-// By ReferenceKind.
+// The force to record, indexed by ReferenceKind.
 constexpr double RecordedSample::*kForces[] = {&RecordedSample::measured_N, &RecordedSample::reference_N,
                                                &RecordedSample::model_N};
 
@@ -24,7 +24,7 @@ std::string counted(std::uint64_t count, const char* words) {
 
 }  // namespace
 
-std::optional<double> RecordingTime::place(double time_s, bool restart) noexcept {
+std::optional<double> RecordingTime::file_time_s(double time_s, bool restart) noexcept {
   if (!started_ || restart) {
     if (started_) {
       start_s_ = last_s_ + kStreamGap_s;
@@ -56,7 +56,7 @@ Status SessionRecorder::start(const RecorderRequest& request) {
   Result<RecordingWriter> writer =
       RecordingWriter::create(request.path, request.columns, request.comments, request.overwrite);
   if (!writer) return writer.error();
-  // What an earlier recording left, so that this one finds room.
+  // Discards samples that an earlier recording left in the ring.
   while (loop_.read_samples(buffer_.data(), buffer_.size()) > 0) continue;
   writer_.emplace(std::move(*writer));
   request_ = request;
@@ -104,13 +104,13 @@ void SessionRecorder::work() {
 
 void SessionRecorder::publish() {
   if (++rounds_ % kRoundsToDisk != 0) return;
-  // What is refused stays refused: the end of the loop and `finish` see it.
+  // A write error is persistent: `work` and `finish` report it.
   [[maybe_unused]] const Status status = writer_->publish();
 }
 
 void SessionRecorder::drain() {
-  // No more rounds than the ring is long: a loop that fills it faster than a disk
-  // takes it must not keep `stop` waiting.
+  // Reads at most as many samples as the ring holds, so that `stop` ends even if the loop fills the ring faster than
+  // the disk takes it.
   for (std::size_t round = 0; round <= kRecordedRing / kSamplesAtOnce; ++round) {
     const std::size_t count = loop_.read_samples(buffer_.data(), buffer_.size());
     for (std::size_t i = 0; i < count; ++i) write(buffer_[i]);
@@ -132,7 +132,7 @@ void SessionRecorder::write(const RecordedSample& sample) {
     ++counts_.without_force;
     return;
   }
-  const std::optional<double> time_s = time_.place(sample.tool.time_s, restart_pending_);
+  const std::optional<double> time_s = time_.file_time_s(sample.tool.time_s, restart_pending_);
   restart_pending_ = false;
   if (!time_s) {
     ++counts_.unusable;

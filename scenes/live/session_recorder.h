@@ -47,7 +47,7 @@ inline constexpr double kStreamGap_s = 30.0;
 class RecordingTime {
  public:
   // The time to write for a sample; empty when it is not later than the last one of its stream.
-  std::optional<double> place(double time_s, bool restart) noexcept;
+  std::optional<double> file_time_s(double time_s, bool restart) noexcept;
   double last_s() const noexcept { return last_s_; }
   double gaps_s() const noexcept { return gaps_s_; }
 

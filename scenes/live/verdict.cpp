@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 constexpr double kTick_ns = 1e6;
-// Between two resamplings, and of the contact so far: more of the same changes little.
+// The interval between two evaluations, and its share of the contact so far: a few more samples change little.
 constexpr double kInterval_s = 2.0;
 constexpr double kMoreContact = 0.1;
 
@@ -38,50 +38,51 @@ std::string tick_share(double tick_ns) {
   return formatted(percent < 1.0 ? "%.1g %%" : "%.2g %%", percent);
 }
 
-Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels& models, const std::string& off_from) {
+Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionModels& models,
+              const std::string& reference_name) {
   std::vector<Candidate> candidates;
-  for (const JudgedModel* one : judged)
-    candidates.push_back({one->evidence.p99_error_over_jnd, one->evidence.unit_p99, one->tick});
+  for (const EvaluatedSlot* one : evaluated)
+    candidates.push_back({one->unit_errors.p99_error_over_jnd, one->unit_errors.unit_p99, one->tick});
   const Ranking ranking = rank(candidates);
   Verdict verdict;
-  const JudgedModel& chosen = *judged[ranking.recommended];
+  const EvaluatedSlot& chosen = *evaluated[ranking.recommended];
   verdict.chosen = chosen.slot;
-  verdict.noticeable = chosen.evidence.p99_error_over_jnd > 1.0;
+  verdict.noticeable = chosen.unit_errors.p99_error_over_jnd > 1.0;
   std::vector<std::size_t> as_good, noticed;
-  for (std::size_t i = 0; i < judged.size(); ++i) {
+  for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const bool tied = std::find(ranking.qualified.begin(), ranking.qualified.end(), i) != ranking.qualified.end();
-    if (tied) verdict.tied.push_back(judged[i]->slot);
+    if (tied) verdict.tied.push_back(evaluated[i]->slot);
     if (i == ranking.recommended) continue;
-    if (tied) as_good.push_back(judged[i]->slot);
-    if (!tied && judged[i]->evidence.p99_error_over_jnd > 1.0) noticed.push_back(judged[i]->slot);
+    if (tied) as_good.push_back(evaluated[i]->slot);
+    if (!tied && evaluated[i]->unit_errors.p99_error_over_jnd > 1.0) noticed.push_back(evaluated[i]->slot);
   }
   const ModelInfo& info = models.info(chosen.slot);
-  const std::string from = off_from.empty() ? "" : " from " + off_from;
+  const std::string from = reference_name.empty() ? "" : " from " + reference_name;
   verdict.headline =
       info.name +
       (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +
       from + "; uses " + tick_share(info.tick_ns()) + " of the time there is";
   if (verdict.noticeable)
-    verdict.detail = "Its error is at most " + formatted("%.1f", chosen.evidence.p99_error_over_jnd) +
+    verdict.detail = "Its error is at most " + formatted("%.1f", chosen.unit_errors.p99_error_over_jnd) +
                      " times what a hand can feel, 99 % of the time. ";
   if (!as_good.empty()) verdict.detail += "As good, but slower: " + listed(as_good, models) + ". ";
   if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
   return verdict;
 }
 
-void LiveJudge::forget() {
-  judged_.clear();
+void BackgroundEvaluation::reset() {
+  evaluated_.clear();
   discard_ = running_.valid();
   next_s_ = 0.0;
 }
 
-void LiveJudge::update(const SessionModels& models, const Comparison& comparison, double now_s) {
+void BackgroundEvaluation::update(const SessionModels& models, const Comparison& comparison, double now_s) {
   if (running_.valid()) {
     if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    std::vector<JudgedModel> made = running_.get();
-    if (!std::exchange(discard_, false)) judged_ = std::move(made);
+    std::vector<EvaluatedSlot> made = running_.get();
+    if (!std::exchange(discard_, false)) evaluated_ = std::move(made);
   }
-  if (now_s < next_s_ || comparison.counted_s() < kJudged_s) return;
+  if (now_s < next_s_ || comparison.counted_s() < kLeastContact_s) return;
   next_s_ = now_s + std::max(kInterval_s, kMoreContact * comparison.counted_s());
   struct Asked {
     std::size_t slot;
@@ -91,19 +92,19 @@ void LiveJudge::update(const SessionModels& models, const Comparison& comparison
   std::vector<Asked> asked;
   for (const std::size_t slot : models.ready_slots()) {
     const bool is_reference = comparison.reference() == ReferenceKind::direct && models.reference() == slot;
-    if (is_reference || models.info(slot).foreign || comparison.figures(slot).errors.samples == 0) continue;
-    asked.push_back({slot, models.info(slot).tick, comparison.evidence(slot)});
+    if (is_reference || models.info(slot).other_material || comparison.figures(slot).errors.samples == 0) continue;
+    asked.push_back({slot, models.info(slot).tick, comparison.model_errors(slot)});
   }
   if (asked.empty()) return;
   try {
     running_ = std::async(std::launch::async, [asked = std::move(asked)] {
       lower_thread_priority();
-      std::vector<JudgedModel> judged;
-      for (const Asked& one : asked) judged.push_back({one.slot, one.tick, one.errors.evidence()});
-      return judged;
+      std::vector<EvaluatedSlot> evaluated;
+      for (const Asked& one : asked) evaluated.push_back({one.slot, one.tick, one.errors.unit_errors()});
+      return evaluated;
     });
   } catch (const std::system_error&) {
-    // No thread to be had: a later frame tries again.
+    // Without a thread, a later frame tries again.
   }
 }
 

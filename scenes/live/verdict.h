@@ -1,6 +1,6 @@
 // The verdict of a session: the recommended model (scenes/evaluation/ranking.h), whether a hand can notice its
 // error, and its computation time.
-// Thread guarantee: values; LiveJudge: one thread, beside its own background thread.
+// Thread guarantee: values; BackgroundEvaluation: one thread, beside its own background thread.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,10 @@ class Comparison;
 class SessionModels;
 
 // Time and errors of one model; the errors of all are over the same samples.
-struct JudgedModel {
+struct EvaluatedSlot {
   std::size_t slot = 0;
   Timing tick;
-  Evidence evidence;
+  UnitErrors unit_errors;
 };
 
 struct Verdict {
@@ -33,28 +33,29 @@ struct Verdict {
 };
 
 // Contact that a verdict needs at least.
-inline constexpr double kJudged_s = 1.0;
+inline constexpr double kLeastContact_s = 1.0;
 
-// `off_from`: name of the reference model; empty: the true force is known.
-// `models`: for names and times. `judged`: at least one, each with samples.
-Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels& models, const std::string& off_from);
+// `reference_name`: name of the reference model; empty: the true force is known.
+// `models`: for names and times. `evaluated`: at least one, each with samples.
+Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionModels& models,
+              const std::string& reference_name);
 
 // The share of the tick's period of 1 ms, as "0.04 %".
 std::string tick_share(double tick_ns);
 
-// Computes the Evidence of a live session in the background, every 2 s or, if that is longer, every tenth of the
+// Computes the UnitErrors of a live session in the background, every 2 s or, if that is longer, every tenth of the
 // duration of contact so far.
-class LiveJudge {
+class BackgroundEvaluation {
  public:
   // Call it once a frame.
   void update(const SessionModels& models, const Comparison& comparison, double now_s);
-  const std::vector<JudgedModel>& judged() const noexcept { return judged_; }
-  void forget();
+  const std::vector<EvaluatedSlot>& evaluated() const noexcept { return evaluated_; }
+  void reset();
 
  private:
-  std::vector<JudgedModel> judged_;
-  std::future<std::vector<JudgedModel>> running_;
-  bool discard_ = false;  // `forget` was called while the computation ran
+  std::vector<EvaluatedSlot> evaluated_;
+  std::future<std::vector<EvaluatedSlot>> running_;
+  bool discard_ = false;  // `reset` was called while the computation ran
   double next_s_ = 0.0;
 };
 

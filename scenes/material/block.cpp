@@ -9,8 +9,8 @@ namespace {
 constexpr double kLongestSubstep_s = 1e-4;
 constexpr double kMostSubsteps = 1000.0;
 constexpr double kFlat_m = 1e-15;
-// A free surface is where the force on it is 0, to far below any force cell; a
-// root to the last bit would cost most of the tick.
+// Tolerance of the force on a free surface, far below the noise of force sensors. An exact root would take most of the
+// time of a tick.
 constexpr double kFree_N = 1e-11;
 
 }  // namespace
@@ -20,14 +20,14 @@ void Block::reset(double position_m) noexcept {
   velocity_m_per_s_ = 0.0;
   surface_m_ = std::max(0.0, position_m);
   force_N_ = 0.0;
-  forget(surface_m_);
+  reset_state(surface_m_);
 }
 
 double Block::step(double position_m, double velocity_m_per_s, double dt_s) noexcept {
   if (!std::isfinite(position_m) || !std::isfinite(velocity_m_per_s) || !std::isfinite(dt_s) || dt_s <= 0.0) {
     return force_N_;
   }
-  // The small excess keeps a dt of 1 ms, inexact in binary, at ten sub-steps.
+  // The tolerance of 1e-9 gives ten sub-steps for 1 ms, which is inexact in binary.
   const int count =
       static_cast<int>(std::clamp(std::ceil(dt_s / kLongestSubstep_s * (1.0 - 1e-9)), 1.0, kMostSubsteps));
   if (dt_s / count != substep_s_) {
@@ -50,14 +50,13 @@ double Block::step(double position_m, double velocity_m_per_s, double dt_s) noex
   return force_N_;
 }
 
-// The force on a free surface that goes to `surface_m`: 0 where it will be.
+// The force on a free surface that moves to `surface_m`; its root is the next depth of the surface.
 double Block::residual_N(double surface_m) const noexcept {
   return free_force_N(surface_m, (surface_m - surface_m_) / substep_s_);
 }
 
-// Root of residual_N between the tool's depth, where it is negative, and the
-// surface's last place, by regula falsi (Illinois): the residual rises with
-// depth and is nearly straight over one sub-step.
+// Root of residual_N between the depth of the tool, where it is negative, and the last depth of the surface, by regula
+// falsi (Illinois): the residual increases with depth and is nearly linear over one sub-step.
 double Block::free_surface_m(double depth_m, double depth_residual_N) const noexcept {
   double low_m = depth_m, low_N = depth_residual_N;
   double high_m = surface_m_, high_N = residual_N(high_m);
@@ -81,7 +80,7 @@ double Block::free_surface_m(double depth_m, double depth_residual_N) const noex
 }
 
 void Block::move_surface(double surface_m, bool touching) noexcept {
-  settle(surface_m, touching);
+  update_state(surface_m, touching);
   surface_m_ = surface_m > kFlat_m ? surface_m : 0.0;
 }
 

@@ -45,7 +45,7 @@ class Block {
 
   // The force of a short press to `depth_m`, when the material is about half relaxed; rises with the depth. The
   // simulated hand chooses its depth by it.
-  virtual double held_force_N(double depth_m) const noexcept = 0;
+  virtual double half_relaxed_force_N(double depth_m) const noexcept = 0;
   // The force at `depth_m` when the material is fully relaxed.
   virtual double relaxed_force_N(double depth_m) const noexcept = 0;
 
@@ -73,9 +73,9 @@ class Block {
     return contact_force_N(surface_m, rate_m_per_s);
   }
   // Updates the state for a move of the surface from last_surface_m() to `surface_m`.
-  virtual void settle(double surface_m, bool touching) noexcept = 0;
+  virtual void update_state(double surface_m, bool touching) noexcept = 0;
   // Sets the state to fully relaxed at `surface_m`.
-  virtual void forget(double surface_m) noexcept = 0;
+  virtual void reset_state(double surface_m) noexcept = 0;
 
   void substep(double position_m, double velocity_m_per_s) noexcept;
   void move_surface(double surface_m, bool touching) noexcept;

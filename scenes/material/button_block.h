@@ -34,7 +34,7 @@ class ButtonBlock final : public Block {
   static constexpr double kFloor_N_per_m1_5 = 30000.0;    // k_b
 
   // The largest force on the way to `depth_m`, because beyond the peak the force does not determine the depth.
-  double held_force_N(double depth_m) const noexcept override {
+  double half_relaxed_force_N(double depth_m) const noexcept override {
     return rising_N(depth_m, kLeg_N_per_m + 0.5 * kLegBranch_N_per_m);
   }
   double relaxed_force_N(double depth_m) const noexcept override { return rising_N(depth_m, kLeg_N_per_m); }
@@ -48,11 +48,11 @@ class ButtonBlock final : public Block {
     const Leg leg = leg_at(surface_m);
     return dome_N(surface_m, kLeg_N_per_m * leg.shortened_m + leg.branch_N + leg.friction_N, rate_m_per_s);
   }
-  void settle(double surface_m, bool) noexcept override {
+  void update_state(double surface_m, bool) noexcept override {
     leg_ = leg_at(surface_m);
     if (std::abs(leg_.branch_N) < kNoForce_N) leg_.branch_N = 0.0;
   }
-  void forget(double surface_m) noexcept override { leg_ = {shortened_m(surface_m), 0.0, 0.0}; }
+  void reset_state(double surface_m) noexcept override { leg_ = {shortened_m(surface_m), 0.0, 0.0}; }
 
   Leg leg_at(double surface_m) const noexcept {
     Leg leg;

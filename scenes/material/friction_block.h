@@ -42,14 +42,14 @@ class FrictionBlock final : public HereditaryBlock {
     return hereditary_force_N(surface_m) + friction_after_N(surface_m);
   }
   double free_force_N(double surface_m, double) const noexcept override { return hereditary_force_N(surface_m); }
-  void settle(double surface_m, bool touching) noexcept override {
+  void update_state(double surface_m, bool touching) noexcept override {
     const double limit_N = friction_limit_N(surface_m);
     const double friction_N = std::max(friction_after_N(surface_m), -hereditary_force_N(surface_m));
     bend_ = touching && limit_N > kNoForce_N ? std::clamp(friction_N / limit_N, -1.0, 1.0) : 0.0;
-    HereditaryBlock::settle(surface_m, touching);
+    HereditaryBlock::update_state(surface_m, touching);
   }
-  void forget(double surface_m) noexcept override {
-    HereditaryBlock::forget(surface_m);
+  void reset_state(double surface_m) noexcept override {
+    HereditaryBlock::reset_state(surface_m);
     bend_ = 0.0;
   }
   // F_c(s) z after the probe has moved to `surface_m`, exact for each bristle.

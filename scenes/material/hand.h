@@ -1,5 +1,5 @@
 // The simulated hand (devices/virtual/hand_motion.h) that presses a known virtual material: it converts a target
-// force to a depth by Block::held_force_N.
+// force to a depth by Block::half_relaxed_force_N.
 // Thread guarantee: as HandMotion.
 #pragma once
 
@@ -21,13 +21,13 @@ class Hand final : public HandMotion {
     double low_m = 0.0, high_m = 0.1;
     for (int i = 0; i < 40; ++i) {
       const double depth_m = 0.5 * (low_m + high_m);
-      (block_->held_force_N(depth_m) < force_N ? low_m : high_m) = depth_m;
+      (block_->half_relaxed_force_N(depth_m) < force_N ? low_m : high_m) = depth_m;
     }
     return low_m;
   }
 
  private:
-  std::unique_ptr<const Block> block_;  // for held_force_N only
+  std::unique_ptr<const Block> block_;  // for half_relaxed_force_N only
 };
 
 }  // namespace palpate

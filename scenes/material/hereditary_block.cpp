@@ -14,7 +14,7 @@ void HereditaryBlock::prepare() noexcept {
 }
 
 void HereditaryBlock::begin_substep() noexcept {
-  // In so many lanes that the additions need not wait for each other.
+  // Four independent sums, so that no addition waits for the one before.
   constexpr std::size_t kLanes = 4;
   static_assert(kTimes % kLanes == 0);
   double sum_N[kLanes] = {};

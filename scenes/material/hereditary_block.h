@@ -22,7 +22,7 @@ class HereditaryBlock : public Block {
   // E(depth), newtons; rises with the depth.
   virtual double elastic_force_N(double depth_m) const noexcept = 0;
 
-  double held_force_N(double depth_m) const noexcept override {
+  double half_relaxed_force_N(double depth_m) const noexcept override {
     return elastic_force_N(depth_m) * (1.0 + 0.5 * total_weight_);
   }
   double relaxed_force_N(double depth_m) const noexcept override { return elastic_force_N(depth_m); }
@@ -48,12 +48,12 @@ class HereditaryBlock : public Block {
   void prepare() noexcept override;
   void begin_substep() noexcept override;
   double contact_force_N(double surface_m, double) const noexcept override { return hereditary_force_N(surface_m); }
-  void settle(double surface_m, bool) noexcept override {
+  void update_state(double surface_m, bool) noexcept override {
     const double elastic_N = elastic_force_N(surface_m);
     settled_N_ = elastic_N - elastic_N_;
     elastic_N_ = elastic_N;
   }
-  void forget(double surface_m) noexcept override {
+  void reset_state(double surface_m) noexcept override {
     memory_N_.fill(0.0);
     relaxed_N_ = settled_N_ = 0.0;
     elastic_N_ = elastic_force_N(surface_m);

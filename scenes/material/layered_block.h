@@ -32,8 +32,8 @@ class LayeredBlock final : public HereditaryBlock {
   LayeredBlock() : HereditaryBlock(0.02, 4.0, [](double) { return kWeight; }) {}
 
   double elastic_force_N(double depth_m) const noexcept override { return kTop.force_N(depth_m); }
-  double held_force_N(double depth_m) const noexcept override {
-    return HereditaryBlock::held_force_N(depth_m) +
+  double half_relaxed_force_N(double depth_m) const noexcept override {
+    return HereditaryBlock::half_relaxed_force_N(depth_m) +
            supported_N(depth_m, kSupport_N_per_m + 0.5 * kSupportBranch_N_per_m);
   }
   double relaxed_force_N(double depth_m) const noexcept override {
@@ -51,15 +51,15 @@ class LayeredBlock final : public HereditaryBlock {
     const double inclusion_N = squeezed_m > 0.0 ? kInclusion_N_per_m1_5 * squeezed_m * std::sqrt(squeezed_m) : 0.0;
     return hereditary_force_N(surface_m) + inclusion_N;
   }
-  void settle(double surface_m, bool touching) noexcept override {
-    HereditaryBlock::settle(surface_m, touching);
+  void update_state(double surface_m, bool touching) noexcept override {
+    HereditaryBlock::update_state(surface_m, touching);
     const double inclusion_m = inclusion_after_m(surface_m);
     branch_N_ = branch_N_ * support_.decay + kSupportBranch_N_per_m * support_.gain * (inclusion_m - inclusion_m_);
     if (std::abs(branch_N_) < kNoForce_N) branch_N_ = 0.0;
     inclusion_m_ = std::abs(inclusion_m) < 1e-30 ? 0.0 : inclusion_m;
   }
-  void forget(double surface_m) noexcept override {
-    HereditaryBlock::forget(surface_m);
+  void reset_state(double surface_m) noexcept override {
+    HereditaryBlock::reset_state(surface_m);
     inclusion_m_ = balance_m(surface_m, kSupport_N_per_m, 0.0, 0.0);
     branch_N_ = 0.0;
   }

@@ -102,7 +102,7 @@ class MaxwellBlock final : public Block {
   const MaxwellParameters& parameters() const noexcept { return material_; }
   double branch_force_N(std::size_t branch) const noexcept { return inner_.branch_N[branch]; }
 
-  double held_force_N(double depth_m) const noexcept override {
+  double half_relaxed_force_N(double depth_m) const noexcept override {
     double held_N = material_.elastic_force_N(depth_m);
     for (std::size_t b = 0; b < material_.branch_count; ++b) held_N += 0.5 * material_.unrelaxed_force_N(b, depth_m);
     return held_N;
@@ -126,11 +126,11 @@ class MaxwellBlock final : public Block {
     for (std::size_t b = 0; b < material_.branch_count; ++b) static_N += inner.branch_N[b];
     return static_N + inner.friction_N + material_.viscous_force_N(surface_m, rate_m_per_s);
   }
-  void settle(double surface_m, bool) noexcept override {
+  void update_state(double surface_m, bool) noexcept override {
     inner_ = inner_at(surface_m);
     for (double& branch_N : inner_.branch_N) branch_N = std::abs(branch_N) > kNoForce_N ? branch_N : 0.0;
   }
-  void forget(double) noexcept override { inner_ = {}; }
+  void reset_state(double) noexcept override { inner_ = {}; }
 
   // The state after a move of the surface to `surface_m` within one sub-step, exact for a constant rate of g_b.
   Inner inner_at(double surface_m) const noexcept {

@@ -10,12 +10,11 @@ namespace {
 
 constexpr double kGridRate_Hz = 20000.0;
 constexpr double kConverterSteps = 4096.0;    // 12 bits
-constexpr std::size_t kRowsPerUpdate = 4096;  // between two words on progress
+constexpr std::size_t kRowsPerUpdate = 4096;  // between two reports of progress
 
 enum Stream : std::uint64_t { kForceStream = 1, kAccelerationStream, kBiasStream };
 
-// Between two grid points: position by the cubic through both ends with their
-// velocities, the rest straight.
+// Interpolates between two grid points: the position by a cubic Hermite polynomial, the other values linearly.
 RigTruth between(const RigTruth& a, const RigTruth& b, double u) {
   const double rest = 1.0 - u;
   const auto straight = [&](double from, double to) { return from + (to - from) * u; };
@@ -29,21 +28,20 @@ RigTruth between(const RigTruth& a, const RigTruth& b, double u) {
   return truth;
 }
 
-// A 12-bit converter: whole steps over -range .. +range, clipped beyond. The
-// + 0.0 here and below makes -0 a plain 0, which reads better in a file.
+// Quantises and clips a value like a 12-bit converter with the range -range .. +range. The + 0.0 here and below turns
+// -0 into 0.
 double converted(double value, double range) {
   const double step = 2.0 * range / kConverterSteps;
   const double code = std::nearbyint(value / step);
   return std::clamp(code, -0.5 * kConverterSteps, 0.5 * kConverterSteps - 1.0) * step + 0.0;
 }
 
-// Whole encoder steps, as the double nearest to the decimal number of
-// nanometres, which is short in a file.
+// Quantises to whole encoder steps. The result is rounded to nanometres, which have a short decimal text.
 double encoded(double position_m, double step_m) {
   return std::nearbyint(std::nearbyint(position_m / step_m) * step_m * 1e9) / 1e9 + 0.0;
 }
 
-// `settings` with what suits the material where nothing was said.
+// Fills the settings that are not given with those of the material.
 RigSettings suited(RigSettings settings, const Material& material) {
   if (settings.sensors.force_range_N == 0.0) settings.sensors.force_range_N = material.force_range_N;
   if (!settings.hand) settings.hand = material.hand;

@@ -51,12 +51,12 @@ class SofteningBlock final : public HereditaryBlock {
   double contact_force_N(double surface_m, double) const noexcept override {
     return hereditary_force_N(surface_m, softened(surface_m));
   }
-  void settle(double surface_m, bool touching) noexcept override {
-    HereditaryBlock::settle(surface_m, touching);
+  void update_state(double surface_m, bool touching) noexcept override {
+    HereditaryBlock::update_state(surface_m, touching);
     if (surface_m > deepest_m_) deepest_m_ = surface_m;
   }
-  void forget(double surface_m) noexcept override {
-    HereditaryBlock::forget(surface_m);
+  void reset_state(double surface_m) noexcept override {
+    HereditaryBlock::reset_state(surface_m);
     deepest_m_ = surface_m;
   }
   static double stiffened(double depth_m) noexcept {

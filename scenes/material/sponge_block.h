@@ -35,7 +35,7 @@ class SpongeBlock final : public Block {
   static constexpr double kPermeabilityFall = 5.0;          // b
 
   // After a press of some tenths of a second the pore pressure is about a tenth of its undrained value.
-  double held_force_N(double depth_m) const noexcept override {
+  double half_relaxed_force_N(double depth_m) const noexcept override {
     return relaxed_force_N(depth_m) + 0.1 * kArea_m2 * kPore_Pa * depth_m / kHeight_m;
   }
   // A sigma(e).
@@ -92,14 +92,14 @@ class SpongeBlock final : public Block {
   double contact_force_N(double surface_m, double) const noexcept override {
     return relaxed_force_N(surface_m) + kArea_m2 * (mean_drained_Pa_ + mean_squeezed_Pa_ * strained(surface_m));
   }
-  void settle(double surface_m, bool) noexcept override {
+  void update_state(double surface_m, bool) noexcept override {
     constexpr double kNoPressure_Pa = 1e-25;
     for (std::size_t i = 0; i < kRings; ++i) {
       const double pressure_Pa = drained_Pa_[i] + squeezed_Pa_[i] * strained(surface_m);
       pressure_Pa_[i] = std::abs(pressure_Pa) > kNoPressure_Pa ? pressure_Pa : 0.0;
     }
   }
-  void forget(double) noexcept override { pressure_Pa_.fill(0.0); }
+  void reset_state(double) noexcept override { pressure_Pa_.fill(0.0); }
 
   Rings pressure_Pa_{};
   // At the end of the sub-step pressure = drained_ + squeezed_ x change of strain, likewise for the means over the

@@ -30,7 +30,7 @@ class TissueBlock final : public HereditaryBlock {
   TissueBlock() : HereditaryBlock(kShortest_s, kLongest_s, density) {}
 
   double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
-  double held_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
+  double half_relaxed_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
   double relaxed_force_N(double depth_m) const noexcept override { return held_share_ * kContact.force_N(depth_m); }
 
  private:

@@ -12,36 +12,36 @@ namespace palpate {
 namespace {
 
 constexpr double kBudget_ns = 1e6;
-// With less of the test within the JND no model is recommended.
+// No model is recommended if less than this share of the test samples is within the JND.
 constexpr double kGoodShare = 0.9;
-// A share that moves by less is no reason to speak of the surface.
+// The answer mentions the surface only if moving it changes the share within the JND by more.
 constexpr double kShareThatMatters = 0.005;
 
-Words number(const ModelResult& model, const char* figure, const std::string& text) {
+SentencePart number(const ModelResult& model, const char* figure, const std::string& text) {
   return {text, model.plan.name, figure};
 }
 
-Words name(const ModelResult& model) { return {model.plan.name, model.plan.name}; }
+SentencePart name(const ModelResult& model) { return {model.plan.name, model.plan.name}; }
 
-Words tick(const ModelResult& model) {
+SentencePart tick(const ModelResult& model) {
   return number(model, "tick_ns", with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns");
 }
 
 void append(Sentence& sentence, const Sentence& more) { sentence.insert(sentence.end(), more.begin(), more.end()); }
 
-std::string unit_words(const Evidence& errors) {
+std::string unit_words(const UnitErrors& errors) {
   return std::to_string(errors.units()) + " " + unit_name(errors) + (errors.units() == 1 ? "" : "s");
 }
 
 Sentence errors_of(const ModelResult& model) {
-  const Evidence& errors = model.errors;
+  const UnitErrors& errors = model.errors;
   Sentence sentence{number(model, "within_jnd", percent(errors.within_jnd)),
                     {" of the test is within what a hand can notice ("}};
-  const Words beyond =
-      number(model, "beyond_units", std::to_string(errors.beyond_units) + " of " + unit_words(errors) + " beyond");
+  const SentencePart beyond =
+      number(model, "beyond_units", std::to_string(errors.units_above_jnd) + " of " + unit_words(errors) + " beyond");
   if (!errors.has_intervals()) {
     append(sentence, {beyond, {", too few for an interval"}});
-  } else if (errors.beyond_units == 0) {
+  } else if (errors.units_above_jnd == 0) {
     append(sentence, {beyond,
                       {"; 95 %: at most "},
                       number(model, "units_at_most", percent(1.0 - errors.within_at_least())),
@@ -59,7 +59,7 @@ Sentence errors_of(const ModelResult& model) {
   return sentence;
 }
 
-// Time and error of `other` against the recommended model.
+// Compares time and error of `other` with the recommended model.
 Sentence compared(const ModelResult& other, const ModelResult& recommended) {
   const PairedDifference difference = paired_difference(other.errors, recommended.errors);
   Sentence sentence{
@@ -127,7 +127,7 @@ Sentence answer(const ReportData& data) {
 
 std::string html_of(const Sentence& sentence) {
   std::string html;
-  for (const Words& words : sentence) {
+  for (const SentencePart& words : sentence) {
     const std::string text = escape_html(words.text);
     const std::string model = "<span data-model=\"" + escape_html(words.model) + "\" data-figure=\"";
     html += words.model.empty()    ? text
@@ -139,7 +139,7 @@ std::string html_of(const Sentence& sentence) {
 
 std::string plain_text_of(const Sentence& sentence) {
   std::string text;
-  for (const Words& words : sentence) text += words.text;
+  for (const SentencePart& words : sentence) text += words.text;
   return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 

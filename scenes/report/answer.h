@@ -11,12 +11,12 @@ namespace palpate {
 
 // A part of a sentence: text, a model's name, or a number. A number has its model and figure of merit, so that
 // tests/scenes/report/check_report.py can recompute it.
-struct Words {
+struct SentencePart {
   std::string text;
   std::string model{};   // name of the model; empty for text
   std::string figure{};  // figure of merit of a number, e.g. "within_jnd"; else empty
 };
-using Sentence = std::vector<Words>;
+using Sentence = std::vector<SentencePart>;
 
 Sentence answer(const ReportData& data);
 std::string html_of(const Sentence& sentence);

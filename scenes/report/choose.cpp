@@ -4,7 +4,7 @@
 namespace palpate {
 namespace {
 
-// The size of a method that the headline shows: the one that was planned for it.
+// Whether this is the size of its method that the headline shows.
 bool is_headline(const ModelResult& one) { return one.model && one.plan.main; }
 
 }  // namespace

@@ -11,13 +11,13 @@ namespace palpate {
 namespace {
 
 constexpr double kBudget_s = 1e-3;
-constexpr double kNear = 0.2;  // of the budget: from here it is drawn
-// Bins with fewer samples say little and are left out of the curves.
+constexpr double kNear = 0.2;  // the budget is drawn if a tick takes more than this share of it
+// The curves omit bins with fewer samples.
 constexpr std::uint64_t kFewSamples = 20;
 
 using Kind = std::pair<Recipe, const Method*>;
 
-// The models of one recipe and method, by their size.
+// The models of one recipe and method, in order of their size.
 std::vector<const ModelResult*> of_kind(const ReportData& data, const Kind& kind) {
   std::vector<const ModelResult*> models;
   for (const ModelResult& one : data.models) {
@@ -38,7 +38,7 @@ std::vector<Kind> kinds_of(const ReportData& data) {
 
 using BinFigure = double (*)(const ForceBin&);
 
-// Error against force of one recipe's methods, with the trend beside this program's.
+// Error against force of the methods of one recipe; the panel of this program's recipe includes the trend.
 Panel force_panel(const ReportData& data, const std::string& title, Recipe recipe, BinFigure figure) {
   Panel panel;
   panel.title = title + (recipe == Recipe::paper ? ", recipe of 2009" : ", Palpate");
@@ -62,7 +62,7 @@ Panel force_panel(const ReportData& data, const std::string& title, Recipe recip
   return panel;
 }
 
-// The same scale for both recipes, side by side.
+// Gives the panels of both recipes the same scale, because they are side by side.
 void share_scale(Panel& one, Panel& other) {
   const AxisRange first = range_of(one, true);
   const AxisRange second = range_of(other, true);
@@ -73,7 +73,7 @@ void share_scale(Panel& one, Panel& other) {
 }  // namespace
 
 Hue model_colour(const PlannedModel& plan) {
-  return plan.recipe == Recipe::nothing ? kMutedColour : plan.request.method->colour;
+  return plan.recipe == Recipe::no_force ? kMutedColour : plan.request.method->colour;
 }
 
 Figure speed_figure(const ReportData& data) {
@@ -155,12 +155,12 @@ Figure worst_figure(const ReportData& data) {
       if (i == 0 && row.in_contact) largest = std::max(largest, std::abs(over));
     }
   }
-  // The recommended model decides the scale; what another does beyond it is cut, and marked.
+  // The recommended model determines the scale. Larger differences of other models are cut and marked.
   difference.y.low = -1.5 * largest;
   difference.y.high = 1.5 * largest;
   force.series = {std::move(measured)};
   difference.series = {std::move(band)};
-  // The recommended one on top.
+  // The recommended model, the first one, is drawn last, on top of the others.
   for (std::size_t i = said.size(); i-- > 0;) {
     force.series.push_back(std::move(said[i]));
     difference.series.push_back(std::move(differs[i]));

@@ -13,15 +13,15 @@
 namespace palpate {
 namespace {
 
-constexpr double kPrepareSeconds = 1.0;   // about, of a recipe
-constexpr double kEvaluateSeconds = 0.1;  // a model
+constexpr double kPrepareSeconds = 1.0;   // estimate for one recipe
+constexpr double kEvaluateSeconds = 0.1;  // estimate for one model
 
-// One progress for a job of many unequal parts, in expected seconds.
+// Combines the progress of parts of different lengths, which are given in expected seconds.
 class Progress {
  public:
   Progress(FitControl whole, double total) : whole_(std::move(whole)), total_(total) {}
 
-  // The control of the next part, valid until the next call.
+  // Begins the next part and returns its control, which is valid until the next call.
   FitControl next(double seconds) {
     done_ += part_;
     part_ = seconds;
@@ -62,7 +62,7 @@ class Measurement {
       if (const Status status = run_fold(fold); !status) return status;
     }
     for (std::size_t i = 0; i < data_.models.size(); ++i) {
-      data_.models[i].errors = recorded_[i].evidence();
+      data_.models[i].errors = recorded_[i].unit_errors();
       data_.models[i].moved = moved_[i].summary();
     }
     data_.floor = noise_floor(tested_, scene_.jnd);
@@ -77,7 +77,7 @@ class Measurement {
   double expected_total() const {
     double total = 2.0 * kPrepareSeconds;
     for (const ModelResult& one : data_.models) {
-      if (one.plan.recipe != Recipe::nothing) total += one.plan.request.method->expected_seconds(one.plan.request);
+      if (one.plan.recipe != Recipe::no_force) total += one.plan.request.method->expected_seconds(one.plan.request);
     }
     return static_cast<double>(recordings_.folds.size()) *
            (total + kEvaluateSeconds * static_cast<double>(data_.models.size()));
@@ -97,18 +97,18 @@ class Measurement {
     return Preparations{std::move(made[0]), std::move(made[1])};
   }
 
-  // All planned models; null for no force.
+  // Fits all planned models. The model is null for the baseline without force.
   Result<std::vector<Fitted>> fit(const Preparations& prepared) {
     std::vector<Fitted> fitted(data_.models.size());
     std::map<std::pair<Recipe, const Method*>, std::pair<MethodFit, double>> bases;
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const PlannedModel& plan = data_.models[i].plan;
-      if (plan.recipe == Recipe::nothing) continue;
+      if (plan.recipe == Recipe::no_force) continue;
       const auto base = bases.find({plan.recipe, plan.request.method->base});
       const auto start = std::chrono::steady_clock::now();
       const PreparedTraining& on = prepared.of(plan.recipe);
       MethodRequest request = plan.request;
-      // The recordings may support other features than the scene has.
+      // The preparation may have selected other features than the scene has.
       if (!request.grid.empty()) request.grid.resize(on.common.features.size(), request.grid.back());
       auto one = fit_method(on, request, progress_.next(request.method->expected_seconds(request)),
                             base == bases.end() ? nullptr : &base->second.first);
@@ -136,7 +136,7 @@ class Measurement {
       result.model = (*fitted)[i].model;
       result.size = result.model->centre_count();
       const Method& method = *result.plan.request.method;
-      // What was made, not what was asked for: no more centres than there are sites.
+      // A fit has at most as many centres as sites; the name has the actual number.
       if (method.can_take(kTakesCentres) && result.size < result.plan.request.centres)
         result.plan.name = (result.plan.recipe == Recipe::paper ? "2009-" : "") + std::string(method.name) + "-" +
                            std::to_string(result.size);
@@ -185,8 +185,8 @@ class Measurement {
     for (std::size_t i = 0; i < times.size(); ++i) data_.models[i + 1].time = times[i];
   }
 
-  // Of models that give the same forces the first stays: without a correction every method is the trend, and
-  // with fewer sites than centres two sizes are one.
+  // Merges models with equal forces into the first of them: without a correction every method equals the trend, and
+  // with fewer sites than centres two sizes are equal.
   void merge_equal() {
     for (std::size_t i = 0; i < data_.models.size(); ++i) {
       kept_.push_back(i);
@@ -203,7 +203,7 @@ class Measurement {
     data_.models = std::move(models);
   }
 
-  // Of the recommended model, beside the 2009 recipe's and the one with the smallest error.
+  // Finds the worst stretch of the recommended model. Shows it with the greedy models of 2009 and the best model.
   void find_worst() {
     const Choice& choice = data_.choice;
     std::vector<std::size_t> shown{choice.recommended};
@@ -234,9 +234,9 @@ class Measurement {
   std::vector<ModelErrors> recorded_;
   std::vector<ModelErrors> moved_;
   std::vector<const Recording*> tested_;
-  std::vector<std::vector<ModelPointer>> fitted_;  // a fold: of every planned model but the first
-  std::vector<TimedSamples> timing_;               // a test recording
-  std::vector<std::size_t> kept_;                  // of the plan, by index in data_.models
+  std::vector<std::vector<ModelPointer>> fitted_;  // for each fold, all planned models except the first
+  std::vector<TimedSamples> timing_;               // one per test recording
+  std::vector<std::size_t> kept_;                  // for each of data_.models, its index in the plan
 };
 
 }  // namespace
@@ -244,7 +244,7 @@ class Measurement {
 WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
                            double from_s) {
   std::vector<StretchRow> rows;
-  std::vector<double> squares;  // a row, of the first model
+  std::vector<double> squares;  // for each row, of the first model
   const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
     if (row.time_s < from_s) return;
     const bool contact = snapshot.in_contact;
@@ -262,7 +262,7 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
   std::size_t best_first = 0;
   std::size_t best_last = rows.size() - 1;
   const double length_s = std::min(kStretchSeconds, rows.back().time_s - rows.front().time_s);
-  // A window from `first` to `last`, both inside.
+  // The window is from `first` to `last`, including both.
   for (std::size_t last = 0; last < rows.size(); ++last) {
     sum += squares[last];
     contact += rows[last].in_contact ? 1 : 0;
@@ -271,7 +271,7 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
       contact -= rows[first].in_contact ? 1 : 0;
       ++first;
     }
-    // A window that is mostly air has few samples to be judged by.
+    // A quarter of the window is the least divisor, so that a window with little contact has a low score.
     const double score = sum / static_cast<double>(std::max(contact, (last - first) / 4 + 1));
     const bool full = first > 0 || rows[last].time_s - rows[first].time_s >= length_s;
     if (!full || score <= worst.score) continue;

@@ -40,7 +40,7 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
 struct ModelResult {
   PlannedModel plan;
   int size = 0;                              // centres, or nodes of the grid
-  Evidence errors;                           // positions as recorded
+  UnitErrors errors;                         // positions as recorded
   ErrorSummary moved;                        // with the surface offset of every test recording subtracted
   double fit_seconds = 0.0;                  // mean over the folds, without the preparation
   ModelTiming time;                          // of the last fold's model, on all test recordings

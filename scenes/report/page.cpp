@@ -24,7 +24,7 @@ Table headline_table(const ReportData& data) {
   Table table{"headline"};
   for (const std::size_t i : headline_models(data)) {
     const ModelResult& one = data.models[i];
-    const Evidence& errors = one.errors;
+    const UnitErrors& errors = one.errors;
     const Interval interval = errors.p99_interval();
     const auto time = [&](double time_ns) { return one.time.measured ? time_ns : kNoNumber; };
     table.begin_row();
@@ -34,7 +34,7 @@ Table headline_table(const ReportData& data) {
     table.add({}, time(one.time.tick.high_ns));
     table.add({"", std::string("≤ JND [%], ") + unit_name(errors) + "s beyond", kInPercent, 2, 1},
               std::floor(1e4 * errors.within_jnd) / 1e4);
-    table.add({}, std::to_string(errors.beyond_units) + " of " + std::to_string(errors.units()));
+    table.add({}, std::to_string(errors.units_above_jnd) + " of " + std::to_string(errors.units()));
     table.add({"", "99 % error [JND], 95 %", 1.0, TableColumn::kThreeDigits, 2}, errors.p99_error_over_jnd);
     table.add({}, interval.low);
     table.add({}, interval.high);
@@ -51,7 +51,7 @@ double largest_force_N(const ReportData& data) {
   return largest;
 }
 
-// What a reader must know to believe the first screen.
+// Notes on how the numbers of the first screen were obtained.
 std::string notes_html(const ReportData& data) {
   std::vector<std::string> notes;
   notes.push_back(

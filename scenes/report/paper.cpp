@@ -13,7 +13,7 @@ namespace {
 
 using PaperBinFigure = double (*)(const PaperBin&);
 
-// The JND as the curve that it is on any axis, absolute or over the force.
+// The JND as a curve over the force. `relative`: divided by the force.
 Series jnd_curve(const JndLine& jnd, double from_N, double to_N, bool relative) {
   Series curve{"JND", kMutedColour, Mark::dashed, {}};
   for (int i = 0; i <= 60; ++i) {
@@ -243,7 +243,7 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
                                              {"origin", escape_html(request.origin)}});
   if (!page) return page.error();
   if (const Status status = folder->write("index.html", *page); !status) return status.error();
-  // What marks the folder as one that may be replaced.
+  // report.json marks the folder as a report, which may be replaced.
   nlohmann::ordered_json report{{"format", "palpate-paper"}, {"version", 1}, {"answer", answer}};
   for (const Table& table : tables) report["tables"][table.name] = table_json(table);
   if (const Status status = folder->write("report.json", report.dump(1) + "\n"); !status) return status.error();

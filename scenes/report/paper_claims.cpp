@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 constexpr double kTickBudget_ns = 60e3;
-// "Almost identical" and "considerably lower", as ratios of two figures.
+// Ratios of two figures for the paper's words "almost identical" and "considerably lower".
 constexpr double kAlmost = 1.1;
 constexpr double kConsiderably = 0.8;
 constexpr double kLargeForce_N = 2.5;  // the largest force of the paper's study
@@ -24,7 +24,7 @@ std::size_t bins_above(const PaperData& data, const PaperModel& model, double (*
 double spread(const PaperBin& bin) { return bin.mean_N + bin.std_N; }
 double largest(const PaperBin& bin) { return bin.max_N; }
 
-// Mean over the bins that `counts`.
+// Mean of `figure` over the bins for whose force `counts` is true.
 double mean_of(const PaperModel& model, double (*figure)(const PaperBin&), const std::function<bool(double)>& counts) {
   double sum = 0.0;
   double count = 0.0;
@@ -47,7 +47,7 @@ double exponent(const std::vector<double>& x, const std::vector<double>& y) {
   return std::log(y[n - 1] / y[n - 2]) / std::log(x[n - 1] / x[n - 2]);
 }
 
-// A claim about each run.
+// Adds a claim that is checked in each run.
 using Answer = std::pair<std::string, bool>;
 void add(std::vector<Claim>& claims, const PaperData& data, Claim claim,
          const std::function<Answer(const PaperRun&)>& answer) {
@@ -59,7 +59,7 @@ void add(std::vector<Claim>& claims, const PaperData& data, Claim claim,
   claims.push_back(std::move(claim));
 }
 
-// A claim about times, which were measured once.
+// Adds a claim about times, which are measured once for all runs.
 void add_once(std::vector<Claim>& claims, const PaperData& data, Claim claim, const std::string& text,
               bool reproduced) {
   claim.here.assign(data.runs.size(), "");

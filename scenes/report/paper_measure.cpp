@@ -21,14 +21,14 @@ namespace {
 
 constexpr double kPaperTrain_s = 41.499;
 constexpr double kPaperTest_s = 45.272;
-constexpr double kQuickShare = 0.2;  // of both
+constexpr double kQuickShare = 0.2;  // of both durations
 constexpr double kStep_N = 0.05;
 constexpr int kCentres = 100;
 const std::vector<int> kGrid{25, 11, 11, 11};
 constexpr int kNodesOfFigure2 = 10;
-// Bins with fewer samples say little.
+// Bins with fewer samples are omitted.
 constexpr std::uint64_t kReducedSamples = 20;
-// Low-passes of the fifth and sixth dimension of figure 2; the paper does not say which it had.
+// Relaxation times of the fifth and sixth dimension of figure 2; the paper does not give them.
 constexpr double kMoreTimes_s[] = {0.05, 4.0};
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -63,7 +63,7 @@ std::vector<PaperBin> binned(const std::vector<Sample>& samples, const JndLine& 
   std::map<std::size_t, Bin> bins;
   for (const Sample& one : samples) {
     const double force_N = std::abs(one.force_N);
-    if (force_N == 0.0) continue;  // an error over it is no number
+    if (force_N == 0.0) continue;  // the relative error is undefined
     Bin& bin = bins[force_bin(force_N, jnd)];
     bin.force.values.push_back(force_N);
     bin.error.values.push_back(one.error_N);
@@ -91,7 +91,7 @@ MethodRequest request_of(std::size_t which) {
 }
 
 const char* const kNames[kPaperMethods] = {"grid", "random", "kD-tree", "greedy-20", "greedy-100"};
-// That of greedy-20 is a shade of the method's.
+// greedy-20 has a shade of the colour of `greedy`.
 std::uint32_t colour_of(std::size_t which) {
   return which == kGridOfAll ? kDirectMethod.colour : which == kGreedy20 ? 0xCC79A7 : request_of(which).method->colour;
 }
@@ -113,7 +113,7 @@ class PaperMeasurement {
   }
 
  private:
-  // Asked between fits; a fit is stopped on the way as well.
+  // Begins the next of the parts, and returns its control.
   FitControl part() {
     done_ += 1.0;
     const double parts = quick_ ? 30.0 : 60.0;

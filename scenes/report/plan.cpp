@@ -9,9 +9,9 @@ constexpr int kMainCentres = 100;  // the paper's
 const std::vector<int> kFullCentres{10, 20, 50, 200, 500};
 const std::vector<int> kPaperCentres{10, 20, 50, 200};
 const std::vector<int> kQuickCentres{10, 30};
-// Depth and every other feature: coarser than the grid that a fit takes by itself.
+// Nodes for the depth and for every other feature. Both grids are coarser than the default of a fit.
 const std::vector<std::pair<int, int>> kGrids{{7, 4}, {13, 6}};
-constexpr std::size_t kMostGridFeatures = 5;  // beyond, minutes
+constexpr std::size_t kMostGridFeatures = 5;  // with more, a fit takes minutes
 
 PlannedModel planned(Recipe of, const Method& method, int centres) {
   PlannedModel model;
@@ -25,13 +25,13 @@ PlannedModel planned(Recipe of, const Method& method, int centres) {
   return model;
 }
 
-// A direct fit takes longer than everything else of a quick report.
+// A direct fit, and a method that starts from one, takes longer than all else in a quick report.
 bool is_slow(const Method& method) { return &method == &kDirectMethod || method.base != nullptr; }
 
 }  // namespace
 
 std::vector<PlannedModel> make_plan(bool quick, std::size_t features) {
-  std::vector<PlannedModel> plan{planned(Recipe::nothing, kTrendMethod, kMainCentres),
+  std::vector<PlannedModel> plan{planned(Recipe::no_force, kTrendMethod, kMainCentres),
                                  planned(Recipe::trend, kTrendMethod, kMainCentres)};
   plan[0].name = "no force";
   for (const Recipe of : {Recipe::paper, Recipe::palpate}) {

@@ -10,11 +10,11 @@
 
 namespace palpate {
 
-// nothing   0 N, as a baseline
+// no_force  0 N, as a baseline
 // trend     the viscoelastic trend without centres
 // paper     the recipe of Hoever & Harders (2009), with two relaxation times fitted to the recordings
 // palpate   this program's defaults
-enum class Recipe { nothing, trend, paper, palpate };
+enum class Recipe { no_force, trend, paper, palpate };
 
 struct PlannedModel {
   std::string name;  // "greedy-100", "2009-greedy-100"

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kTrainSeconds = 41.499;
 constexpr double kTestSeconds = 45.272;
-constexpr std::size_t kSmallestRecording = 1000;  // rows; less is not divided
+constexpr std::size_t kSmallestRecording = 1000;  // rows; a shorter recording is not divided
 constexpr double kKeptShare = 0.6;                // of a single recording
 
 RecordingFacts facts_of(const Recording& recording, const std::string& role) {
@@ -42,7 +42,7 @@ RecordingFacts facts_of(const Recording& recording, const std::string& role) {
   return facts;
 }
 
-// Every recording is tested once, by models of the others; up to `most` of them.
+// Makes at most `most` folds: each recording is tested once, with models that are fitted to the other folds.
 std::vector<Split> folds_of(const std::vector<SharedRecording>& all, std::size_t most) {
   std::vector<Split> folds(std::min(most, all.size()));
   for (Split& fold : folds) fold.words = std::to_string(folds.size()) + "-fold cross-validation over the training";
@@ -53,7 +53,7 @@ std::vector<Split> folds_of(const std::vector<SharedRecording>& all, std::size_t
   return folds;
 }
 
-// By name and content, whatever the order they are given in.
+// Sorts by name and content, so that the result does not depend on the order in which the recordings are given.
 void sort_recordings(std::vector<SharedRecording>& recordings) {
   std::vector<std::pair<std::pair<std::string, std::uint64_t>, SharedRecording>> keyed;
   for (SharedRecording& one : recordings) keyed.emplace_back(std::pair(one->name, content_hash(*one)), one);
@@ -87,7 +87,7 @@ std::string_view window_at(const Forces& forces_N, std::size_t first) {
   return {reinterpret_cast<const char*>(&forces_N[first]), kLeakRows * sizeof(double)};
 }
 
-// Enough different forces from `first` on for a coincidence to be out of the question.
+// Whether the window has so many different forces that two recordings cannot have it in common by chance.
 bool is_telling(const Forces& forces_N, std::size_t first) {
   const auto begin = forces_N.begin() + static_cast<std::ptrdiff_t>(first);
   return std::set<double>(begin, begin + static_cast<std::ptrdiff_t>(kLeakRows)).size() >= kLeakValues;
@@ -117,7 +117,7 @@ std::string seconds(const Recording& recording, std::size_t row) {
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested) {
   const Forces known = forces_of(trained);
   const Forces asked = forces_of(tested);
-  // Every kLeakRows-th window of the one, all windows of the other.
+  // Compares every kLeakRows-th window of the first with all windows of the second.
   std::unordered_map<std::string_view, std::size_t> windows;
   for (std::size_t first = 0; first + kLeakRows <= known.size(); first += kLeakRows) {
     if (is_telling(known, first)) windows.try_emplace(window_at(known, first), first);

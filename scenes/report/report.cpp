@@ -35,7 +35,7 @@ constexpr const char* kCompiler = "clang " __clang_version__;
 constexpr const char* kCompiler = "g++ " __VERSION__;
 #endif
 
-// All numbers. "timings" holds all that differs from run to run.
+// All numbers of the report. Those that differ from run to run are in "timings".
 OrderedJson report_json(const ReportData& data, const ReportRequest& request, const Sentence& answer,
                         const std::vector<Table>& tables, const std::vector<Figure>& figures,
                         const std::string& machine, double seconds) {
@@ -84,7 +84,7 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
 Result<std::string> make_report(const ReportRequest& request, const FitControl& control) {
   const auto start = std::chrono::steady_clock::now();
   if (const Status gnuplot = find_gnuplot(); !gnuplot) return gnuplot.error();
-  // A folder that cannot be written is an error now and not after the fits.
+  // The folder is created before the fits, so that an error of it is reported at once.
   auto folder = ReportFolder::create(request.out, request.force);
   if (!folder) return folder.error();
   const auto recordings = split_recordings(request.train, request.test);
@@ -103,14 +103,14 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
   }
   std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), force_figure(*data)};
   const Status drawn = draw_figures(*folder, figures);
-  // Ctrl-C at a terminal ends gnuplot as well: that is no trouble of gnuplot's.
+  // Ctrl-C at a terminal ends gnuplot as well; the report is then interrupted, not wrong.
   if (!control.may_continue(0.99)) return interrupted();
   if (!drawn) return drawn.error();
 
   const std::string machine =
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  // Names of recordings need not be UTF-8; what cannot be said is replaced.
+  // Names of recordings may be invalid UTF-8; such bytes are replaced.
   const std::string json = report_json(*data, request, words, tables, figures, machine, seconds)
                                .dump(1, ' ', false, OrderedJson::error_handler_t::replace) +
                            "\n";

@@ -27,7 +27,7 @@ Status check_target(const fs::path& path, bool overwrite) {
   return {};
 }
 
-// "a/b/" and "a/b" are one.
+// Removes the slash at the end of "a/b/".
 fs::path without_slash(const std::string& path) {
   fs::path clean = fs::path(path).lexically_normal();
   if (!clean.has_filename()) clean = clean.parent_path();
@@ -55,7 +55,7 @@ Result<ReportFolder> ReportFolder::create(const std::string& path, bool overwrit
     return Error{"cannot write " + clean.string() + ": the folder " + parent.string() + " is not writable (" +
                  std::generic_category().message(errno) + ")"};
   }
-  // As it was made it is the owner's alone.
+  // Only the owner can read a new scratch folder.
   fs::permissions(folder.temporary_->path(), static_cast<fs::perms>(0755), error);
   return folder;
 }
@@ -68,8 +68,8 @@ Status ReportFolder::write(const std::string& name, std::string_view text) const
 
 Status ReportFolder::commit() {
   std::error_code error;
-  // A folder can only replace an empty one: the earlier report steps aside first, and
-  // comes back when the rename fails.
+  // A rename cannot replace a folder with files: the earlier report is moved aside first, and moved back when the
+  // rename fails.
   const std::string made = temporary_->path();
   const std::string aside = made + ".old";
   const bool replaces = fs::exists(path_, error);

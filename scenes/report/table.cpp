@@ -36,7 +36,7 @@ std::string shown(const TableCell& cell, const TableColumn& column) {
                                                       : with_thousands(fixed(value, column.decimals));
 }
 
-// What is shown under the cell `first - 1`: the next one, or an interval of the next two.
+// The small text below the cell `first - 1`: the next value, or the next two as an interval.
 std::string under_html(const std::vector<TableCell>& row, std::size_t first, const TableColumn& column) {
   if (column.under == 0) return {};
   const std::string low = shown(row[first], column);
@@ -59,7 +59,7 @@ const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 Table models_table(const ReportData& data) {
   Table table{"models"};
   for (const ModelResult& one : data.models) {
-    const Evidence& errors = one.errors;
+    const UnitErrors& errors = one.errors;
     const Interval p99 = errors.p99_interval();
     const PairedDifference difference = paired_difference(errors, data.models[data.choice.best].errors);
     table.begin_row();
@@ -76,7 +76,7 @@ Table models_table(const ReportData& data) {
     table.add({"max_error_N", "worst [mN]", kInMilli}, errors.max_error_N);
     table.add({"max_error_over_jnd", "worst [JND]"}, errors.max_error_over_jnd);
     table.add({"units", std::string(unit_name(errors)) + "s"}, errors.units());
-    table.add({"beyond_units", "beyond"}, errors.beyond_units);
+    table.add({"beyond_units", "beyond"}, errors.units_above_jnd);
     table.add({"out_of_domain_samples", ""}, errors.out_of_domain_samples);
     table.add({"moved_within_jnd", "moved: ≤ JND [%]", kInPercent, 2}, any(one.moved, one.moved.within_jnd));
     table.add({"moved_p99_error_over_jnd", "99 % [JND]"}, any(one.moved, one.moved.p99_error_over_jnd));
@@ -160,7 +160,7 @@ Table gains_table(const ReportData& data) {
 
 }  // namespace
 
-const char* unit_name(const Evidence& errors) { return errors.units_are_recordings ? "recording" : "stroke"; }
+const char* unit_name(const UnitErrors& errors) { return errors.units_are_recordings ? "recording" : "stroke"; }
 
 std::string table_csv(const Table& table) {
   std::string text;

@@ -56,7 +56,7 @@ nlohmann::ordered_json table_json(const Table& table);
 std::string table_html(const Table& table);
 
 // The independent units of the confidence intervals: "recording" or "stroke".
-const char* unit_name(const Evidence& errors);
+const char* unit_name(const UnitErrors& errors);
 
 // All numbers of a report: the tables models, recordings, force_bins, features and times.
 std::vector<Table> make_tables(const ReportData& data);

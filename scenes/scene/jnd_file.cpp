@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// The format needs three.
+// The largest depth of nesting; the format needs three levels.
 constexpr int kJndNesting = 8;
 constexpr const char* kAdvice = "; write it anew with palpate study analyse";
 

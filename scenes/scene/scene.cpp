@@ -28,7 +28,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-// Those of other kinds are identified in a fit, never written in a scene.
+// Scenes have no other kinds of features; fits identify the others.
 std::string describe_features(const Scene& scene) {
   std::vector<std::string> words;
   for (const FeatureSpec& feature : scene.features) {
@@ -69,7 +69,7 @@ Result<Scene> load_scene(const std::string& name, const std::string& in_folder) 
 }
 
 std::uint32_t method_rgb(std::string_view method) {
-  constexpr std::uint32_t kPositionColour = 0xF0E442;  // Okabe & Ito; grey is the band
+  constexpr std::uint32_t kPositionColour = 0xF0E442;  // from the palette of Okabe & Ito; grey is the JND band
   if (method == "position") return kPositionColour;
   const Method* row = find_method(method);
   return row == nullptr ? kNeutralColour : row->colour;

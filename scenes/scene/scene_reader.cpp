@@ -1,4 +1,4 @@
-// From the text of a scene file to a Scene, collecting every error on the way.
+// Reads a Scene from the text of a scene file, and collects all errors.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// The format needs three.
+// The largest depth of nesting; the format needs three levels.
 constexpr int kSceneNesting = 8;
 constexpr double kLongestRelaxation_s = 100.0;
 constexpr double kLargestLength_m = 10.0;
@@ -126,7 +126,7 @@ class SceneReader : private JsonFields {
     scene_.jnd.weber_fraction = number(node, "weber_fraction", {0.0, 1.0});
   }
 
-  // A JND file beside the scene stands in for its own line.
+  // Reads the JND line from a file beside the scene, instead of the member "jnd".
   void read_jnd_file_of_scene() {
     const std::string name = filled_text(top_, "jnd_file");
     const JsonNode line = optional_member(top_, "jnd");

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-// A relative path in the variable counts as none, as the specification has it.
+// Ignores a relative path in the variable, as the XDG Base Directory specification demands.
 Result<std::string> folder(const char* variable, const char* below_home) {
   std::filesystem::path base;
   const char* wanted = std::getenv(variable);

@@ -23,7 +23,7 @@ std::string row_of(const Discrimination& result, const StrokePair& strokes) {
   return text;
 }
 
-// -1 below one JND, 1 above it, 0 neither.
+// The predicted difference: -1 below one JND, 1 above it, 0 neither.
 int predicted_side(const StrokePair& strokes) {
   if (strokes.max_over_jnd <= 1.0) return -1;
   return strokes.mean_over_jnd > 1.0 ? 1 : 0;

@@ -58,7 +58,7 @@ LiveStudy::~LiveStudy() {
 
 void LiveStudy::update() {
   newest_ = loop_->newest();
-  // Every sample is the study's own business; the ring is only kept from filling up.
+  // The presenter records the forces; the snapshots are discarded, so that the ring does not fill up.
   std::array<LoopSnapshot, 64> passed;
   while (loop_->read_snapshots(passed.data(), passed.size()) == passed.size()) {
   }

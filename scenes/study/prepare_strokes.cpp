@@ -19,20 +19,20 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint64_t kTrainingSeed = 1;  // as the window has it
+constexpr std::uint64_t kTrainingSeed = 1;  // the same as in the window
 constexpr std::uint64_t kTestSeed = 2;
-constexpr std::size_t kSmoothing_ticks = 10;  // to either side
+constexpr std::size_t kSmoothing_ticks = 10;  // half width of the Hann window
 constexpr std::size_t kBetweenPieces_ticks = 100;
-// Away from what the presenter's limiter allows: the ramps add to the slope.
+// Below the limits of the presenter, so that its limiter does not act.
 constexpr double kLargestStroke_N = 0.95 * kLargestStudyForce_N;
 constexpr double kFastestStroke_N_per_s = 0.9 * kFastestStudyForce_N_per_s;
 constexpr double kStrongestStroke_N = 2.5;  // root mean square; with the pauses 2 N, see assets/devices
 constexpr std::size_t kLongestName = 200;
-constexpr double kLongestRecording_s = 3600.0;  // one value per ms of it is kept
+constexpr double kLongestRecording_s = 3600.0;  // bounds the memory: one value per ms
 
 using Model = std::shared_ptr<const ForceModel>;
 
-// One value per ms.
+// Forces with one value per ms.
 struct Traces {
   double from_s = 0.0;
   std::vector<double> reference_N;
@@ -40,7 +40,7 @@ struct Traces {
   std::vector<bool> contact;
 };
 
-// One row, after its tick.
+// The forces after the tick of one row.
 struct Sample {
   double time_s = 0.0;
   double reference_N = 0.0;
@@ -80,7 +80,7 @@ std::vector<double> smoothed(const std::vector<double>& values) {
   return result;
 }
 
-// Linear between the rows.
+// Interpolates linearly between the rows, and smooths the forces.
 Traces traces_of(const std::vector<Sample>& samples) {
   Traces traces;
   traces.from_s = samples.front().time_s;
@@ -102,7 +102,7 @@ Traces traces_of(const std::vector<Sample>& samples) {
   return traces;
 }
 
-// From the tick `from` on, for an interval.
+// Whether the limits allow the presentation of the interval that begins at tick `from`.
 bool can_be_presented(const std::vector<double>& force_N, std::size_t from) {
   double before_N = 0.0, squares_N2 = 0.0;
   for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
@@ -115,7 +115,7 @@ bool can_be_presented(const std::vector<double>& force_N, std::size_t from) {
   return squares_N2 <= kStrongestStroke_N * kStrongestStroke_N * kInterval_ticks;
 }
 
-// The errors as a hand is given them, ramps included.
+// The errors as they are presented, with the ramps at both ends.
 ErrorFigures errors_from(const Traces& traces, std::size_t from, const JndLine& jnd) {
   ErrorFigures errors;
   for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
@@ -126,7 +126,7 @@ ErrorFigures errors_from(const Traces& traces, std::size_t from, const JndLine& 
   return errors;
 }
 
-// Where the piece with the largest difference begins; none: nothing to present.
+// First tick of the piece with the largest difference; empty if no piece can be presented.
 std::optional<std::size_t> hardest_piece(const Traces& traces, const JndLine& jnd) {
   std::optional<std::size_t> hardest;
   double most = -1.0;
@@ -141,7 +141,7 @@ std::optional<std::size_t> hardest_piece(const Traces& traces, const JndLine& jn
   return hardest;
 }
 
-// What is written is what it was: forces to 0.1 mN, times to 1 ms, ratios to 1e-4.
+// Rounds to the resolution of the file, so that the file has what was presented: 0.1 mN, 1 ms, ratios to 1e-4.
 double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
 std::vector<double> cut(const std::vector<double>& force_N, std::size_t from) {
@@ -166,7 +166,7 @@ std::uint32_t checksum_of(const StrokePair& strokes) {
   return hash;
 }
 
-// The models of the plans, made as those of the window are.
+// Fits or loads the models of the plans, as the window does.
 Result<std::vector<Model>> make_models(const Scene& scene, const std::vector<SlotPlan>& plans) {
   ModelWorker worker(scene, kTrainingSeed);
   std::vector<Model> models;
@@ -199,7 +199,7 @@ Result<std::shared_ptr<const StrokePair>> prepare_strokes(const StrokeRequest& r
   }
   Result<std::vector<SlotPlan>> plans = plan_slots(request.scene, request.models, false);
   if (!plans) return plans.error();
-  plans->resize(std::max<std::size_t>(request.models.size(), 1));  // no reference, no other models
+  plans->resize(std::max<std::size_t>(request.models.size(), 1));  // without a model as the reference, one model only
   const Result<Recording> recording = test_recording(request);
   if (!recording) return recording.error();
   const Result<std::vector<Model>> models = make_models(request.scene, *plans);

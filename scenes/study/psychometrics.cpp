@@ -10,18 +10,18 @@ namespace palpate {
 namespace {
 
 constexpr double kFlattestSlope = 0.25;  // a JND of 2.7 times the reference
-constexpr double kSteepestSlope = 40.0;  // of 1.7 %: no difference of the study is as small
+constexpr double kSteepestSlope = 40.0;  // a JND of 1.7 %; all differences in the study are larger
 constexpr double kLargestBias = 3.0;
 constexpr double kLapseStep = 0.01;
 constexpr int kLapseSteps = 6;
 constexpr int kMostIterations = 60;
 constexpr double kConverged = 1e-9;  // of the log likelihood
-// A slope is bounded when the ends of the range explain the answers worse by this in
-// the log likelihood: a likelihood ratio of 1.1, next to nothing.
+// The answers bound a slope if the log likelihood at both ends of the range is lower than at the fit by at least this,
+// which is a likelihood ratio of 1.1.
 constexpr double kNoticeablyWorse = 0.1;
 constexpr double kLeastProbability = 1e-12;
 
-// The slopes and, last, the order bias; no memory of their own.
+// The slopes, then the order bias, without heap memory.
 constexpr int kMostCoefficients = static_cast<int>(kMostReferences) + 1;
 using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostCoefficients, 1>;
 using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostCoefficients, kMostCoefficients>;
@@ -60,12 +60,12 @@ double log_likelihood(const std::vector<AnswerCell>& cells, const Coefficients& 
   return sum;
 }
 
-// The step of Fisher scoring: information^-1 x gradient. What would leave its range
-// stays.
+// The step of Fisher scoring: information^-1 x gradient. A coefficient at the end of its range that would leave it is
+// kept constant.
 Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficients& coefficients, double lapse) {
   const Eigen::Index last = coefficients.size() - 1;
   Coefficients gradient = Coefficients::Zero(last + 1);
-  // A little more than nothing, so that it can be solved without answers too.
+  // A small ridge, so that the system can be solved without answers.
   Information information = 1e-9 * Information::Identity(last + 1, last + 1);
   for (const AnswerCell& cell : cells) {
     const double z = z_of(cell, coefficients);
@@ -94,7 +94,7 @@ Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficien
   return information.ldlt().solve(gradient);
 }
 
-// Climbs from `coefficients` for one lapse rate; halves a step that does not climb.
+// Maximises the log likelihood for one lapse rate from `coefficients`; halves a step that does not increase it.
 double climb(const std::vector<AnswerCell>& cells, double lapse, Coefficients& coefficients) {
   double best = log_likelihood(cells, coefficients, lapse);
   for (int i = 0; i < kMostIterations; ++i) {
@@ -114,7 +114,7 @@ double climb(const std::vector<AnswerCell>& cells, double lapse, Coefficients& c
   return best;
 }
 
-// Whether both ends of the range explain the answers noticeably worse.
+// Whether the answers bound the slope (kNoticeablyWorse).
 bool bounds_slope(const std::vector<AnswerCell>& cells, std::size_t reference, const PsychometricFunction& fitted) {
   double at_fit = 0.0, at_flattest = 0.0, at_steepest = 0.0;
   for (const AnswerCell& cell : cells) {
@@ -131,7 +131,7 @@ bool bounds_slope(const std::vector<AnswerCell>& cells, std::size_t reference, c
 
 double normal_cdf(double z) noexcept { return 0.5 * std::erfc(-z * 0.7071067811865476); }
 
-// Bisection, then exact enough for a double: called a few times per fit only.
+// Bisection to the precision of a double. It is slow, and called a few times per fit only.
 double normal_quantile(double probability) noexcept {
   double low = -9.0, high = 9.0;
   for (int i = 0; i < 80; ++i) {
@@ -142,7 +142,7 @@ double normal_quantile(double probability) noexcept {
 }
 
 void add_answers(std::vector<AnswerCell>& cells, const AnswerCell& answers) {
-  // As near as a recorded force can tell: 0.1 mN of the smallest reference.
+  // Equal within the resolution of a recorded force: 0.1 mN over the smallest reference.
   const auto same = [&](const AnswerCell& cell) {
     return cell.reference == answers.reference && cell.comparison_first == answers.comparison_first &&
            std::abs(cell.difference - answers.difference) < 1e-4;
@@ -170,7 +170,7 @@ PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size
   for (int i = 0; i <= kLapseSteps; ++i) {
     const double lapse = kLapseStep * i;
     const double reached = climb(cells, lapse, coefficients);
-    if (i > 0 && !(reached > most_likely + kConverged)) break;  // the likelihood has one hill
+    if (i > 0 && !(reached > most_likely + kConverged)) break;  // the likelihood has one maximum over the lapse rate
     most_likely = reached;
     best = coefficients;
     best_lapse = lapse;

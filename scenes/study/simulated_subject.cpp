@@ -20,7 +20,7 @@ double felt_N(const Stimulus& stroke, std::uint32_t tick) {
 }  // namespace
 
 bool SimulatedSubject::second_feels_larger(double first_N, double second_N) noexcept {
-  // Always the same number of draws, so that trials do not shift each other.
+  // Every trial draws the same number of random numbers, so that an answer does not change later trials.
   const bool missed = random_.uniform(0.0, 1.0) < 2.0 * traits_.lapse_rate;
   const bool guess = random_.uniform(0.0, 1.0) < 0.5;
   const double first_felt_N = first_N + noise_N(traits_.jnd, first_N) * random_.normal();

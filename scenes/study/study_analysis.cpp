@@ -16,7 +16,7 @@ constexpr std::size_t kReferences = kReferenceForces_N.size();
 struct SubjectAnswers {
   std::vector<AnswerCell> cells;
   std::array<std::size_t, kReferences> trials{};
-  std::array<double, kReferences> rendered_N{};  // summed up
+  std::array<double, kReferences> rendered_N{};  // sums
   std::size_t unusable = 0;
 };
 
@@ -63,7 +63,7 @@ SubjectJnd jnds_of(const std::string& subject, const SubjectAnswers& answers) {
   return result;
 }
 
-// Mean and standard error of the subjects' JNDs at one reference force; false: nobody was asked there.
+// Mean and standard error of the subjects' JNDs at one reference force; false: no subject has answers there.
 bool average_subjects(const std::vector<SubjectJnd>& subjects, MeanJnd& mean) {
   std::vector<double> values;
   double rendered_N = 0.0, all = 0.0;

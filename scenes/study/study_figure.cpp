@@ -14,7 +14,7 @@ constexpr Hue kLineColour = 0x0072B2;
 constexpr Hue kSubjectColour = 0xE69F00;
 constexpr Hue kPublishedColour = 0xD55E00;
 constexpr int kSteps = 60;
-constexpr double kLeastShare = 0.03;  // of the largest force: the relative line has no end at 0
+constexpr double kLeastShare = 0.03;  // of the largest force, where the curves begin: the relative JND is infinite at 0
 
 std::string line_name(const char* what, const JndLine& line) {
   char text[96];
@@ -22,7 +22,7 @@ std::string line_name(const char* what, const JndLine& line) {
   return text;
 }
 
-// In (a) as it is, in N; in (b) in per cent of the force.
+// Panel (a) shows the JND in N, panel (b) in per cent of the force.
 Panel make_panel(const StudyAnalysis& analysis, bool relative, double largest_N) {
   Panel panel;
   panel.title = relative ? "(b)" : "(a)";

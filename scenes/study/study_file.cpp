@@ -28,7 +28,7 @@ std::string checksum(const std::string& text) {
 
 constexpr int kAppending = O_RDWR | O_APPEND | O_CLOEXEC;
 
-// Appended and confirmed, or an errno.
+// Appends the text and flushes it to the disk. Returns 0 or errno.
 int write_durably(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
@@ -71,7 +71,7 @@ Error StudyFile::failure(int error_number) const {
   return Error{"cannot write " + path_ + ": " + std::generic_category().message(error_number)};
 }
 
-// What an earlier session left, or the consent.
+// Locks and reads the file of an earlier session, or the one that `consent` has just written.
 Status StudyFile::take_up() {
   struct stat status {};
   if (fstat(descriptor_, &status) != 0) return failure(errno);
@@ -125,11 +125,11 @@ Status StudyFile::append(const StudyRecord& record) {
   StudyRecord on_device = record;
   on_device.device = header_.device;
   on_device.rendered = header_.rendered;
-  // What a refused row may have left behind.
+  // Removes the rest of a row whose write failed.
   if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return failure(errno);
   const std::string row = study_row(on_device, header_);
   if (const int error_number = write_durably(descriptor_, row); error_number != 0) {
-    // Should this fail too, the next append or the next session cuts it off.
+    // If this fails as well, the next append or the next session truncates the file.
     [[maybe_unused]] const int taken_back = ftruncate(descriptor_, static_cast<off_t>(size_));
     return failure(error_number);
   }

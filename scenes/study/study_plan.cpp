@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint64_t kStudySeed = 0x70a1fa7e5eed0001u;  // fixed: codes alone differ
+constexpr std::uint64_t kStudySeed = 0x70a1fa7e5eed0001u;  // fixed, so that the plan depends on the subject code only
 constexpr std::size_t kMostLetters = 3;
 constexpr std::size_t kMostDigits = 4;
 constexpr std::uint64_t kConstantStream = 1;
@@ -28,14 +28,14 @@ bool is_code(const std::string& text) {
          letters + digits == text.size();
 }
 
-// Random numbers of this subject; `stream` tells the uses apart.
+// Random numbers of this subject; each use has its own `stream`.
 RandomStream subject_random(const std::string& code, std::uint64_t stream) noexcept {
   std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
   for (const char letter : code) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3u;
   return {hash ^ kStudySeed, stream};
 }
 
-// Shuffled in place (Fisher & Yates).
+// Shuffles in place (Fisher & Yates).
 template <typename T>
 void shuffle(std::vector<T>& values, RandomStream& random) {
   for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.index(i)]);
@@ -83,7 +83,7 @@ std::vector<StudyTrial> constant_training(const std::string& code) {
   return trials;
 }
 
-// `count` trials of these two, in each block the comparison first as often as second.
+// `count` trials of these two; in each block the comparison comes first in half of the trials.
 std::vector<StudyTrial> stroke_trials(RandomStream random, double reference_N, double comparison_N, std::size_t count,
                                       std::size_t block) {
   std::vector<StudyTrial> trials;

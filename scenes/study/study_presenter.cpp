@@ -60,7 +60,7 @@ void StudyPresenter::read_orders() noexcept {
   in_phase_ = 0;
 }
 
-// Takes in what became of the last tick's force.
+// Records the force that the device rendered for the last tick.
 void StudyPresenter::record(double rendered_N) noexcept {
   if (!sent_stimulus_ || !std::isfinite(rendered_N)) return;
   state_.worst_N = std::max(state_.worst_N, std::abs(rendered_N - sent_commanded_N_));

@@ -1,4 +1,4 @@
-// Study files as text: a header, then rows; what is read is checked in every field.
+// A study file is text: a header, then rows. Every field is checked.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -19,7 +19,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrokePair, reference, comparison, recording,
 
 namespace {
 
-// How every presentation goes, for whoever reads the file.
+// The header line with the timing of a presentation.
 std::string timing_line() {
   const auto part = [](const char* name, std::uint32_t ticks) { return std::string(name) + std::to_string(ticks); };
   return "# timing_ms" + part(" lead_in ", kLeadIn_ticks) + part(" ramp ", kRamp_ticks) + part(" hold ", kHold_ticks) +
@@ -60,7 +60,7 @@ class StudyReader {
   }
 
  private:
-  // What follows `start` in the next line, which must begin so.
+  // Reads the next line, which must begin with `start`, and returns the rest of it.
   std::string next_line(std::string_view start) {
     const std::size_t end = text_.find('\n', next_);
     line_ = text_.substr(next_, end == std::string_view::npos ? end : end - next_);
@@ -72,7 +72,7 @@ class StudyReader {
 
   Error refuse(const std::string& expected) const { return refuse_part(line_, expected); }
 
-  // `part`: of the text.
+  // `part`: a view into the text of the file.
   Error refuse_part(std::string_view part, const std::string& expected) const {
     const std::string shown = part.size() > 60 ? std::string(part.substr(0, 57)) + "..." : std::string(part);
     const auto offset = static_cast<std::size_t>(part.data() - text_.data());
@@ -89,7 +89,7 @@ class StudyReader {
     }
   }
 
-  // The fields of the row come one after the other; the first that is wrong is told.
+  // Returns the next field of the row. The first wrong field is reported.
   std::string_view field() {
     const std::size_t comma = rest_.find(',');
     const std::string_view one = rest_.substr(0, comma);
@@ -155,7 +155,7 @@ class StudyReader {
   const std::string& path_;
   StudyData data_;
   std::size_t next_ = 0;
-  std::string_view line_, rest_;  // of it, not yet read
+  std::string_view line_, rest_;  // `rest_`: the part of the line that is not yet read
   bool failed_ = false;
   std::optional<Error> wrong_;
 };

@@ -8,8 +8,8 @@
 namespace palpate {
 namespace {
 
-// From the force that a trial should have at any tick: half the JND at no force. A trial in which the device
-// dropped out is presented again.
+// The largest allowed difference between rendered and commanded force at any tick: half the JND at 0 N. A trial that
+// exceeds it is presented again.
 const double kMostAway_N = 0.5 * JndLine{}.at(0.0);
 
 double to_tenth_mN(double force_N) noexcept { return std::round(force_N * 1e4) / 1e4; }
@@ -65,7 +65,7 @@ StudySession::StudySession(const StudyHeader& header, std::unique_ptr<StudyStore
       rest_ticks_(rest_ticks),
       plan_(plan_study(header.subject, header.strokes.get())) {}
 
-// Gives the stored answers again; each must be to the trial of the plan.
+// Counts the stored answers; each must belong to the next trial of the plan.
 Status StudySession::resume() {
   for (const StudyRecord& record : store_->records()) {
     const bool fits = record.training == training() && (training() || !all_answered()) &&
@@ -139,7 +139,7 @@ void StudySession::save() {
   continue_session();
 }
 
-// After an answer that is safe.
+// Called after an answer is on the disk.
 void StudySession::continue_session() {
   if (record_.training) {
     ++trained_;

@@ -19,21 +19,18 @@
 namespace palpate {
 namespace {
 
-// Graphics and haptics win on two cores; a fit takes a little longer.
+// Niceness of fits, so that graphics and haptics have priority where there are few cores.
 constexpr int kNice = 10;
-// Shares of the first fit's time, as far as the bar is concerned.
+// Progress of the first fit when the recording, and when the preparation is done.
 constexpr double kRecorded = 0.3;
 constexpr double kPrepared = 0.7;
 
-// A model that is there is quicker than any fit; one of position alone needs a
-// preparation of its own.
+// Additional time of a model with the depth as its only feature, which needs its own preparation.
 constexpr double kOwnPreparation_s = 1.0;
-// Which features are best is found out once for all that are not of the paper's recipe;
-// those have theirs, and so are there first.
+// Additional time of the selection of features. The recipe of the paper does not select, so that its models come first.
 constexpr double kChoosesFeatures_s = 2.0;
 
-// How long a model takes to make, in words of order only. A method's base comes
-// before the method, which then starts from it.
+// Approximate time to make a model; only the order matters. It puts a method after its base, from which it starts.
 double expected_cost_s(const SlotPlan& plan) {
   if (plan.loaded != nullptr) return 0.0;
   MethodRequest request;
@@ -43,8 +40,7 @@ double expected_cost_s(const SlotPlan& plan) {
          (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
 }
 
-// Strokes into what it was trained on, the same for every model: half a second of contact
-// and more makes a median, and takes some milliseconds.
+// Times the tick on one second of strokes within the model's training domain, which takes some milliseconds.
 Timing time_of_tick(const std::shared_ptr<const FittedModel>& model) {
   std::size_t feature = 0;
   const double depth_m = std::min(0.8 * deepest_in_domain_m(model->data(), feature), 0.01);
@@ -69,7 +65,7 @@ FinishedModel finished_model(std::size_t job_id, const SlotPlan& plan, std::shar
   return {job_id, plan, std::move(model), "", tick};
 }
 
-// Linux counts threads one by one.
+// On Linux, the niceness of one thread is set by its thread id.
 void lower_thread_priority() noexcept { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }
 
 ModelWorker::ModelWorker(Scene scene, std::uint64_t seed) : scene_(std::move(scene)), seed_(seed) {}
@@ -206,7 +202,7 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   request.method = plan.method;
   request.seed = seed_;
   if (plan.centres > 0) request.centres = plan.centres;
-  const bool own = position || plan.paper;  // prepared in another way than the bases
+  const bool own = position || plan.paper;  // its preparation differs from that of the bases
   const auto base = own ? bases_.end() : bases_.find(plan.method->base);
   const FitControl rest = control(prepared_before ? 0.0 : kPrepared, 1.0);
   const bool nested = !position && plan.method->choose != nullptr && request.centres <= kMostCentres &&

@@ -23,7 +23,7 @@ Error unknown_model(const std::string& asked) {
                ") or a model file that exists"};
 }
 
-// "paper:greedy-10"; nothing: it is no method.
+// Parses "greedy", "greedy-10" or "paper:greedy-10"; empty if it names no method.
 std::optional<SlotPlan> plan_method_of(std::string asked) {
   SlotPlan plan;
   constexpr std::string_view kPaper = "paper:";
@@ -94,7 +94,7 @@ std::string plan_method(const SlotPlan& plan) {
 Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<std::string>& models,
                                          bool position_only) {
   std::vector<SlotPlan> plans;
-  // Nothing to fit to, and nothing asked for: a session that waits for a file.
+  // Without a material and without named models, the session waits for a file.
   if (models.empty() && !scene.has_material()) return plans;
   for (const std::string& asked : models.empty() ? scene.default_models : models) {
     Result<SlotPlan> plan = plan_one(scene, asked);

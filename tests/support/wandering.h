@@ -36,7 +36,7 @@ struct Wandering {
 // Where `block` holds some 5 N.
 inline double depth_of_5_N(const Block& block) {
   double depth_m = 0.0;
-  while (block.held_force_N(depth_m) < 5.0) depth_m += 1e-4;
+  while (block.half_relaxed_force_N(depth_m) < 5.0) depth_m += 1e-4;
   return depth_m;
 }
 

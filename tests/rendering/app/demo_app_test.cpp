@@ -72,11 +72,11 @@ TEST_F(DemoAppTest, ADroppedRecordingIsOfferedAndReplayed) {
   const std::string strokes = folder_.file("strokes.csv");
   ASSERT_TRUE(write_recording(strokes, test::example_recording(2000, 1000.0), {}, false).ok());
   drop(strokes);
-  ASSERT_TRUE(until([&] { return app_->view().dialogs.offer.any(); }));
-  EXPECT_EQ(app_->view().dialogs.offer.recordings.at(0).path, strokes);
+  ASSERT_TRUE(until([&] { return app_->view().dialogs.recording_roles.any(); }));
+  EXPECT_EQ(app_->view().dialogs.recording_roles.recordings.at(0).path, strokes);
   frames(3);
   press(GLFW_KEY_ESCAPE);
-  EXPECT_FALSE(app_->view().dialogs.offer.any());
+  EXPECT_FALSE(app_->view().dialogs.recording_roles.any());
 }
 
 TEST_F(DemoAppTest, AnotherProgramsTableIsImportedAndOffered) {
@@ -87,9 +87,9 @@ TEST_F(DemoAppTest, AnotherProgramsTableIsImportedAndOffered) {
   for (int i = 0; i < 200; ++i) file << "0," << 1000 + i << ";1," << 100 + i << ";0," << 100 + i << "\n";
   file.close();
   drop(foreign);
-  ASSERT_TRUE(until([&] { return app_->view().dialogs.offer.any(); }));
-  EXPECT_EQ(app_->view().dialogs.offer.problem, "");
-  const OfferedRecording offered = app_->view().dialogs.offer.recordings.at(0);
+  ASSERT_TRUE(until([&] { return app_->view().dialogs.recording_roles.any(); }));
+  EXPECT_EQ(app_->view().dialogs.recording_roles.problem, "");
+  const OpenedRecording offered = app_->view().dialogs.recording_roles.recordings.at(0);
   ASSERT_GE(offered.words.size(), 4u);
   EXPECT_EQ(offered.words[2].substr(0, 30), "position: column 2 \"Weg [mm]\" ");
   const auto recording = read_recording(offered.path);
@@ -105,12 +105,12 @@ TEST_F(DemoAppTest, WhatIsAmbiguousIsExplainedInTheWindow) {
   for (int i = 0; i < 200; ++i) file << 0.01 * i << "," << 1 + 0.1 * i << "," << 0.2 * i << "," << 0.3 * i << "\n";
   file.close();
   drop(foreign);
-  ASSERT_TRUE(until([&] { return app_->view().dialogs.offer.any(); }));
-  EXPECT_TRUE(app_->view().dialogs.offer.recordings.empty());
-  EXPECT_NE(app_->view().dialogs.offer.problem.find("force B"), std::string::npos)
-      << app_->view().dialogs.offer.problem;
-  EXPECT_NE(app_->view().dialogs.offer.problem.find("--columns"), std::string::npos)
-      << app_->view().dialogs.offer.problem;
+  ASSERT_TRUE(until([&] { return app_->view().dialogs.recording_roles.any(); }));
+  EXPECT_TRUE(app_->view().dialogs.recording_roles.recordings.empty());
+  EXPECT_NE(app_->view().dialogs.recording_roles.problem.find("force B"), std::string::npos)
+      << app_->view().dialogs.recording_roles.problem;
+  EXPECT_NE(app_->view().dialogs.recording_roles.problem.find("--columns"), std::string::npos)
+      << app_->view().dialogs.recording_roles.problem;
 }
 
 TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
@@ -146,8 +146,8 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   ASSERT_TRUE(write_recording(test, test::example_recording(2000, 500.0), {}, false).ok());
   drop(train);
   drop(test);
-  ASSERT_TRUE(until([&] { return app_->view().dialogs.offer.recordings.size() == 2; }));
-  EXPECT_EQ(app_->view().dialogs.offer.test(), test) << "the last one";
+  ASSERT_TRUE(until([&] { return app_->view().dialogs.recording_roles.recordings.size() == 2; }));
+  EXPECT_EQ(app_->view().dialogs.recording_roles.test(), test) << "the last one";
   press(GLFW_KEY_ENTER);
   ASSERT_TRUE(until([&] { return app_->session().replay() != nullptr; }));
   EXPECT_EQ(app_->session().scene().recordings, std::vector<std::string>{train});
@@ -163,7 +163,7 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   EXPECT_EQ(app_->session().figures(best).errors.samples, samples);
   // Another test: no model is fitted again.
   const std::size_t models = app_->session().models().size();
-  app_->view().dialogs.offer.add({train, {}, OfferedRecording::Role::test});
+  app_->view().dialogs.recording_roles.add({train, {}, OpenedRecording::Role::test});
   frames(1);
   press(GLFW_KEY_ENTER);
   ASSERT_TRUE(until([&] { return app_->session().replay() != nullptr && app_->session().replays_training(); }));
@@ -175,7 +175,7 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
 TEST_F(DemoAppTest, ASessionThatCannotBeReopenedEndsTheProgram) {
   open("hand");
   setenv("PALPATE_ASSETS", folder_.file("gone").c_str(), 1);
-  app_->view().dialogs.offer.add({folder_.file("none.csv"), {}, OfferedRecording::Role::test});
+  app_->view().dialogs.recording_roles.add({folder_.file("none.csv"), {}, OpenedRecording::Role::test});
   frames(1);
   press(GLFW_KEY_ENTER);
   unsetenv("PALPATE_ASSETS");
@@ -219,14 +219,14 @@ class DefaultStart : public test::DemoWindowTest {
   }
 };
 
-// The sentence is of the model that stands on the stage, and of the table's numbers.
+// The sentence names a model that has a block, with the numbers of the table.
 TEST_F(DefaultStart, TheHeadlineIsOfAModelOnTheStageAndOfTheTablesNumbers) {
   open_as_started();
   ASSERT_TRUE(until([&] { return app_->shown().models.verdict.chosen.has_value(); }));
   const WindowView& shown = app_->shown();
   const std::size_t chosen = *shown.models.verdict.chosen;
   const ModelView& best = shown.models.slots[chosen];
-  EXPECT_EQ(std::count(shown.stage.begin(), shown.stage.end(), chosen), 1);
+  EXPECT_EQ(std::count(shown.blocks.begin(), shown.blocks.end(), chosen), 1);
   EXPECT_EQ(shown.models.verdict.headline.rfind(best.name + ": ", 0), 0u) << shown.models.verdict.headline;
   EXPECT_NE(shown.models.verdict.headline.find(tick_share(best.tick_ns())), std::string::npos);
   const nlohmann::json stats = nlohmann::json::parse(stats_text(app_->session(), shown, app_->frames()));

@@ -132,7 +132,7 @@ TEST_F(DemoCommandsTest, TheForceInTheHandIsScaledUntilItIsSwitchedOff) {
   open("hand");
   EXPECT_EQ(app_->session().scale(), ForceScale{});
   press(GLFW_KEY_J);
-  EXPECT_TRUE(app_->view().feel);
+  EXPECT_TRUE(app_->view().scales_force);
   EXPECT_NE(ImGui::FindWindowByName("feel"), nullptr);
   app_->session().use_scale({2.0, 5.0});
   EXPECT_EQ(scale_words(app_->session().scale()), "in the hand: stiffness x 2.00, damping + 5.0");

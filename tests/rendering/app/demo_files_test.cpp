@@ -38,18 +38,18 @@ TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
         return RecordingOffer{path, {}};
       });
   const auto began = std::chrono::steady_clock::now();
-  files.offer("a.csv");
-  files.offer("b.csv");
+  files.open_recording("a.csv");
+  files.open_recording("b.csv");
   files.update(**session);
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
-  EXPECT_FALSE(view.dialogs.offer.any());
+  EXPECT_FALSE(view.dialogs.recording_roles.any());
   gate.set_value();
-  for (int i = 0; i < 2000 && view.dialogs.offer.recordings.size() < 2; ++i) {
+  for (int i = 0; i < 2000 && view.dialogs.recording_roles.recordings.size() < 2; ++i) {
     files.update(**session);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  ASSERT_EQ(view.dialogs.offer.recordings.size(), 2u) << "none is lost";
-  EXPECT_EQ(view.dialogs.offer.test(), "b.csv");
+  ASSERT_EQ(view.dialogs.recording_roles.recordings.size(), 2u) << "none is lost";
+  EXPECT_EQ(view.dialogs.recording_roles.test(), "b.csv");
 }
 
 }  // namespace

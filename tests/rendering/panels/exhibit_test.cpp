@@ -136,7 +136,7 @@ class ExhibitTest : public test::DemoWindowTest {
       press_button("Enter");
     }
     ASSERT_EQ(state(), State::score);
-    EXPECT_TRUE(says(std::to_string(game().right()) + " of 3"));
+    EXPECT_TRUE(says(std::to_string(game().correct_answers()) + " of 3"));
     EXPECT_TRUE(says("microseconds"));
     for (const ExhibitRound& round : game().rounds()) EXPECT_GT(round.largest_over_jnd, 0.0);
   }
@@ -166,7 +166,7 @@ TEST_F(ExhibitTest, IsPlayedWithAMouseAlone) {
   visit_with_mouse();
   click_on("Enter");
   EXPECT_EQ(state(), State::guess) << "once more";
-  EXPECT_EQ(game().right(), 0u) << "and from the beginning";
+  EXPECT_EQ(game().correct_answers(), 0u) << "and from the beginning";
 }
 
 TEST_F(ExhibitTest, IsPlayedWithKeysAlone) {
@@ -223,7 +223,7 @@ TEST_F(ExhibitTest, TheObviousIsNoticedAndTheBestIsNot) {
   EXPECT_FALSE(game().rounds()[2].noticed()) << game().rounds()[2].largest_over_jnd;
   EXPECT_GT(game().rounds()[0].largest_over_jnd, game().rounds()[1].largest_over_jnd);
   EXPECT_GT(game().rounds()[1].largest_over_jnd, game().rounds()[2].largest_over_jnd);
-  EXPECT_GE(game().right(), 2u);
+  EXPECT_GE(game().correct_answers(), 2u);
 }
 
 // As many as PALPATE_VISITORS says (30 take some ten minutes), else three: with a mouse,

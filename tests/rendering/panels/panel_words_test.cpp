@@ -88,9 +88,9 @@ TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
   EXPECT_EQ(data_warning(models), "");
   models.in_contact = true;
   EXPECT_NE(data_warning(models).find("greedy-100"), std::string::npos);
-  models.knows_this = true;
+  models.replays_training = true;
   EXPECT_EQ(data_warning(models), "") << "it was trained on this recording";
-  models.knows_this = false;
+  models.replays_training = false;
   models.selected = 1;
   EXPECT_EQ(data_warning(models), "");
 }
@@ -115,7 +115,7 @@ TEST(PanelWords, WithoutATruthTheBigNumberSaysSo) {
   ModelView& greedy = models.slots[0];
   // What the model predicts of itself, of 0.13 N at 1 N.
   models.compared = false;
-  models.off_from = "no truth to compare with";
+  models.reference_name = "no truth to compare with";
   EXPECT_EQ(big_number(models, false).number, "–") << "it does not know";
   greedy.force_N = 1.0;
   greedy.predicted_error_N = 0.5 * JndLine{}.at(1.0);

@@ -30,37 +30,37 @@ ModelErrors strokes_with(const std::vector<int>& beyond) {
 
 TEST(ModelErrors, StrokesAreTheUnitsOfOneRecordingAndRecordingsOfSeveral) {
   ModelErrors several = strokes_with({0, 0, 0, 7});
-  EXPECT_EQ(several.evidence().units(), 4u);
-  EXPECT_FALSE(several.evidence().units_are_recordings);
-  EXPECT_EQ(several.evidence().beyond_units, 1u);
+  EXPECT_EQ(several.unit_errors().units(), 4u);
+  EXPECT_FALSE(several.unit_errors().units_are_recordings);
+  EXPECT_EQ(several.unit_errors().units_above_jnd, 1u);
   several.append(strokes_with({1, 0}));
   several.append(strokes_with({0}));
-  EXPECT_TRUE(several.evidence().units_are_recordings);
-  EXPECT_EQ(several.evidence().unit_within, (std::vector<double>{393.0, 199.0, 100.0}));
+  EXPECT_TRUE(several.unit_errors().units_are_recordings);
+  EXPECT_EQ(several.unit_errors().unit_within, (std::vector<double>{393.0, 199.0, 100.0}));
 }
 
 TEST(ModelErrors, ThreeSpotsThatDifferBoundTheShareAsStudentsTHasIt) {
   ModelErrors errors = strokes_with({21});
   errors.append(strokes_with({51}));
   errors.append(strokes_with({15}));
-  EXPECT_NEAR(errors.evidence().within_at_least(), 0.384, 1e-3);
+  EXPECT_NEAR(errors.unit_errors().within_at_least(), 0.384, 1e-3);
 }
 
 TEST(ModelErrors, TooFewUnitsHaveNoIntervalAnywhere) {
-  const Evidence evidence = strokes_with({3, 5}).evidence();
-  EXPECT_FALSE(evidence.has_intervals());
-  EXPECT_FALSE(evidence.p99_interval().known());
-  EXPECT_TRUE(std::isnan(evidence.p99_at_most()));
-  EXPECT_TRUE(std::isnan(evidence.within_at_least()));
-  EXPECT_FALSE(paired_difference(evidence, evidence).interval.known());
+  const UnitErrors unit_errors = strokes_with({3, 5}).unit_errors();
+  EXPECT_FALSE(unit_errors.has_intervals());
+  EXPECT_FALSE(unit_errors.p99_interval().known());
+  EXPECT_TRUE(std::isnan(unit_errors.p99_at_most()));
+  EXPECT_TRUE(std::isnan(unit_errors.within_at_least()));
+  EXPECT_FALSE(paired_difference(unit_errors, unit_errors).interval.known());
 }
 
 TEST(ModelErrors, WithoutSamplesThereIsNothing) {
-  const Evidence evidence = ModelErrors(JndLine{}).evidence();
-  EXPECT_EQ(evidence.samples, 0u);
-  EXPECT_EQ(evidence.units(), 0u);
-  EXPECT_EQ(evidence.p99_error_over_jnd, 0.0);
-  EXPECT_TRUE(evidence.bins.empty());
+  const UnitErrors unit_errors = ModelErrors(JndLine{}).unit_errors();
+  EXPECT_EQ(unit_errors.samples, 0u);
+  EXPECT_EQ(unit_errors.units(), 0u);
+  EXPECT_EQ(unit_errors.p99_error_over_jnd, 0.0);
+  EXPECT_TRUE(unit_errors.bins.empty());
 }
 
 // Errors 1, 2 ... 1000 mN at a JND of 500 mN throughout.
@@ -96,7 +96,7 @@ TEST(ModelErrors, PercentileIsTheNearestRank) {
 
 // Twelve strokes all within the JND: at 95 % up to 1 - 0.05^(1/12) of strokes may be beyond.
 TEST(ModelErrors, WhereNothingGoesBeyondTheBoundIsExact) {
-  EXPECT_NEAR(strokes_with(std::vector<int>(12, 0)).evidence().within_at_least(), 0.7791, 1e-4);
+  EXPECT_NEAR(strokes_with(std::vector<int>(12, 0)).unit_errors().within_at_least(), 0.7791, 1e-4);
 }
 
 // One model is worse than another by 0.03 JND in every stroke, and strokes differ by
@@ -113,8 +113,8 @@ TEST(PairedDifference, SeparatesWhatOverlaps) {
       bad.add(1.0 + error_N + 0.003, 1.0, false);
     }
   }
-  const Evidence one = good.evidence();
-  const Evidence other = bad.evidence();
+  const UnitErrors one = good.unit_errors();
+  const UnitErrors other = bad.unit_errors();
   EXPECT_LT(other.p99_interval().low, one.p99_interval().high) << "they overlap";
   const PairedDifference difference = paired_difference(other, one);
   EXPECT_NEAR(difference.p99, 0.03, 1e-6);

@@ -53,11 +53,11 @@ TEST(ExhibitGame, IsPlayedFromGuessToScore) {
     time_s += 2.1;
     ASSERT_EQ(game.state(), State::reveal);
     EXPECT_NEAR(game.round().largest_over_jnd, over_jnd, 1e-9);
-    EXPECT_EQ(game.round().right(), over_jnd > 1.0);
+    EXPECT_EQ(game.round().correct(), over_jnd > 1.0);
     game.go_on();
   }
   EXPECT_EQ(game.state(), State::score);
-  EXPECT_EQ(game.right(), 2u);
+  EXPECT_EQ(game.correct_answers(), 2u);
   game.reset();
   EXPECT_EQ(game.state(), State::attract);
 }
@@ -101,7 +101,7 @@ TEST(ExhibitGame, AnAnswerNeedsBothToBePressed) {
   game.answer(true);
   ASSERT_EQ(game.state(), State::reveal);
   EXPECT_TRUE(game.round().noticed());
-  EXPECT_TRUE(game.round().right());
+  EXPECT_TRUE(game.round().correct());
 }
 
 // A hand that can feel 1 JND feels 0.9 in some trials, and not 1.2 in others.
@@ -113,8 +113,8 @@ TEST(ExhibitGame, OnTheEdgeEitherAnswerIsRight) {
       game.guess(noticed);
       press(game, 1.0, 2.1, over_jnd);
       ASSERT_EQ(game.state(), State::reveal);
-      EXPECT_TRUE(game.round().on_the_edge());
-      EXPECT_TRUE(game.round().right());
+      EXPECT_TRUE(game.round().near_jnd());
+      EXPECT_TRUE(game.round().correct());
     }
   }
 }

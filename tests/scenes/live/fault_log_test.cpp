@@ -15,11 +15,11 @@ LoopSnapshot snapshot(double loop_time_s, std::uint32_t faults, std::uint64_t mi
 
 TEST(FaultLog, CountsWhatFollowsWithinASecond) {
   FaultLog log;
-  EXPECT_EQ(log.update(snapshot(10.0, loop_fault::kBadSample)), TickTrouble::alarm);
-  EXPECT_EQ(log.update(snapshot(10.001, 0)), TickTrouble::none);
-  EXPECT_EQ(log.update(snapshot(10.9, loop_fault::kBadSample)), TickTrouble::alarm);
-  EXPECT_EQ(log.update(snapshot(11.8, loop_fault::kBadSample | loop_fault::kTimeNotLater)), TickTrouble::alarm);
-  EXPECT_EQ(log.update(snapshot(13.0, loop_fault::kBadSample)), TickTrouble::alarm);
+  EXPECT_EQ(log.update(snapshot(10.0, loop_fault::kBadSample)), TickFaultLevel::alarm);
+  EXPECT_EQ(log.update(snapshot(10.001, 0)), TickFaultLevel::none);
+  EXPECT_EQ(log.update(snapshot(10.9, loop_fault::kBadSample)), TickFaultLevel::alarm);
+  EXPECT_EQ(log.update(snapshot(11.8, loop_fault::kBadSample | loop_fault::kTimeNotLater)), TickFaultLevel::alarm);
+  EXPECT_EQ(log.update(snapshot(13.0, loop_fault::kBadSample)), TickFaultLevel::alarm);
   ASSERT_EQ(log.events().size(), 3u);
   EXPECT_EQ(log.events()[0].loop_time_s, 10.0);
   EXPECT_EQ(log.events()[0].count, 3u);
@@ -32,8 +32,8 @@ TEST(FaultLog, TakesNormalRunningForNoFault) {
   FaultLog log;
   LoopSnapshot ramping = snapshot(1.0, loop_fault::kForceSlewed);
   ramping.limiter_flags = force_limit::kRamping;
-  EXPECT_EQ(log.update(ramping), TickTrouble::none);
-  EXPECT_EQ(log.update(snapshot(2.0, loop_fault::kForceSlewed)), TickTrouble::none);
+  EXPECT_EQ(log.update(ramping), TickFaultLevel::none);
+  EXPECT_EQ(log.update(snapshot(2.0, loop_fault::kForceSlewed)), TickFaultLevel::none);
   log.update_age(0.049, 2.0);
   log.update_dropped(0, 2.0);
   EXPECT_TRUE(log.events().empty());
@@ -41,9 +41,9 @@ TEST(FaultLog, TakesNormalRunningForNoFault) {
 
 TEST(FaultLog, CountsMissedDeadlinesEvenThoseOfLostSnapshots) {
   FaultLog log;
-  EXPECT_EQ(log.update(snapshot(1.0, loop_fault::kDeadlineMissed, 2)), TickTrouble::late);
-  EXPECT_EQ(log.update(snapshot(1.5, 0, 7)), TickTrouble::late);
-  EXPECT_EQ(log.update(snapshot(1.6, 0, 7)), TickTrouble::none);
+  EXPECT_EQ(log.update(snapshot(1.0, loop_fault::kDeadlineMissed, 2)), TickFaultLevel::late);
+  EXPECT_EQ(log.update(snapshot(1.5, 0, 7)), TickFaultLevel::late);
+  EXPECT_EQ(log.update(snapshot(1.6, 0, 7)), TickFaultLevel::none);
   ASSERT_EQ(log.events().size(), 1u);
   EXPECT_EQ(log.events()[0].count, 7u);
 }

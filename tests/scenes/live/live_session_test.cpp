@@ -402,17 +402,17 @@ TEST(LiveSession, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   beside->load_file(files.folder.file("a.json"));
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().all_settled(); }));
   const std::size_t loaded = beside->models().size() - 1;
-  EXPECT_TRUE(beside->models().info(loaded).foreign);
+  EXPECT_TRUE(beside->models().info(loaded).other_material);
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(0).errors.samples > 100; }));
   EXPECT_EQ(beside->figures(loaded).errors.samples, 0u);
-  beside->claim(loaded);
+  beside->treat_as_this_material(loaded);
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(loaded).errors.samples > 100; }));
 
   // What the window itself has fitted and saved is of this material.
   ASSERT_TRUE(beside->save_model(0, files.folder.file("own.json")).ok());
   beside->load_file(files.folder.file("own.json"));
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().all_settled(); }));
-  EXPECT_FALSE(beside->models().info(beside->models().size() - 1).foreign);
+  EXPECT_FALSE(beside->models().info(beside->models().size() - 1).other_material);
 }
 
 // What is stepped through and what stands still is judged as what runs.

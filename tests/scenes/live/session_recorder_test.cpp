@@ -288,12 +288,12 @@ TEST(SessionRecorder, RecordsBesideTheRunningLoop) {
 
 TEST(RecordingTime, IsStrictlyIncreasing) {
   RecordingTime time;
-  EXPECT_EQ(time.place(1000.0, true), 0.0);
-  EXPECT_EQ(time.place(1000.5, false), 0.5);
-  EXPECT_EQ(time.place(1000.5, false), std::nullopt);
-  EXPECT_EQ(time.place(999.0, false), std::nullopt);
-  EXPECT_EQ(time.place(7.0, true), 0.5 + kStreamGap_s);
-  EXPECT_EQ(time.place(7.25, false), 0.75 + kStreamGap_s);
+  EXPECT_EQ(time.file_time_s(1000.0, true), 0.0);
+  EXPECT_EQ(time.file_time_s(1000.5, false), 0.5);
+  EXPECT_EQ(time.file_time_s(1000.5, false), std::nullopt);
+  EXPECT_EQ(time.file_time_s(999.0, false), std::nullopt);
+  EXPECT_EQ(time.file_time_s(7.0, true), 0.5 + kStreamGap_s);
+  EXPECT_EQ(time.file_time_s(7.25, false), 0.75 + kStreamGap_s);
   EXPECT_EQ(time.last_s() - time.gaps_s(), 0.75);
 }
 

@@ -17,9 +17,9 @@ TEST(Material, UnknownNameIsRefusedWithTheKnownOnes) {
 TEST(Material, HeldForceRisesWithDepthForEveryMaterial) {
   for (const Material& material : materials()) {
     const auto block = material.make_block();
-    EXPECT_EQ(block->held_force_N(0.0), 0.0) << material.name;
+    EXPECT_EQ(block->half_relaxed_force_N(0.0), 0.0) << material.name;
     for (double depth_m = 0.0; depth_m < 0.05; depth_m += 1e-4) {
-      ASSERT_LT(block->held_force_N(depth_m), block->held_force_N(depth_m + 1e-4))
+      ASSERT_LT(block->half_relaxed_force_N(depth_m), block->half_relaxed_force_N(depth_m + 1e-4))
           << material.name << " at " << depth_m;
       ASSERT_LT(block->relaxed_force_N(depth_m), block->relaxed_force_N(depth_m + 1e-4))
           << material.name << " at " << depth_m;

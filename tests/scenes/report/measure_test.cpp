@@ -29,7 +29,7 @@ TEST(LeaveOut, OfAShortOneNothing) { EXPECT_TRUE(leave_out(example("a", 500)).te
 TEST(Plan, BeginsWithNoForceAndHasBothRecipesInEverySize) {
   for (const bool quick : {true, false}) {
     const std::vector<PlannedModel> plan = make_plan(quick, 4);
-    EXPECT_EQ(plan[0].recipe, Recipe::nothing);
+    EXPECT_EQ(plan[0].recipe, Recipe::no_force);
     EXPECT_EQ(plan[1].name, "trend");
     std::size_t paper = 0;
     std::size_t slow = 0;
