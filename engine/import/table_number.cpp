@@ -80,7 +80,6 @@ bool parse_date(std::string_view& text, std::int64_t& days) {
     return false;
   }
   if (parts[0] < 32) std::swap(parts[0], parts[2]);
-  if (separator == '/' && parts[2] > 12) std::swap(parts[1], parts[2]);
   if (parts[1] > 12) std::swap(parts[1], parts[2]);
   if (parts[0] < 32 || parts[1] < 1 || parts[1] > 12 || parts[2] < 1 || parts[2] > 31) return false;
   // Days since 1970; the library's calendar takes the 31st of every month.
