@@ -12,8 +12,8 @@
 namespace palpate {
 namespace {
 
-constexpr int kRead_ms = 50;  // so that a reader soon sees that it should end
-// A board that resets takes two seconds, a program with an SDK may look for its device.
+constexpr int kRead_ms = 50;  // short, so that the reader thread ends soon after it is stopped
+// A board that resets takes two seconds; a program with an SDK may search for its device first.
 constexpr double kFirstFrame_s = 4.0, kFirstFrameOfProgram_s = 20.0;
 constexpr int kFramesToInspect = 8;
 
@@ -67,7 +67,7 @@ Result<std::unique_ptr<DeviceConnection>> BridgeBus::open(const DeviceNode&) {
 }
 
 Result<OpenedDevice> BridgeBus::open_and_identify() {
-  ignore_broken_pipes();  // a program that ends is an error of the write
+  ignore_broken_pipes();  // so that a write to a program that has ended returns an error
   Result<std::unique_ptr<DeviceConnection>> opened = open(info_);
   if (!opened) return opened.error();
   auto& connection = static_cast<BridgeConnection&>(**opened);
@@ -86,7 +86,7 @@ Result<OpenedDevice> BridgeBus::open_and_identify() {
       return Error{info_.path + ": " + connection.end_words() + (said.empty() ? "" : ", after \"" + said + "\"") +
                    "; run it by itself to see why"};
     }
-    // A board that was reset by the opening did not hear the first one.
+    // Opening the line may reset the board, which then misses the first frame.
     if (steady_now_s() - last_sent_s > 0.1) {
       connection.write(start.bytes[0].data(), start.sizes[0]);
       last_sent_s = steady_now_s();

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kDriven_s = 1.0;
 constexpr double kStep_s = 0.002;
-// 50 ms after the last frame, told with the next sample (10 ms at 100 Hz), and what a
-// line and a busy computer may hold it up.
+// The watchdog stops 50 ms after the last frame and reports it with the next sample (10 ms at 100 Hz); the rest allows
+// for delays of the line and of a busy computer.
 constexpr double kStopsWithin_s = 0.1;
 constexpr double kPatience_s = 0.5;
 
@@ -74,7 +74,7 @@ class BridgeTest {
     last_ = reading;
   }
 
-  // Sends and reads for so long; true: ended by `done`.
+  // Sends and reads for `span_s`. Returns true if `done` ended it.
   template <typename Done>
   bool step_until(double span_s, Sent sent, Done done) {
     double next_s = steady_now_s();
@@ -103,7 +103,7 @@ class BridgeTest {
     return shown && after_s <= kStopsWithin_s ? std::optional<double>(after_s) : std::nullopt;
   }
 
-  // Valid frames come again: first without drive, then as before.
+  // Sends valid frames again, first without `drive`. Returns whether the device leaves its stop.
   bool wakes() {
     drive_ = false;
     const bool woke = step_until(kPatience_s, {true, true}, [&] { return !stopped_; });
@@ -135,7 +135,7 @@ class BridgeTest {
   OpenedDevice opened_;
   std::uint32_t sequence_ = 0;
   std::uint16_t heartbeat_ = 0;
-  std::vector<double> sent_at_s_;  // by the low half of the sequence
+  std::vector<double> sent_at_s_;  // indexed by the low half of the sequence
   std::vector<double> intervals_s_, round_trips_s_;
   DeviceReading last_;
   int frames_ = 0;

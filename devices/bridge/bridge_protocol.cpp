@@ -1,4 +1,4 @@
-// The frames of `--device bridge:TARGET` (devices/firmware/bridge_protocol.h), one a report.
+// The protocol of `--device bridge:TARGET`: each report is one frame (devices/firmware/bridge_protocol.h).
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-// As far as a recording may go; beyond it, a device's number that is none.
+// The limits of a recording; larger values are invalid.
 constexpr std::int32_t kMost_nm = 1'000'000'000;
 constexpr double kMost_uN = 2e9;
 
@@ -58,7 +58,7 @@ const DeviceProtocol kBridgeProtocol = {
     .absolute = true,
     .timed = true,
     .confirms = true,
-    .matches = [](const DeviceNode&) noexcept { return true; },  // of a BridgeBus
+    .matches = [](const DeviceNode&) noexcept { return true; },  // a BridgeBus has no other devices
     .decode = decode_bridge,
     .encode_start = stop_bridge,
     .encode_command = encode_bridge,

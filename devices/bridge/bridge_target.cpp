@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-// Whole number from 1 to `most`; 0: it is none.
+// Parses a whole number from 1 to `most`; 0 if it is none.
 int whole_number(const std::string& text, int most) {
   int value = 0;
   const char* end = text.data() + text.size();

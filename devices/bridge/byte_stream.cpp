@@ -26,9 +26,9 @@
 namespace palpate {
 namespace {
 
-// Commands that wait in a queue are old when they are read: room for 50 of them.
+// A small send buffer, for about 50 commands, because commands that wait in it are late.
 constexpr int kQueueBytes = 1024;
-// What a child program has to end by itself.
+// Time that a child program has to end before it is killed.
 constexpr int kEnd_ms = 500;
 
 struct Speed {
@@ -47,7 +47,7 @@ constexpr std::array<Speed, 11> kSpeeds = {{{9600, B9600},
                                             {1000000, B1000000},
                                             {2000000, B2000000}}};
 
-using Opened = Result<std::pair<int, int>>;  // descriptor, child
+using Opened = Result<std::pair<int, int>>;  // file descriptor, process id of the child (0: none)
 
 Error failure(const std::string& what, int error_number, const std::string& advice) {
   return Error{what + ": " + std::strerror(error_number) + "; " + advice};
@@ -80,12 +80,12 @@ Opened open_serial(const BridgeTarget& target) {
   if (tcgetattr(line, &settings) != 0) return close_with(line, Error{target.path + ": is no serial line; name a tty"});
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
-  settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | HUPCL);  // closing it must not reset the board
+  settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | HUPCL);  // so that closing the line does not reset the board
   cfsetspeed(&settings, speed->code);
   if (tcsetattr(line, TCSANOW, &settings) != 0) {
     return close_with(line, failure(target.path, errno, "choose another baud rate"));
   }
-  // Where the protocol has it: bytes at once instead of every 16 ms.
+  // If the driver supports it, low latency: it passes bytes on at once instead of every 16 ms.
   serial_struct serial{};
   if (ioctl(line, TIOCGSERIAL, &serial) == 0) {
     serial.flags |= ASYNC_LOW_LATENCY;
@@ -160,10 +160,10 @@ Opened open_tcp(const BridgeTarget& target) {
   return Error{name + ": " + problem + "; start the device's program first"};
 }
 
-// After fork, in the child: nothing but async-signal-safe calls.
+// Runs in the child after `fork`, where only async-signal-safe calls are allowed.
 [[noreturn]] void run_child(int line, const char* command, pid_t parent) noexcept {
   setpgid(0, 0);
-  // It stops with the program, however that ends, and does not share its real-time priority.
+  // The child ends with this program in any case, and does not inherit its real-time priority.
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(127);
   const sched_param normal{};
@@ -211,12 +211,12 @@ Opened open_any(const BridgeTarget& target) {
 Result<std::unique_ptr<ByteStream>> ByteStream::open(const BridgeTarget& target) {
   const Opened opened = open_any(target);
   if (!opened) return opened.error();
-  setsockopt(opened->first, SOL_SOCKET, SO_SNDBUF, &kQueueBytes, sizeof kQueueBytes);  // not of a serial line
+  setsockopt(opened->first, SOL_SOCKET, SO_SNDBUF, &kQueueBytes, sizeof kQueueBytes);  // only of a socket
   return std::unique_ptr<ByteStream>(new ByteStream(opened->first, opened->second));
 }
 
 ByteStream::~ByteStream() {
-  ::close(descriptor_);  // a program that reads its input ends by itself now
+  ::close(descriptor_);  // a program that reads its input now ends by itself
   if (child_ == 0 || exit_status_ >= 0) return;
   kill(-child_, SIGTERM);
   for (int waited_ms = 0; waited_ms < kEnd_ms; waited_ms += 10) {
@@ -256,7 +256,7 @@ bool ByteStream::write(const std::uint8_t* bytes, std::size_t size) noexcept {
 std::string ByteStream::end_words() noexcept {
   if (child_ == 0) return "the other end closed the line";
   int status = 0;
-  // Its output may end a moment before it does.
+  // The output of a program may end shortly before the program.
   for (int i = 0; exit_status_ < 0 && i < 20; ++i) {
     if (waitpid(child_, &status, WNOHANG) == child_) exit_status_ = status;
     if (exit_status_ < 0) poll(nullptr, 0, 10);

@@ -65,7 +65,7 @@ class HidapiConnection final : public DeviceConnection {
   int slot_ = -1;
 };
 
-// hidapi lists a node once for each usage of its descriptor.
+// hidapi lists a node once for each usage in its descriptor; the one with a protocol is preferred.
 bool better(const DeviceNode& a, const DeviceNode& b) {
   return hid_protocol_of(a) != nullptr && hid_protocol_of(b) == nullptr;
 }

@@ -1,9 +1,7 @@
-// OpenFFBoard: vendor report 0xA1, 25 bytes: type u8, class u16, instance u8, command
-// u32, data u64, address u64; firmware in its mode "HID Gamepad (Ext FFB)": position
-// of axis 0, one constant force in 1/32767 of full force. The force ends 50 ms after the
-// host last renewed it; firmware that does not know durations refuses the command, which
-// counts as a fault of the device.
-// Source: its published list of commands and the source of its effects manager.
+// OpenFFBoard in its mode "HID Gamepad (Ext FFB)": position of axis 0, one constant force in 1/32767 of the full force.
+// Vendor report 0xA1, 25 bytes: type u8, class u16, instance u8, command u32, data u64, address u64. The force ends 50
+// ms after the host renewed it last. Firmware without durations refuses that command: a fault of the device.
+// Source: the published list of commands and the source of the effects manager of OpenFFBoard.
 #include <algorithm>
 #include <cmath>
 
@@ -22,11 +20,10 @@ constexpr std::uint16_t kFfbEffects = 0xA03;
 constexpr std::uint32_t kFfbActive = 0x0, kFfbReset = 0x1, kFfbNew = 0x2, kFfbMagnitude = 0x4, kFfbState = 0x5,
                         kFfbDuration = 0x7;
 constexpr std::uint64_t kFfbConstantForce = 1;
-// The force ends so long after it was last started, as that of a board of the bridge does.
+// The force ends this long after its last start; boards of the bridge have the same time.
 constexpr std::uint64_t kFfbDuration_ms = 50;
-// It is started again by every fourth command. Commands go out every 5 ms at least
-// (DeviceEndpoint::kRepeat_s), so that one start may be lost. Not by every command: a third
-// report each millisecond would take the bus from the other two.
+// Every fourth command starts the force again. Commands are at most 5 ms apart (DeviceEndpoint::kRepeat_s), so that one
+// start may be lost. A start with every command would need a third report each millisecond.
 constexpr std::uint32_t kFfbRenewEvery = 4;
 enum FfbType : std::uint8_t {
   kWrite = 0,
@@ -63,7 +60,7 @@ ReportVerdict decode_openffboard(const std::uint8_t* bytes, std::size_t size, De
   if (!answer || read16(bytes + 2) != kFfbAxis || bytes[4] != 0 || read32(bytes + 5) != kFfbPosition) {
     return ReportVerdict::nothing;
   }
-  // A 64-bit field for a 32-bit position: the upper half only repeats the sign.
+  // The field of 64 bits has a position of 32 bits; the upper half repeats the sign.
   const auto low = static_cast<std::int32_t>(read32(bytes + 9));
   const std::uint32_t high = read32(bytes + 13);
   if (high != 0 && high != 0xFFFFFFFFu) return ReportVerdict::corrupt;
@@ -82,7 +79,7 @@ void append_ffb(OutReports& reports, FfbType type, std::uint16_t object, std::ui
   wire::write32(at + 4, command);
   wire::write32(at + 8, static_cast<std::uint32_t>(data));
   wire::write32(at + 12, static_cast<std::uint32_t>(data >> 32));
-  // The address, of axis or effect 0.
+  // The address: axis 0 or effect 0.
   wire::write32(at + 16, 0);
   wire::write32(at + 20, 0);
 }
@@ -92,8 +89,7 @@ void append_ffb_force(OutReports& reports, std::int16_t magnitude) noexcept {
   append_ffb(reports, kWriteTo, kFfbEffects, kFfbMagnitude, data);
 }
 
-// The board makes an effect that never ends: it has its duration before it is started,
-// which the commands do.
+// A new effect has no end. It gets its duration here, before the commands start it.
 OutReports start_openffboard() noexcept {
   OutReports reports;
   append_ffb(reports, kRequest, kFfbEffects, kFfbReset, 0);

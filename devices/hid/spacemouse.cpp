@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kHold_s = 0.1;  // as StreamMonitor
+constexpr double kHold_s = 0.1;  // as in StreamMonitor
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// 3Dconnexion's SpaceMouse: report 1 begins with three int16 translations; z is
-// used, positive when pushed down. Nothing is ever written to it.
+// 3Dconnexion's SpaceMouse: report 1 begins with three int16 translations. z is used; it is positive when the cap is
+// pushed down. The host writes no reports.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -11,10 +11,10 @@ namespace palpate {
 namespace {
 
 constexpr std::uint16_t k3Dconnexion = 0x256F, kLogitech = 0x046D;
-// Of Logitech's time; later ones have the vendor id of 3Dconnexion.
+// Product ids with Logitech's vendor id; later products have the vendor id of 3Dconnexion.
 constexpr std::array<std::uint16_t, 7> kSpaceMice = {0xC626, 0xC627, 0xC628, 0xC629, 0xC62B, 0xC62E, 0xC62F};
 constexpr std::uint16_t kDesktopPage = 1, kMultiAxis = 8;
-// Far beyond any deflection.
+// Larger values are invalid; every deflection is far below.
 constexpr int kSpaceMouseMost = 1000;
 
 bool is_space_mouse(const DeviceNode& info) noexcept {

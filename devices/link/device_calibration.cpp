@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-// The format needs one.
+// The largest depth of nesting; the format needs one level.
 constexpr int kCalibrationNesting = 4;
 
 class CalibrationReader : private JsonFields {

@@ -88,7 +88,7 @@ OutReports DeviceEndpoint::next(double now_s) noexcept {
   const std::uint64_t samples = accepted_.load(std::memory_order_relaxed);
   const bool due = calibration_.protocol->timed ? samples != answered_ : fresh;
   const double repeat_s = calibration_.protocol->timed ? kSlowestSample_s : kRepeat_s;
-  // Letting go waits for nothing.
+  // A change to no force is sent at once.
   const bool lets_go = fresh && command.force_N == 0.0 && commanded_N_.load(std::memory_order_relaxed) != 0.0;
   if (!(due && fresh) && !lets_go && last_sent_s_ >= 0.0 && now_s - last_sent_s_ < repeat_s) return {};
   last_sent_s_ = now_s;
@@ -106,7 +106,7 @@ double DeviceEndpoint::position_m(const MonitorState& state) const noexcept {
   return calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
 }
 
-// After a pause of the haptics thread the newest count, and what they continue.
+// After a pause of the haptics thread, skips old samples; `restart` is set if any of them began a new stream.
 bool DeviceEndpoint::read(DeviceSample& sample) noexcept {
   bool restart = false;
   DeviceSample next;
@@ -121,13 +121,13 @@ bool DeviceEndpoint::read(DeviceSample& sample) noexcept {
 }
 
 void DeviceEndpoint::write(double force_N) noexcept {
-  // Never zeroed: whatever the limiter thinks. Later, its ramp brings the force down.
+  // Before the first sample, the force is 0 in any case. Later, the limiter ramps it down where necessary.
   next_command_.force_N = began_ ? force_N : 0.0;
   ++next_command_.heartbeat;
   command_.write(next_command_);
 }
 
-// Whether a sample is late is for `health` to say; the limiter's own limit is the longest.
+// `health` reports late samples; the limiter's own limit is the longest possible one.
 ForceLimits DeviceEndpoint::limits() const noexcept {
   ForceLimits limits = calibration_.limits;
   if (calibration_.protocol->timed) limits.stale_after_s = StreamMonitor::kLongestSilence_s;
@@ -142,8 +142,8 @@ bool DeviceEndpoint::stalled(const LinkState& link, double now_s) const noexcept
   return now_s - confirmed_s > kWriteStalled_s;
 }
 
-// A round trip contains the wait for the next sample, on the mean half the time for which a force is held. A device
-// that confirms nothing is on USB, which takes a frame of 1 ms each way.
+// A round trip includes the wait for the next sample, on average half the time for which a force is constant. A device
+// without confirmations is on USB, which takes a frame of 1 ms in each direction.
 double DeviceEndpoint::lag_s(const LinkState& link) const noexcept {
   const double round_trip_s = link.round_trip_s > 0.0 ? link.round_trip_s : 2e-3;
   return kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - link.monitor.interval_s);

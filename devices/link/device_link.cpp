@@ -16,10 +16,10 @@ namespace {
 constexpr int kOpenTries = 6;
 constexpr auto kBetweenTries = std::chrono::milliseconds(100);
 constexpr auto kPause = std::chrono::milliseconds(10);
-// Below the haptics thread's 80, above everything that is not real-time.
+// Real-time priority below the 80 of the haptics thread.
 constexpr int kPriority = 70;
 
-// One look at the bus; what cannot be opened adds to `problems`.
+// Searches the bus once; devices that cannot be opened are reported in `problems`.
 std::optional<OpenedDevice> try_open(DeviceBus& bus, const DeviceProtocols& protocols, std::string& problems) {
   problems.clear();
   for (const DeviceNode& info : bus.list()) {
@@ -89,7 +89,7 @@ Status DeviceLink::start() {
 void DeviceLink::stop() noexcept {
   stop_.store(true, std::memory_order_relaxed);
   if (writer_.joinable()) writer_.join();
-  // Before the reader ends: an idle device may keep it waiting.
+  // The stop is sent before the reader ends, because the reader may wait for an idle device.
   if (const std::shared_ptr<DeviceConnection> last = connection()) write(*last, protocol_.encode_stop());
   if (reader_.joinable()) reader_.join();
   use(nullptr);

@@ -21,11 +21,11 @@ struct Slot {
 static_assert(std::atomic<int>::is_always_lock_free);
 std::array<Slot, kSlots> slots;
 
-// Writes of forces that are under way, and whether any more may begin. The two are read
-// and written in one order by all threads (sequentially consistent).
+// The number of unfinished writes of forces, and whether new ones are refused. Both are sequentially consistent: all
+// threads see their changes in the same order.
 std::atomic<int> writes_under_way{0};
 std::atomic<bool> no_more_forces{false};
-constexpr int kLongestWrite_ms = 20;  // several times what a report takes on USB
+constexpr int kLongestWrite_ms = 20;  // several times the duration of a report on USB
 
 }  // namespace
 
@@ -57,13 +57,13 @@ void end_force_write() noexcept { writes_under_way.fetch_sub(1); }
 
 void stop_all_devices() noexcept {
   no_more_forces.store(true);
-  // The thread that this handler interrupted may be the one that writes.
+  // The wait is bounded, because this handler may have interrupted the thread that writes.
   for (int i = 0; i < kLongestWrite_ms && writes_under_way.load() > 0; ++i) poll(nullptr, 0, 1);
   for (Slot& slot : slots) {
     const int descriptor = slot.descriptor.load(std::memory_order_acquire);
     if (descriptor < 0) continue;
     for (std::size_t i = 0; i < slot.reports.count; ++i) {
-      // Whether it arrives or not, there is nothing else to do here.
+      // A signal handler cannot react to an error.
       [[maybe_unused]] const ssize_t written = ::write(descriptor, slot.reports.bytes[i].data(), slot.reports.sizes[i]);
     }
   }

@@ -6,17 +6,16 @@
 namespace palpate {
 namespace {
 
-// Beyond the fastest motion: a few steps of the sensor.
+// Tolerance of a step beyond the fastest motion, in steps of the sensor.
 constexpr double kNoiseSteps = 4.0;
-// Time steps between samples are at least this, else a report on the heels of
-// another would look fast.
+// The speed is computed with at least this time step, because two reports may arrive in quick succession.
 constexpr double kShortestStep_s = 1e-3;
-// Of a new interval in the mean of the last ten or so.
+// Weight of a new interval in the exponential mean.
 constexpr double kIntervalShare = 0.1;
-// Two samples must not have the same time.
+// The least difference between the times of two samples.
 constexpr double kLeastStep_s = 1e-6;
 
-// Of sequence numbers that wrap at 32 bits.
+// Compares sequence numbers that wrap at 32 bits.
 bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::int32_t>(a - b) > 0; }
 
 }  // namespace
@@ -45,7 +44,7 @@ void StreamMonitor::lose(std::uint32_t bit, double now_s) noexcept {
 
 void StreamMonitor::unplugged() noexcept {
   connected_ = false;
-  // Of a device that knows its position the link alone says so.
+  // A device with an absolute position keeps it; the link reports the loss of the connection.
   if (!settings_.absolute) lose(device_fault::kUnplugged, 0.0);
 }
 
@@ -65,7 +64,7 @@ bool StreamMonitor::started_again(const DeviceReading& reading) noexcept {
 bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcept {
   if (!settings_.timed || !connected_) return true;
   const bool newer = later(reading.sequence, last_.sequence);
-  // The same report again says nothing new; its age will tell.
+  // A repeated report is ignored; the age of the sample grows until it is late.
   const bool again = reading.sequence == last_.sequence;
   if (!newer && !again && started_again(reading)) {
     lose(device_fault::kReset, now_s);
@@ -77,8 +76,8 @@ bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcep
   return false;
 }
 
-// What comes after a pause or with another time is a new stream: the old line of the clock says nothing of it, nor the
-// old motion.
+// After a pause, or when the device's clock was set back, a new stream begins: neither the fit of the clock nor the
+// motion continues.
 void StreamMonitor::watch_clock(const DeviceReading& reading, double now_s) noexcept {
   if (!settings_.timed || !connected_) return;
   const bool set_back = static_cast<std::int32_t>(reading.time_us - last_.time_us) <= 0;
@@ -112,7 +111,7 @@ bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept 
   return !late_;
 }
 
-// Unwraps the counter and judges the step.
+// Unwraps the counter and checks the step for a jump.
 void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
   if (!connected_) {
     state_.counts = reading.counts;
@@ -134,7 +133,7 @@ void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
 
 void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
   const bool stuck = now_s - still_since_s_ > settings_.stuck_after_s;
-  // Found stuck, only motion ends it where no zeroing does.
+  // For a device without zeroing, only motion ends the fault: a small force does not.
   if (!(std::abs(force_N) >= kPushing_N) && !(stuck && settings_.absolute)) still_since_s_ = now_s;
   if (now_s - still_since_s_ > settings_.stuck_after_s) lose(device_fault::kStuck, now_s);
 }

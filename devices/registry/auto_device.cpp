@@ -5,12 +5,12 @@ namespace palpate {
 bool AutoDevice::read(double now_s, DeviceSample& sample) noexcept {
   if (space_mouse_ != nullptr) space_mouse_->axis().drive(mouse_, now_s);
   const bool exploring = mouse_.idle(now_s);
-  // Only this thread writes it.
+  // Only this thread writes exploring_.
   const bool was_exploring = exploring_.load(std::memory_order_relaxed);
   if (exploring && !was_exploring) hand_.resume_at(mouse_.position_m(), now_s);
   if (!exploring && was_exploring) mouse_.resume_at(hand_.position_m(), hand_.velocity_m_per_s(), now_s);
   exploring_.store(exploring, std::memory_order_relaxed);
-  // Taken over at `now_s`, the tool moves from the next tick on.
+  // A change of the source gives no sample; the tool moves from the next tick on.
   if (exploring != was_exploring) return false;
   return exploring ? hand_.read(now_s, sample) : mouse_.read(now_s, sample);
 }

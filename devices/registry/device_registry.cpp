@@ -35,8 +35,8 @@ Result<DeviceCalibration> calibration_of(const DeviceRequest& request, const Dev
   return read_calibration(request.calibrations, protocol);
 }
 
-// An open HID device with its calibration, made a `T` of; one that pushes, or one that does
-// not. `none_found`: there is none to open.
+// Opens the first HID device that renders forces, or does not, and makes a `T` of it with its calibration.
+// `none_found`: set if there is no such device.
 template <typename T>
 Result<std::unique_ptr<T>> make_hid_device(const DeviceRequest& request, bool renders_force, bool& none_found) {
   Result<OpenedDevice> opened = open_first(bus_of(request), protocols_that(renders_force), &none_found);
@@ -132,7 +132,7 @@ std::vector<DeviceDescription> list_devices(const DeviceRequest& request) {
 }
 
 MadeDevice open_device(const std::string& name, const DeviceRequest& request, const std::vector<DeviceEntry>& entries) {
-  // Some take what stands behind a colon.
+  // Some names have an argument after a colon.
   const std::size_t colon = name.find(':');
   const std::string what = colon == std::string::npos ? "" : name.substr(colon + 1);
   for (const DeviceEntry& entry : entries) {

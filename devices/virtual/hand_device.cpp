@@ -9,7 +9,7 @@ namespace {
 // The hand's integration is accurate at 50 us (devices/virtual/hand_motion.h).
 constexpr double kSubstep_s = 50e-6;
 constexpr double kLongestStep_s = 0.02;
-// Contact too light to tell a stiffness from.
+// The stiffness is not estimated from smaller forces.
 constexpr double kFeelable_N = 0.1;
 constexpr double kLearning_s = 0.15;
 constexpr double kSoftest_N_per_m = 100.0;

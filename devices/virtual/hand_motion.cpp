@@ -7,11 +7,11 @@ namespace palpate {
 namespace {
 
 constexpr double kStart_m = -0.006;
-// Unhurried, from wherever the tool was.
+// Duration of the way back from any position of the tool.
 constexpr double kReturn_s = 0.8;
-// Of an unhurried press; a slower hand stays nearer to the block and trembles less.
+// Speed of a usual press; a slower hand stays nearer to the block and trembles less.
 constexpr double kUsual_m_per_s = 0.05;
-// The peak of a minimum-jerk segment over its mean speed.
+// Ratio of peak speed to mean speed of a minimum-jerk segment.
 constexpr double kPeakOverMean = 1.875;
 constexpr double kPi = 3.14159265358979323846;
 
@@ -95,7 +95,7 @@ void HandMotion::go(Segment segment) {
   planned_m_ = segment.target_m;
 }
 
-// Draws gestures as from a shuffled deck: every half minute has all of them.
+// Draws gestures in random order without replacement, so that every half minute has all of them.
 void HandMotion::plan() {
   segment_count_ = segment_ = 0;
   if (dealt_ == deck_.size()) {
@@ -130,7 +130,7 @@ double HandMotion::air(double from_m, double to_m) {
   return any(from_m, to_m) * std::min(1.0, settings_.fastest_m_per_s / kUsual_m_per_s);
 }
 
-// Back into the air, then a short pause.
+// Moves back into the air, then pauses briefly.
 void HandMotion::leave(double fastest_s, double slowest_s) {
   const double air_m = air(-0.006, -0.001);
   go({air_m, any(fastest_s, slowest_s)});

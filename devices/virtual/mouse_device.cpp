@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 constexpr double kMouseStart_m = -0.006;
-// A twentieth of the coupling's shortest time, m / c.
+// A twentieth of the shortest time constant of the coupling, m / c.
 constexpr double kMouseSubstep_s = 250e-6;
 
 }  // namespace
@@ -43,7 +43,7 @@ void MouseDevice::resume_at(double position_m, double velocity_m_per_s, double n
   start_at(now_s);
 }
 
-// Semi-implicit Euler: stable far beyond this step for these constants.
+// Semi-implicit Euler, which is stable for much larger steps with these constants.
 void MouseDevice::advance(double gap_s, double force_N) noexcept {
   const int steps = static_cast<int>(std::ceil(gap_s / kMouseSubstep_s));
   for (int i = 0; i < steps; ++i) {

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// A longer gap between ticks is a stall, in which the recording stood still.
+// A longer gap between ticks is a stall; the replay advances by this at most.
 constexpr double kLongestReplayStep_s = 0.1;
 
 }  // namespace
@@ -45,12 +45,12 @@ void ReplayDevice::go_to(double at_s) noexcept {
   const auto row = std::lower_bound(recording_.rows.begin(), recording_.rows.end(), time_s,
                                     [](const RecordingRow& a, double time) { return a.time_s < time; });
   next_ = std::min(static_cast<std::size_t>(row - recording_.rows.begin()), recording_.rows.size() - 1);
-  // To that row exactly, so that it is seen while paused as well.
+  // The playhead is at the row exactly, so that the row is read even while paused.
   playhead_s_ = recording_.rows[next_].time_s - recording_.rows.front().time_s;
   restart_ = true;
 }
 
-// `next_` is the row after the one that was seen last.
+// `next_` is the row after the one that was read last.
 void ReplayDevice::go_by(int rows) noexcept {
   const auto last = static_cast<long>(recording_.rows.size()) - 1;
   const long row = std::clamp(static_cast<long>(next_) - 1 + rows, 0L, last);
@@ -91,7 +91,7 @@ bool ReplayDevice::read(double now_s, DeviceSample& sample) noexcept {
   const RecordingRow& row = recording_.rows[next_];
   const double due_s = row.time_s - recording_.rows.front().time_s;
   if (due_s > playhead_s_) return false;
-  // The loop asks no more in this tick: the recording waits for it.
+  // The loop reads no more samples in this tick, so the playhead waits.
   if (++handed_over_ == kMaxSamplesPerTick) playhead_s_ = due_s;
   sample = {};
   sample.tool = tool_sample(row);

@@ -23,8 +23,7 @@ constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 3;
 
-// Where real-time priority was refused, the picture steps back for the force:
-// that needs no privilege.
+// If real-time priority was refused, lowers the priority of the picture instead, which needs no privilege.
 void yield_to_haptics(const RtStatus& granted) {
   constexpr int kPictureNice = 5;
   if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
@@ -41,10 +40,10 @@ Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
 Status DemoApp::set_up(const DemoRequest& request) {
   view_.exhibit.on = request.exhibit;
   view_.settings.theme = request.exhibit ? Theme::dark : Theme::light;
-  // Without a display nothing else needs to start.
+  // Reports a missing display before anything else starts.
   if (Status status = Window::find_display(); !status) return status;
   SessionRequest wanted = request.session;
-  if (request.exhibit) {  // models from obvious to impossible to tell
+  if (request.exhibit) {  // models whose differences are obvious to unnoticeable
     wanted.position_only = true;
     if (wanted.models.empty()) wanted.models = {"greedy", "paper:greedy-10"};
   }
@@ -58,7 +57,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!session) return session.error();
   session_ = std::move(*session);
   yield_to_haptics(session_->loop().scheduling());
-  // After the haptics thread: the driver's threads take over this one's priority.
+  // The window is opened after the haptics thread, because the driver's threads inherit the priority of this one.
   WindowRequest asked = request.window;
   asked.empty = palette(view_.settings.theme).background;
   auto window = Window::open(asked);
@@ -91,12 +90,12 @@ void DemoApp::listen() {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
     app->handle_key_event(key, action, modifiers);
   });
-  // After these callbacks, which it calls behind its own.
+  // After these callbacks: ImGui installs its own and calls them.
   ui_ = std::make_unique<UiContext>(window_->handle());
 }
 
 DemoApp::~DemoApp() {
-  // A fit that cannot be stopped at once is not waited for in sight.
+  // Hides the window first, because the end of a fit may take a moment.
   if (window_ != nullptr) glfwHideWindow(window_->handle());
   if (blocks_ != nullptr && session_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
   session_.reset();
@@ -125,7 +124,7 @@ void DemoApp::handle_key_event(int key, int action, int modifiers) {
 void DemoApp::handle_keys() {
   const std::vector<KeyPress> keys = input_.take_keys();
   const auto escape = [](const KeyPress& press) { return press.key == GLFW_KEY_ESCAPE; };
-  if (ImGui::GetIO().WantTextInput) {  // somebody types a name
+  if (ImGui::GetIO().WantTextInput) {  // the user types text
     if (std::any_of(keys.begin(), keys.end(), escape)) close_windows();
     input_.let_go();
     return;
@@ -139,7 +138,7 @@ void DemoApp::handle_keys() {
       DemoInput::run(press, commands_, session_->replay() != nullptr);
     }
   }
-  // The next visitor finds it as new.
+  // The next visitor starts with the initial view.
   if (view_.exhibit.on && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
 }
 
@@ -155,7 +154,7 @@ void DemoApp::handle_exhibit_key(const KeyPress& press) {
 SceneArea DemoApp::scene_area() const { return lay_out(ImGui::GetIO().DisplaySize).scene; }
 
 void DemoApp::frame() {
-  if (session_ == nullptr) return;  // it is closing
+  if (session_ == nullptr) return;  // the program is closing
   glfwPollEvents();
   const double now_s = steady_now_s();
   session_->update();
@@ -169,13 +168,13 @@ void DemoApp::frame() {
   handle_keys();
   if (input_.handle_mouse(*session_, shown_, *blocks_, view_, scene_area()) && !view_.exhibit.on)
     notify("the mouse has left the picture: the probe is lifted", false);
-  // Between two frames: what is drawn lives as long as its session.
+  // The session changes between two frames, because drawing refers to it.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
   count_frame(steady_now_s());
 }
 
-// Once a frame: everything that is drawn is drawn from this.
+// Makes the view of this frame; all drawing uses it.
 void DemoApp::look() { shown_ = window_view(*session_, view_); }
 
 void DemoApp::read_notices(double now_s) {
@@ -187,7 +186,7 @@ void DemoApp::read_notices(double now_s) {
 }
 
 void DemoApp::notify(std::string text, bool problem) {
-  if (view_.exhibit.on) {  // not for visitors
+  if (view_.exhibit.on) {  // visitors do not see it
     DemoFiles::write_to_log(text);
     return;
   }
@@ -195,7 +194,7 @@ void DemoApp::notify(std::string text, bool problem) {
   toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
 }
 
-// Another material: its own models, fitted to it; what was opened stays.
+// Opens another material and fits models to it; models from files are kept.
 void DemoApp::use_material(const std::string& scene, const std::vector<std::string>& recordings,
                            const std::string& device) {
   next_ = request_;
@@ -209,7 +208,7 @@ void DemoApp::use_material(const std::string& scene, const std::vector<std::stri
   if (next_->line_up.empty()) next_->line_up = line_ups().front().name;
 }
 
-// The same material and the same models: none is fitted again.
+// Changes the device and keeps material and models; no model is fitted again.
 void DemoApp::use_device(const std::string& device) {
   next_ = request_;
   next_->recordings = session_->scene().recordings;
@@ -233,7 +232,7 @@ void DemoApp::reopen(const SessionRequest& request) {
   toasts_.clear();
   // A device belongs to one session at a time.
   session_.reset();
-  // What was there before may have gone too: its device, its files.
+  // The previous session may fail as well, if its device or its files are gone.
   SessionRequest without_device = request_;
   without_device.device = "mouse";
   SessionRequest plain;
@@ -256,7 +255,7 @@ void DemoApp::reopen(const SessionRequest& request) {
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(view_.settings.camera);
   blocks_framed_ = 0;
-  panel_ = SidePanel{};  // no curve of the old one
+  panel_ = SidePanel{};  // without curves of the old session
   view_.time = CurveTime{};
   view_.scales_force = false;
   view_.time.zero_s = steady_now_s();
@@ -292,7 +291,7 @@ Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
 }
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {
-  resolution_ = {};  // whatever the machine has to do
+  resolution_ = {};  // full resolution at any load
   draw();
   return window_->save_frame(path, overwrite);
 }

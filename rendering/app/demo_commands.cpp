@@ -1,4 +1,4 @@
-// All that the window can be asked for by key or button, one row each.
+// The commands of the window, one row for each; a command has a key or a button.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -13,16 +13,16 @@
 namespace palpate {
 namespace {
 
-// While a key is held; by time, so that a slow picture changes nothing.
+// Speed of the tool while a key is pressed. It is independent of the frame rate.
 constexpr double kKeySpeed_m_per_s = 0.018;
-constexpr double kScrollSpeed = 6.0;  // seconds a second
+constexpr double kScrollSpeed = 6.0;  // seconds per second
 constexpr double kSeekStep_s = 2.0;
 constexpr double kSpeedStep = 1.25;
 constexpr float kTextStep = 0.1F;
 
 void turn(bool& what) { what = !what; }
 
-// A part of the view, on and off; `shown` lives as long as the commands.
+// A command that shows or hides a part of the view; `shown` lives as long as the commands.
 WindowCommand toggle(std::vector<int> keys, const char* label, const char* help, bool& shown) {
   return {.keys = std::move(keys),
           .label = label,
@@ -220,7 +220,7 @@ void DemoApp::pause_or_run() {
 
 void DemoApp::next_block_count() {
   view_.settings.block_count = view_.settings.block_count == 4 ? 1 : 2 * view_.settings.block_count;
-  // Fewer models than blocks were asked for: no block stays away without a word.
+  // Says why there are fewer blocks than the user selected.
   const std::vector<ModelView>& slots = shown_.models.slots;
   const auto ready =
       std::count_if(slots.begin(), slots.end(), [](const ModelView& slot) { return slot.state == SlotState::ready; });
@@ -255,7 +255,7 @@ void DemoApp::next_dead_man() {
     notify("there is no device that pushes: nothing to hold a switch for", false);
     return;
   }
-  constexpr DeadMan kNext[] = {DeadMan::key, DeadMan::grip, DeadMan::off};  // of off, key, grip
+  constexpr DeadMan kNext[] = {DeadMan::key, DeadMan::grip, DeadMan::off};  // the successors of off, key, grip
   session_->use_dead_man(kNext[static_cast<std::size_t>(session_->dead_man())]);
 }
 

@@ -28,7 +28,7 @@ Hue hue_of(const Rgb& colour) {
   return parts.r << 16 | parts.g << 8 | parts.b;
 }
 
-// The active model last: it is drawn on top.
+// The active model is the last one, because it is drawn on top.
 CurveSource curve_source(const LiveSession& session, const WindowView& shown, double zero_s) {
   CurveSource source{
       session.scene().title, session.device_name(), session.reference_words(), session.jnd(), zero_s, {}};
@@ -68,7 +68,7 @@ void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& came
   if (settings_file_.empty()) return;
   if (!session.line_up().empty()) view_.settings.line_up = session.line_up();
   view_.settings.camera = camera;
-  // Nobody is there to read of it any more.
+  // The window is closing, so an error cannot be shown.
   (void)write_settings(settings_file_, view_.settings);
 }
 
@@ -92,7 +92,7 @@ void DemoFiles::update(const LiveSession& session) {
     const Notice notice = drawing_.get();
     notify_(notice.text, notice.problem);
   }
-  // Recorded and on the disk: what now?
+  // When a recording is saved, asks for its role.
   const RecordingStatus status = session.recording();
   if (status.active || status.saving) {
     recording_ = status.path;
@@ -123,8 +123,8 @@ void DemoFiles::remember(const std::string& path) {
   if (recent.size() > kRecent) recent.pop_back();
 }
 
-// A large file takes a while to read, in which the picture goes on: a future that is replaced waits for its
-// thread, and so the next file waits for the one that is read.
+// Files are read one after the other in the background: replacing the future of a running read would block until it
+// ends.
 void DemoFiles::open_recording(const std::string& path) {
   const std::string into = folder();
   if (into.empty()) return;
@@ -149,7 +149,7 @@ void DemoFiles::record(LiveSession& session) {
   notify_(status ? "recording to " + path : status.error().message, !status);
 }
 
-// What the curves show now, as data, and as a figure that is drawn beside the window.
+// Saves the data of the visible curves, and draws a figure of them in the background.
 void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns) {
   const std::string into = folder();
   if (into.empty() || drawing_.valid()) return;

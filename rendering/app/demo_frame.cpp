@@ -1,4 +1,4 @@
-// What the window draws in a frame, and when.
+// Draws a frame of the window.
 #include <epoxy/gl.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 constexpr double kNsPerS = 1e9;
 constexpr double kExaggeration = 10.0;
 
-// ImGui counts down from the top, OpenGL up from the bottom.
+// Converts from ImGui, whose y points down from the top, to OpenGL, whose y points up from the bottom.
 Viewport pixels_of(const SceneArea& area) {
   const ImGuiIO& io = ImGui::GetIO();
   const ImVec2 scale = io.DisplayFramebufferScale;
@@ -34,7 +34,7 @@ void DemoApp::draw() {
   style_.update(window_->ui_size(), view_.exhibit.on ? kExhibitText : view_.settings.text_size, view_.settings.theme);
   ui_->begin_frame();
   input_.keep_wheel();
-  // Clearing costs less than filling a rectangle, where the processor draws.
+  // With a software renderer, clearing is faster than filling a rectangle.
   const Rgb& panel_colour = palette(view_.settings.theme).panel;
   glClearColor(panel_colour.r, panel_colour.g, panel_colour.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -58,7 +58,7 @@ void DemoApp::draw() {
   }
   ui_->end_frame();
   if (!blocks_->filters_edges()) return;
-  // The processor draws: this waits for what showing the frame would wait for.
+  // With a software renderer, waits for the drawing here instead of in the buffer swap, to measure its time.
   glFinish();
   resolution_.add(steady_now_s() - frame_began_s_);
 }
@@ -67,7 +67,7 @@ void DemoApp::draw_blocks() {
   const SceneArea area = scene_area();
   const Viewport viewport = pixels_of(area);
   const std::vector<BlockPose> poses = block_poses();
-  // More models become ready: more blocks.
+  // The number of blocks changes when models become ready.
   if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
   blocks_framed_ = poses.size();
   blocks_->draw(poses, viewport, view_.settings.theme, resolution_.scale());
@@ -88,7 +88,7 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   return poses;
 }
 
-// While the curves stand still, as it was at their right edge.
+// While the curves are paused, the poses are those at their right edge.
 std::vector<BlockPose> DemoApp::true_poses() const {
   const HistoryPoint& now = shown_.models.now;
   const bool frozen = view_.time.paused && shown_.models.any_now;
@@ -98,7 +98,7 @@ std::vector<BlockPose> DemoApp::true_poses() const {
   std::vector<BlockPose> poses;
   for (const std::size_t slot : shown_.blocks)
     poses.push_back(slot == kReferenceBlock ? reference_pose(pose) : model_pose(slot, pose));
-  // Before the first model is ready: a block nobody has a model of yet.
+  // Before the first model is ready, there is one block without an error.
   if (poses.empty()) {
     pose.shows_error = false;
     poses.push_back(pose);
@@ -132,7 +132,7 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
   return pose;
 }
 
-// What the others are compared with; it gives way as the active model does.
+// The pose of the reference block; it has the dent of the active model.
 BlockPose DemoApp::reference_pose(BlockPose pose) const {
   const ModelView* active = shown_.models.active();
   const bool frozen = view_.time.paused && shown_.models.any_now;

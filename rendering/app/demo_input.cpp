@@ -1,6 +1,6 @@
 // Keyboard and mouse of the window.
 #include <epoxy/gl.h>
-// After epoxy, which brings OpenGL's functions.
+// GLFW after epoxy, which declares the functions of OpenGL.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -18,21 +18,21 @@ namespace {
 constexpr float kOrbit_rad_per_px = 0.006F;
 constexpr float kZoom_per_step = 0.9F;
 constexpr double kWheelStep_m = 0.0005;
-// The probe moves a third as far as the mouse does on the picture: a block is
-// pressed by millimetres, and a hand holds a mouse no finer than a few pixels.
+// The tool moves a third of the mouse's distance on the picture, because presses are millimetres deep and a hand moves
+// a mouse with a precision of a few pixels.
 constexpr float kMouseGain = 0.33F;
 constexpr float kClick_px = 4.0F;
-// Of the way from the surface to the lower edge: there the press is full.
+// The share of the distance from the surface to the lower edge at which the tool is at the largest trained depth.
 constexpr float kReach = 0.8F;
 
-// In all of the picture once it was over a block: a flick that leaves the block presses on. The lower edge is as
-// deep as there are data, wherever the block's surface is.
+// Once the mouse was over a block, it moves the tool in all of the picture, so that a fast move beyond the block still
+// presses. The full trained depth is within reach above the lower edge.
 void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const BlockView& blocks, const ViewState& view,
                         const SceneArea& area) {
   ToolInput* tool = session.tool_input();
   if (tool == nullptr || view.exhibit.tool_is_held) return;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const bool aimed = tool->hand_is_exploring() && !view.exhibit.on;  // a visitor need not aim
+  const bool aimed = tool->hand_is_exploring() && !view.exhibit.on;  // a visitor can begin anywhere
   const auto index = block_at(shown, blocks, area, mouse, aimed);
   if (!index) return;
   const glm::vec2 size(area.size.x, area.size.y);
@@ -49,7 +49,7 @@ void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const Blo
 }  // namespace
 
 double limited_depth_m(const LiveSession& session, double requested_m) {
-  constexpr double kMargin = 0.08;  // of that depth
+  constexpr double kMargin = 0.08;  // of the trained depth
   const double known_m = session.models().trained_depth_m();
   if (requested_m <= known_m) return requested_m;
   const double margin_m = kMargin * known_m;
@@ -118,7 +118,7 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
     tool->set_target(kRest_m, steady_now_s());
     return true;
   }
-  // A finger that leaves the screen lets go.
+  // A finger that leaves the screen releases the tool.
   if (view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) Exhibit::let_go(session);
   if (!over_scene) return false;
   if (wheel_ != 0.0F) {
@@ -133,7 +133,7 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
     const auto block = block_at(shown, blocks, area, io.MousePos, true);
     if (block && *block < shown.blocks.size()) session.select(shown.blocks[*block]);
   }
-  const bool touched = view.exhibit.on && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // twice at the same place
+  const bool touched = view.exhibit.on && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // even without a move
   if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || touched)
     move_tool_to_mouse(session, shown, blocks, view, area);
   return false;

@@ -23,21 +23,21 @@ namespace {
 constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
-// A picture without --seconds: by then all models are fitted and the curves full.
+// Time of a screenshot without --seconds, when all models are fitted and the curves are full.
 constexpr double kPictureAfter_s = 12.0;
-// No block to press: two forces to tell apart.
+// This scene has no block; the study presents two forces.
 constexpr const char* kStudyScene = "jnd_study";
 
 struct Arguments {
   DemoRequest demo;
-  double seconds = 0.0;  // 0: until closed
+  double seconds = 0.0;  // 0: until the window is closed
   std::string screenshot;
   std::string stats;
   bool force = false;
   bool bridge_remote = false;
   bool discriminates = false;
-  std::string recording;  // to discriminate; empty: virtual
-  std::string test;       // to replay; empty: none
+  std::string recording;  // for --discriminate; empty: a virtual one
+  std::string test;       // the recording to replay; empty: none
   std::vector<std::string> files;
 };
 
@@ -84,7 +84,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--force", arguments.force, "Replace existing files");
 }
 
-// A name that cannot be written is told now and not at the end.
+// Reports at the start if an output cannot be written.
 Status check_outputs(const Arguments& arguments) {
   for (const std::string& path : {arguments.screenshot, arguments.stats}) {
     if (path.empty()) continue;
@@ -93,7 +93,7 @@ Status check_outputs(const Arguments& arguments) {
   return {};
 }
 
-// Recordings are offered in the window, all else is a model.
+// The window asks for the role of recordings; all other files are models.
 void sort_files(Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
   for (const std::string& file : arguments.files) {
@@ -106,9 +106,8 @@ void sort_files(Arguments& arguments) {
   if (session.models.empty() && !arguments.demo.exhibit) session.line_up = line_ups().front().name;
 }
 
-// Frame after frame until closed, stopped, or so many seconds have passed. A first
-// signal ends the program as closing the window does, so that the force goes to zero
-// and a recording is saved.
+// Draws frames until the window is closed, a signal arrives, or `seconds` have passed. The first signal has the effect
+// of closing the window: the force goes to zero and a recording is saved.
 template <typename App>
 void run_frames(App& app, double seconds) {
   const double start_s = steady_now_s();
@@ -138,13 +137,13 @@ Status run_study(const Arguments& arguments) {
 
 Status run_demo(Arguments& arguments) {
   if (Status status = check_outputs(arguments); !status) return status;
-  // As palpate record takes it.
+  // The same as in palpate record.
   std::string& device = arguments.demo.session.device;
   if (arguments.bridge_remote && device.rfind("bridge:tcp:", 0) == 0) device.insert(7, "remote-");
   if (arguments.demo.exhibit) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
   if (arguments.discriminates || arguments.demo.session.scene == kStudyScene) return run_study(arguments);
-  // A picture is the same whoever takes it.
+  // A screenshot does not depend on the user's settings.
   if (const auto folder = config_folder(); folder && arguments.screenshot.empty())
     arguments.demo.settings_file = *folder + "/window.json";
   sort_files(arguments);

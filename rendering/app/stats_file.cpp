@@ -33,7 +33,7 @@ Json graphics_json(const FrameFigures& frames) {
            {{"p50", kMsPerUs * times.p50_us}, {"p99", kMsPerUs * times.p99_us}, {"max", kMsPerUs * times.max_us}}}};
 }
 
-// Figures over no sample are null: there is no number that would be true.
+// Figures are null if there are no samples.
 Json model_json(const ModelView& slot) {
   const bool has_errors = slot.errors.samples > 0;
   return {{"name", slot.name},

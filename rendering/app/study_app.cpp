@@ -1,7 +1,7 @@
 #include "rendering/app/study_app.h"
 
 #include <epoxy/gl.h>
-// After epoxy, which brings OpenGL's functions.
+// GLFW after epoxy, which declares the functions of OpenGL.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -18,13 +18,13 @@ namespace palpate {
 namespace {
 
 constexpr float kColumnShare = 0.62F;     // of the window's width
-constexpr std::size_t kLongestCode = 12;  // longer than any, so that one is told
-constexpr Theme kTheme = Theme::dark;     // nothing glares in a dim room
+constexpr std::size_t kLongestCode = 12;  // longer than valid codes, so that a code that is too long is reported
+constexpr Theme kTheme = Theme::dark;     // avoids glare in a dim room
 
 constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                         ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav;
 
-// What the subject can do in a state of the session: a button and its key.
+// A choice of the subject in a state of the session: a button and its key.
 struct Choice {
   StudyState state;
   int key;
@@ -41,13 +41,13 @@ constexpr Choice kChoices[] = {
     {StudyState::answering, GLFW_KEY_2, "The second (2)", [](StudySession& session) { session.answer(true); }},
     {StudyState::unsaved, GLFW_KEY_R, "Try again (R)", [](StudySession& session) { session.retry(); }}};
 
-// Of a key on the keypad, the other that means the same.
+// Replaces a key of the keypad by the usual key.
 int usual_key(int key) {
   if (key == GLFW_KEY_KP_ENTER) return GLFW_KEY_ENTER;
   return key == GLFW_KEY_KP_1 || key == GLFW_KEY_KP_2 ? GLFW_KEY_1 + key - GLFW_KEY_KP_1 : key;
 }
 
-// Between what belongs together and what comes next.
+// Vertical space between groups of elements.
 void gap() { ImGui::Dummy({1.0F, 0.6F * ImGui::GetFontSize()}); }
 
 }  // namespace
@@ -67,7 +67,7 @@ Result<std::unique_ptr<StudyApp>> StudyApp::create(const StudyRequest& request) 
   glfwSetCharCallback(handle, [](GLFWwindow* from, unsigned letter) {
     if (letter < 0x80) static_cast<StudyApp*>(glfwGetWindowUserPointer(from))->type(static_cast<char>(letter));
   });
-  // After these callbacks, which it calls behind its own.
+  // After these callbacks: ImGui installs its own and calls them.
   app->ui_ = std::make_unique<UiContext>(handle);
   return app;
 }
@@ -152,7 +152,7 @@ void StudyApp::draw() {
   ui_->end_frame();
 }
 
-// Its key does the same.
+// A button with the same effect as its key.
 void StudyApp::button(const char* label, int key) {
   if (ImGui::Button(label)) press_key(key);
 }
@@ -226,7 +226,7 @@ void StudyApp::draw_session() {
   if (!study_->device_pushes()) draw_trouble(kRehearsal);
 }
 
-// Of strokes, beside what was predicted.
+// Draws the result of a discrimination of strokes beside the prediction.
 void StudyApp::draw_result() {
   if (request_.strokes == nullptr) return;
   const StudySession& session = study_->session();
@@ -238,7 +238,7 @@ void StudyApp::draw_result() {
   ImGui::TextWrapped("%s", discrimination_verdict(result, *request_.strokes).c_str());
 }
 
-// Which push it is, as boxes that light up: the reference when there is one, and two.
+// Draws a box for each push, the reference included if there is one, and highlights the current one.
 void StudyApp::draw_intervals(const StudyView& view) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImFont* font = style_.fonts().big;

@@ -1,7 +1,7 @@
 #include "rendering/app/window.h"
 
 #include <epoxy/gl.h>
-// After epoxy, which brings OpenGL's functions.
+// GLFW after epoxy, which declares the functions of OpenGL.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <png.h>
@@ -18,8 +18,8 @@ namespace palpate {
 namespace {
 
 constexpr std::int64_t kFrame_ns = 1'000'000'000 / 60;
-// Empty frames to see whether the driver waits for the display: one that does,
-// at any rate up to 200 Hz, needs 5 ms or more for each.
+// Empty frames that test whether the driver waits for the display. If it does, each takes at least 5 ms at display
+// rates up to 200 Hz.
 constexpr int kTrialFrames = 6;
 constexpr std::int64_t kWaited_ns = 5'000'000;
 constexpr int kSmallestWidth = 800;
@@ -45,7 +45,7 @@ Result<std::string> png_of(const std::vector<unsigned char>& pixels, const Frame
   image.width = static_cast<png_uint_32>(picture.width);
   image.height = static_cast<png_uint_32>(picture.height);
   image.format = PNG_FORMAT_RGB;
-  // OpenGL's first row is the lowest: a negative stride turns the picture over.
+  // OpenGL's first row is the lowest; a negative stride flips the picture.
   const auto stride = -static_cast<png_int_32>(kChannels * image.width);
   png_alloc_size_t size = 0;
   if (png_image_write_to_memory(&image, nullptr, &size, 0, pixels.data(), stride, nullptr) == 0) {
@@ -118,7 +118,7 @@ bool Window::display_sets_pace(const Rgb& empty) {
   glFinish();
   const std::int64_t start_ns = steady_now_ns();
   for (int i = 0; i < kTrialFrames; ++i) {
-    // A corner only: the time it takes is the driver's waiting, not the drawing.
+    // Only a corner is drawn, so that the time is that of the driver's wait.
     glEnable(GL_SCISSOR_TEST);
     glScissor(0, 0, 8, 8);
     glClear(GL_COLOR_BUFFER_BIT);
@@ -162,7 +162,7 @@ void Window::show_frame() {
   if (paced_by_display_) return;
   SteadyPacer clock;
   const std::int64_t now_ns = clock.now_ns();
-  // After a late frame the grid starts anew: no burst to make up for it.
+  // After a late frame the schedule starts again, so that no burst of frames follows.
   next_frame_ns_ = std::max(next_frame_ns_ + kFrame_ns, now_ns);
   clock.wait_until(next_frame_ns_);
 }

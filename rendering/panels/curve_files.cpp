@@ -10,7 +10,7 @@ namespace palpate {
 namespace {
 
 constexpr double kFigure_jnd = 3.0;
-// Of a ReferenceKind: what reference_N was in that row, which F changes.
+// Names of ReferenceKind, for the reference of each row; key F changes it.
 constexpr const char* kReferenceNames[] = {"measured", "truth", "model"};
 
 std::string number(float value) {

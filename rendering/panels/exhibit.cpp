@@ -14,8 +14,8 @@ namespace {
 
 using State = ExhibitGame::State;
 
-constexpr double kLifted_m = -0.008;     // the tool while nothing is to be pressed
-constexpr double kDeviceMoves_m = 5e-4;  // more than the noise of a handle that lies still
+constexpr double kLifted_m = -0.008;     // position of the tool while it is kept out of the block
+constexpr double kDeviceMoves_m = 5e-4;  // above the noise of a handle at rest
 
 std::vector<ExhibitModel> ready_models(const LiveSession& session) {
   std::vector<ExhibitModel> ready;
@@ -26,7 +26,7 @@ std::vector<ExhibitModel> ready_models(const LiveSession& session) {
   return ready;
 }
 
-// A force that no model makes.
+// Whether the reference is not a model.
 bool has_reference(const LiveSession& session) {
   return session.has_reference(session.comparison().reference()) &&
          session.comparison().reference() != ReferenceKind::direct;
@@ -45,7 +45,7 @@ ExhibitTick tick_of(const HistoryPoint& point, const ExhibitRound& round) {
   return tick;
 }
 
-// Once the game is complete, which needs no other models to settle; nothing: too few yet.
+// The first round, as soon as all rounds of the game are known or all fits have ended; else empty.
 std::optional<ExhibitRound> first_round(const LiveSession& session) {
   const auto rounds = ExhibitGame::rounds_of(ready_models(session), has_reference(session), false);
   const bool complete = rounds.size() == ExhibitGame::kMostRounds && rounds.back().second.method == "greedy";
@@ -80,10 +80,10 @@ bool Exhibit::update(LiveSession& session, ViewState& view) {
   if (game_.state() == State::attract && !shown_) shown_ = first_round(session);
   read_ticks(session);
   note_result();
-  // So that nothing of the last round is still pressed, and nobody presses while reading.
+  // Outside attract and press, the tool is kept out of the block, so that the visitor cannot press it.
   view.exhibit.tool_is_held = game_.state() != State::attract && game_.state() != State::press;
   if (view.exhibit.tool_is_held) let_go(session);
-  // A visitor who hesitates presses; the hand does not do it instead.
+  // During a round the simulated hand must not press, even if the visitor does not move.
   if (game_.state() == State::press && session.tool_input() != nullptr)
     session.tool_input()->nudge(0.0, steady_now_s());
   const ExhibitRound* now = pair();
@@ -94,8 +94,7 @@ bool Exhibit::update(LiveSession& session, ViewState& view) {
   return left;
 }
 
-// A handle that lies still, in contact or not, is nobody, and neither is the hand that
-// presses by itself.
+// Notes the time of a visitor's last movement. A handle at rest does not count, and neither does the simulated hand.
 void Exhibit::note_device(const LiveSession& session) {
   const double at_m = session.newest().tick.position_m;
   if (std::abs(at_m - device_at_m_) < kDeviceMoves_m) return;
@@ -105,7 +104,7 @@ void Exhibit::note_device(const LiveSession& session) {
   if (somebody) moved_s_ = session.newest().loop_time_s;
 }
 
-// Every tick counts, however slow the picture is.
+// Passes on every tick, independent of the frame rate.
 void Exhibit::read_ticks(const LiveSession& session) {
   const ForceHistory& history = session.comparison().history();
   const ExhibitRound* now = pair();
@@ -133,7 +132,7 @@ void Exhibit::note_result() {
     return;
   }
   if (std::exchange(noted_, true)) return;
-  // A program that runs for days begins a new tally with each; one that cannot be kept is no reason to stop.
+  // Each day has its own tally file. A tally that cannot be written is no error.
   const std::string path = tally_path();
   if (!path.empty()) tally_ = read_tally(path);
   ++tally_.answers;

@@ -1,4 +1,4 @@
-// The exhibit's screens.
+// Draws the screens of the exhibit.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -16,8 +16,8 @@ using State = ExhibitGame::State;
 constexpr auto kVisitorWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                 ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                 ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
-constexpr double kMost_jnd = 4.0;  // of the axis: fixed, so that rounds compare
-constexpr double kForces_s = 3.0;  // of both forces, around the largest difference
+constexpr double kMost_jnd = 4.0;  // fixed range of the axis, so that rounds are comparable
+constexpr double kForces_s = 3.0;  // duration of the plot of both forces, around the largest difference
 constexpr double kPerSecond = 1.0 / ExhibitTrace::kColumn_s;
 
 const char* kind_of(const ExhibitModel& model) {
@@ -29,7 +29,7 @@ bool pointer_moved() {
   return io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || io.MouseWheel != 0.0F || ImGui::IsAnyMouseDown();
 }
 
-// Broken at blanks alone: Dear ImGui also breaks behind the point of a number.
+// Breaks lines at blanks only; Dear ImGui would also break after the decimal point of a number.
 std::string in_lines(const std::string& text, float width) {
   std::string lines, line;
   std::istringstream words(text);
@@ -51,12 +51,12 @@ struct Exhibit::Canvas {
   const WindowView& shown;
   const UiStyle& style;
   SceneArea panel;
-  float foot = 0.0F;  // its height
+  float foot = 0.0F;  // height of the foot
   std::string centres_of(const ExhibitModel& model) const {
     return std::to_string(shown.models.slots[model.slot].centres);
   }
   Rgb colour_of(const ExhibitModel& model) const {
-    return method_colour(model.method, style.theme());  // one at a time: no shades
+    return method_colour(model.method, style.theme());  // one model at a time, so no shades
   }
 };
 
@@ -66,7 +66,7 @@ std::string Exhibit::name_of(bool first, const LiveSession& session) const {
   return words()(session.comparison().reference() == ReferenceKind::measured ? "name_measured" : "name_simulated");
 }
 
-// As exact as it is read.
+// The number with the digits that a reader needs.
 std::string Exhibit::number(double value) const {
   if (value <= 0.0) return "0";
   std::string text = fixed(std::max(0.01, value), value < 1.0 ? 2 : 1);
@@ -129,7 +129,7 @@ void Exhibit::draw(const LiveSession& session, const WindowView& shown, const Bl
   draw_names(canvas, blocks, layout.scene);
 }
 
-// High enough for a finger; in its corner the key that does the same.
+// A button that is high enough for a finger, with its key in the corner.
 bool Exhibit::button(const Canvas& canvas, const std::string& text, const std::string& key, float width, bool down) {
   if (down) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
   const bool pressed = ImGui::Button(text.c_str(), {width, 2.2F * height_of(canvas.style.fonts().heading)});
@@ -208,7 +208,7 @@ void Exhibit::draw_reveal(const Canvas& canvas) {
     return;
   }
   space(canvas.style, 0.6F);
-  if (game_.has_force()) {  // which was which
+  if (game_.has_force()) {  // shows which model had which key
     draw_key(canvas, *round.first, "block_1");
     draw_key(canvas, round.second, "block_2");
   }
@@ -231,7 +231,7 @@ void Exhibit::draw_score(const Canvas& canvas) {
   for (const ExhibitRound& round : rounds) draw_bar(canvas, round);
   say_quietly(canvas, words()("bars"));
   space(canvas.style, 0.6F);
-  // All that is done within each millisecond, both blocks and the device included.
+  // The time of a whole tick, including both blocks and the device.
   const std::string used_us = number(canvas.session.loop().statistics().tick.p50_us);
   say(game_.has_force() ? words()("take_home_felt", used_us)
                         : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
@@ -239,7 +239,7 @@ void Exhibit::draw_score(const Canvas& canvas) {
   if (button(canvas, words()("again"), "Enter", -1.0F)) begin(canvas.session);
 }
 
-// How far the two of a round differed, over what a hand notices.
+// Draws the largest difference of a round as a bar, in JND.
 void Exhibit::draw_bar(const Canvas& canvas, const ExhibitRound& round) {
   const std::string name = round.is_catch() ? "name_catch" : std::string("name_") + kind_of(round.second);
   say_quietly(canvas, words()(name, canvas.centres_of(round.second)) + ": " + number(round.largest_over_jnd) + ", " +
@@ -255,7 +255,7 @@ void Exhibit::draw_bar(const Canvas& canvas, const ExhibitRound& round) {
   ImGui::Dummy({1.0F, height});
 }
 
-// What the curve is, in words beside the axis; returns the height that is left for it.
+// Draws the title of the curve, and returns the remaining height.
 float Exhibit::begin_plot(const Canvas& canvas, const std::string& title) {
   say_quietly(canvas, title);
   ImGui::PushFont(canvas.style.fonts().body);
@@ -293,7 +293,7 @@ void Exhibit::draw_difference(const Canvas& canvas, const ExhibitTrace& trace, d
   ImGui::PopFont();
 }
 
-// Both forces where they differed most, in the band of one JND around the first.
+// Draws both forces where they differed most, with a band of one JND around the first.
 void Exhibit::draw_forces(const Canvas& canvas) {
   const ExhibitRound& round = game_.round();
   const std::vector<ExhibitTrace::Column>& columns = game_.trace().columns();
@@ -320,7 +320,7 @@ void Exhibit::draw_forces(const Canvas& canvas) {
       first.emplace_back(x, plot.y_px(columns[i].first_N));
       second.emplace_back(x, plot.y_px(columns[i].second_N));
     }
-    const float thick = 2.5F * canvas.style.scale();  // so that the band shows beside them
+    const float thick = 2.5F * canvas.style.scale();  // thin enough to see the band
     plot.band(upper, lower, ink(canvas.style.colours().band));
     plot.line(first, ink(round.first ? canvas.colour_of(*round.first) : kReferenceColour), thick);
     plot.line(second, ink(canvas.colour_of(round.second)), thick);
@@ -328,7 +328,7 @@ void Exhibit::draw_forces(const Canvas& canvas) {
   ImGui::PopFont();
 }
 
-// The next language, and how long a result still stays.
+// Draws the button of the next language and the countdown.
 void Exhibit::draw_foot(const Canvas& canvas) {
   const double left_s = times_.stay_s - (canvas.session.newest().loop_time_s - moved_s_);
   const float line = ImGui::GetFrameHeight();
@@ -341,7 +341,7 @@ void Exhibit::draw_foot(const Canvas& canvas) {
   say(words()("countdown", std::to_string(static_cast<int>(std::ceil(std::max(0.0, left_s))))));
 }
 
-// For whoever looks after the exhibit.
+// Draws the information for the host.
 void Exhibit::draw_host(const Canvas& canvas) {
   ImGui::SetCursorScreenPos({canvas.panel.at.x + 0.4F * canvas.panel.size.x, canvas.panel.at.y + 2.0F});
   ImGui::PushFont(canvas.style.fonts().body);
@@ -350,7 +350,7 @@ void Exhibit::draw_host(const Canvas& canvas) {
   ImGui::PopFont();
 }
 
-// Which block is which, at its foot.
+// Draws the name of each block at its foot.
 void Exhibit::draw_names(const Canvas& canvas, const BlockView& blocks, const SceneArea& scene) const {
   if (pair() == nullptr) return;
   const bool has_force = game_.state() != State::attract && game_.has_force();

@@ -1,4 +1,4 @@
-// What stands over the blocks and beside them: labels, the big number.
+// Draws the labels of the blocks, the headline and the big number.
 #include <algorithm>
 #include <cmath>
 
@@ -11,18 +11,17 @@
 namespace palpate::overlay {
 namespace {
 
-// Top left corner of block `index`'s label: at its foot; of a block with another one
-// before it, over its tool; of a single block, in the picture's upper right corner,
-// where nothing else is.
+// Top left corner of the label of block `index`. It is at the foot of the block, above the tool of a block in the rear
+// row, and in the upper right corner of the picture for a single block.
 ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count, const SceneArea& area,
                    const ImVec2& size, float lift) {
   if (count == 1) return {area.at.x + area.size.x - 1.15F * size.x - size.y, area.at.y + 2.6F * size.y};
   const bool behind = count > 2 && index < 2;
   if (behind) {
-    // The tool's length and a little more, for it is lifted between presses.
+    // The length of the tool with a margin, because the tool is lifted between presses.
     const auto above = 16.0F * static_cast<float>(blocks.geometry().tool_radius_m);
     const glm::vec2 top = blocks.on_screen(index, count, {0.0F, above, 0.0F}, {area.size.x, area.size.y});
-    // The two of this row share the width where there is little of it.
+    // The two labels of the row share the width if it is small.
     const glm::vec2 other = blocks.on_screen(1 - index, count, {0.0F, above, 0.0F}, {area.size.x, area.size.y});
     const float middle = 0.5F * (top.x + other.x);
     const float gap = 0.5F * size.y;
@@ -33,7 +32,7 @@ ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count
   }
   const auto half = 0.5F * static_cast<float>(blocks.geometry().length_m);
   const auto height = static_cast<float>(blocks.geometry().height_m);
-  // Before the block's front side, on the table's edge of it.
+  // A point in front of the block, on the table.
   const glm::vec2 front =
       blocks.on_screen(index, count, {0.35F * half, -1.02F * height, 1.0F * half}, {area.size.x, area.size.y});
   const float x = std::clamp(front.x - 0.5F * size.x, 4.0F, area.size.x - size.x - 4.0F);
@@ -41,7 +40,7 @@ ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count
   return {area.at.x + x, area.at.y + y};
 }
 
-// Broken at blanks where it is wider than there is room, and behind a plate.
+// Draws text that is wrapped to the width `room`. Returns the y below it.
 float draw_wrapped(ImFont* font, const ImVec2& at, const std::string& text, ImU32 colour, float room) {
   text_at(font, at, colour, text, room);
   return at.y + text_size(font, text, room).y;
@@ -106,7 +105,7 @@ float big_number_height(const UiStyle& style, float lift) {
   return lift + height_of(style.fonts().big) + 1.9F * height_of(style.fonts().body);
 }
 
-// The big number, in words, and the scale that its colour is from.
+// Draws the big number, its explanation, and the scale of its colour.
 void draw_big_number(const WindowView& shown_view, const UiStyle& style, const SceneArea& area, float lift) {
   const Palette& p = style.colours();
   ImFont* big = style.fonts().big;

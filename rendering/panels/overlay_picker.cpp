@@ -1,4 +1,4 @@
-// Files to open: a folder at a time, a path to type, and what was opened of late.
+// The dialog that opens files: the files of one folder, a path to type, and recent files. And the list of devices.
 #include <algorithm>
 #include <filesystem>
 
@@ -15,7 +15,7 @@ void go_to(FilePicker& picker, const fs::path& folder) {
   picker.files = pickable_files(picker.folder);
 }
 
-// A folder is gone to, a file is opened; whether it was that.
+// Enters a folder, or opens a file. Returns whether `path` was a file.
 bool pick(FilePicker& picker, const std::string& path, const OverlayActions& actions) {
   std::error_code missing;
   if (fs::is_directory(path, missing)) {
@@ -86,7 +86,7 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   if (done) view.dialogs.file_list = false;
 }
 
-// What can hold the tool, and why it cannot.
+// Draws the list of devices, with the reason if one cannot be used.
 void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions) {
   if (!view.dialogs.device_list) return;
   begin_in_the_middle();

@@ -1,4 +1,4 @@
-// Windows and notices over the picture: the keys, model files, what the device wants.
+// Windows and notices over the picture: the keys, files, scenes, roles of recordings, requests of the device.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -65,7 +65,7 @@ void draw_data_warning(const ModelsView& models, const UiStyle& style, const Sce
   text_at(style.fonts().body, at, ink(style.colours().text), text, wrap);
 }
 
-// What the device wants of whoever holds it, large and in the middle.
+// Draws the request of the device to its user, in large text in the middle.
 void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area) {
   std::string words = empty_scene_words(session);
   if (words.empty()) words = session.device_words();
@@ -97,7 +97,7 @@ void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCo
   for (const char* sentence : kPictureHelp) ImGui::TextWrapped("%s", sentence);
   ImGui::PopTextWrapPos();
   ImGui::Separator();
-  // Beside each other where they are too many below each other.
+  // Two columns if one is too high for the window.
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const float high = (static_cast<float>(commands.size()) + 11.0F) * ImGui::GetTextLineHeightWithSpacing();
   const std::size_t columns = high > all.y ? 2 : 1;
@@ -129,7 +129,7 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
   const auto names = scene_names();
   for (const std::string& name : names ? *names : std::vector<std::string>{}) {
     const auto scene = load_scene(name);
-    // A study is no scene to press.
+    // The scene of the study has no block.
     if (!scene || name == "jnd_study") continue;
     if (ImGui::Selectable((scene->title + "###" + name).c_str(), name == session.scene().name)) {
       view.dialogs.scene_list = false;
@@ -142,7 +142,7 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
 
 namespace {
 
-// A choice of several; the number of the one that was chosen now.
+// Draws a choice of several. Returns the index that the user has just chosen.
 template <typename Names>
 std::optional<std::size_t> choose(const char* title, const Names& names, std::size_t now) {
   std::optional<std::size_t> chosen;
@@ -227,7 +227,7 @@ void draw_role(RecordingRoles& roles, std::size_t index) {
   for (const std::string& line : one.words) ImGui::TextDisabled("%s", line.c_str());
 }
 
-// What Start will do.
+// Describes the effect of the button Start.
 std::string recording_roles_words(const RecordingRoles& roles) {
   const std::size_t training = roles.training().size();
   const bool test = !roles.test().empty();

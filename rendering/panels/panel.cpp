@@ -16,7 +16,7 @@ constexpr auto kPanelWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_N
                               ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                               ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
 
-// How many centres the active model has, or all that have a number of them.
+// Draws the slider of the number of centres, for the active model or for all that have centres.
 void draw_centres(LiveSession& session, const ModelsView& models, ViewState& view) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("centres");
@@ -49,7 +49,7 @@ void SidePanel::draw(LiveSession& session, const WindowView& shown, ViewState& v
   ImGui::Begin("panel", nullptr, kPanelWindow);
   const ModelsView& models = shown.models;
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  // What has a fixed size first; the plots share the rest.
+  // The plots share the height that the parts of fixed size leave.
   const float health_room = health_height(shown.health, view);
   const float rows = static_cast<float>(std::clamp<std::size_t>(models.listed().size(), 2, 8)) + 1.0F;
   const float table = rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) +

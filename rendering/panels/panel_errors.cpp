@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-// On decades: JND from 0.03 to 30, us from 0.1 to the budget of 1 ms and a little more.
+// Decimal logarithms: 0.03 to 30 JND, and 0.1 us to above the budget of 1 ms.
 constexpr Range kErrors{-1.6, 1.5}, kTimes{-1.0, 3.3};
 constexpr double kBudget_us = 1000.0;
 
@@ -25,7 +25,7 @@ std::vector<std::size_t> judged(const ModelsView& models) {
   return list;
 }
 
-// Fewer say nothing about a spread.
+// Bins with fewer samples have no useful standard deviation.
 constexpr std::uint64_t kFewestSamples = 20;
 
 struct Limits {
@@ -42,7 +42,7 @@ Limits limits_of(const ModelsView& models) {
       limits.error_N = std::max(limits.error_N, bin.mean_abs_error_N + bin.std_abs_error_N);
     }
   }
-  // The line must be seen whole; maxima beyond twice that leave at the top.
+  // The JND line is visible completely; larger maxima are cut at the top.
   limits.error_N = round_up(1.6 * std::max(limits.error_N, models.jnd.at(limits.force_N)));
   return limits;
 }
@@ -87,7 +87,7 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
           std::clamp(std::log10(std::max(view.errors.p99_error_over_jnd, 1e-9)), kErrors.from, kErrors.to);
       const ImVec2 at(plot.x_px(std::log10(std::max(1e-3 * view.tick_ns(), 0.1))), plot.y_px(error));
       const ImU32 colour = ink(slot_colour(models, slot, style.theme()));
-      // Where it is now: what is felt of it at the right edge of the curves.
+      // The present error, at the right edge of the curves.
       const double now = models.any_now ? std::abs(models.now.difference_over_jnd(slot, models.jnd)) : 0.0;
       if (now > 0.0) {
         const float y = plot.y_px(std::clamp(std::log10(now), kErrors.from, kErrors.to));

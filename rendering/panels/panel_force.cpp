@@ -14,18 +14,18 @@ namespace {
 constexpr float kReferenceLine_px = 2.4F;
 constexpr float kModelLine_px = 1.4F;
 constexpr float kSelectedLine_px = 2.0F;
-// A column to two pixels: finer is hardly seen and costs time.
+// Width of a column; a finer one is hardly visible and costs time.
 constexpr float kColumn_px = 2.0F;
-// JNDs to either side of 0 in the difference view: three times the band's own height.
+// Range of the difference view on both sides of 0: three times the height of the band.
 constexpr double kDifference_jnd = 3.0;
 constexpr float kPredictedAlpha = 0.28F;
-// Of the width; the rest has the loops.
+// Share of the width for the curves over time; the loops have the rest.
 constexpr float kTimeShare = 0.6F;
-// Points of a loop: what is shown in ten seconds, every few ticks.
+// The most points of the loops: every few ticks of ten seconds.
 constexpr std::size_t kLoopPoints = 1500;
 
-// Towards a nice number above what is shown; down only from what is much too large, for an
-// axis that moves under somebody's eyes is not read.
+// Moves the scale of an axis towards a round number above `wanted`. It decreases only if it is more than twice as
+// large: an axis that moves is hard to read.
 double eased_scale(double scale, double wanted) {
   const double target = round_up(wanted);
   if (target > scale) return scale + 0.25 * (target - scale);
@@ -41,15 +41,15 @@ struct ForceCurves::Drawing {
   double end_s = 0.0;
 
   Rgb colour(std::size_t slot) const { return slot_colour(shown.models, slot, style.theme()); }
-  // Nothing to compare with: what the active model predicts of its own error.
+  // Without a reference, the curves show the predicted error of the active model.
   bool predicts() const { return !shown.models.compared && shown.models.active() != nullptr; }
   template <typename Low, typename High>
   void paint_prediction(const CurvePainter& paint_on, Low low, High high) const {
     if (predicts()) paint_on.band(ink(colour(shown.models.selected), kPredictedAlpha), low, high);
   }
-  // Of models that are not the active one; what is dark is hard enough to see on black.
+  // Opacity of the other models; it is higher on the dark theme, where they are less visible.
   float faint() const { return style.theme() == Theme::dark ? 0.95F : 0.75F; }
-  // The models in the order of drawing: the active one on top.
+  // Visits the models in the order of drawing: the active one is the last, on top.
   template <typename Draw>
   void for_each_slot(Draw draw) const {
     const ModelsView& models = shown.models;
@@ -99,7 +99,7 @@ ForceCurves::Drawing ForceCurves::begin(const WindowView& shown, ViewState& view
                  drawing.end_s, columns);
   const double highest_N = 1.05 * static_cast<double>(curves_.highest_force_N());
   force_scale_N_ = eased_scale(force_scale_N_, std::max({1.0, shown.usual_force_N, highest_N}));
-  // Beyond 8 JND the line would only hide what is near 1.
+  // A larger range than 8 JND would hide differences near 1 JND.
   error_scale_ =
       eased_scale(error_scale_, std::clamp(1.2 * static_cast<double>(curves_.highest_sustained_over_jnd()), 1.5, 8.0));
   return drawing;
@@ -150,7 +150,7 @@ void ForceCurves::draw_titles_of_error(const Drawing& drawing) const {
                    "tick.\nV: the difference in its band.");
 }
 
-// What all have: the mouse, its readings, names at the right.
+// Draws the common part of all plots: values at the mouse, and names at the right.
 void ForceCurves::finish_plot(const Drawing& drawing, const LivePlot& plot,
                               float (*value)(const CurveColumn&, std::size_t), const char* unit) {
   CurveTime& time = drawing.view.time;
@@ -174,7 +174,7 @@ void ForceCurves::finish_plot(const Drawing& drawing, const LivePlot& plot,
   draw_readings(plot, drawing.style, time, readings);
 }
 
-// Force against depth: the reference in its band, and the active model.
+// Draws force against depth: the reference with its band, and the active model.
 void ForceCurves::draw_loops(const Drawing& drawing, const ImVec2& size) {
   const ForceHistory& history = *drawing.shown.history;
   const ModelsView& models = drawing.shown.models;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kFaultsShown = 6;
 constexpr double kStall_s = 0.05;
 constexpr double kFewFrames_per_s = 50.0;
-// Skipped deadlines beyond this share are worth words.
+// A larger share of missed deadlines is reported.
 constexpr double kManyMissed = 0.01;
 
 std::string text_of(const char* pattern, double a, double b = 0.0) {
@@ -83,7 +83,7 @@ std::string device_line(const HealthView& health) {
 
 float health_height(const HealthView& health, const ViewState& view) {
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  // Longer than a narrow panel is wide.
+  // The line may be wider than a narrow panel.
   const std::string device = device_line(health);
   const float room = ImGui::GetContentRegionAvail().x;
   float height = 3.0F * line;
@@ -114,7 +114,7 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
             true};
   }
   if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s) {
-    // No fault where nothing that is felt is late.
+    // A slow picture does not affect the force, so it is not a fault.
     const std::string slow = text_of("%.0f frames a second: a slow picture, ", recent_fps);
     if (statistics.missed_deadlines == 0) return {slow + "the force is not affected", false};
     return {slow + std::to_string(statistics.missed_deadlines) + " deadlines missed", false};

@@ -13,7 +13,7 @@ namespace {
 
 using Slot = std::size_t;
 
-// Of the tick that the curves end with; NaN: none.
+// Force in the last tick of the curves; NaN: none.
 double force_now_N(const ModelsView& models, Slot slot) {
   return models.any_now ? static_cast<double>(models.now.force_N[slot]) : std::nan("");
 }
@@ -24,7 +24,7 @@ double error_now_N(const ModelsView& models, Slot slot) {
   return models.now.in_contact ? force_now_N(models, slot) - static_cast<double>(models.now.reference_N) : 0.0;
 }
 
-// Over the samples so far; NaN: there are none.
+// The 99 % error over the samples so far; NaN: there are none.
 double p99_over_jnd(const ModelsView& models, Slot slot) {
   return models.slots[slot].errors.samples > 0 ? models.slots[slot].errors.p99_error_over_jnd : std::nan("");
 }
@@ -53,8 +53,8 @@ std::string signed_mN(double value_N) { return format("%+.0f", 1e3 * value_N); }
 struct Column {
   const char* heading;
   const char* tip;
-  const char* widest;                                    // what it must hold
-  int dropped;                                           // where there is no room: 1 goes first; 0 stays
+  const char* widest;                                    // the widest text of the column
+  int dropped;                                           // order of removal in a narrow panel, from 1; 0: never
   double (*value)(const ModelsView& models, Slot slot);  // null: the name
   std::string (*text)(double value);
 };
@@ -76,7 +76,7 @@ constexpr Column kTable[kColumns] = {
      tick_ns, whole},
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2, centres, whole}};
 
-// By the size of it, whatever its sign; what is not there comes first.
+// Sorts by magnitude; missing values come first.
 double sort_value(const ModelsView& models, Slot slot, int column) {
   const double value = kTable[column].value(models, slot);
   return std::isnan(value) ? -1.0 : std::abs(value);
@@ -99,7 +99,7 @@ void right_aligned(const std::string& text, const Rgb& colour) {
   ImGui::TextColored(paint(colour), "%s", text.c_str());
 }
 
-// A small triangle over the middle of a heading that its column is sorted by.
+// Draws a small triangle above the heading of the column by which the table is sorted.
 void draw_sort_sign(float middle_px, float top_px, bool rising, ImU32 colour) {
   const float size = 0.22F * ImGui::GetFontSize();
   const float tip_px = rising ? top_px : top_px + size;
@@ -109,7 +109,7 @@ void draw_sort_sign(float middle_px, float top_px, bool rising, ImU32 colour) {
   ImGui::GetWindowDrawList()->AddConvexPolyFilled(corners, 3, colour);
 }
 
-// Over its numbers, which stand right. A click sorts: falling, rising, as they were.
+// Draws a heading, right-aligned except for the name. Clicks sort in descending, ascending and original order.
 void draw_heading(int column, TableState& sort) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float room = ImGui::GetContentRegionAvail().x;
@@ -134,7 +134,7 @@ void draw_heading(int column, TableState& sort) {
   if (sort.column == column) draw_sort_sign(x + 0.5F * width, at.y, sort.rising, colour);
 }
 
-// A menu behind the right button.
+// The menu of the right mouse button.
 void draw_menu(LiveSession& session, const ModelsView& models, Slot slot, TableState& table) {
   if (!ImGui::BeginPopupContextItem()) return;
   if (ImGui::IsWindowAppearing()) {
@@ -157,7 +157,7 @@ void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewS
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
   const ImU32 colour = ink(slot_colour(models, index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
-  // Too long for the column: without the numbers, which the last one and the tip have.
+  // A name that is too long is cut at its number of centres; the last column and the tip have it.
   std::string name = slot.name;
   if (ImGui::CalcTextSize(("      " + name).c_str()).x > ImGui::GetContentRegionAvail().x)
     name.erase(std::min(name.find('-'), name.size()));
@@ -174,7 +174,7 @@ void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewS
   draw_mark(list, middle, (index == models.selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
 }
 
-// Over the columns of the figures that are not there yet.
+// Draws the progress of a fit in place of the figures.
 void draw_waiting(const ModelView& slot) {
   ImGui::TableNextColumn();
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -184,7 +184,7 @@ void draw_waiting(const ModelView& slot) {
   ImGui::PopClipRect();
 }
 
-// A column that is not shown takes no text; a number that is not there is a dash.
+// Draws the figures of a row. Hidden columns have no text; a missing number is a dash.
 void draw_figures(const ModelsView& models, std::size_t index, const UiStyle& style) {
   for (int column = kName + 1; column < kColumns; ++column) {
     const Column& one = kTable[column];

@@ -27,7 +27,7 @@ std::string grouped(std::uint64_t count) {
 
 std::string jnd_text(double error_over_jnd) {
   char text[32];
-  // Two digits: a quantile of a stream has no more (error_quantile.h).
+  // Two digits, which is the precision of the quantile of a stream (error_quantile.h).
   const char* format = error_over_jnd < 0.995 ? "%.2f" : error_over_jnd < 9.95 ? "%.1f" : "%.0f";
   std::snprintf(text, sizeof text, format, error_over_jnd);
   return text;

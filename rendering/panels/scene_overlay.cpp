@@ -16,7 +16,7 @@ namespace {
 
 using namespace overlay;
 
-// How the active model is felt; the title says so.
+// Draws the sliders that scale the rendered force.
 void draw_feel(LiveSession& session, const UiStyle& style, const SceneArea& area) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.4F * height_of(style.fonts().heading)});
   ImGui::Begin("feel", nullptr, kFloating);
@@ -35,7 +35,7 @@ void draw_feel(LiveSession& session, const UiStyle& style, const SceneArea& area
   if (moved) session.use_scale({static_cast<double>(stiffness), static_cast<double>(damping)});
 }
 
-// What is pressed, and how the picture differs from it.
+// Draws the title of the scene, and any exaggeration of force or picture.
 void draw_title(const LiveSession& session, const ViewState& view, const SceneArea& area) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.0F});
   ImGui::Begin("title", nullptr, kFloating);
@@ -53,7 +53,7 @@ void draw_title(const LiveSession& session, const ViewState& view, const SceneAr
   ImGui::End();
 }
 
-// Until it was done: half a newton felt by whoever moves the mouse.
+// Draws the hint how to press, until the user has pressed with half a newton.
 void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area, float top_px) {
   constexpr double kPressed_N = 0.5;
   if (session.tool_input() == nullptr) return;
@@ -67,7 +67,7 @@ void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style
           area.size.x - 1.8F * line);
 }
 
-// Five, and a menu of all else. Returns how high they are.
+// Draws five buttons, and a menu of all other commands. Returns their height.
 float draw_buttons(const SceneArea& area, const std::vector<WindowCommand>& commands) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - 2.0F}, ImGuiCond_Always, {0.0F, 1.0F});
   ImGui::Begin("buttons", nullptr, kFloating);
@@ -104,7 +104,7 @@ void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift,
     if (command_button(command)) command.run(0);
     ImGui::SameLine();
   }
-  // Figures beside the sliders: on them the grip hides what it is dragged over.
+  // The numbers are beside the sliders, because the grip would hide them.
   ImGui::SetNextItemWidth(0.40F * area.size.x);
   auto at_s = static_cast<float>(replay.playhead_s());
   if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s()), "")) {
@@ -228,7 +228,7 @@ void SceneOverlay::draw(LiveSession& session, const WindowView& shown, const Blo
   const float surface = session.replay_test().found_m() != 0.0 ? 1.7F * line : 0.0F;
   const float bars = buttons + (session.replay() != nullptr ? 2.4F * line + surface : 0.0F);
   float top_px = area.at.y + 2.0F * line;
-  // An exhibit has words of its own.
+  // The exhibit has its own texts.
   if (!view.exhibit.on) {
     draw_labels(shown, blocks, style, area, big_number_height(style, bars));
     if (!shown.models.slots.empty()) draw_big_number(shown, style, area, bars);

@@ -7,8 +7,8 @@
 namespace palpate {
 namespace {
 
-constexpr float kDrag_px = 6.0F;     // less is a click
-constexpr double kWheelShare = 0.1;  // of what is shown, a step of the wheel
+constexpr float kDrag_px = 6.0F;     // a shorter movement is a click
+constexpr double kWheelShare = 0.1;  // one step of the wheel scrolls by this share of the visible span
 
 double time_under_mouse(const LivePlot& plot, const CurveTime& time) {
   const float px = std::clamp(ImGui::GetIO().MousePos.x, plot.left(), plot.right());
@@ -66,7 +66,7 @@ void draw_readings(const LivePlot& plot, const UiStyle& style, const CurveTime& 
   const float pad = 0.4F * line;
   const float high = line * static_cast<float>(readings.size() + 1) + 2.0F * pad;
   const float mouse_px = plot.x_px(time.hover_s - time.zero_s);
-  // On the side where there is more room, so that the curve under the mouse is seen.
+  // The text is on the side with more room, so that it does not hide the curve under the mouse.
   const bool left = mouse_px > 0.5F * (plot.left() + plot.right());
   const float x = left ? mouse_px - width - 3.0F * pad : mouse_px + pad;
   ImDrawList& list = *ImGui::GetForegroundDrawList();
@@ -85,7 +85,7 @@ void draw_readings(const LivePlot& plot, const UiStyle& style, const CurveTime& 
 void draw_label(const LivePlot& plot, const CurveLabel& label) {
   const float line = ImGui::GetTextLineHeight();
   const float width = ImGui::CalcTextSize(label.text.c_str()).x;
-  // Above the curve's end, or below it where there is no room.
+  // The label is above the end of the curve, or below it if there is no room.
   const float y = label.y_px - 1.2F * line > plot.top() ? label.y_px - 1.2F * line : label.y_px + 0.2F * line;
   plot.list().AddText({plot.right() - width - 0.3F * line, y}, ink(label.colour), label.text.c_str());
 }

@@ -31,7 +31,7 @@ std::string key_name(int key) {
   for (const auto& [known, name] : kKeyNames) {
     if (known == key) return name;
   }
-  return {static_cast<char>(key)};  // printable keys have the number of their letter
+  return {static_cast<char>(key)};  // GLFW numbers printable keys by their letters
 }
 
 std::string shown_keys(const WindowCommand& command) {

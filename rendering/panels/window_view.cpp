@@ -10,10 +10,10 @@
 namespace palpate {
 namespace {
 
-// A hand that aims at the strongest press goes beyond it for a moment.
+// Factor on the strongest press for the axes, because a hand briefly exceeds the press that it aims at.
 constexpr double kUsualOverStrongest = 1.5;
 
-// All that there is room for; where that is too little, the active model and the verdict's come before others.
+// The slots with a block. If there is too little room, the active model and that of the verdict come first.
 std::vector<std::size_t> slots_of_blocks(const ModelsView& models, bool reference, std::size_t block_count) {
   const std::size_t room = reference ? block_count - 1 : block_count;
   std::vector<std::size_t> wanted;

@@ -15,18 +15,18 @@
 namespace palpate {
 namespace {
 
-constexpr float kBetween = 1.32F;        // blocks side by side, in widths
-constexpr float kStrongestArrow = 0.3F;  // of a scene's strongest press, in sizes of a block
+constexpr float kBetween = 1.32F;        // distance of neighbouring blocks, in widths
+constexpr float kStrongestArrow = 0.3F;  // for the scene's strongest press, in sizes of a block
 constexpr float kLongestArrow = 0.6F;
 constexpr float kUsualSize_m = 0.1F;
 constexpr float kArrowTip_m = 0.0085F;
 constexpr float kShortestArrow_N = 0.03F;
 constexpr float kRailGap_m = 0.005F, kRailHeight_m = 0.003F;  // around the active block
-constexpr float kHiddenRail = 0.2F;                           // its opacity behind what stands before it
-// Of a dome, in radii of the tool: the virtual button's own rise (scenes/material/button_block.h), and wide enough to
-// be seen.
+constexpr float kHiddenRail = 0.2F;                           // opacity of hidden parts of the rail
+// Rise and radius of a dome, in radii of the tool: the rise of the virtual button (scenes/material/button_block.h), and
+// a visible width.
 constexpr float kDomeRise = 0.5F, kDomeRadius = 2.6F;
-// Of every Finish, in its order: light comes through, the skin shines, pits, lines of a grid.
+// Share of transmitted light, gloss, pores and lines of the grid, in the order of Finish.
 struct Material {
   float translucent, gloss, pores, grid;
 };
@@ -40,8 +40,8 @@ Rgb rgb(const Colour& colour) {
          255.0F;
 }
 
-// In units of the ball's radius, the tip at y = 0: a polished ball on a stem, a force
-// sensor's disc, and a dull handle.
+// The tool, in units of the ball's radius, with the tip at y = 0: a polished ball on a stem, the disc of a force
+// sensor, and a dull handle.
 constexpr float kToolLength = 15.2F;
 std::vector<glm::vec2> ball_profile(const Detail& detail) {
   std::vector<glm::vec2> profile;
@@ -69,8 +69,7 @@ std::vector<glm::vec2> handle_profile() {
   return profile;
 }
 
-// Flat shading of a corner: the same point twice would give no direction, so
-// corners are a hair apart.
+// The two points of a corner differ slightly, because equal points have no normal.
 std::vector<glm::vec2> shaft_profile() { return {{1e-4F, 0.0F}, {0.0014F, 1e-5F}, {0.0014F, 1.0F}}; }
 std::vector<glm::vec2> tip_profile() {
   return {{1e-4F, 0.0F}, {0.0038F, 1e-5F}, {0.0037F, 2e-4F}, {1e-4F, kArrowTip_m}};
@@ -132,7 +131,7 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
 }
 
 void BlockView::show(std::size_t count, bool at_once) {
-  // Several blocks are seen more from the front, so that none hides another.
+  // With several blocks the camera is nearer to the front, so that no block hides another.
   if (count == 1) {
     camera_.frame(0.92F * size_m_, 0.5F, at_once);
   } else {
@@ -202,7 +201,7 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   smooth_.end();
 }
 
-// Whether what stands still is kept as it is now; false: the driver refuses.
+// Updates the stored picture of the still parts if necessary. Returns false if the driver refuses.
 bool BlockView::refresh_still(std::size_t count, const Bodies& bodies, Theme theme) {
   const Still now{view_projection_, smooth_.width(), smooth_.height(), count, theme};
   if (now == still_) return true;
@@ -225,7 +224,7 @@ void BlockView::draw_all_still(std::size_t count, const Bodies& bodies, Theme th
   glDisable(GL_DEPTH_TEST);
 }
 
-// It lies behind and below all else: it needs no depth.
+// The table is behind and below everything else, so it needs no depth test.
 void BlockView::draw_table(std::size_t count, Theme theme) const {
   begin(table_shader_);
   table_shader_.set("table_y", -static_cast<float>(geometry_.height_m));
@@ -241,7 +240,7 @@ void BlockView::draw_table(std::size_t count, Theme theme) const {
   square_.draw();
 }
 
-// Where something stands before it, it shines through.
+// Hidden parts of the rail are drawn transparently.
 void BlockView::draw_rail(const Rgb& colour, const glm::vec3& at, const Bodies& bodies) const {
   begin(solid_shader_);
   solid_shader_.set("offset", at - glm::vec3(0.0F, static_cast<float>(geometry_.height_m), 0.0F));
@@ -261,7 +260,7 @@ void BlockView::draw_rail(const Rgb& colour, const glm::vec3& at, const Bodies& 
   glDepthMask(GL_TRUE);
 }
 
-// What a block's top and sides have in common.
+// Sets what the top and the sides of a block have in common.
 void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
   const Material& material = kMaterials[static_cast<std::size_t>(finish_)];
   begin(block_shader_);
@@ -280,14 +279,14 @@ void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
   block_shader_.set("pores", material.pores);
   block_shader_.set("grid", material.grid);
   block_shader_.set("mark", 0.0F);
-  block_shader_.set("tip", -1.0F);  // far above
+  block_shader_.set("tip", -1.0F);  // the tip is far above
   block_shader_.set("arrow", glm::vec3(0.0F));
 }
 
 void BlockView::draw_top(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies) const {
   begin_block(dent_under_ball(pose.dent_m, static_cast<float>(geometry_.tool_radius_m)), at);
   block_shader_.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
-  // Shallow dents have no colour yet: there is nothing to judge.
+  // Shallow dents have no colour, because there is no error to show.
   block_shader_.set("mark", pose.shows_error ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
   block_shader_.set("dome", dome_m_);
   block_shader_.set("tip", pose.tool_m);
@@ -312,7 +311,7 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at, const Bodi
   if (pose.force_N >= kShortestArrow_N) draw_arrow(pose, at, bodies);
 }
 
-// Beside the tool, as seen from the eye, so that neither hides the other.
+// The arrow is beside the tool in the view of the camera, so that neither hides the other.
 glm::vec3 BlockView::arrow_foot() const {
   const glm::vec3 eye = camera_.eye();
   const glm::vec3 right = glm::normalize(glm::vec3(eye.z, 0.0F, -eye.x));

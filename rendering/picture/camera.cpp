@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-// Never below the table, never straight down, where left and right would swap.
+// The camera is never below the table and never looks straight down, where left and right would swap.
 constexpr float kLowest_rad = 0.06F;
 constexpr float kHighest_rad = 1.35F;
 constexpr float kEasing_s = 0.12F;
@@ -33,7 +33,7 @@ void Camera::turn(const CameraTurn& turn) {
   aim();
 }
 
-// What is beyond the limits is not remembered: the way back begins at once.
+// Limits the turn as well, so that a turn back has an effect at once.
 void Camera::aim() {
   target_.yaw_rad = framed_.yaw_rad + turn_.yaw_rad;
   target_.pitch_rad = std::clamp(framed_.pitch_rad + turn_.pitch_rad, kLowest_rad, kHighest_rad);
@@ -61,7 +61,7 @@ glm::vec3 Camera::eye() const {
 }
 
 glm::mat4 Camera::view_projection(float aspect) const {
-  // In a tall viewport the width decides.
+  // In a tall viewport the field of view is that of the width.
   const float vertical =
       aspect >= 1.0F ? kFieldOfView_rad : 2.0F * std::atan(std::tan(0.5F * kFieldOfView_rad) / aspect);
   return glm::perspective(vertical, aspect, kNear_m, kFar_m) *

@@ -17,8 +17,8 @@ constexpr float kEdge_m = 0.004F;
 
 using Outline = std::vector<Vertex>;  // position on the rim, normal outward, both at y = 0
 
-// Round corners have many points, straight sides few: as seen from the middle, from
-// the corner at +x, +z on. Points of a side lie evenly in angle.
+// The outline from the corner at +x, +z on. Round corners have many points, straight sides few. The points of a side
+// have equal angles as seen from the middle.
 Outline outline(const glm::vec2& half, const Detail& detail) {
   constexpr float kQuarter = 0.5F * std::numbers::pi_v<float>;
   const glm::vec2 core = half - kCorner_m;
@@ -32,7 +32,7 @@ Outline outline(const glm::vec2& half, const Detail& detail) {
       const glm::vec3 normal(std::cos(angle), 0.0F, std::sin(angle));
       points.push_back({glm::vec3(sign_x * core.x, 0.0F, sign_z * core.y) + kCorner_m * normal, normal});
     }
-    // The side that follows: +z, -x, -z, +x.
+    // The side after the corner: +z, -x, -z, +x.
     const bool along_x = corner % 2 == 0;
     const float away = along_x ? half.y : half.x;
     const float reach = std::atan2(along_x ? core.x : core.y, away);
@@ -49,7 +49,7 @@ Outline outline(const glm::vec2& half, const Detail& detail) {
 
 void add_ring(Mesh& mesh, const Outline& ring) { mesh.vertices.insert(mesh.vertices.end(), ring.begin(), ring.end()); }
 
-// Joins the last ring with the one before it; the last lies outside or below.
+// Joins the last ring with the one before it. The last ring is outside or below.
 void join_rings(Mesh& mesh, std::size_t around) {
   const auto points = static_cast<std::uint32_t>(around);
   const auto outer = static_cast<std::uint32_t>(mesh.vertices.size()) - points;
@@ -62,7 +62,7 @@ void join_rings(Mesh& mesh, std::size_t around) {
   }
 }
 
-// Rings from the middle, circles at first, the rim's shape in the end.
+// Adds rings from the middle outward, whose shape changes from a circle to that of the rim.
 void add_top(Mesh& mesh, const Outline& rim, int rings) {
   const glm::vec3 up(0.0F, 1.0F, 0.0F);
   float nearest = 1e9F;

@@ -6,12 +6,12 @@
 namespace palpate {
 namespace {
 
-constexpr float kScales[] = {1.0F, 0.82F, Resolution::kLeast};  // each with two thirds of the pixels before it
+constexpr float kScales[] = {1.0F, 0.82F, Resolution::kLeast};  // each has two thirds of the pixels of the one before
 constexpr double kFrame_s = 1.0 / 60.0;
-constexpr int kFrames = 60;                  // that a mean is of
-constexpr double kStall_s = 2.0 * kFrame_s;  // one long frame is no reason
+constexpr int kFrames = 60;                  // frames of a mean
+constexpr double kStall_s = 2.0 * kFrame_s;  // longer frames count as this, so that one of them has no effect
 constexpr double kLate = 0.97, kRoom = 0.90;
-// So long a larger picture must have fitted: it does not come and go.
+// A larger picture must fit for this many means, so that the resolution does not alternate.
 constexpr int kGood = 5;
 
 }  // namespace
@@ -30,7 +30,7 @@ void Resolution::add(double busy_s) noexcept {
     return;
   }
   if (step_ == 0) return;
-  // At most all of it grows with the pixels.
+  // The time of a larger picture, if all of it is proportional to the pixels.
   const float more = kScales[step_ - 1] / kScales[step_];
   good_ = mean_s * static_cast<double>(more * more) < kRoom * kFrame_s ? good_ + 1 : 0;
   if (good_ < kGood) return;

@@ -54,7 +54,7 @@ Result<Shader> Shader::load(const std::string& folder, const std::string& vertex
     const Id part = compile(folder + "/" + name, before + *text, static_cast<unsigned>(kind));
     if (!part) return part.error();
     glAttachShader(shader.program_, *part);
-    glDeleteShader(*part);  // goes with the program
+    glDeleteShader(*part);  // deleted with the program
   }
   glLinkProgram(shader.program_);
   int good = 0;

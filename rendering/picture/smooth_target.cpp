@@ -10,13 +10,13 @@ namespace palpate {
 namespace {
 
 constexpr int kSamples = 4;
-// Along an edge to either side: the flattest that is found rises by a pixel in 26.
+// Steps of the search along an edge in both directions; the flattest edge that it finds rises by one pixel in 26.
 constexpr int kSteps = 8;
 
 }  // namespace
 
 Smoothing smoothing_for(std::string_view renderer) noexcept {
-  // Mesa's three, and Microsoft's and Apple's.
+  // The software renderers of Mesa (three), Microsoft and Apple.
   for (const std::string_view program : {"llvmpipe", "softpipe", "SWR", "GDI Generic", "Software"}) {
     if (renderer.find(program) != std::string_view::npos) return Smoothing::filter;
   }
@@ -63,7 +63,7 @@ void SmoothTarget::end() {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-// Everything is copied and its edges found, then what has one is drawn again.
+// The first pass copies the picture and finds its edges; the second redraws the pixels at edges.
 void SmoothTarget::filter_edges(const Viewport& to) const {
   glViewport(to.x, to.y, to.width, to.height);
   glBindTexture(GL_TEXTURE_2D, pixels_.colour());
@@ -77,7 +77,7 @@ void SmoothTarget::filter_edges(const Viewport& to) const {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
   draw(filter_->find);
-  // The triangle lies in the middle of the depth: before where there is none, behind the edges.
+  // The first pass wrote the depth: the triangle, at half depth, is drawn at the edges only.
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
   draw(filter_->smooth);

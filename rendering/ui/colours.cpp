@@ -22,8 +22,8 @@ const Palette kLight{hex(0xF3F3F2), hex(0xE9E8E6), hex(0xFFFFFF), hex(0xE6E9ED),
 const Palette kDark{hex(0x131516), hex(0x222426), hex(0x1B1F23), hex(0x2D343B), hex(0xF1F3F5),
                     hex(0xA3ADB7), hex(0x333A41), hex(0x4A535C), hex(0xFF5A4F), hex(0x7E868E)};
 
-// Even steps of lightness (CIELAB L* 96, 87, 78, 69, 60), from nearly white to the
-// green of viridis: nothing is no shadow, and what is large is dark.
+// Equal steps of lightness (CIELAB L* 96, 87, 78, 69, 60), from nearly white to the green of viridis: larger errors are
+// darker.
 constexpr std::array<Rgb, 5> kScale{hex(0xFAF6D0), hex(0xD3E59C), hex(0x93D285), hex(0x50BA85), hex(0x1FA387)};
 
 double luminance(const Rgb& colour) noexcept {
@@ -33,8 +33,8 @@ double luminance(const Rgb& colour) noexcept {
   return static_cast<double>(0.2126F * linear(colour.r) + 0.7152F * linear(colour.g) + 0.0722F * linear(colour.b));
 }
 
-// Towards white on a dark panel; on a light one towards a dark green, as far as it must: orange that is mixed with
-// black becomes vermilion.
+// Mixes the colour with white on a dark panel, and with dark green on a light one, until the contrast is sufficient.
+// Black would turn orange into vermilion.
 Rgb legible(const Rgb& colour, Theme theme) noexcept {
   constexpr float kStep = 0.02F;
   const Palette& p = palette(theme);
@@ -64,11 +64,11 @@ Rgb method_colour(std::string_view method, Theme theme) {
 }
 
 Rgb method_colour(std::string_view method, Theme theme, std::size_t which) {
-  // Shares of black, where negative, or white.
+  // Shares of white; negative: of black.
   constexpr std::array<float, 4> kShades{-0.42F, 0.45F, -0.66F, 0.25F};
   const Rgb colour = method_colour(method, theme);
   if (which == 0) return colour;
-  // Away from the background first.
+  // The first shade moves away from the background.
   const bool turned = colour == Rgb(0.0F) || (theme == Theme::dark && colour != Rgb(1.0F));
   const float shade = kShades[(which - 1) % kShades.size()] * (turned ? -1.0F : 1.0F);
   return legible(glm::mix(colour, Rgb(shade < 0.0F ? 0.0F : 1.0F), std::abs(shade)), theme);

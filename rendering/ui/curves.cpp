@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-// NaN counts as nothing.
+// Ignores NaN.
 float smaller(float so_far, float value) noexcept { return value < so_far || std::isnan(so_far) ? value : so_far; }
 float larger(float so_far, float value) noexcept { return value > so_far || std::isnan(so_far) ? value : so_far; }
 
@@ -54,7 +54,7 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
   find_highest();
 }
 
-// Keeps the columns that both have; false: there are none that could be kept.
+// Keeps the columns that remain in view. Returns false if there are none.
 bool CurveColumns::scroll(double width_s, double first, std::size_t slots, std::size_t count) {
   const bool same = columns_.size() == count + 2 && slots == slots_ && std::abs(width_s - width_s_) < 1e-9 * width_s &&
                     first >= first_ && first - first_ < static_cast<double>(columns_.size());
@@ -79,7 +79,7 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
     for (std::size_t i = 0; i < slots_; ++i) most = std::max(most, std::abs(tick.difference_over_jnd(i, jnd)));
     return most;
   };
-  // Of equal ones the last; a comparison with NaN is false.
+  // The last of equal ticks; a comparison with NaN is false.
   if (!column.any || farthest(point) >= farthest(column.tick)) {
     column.tick = point;
     column.jnd_N = static_cast<float>(jnd.at(static_cast<double>(point.reference_N)));

@@ -92,7 +92,7 @@ void LivePlot::draw_x_axis() const {
 }
 
 void LivePlot::line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const {
-  // Of a whole number of pixels ImGui makes one strip that is smooth by its texture, else three.
+  // For a whole thickness ImGui draws one textured strip, else three strips.
   const float whole = std::max(1.0F, std::round(thickness));
   if (points.size() > 1) list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, whole);
 }

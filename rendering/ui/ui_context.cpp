@@ -13,7 +13,7 @@ namespace palpate {
 UiContext::UiContext(GLFWwindow* window) : window_(window) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // the window remembers nothing between runs
+  ImGui::GetIO().IniFilename = nullptr;  // ImGui stores no window positions
   ImGui_ImplGlfw_InitForOpenGL(window, true);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
@@ -27,7 +27,7 @@ UiContext::~UiContext() {
 void UiContext::begin_frame() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // The mouse has left: nothing is under it any more.
+  // When the mouse leaves the window, no element is under it.
   const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right);
   if (!held && glfwGetWindowAttrib(window_, GLFW_HOVERED) == 0) ImGui::GetIO().MousePos = {-FLT_MAX, -FLT_MAX};
   ImGui::NewFrame();

@@ -10,26 +10,25 @@
 namespace palpate {
 namespace {
 
-// Sizes at 1080 lines.
+// Font sizes for a window of 1080 lines.
 constexpr float kBody_px = 18.0F;
 constexpr float kHeading_px = 28.0F;
 constexpr float kBig_px = 54.0F;
 constexpr float kDesignHeight = 1080.0F;
-// In a tall window the width decides.
+// In a tall window the scale follows the width.
 constexpr float kDesignWidth = 1500.0F;
-// Smaller is not legible, whatever the window.
+// Text of a smaller scale is not legible.
 constexpr float kSmallestScale = 0.78F;
 constexpr float kLargestScale = 4.0F;
-// The scale goes in steps, so that dragging a corner does not rebuild fonts in
-// every frame.
+// The scale changes in steps, so that resizing a window does not rebuild the fonts in every frame.
 constexpr float kScaleStep = 0.04F;
 
-// DejaVu Sans and others with tabular figures, as Debian and its kin place them.
+// DejaVu Sans and other fonts with tabular figures, at the paths of common distributions.
 constexpr const char* kFontFiles[] = {
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
     "/usr/share/fonts/TTF/DejaVuSans.ttf", "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
 
-// Latin, and the few signs that the panel uses.
+// Latin letters and the signs that the panel uses.
 constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193, 0x2264,
                                0x2265, 0x25A0, 0x25CF, 0x3BC,  0x3C4,  0};
 
@@ -72,7 +71,7 @@ void UiStyle::update(const UiSize& size, float larger, Theme theme) {
   }
 }
 
-// In the framebuffer's pixels, so that they are sharp, and drawn in the window's units.
+// Builds fonts in pixels of the framebuffer, so that they are sharp; they are drawn in units of the window.
 void UiStyle::build_fonts(float pixels_per_unit) {
   ImGuiIO& io = ImGui::GetIO();
   const std::string path = find_font();
@@ -97,7 +96,7 @@ void UiStyle::set_colours() {
   style.WindowRounding = style.ChildRounding = 0.0F;
   style.FrameRounding = style.PopupRounding = style.GrabRounding = 4.0F;
   style.WindowBorderSize = 0.0F;
-  style.FrameBorderSize = 1.0F;  // buttons and sliders lie on a picture of any brightness
+  style.FrameBorderSize = 1.0F;  // buttons and sliders are visible on a picture of any brightness
   style.WindowPadding = {12.0F, 8.0F};
   style.ItemSpacing = {8.0F, 5.0F};
   style.FramePadding = {8.0F, 3.0F};

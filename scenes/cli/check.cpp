@@ -1,4 +1,4 @@
-// palpate check: is this recording fit to be fitted?
+// palpate check: checks whether a recording is suitable for a fit.
 #include <iostream>
 #include <memory>
 #include <sstream>

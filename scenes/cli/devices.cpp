@@ -1,4 +1,4 @@
-// palpate devices: which devices there are, and why one cannot be opened.
+// palpate devices: lists the devices, and the reason if one cannot be opened.
 #include <algorithm>
 #include <cstdio>
 #include <memory>

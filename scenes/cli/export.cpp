@@ -1,4 +1,4 @@
-// palpate export: a model as one self-contained C99 file.
+// palpate export: writes a model as one self-contained C99 file.
 #include <cstdio>
 #include <memory>
 #include <string>

@@ -1,4 +1,4 @@
-// palpate fit: recordings in, a model file out.
+// palpate fit: fits a model to recordings and writes its file.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -26,7 +26,7 @@
 namespace palpate::cli {
 namespace {
 
-// A training figure that a replay contradicts by more is explained.
+// If the share within the JND differs by more in a replay of the training, the output explains why.
 constexpr double kContradiction = 0.005;
 
 struct FitArguments {
@@ -39,7 +39,7 @@ struct FitArguments {
   bool list_methods = false;
 };
 
-// An option that only some methods take.
+// An option that only some methods have.
 struct MethodOnly {
   const char* option;
   MethodOption takes;
@@ -49,15 +49,15 @@ constexpr MethodOnly kMethodOnly[] = {{"--centres", kTakesCentres},
                                       {"--grid", kTakesGrid},
                                       {"--kernel", kTakesKernel}};
 
-// An error in training is smaller where an accelerometer helped, and a device may have none.
+// The sensors behind the training error: an accelerometer reduces it, and a device may have none.
 std::string sensor_text(const std::vector<CheckedFile>& files) {
   const bool any = std::any_of(files.begin(), files.end(),
                                [](const CheckedFile& one) { return one.recording.columns.acceleration; });
   return any ? " (with the accelerometer)" : " (from positions alone)";
 }
 
-// Wrong usage that CLI11 cannot see: what is missing unless the methods are only
-// listed, and an option that the method has no use for.
+// Checks what CLI11 cannot: options that are required unless the methods are only listed, and options that the method
+// does not have.
 void check_usage(const CLI::App& verb, const FitArguments& arguments) {
   if (arguments.list_methods) return;
   for (const char* needed : {"--recording", "--method", "--out"}) {
@@ -80,8 +80,8 @@ Status list_methods() {
   return {};
 }
 
-// Replays the training recordings as they came, and says where that contradicts the
-// share that the fit printed for itself.
+// Replays the training recordings as recorded, and reports where their share within the JND contradicts that of the
+// fit.
 std::string training_contradiction(const std::vector<std::string>& recordings, const ModelData& data) {
   const auto model = std::make_shared<const FittedModel>(data);
   ErrorFigures errors;
@@ -111,7 +111,7 @@ Status run_fit(const FitArguments& arguments) {
   if (arguments.list_methods) return list_methods();
   const auto scene = load_scene(arguments.scene);
   if (!scene) return scene.error();
-  // A name that cannot be written is told now and not after the fit.
+  // Reports before the fit if the output cannot be written.
   if (const auto trial = AtomicFile::create(arguments.out, arguments.force); !trial) return trial.error();
   const auto began = std::chrono::steady_clock::now();
   std::optional<ProgressLine> line("fitting " + arguments.options.method);
@@ -124,7 +124,7 @@ Status run_fit(const FitArguments& arguments) {
   const ModelData& data = fitted->fit.data;
   const std::string contradiction = training_contradiction(arguments.recordings, data);
   if (Status status = save_model(arguments.out, data, arguments.force); !status) return status;
-  line.reset();  // what follows goes onto a line of its own
+  line.reset();  // ends the progress line
   if (!contradiction.empty()) std::cerr << "note: " << contradiction << "\n";
   if (arguments.json) {
     print_json(fit_json(*fitted, arguments.options));

@@ -19,7 +19,7 @@ std::string relaxation_text(const std::vector<RelaxationTime>& times) {
   return text.empty() ? "none" : text;
 }
 
-// One row a feature: the cross-validated error of the trend with it and without it. The rule that selects
+// One row for each feature: the cross-validated error of the trend with it and without it. The rule that selects
 // (models/training/selection.h) compares these errors and their standard errors.
 void print_gains(const std::vector<PartGain>& gains) {
   if (gains.empty()) return;
@@ -59,7 +59,7 @@ void print_fit(const RecordingsFit& fitted, const std::string& sensor, const std
             << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
             << "after reduction     " << provenance.samples_after_reduction << "\n";
   print_surfaces(provenance);
-  // The depth comes first among the features.
+  // The depth is the first feature.
   if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
     std::cout << "depth begins        at " << fixed(1e3 * begins_m, 3) << " mm, where the recordings' force does\n";
   std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"

@@ -1,4 +1,4 @@
-// palpate import: a table that another program wrote becomes a recording.
+// palpate import: converts a table of another program to a recording.
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -33,7 +33,7 @@ struct ImportOptions {
   bool force = false;
 };
 
-// "time=NAME" into its place.
+// Assigns the column of an argument such as "time=NAME" to its role.
 void read_column(const std::string& text, RoleRequest& columns) {
   const std::size_t equals = text.find('=');
   for (std::size_t role = 0; role < kRoles && equals != std::string::npos; ++role) {
@@ -76,7 +76,7 @@ ImportRequest import_request(const ImportOptions& options) {
   return request;
 }
 
-// "contact", "first" or metres, from --zero.
+// Applies --zero: "contact", "first" or a position in metres.
 Status move_zero(const std::string& zero, Recording& recording) {
   double at_m = recording.rows.front().position_m;
   if (zero == "contact") {
@@ -150,7 +150,7 @@ void print_import_json(const ImportOptions& options, const ImportRequest& reques
 Status run_import(const ImportOptions& options) {
   if (const Status status = refuse_input_as_output(options.out, {options.file}, "--out"); !status) return status;
   const ImportRequest request = import_request(options);
-  // A name that cannot be written is told now and not after the reading.
+  // Reports before the import if the output cannot be written.
   if (const auto trial = AtomicFile::create(options.out, options.force); !trial) return trial.error();
   auto table = import_table(options.file, request);
   if (!table) return table.error();

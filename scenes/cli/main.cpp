@@ -1,6 +1,5 @@
-// palpate: the headless program. Exit 0: done; 1: it could not be done; 2: wrong
-// usage; 130: stopped by Ctrl-C, as shells count (143: by SIGTERM). No locale is ever
-// set, so numbers read and print with '.' everywhere.
+// palpate: the headless program. Exit codes: 0 success; 1 error; 2 wrong usage; 130 stopped by Ctrl-C, 143 by SIGTERM,
+// as in a shell. No locale is set, so that numbers are read and printed with '.'.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -42,7 +41,7 @@ std::string known_verbs(const Verbs& verbs) {
   return names;
 }
 
-// The usage error as one line, with the verbs or the verb's own help to look at.
+// Prints the usage error as one line that refers to the verbs or to the verb's help.
 int fail_usage(const CLI::App& app, const Verbs& verbs, std::string message) {
   for (char& letter : message) {
     if (letter == '\n' || letter == '\r') letter = ' ';
@@ -65,7 +64,7 @@ Status run_chosen(const Verbs& verbs) {
   return {};
 }
 
-// A first word that is no verb, told before CLI11 calls it "not expected".
+// Reports an unknown verb, for which CLI11 has the message "not expected" only.
 bool names_unknown_verb(const Verbs& verbs, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return false;
   return std::none_of(verbs.begin(), verbs.end(), [&](const auto& verb) { return verb.first->get_name() == argv[1]; });
@@ -85,7 +84,7 @@ int run_program(int argc, char** argv) {
     app.parse(argc, argv);
     const Status status = run_chosen(verbs);
     if (status) return kDone;
-    // As a shell has it of a program that the signal ended.
+    // The exit code of a program that a signal has ended, as in a shell.
     return fail(status.error().message, stop_requested() != 0 ? 128 + stop_requested() : kFailed);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
@@ -96,15 +95,14 @@ int run_program(int argc, char** argv) {
   }
 }
 
-// Blocks that a fit takes and gives back some hundred times stay with the process: to
-// give them back to the system and to take them anew costs more than to fill them (31,000
-// page faults in a fit of a minute's recording, 7,400 so).
+// Keeps freed memory in the process. A fit allocates and frees large blocks some hundred times; returning them to the
+// system costs more than filling them (31,000 page faults in a fit of a minute's recording, 7,400 with this).
 void keep_freed_memory() {
 #if defined(__GLIBC__)
   constexpr int kKept = 64 << 20;
   mallopt(M_MMAP_THRESHOLD, kKept / 2);
   mallopt(M_TRIM_THRESHOLD, kKept);
-  mallopt(M_ARENA_MAX, 1);  // what one thread has freed serves the next; they rarely meet here
+  mallopt(M_ARENA_MAX, 1);  // threads share freed blocks; they rarely allocate at the same time
   mallopt(M_TOP_PAD, kKept);
 #endif
 }

@@ -1,4 +1,4 @@
-// palpate paper: the protocol of Hoever & Harders (2009) on virtual material.
+// palpate paper: runs the protocol of Hoever & Harders (2009) on virtual material.
 #include "scenes/report/paper.h"
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// palpate record: motion and measured force of a real tool, from a device into a recording.
+// palpate record: records motion and measured force of a real tool from a device.
 #include <poll.h>
 #include <unistd.h>
 
@@ -36,8 +36,7 @@ struct RecordOptions {
   bool bridge_remote = false;
 };
 
-// What a person at the device sees, on stderr: a line that changes where that is a
-// terminal, and what goes wrong as lines of its own.
+// Shows the recording on stderr: on a terminal a status line that is overwritten, and each problem as a separate line.
 class RecordProgress {
  public:
   explicit RecordProgress(bool measures_force) : measures_force_(measures_force) {}
@@ -81,7 +80,7 @@ class RecordProgress {
   double last_s_ = 0.0, last_m_ = 0.0;
 };
 
-// A device that has to be zeroed: Enter says that the tool is at its rest position.
+// If the device needs zeroing, waits without blocking for Enter, which says that the tool is at its rest position.
 void zero_on_enter(Device& device, const DeviceHealth& health, bool& told, RecordProgress& progress) {
   if (health.zeroing != Zeroing::needed) {
     told = false;
@@ -113,7 +112,7 @@ RecorderRequest recorder_request(const RecordOptions& options, Device& device) {
   return request;
 }
 
-// Until the time is up or somebody stops it.
+// Records until the time is over or the user stops it.
 Result<std::string> record(const RecordOptions& options, const CheckRequest& check, Device& device) {
   HapticsLoop loop(device);
   SessionRecorder recorder(loop);

@@ -10,7 +10,7 @@ namespace palpate::cli {
 namespace {
 
 constexpr double kPeriod_s = 2.0;
-constexpr double kRest = 10.0;  // of what a check takes
+constexpr double kRest = 10.0;  // pause after a check, as a multiple of its duration
 constexpr int kSmallStrokes = 10;
 
 constexpr const char* kPresses[kSpeedBands] = {
@@ -31,7 +31,7 @@ std::string guide_advice(const RecordingMeasures& measures, double longest_relax
       if (!visited(measures, quarter, band)) return kPresses[band];
     }
   }
-  // As `check` counts it and advises.
+  // The same criterion and advice as in `palpate check`.
   if (measures.longest_hold_s < longest_relaxation_s) {
     return "press, and hold still for " + fixed(2.0 * longest_relaxation_s, 1) + " s";
   }
@@ -66,7 +66,7 @@ RecordGuide::RecordGuide(std::string path, const CheckRequest& request) : path_(
 std::vector<std::string> RecordGuide::update(double now_s) {
   if (now_s < next_s_) return {};
   next_s_ = now_s + kPeriod_s;
-  // Not there before its first 1000 rows.
+  // The file does not exist before its first 1000 rows.
   const auto file = check_recording_file(path_, request_);
   next_s_ = std::max(next_s_, now_s + kRest * (steady_now_s() - now_s));
   const auto telling = [&](const std::string& text) { return std::exchange(told_, text) != text; };

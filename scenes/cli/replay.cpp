@@ -1,4 +1,4 @@
-// palpate replay: models against recordings, through the tick of the live loop.
+// palpate replay: compares models with recordings, through the tick of the live loop.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -31,7 +31,7 @@ struct Options {
   bool force = false;
 };
 
-// A share that changes by more with the surface moved is noted.
+// The output has a note if moving the surface changes the share within the JND by more.
 constexpr double kShareThatMatters = 0.005;
 
 struct ReplayedModel {
@@ -49,11 +49,11 @@ struct ReplayedRecording {
   std::vector<ReplayedModel> models;
 };
 
-// A figure of merit where there are samples in contact, else null: there is no number that would be true.
+// A figure of merit; null in JSON if there are no samples in contact.
 struct Figure {
   const char* key;
   double ErrorSummary::*value;
-  double scale;  // of the table
+  double scale;  // factor in the table
   int decimals;
 };
 constexpr Figure kFigures[] = {{"rms_error_N", &ErrorSummary::rms_error_N, 1e3, 1},
@@ -62,14 +62,14 @@ constexpr Figure kFigures[] = {{"rms_error_N", &ErrorSummary::rms_error_N, 1e3, 
                                {"p99_error_over_jnd", &ErrorSummary::p99_error_over_jnd, 1.0, 2},
                                {"max_error_over_jnd", &ErrorSummary::max_error_over_jnd, 1.0, 2}};
 
-// The output must not replace what is being read, --force or not.
+// Refuses an output that would replace an input, even with --force.
 Status check_output(const Options& options, const std::string& option, const std::string& out) {
   std::vector<std::string> inputs = options.models;
   inputs.insert(inputs.end(), options.recordings.begin(), options.recordings.end());
   return refuse_input_as_output(out, inputs, option);
 }
 
-// `path` for one recording; for several NAME_RECORDING.csv, one each. Empty where none is wanted.
+// The output file of each recording: `path` for one, NAME_RECORDING.csv for several; empty if `path` is empty.
 std::vector<std::string> outputs(const std::string& path, const std::vector<std::string>& recordings) {
   if (path.empty() || recordings.size() == 1) return std::vector<std::string>(recordings.size(), path);
   std::vector<std::string> names;
@@ -157,7 +157,7 @@ std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& 
   return row;
 }
 
-// Two explanations that the recording does not distinguish, for the first model that has them.
+// Says, for the first such model, that the recording does not distinguish an offset of the surface and of the force.
 std::string ambiguity_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
   for (std::size_t i = 0; i < models.size(); ++i) {
     const OffsetEstimate& surface = replayed.models[i].surface;
@@ -172,7 +172,7 @@ std::string ambiguity_remark(const ReplayedRecording& replayed, const std::vecto
   return {};
 }
 
-// What moving the surface changes of the share within the JND, in words; empty where that is little.
+// Describes how moving the surface changes the share within the JND; empty if the change is small.
 std::string surface_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
   std::size_t most = models.size();
   double largest = kShareThatMatters;
@@ -215,7 +215,7 @@ RowSource rows_of_checked(const CheckedFile& file) {
   return file.whole ? rows_of(file.recording) : rows_of_file(file.path);
 }
 
-// Where features and forces, and a figure, of one recording go; empty: not wanted.
+// Output files of one recording; empty: not requested. `forces`: features and forces. `plot`: a figure.
 struct Outputs {
   std::string forces;
   std::string plot;

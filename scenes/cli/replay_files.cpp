@@ -20,7 +20,7 @@ Error recording_as_model(const std::string& path) {
   return Error{path + " is a recording, expected a model file (JSON, made by palpate fit); give it with --recording"};
 }
 
-// Models of one name by their files.
+// Replaces names that several models have by the names of their files.
 std::vector<std::string> told_apart(const std::vector<std::string>& names, const std::vector<std::string>& paths) {
   std::vector<std::string> result = names;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -145,7 +145,7 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
     for (const float over : moment.over_jnd) worst = std::max(worst, std::abs(over));
     return moment.in_contact ? static_cast<double>(worst) : -1.0;
   };
-  // Of every group the moment with the largest error, so that a bad sample is seen.
+  // Draws the moment with the largest error of each group, so that a bad sample is visible.
   for (std::size_t first = 0; first < moments_.size(); first += group) {
     const auto begin = moments_.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = moments_.begin() + static_cast<std::ptrdiff_t>(std::min(first + group, moments_.size()));
@@ -159,7 +159,7 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
       difference.series[i + 1].rows.push_back({shown.time_s, shown.in_contact ? over : kNoValue});
     }
   }
-  // Of models that give the same forces only the first could be seen.
+  // Merges curves that are equal, because only one of them would be visible.
   for (std::size_t i = difference.series.size(); i-- > 2;) {
     for (std::size_t k = 1; k < i; ++k) {
       if (!same_rows(difference.series[i], difference.series[k])) continue;

@@ -1,4 +1,4 @@
-// palpate report: every method on the user's recordings, as a page.
+// palpate report: compares all methods on the user's recordings, as a page.
 #include "scenes/report/report.h"
 
 #include <cstdio>
@@ -22,7 +22,7 @@ struct Arguments {
   bool force = false;
 };
 
-// With which the same report is made again.
+// The command that makes the same report again.
 std::string command_line(const Arguments& arguments) {
   std::string text = "palpate report";
   const auto add = [&](const char* option, const std::vector<std::string>& values) {

@@ -1,4 +1,4 @@
-// palpate scenes: what there is to touch.
+// palpate scenes: lists the scenes.
 #include <string>
 #include <vector>
 

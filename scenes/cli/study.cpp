@@ -1,5 +1,4 @@
-// palpate study: the force-discrimination study behind the window's screen: analyses the files of subjects,
-// simulates subjects.
+// palpate study: analyses the files of subjects in the force-discrimination study, or simulates subjects.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -24,12 +23,12 @@ struct StudyOptions {
   bool with_published = false;
   std::string out = ".";
   bool force = false;
-  std::vector<std::string> files;  // analyse
-  int subjects = 12;               // simulate
+  std::vector<std::string> files;  // for `analyse`
+  int subjects = 12;               // for `simulate`
   std::uint64_t seed = 1;
-  SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N, as the paper's
+  SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N, as in the paper
   bool discriminates = false;
-  std::string recording;  // to discriminate; empty: virtual
+  std::string recording;  // for --discriminate; empty: a virtual recording
   std::string strokes_scene = "silicone_block";
   std::vector<std::string> models;
 };
@@ -60,7 +59,7 @@ Status make_folder(const std::string& folder) {
   return {};
 }
 
-// Table, JND file, figures.
+// Writes the table, the JND file and the figures.
 Status write_analysis(const StudyAnalysis& analysis, const StudyOptions& options) {
   if (const Status made = make_folder(options.out); !made) return made;
   print_analysis(analysis);
@@ -103,7 +102,7 @@ Status analyse_strokes(const std::vector<StudyData>& files, const StudyOptions& 
   return write_file_atomically(options.out + "/results.csv", discrimination_table(*analysis), options.force);
 }
 
-// By what the first file is.
+// Analyses all files by the kind of the first one.
 Status analyse_files(const std::vector<StudyData>& files, const StudyOptions& options) {
   const bool strokes = !files.empty() && files.front().header.strokes != nullptr;
   return strokes ? analyse_strokes(files, options) : analyse(files, options);

@@ -23,7 +23,7 @@ struct SynthOptions {
   CLI::Option* seconds = nullptr;
 };
 
-// CLI11 alone would read -1 as 2^64 - 1.
+// Checks for a whole number, because CLI11 reads -1 as 2^64 - 1.
 std::string whole_number(const std::string& text) {
   std::uint64_t value = 0;
   const char* end = text.data() + text.size();
@@ -32,7 +32,7 @@ std::string whole_number(const std::string& text) {
   return "found '" + text + "', expected a whole number from 0 to 18446744073709551615";
 }
 
-// Everything that is wrong with the command line itself, before any work.
+// Checks the command line before any work.
 void check_usage(const SynthOptions& options) {
   if (options.list) return;
   if (options.rig.material.empty()) throw CLI::RequiredError("--material");

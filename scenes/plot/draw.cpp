@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// For the shell: nothing in it means anything.
+// Quotes the text for the shell, so that no character has a special meaning.
 std::string shell_quoted(const std::string& text) {
   std::string safe(1, '\'');
   for (const char letter : text) {
@@ -40,7 +40,7 @@ ShellRun run_in_shell(const std::string& command) {
   return run;
 }
 
-// The first line that says something, warnings left out.
+// The first line of gnuplot's output that is neither empty nor a warning.
 std::string first_line(const std::string& text) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -67,7 +67,7 @@ Status find_gnuplot() {
   return Error{"found no gnuplot in PATH, which draws the figures; install it (Debian: apt-get install gnuplot-nox)"};
 }
 
-// Without personal settings.
+// Runs gnuplot without the user's settings.
 Status run_gnuplot(const std::string& folder, const std::string& script) {
   const ShellRun run = run_in_shell("cd " + shell_quoted(folder) + " && LC_ALL=C gnuplot -d " + shell_quoted(script) +
                                     " 2>&1 >/dev/null </dev/null");

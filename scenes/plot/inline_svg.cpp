@@ -17,7 +17,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return result.append(text, at, std::string::npos);
 }
 
-// The ways in which gnuplot writes "#d8d8d8".
+// The spellings that gnuplot uses for a colour such as "#d8d8d8".
 std::vector<std::string> spellings(std::string_view colour) {
   const auto part = [&](std::size_t at) { return std::stoi(std::string(colour.substr(at, 2)), nullptr, 16); };
   char wide[40];

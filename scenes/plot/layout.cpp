@@ -8,7 +8,7 @@ namespace {
 
 bool is_line(Mark mark) { return mark == Mark::line || mark == Mark::dashed; }
 
-// Steps of a decade, coarse to fine.
+// Mantissas of tics on a logarithmic axis, from coarse to fine.
 const std::vector<std::vector<double>> kLogSteps{
     {1.0}, {1.0, 3.0}, {1.0, 2.0, 5.0}, {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}};
 
@@ -122,7 +122,7 @@ std::vector<NameTag> name_tags(const Panel& panel, double line, double character
       if (meets(tags[i], tags[k])) tags[i].y = std::max(tags[i].y, tags[k].y + line);
     }
   }
-  // What was pushed out at the top goes down again, those below it first.
+  // Names that were pushed above the panel move down again, and push down those below them.
   for (std::size_t i = tags.size(); i-- > 0;) {
     tags[i].y = std::min(tags[i].y, 1.0);
     for (std::size_t k = i + 1; k < tags.size(); ++k) {
@@ -138,7 +138,7 @@ std::vector<Series> cut_marks(const Panel& panel) {
     if (!is_line(series.mark)) continue;
     Series up{"", series.colour, Mark::up, {}};
     Series down{"", series.colour, Mark::down, {}};
-    const PlotRow* highest = nullptr;  // of the stretch beyond the edge
+    const PlotRow* highest = nullptr;  // of the current stretch beyond the edge
     const auto close = [&] {
       if (highest == nullptr) return;
       const bool above = highest->y > panel.y.high;
@@ -146,7 +146,7 @@ std::vector<Series> cut_marks(const Panel& panel) {
       highest = nullptr;
     };
     for (const PlotRow& row : series.rows) {
-      const bool beyond = row.y > panel.y.high || row.y < panel.y.low;  // never where no limit was asked for
+      const bool beyond = row.y > panel.y.high || row.y < panel.y.low;  // always false on an axis without limits
       if (!beyond) close();
       if (beyond && (highest == nullptr || std::abs(row.y) > std::abs(highest->y))) highest = &row;
     }

@@ -16,8 +16,8 @@ namespace {
 constexpr int kPageWidth = 800;  // pixels
 constexpr int kRowHeight = 230;
 constexpr int kLegendLine = 20;
-constexpr double kCharacter = 9.8;  // pixels, in which an offset in characters counts
-// Room for a label of a tic and for a name, pixels; of the height of a row the panel itself has about this share.
+constexpr double kCharacter = 9.8;  // pixels per character of an offset
+// Room for the label of a tic and for a name, pixels, and the approximate share of a row's height that the panel has.
 constexpr double kTicWidth = 90.0;
 constexpr double kTicHeight = 28.0;
 constexpr double kTagHeight = 17.0;
@@ -25,7 +25,7 @@ constexpr double kPanelShare = 0.65;
 
 std::string number(double value) { return std::isfinite(value) ? shortest(value) : "NaN"; }
 
-// Quoted for gnuplot, which has no way to write these.
+// Quotes the text for gnuplot. Characters that gnuplot cannot escape become apostrophes.
 std::string quoted(const std::string& text) {
   std::string safe(1, '"');
   for (const char letter : text)
@@ -66,7 +66,7 @@ std::string axis_text(const char* name, const Axis& axis, const AxisRange& range
   std::string text = (axis.logarithmic ? "set logscale " : "unset logscale ") + letter + "\n";
   text += "set " + letter + "range [" + number(range.low) + ":" + number(range.high) + "]\n";
   text += "set " + letter + "label " + quoted(axis.title) + "\n";
-  // Counts of thousands and more would run into each other.
+  // Large numbers get a prefix such as k, so that the labels do not overlap.
   const std::string plain = range.high < 1e4 ? "%g" : "%.0s%c";
   const std::string format = axis.logarithmic && !axis.unit.empty() ? "%.0s %c" + axis.unit : plain;
   std::string tics;
@@ -74,7 +74,7 @@ std::string axis_text(const char* name, const Axis& axis, const AxisRange& range
   return text + "set format " + letter + " \"" + format + "\"\nset " + letter + "tics (" + tics + ")\n";
 }
 
-// How a mark is drawn, a variable of style.gp, and what stands for it in the legend.
+// `style`: the variable of style.gp that draws the mark. `legend`: its symbol in the legend.
 struct MarkStyle {
   const char* style;
   const char* legend;
@@ -90,7 +90,7 @@ std::string drawn_with(const Series& series) {
   return std::string(1, '@').append(style_of(series).style) + hue;
 }
 
-// A line across, and the name of one that stands, at its upper end.
+// A line across the panel; a vertical one has its name at the upper end.
 std::string level_text(const Level& level) {
   const std::string at = number(level.value);
   const std::string ends = level.vertical ? " from first " + at + ", graph 0 to first " + at + ", graph 1"
@@ -108,7 +108,7 @@ std::string tag_text(const NameTag& tag) {
          colour_of(tag.colour) + "\n";
 }
 
-// Room for the names beside the panel.
+// The margin for the names beside the panel, in characters.
 int right_margin(const std::vector<NameTag>& tags) {
   std::size_t longest = 2;
   for (const NameTag& tag : tags) longest = std::max(longest, tag.beside_panel ? tag.text.size() : 0);
@@ -129,7 +129,7 @@ std::string panel_text(const Panel& panel, std::size_t index, const PanelSize& s
   for (const Level& level : panel.levels) text += level_text(level);
   for (const NameTag& tag : tags) text += tag_text(tag);
   std::string curves;
-  for (const bool area : {true, false}) {  // grey is behind everything, so first
+  for (const bool area : {true, false}) {  // areas first, so that they are behind the curves
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
       const Series& series = panel.series[i];
       if ((series.mark == Mark::area) != area || series.rows.empty()) continue;
@@ -140,11 +140,11 @@ std::string panel_text(const Panel& panel, std::size_t index, const PanelSize& s
 }
 
 struct Legend {
-  std::string text;  // commands that set it, for the first panel
+  std::string text;  // gnuplot commands that draw it, for the first panel
   int lines = 0;
 };
 
-// Every name once, from left to right, on as many lines as it takes.
+// Each name once, from left to right, on as many lines as necessary.
 Legend legend_of(const Plot& plot) {
   Legend legend;
   std::set<std::string> seen;
@@ -194,7 +194,7 @@ Result<std::string> plot_script(const Plot& asked) {
       text += data_block(plot.panels[p].series[s], data_name(p, s));
     }
   }
-  // Room for the legend: as high as the lines of a title.
+  // An empty title reserves the height of the legend.
   std::string room = legend.lines > 0 ? " title \" " : "";
   for (int i = 1; i < legend.lines; ++i) room += "\\n ";
   if (legend.lines > 0) room += '"';

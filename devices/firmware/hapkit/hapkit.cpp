@@ -1,12 +1,11 @@
-// A Hapkit board (ATmega328P at 16 MHz) as a device of `bridge:`, 1000 samples a second
-// over its serial port at 1 Mbaud. To build and to load, in the project's folder:
+// Firmware of a Hapkit board (ATmega328P at 16 MHz) as a device of `bridge:`, with 1000 samples per second over its
+// serial port at 1 Mbaud. To build and to load, in the project's folder:
 //   avr-g++ -std=c++11 -Os -mmcu=atmega328p -I . devices/firmware/hapkit/hapkit.cpp -o hapkit.elf
 //   avr-objcopy -O ihex hapkit.elf hapkit.hex
 //   avrdude -p m328p -c arduino -P /dev/ttyUSB0 -b 115200 -U flash:w:hapkit.hex
-// Pins are those of the Hapkit board: PWM D5, direction D8, magnetic sensor A2. With D4 on
-// ground, the amplified load cell of a tool is on A3. The figures are those of one Hapkit:
-// measure yours, and never try it first with a hand on the handle. The tool is at 0 where
-// the board started.
+// Pins of the Hapkit board: PWM D5, direction D8, magnetic sensor A2. If D4 is on ground, the amplified load cell of a
+// tool is on A3. The constants are those of one Hapkit: measure yours, and do the first test without a hand on the
+// handle. The position is 0 where the board started.
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
@@ -14,20 +13,20 @@
 
 namespace {
 
-// Of the handle, for one count of the sensor: 0.0107 degrees of a sector with the handle at
-// 75 mm. Conversions are added up: twelve of 52 us and their interrupts fit into a ms.
+// Distance of the handle for one count of the sensor: 0.0107 degrees of the sector, with the handle at 75 mm. Each
+// sample sums kAdditions conversions of a channel; twelve conversions of 52 us and their interrupts fit into 1 ms.
 constexpr uint8_t kAdditions = 6;
 constexpr int32_t kNmPerCount = 14008;
 constexpr int16_t kSensorRange = 980;  // counts between two flips of the magnet
 constexpr int32_t kForce_uNPerCount = 10000;
 constexpr int32_t kForceZero = 102;  // counts
-// The motor's stall force at the handle is 7 N, and force goes with the square of the duty
-// cycle: duty^2 = kDutyOne * uN, 255 at 7 N.
+// The stall force of the motor at the handle is 7 N, at a duty of 255. The force is proportional to the square of the
+// duty: force in uN = kuNPerDutySquared * duty^2.
 constexpr int32_t kuNPerDutySquared = 107;
 constexpr int32_t kMost_uN = 5000000;
 constexpr uint8_t kPosition = 2, kForce = 3;  // channels
 
-// Of the conversions under way, and of those that are ready, and when they were.
+// Sums of the running conversions and of the finished ones, and the time of the finished ones.
 volatile int32_t sums[2], ready[2];
 volatile uint16_t ready_at;
 volatile uint8_t conversions = 0, samples = 0;
@@ -55,7 +54,7 @@ class Hapkit {
     cli();
     const uint16_t ticks = TCNT1;
     uint32_t high = wraps;
-    // Wrapped between the two: counted here, for its interrupt waits.
+    // The timer has wrapped, but its interrupt is pending: counts the wrap here.
     if ((TIFR1 & (1 << TOV1)) != 0 && ticks < 0x8000) ++high;
     SREG = saved;
     return (high << 15) | (ticks >> 1);
@@ -82,12 +81,12 @@ class Hapkit {
     return true;
   }
 
-  uint8_t condition() { return 0; }  // it can tell neither a fault nor a grip
+  uint8_t condition() { return 0; }  // the board detects neither faults nor a grip
 
   void push(int32_t force_uN) {
     const uint32_t size_uN = static_cast<uint32_t>(force_uN < 0 ? -force_uN : force_uN);
     if (size_uN < kuNPerDutySquared) {
-      // A duty of 0 would still be a spike in every period.
+      // A duty of 0 would still give a spike in every period.
       TCCR0A &= static_cast<uint8_t>(~(1 << COM0B1));
       PORTD &= static_cast<uint8_t>(~(1 << PORTD5));
       return;
@@ -99,7 +98,7 @@ class Hapkit {
     TCCR0A |= 1 << COM0B1;
   }
 
-  // What finds no room is lost: the next frame says all that is needed.
+  // A frame for which there is no room is dropped; the next one replaces it.
   void send(const uint8_t* frame) {
     if (static_cast<uint8_t>(out_written - out_read) > kRing - palpate::bridge::kDeviceBytes) return;
     for (unsigned i = 0; i < palpate::bridge::kDeviceBytes; ++i) {
@@ -112,7 +111,7 @@ class Hapkit {
 
 }  // namespace
 
-// The magnet's field repeats itself: a leap is a flip. Counts from the start.
+// Unwraps the periodic field of the magnet: a large step is a flip. Returns counts since the start.
 static int32_t unwrapped(int16_t counts) {
   static int16_t last = -1;
   static int32_t total = 0;
@@ -126,7 +125,7 @@ static int32_t unwrapped(int16_t counts) {
 
 ISR(TIMER1_OVF_vect) { ++wraps; }
 
-// The conversions, one channel after the other, then again at the next ms.
+// Runs the conversions of one channel after the other; they start again at the next millisecond.
 ISR(ADC_vect) {
   const uint8_t which = conversions / kAdditions;
   sums[which] += which == 0 ? unwrapped(static_cast<int16_t>(ADC)) : static_cast<int32_t>(ADC);
@@ -142,7 +141,7 @@ ISR(ADC_vect) {
   }
 }
 
-// Every ms.
+// Starts the conversions every millisecond.
 ISR(TIMER1_COMPA_vect) {
   OCR1A += 2000;
   conversions = 0;
@@ -168,7 +167,7 @@ ISR(USART_UDRE_vect) {
 }
 
 int main() {
-  PORTD = 1 << PORTD4;  // pull-up; the motor's pins low before they drive anything
+  PORTD = 1 << PORTD4;  // pull-up; the pins of the motor are low before they become outputs
   PORTB = 0;
   DDRD = 1 << DDD5;
   DDRB = 1 << DDB0;

@@ -1,13 +1,12 @@
-// Reference firmware of a haptic paddle (teensy_paddle.h) as a device of `bridge:`, 1000
-// samples a second over the Teensy's USB serial port: `--device bridge:/dev/ttyACM0`. Copy
-// the headers of .. and of this folder into the sketch. The tool is at 0 where the board
-// started. Measure kMost_uN.
+// Reference firmware of a haptic paddle (teensy_paddle.h) as a device of `bridge:`, with 1000 samples per second over
+// the Teensy's USB serial port: `--device bridge:/dev/ttyACM0`. Copy the headers of .. and of this folder into the
+// sketch. The position is 0 where the board started. Measure kMost_uN.
 #include "wire.h"
 #include "bridge_protocol.h"
 #include "bridge_firmware.h"
 #include "teensy_paddle.h"
 
-constexpr int32_t kNmPerCount = 20000;  // counts grow inward
+constexpr int32_t kNmPerCount = 20000;  // counts increase inward
 constexpr int32_t kuNPerMilliampere = 4000;
 constexpr int32_t kMost_uN = 5000000;
 
@@ -27,7 +26,7 @@ class Paddle : public TeensyPaddle {
   }
   // Out of the block is towards smaller counts.
   void push(int32_t force_uN) { set_current_mA(-force_uN / kuNPerMilliampere); }
-  // What finds no room is lost: the next frame says all that is needed.
+  // A frame for which there is no room is dropped; the next one replaces it.
   void send(const uint8_t* frame) {
     if (Serial.availableForWrite() >= static_cast<int>(palpate::bridge::kDeviceBytes))
       Serial.write(frame, palpate::bridge::kDeviceBytes);
