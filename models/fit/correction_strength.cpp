@@ -14,6 +14,7 @@
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/penalised_weights.h"
 #include "models/training/selection.h"
+#include "models/training/weighting.h"
 
 namespace palpate {
 namespace {
@@ -243,7 +244,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
           strength > 0.0 ? trust_at_distance(rows.distance[i], radius, input.outer_to_inner * radius) : 0.0;
       const double force_N = cross_validated_force_N(input, i, trust, strength * h(row));
       const double error = input.jnd.error_over_jnd(force_N, rows.force_N(row));
-      variant.errors.add(static_cast<std::size_t>(rows.fold[i]), error);
+      variant.errors.add(static_cast<std::size_t>(rows.fold[i]), error * robust_scale(error));
     }
     return variant;
   };

@@ -16,7 +16,7 @@ namespace {
 // A ridge for columns of unit norm. It is far below the information in a recording and far above rounding, and only
 // decides between equal columns.
 constexpr double kEqualColumns = 1e-8;
-// The active set converges within these passes.
+// Active set and robust weights converge within these passes.
 constexpr int kPasses = 4;
 // The candidates for lambda: 1e-6 smooths over a third of the depth, 1e-9 over two pieces.
 constexpr std::array kSmoothness{1e-6, 1e-7, 1e-8, 1e-9};
@@ -163,7 +163,7 @@ TrendRegression::TrendRegression(const TrendRows& rows, int folds, const TrendPr
   smoothness_ = kSmoothness[simplest_adequate(errors)];
 }
 
-// Iterates the active set on the rows outside the fold `left_out` (-1: all rows).
+// Iterates weights and active set on the rows outside the fold `left_out` (-1: all rows).
 TrendRegression::Equations TrendRegression::gather(int left_out) const {
   std::vector<double> plain(rows_.count());
   for (std::size_t i = 0; i < plain.size(); ++i) {
@@ -178,8 +178,9 @@ TrendRegression::Equations TrendRegression::gather(int left_out) const {
     for (std::size_t i = 0; i < scale.size(); ++i) {
       const double force_N = trend_N(static_cast<Eigen::Index>(i));
       const bool idle = std::abs(rows_.force_N(i)) <= problem_.force_noise_floor_N && force_N <= 0.0;
-      const double now = idle ? 0.0 : plain[i];
-      changed = changed || now != scale[i];
+      const double robust = robust_scale(problem_.jnd.error_over_jnd(force_N, rows_.force_N(i)));
+      const double now = idle ? 0.0 : plain[i] * robust;
+      changed = changed || std::abs(now - scale[i]) > 0.1 * plain[i];
       scale[i] = now;
     }
     if (!changed) break;

@@ -36,4 +36,13 @@ inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N)
   return 1.0;
 }
 
+// Square root of the weight of a Cauchy likelihood (Holland & Welsch 1977): 1 for small errors, less for errors well
+// above the JND, which would otherwise bend the fit elsewhere.
+inline constexpr double kRobustError_jnd = 2.0;
+
+inline double robust_scale(double error_over_jnd) noexcept {
+  const double share = error_over_jnd / kRobustError_jnd;
+  return 1.0 / std::sqrt(1.0 + share * share);
+}
+
 }  // namespace palpate

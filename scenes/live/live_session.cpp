@@ -183,7 +183,7 @@ void LiveSession::update() {
   // The snapshots come first, because new models are initialised with the motion up to now.
   read_snapshots();
   update_models();
-  if (test_.update(models_)) comparison_.forget_errors("the surface was found");
+  if (test_.update(models_)) forget_errors("the surface was found");
   loop_->collect_models();
   newest_ = loop_->newest();
   comparison_.show(newest_);
@@ -204,10 +204,15 @@ void LiveSession::update_models() {
   publish(name.substr(0, name.size() > 16 ? name.find('-') : name.size()) + " joined");
 }
 
-// Clears all errors, so that all models are compared over the same samples.
-void LiveSession::publish(std::string why) {
+// The errors so far and the verdict that is computed from them.
+void LiveSession::forget_errors(std::string why) {
   comparison_.forget_errors(std::move(why));
   background_evaluation_.reset();
+}
+
+// Clears all errors, so that all models are compared over the same samples.
+void LiveSession::publish(std::string why) {
+  forget_errors(std::move(why));
   auto set = models_.make_set(device_->sensor(), truth_);
   history_.recall(set->tick);
   loop_->publish_models(std::move(set));
@@ -220,7 +225,7 @@ void LiveSession::remove(std::size_t slot) {
 
 void LiveSession::treat_as_this_material(std::size_t slot) {
   models_.treat_as_this_material(slot);
-  comparison_.forget_errors(models_.info(slot).name + " joined");
+  forget_errors(models_.info(slot).name + " joined");
 }
 
 void LiveSession::use_line_up(const std::string& name) {
@@ -353,7 +358,7 @@ std::string LiveSession::reference_words(bool brief) const {
 }
 
 void LiveSession::reset_figures() {
-  comparison_.forget_errors("they were cleared");
+  forget_errors("they were cleared");
   faults_.acknowledge();
   ++controls_.acknowledged;
   send_controls();
@@ -373,7 +378,7 @@ std::string LiveSession::device_words() const {
 }
 
 void LiveSession::move_surface(bool moved) {
-  if (test_.move(moved)) comparison_.forget_errors("the surface moved");
+  if (test_.move(moved)) forget_errors("the surface moved");
 }
 
 bool LiveSession::renders_force() const noexcept { return device_->holder() == Holder::person; }

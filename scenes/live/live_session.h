@@ -146,6 +146,7 @@ class LiveSession {
   LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);
   Status begin(const std::vector<SlotPlan>& plans);
   void update_models();
+  void forget_errors(std::string why);
   void publish(std::string why);
   void read_snapshots();
   void check_faults();

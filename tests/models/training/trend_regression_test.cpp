@@ -95,7 +95,7 @@ TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
   }
 }
 
-// What is left out has no influence on the weights that predict it.
+// What is left out has no influence on the weights that predict it, not even on the robust ones.
 TEST(TrendRegression, AFoldThatIsLeftOutHasNoInfluence) {
   const auto rows_with = [](double other_N) {
     return rows_of(FeatureList{}, [&](const ToolSample& sample, const MotionEstimate& motion) {
