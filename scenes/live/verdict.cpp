@@ -65,7 +65,7 @@ Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionM
   if (verdict.noticeable)
     verdict.detail = "Its error is at most " + formatted("%.1f", chosen.unit_errors.p99_error_over_jnd) +
                      " times what a hand can feel, 99 % of the time. ";
-  if (!as_good.empty()) verdict.detail += "As good, but slower: " + listed(as_good, models) + ". ";
+  if (!as_good.empty()) verdict.detail += "As good, no faster: " + listed(as_good, models) + ". ";
   if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
   return verdict;
 }
