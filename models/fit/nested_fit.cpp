@@ -42,7 +42,7 @@ FoldedRows NestedWeights::folded_for(const std::vector<Eigen::Index>& columns) c
   const Eigen::Index rows = tail + newest;
   FoldedRows folded{Eigen::MatrixXd::Zero(rows + 1, k + tail + 1),
                     folded_.sites,
-                    folded_.told,
+                    folded_.plain_unknowns_limit,
                     folded_.smoothing,
                     folded_.strength,
                     folded_.as_2009};

@@ -46,7 +46,7 @@ CrossValidationRows left_out_rows(const ModelData& common, const TrendRows& rows
 }
 
 constexpr std::size_t kFewest = 50;
-constexpr double kHeld = 0.975;
+constexpr double kCoverage = 0.975;
 constexpr double kLeastPerDistance = 0.25;  // of the largest force
 constexpr double kLeastShape_N = 1e-3;      // above 0, so that the factor enlarges it
 
@@ -102,7 +102,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPredi
   }
   // The smallest factor that covers ceil((n + 1) 97.5 %) of them.
   const auto n = static_cast<double>(ratios.size());
-  const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * kHeld)) - 1);
+  const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * kCoverage)) - 1);
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(rank), ratios.end());
   const double factor = ratios[rank];
   bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);

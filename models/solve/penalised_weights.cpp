@@ -129,7 +129,7 @@ FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const E
   const Eigen::Index tail = triangle.cols() - 1 - n;
   PenaltySpace space;
   Root root;
-  const bool plain = n + tail <= folded.told;
+  const bool plain = n + tail <= folded.plain_unknowns_limit;
   if (!plain && n > 0) {
     space = penalty_space(kernel, centres);
     root = root_of(space.penalty);

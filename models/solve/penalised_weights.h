@@ -3,8 +3,8 @@
 //   subject to G^T w = 0,
 // Phi and G are the kernel and the tail at the centres; h is then multiplied by the sites' strength. If every site is
 // a centre, this is the smoothing spline of fit_direct.h, otherwise the regression spline on a subset of its basis,
-// which approaches it with more centres. Where the sites determine the unknowns (FoldedRows::told), there is neither
-// penalty nor side condition; a ridge of 1e-6 of the columns' length separates duplicate centres.
+// which approaches it with more centres. Where the sites determine the unknowns (FoldedRows::plain_unknowns_limit),
+// there is neither penalty nor side condition; a ridge of 1e-6 of the columns' length separates duplicate centres.
 // Source: Wahba (1990), sections 1.3 and 7.2.
 // Thread guarantee: slow side, pure.
 #pragma once

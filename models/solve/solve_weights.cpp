@@ -50,8 +50,9 @@ Result<FoldedRows> fold_rows(const Sites& sites, KernelKind kernel, const Eigen:
   const PointArrays points(sites.points);
   const Eigen::Index tail = tail_size(tail_degree(kernel), sites.dimension());
   const Eigen::Index columns = centres.cols() + tail;
-  if (!is_smoothing_selected(sites, kernel)) folded.told = (sites.row_scale.array() > 0.0).count() / kSitesEach;
-  if (columns > folded.told && !sites.as_2009) {
+  if (!is_smoothing_selected(sites, kernel))
+    folded.plain_unknowns_limit = (sites.row_scale.array() > 0.0).count() / kSitesEach;
+  if (columns > folded.plain_unknowns_limit && !sites.as_2009) {
     const auto smoothing = smoothing_of(sites, kernel);
     if (!smoothing) return smoothing.error();
     folded.smoothing = *smoothing;

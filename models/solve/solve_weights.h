@@ -22,7 +22,7 @@ struct FoldedRows {
   // Square; the last row is 0 except for its last value.
   Eigen::MatrixXd triangle;
   Eigen::Index sites = 0;
-  Eigen::Index told = 0;  // largest number of unknowns for plain least squares
+  Eigen::Index plain_unknowns_limit = 0;  // largest number of unknowns for plain least squares
   double smoothing = 0.0;
   double strength = 1.0;
   bool as_2009 = false;  // weights by truncated singular values

@@ -5,7 +5,7 @@
 // The logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below
 // the JND irrelevant. The rule takes the simplest candidate whose mean score exceeds the best by at most two standard
 // errors of the paired difference, which is then not significant at the 95 % level. (With one standard error the
-// errors of recorded sets grow by up to two points: tests/bench/README.md.)
+// share within the JND falls by up to 1.4 points: tests/bench/README.md.)
 // Source: Breiman, Friedman, Olshen & Stone (1984), section 3.4.3; Hastie, Tibshirani & Friedman
 // (2009), section 7.10.
 // Thread guarantee: pure functions.

@@ -180,7 +180,7 @@ BigNumber big_number(const ModelsView& models, bool has_truth) {
   } else if (!models.compared) {
     const double guess = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
     if (!std::isnan(guess)) big.number = jnd_text(guess);
-    big.below = name + "'s own guess of its error (95 %); " + models.reference_name;
+    big.below = name + ": 95 % bound of its error; " + models.reference_name;
     big.error_over_jnd = guess;
   } else if (models.selected == models.reference) {
     big.below = name + " is what the others are compared with";

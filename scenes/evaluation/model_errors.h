@@ -60,7 +60,7 @@ struct UnitErrors : ErrorSummary {
 struct PairedDifference {
   double p99 = 0.0;
   Interval interval;          // 95 %, two-sided; NaN with fewer than kLeastUnits units
-  double at_most = kUnknown;  // 95 %, one-sided; NaN likewise
+  double at_most = kUnknown;  // one-sided 95 % bound; NaN with fewer than kLeastUnits units
 };
 PairedDifference paired_difference(double one_p99, const std::vector<double>& one_units, double other_p99,
                                    const std::vector<double>& other_units);

@@ -30,9 +30,9 @@ enum class Mark {
   points,
   hollow,        // points filled with the background colour
   curve,         // a line through points
-  hollow_curve,  // likewise
+  hollow_curve,  // with hollow points
   bars,          // points with bars from `low` to `high` and from `left` to `right`
-  hollow_bars,   // likewise
+  hollow_bars,   // with hollow points
   up,            // small triangles at the edge
   down,
   area,  // grey, from `low` to `high` at each x

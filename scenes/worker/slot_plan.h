@@ -15,7 +15,7 @@ namespace palpate {
 
 enum class ModelOrigin : std::uint8_t {
   method,    // fitted to the scene's material
-  position,  // likewise, with the depth as the only feature
+  position,  // fitted to it with the depth as the only feature
   file,
 };
 

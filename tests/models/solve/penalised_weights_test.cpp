@@ -44,7 +44,7 @@ double largest_difference(const RbfFunction& a, const RbfFunction& b, const Site
 FittedRbf penalised(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
   auto folded = fold_rows(sites, kernel, centres, {});
   EXPECT_TRUE(folded.ok());
-  folded->told = 0;
+  folded->plain_unknowns_limit = 0;
   folded->smoothing = *sites.smoothing;
   return penalised_weights(*folded, kernel, centres);
 }
