@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "models/fit/recipe_2009.h"
-#include "scenes/evaluation/evaluate.h"
+#include "scenes/evaluation/ranking.h"
 #include "scenes/scene/training.h"
 
 namespace palpate {
@@ -42,9 +42,12 @@ struct Preparations {
   const PreparedTraining& of(Recipe recipe) const { return recipe == Recipe::paper ? paper : palpate; }
 };
 
-struct Fitted {
-  std::shared_ptr<const FittedModel> model;
-  double seconds = 0.0;
+// A planned model with what is known of it while the folds are measured.
+struct Measured {
+  ModelResult result;
+  ModelErrors recorded;
+  ModelErrors moved;
+  std::vector<ModelPointer> fits{};  // of each fold; empty: no force
 };
 
 class Measurement {
@@ -53,34 +56,41 @@ class Measurement {
       : recordings_(recordings),
         scene_(scene),
         data_(data),
-        progress_(control, expected_total()),
-        recorded_(data.models.size(), ModelErrors(scene.jnd)),
-        moved_(data.models.size(), ModelErrors(scene.jnd)) {}
+        models_(planned(data.quick, scene)),
+        progress_(control, expected_total()) {}
 
   Status run() {
     for (const Split& fold : recordings_.folds) {
       if (const Status status = run_fold(fold); !status) return status;
     }
-    for (std::size_t i = 0; i < data_.models.size(); ++i) {
-      data_.models[i].errors = recorded_[i].unit_errors();
-      data_.models[i].moved = moved_[i].summary();
-    }
+    for (Measured& one : models_) finish(one);
     data_.floor = noise_floor(tested_, scene_.jnd);
     time_all();
     merge_equal();
+    for (Measured& one : models_) data_.models.push_back(std::move(one.result));
     data_.choice = choose(data_.models);
     find_worst();
     return progress_.next(0.0).may_continue(1.0) ? Status{} : Status{interrupted()};
   }
 
  private:
+  static std::vector<Measured> planned(bool quick, const Scene& scene) {
+    std::vector<Measured> models;
+    for (PlannedModel& plan : make_plan(quick, scene.features.size())) {
+      models.push_back({{}, ModelErrors(scene.jnd), ModelErrors(scene.jnd)});
+      models.back().result.plan = std::move(plan);
+    }
+    return models;
+  }
+
   double expected_total() const {
     double total = 2.0 * kPrepareSeconds;
-    for (const ModelResult& one : data_.models) {
-      if (one.plan.recipe != Recipe::no_force) total += one.plan.request.method->expected_seconds(one.plan.request);
+    for (const Measured& one : models_) {
+      const PlannedModel& plan = one.result.plan;
+      if (plan.recipe != Recipe::no_force) total += plan.request.method->expected_seconds(plan.request);
     }
     return static_cast<double>(recordings_.folds.size()) *
-           (total + kEvaluateSeconds * static_cast<double>(data_.models.size()));
+           (total + kEvaluateSeconds * static_cast<double>(models_.size()));
   }
 
   Result<Preparations> prepare(const std::vector<SharedRecording>& training) {
@@ -97,12 +107,12 @@ class Measurement {
     return Preparations{std::move(made[0]), std::move(made[1])};
   }
 
-  // Fits all planned models. The model is null for the baseline without force.
-  Result<std::vector<Fitted>> fit(const Preparations& prepared) {
-    std::vector<Fitted> fitted(data_.models.size());
+  // Fits all planned models of one fold.
+  Status fit(const Preparations& prepared) {
     std::map<std::pair<Recipe, const Method*>, std::pair<MethodFit, double>> bases;
-    for (std::size_t i = 0; i < fitted.size(); ++i) {
-      const PlannedModel& plan = data_.models[i].plan;
+    for (Measured& measured : models_) {
+      ModelResult& result = measured.result;
+      const PlannedModel& plan = result.plan;
       if (plan.recipe == Recipe::no_force) continue;
       const auto base = bases.find({plan.recipe, plan.request.method->base});
       const auto start = std::chrono::steady_clock::now();
@@ -117,34 +127,33 @@ class Measurement {
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       const double seconds = elapsed.count() + (base == bases.end() ? 0.0 : base->second.second);
       bases.try_emplace({plan.recipe, plan.request.method}, *one, seconds);
-      fitted[i] = {std::make_shared<const FittedModel>(std::move(one->data)), seconds};
+      result.fit_seconds += seconds / static_cast<double>(recordings_.folds.size());
+      result.model = std::make_shared<const FittedModel>(std::move(one->data));
+      result.size = std::max(result.size, result.model->centre_count());
+      measured.fits.push_back(result.model);
     }
-    return fitted;
+    return {};
   }
 
   Status run_fold(const Split& fold) {
     const auto prepared = prepare(fold.train);
     if (!prepared) return prepared.error();
     if (data_.gains.empty()) remember(*prepared);
-    const auto fitted = fit(*prepared);
-    if (!fitted) return fitted.error();
-    std::vector<ModelPointer>& of_fold = fitted_.emplace_back();
-    for (std::size_t i = 1; i < fitted->size(); ++i) {
-      of_fold.push_back((*fitted)[i].model);
-      ModelResult& result = data_.models[i];
-      result.fit_seconds += (*fitted)[i].seconds / static_cast<double>(recordings_.folds.size());
-      result.model = (*fitted)[i].model;
-      result.size = result.model->centre_count();
-      const Method& method = *result.plan.request.method;
-      // A fit has at most as many centres as sites; the name has the actual number.
-      if (method.can_take(kTakesCentres) && result.size < result.plan.request.centres)
-        result.plan.name = (result.plan.recipe == Recipe::paper ? "2009-" : "") + std::string(method.name) + "-" +
-                           std::to_string(result.size);
-    }
+    if (const Status fitted = fit(*prepared); !fitted) return fitted;
     for (const SharedRecording& recording : fold.tested) {
       if (const Status status = evaluate_test(*recording, fold.counted_from_s); !status) return status;
     }
     return {};
+  }
+
+  void finish(Measured& one) {
+    ModelResult& result = one.result;
+    result.errors = one.recorded.unit_errors();
+    result.moved = one.moved.summary();
+    // A fit has at most as many centres as sites; the name has the actual number.
+    const MethodRequest& request = result.plan.request;
+    if (result.model && request.method->can_take(kTakesCentres) && result.size < request.centres)
+      result.plan.name = model_name(result.plan.recipe, *request.method, result.size);
   }
 
   void remember(const Preparations& prepared) {
@@ -160,7 +169,8 @@ class Measurement {
     std::vector<EvaluatedModel> models;
     EvaluationRequest request;
     request.counted_s.low = counted_from_s;
-    for (const ModelResult& one : data_.models) {
+    for (const Measured& measured : models_) {
+      const ModelResult& one = measured.result;
       if (!one.model) continue;
       models.push_back({one.model, scene_.jnd});
       if (one.plan.main && one.plan.recipe == Recipe::palpate) request.surface_models.push_back(one.model);
@@ -168,11 +178,11 @@ class Measurement {
     request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
     const auto result = evaluate(rows_of(recording), models, request);
     if (!result) return result.error();
-    recorded_[0].append(result->no_force);
-    moved_[0].append(result->no_force);
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      recorded_[i + 1].append(result->models[i].as_recorded);
-      moved_[i + 1].append(result->models[i].surface_moved);
+    auto errors = result->models.begin();
+    for (Measured& one : models_) {
+      one.recorded.append(one.result.model ? errors->as_recorded : result->no_force);
+      one.moved.append(one.result.model ? errors->surface_moved : result->no_force);
+      if (one.result.model) ++errors;
     }
     timing_.push_back(result->timing);
     data_.tested.push_back({recording.name, result->models.front().surface.at});
@@ -180,27 +190,34 @@ class Measurement {
     return {};
   }
 
+  // Times the models of the last fold.
   void time_all() {
-    const std::vector<ModelTiming> times = time_models(fitted_.back(), timing_);
-    for (std::size_t i = 0; i < times.size(); ++i) data_.models[i + 1].time = times[i];
+    std::vector<ModelPointer> fitted;
+    for (const Measured& one : models_) {
+      if (one.result.model) fitted.push_back(one.result.model);
+    }
+    const std::vector<ModelTiming> times = time_models(fitted, timing_);
+    auto time = times.begin();
+    for (Measured& one : models_) {
+      if (one.result.model) one.result.time = *time++;
+    }
   }
 
   // Merges models with equal forces into the first of them: without a correction every method equals the trend, and
   // with fewer sites than centres two sizes are equal.
   void merge_equal() {
-    for (std::size_t i = 0; i < data_.models.size(); ++i) {
-      kept_.push_back(i);
-      for (std::size_t k = 0; k + 1 < kept_.size() && data_.models[i].model; ++k) {
-        ModelResult& first = data_.models[kept_[k]];
-        if (!first.model || !recorded_[kept_[k]].equals(recorded_[i])) continue;
-        if (first.plan.name != data_.models[i].plan.name) first.same.push_back(data_.models[i].plan.name);
-        kept_.pop_back();
-        break;
+    std::vector<Measured> kept;
+    for (Measured& one : models_) {
+      const auto first = std::find_if(kept.begin(), kept.end(), [&](const Measured& other) {
+        return one.result.model && other.result.model && other.recorded.equals(one.recorded);
+      });
+      if (first == kept.end()) {
+        kept.push_back(std::move(one));
+      } else if (first->result.plan.name != one.result.plan.name) {
+        first->result.same.push_back(one.result.plan.name);
       }
     }
-    std::vector<ModelResult> models;
-    for (const std::size_t i : kept_) models.push_back(std::move(data_.models[i]));
-    data_.models = std::move(models);
+    models_ = std::move(kept);
   }
 
   // Finds the worst stretch of the recommended model. Shows it with the greedy models of 2009 and the best model.
@@ -218,7 +235,7 @@ class Measurement {
     add(best);
     for (std::size_t fold = 0; fold < recordings_.folds.size(); ++fold) {
       std::vector<ModelPointer> models;
-      for (const std::size_t i : shown) models.push_back(fitted_[fold][kept_[i] - 1]);
+      for (const std::size_t i : shown) models.push_back(models_[i].fits[fold]);
       for (const SharedRecording& recording : recordings_.folds[fold].tested) {
         WorstStretch stretch = worst_stretch(*recording, models, scene_.jnd, recordings_.folds[fold].counted_from_s);
         if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
@@ -230,13 +247,10 @@ class Measurement {
   const RecordingSet& recordings_;
   const Scene& scene_;
   ReportData& data_;
+  std::vector<Measured> models_;
   Progress progress_;
-  std::vector<ModelErrors> recorded_;
-  std::vector<ModelErrors> moved_;
   std::vector<const Recording*> tested_;
-  std::vector<std::vector<ModelPointer>> fitted_;  // for each fold, all planned models except the first
-  std::vector<TimedSamples> timing_;               // one per test recording
-  std::vector<std::size_t> kept_;                  // for each of data_.models, its index in the plan
+  std::vector<TimedSamples> timing_;  // one per test recording
 };
 
 }  // namespace
@@ -293,13 +307,37 @@ Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, b
   data.folds = recordings.folds.size() > 1 ? static_cast<int>(recordings.folds.size()) : 0;
   data.tested_on = recordings.folds.front().words;
   data.recordings = recordings.facts;
-  for (PlannedModel& plan : make_plan(quick, scene.features.size())) {
-    ModelResult result;
-    result.plan = std::move(plan);
-    data.models.push_back(std::move(result));
-  }
   if (const Status status = Measurement(recordings, scene, data, control).run(); !status) return status.error();
   return data;
+}
+
+Choice choose(const std::vector<ModelResult>& models) {
+  Choice choice;
+  bool corrected = false;
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const ModelResult& one = models[i];
+    corrected = corrected || (one.model && one.plan.recipe == Recipe::palpate);
+    if (!one.model || !one.plan.main) continue;
+    choice.candidates.push_back(i);
+    candidates.push_back(candidate(one.errors, one.time));
+  }
+  const Ranking ranking = rank(candidates);
+  choice.correction_off = !corrected;
+  choice.best = choice.candidates[ranking.best];
+  choice.recommended = choice.candidates[ranking.recommended];
+  for (const std::size_t i : ranking.qualified) choice.qualified.push_back(choice.candidates[i]);
+  return choice;
+}
+
+std::vector<std::size_t> headline_models(const ReportData& data) {
+  std::vector<std::size_t> rows{0};
+  for (const std::size_t i : data.choice.candidates) {
+    const PlannedModel& plan = data.models[i].plan;
+    if (plan.recipe != Recipe::paper || plan.request.method == &kGreedyMethod || i == data.choice.recommended)
+      rows.push_back(i);
+  }
+  return rows;
 }
 
 }  // namespace palpate

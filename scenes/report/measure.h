@@ -39,7 +39,7 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
 // A planned model over all folds. The errors of all models are over the same samples.
 struct ModelResult {
   PlannedModel plan;
-  int size = 0;                              // centres, or nodes of the grid
+  int size = 0;                              // centres, or nodes of the grid; the largest of all folds
   UnitErrors errors;                         // positions as recorded
   ErrorSummary moved;                        // with the surface offset of every test recording subtracted
   double fit_seconds = 0.0;                  // mean over the folds, without the preparation

@@ -19,9 +19,7 @@ PlannedModel planned(Recipe of, const Method& method, int centres) {
   model.request.method = &method;
   model.request.centres = centres;
   model.main = centres == kMainCentres;
-  model.name = of == Recipe::paper ? "2009-" : "";
-  model.name.append(method.name);
-  if (method.can_take(kTakesCentres)) model.name.append("-").append(std::to_string(centres));
+  model.name = model_name(of, method, centres);
   return model;
 }
 
@@ -29,6 +27,13 @@ PlannedModel planned(Recipe of, const Method& method, int centres) {
 bool is_slow(const Method& method) { return &method == &kDirectMethod || method.base != nullptr; }
 
 }  // namespace
+
+std::string model_name(Recipe recipe, const Method& method, int centres) {
+  std::string name = recipe == Recipe::paper ? "2009-" : "";
+  name.append(method.name);
+  if (method.can_take(kTakesCentres)) name.append("-").append(std::to_string(centres));
+  return name;
+}
 
 std::vector<PlannedModel> make_plan(bool quick, std::size_t features) {
   std::vector<PlannedModel> plan{planned(Recipe::no_force, kTrendMethod, kMainCentres),

@@ -23,6 +23,9 @@ struct PlannedModel {
   bool main = false;  // the default size of its recipe and method: a candidate, drawn in the figure of error by force
 };
 
+// The name of a model with that many centres; methods without centres have no number.
+std::string model_name(Recipe recipe, const Method& method, int centres);
+
 // No force first, then the main models, then other sizes. A method that starts from another method's fit (its base)
 // follows it. `features`: number of the scene's features.
 std::vector<PlannedModel> make_plan(bool quick, std::size_t features);

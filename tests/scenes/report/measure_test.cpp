@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "models/model/fitted_model.h"
+#include "scenes/material/rig.h"
 #include "scenes/report/plan.h"
 #include "tests/support/example_model.h"
 
@@ -90,6 +91,32 @@ TEST(WorstStretch, OfAShortRecordingIsTheWhole) {
   const Recording recording = test::example_recording(500, 1000.0);
   const auto model = std::make_shared<const FittedModel>(test::example_models().front());
   EXPECT_EQ(worst_stretch(recording, {model}, JndLine{}).rows.size(), 500u);
+}
+
+// In one fold the recipe of 2009 has fewer sites than centres, in the other it has more.
+TEST(Measure, ANameHasTheNumberOfCentresInEveryOrderOfTheFolds) {
+  const auto scene = load_scene("silicone_block");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  for (const bool long_first : {false, true}) {
+    std::vector<SharedRecording> recordings;
+    for (const bool first : {true, false}) {
+      RigSettings settings;
+      settings.seed = first ? 1 : 2;
+      settings.rate_Hz = 100.0;
+      settings.seconds = first == long_first ? 20.0 : 4.0;
+      Recording recording = *record_sensors(settings);
+      recording.name = first ? "a" : "b";
+      recordings.push_back(std::make_shared<const Recording>(std::move(recording)));
+    }
+    const auto set = split_recordings(recordings, {});
+    ASSERT_TRUE(set.ok()) << set.error().message;
+    const auto data = measure(*set, *scene, true, {});
+    ASSERT_TRUE(data.ok()) << data.error().message;
+    for (const ModelResult& one : data->models) {
+      if (!one.model || !one.plan.request.method->can_take(kTakesCentres)) continue;
+      EXPECT_EQ(one.plan.name, model_name(one.plan.recipe, *one.plan.request.method, one.size));
+    }
+  }
 }
 
 }  // namespace
