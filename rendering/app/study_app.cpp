@@ -5,9 +5,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <algorithm>
 #include <cctype>
-#include <iterator>
 #include <utility>
 
 #include "scenes/scene/user_folders.h"
@@ -38,8 +36,7 @@ constexpr Choice kChoices[] = {
     {StudyState::ready, GLFW_KEY_ENTER, "Go on (Enter)", go_on},
     {StudyState::rest, GLFW_KEY_ENTER, "Go on (Enter)", go_on},
     {StudyState::answering, GLFW_KEY_1, "The first (1)", [](StudySession& session) { session.answer(false); }},
-    {StudyState::answering, GLFW_KEY_2, "The second (2)", [](StudySession& session) { session.answer(true); }},
-    {StudyState::unsaved, GLFW_KEY_R, "Try again (R)", [](StudySession& session) { session.retry(); }}};
+    {StudyState::answering, GLFW_KEY_2, "The second (2)", [](StudySession& session) { session.answer(true); }}};
 
 // Replaces a key of the keypad by the usual key.
 int usual_key(int key) {
@@ -56,9 +53,11 @@ Result<std::unique_ptr<StudyApp>> StudyApp::create(const StudyRequest& request) 
   if (Status status = Window::find_display(); !status) return status.error();
   auto window = Window::open(request.window);
   if (!window) return window.error();
-  std::unique_ptr<StudyApp> app(new StudyApp(request));
+  auto study = LiveStudy::open(request.device, request.realtime, request.strokes);
+  if (!study) return study.error();
+  std::unique_ptr<StudyApp> app(new StudyApp);
   app->window_ = std::move(*window);
-  app->can_be_felt_ = study_can_be_felt(request.device);
+  app->study_ = std::move(*study);
   GLFWwindow* handle = app->window_->handle();
   glfwSetWindowUserPointer(handle, app.get());
   glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int) {
@@ -72,63 +71,43 @@ Result<std::unique_ptr<StudyApp>> StudyApp::create(const StudyRequest& request) 
   return app;
 }
 
-StudyApp::~StudyApp() { study_.reset(); }
-
 bool StudyApp::closing() const noexcept { return glfwWindowShouldClose(window_->handle()) != 0; }
-
-void StudyApp::begin(const std::string& code) {
-  LiveStudyRequest request;
-  request.device = request_.device;
-  request.realtime = request_.realtime;
-  request.header.subject = code;
-  request.path = "study-" + code + ".csv";
-  if (request_.strokes != nullptr) {
-    request.header.strokes = request_.strokes;
-    request.path = "discriminate-" + code + ".csv";
-  }
-  problem_.clear();
-  auto study = LiveStudy::open(request);
-  if (study) {
-    study_ = std::move(*study);
-  } else {
-    problem_ = study.error().message;
-  }
-}
 
 void StudyApp::frame() {
   glfwPollEvents();
-  if (study_ != nullptr) study_->update();
-  handle_keys();
-  draw();
-  window_->show_frame();
-}
-
-void StudyApp::handle_keys() {
+  study_->update();
   for (const Typed& typed : std::exchange(typed_, {})) {
-    if (study_ == nullptr && typed.key == 0) {
-      if (code_.size() < kLongestCode && std::isalnum(static_cast<unsigned char>(typed.letter)) != 0) {
-        code_ += static_cast<char>(std::toupper(static_cast<unsigned char>(typed.letter)));
-      }
-    } else if (study_ == nullptr) {
-      handle_entry_key(usual_key(typed.key));
+    if (session() == nullptr) {
+      handle_entry(usual_key(typed.key), typed.letter);
     } else {
       handle_key(usual_key(typed.key));
     }
   }
+  draw();
+  window_->show_frame();
 }
 
-void StudyApp::handle_entry_key(int key) {
-  if (key == GLFW_KEY_ENTER) begin(code_);
+Status StudyApp::screenshot(const std::string& path, bool overwrite) {
+  draw();
+  return window_->save_frame(path, overwrite);
+}
+
+void StudyApp::handle_entry(int key, char letter) {
+  const auto typed = static_cast<unsigned char>(letter);
+  if (std::isalnum(typed) != 0 && code_.size() < kLongestCode) code_ += static_cast<char>(std::toupper(typed));
   if (key == GLFW_KEY_BACKSPACE && !code_.empty()) code_.pop_back();
+  if (key != GLFW_KEY_ENTER) return;
+  const Status begun = study_->begin(code_);
+  problem_ = begun ? "" : begun.error().message;
 }
 
 void StudyApp::handle_key(int key) {
-  StudySession& session = study_->session();
-  if (key == GLFW_KEY_ESCAPE) session.abort();
+  if (key == GLFW_KEY_ESCAPE) session()->abort();
   if (key == GLFW_KEY_Z) study_->start_zeroing();
-  const auto asked = [&](const Choice& choice) { return choice.state == session.state() && choice.key == key; };
-  if (const auto* choice = std::find_if(std::begin(kChoices), std::end(kChoices), asked); choice != std::end(kChoices))
-    choice->run(session);
+  const StudyState state = session()->state();
+  for (const Choice& choice : kChoices) {
+    if (choice.state == state && choice.key == key) choice.run(*session());
+  }
 }
 
 void StudyApp::draw() {
@@ -143,10 +122,13 @@ void StudyApp::draw() {
   ImGui::SetNextWindowPos({0.5F * (1.0F - kColumnShare) * all.x, 0.15F * all.y});
   ImGui::SetNextWindowSize({kColumnShare * all.x, 0.82F * all.y});
   ImGui::Begin("study", nullptr, kFixed);
-  if (study_ == nullptr) {
-    draw_entry();
-  } else {
-    draw_session();
+  session() == nullptr ? draw_entry() : draw_session();
+  gap();
+  if (const std::string words = study_->device_words(); !words.empty()) ImGui::TextWrapped("%s", words.c_str());
+  if (study_->needs_zeroing()) button("Zero here (Z)", GLFW_KEY_Z);
+  if (!study_->device_pushes()) {
+    draw_warning(
+        "This device renders no force. This is a rehearsal; its answers are marked and excluded from the analysis.");
   }
   ImGui::End();
   ui_->end_frame();
@@ -157,35 +139,32 @@ void StudyApp::button(const char* label, int key) {
   if (ImGui::Button(label)) press_key(key);
 }
 
-void StudyApp::draw_trouble(const std::string& words) const {
+void StudyApp::draw_warning(const std::string& words) const {
   ImGui::PushStyleColor(ImGuiCol_Text, paint(style_.colours().fault));
   ImGui::TextWrapped("%s", words.c_str());
   ImGui::PopStyleColor();
 }
 
 void StudyApp::draw_entry() {
+  const StrokePair* strokes = study_->strokes();
   ImGui::PushFont(style_.fonts().heading);
-  ImGui::TextWrapped("%s", request_.strokes == nullptr ? "How small a difference can a hand feel?"
-                           : request_.strokes->reference == kRecordedForce
-                               ? "Can a hand tell the model from the block?"
-                               : "Can a hand tell one model from the other?");
+  ImGui::TextWrapped("%s", strokes == nullptr                     ? "How small a difference can a hand feel?"
+                           : strokes->reference == kRecordedForce ? "Can a hand tell the model from the block?"
+                                                                  : "Can a hand tell one model from the other?");
   ImGui::PopFont();
   ImGui::Spacing();
   ImGui::TextWrapped("%s The code stands for the person; no name is kept.",
-                     request_.strokes != nullptr
+                     strokes != nullptr
                          ? "Three pushes, one after the other: which of the last two was like the first? 100 trials."
                          : "Two pushes, one after the other: which was larger? 320 trials.");
   gap();
   ImGui::PushFont(style_.fonts().heading);
   draw_code();
-  ImGui::PopFont();
   gap();
-  ImGui::PushFont(style_.fonts().heading);
   button("Begin (Enter)", GLFW_KEY_ENTER);
   ImGui::PopFont();
   ImGui::TextDisabled("A code that has begun goes on after its last answer.");
-  if (!can_be_felt_) draw_trouble(kRehearsal);
-  if (!problem_.empty()) draw_trouble(problem_);
+  if (!problem_.empty()) draw_warning(problem_);
 }
 
 void StudyApp::draw_code() {
@@ -202,8 +181,8 @@ void StudyApp::draw_code() {
 }
 
 void StudyApp::draw_session() {
-  const StudyView view = study_->session().view();
-  if (view.trials > 0 && view.state != StudyState::consent) {
+  const StudyView view = session()->view();
+  if (view.state != StudyState::consent) {
     ImGui::TextDisabled("%s   %zu of %zu", view.training ? "training" : "study", view.answered, view.trials);
     const float share = static_cast<float>(view.answered) / static_cast<float>(view.trials);
     ImGui::ProgressBar(share, {-1.0F, 0.4F * ImGui::GetFontSize()}, "");
@@ -211,31 +190,13 @@ void StudyApp::draw_session() {
   ImGui::Spacing();
   ImGui::PushFont(style_.fonts().heading);
   ImGui::TextWrapped("%s", view.message.c_str());
-  if (view.has_feedback && view.training && view.state == StudyState::presenting && view.interval == 0 &&
-      !view.reminder) {
-    ImGui::TextDisabled(view.was_correct ? "The last answer was right." : "The last answer was wrong.");
-  }
+  if (view.was_correct && view.training && view.state == StudyState::presenting && view.interval < 0)
+    ImGui::TextDisabled(*view.was_correct ? "The last answer was right." : "The last answer was wrong.");
   gap();
   if (view.state == StudyState::presenting || view.state == StudyState::answering) draw_intervals(view);
   draw_choices(view);
   if (view.state == StudyState::done) draw_result();
   ImGui::PopFont();
-  gap();
-  if (const std::string words = study_->device_words(); !words.empty()) ImGui::TextWrapped("%s", words.c_str());
-  if (study_->newest().device.zeroing == Zeroing::needed) button("Zero here (Z)", GLFW_KEY_Z);
-  if (!study_->device_pushes()) draw_trouble(kRehearsal);
-}
-
-// Draws the result of a discrimination of strokes beside the prediction.
-void StudyApp::draw_result() {
-  if (request_.strokes == nullptr) return;
-  const StudySession& session = study_->session();
-  const Discrimination result =
-      discrimination_of(session.header().subject, session.store().records(), *request_.strokes);
-  ImGui::Spacing();
-  ImGui::TextWrapped("%s against %s, %s", request_.strokes->comparison.c_str(), request_.strokes->reference.c_str(),
-                     request_.strokes->recording.c_str());
-  ImGui::TextWrapped("%s", discrimination_verdict(result, *request_.strokes).c_str());
 }
 
 // Draws a box for each push, the reference included if there is one, and highlights the current one.
@@ -244,29 +205,30 @@ void StudyApp::draw_intervals(const StudyView& view) {
   ImFont* font = style_.fonts().big;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float side = 2.4F * height_of(font);
-  const int first = view.has_reminder ? 0 : 1;
-  for (int interval = first; interval <= 2; ++interval) {
-    const float x = at.x + 1.3F * side * static_cast<float>(interval - first);
-    const bool on = interval == 0 ? view.reminder : view.interval == interval;
+  float x = at.x;
+  for (int interval = study_->strokes() != nullptr ? 0 : 1; interval <= 2; ++interval, x += 1.3F * side) {
+    const bool on = view.interval == interval;
     list.AddRectFilled({x, at.y}, {x + side, at.y + side}, ink(on ? kReferenceColour : style_.colours().raised), 10.0F);
-    const char text[2] = {interval == 0 ? 'R' : static_cast<char>('0' + interval), '\0'};
+    const char text[2] = {"R12"[interval], '\0'};
     const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text);
     list.AddText(font, height_of(font), {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
                  ink(style_.colours().text), text);
   }
-  ImGui::Dummy({(view.has_reminder ? 3.6F : 2.3F) * side, side});
+  ImGui::Dummy({x - at.x, side});
   gap();
 }
 
 void StudyApp::draw_choices(const StudyView& view) {
-  bool first = true;
-  for (const Choice& choice : kChoices) {
-    if (choice.state != view.state || view.rest_ticks_left > 0) continue;
-    if (!std::exchange(first, false)) ImGui::SameLine();
-    button(choice.label, choice.key);
-  }
-  if (view.rest_ticks_left > 0)
+  if (view.rest_ticks_left > 0) {
     ImGui::TextDisabled("%llu s left", static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
+  } else {
+    for (const Choice& choice : kChoices) {
+      if (choice.state != view.state) continue;
+      button(choice.label, choice.key);
+      ImGui::SameLine();
+    }
+    ImGui::NewLine();
+  }
   if (view.state == StudyState::done || view.state == StudyState::aborted) return;
   gap();
   ImGui::PushFont(style_.fonts().body);
@@ -274,9 +236,17 @@ void StudyApp::draw_choices(const StudyView& view) {
   ImGui::PopFont();
 }
 
-Status StudyApp::screenshot(const std::string& path, bool overwrite) {
-  draw();
-  return window_->save_frame(path, overwrite);
+// Draws the result of a discrimination of strokes beside the prediction.
+void StudyApp::draw_result() {
+  const StrokePair* strokes = study_->strokes();
+  if (strokes == nullptr) return;
+  const StudyFile& file = session()->file();
+  ImGui::Spacing();
+  ImGui::TextWrapped("%s against %s, %s", strokes->comparison.c_str(), strokes->reference.c_str(),
+                     strokes->recording.c_str());
+  ImGui::TextWrapped(
+      "%s",
+      discrimination_verdict(discrimination_of(file.header().subject, file.records(), *strokes), *strokes).c_str());
 }
 
 }  // namespace palpate

@@ -25,41 +25,35 @@ struct StudyRequest {
 
 class StudyApp {
  public:
-  // Errors: those of Window.
+  // Errors: those of Window; the device cannot be opened.
   static Result<std::unique_ptr<StudyApp>> create(const StudyRequest& request);
   StudyApp(const StudyApp&) = delete;
   StudyApp& operator=(const StudyApp&) = delete;
-  ~StudyApp();
 
   void frame();
   bool closing() const noexcept;
   Status screenshot(const std::string& path, bool overwrite);
 
-  // Creates or resumes study-CODE.csv, or with strokes discriminate-CODE.csv, in the working directory. The entry
-  // screen shows errors, see `problem`.
-  void begin(const std::string& code);
   void press_key(int key) { typed_.push_back({key, '\0'}); }
   void type(char letter) { typed_.push_back({0, letter}); }
-  // Null before `begin` succeeded.
-  LiveStudy* study() noexcept { return study_.get(); }
+  // Null before a valid code was entered; until then the screen shows `problem`.
+  StudySession* session() noexcept { return study_->session(); }
   const std::string& problem() const noexcept { return problem_; }
 
  private:
-  explicit StudyApp(const StudyRequest& request) : request_(request) {}
+  StudyApp() = default;
   void draw();
   void draw_entry();
   void draw_code();
   void draw_session();
-  void draw_choices(const StudyView& view);
   void draw_intervals(const StudyView& view);
+  void draw_choices(const StudyView& view);
   void draw_result();
-  void draw_trouble(const std::string& words) const;
-  void handle_keys();
+  void draw_warning(const std::string& words) const;
+  void handle_entry(int key, char letter);
   void handle_key(int key);
-  void handle_entry_key(int key);
   void button(const char* label, int key);
 
-  StudyRequest request_;
   std::unique_ptr<Window> window_;
   std::unique_ptr<LiveStudy> study_;
   std::unique_ptr<UiContext> ui_;
@@ -73,7 +67,6 @@ class StudyApp {
   std::vector<Typed> typed_;
   std::string code_;
   std::string problem_;
-  bool can_be_felt_ = false;  // the device renders force to a person
 };
 
 }  // namespace palpate

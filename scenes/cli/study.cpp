@@ -8,6 +8,7 @@
 #include "engine/base/atomic_file.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
+#include "scenes/plot/draw.h"
 #include "scenes/scene/scene.h"
 #include "scenes/study/discrimination.h"
 #include "scenes/study/prepare_strokes.h"
@@ -16,8 +17,6 @@
 
 namespace palpate::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct StudyOptions {
   bool with_published = false;
@@ -31,81 +30,73 @@ struct StudyOptions {
   std::string recording;  // for --discriminate; empty: a virtual recording
   std::string strokes_scene = "silicone_block";
   std::vector<std::string> models;
+
+  std::string path_of(const std::string& name) const { return out + "/" + name; }
 };
 
 constexpr std::uint64_t kPopulationStream = 51;
-void print_analysis(const StudyAnalysis& analysis) {
-  std::printf("%-13s %8s %12s\n", "reference [N]", "subjects", "mean JND [%]");
-  for (const MeanJnd& mean : analysis.means) {
-    const double percent = 100.0 / mean.rendered_N;
-    std::printf("%-13.4g %8zu %7.1f ±%4.1f\n", mean.reference_N, mean.subjects, percent * mean.jnd_N,
-                percent * mean.standard_error_N);
-  }
-  for (const SubjectJnd& subject : analysis.subjects) {
-    if (subject.unusable == 0) continue;
-    std::printf("%s: %zu trials left out, their forces were not rendered\n", subject.subject.c_str(), subject.unusable);
-  }
-  if (!analysis.lines.ok()) return;
-  const JndLines& lines = *analysis.lines;
-  std::printf("fitted       %.4f N + %.2f %%\nconservative %.4f N + %.2f %%\n", lines.fitted.offset_N,
-              100.0 * lines.fitted.weber_fraction, lines.conservative.offset_N,
-              100.0 * lines.conservative.weber_fraction);
+
+void print_left_out(const std::string& who, std::size_t unusable) {
+  if (unusable > 0) std::printf("%s: %zu trials left out, their forces were not rendered\n", who.c_str(), unusable);
 }
 
-Status make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) return Error{"cannot make the folder " + folder + ": " + error.message()};
-  return {};
+void print_analysis(const StudyAnalysis& analysis) {
+  std::printf("%-13s %8s %12s\n", "reference [N]", "subjects", "mean JND [%]");
+  for (const ReferenceJnd& mean : analysis.means) {
+    const double percent = 100.0 / mean.rendered_N;
+    std::printf("%-13.4g %8zu %7.1f ±%4.1f\n", mean.reference_N, mean.count, percent * mean.jnd_N,
+                percent * mean.standard_error_N);
+  }
+  for (const SubjectJnd& subject : analysis.subjects) print_left_out(subject.subject, subject.unusable);
+  if (!analysis.lines.ok()) return;
+  const auto print_line = [](const char* name, const JndLine& line) {
+    std::printf("%-12s %.4f N + %.2f %%\n", name, line.offset_N, 100.0 * line.weber_fraction);
+  };
+  print_line("fitted", analysis.lines->fitted);
+  print_line("conservative", analysis.lines->conservative);
 }
 
 // Writes the table, the JND file and the figures.
-Status write_analysis(const StudyAnalysis& analysis, const StudyOptions& options) {
-  if (const Status made = make_folder(options.out); !made) return made;
-  print_analysis(analysis);
-  const Status table = write_file_atomically(options.out + "/results.csv", analysis_table(analysis), options.force);
-  if (!table) return table;
-  if (analysis.lines.ok()) {
-    std::vector<std::string> subjects;
-    for (const SubjectJnd& subject : analysis.subjects) subjects.push_back(subject.subject);
-    const std::string text = jnd_file_text(*analysis.lines, analysis.points, subjects);
-    const Status jnd = write_file_atomically(options.out + "/jnd.json", text, options.force);
-    if (!jnd) return jnd;
-  }
-  if (const Status figures = write_study_figures(analysis, options.out, options.force); !figures) return figures;
-  if (!analysis.lines.ok()) return Error{"no JND file: " + analysis.lines.error().message};
-  return {};
-}
-
-Status analyse(const std::vector<StudyData>& files, const StudyOptions& options) {
+Status analyse_jnd(const std::vector<StudyData>& files, const StudyOptions& options) {
   const auto analysis = analyse_study(files, options.with_published);
   if (!analysis) return analysis.error();
-  return write_analysis(*analysis, options);
-}
-
-void print_discrimination(const DiscriminationAnalysis& analysis) {
-  const StrokePair& strokes = *analysis.strokes;
-  std::printf("reference    %s\ncomparison   %s\nstroke       %s, %.2f to %.2f s\n", strokes.reference.c_str(),
-              strokes.comparison.c_str(), strokes.recording.c_str(), strokes.from_s, strokes.to_s);
-  std::printf("error/JND    mean %.2f, max %.2f, as predicted (JND %.4g N + %.4g %%)\n", strokes.mean_over_jnd,
-              strokes.max_over_jnd, strokes.jnd.offset_N, 100.0 * strokes.jnd.weber_fraction);
-  if (analysis.all.unusable > 0)
-    std::printf("%zu trials left out, their forces were not rendered\n", analysis.all.unusable);
-  std::printf("%s\n", discrimination_verdict(analysis.all, strokes).c_str());
+  print_analysis(*analysis);
+  Status status = write_file_atomically(options.path_of("results.csv"), analysis_table(*analysis), options.force);
+  if (status && analysis->lines.ok())
+    status = write_file_atomically(options.path_of("jnd.json"), jnd_file_text(*analysis), options.force);
+  if (status)
+    status = draw_plot(study_plot(*analysis), {options.path_of("figure3.svg"), options.path_of("figure3.png")},
+                       options.force);
+  if (status && !analysis->lines.ok()) return Error{"no JND file: " + analysis->lines.error().message};
+  return status;
 }
 
 Status analyse_strokes(const std::vector<StudyData>& files, const StudyOptions& options) {
-  const auto analysis = analyse_discrimination(files);
-  if (!analysis) return analysis.error();
-  if (const Status made = make_folder(options.out); !made) return made;
-  print_discrimination(*analysis);
-  return write_file_atomically(options.out + "/results.csv", discrimination_table(*analysis), options.force);
+  const auto results = analyse_discrimination(files);
+  if (!results) return results.error();
+  const StrokePair& strokes = *files.front().header.strokes;
+  const Discrimination& all = results->back();
+  std::printf("reference    %s\ncomparison   %s\nstroke       %s, from %.2f s\n", strokes.reference.c_str(),
+              strokes.comparison.c_str(), strokes.recording.c_str(), strokes.from_s);
+  std::printf("error/JND    mean %.2f, max %.2f, as predicted (JND %.4g N + %.4g %%)\n", strokes.mean_over_jnd,
+              strokes.max_over_jnd, strokes.jnd.offset_N, 100.0 * strokes.jnd.weber_fraction);
+  print_left_out(all.subject, all.unusable);
+  std::printf("%s\n", discrimination_verdict(all, strokes).c_str());
+  return write_file_atomically(options.path_of("results.csv"), discrimination_table(*results, strokes), options.force);
 }
 
-// Analyses all files by the kind of the first one.
-Status analyse_files(const std::vector<StudyData>& files, const StudyOptions& options) {
+// Creates the folder for the results.
+Status make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  return error ? Status{Error{"cannot make the folder " + folder + ": " + error.message()}} : Status{};
+}
+
+// Analyses all files by the procedure of the first one.
+Status analyse(const std::vector<StudyData>& files, const StudyOptions& options) {
+  if (const Status made = make_folder(options.out); !made) return made;
   const bool strokes = !files.empty() && files.front().header.strokes != nullptr;
-  return strokes ? analyse_strokes(files, options) : analyse(files, options);
+  return strokes ? analyse_strokes(files, options) : analyse_jnd(files, options);
 }
 
 Status run_analyse(const StudyOptions& options) {
@@ -115,101 +106,81 @@ Status run_analyse(const StudyOptions& options) {
     if (!data) return data.error();
     files.push_back(std::move(*data));
   }
-  return analyse_files(files, options);
+  return analyse(files, options);
 }
 
-Result<StudyHeader> study_header(const StudyOptions& options) {
-  StudyHeader header;
-  if (!options.discriminates) return header;
-  const Result<Scene> scene = load_scene(options.strokes_scene);
-  if (!scene) return scene.error();
-  const auto strokes = prepare_strokes({*scene, options.models, options.recording});
-  if (!strokes) return strokes.error();
-  header.strokes = *strokes;
-  return header;
+// Writes the file of each subject.
+Result<std::vector<StudyData>> simulate(StudyHeader header, const StudyOptions& options) {
+  ProgressLine line("simulating");
+  std::vector<StudyData> files;
+  for (int i = 1; i <= options.subjects; ++i) {
+    if (!line.update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
+    RandomStream random(options.seed, kPopulationStream + static_cast<std::uint64_t>(i));
+    header.subject = (i < 10 ? "S0" : "S") + std::to_string(i);
+    files.push_back({header, simulated_answers(header, options.traits, random.next())});
+    std::string text = study_header_text(header, "simulated");
+    for (const StudyRecord& record : files.back().records) text += study_row(record, header);
+    const Status written = write_file_atomically(options.path_of(header.subject + ".csv"), text, options.force);
+    if (!written) return written.error();
+  }
+  return files;
 }
 
 Status run_simulate(const StudyOptions& options) {
-  Result<StudyHeader> header = study_header(options);
-  if (!header) return header.error();
-  if (const Status made = make_folder(options.out); !made) return made;
-  std::vector<StudyData> files;
-  {
-    ProgressLine line("simulating");
-    for (int i = 1; i <= options.subjects; ++i) {
-      if (!line.update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
-      RandomStream random(options.seed, kPopulationStream + static_cast<std::uint64_t>(i));
-      char code[16];
-      std::snprintf(code, sizeof code, "S%02d", i);
-      header->subject = code;
-      StudyData data{*header, "simulated", simulated_answers(*header, options.traits, random.next()), 0};
-      std::string text =
-          study_header_text(data.header) + "# consent accepted, simulated\n" + study_columns(data.header) + "\n";
-      for (const StudyRecord& record : data.records) text += study_row(record, data.header);
-      const Status written = write_file_atomically(options.out + "/" + code + ".csv", text, options.force);
-      if (!written) return written;
-      files.push_back(std::move(data));
-    }
+  StudyHeader header;
+  if (options.discriminates) {
+    const Result<Scene> scene = load_scene(options.strokes_scene);
+    if (!scene) return scene.error();
+    auto strokes = prepare_strokes({*scene, options.models, options.recording});
+    if (!strokes) return strokes.error();
+    header.strokes = std::move(*strokes);
   }
-  return analyse_files(files, options);
+  if (const Status made = make_folder(options.out); !made) return made;
+  const auto files = simulate(header, options);
+  return files ? analyse(*files, options) : Status{files.error()};
 }
 
 void add_output_options(CLI::App* verb, StudyOptions& options) {
   verb->add_flag("--pang", options.with_published,
-                 "The line goes below Pang, Tan & Durlach's point (1991) too: 9 % at 2.5 N");
+                 "Fit the line to the point of Pang, Tan & Durlach (1991) as well: 9 % at 2.5 N");
   verb->add_option("--out", options.out, "Folder for results.csv and, for a JND, jnd.json and figure 3 (a) and (b)")
       ->required();
   verb->add_flag("--force", options.force, "Replace files that exist");
 }
 
-void add_analyse(CLI::App& study, Verbs& verbs) {
-  auto options = std::make_shared<StudyOptions>();
-  CLI::App* verb = study.add_subcommand(
-      "analyse", "From the files of the subjects to the JND line, its file and figure, or to who told strokes apart");
-  verb->add_option("files", options->files, "Study files, one per subject (CSV)")->required();
-  add_output_options(verb, *options);
-  verbs.emplace_back(verb, [options] { return run_analyse(*options); });
-}
-
-void add_stroke_options(CLI::App* verb, const std::shared_ptr<StudyOptions>& options) {
+void add_stroke_options(CLI::App* verb, StudyOptions& options) {
   CLI::Option* discriminate =
       verb->add_option_function<std::string>(
               "--discriminate",
-              [options](const std::string& recording) {
-                options->discriminates = true;
-                options->recording = recording;
+              [&options](const std::string& recording) {
+                options.discriminates = true;
+                options.recording = recording;
               },
-              "Which of two renderings of a stroke is which (100 trials), of this recording [a virtual one]")
+              "Discriminate two renderings of a stroke of this recording, in 100 trials [a virtual one]")
           ->type_name("[REC.csv]")
           ->expected(0, 1);
-  verb->add_option("--scene", options->strokes_scene, "To discriminate in")->capture_default_str()->needs(discriminate);
-  verb->add_option("--model", options->models,
-                   "To tell from the recorded force, or two to tell apart [the scene's first]")
+  verb->add_option("--scene", options.strokes_scene, "Scene of the strokes")
+      ->capture_default_str()
+      ->needs(discriminate);
+  verb->add_option("--model", options.models,
+                   "The model to compare with the recorded force, or two models [the scene's first]")
       ->type_name("FILE_OR_METHOD")
       ->needs(discriminate);
 }
 
-void add_simulate(CLI::App& study, Verbs& verbs) {
-  auto options = std::make_shared<StudyOptions>();
-  CLI::App* verb =
-      study.add_subcommand("simulate", "A whole study with simulated subjects, from the first trial to the figure");
-  verb->add_option("--subjects", options->subjects, "How many")->check(CLI::Range(1, 99))->capture_default_str();
+void add_simulate_options(CLI::App* verb, StudyOptions& options) {
+  const auto add = [&](const char* name, auto& value, const char* help, double low, double high) {
+    verb->add_option(name, value, help)->check(CLI::Range(low, high))->capture_default_str();
+  };
+  verb->add_option("--subjects", options.subjects, "Number of subjects")
+      ->check(CLI::Range(1, 99))
+      ->capture_default_str();
   add_stroke_options(verb, options);
-  verb->add_option("--seed", options->seed, "Which subjects")->capture_default_str();
-  verb->add_option("--offset", options->traits.jnd.offset_N, "Their JND at no force, N")
-      ->check(CLI::Range(0.001, 1.0))
-      ->capture_default_str();
-  verb->add_option("--weber", options->traits.jnd.weber_fraction, "What it grows by with the force")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  verb->add_option("--bias", options->traits.order_bias_jnd, "What they add to the second force, multiples of the JND")
-      ->check(CLI::Range(-2.0, 2.0))
-      ->capture_default_str();
-  verb->add_option("--lapse", options->traits.lapse_rate, "Share of answers that are wrong whatever the force")
-      ->check(CLI::Range(0.0, 0.2))
-      ->capture_default_str();
-  add_output_options(verb, *options);
-  verbs.emplace_back(verb, [options] { return run_simulate(*options); });
+  verb->add_option("--seed", options.seed, "Seed of the subjects")->capture_default_str();
+  add("--offset", options.traits.jnd.offset_N, "Their JND at 0 N, N", 0.001, 1.0);
+  add("--weber", options.traits.jnd.weber_fraction, "Increase of their JND with the force", 0.0, 1.0);
+  add("--bias", options.traits.order_bias_jnd, "Bias added to the second force, in multiples of the JND", -2.0, 2.0);
+  add("--lapse", options.traits.lapse_rate, "Share of answers that are wrong whatever the force", 0.0, 0.2);
 }
 
 }  // namespace
@@ -218,16 +189,16 @@ void add_study(CLI::App& app, Verbs& verbs) {
   CLI::App* study =
       app.add_subcommand("study", "The force-discrimination study (palpate-demo --scene jnd_study): analyse, simulate");
   study->require_subcommand(1);
-  verbs.emplace_back(study, [] { return Status(); });
-  Verbs parts;
-  add_analyse(*study, parts);
-  add_simulate(*study, parts);
-  verbs.back().second = [parts] {
-    for (const auto& [command, run] : parts) {
-      if (command->parsed()) return run();
-    }
-    return Status();
-  };
+  const auto options = std::make_shared<StudyOptions>();
+  CLI::App* analyses = study->add_subcommand(
+      "analyse", "Files of subjects to the JND line, its file and figure, or to the share of correct discriminations");
+  analyses->add_option("files", options->files, "Study files, one per subject (CSV)")->required();
+  add_output_options(analyses, *options);
+  CLI::App* simulates =
+      study->add_subcommand("simulate", "A whole study with simulated subjects, from the first trial to the figure");
+  add_simulate_options(simulates, *options);
+  add_output_options(simulates, *options);
+  verbs.emplace_back(study, [=] { return analyses->parsed() ? run_analyse(*options) : run_simulate(*options); });
 }
 
 }  // namespace palpate::cli

@@ -10,7 +10,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -43,17 +42,11 @@ Discrimination discrimination_of(const std::string& subject, const std::vector<S
 // 75 % would be one JND: consistent."
 std::string discrimination_verdict(const Discrimination& result, const StrokePair& strokes);
 
-struct DiscriminationAnalysis {
-  std::shared_ptr<const StrokePair> strokes;
-  std::vector<Discrimination> subjects;
-  Discrimination all;  // pooled answers
-};
+// The result of each subject, then of all answers together. Errors: those of check_study_files; a file of constant
+// stimuli; a subject without usable answers.
+Result<std::vector<Discrimination>> analyse_discrimination(const std::vector<StudyData>& files);
 
-// Errors: no file; a file of another procedure; files with different strokes; a subject twice, or without usable
-// answers.
-Result<DiscriminationAnalysis> analyse_discrimination(const std::vector<StudyData>& files);
-
-// One row per subject, then all: CSV with a header row.
-std::string discrimination_table(const DiscriminationAnalysis& analysis);
+// One row per result: CSV with a header row.
+std::string discrimination_table(const std::vector<Discrimination>& results, const StrokePair& strokes);
 
 }  // namespace palpate

@@ -5,58 +5,46 @@
 
 #include "devices/registry/device_registry.h"
 #include "scenes/scene/assets.h"
-#include "scenes/study/study_file.h"
 
 namespace palpate {
 
-namespace {
-
-Result<std::unique_ptr<Device>> open_study_device(const std::string& name) {
+Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const std::string& device, bool realtime,
+                                                   std::shared_ptr<const StrokePair> strokes) {
   DeviceRequest request;
   if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
-  return open_device(name, request);
-}
-
-}  // namespace
-
-bool study_can_be_felt(const std::string& device) {
-  const auto opened = open_study_device(device);
-  if (!opened) return false;
-  const bool felt = (*opened)->holder() == Holder::person;
-  (*opened)->close();
-  return felt;
-}
-
-Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const LiveStudyRequest& request) {
-  if (Status status = check_subject_code(request.header.subject); !status) return status.error();
-  auto device = open_study_device(request.device);
-  if (!device) return device.error();
-  StudyHeader header = request.header;
-  header.device = (*device)->name();
-  header.rendered = (*device)->holder() == Holder::person;
-  auto file = StudyFile::open(request.path, header);
-  if (!file) return file.error();
-  auto session = StudySession::create(header, std::move(*file));
-  if (!session) return session.error();
-  std::unique_ptr<LiveStudy> study(new LiveStudy(std::move(*device), std::move(*session)));
-  LoopSettings settings;
-  settings.realtime = request.realtime;
-  settings.source = study->session_.get();
-  study->loop_ = std::make_unique<HapticsLoop>(*study->device_, settings);
-  if (Status status = study->loop_->start(); !status) return status.error();
+  auto opened = open_device(device, request);
+  if (!opened) return opened.error();
+  std::unique_ptr<LiveStudy> study(new LiveStudy);
+  study->realtime_ = realtime;
+  study->device_ = std::move(*opened);
+  study->header_ = {"", std::move(strokes), study->device_->name(), study->device_->holder() == Holder::person};
   return study;
 }
 
-LiveStudy::LiveStudy(std::unique_ptr<Device> device, std::unique_ptr<StudySession> session)
-    : device_(std::move(device)), session_(std::move(session)) {}
-
 LiveStudy::~LiveStudy() {
-  if (loop_ != nullptr) loop_->stop();
   loop_.reset();
   device_->close();
 }
 
+Status LiveStudy::begin(const std::string& code) {
+  header_.subject = code;
+  if (const Status checked = check_subject_code(code); !checked) return checked;
+  auto file = StudyFile::open((strokes() != nullptr ? "discriminate-" : "study-") + code + ".csv", header_);
+  if (!file) return file.error();
+  auto session = StudySession::create(std::move(*file));
+  if (!session) return session.error();
+  session_ = std::move(*session);
+  LoopSettings settings;
+  settings.realtime = realtime_;
+  settings.source = session_.get();
+  auto loop = std::make_unique<HapticsLoop>(*device_, settings);
+  if (const Status started = loop->start(); !started) return started;
+  loop_ = std::move(loop);
+  return {};
+}
+
 void LiveStudy::update() {
+  if (loop_ == nullptr) return;
   newest_ = loop_->newest();
   // The presenter records the forces; the snapshots are discarded, so that the ring does not fill up.
   std::array<LoopSnapshot, 64> passed;

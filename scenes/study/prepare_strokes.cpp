@@ -4,15 +4,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/recording/content_hash.h"
 #include "engine/tick/replay.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/material/rig.h"
-#include "scenes/study/study_presenter.h"
 #include "scenes/worker/model_worker.h"
 #include "scenes/worker/slot_plan.h"
 
@@ -32,70 +31,58 @@ constexpr double kLongestRecording_s = 3600.0;  // bounds the memory: one value 
 
 using Model = std::shared_ptr<const ForceModel>;
 
-// Forces with one value per ms.
+// Forces over time: after the tick of each row, or with one value per ms.
 struct Traces {
-  double from_s = 0.0;
+  std::vector<double> time_s;
   std::vector<double> reference_N;
   std::vector<double> comparison_N;
   std::vector<bool> contact;
 };
 
-// The forces after the tick of one row.
-struct Sample {
-  double time_s = 0.0;
-  double reference_N = 0.0;
-  double comparison_N = 0.0;
-  bool contact = false;
-};
-
-Result<std::vector<Sample>> samples_of(const Recording& recording, const Model& reference, const Model& comparison) {
+Result<Traces> forces_of(const Recording& recording, const Model& reference, const Model& comparison) {
   ForceModels models{comparison};
   if (reference != nullptr) models.push_back(reference);
-  std::vector<Sample> samples;
+  Traces rows;
   const auto summary =
       replay(recording, models, [&](const RecordingRow& row, const TickSnapshot& tick, const HapticsTick&) {
-        samples.push_back(
-            {row.time_s, reference != nullptr ? tick.force_N[1] : row.force_N, tick.force_N[0], tick.in_contact});
+        rows.time_s.push_back(row.time_s);
+        rows.reference_N.push_back(reference != nullptr ? tick.force_N[1] : row.force_N);
+        rows.comparison_N.push_back(tick.force_N[0]);
+        rows.contact.push_back(tick.in_contact);
       });
   if (!summary) return summary.error();
-  return samples;
+  return rows;
 }
 
 std::vector<double> smoothed(const std::vector<double>& values) {
-  std::array<double, 2 * kSmoothing_ticks + 1> window{};
-  double sum = 0.0;
-  for (std::size_t i = 0; i < window.size(); ++i) {
-    window[i] =
-        1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(i + 1) / static_cast<double>(window.size() + 1));
-    sum += window[i];
-  }
+  constexpr std::size_t kWidth = 2 * kSmoothing_ticks + 1;
+  std::array<double, kWidth> window{};  // the weights of a Hann window sum to (kWidth + 1) / 2
+  for (std::size_t k = 0; k < kWidth; ++k)
+    window[k] = (1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(k + 1) / (kWidth + 1))) / (kWidth + 1);
   std::vector<double> result(values.size(), 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    for (std::size_t k = 0; k < window.size(); ++k) {
-      const std::size_t at =
-          std::clamp(i + k, kSmoothing_ticks, values.size() - 1 + kSmoothing_ticks) - kSmoothing_ticks;
-      result[i] += window[k] / sum * values[at];
-    }
+    for (std::size_t k = 0; k < kWidth; ++k)
+      result[i] += window[k] *
+                   values[std::clamp(i + k, kSmoothing_ticks, values.size() - 1 + kSmoothing_ticks) - kSmoothing_ticks];
   }
   return result;
 }
 
-// Interpolates linearly between the rows, and smooths the forces.
-Traces traces_of(const std::vector<Sample>& samples) {
+// One value per ms, interpolated linearly between the rows; smooths the forces.
+Traces resampled(const Traces& rows) {
   Traces traces;
-  traces.from_s = samples.front().time_s;
-  const double seconds = std::min(samples.back().time_s - traces.from_s, kLongestRecording_s);
+  const double from_s = rows.time_s.front();
+  const double seconds = std::min(rows.time_s.back() - from_s, kLongestRecording_s);
   const auto ticks = static_cast<std::size_t>(seconds / kStudyTick_s) + 1;
   std::size_t row = 0;
   for (std::size_t i = 0; i < ticks; ++i) {
-    const double time_s = traces.from_s + kStudyTick_s * static_cast<double>(i);
-    while (row + 2 < samples.size() && samples[row + 1].time_s <= time_s) ++row;
-    const Sample& before = samples[row];
-    const Sample& after = samples[row + 1];
-    const double share = std::clamp((time_s - before.time_s) / (after.time_s - before.time_s), 0.0, 1.0);
-    traces.reference_N.push_back(before.reference_N + share * (after.reference_N - before.reference_N));
-    traces.comparison_N.push_back(before.comparison_N + share * (after.comparison_N - before.comparison_N));
-    traces.contact.push_back(before.contact);
+    const double time_s = from_s + kStudyTick_s * static_cast<double>(i);
+    while (row + 2 < rows.time_s.size() && rows.time_s[row + 1] <= time_s) ++row;
+    const double share = std::clamp((time_s - rows.time_s[row]) / (rows.time_s[row + 1] - rows.time_s[row]), 0.0, 1.0);
+    traces.time_s.push_back(time_s);
+    traces.reference_N.push_back(std::lerp(rows.reference_N[row], rows.reference_N[row + 1], share));
+    traces.comparison_N.push_back(std::lerp(rows.comparison_N[row], rows.comparison_N[row + 1], share));
+    traces.contact.push_back(rows.contact[row]);
   }
   traces.reference_N = smoothed(traces.reference_N);
   traces.comparison_N = smoothed(traces.comparison_N);
@@ -144,38 +131,14 @@ std::optional<std::size_t> hardest_piece(const Traces& traces, const JndLine& jn
 // Rounds to the resolution of the file, so that the file has what was presented: 0.1 mN, 1 ms, ratios to 1e-4.
 double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
-std::vector<double> cut(const std::vector<double>& force_N, std::size_t from) {
-  std::vector<double> part;
-  for (std::size_t i = 0; i < kInterval_ticks; ++i) part.push_back(rounded(force_N[from + i], 1e4));
-  return part;
-}
-
-double held_mean_N(const std::vector<double>& force_N) {
-  const auto held = force_N.begin() + kRamp_ticks;
-  return rounded(std::accumulate(held, held + kHold_ticks, 0.0) / kHold_ticks, 1e4);
-}
-
-std::uint32_t checksum_of(const StrokePair& strokes) {
-  std::uint32_t hash = 0x811c9dc5u;  // FNV-1a over tenths of mN
-  for (const auto* force_N : {&strokes.reference_N, &strokes.comparison_N}) {
-    for (const double value : *force_N) {
-      const auto tenths = static_cast<std::uint32_t>(static_cast<std::int32_t>(std::lround(value * 1e4)));
-      for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ (tenths >> shift & 0xffu)) * 0x01000193u;
-    }
+// Cuts out an interval and returns its mean between the ramps.
+double cut(const std::vector<double>& force_N, std::size_t from, std::vector<double>& stroke_N) {
+  double mean_N = 0.0;
+  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
+    stroke_N.push_back(rounded(force_N[from + i], 1e4));
+    if (is_held(i)) mean_N += stroke_N.back() / kHold_ticks;
   }
-  return hash;
-}
-
-// Fits or loads the models of the plans, as the window does.
-Result<std::vector<Model>> make_models(const Scene& scene, const std::vector<SlotPlan>& plans) {
-  ModelWorker worker(scene, kTrainingSeed);
-  std::vector<Model> models;
-  for (const SlotPlan& plan : plans) {
-    auto made = worker.make(plan);
-    if (!made) return made.error();
-    models.push_back(std::move(*made));
-  }
-  return models;
+  return rounded(mean_N, 1e4);
 }
 
 Result<Recording> test_recording(const StrokeRequest& request) {
@@ -195,43 +158,52 @@ Result<Recording> test_recording(const StrokeRequest& request) {
 Result<std::shared_ptr<const StrokePair>> prepare_strokes(const StrokeRequest& request) {
   if (request.models.size() > 2) {
     return Error{"found " + std::to_string(request.models.size()) +
-                 " models, expected one, to tell from the recorded force, or two; leave some out"};
+                 " models, expected one, to compare with the recorded force, or two; leave some out"};
   }
   Result<std::vector<SlotPlan>> plans = plan_slots(request.scene, request.models, false);
   if (!plans) return plans.error();
-  plans->resize(std::max<std::size_t>(request.models.size(), 1));  // without a model as the reference, one model only
+  plans->resize(std::max<std::size_t>(request.models.size(), 1));
   const Result<Recording> recording = test_recording(request);
   if (!recording) return recording.error();
-  const Result<std::vector<Model>> models = make_models(request.scene, *plans);
-  if (!models) return models.error();
-  return strokes_of(*recording, models->size() == 2 ? models->front() : nullptr, models->back(), request.scene.jnd);
+  ModelWorker worker(request.scene, kTrainingSeed);
+  std::vector<Model> models;
+  for (const SlotPlan& plan : *plans) {
+    auto made = worker.make(plan);
+    if (!made) return made.error();
+    models.push_back(std::move(*made));
+  }
+  return strokes_of(*recording, models.size() == 2 ? models.front() : nullptr, models.back(), request.scene.jnd);
 }
 
 Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording, const Model& reference,
                                                      const Model& comparison, const JndLine& jnd) {
-  const Result<std::vector<Sample>> samples = samples_of(recording, reference, comparison);
-  if (!samples) return samples.error();
-  const Traces traces = traces_of(*samples);
+  const Result<Traces> rows = forces_of(recording, reference, comparison);
+  if (!rows) return rows.error();
+  const Traces traces = resampled(*rows);
   const std::optional<std::size_t> from = hardest_piece(traces, jnd);
   if (!from) {
     return Error{"found no piece of a stroke of 1.1 s, up to 3.8 N (2.5 N root mean square) and 90 N/s, in " +
-                 recording.name + ", expected one that a still hand can be given; name another recording"};
+                 recording.name + ", expected one that can be rendered to a still hand; name another recording"};
   }
   auto strokes = std::make_shared<StrokePair>();
   strokes->reference = printable(reference != nullptr ? reference->name() : kRecordedForce, kLongestName);
   strokes->comparison = printable(comparison->name(), kLongestName);
   strokes->recording = printable(recording.name, kLongestName);
-  strokes->from_s = rounded(traces.from_s + kStudyTick_s * static_cast<double>(*from), 1e3);
-  strokes->to_s = rounded(strokes->from_s + kStudyTick_s * kInterval_ticks, 1e3);
+  strokes->from_s = rounded(traces.time_s[*from], 1e3);
   strokes->jnd = jnd;
   const ErrorFigures errors = errors_from(traces, *from, jnd);
   strokes->mean_over_jnd = rounded(errors.mean_error_over_jnd(), 1e4);
   strokes->max_over_jnd = rounded(errors.max_error_over_jnd(), 1e4);
-  strokes->reference_N = cut(traces.reference_N, *from);
-  strokes->comparison_N = cut(traces.comparison_N, *from);
-  strokes->reference_mean_N = held_mean_N(strokes->reference_N);
-  strokes->comparison_mean_N = held_mean_N(strokes->comparison_N);
-  strokes->checksum = checksum_of(*strokes);
+  strokes->reference_mean_N = cut(traces.reference_N, *from, strokes->reference_N);
+  strokes->comparison_mean_N = cut(traces.comparison_N, *from, strokes->comparison_N);
+  ContentHash hash;
+  for (std::size_t i = 0; i < kInterval_ticks; ++i) {
+    RecordingRow row;
+    row.position_m = strokes->comparison_N[i];  // the hash is of numbers, whatever their meaning
+    row.force_N = strokes->reference_N[i];
+    hash.add(row);
+  }
+  strokes->checksum = hash.value();
   return std::shared_ptr<const StrokePair>(std::move(strokes));
 }
 

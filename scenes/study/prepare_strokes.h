@@ -17,7 +17,7 @@
 #include "engine/recording/recording.h"
 #include "engine/tick/force_model.h"
 #include "scenes/scene/scene.h"
-#include "scenes/study/stroke_pair.h"
+#include "scenes/study/study_plan.h"
 
 namespace palpate {
 

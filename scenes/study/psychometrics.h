@@ -27,19 +27,15 @@ double normal_quantile(double probability) noexcept;
 
 // The answers to all trials with the same stimuli. Counts may be fractional, for expected answers.
 struct AnswerCell {
-  std::size_t reference = 0;  // index of the reference force, below kMostReferences
+  std::size_t reference = 0;  // index of the reference force
   double difference = 0.0;    // x
   bool comparison_first = false;
   double judged_larger = 0.0;  // number of trials in which the comparison was judged the larger
   double trials = 0.0;
 };
-inline constexpr std::size_t kMostReferences = 8;
-
-// Adds answers to the cell with the same stimuli (x within 1e-4), or appends a cell.
-void add_answers(std::vector<AnswerCell>& cells, const AnswerCell& answers);
 
 struct PsychometricFunction {
-  double slope = 1.0;  // > 0
+  double slope = 1.0;  // 0.25 .. 40, a JND of 2.7 times the reference to one of 1.7 %
   double order_bias = 0.0;
   double lapse = 0.0;  // 0 .. 0.06
 
@@ -51,12 +47,11 @@ struct PsychometricFunction {
 struct PsychometricFit {
   std::vector<PsychometricFunction> functions;  // of each reference force
   // Whether the answers bound the slope on both sides. They do not when all are correct or all are guesses; the slope
-  // is then at or near an end of its range, 0.25 .. 40.
+  // is then at or near an end of its range.
   std::vector<bool> determined;
 };
 
-// Joint maximum likelihood for `references` reference forces (1 .. kMostReferences). The lapse rate is a multiple of
-// 0.01, at most 0.06.
+// Joint maximum likelihood for `references` reference forces. The lapse rate is a multiple of 0.01.
 PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size_t references);
 
 }  // namespace palpate

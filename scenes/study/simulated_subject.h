@@ -15,7 +15,7 @@
 
 #include "engine/base/random_stream.h"
 #include "engine/tick/jnd.h"
-#include "scenes/study/study_store.h"
+#include "scenes/study/study_file.h"
 
 namespace palpate {
 
@@ -25,20 +25,9 @@ struct SubjectTraits {
   double lapse_rate = 0.0;      // 0 .. 0.5; the subject guesses in a share of 2 x this, half of it wrong
 };
 
-class SimulatedSubject {
- public:
-  SimulatedSubject(const SubjectTraits& traits, std::uint64_t seed) noexcept
-      : traits_(traits), random_(seed, kStream) {}
-
-  bool second_feels_larger(double first_N, double second_N) noexcept;
-  // Whether the answer is "second": the larger of two forces, or the stroke that equals the reminder.
-  bool answers_second(const Stimuli& stimuli) noexcept;
-
- private:
-  static constexpr std::uint64_t kStream = 31;
-  SubjectTraits traits_;
-  RandomStream random_;
-};
+// Whether the second of two forces is perceived as the larger. Draws the same number of random numbers for every trial,
+// so that an answer does not change later trials.
+bool second_feels_larger(const SubjectTraits& traits, double first_N, double second_N, RandomStream& random) noexcept;
 
 // All answers of one subject, including training, to forces that are rendered exactly as planned.
 std::vector<StudyRecord> simulated_answers(const StudyHeader& header, const SubjectTraits& traits, std::uint64_t seed);

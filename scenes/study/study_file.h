@@ -1,10 +1,10 @@
-// The answers of one subject in a CSV file, one row per trial.
+// The answers of one subject in a CSV file, one row per trial. A session has no other copy of them.
 //
 //   # palpate-study 1
 //   # subject S01
 //   # procedure constant
 //   # timing_ms lead_in 400 ramp 100 hold 900 pause 500
-//   # consent accepted, text 8c1f2a9d, 2024-05-06 10:20
+//   # consent accepted, 2024-05-06 10:20
 //   part,trial,reference_N,comparison_N,comparison_first,first_rendered_N,second_rendered_N,limited,answer,response_ms,device,rendered
 //   training,1,0.3,0.18,1,0.18,0.3,0,second,731,paddle,true
 //
@@ -12,55 +12,91 @@
 // Its rows have two more columns before the device, reminder_rendered_N and worst_N; their forces are the means of the
 // strokes.
 //
-// The consent line has a checksum of the text (FNV-1a) and the time that the caller gives. No file exists before the
-// consent. A row is appended and synced to the disk before its answer counts; a row that fails is removed. A last row
-// without its line end, left by a power failure, was never confirmed: it is ignored and removed. While a StudyFile has
-// a file open, a second StudyFile is refused (flock).
+// No file exists before the consent. A row is appended and synced to the disk before its answer counts; a row that
+// fails is removed. A last row without its line end, left by a power failure, was never confirmed: it is ignored and
+// removed. While a StudyFile has a file open, a second StudyFile is refused (flock).
 // Thread guarantee: one thread; slow side (does I/O).
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "scenes/study/study_store.h"
+#include "engine/base/result.h"
+#include "scenes/study/study_plan.h"
 
 namespace palpate {
 
+// Common data of all trials of one subject.
+struct StudyHeader {
+  std::string subject;
+  std::shared_ptr<const StrokePair> strokes = nullptr;  // null: constant stimuli
+  // The device of new answers, and whether it renders force. Both are stored with each answer, because a study may be
+  // resumed with another device.
+  std::string device = "unknown";
+  bool rendered = true;
+};
+
+struct StudyRecord {
+  StudyTrial trial;
+  std::size_t number = 1;         // StudyPlan::number
+  double first_rendered_N = 0.0;  // mean between the ramps; forces are rounded to 0.1 mN
+  double second_rendered_N = 0.0;
+  bool limited = false;
+  bool answered_second = false;      // "the second was larger", or "the second was like the reminder"
+  std::uint32_t response_ms = 0;     // from the end of the second force
+  double reminder_rendered_N = 0.0;  // this and worst_N: with strokes only
+  double worst_N = 0.0;              // largest deviation of the rendered force at any tick
+  std::string device = "unknown";
+  bool rendered = true;  // false: a rehearsal on a device without force
+
+  bool comparison_judged_larger() const noexcept { return answered_second != trial.comparison_first; }
+  bool found_larger() const noexcept { return answered_second == (trial.second_N() > trial.first_N()); }
+  bool found_reference() const noexcept { return answered_second == trial.comparison_first; }
+  double reference_rendered_N() const noexcept { return trial.comparison_first ? second_rendered_N : first_rendered_N; }
+  // The rendered difference relative to the rendered reference.
+  double rendered_difference() const noexcept;
+  bool operator==(const StudyRecord&) const = default;
+};
+
 struct StudyData {
   StudyHeader header;
-  std::string consent;  // "text 8c1f2a9d, 2024-05-06 10:20"
   std::vector<StudyRecord> records;
   std::size_t whole_bytes = 0;  // up to the end of the last complete row
 };
 
 // Errors: the first deviation from this format, as "path:line:column: found ..., expected ...".
-Result<StudyData> parse_study(std::string_view text, const std::string& path);
+Result<StudyData> parse_study(const std::string& text, const std::string& path);
 // Errors: the file is not readable; those of parse_study.
 Result<StudyData> read_study(const std::string& path);
-
-// The lines above the consent; the names of the columns; one row with its line end.
-std::string study_header_text(const StudyHeader& header);
-std::string study_columns(const StudyHeader& header);
+// The lines above the rows; one row with its line end.
+std::string study_header_text(const StudyHeader& header, const std::string& consent);
 std::string study_row(const StudyRecord& record, const StudyHeader& header);
-// Errors: no file; two files of one subject.
-Status check_subjects(const std::vector<StudyData>& files);
 
-class StudyFile final : public StudyStore {
+// Errors: no file; two files of one subject; files of different procedures or strokes.
+Status check_study_files(const std::vector<StudyData>& files);
+
+class StudyFile {
  public:
   // Resumes `path` if it exists; else `consent` creates it. Errors: another session has it open; it is not a study
   // file, or of another subject, procedure or strokes; it is not readable.
   static Result<std::unique_ptr<StudyFile>> open(const std::string& path, const StudyHeader& header);
-
   StudyFile(const StudyFile&) = delete;
   StudyFile& operator=(const StudyFile&) = delete;
-  ~StudyFile() override;
+  ~StudyFile();
 
-  bool consented() const noexcept override { return consented_; }
-  const std::vector<StudyRecord>& records() const noexcept override { return records_; }
-  Status consent(const std::string& text, const std::string& when) override;
-  Status append(const StudyRecord& record) override;
+  const StudyHeader& header() const noexcept { return header_; }
+  // Whether the subject has consented, now or in an earlier session.
+  bool consented() const noexcept { return consented_; }
+  // Answers of earlier sessions and of this one, in order.
+  const std::vector<StudyRecord>& records() const noexcept { return records_; }
+
+  // Creates the file. `when`: any text without a line break. Errors: it could not be written.
+  Status consent(const std::string& when);
+  // Stores an answer durably, with the device of the header. Errors: it could not be written; the call may be repeated.
+  Status append(StudyRecord record);
 
  private:
   StudyFile(const std::string& path, const StudyHeader& header) : path_(path), header_(header) {}

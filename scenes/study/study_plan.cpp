@@ -1,7 +1,7 @@
 #include "scenes/study/study_plan.h"
 
 #include <cmath>
-#include <cstdint>
+#include <regex>
 #include <utility>
 
 #include "engine/base/random_stream.h"
@@ -10,23 +10,8 @@ namespace palpate {
 namespace {
 
 constexpr std::uint64_t kStudySeed = 0x70a1fa7e5eed0001u;  // fixed, so that the plan depends on the subject code only
-constexpr std::size_t kMostLetters = 3;
-constexpr std::size_t kMostDigits = 4;
-constexpr std::uint64_t kConstantStream = 1;
-constexpr std::uint64_t kTrainingStream = 2;
-constexpr std::uint64_t kDiscriminationStream = 4;
-constexpr std::uint64_t kDiscriminationTrainingStream = 5;
 constexpr std::size_t kDiscriminationTraining = 4;
 constexpr double kEasyShare = 0.5;
-
-bool is_code(const std::string& text) {
-  std::size_t letters = 0;
-  while (letters < text.size() && text[letters] >= 'A' && text[letters] <= 'Z') ++letters;
-  std::size_t digits = 0;
-  while (letters + digits < text.size() && text[letters + digits] >= '0' && text[letters + digits] <= '9') ++digits;
-  return letters >= 1 && letters <= kMostLetters && digits >= 1 && digits <= kMostDigits &&
-         letters + digits == text.size();
-}
 
 // Random numbers of this subject; each use has its own `stream`.
 RandomStream subject_random(const std::string& code, std::uint64_t stream) noexcept {
@@ -49,48 +34,39 @@ std::vector<bool> balanced_flags(std::size_t count, RandomStream& random) {
   return {flags.begin(), flags.end()};
 }
 
-// The 320 trials.
-std::vector<StudyTrial> constant_trials(const std::string& code) {
-  RandomStream random = subject_random(code, kConstantStream);
-  std::vector<std::vector<StudyTrial>> rounds(kRepetitions);
-  for (const double reference_N : kReferenceForces_N) {
-    for (const int percent : kComparisonPercent) {
-      const std::vector<bool> first = balanced_flags(kRepetitions, random);
-      for (std::size_t i = 0; i < rounds.size(); ++i) {
-        rounds[i].push_back({reference_N, percent_of(reference_N, percent), first[i]});
-      }
-    }
-  }
-  std::vector<StudyTrial> trials;
-  for (std::vector<StudyTrial>& round : rounds) {
-    shuffle(round, random);
-    trials.insert(trials.end(), round.begin(), round.end());
-  }
-  return trials;
-}
-
 // Each reference against 60 % and 140 %.
-std::vector<StudyTrial> constant_training(const std::string& code) {
-  RandomStream random = subject_random(code, kTrainingStream);
+std::vector<StudyTrial> constant_training(RandomStream random) {
   const std::vector<bool> first = balanced_flags(2 * kReferenceForces_N.size(), random);
   std::vector<StudyTrial> trials;
   for (const double reference_N : kReferenceForces_N) {
-    for (const int percent : {kComparisonPercent.front(), kComparisonPercent.back()}) {
-      trials.push_back({reference_N, percent_of(reference_N, percent), first[trials.size()]});
-    }
+    for (const int percent : {kComparisonPercent.front(), kComparisonPercent.back()})
+      trials.push_back({reference_N, percent_of(reference_N, percent), first[trials.size()], true});
   }
   shuffle(trials, random);
   return trials;
 }
 
-// `count` trials of these two; in each block the comparison comes first in half of the trials.
-std::vector<StudyTrial> stroke_trials(RandomStream random, double reference_N, double comparison_N, std::size_t count,
-                                      std::size_t block) {
-  std::vector<StudyTrial> trials;
-  while (trials.size() < count) {
-    for (const bool first : balanced_flags(block, random)) trials.push_back({reference_N, comparison_N, first});
+// Appends the 320 trials.
+void add_constant_trials(std::vector<StudyTrial>& trials, RandomStream random) {
+  std::vector<std::vector<StudyTrial>> rounds(kRepetitions);
+  for (const double reference_N : kReferenceForces_N) {
+    for (const int percent : kComparisonPercent) {
+      const std::vector<bool> first = balanced_flags(kRepetitions, random);
+      for (std::size_t i = 0; i < rounds.size(); ++i)
+        rounds[i].push_back({reference_N, percent_of(reference_N, percent), first[i]});
+    }
   }
-  return trials;
+  for (std::vector<StudyTrial>& round : rounds) {
+    shuffle(round, random);
+    trials.insert(trials.end(), round.begin(), round.end());
+  }
+}
+
+// Appends a block of trials of these two; the comparison comes first in half of them.
+void add_stroke_block(std::vector<StudyTrial>& trials, RandomStream& random, const StudyTrial& trial,
+                      std::size_t count) {
+  for (const bool first : balanced_flags(count, random))
+    trials.push_back({trial.reference_N, trial.comparison_N, first, trial.training});
 }
 
 }  // namespace
@@ -100,29 +76,38 @@ double percent_of(double reference_N, double percent) noexcept {
 }
 
 Status check_subject_code(const std::string& code) {
-  if (is_code(code)) return {};
+  static const std::regex kCode("[A-Z]{1,3}[0-9]{1,4}");
+  if (std::regex_match(code, kCode)) return {};
   return Error{"found the subject \"" + code +
                "\", expected a code of one to three capital letters and one to four digits, such as S01; "
                "names are not stored"};
 }
 
 StudyPlan plan_study(const std::string& code, const StrokePair* strokes) {
-  if (strokes == nullptr) return {nullptr, constant_training(code), constant_trials(code)};
+  StudyPlan plan{strokes, {}};
+  if (strokes == nullptr) {
+    plan.trials = constant_training(subject_random(code, 2));
+    plan.training = plan.trials.size();
+    add_constant_trials(plan.trials, subject_random(code, 1));
+    return plan;
+  }
   const double reference_N = strokes->reference_mean_N;
-  StudyPlan plan{strokes, {}, {}, kDiscriminationBlock};
-  plan.training =
-      stroke_trials(subject_random(code, kDiscriminationTrainingStream), reference_N,
-                    percent_of(reference_N, 100.0 * kEasyShare), kDiscriminationTraining, kDiscriminationTraining);
-  plan.trials = stroke_trials(subject_random(code, kDiscriminationStream), reference_N, strokes->comparison_mean_N,
-                              kDiscriminationTrials, kDiscriminationBlock);
+  RandomStream random = subject_random(code, 5);
+  add_stroke_block(plan.trials, random, {reference_N, percent_of(reference_N, 100.0 * kEasyShare), false, true},
+                   kDiscriminationTraining);
+  plan.training = kDiscriminationTraining;
+  plan.block = kDiscriminationBlock;
+  random = subject_random(code, 4);
+  while (plan.trials.size() < plan.training + kDiscriminationTrials)
+    add_stroke_block(plan.trials, random, {reference_N, strokes->comparison_mean_N}, kDiscriminationBlock);
   return plan;
 }
 
-Stimuli StudyPlan::stimuli(const StudyTrial& trial, bool in_training) const {
+Stimuli StudyPlan::stimuli(const StudyTrial& trial) const {
   if (strokes == nullptr) return {{trial.first_N()}, {trial.second_N()}, {}};
   const Stimulus reference{1.0, &strokes->reference_N};
   const Stimulus comparison =
-      in_training ? Stimulus{kEasyShare, &strokes->reference_N} : Stimulus{1.0, &strokes->comparison_N};
+      trial.training ? Stimulus{kEasyShare, &strokes->reference_N} : Stimulus{1.0, &strokes->comparison_N};
   if (trial.comparison_first) return {comparison, reference, reference};
   return {reference, comparison, reference};
 }

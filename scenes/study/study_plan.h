@@ -18,23 +18,46 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
-#include "scenes/study/stroke_pair.h"
+#include "engine/tick/jnd.h"
 #include "scenes/study/study_presenter.h"
 
 namespace palpate {
 
+// One recorded stroke as rendered by two models, or by a model and the recorded force (prepare_strokes.h).
+struct StrokePair {
+  std::string reference;   // "recorded force" or a model's name
+  std::string comparison;  // a model's name
+  std::string recording;
+  double from_s = 0.0;         // in the recording
+  std::uint64_t checksum = 0;  // of both forces
+  JndLine jnd;
+  // |comparison - reference| over the JND of the reference, over the ticks in contact, with the ramps of an interval.
+  double mean_over_jnd = 0.0;
+  double max_over_jnd = 0.0;
+  // Means between the ramps, which represent the strokes in a study file.
+  double reference_mean_N = 0.0;
+  double comparison_mean_N = 0.0;
+  // One force per tick of an interval, rounded to 0.1 mN; empty when the pair was read from a study file.
+  std::vector<double> reference_N;
+  std::vector<double> comparison_N;
+};
+
 inline constexpr std::array<double, 4> kReferenceForces_N = {0.3, 0.5, 1.0, 2.5};
 inline constexpr std::array<int, 8> kComparisonPercent = {60, 70, 80, 90, 110, 120, 130, 140};
 inline constexpr int kRepetitions = 10;  // of each pair; even, for the balance
+inline constexpr std::size_t kDiscriminationTrials = 100;
+inline constexpr std::size_t kDiscriminationBlock = 20;
 
 struct StudyTrial {
   double reference_N = 0.0;
   double comparison_N = 0.0;
   bool comparison_first = false;
+  bool training = false;
 
   double first_N() const noexcept { return comparison_first ? comparison_N : reference_N; }
   double second_N() const noexcept { return comparison_first ? reference_N : comparison_N; }
@@ -48,19 +71,15 @@ double percent_of(double reference_N, double percent) noexcept;
 // form.
 Status check_subject_code(const std::string& code);
 
-// Number of trials with two strokes, and of trials between two breaks. In each block the comparison comes first as
-// often as second.
-inline constexpr std::size_t kDiscriminationTrials = 100;
-inline constexpr std::size_t kDiscriminationBlock = 20;
-
 struct StudyPlan {
   const StrokePair* strokes = nullptr;  // null: constant stimuli
-  std::vector<StudyTrial> training;     // easy trials, to learn the task
-  std::vector<StudyTrial> trials;
-  std::size_t trials_per_block = 64;  // between two breaks: two repetitions of each pair
+  std::vector<StudyTrial> trials;       // first the training: easy trials, to learn the task
+  std::size_t training = 0;             // number of training trials
+  std::size_t block = 64;               // trials between two breaks: two repetitions of each pair
 
-  // The stimuli of a trial of the training or of the study.
-  Stimuli stimuli(const StudyTrial& trial, bool in_training) const;
+  // Number of a trial in a study file, from 1, separately for the training and the study.
+  std::size_t number(std::size_t trial) const noexcept { return 1 + trial - (trial < training ? 0 : training); }
+  Stimuli stimuli(const StudyTrial& trial) const;
 };
 // The trials of a subject. With `strokes`, which outlive the plan, the forces of a trial are the means of the strokes,
 // and the training compares the reference with half of it.

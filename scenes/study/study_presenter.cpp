@@ -12,87 +12,53 @@ double interval_share(std::uint32_t tick) noexcept {
   return 0.5 - 0.5 * std::cos(std::numbers::pi * static_cast<double>(from_edge) / kRamp_ticks);
 }
 
+double Stimulus::force_N(std::uint32_t tick) const noexcept {
+  const double now_N = size * interval_share(tick);
+  if (stroke_N == nullptr) return now_N;
+  return tick < stroke_N->size() ? now_N * (*stroke_N)[tick] : 0.0;
+}
+
 std::uint64_t StudyPresenter::present(const Stimuli& stimuli) noexcept {
   orders_.write({++ordered_, stimuli});
   return ordered_;
 }
 
-std::uint32_t StudyPresenter::length(PresentationPhase phase) const noexcept {
-  const bool reminds = phase == PresentationPhase::reminder || phase == PresentationPhase::reminder_pause;
-  const bool pauses = phase == PresentationPhase::pause || phase == PresentationPhase::reminder_pause;
-  if (phase == PresentationPhase::lead_in) return kLeadIn_ticks;
-  if (reminds && order_.stimuli.reminder.stroke_N == nullptr) return 0;
-  if (phase == PresentationPhase::idle || phase >= PresentationPhase::finished) return 0;
-  return pauses ? kPause_ticks : kInterval_ticks;
-}
-
-const Stimulus* StudyPresenter::stimulus() const noexcept {
-  return state_.phase == PresentationPhase::reminder ? &order_.stimuli.reminder
-         : state_.phase == PresentationPhase::first  ? &order_.stimuli.first
-         : state_.phase == PresentationPhase::second ? &order_.stimuli.second
-                                                     : nullptr;
-}
-
-bool StudyPresenter::is_held() const noexcept {
-  return stimulus() != nullptr && in_phase_ >= kRamp_ticks && in_phase_ < kRamp_ticks + kHold_ticks;
-}
-
-double StudyPresenter::commanded_N() const noexcept {
-  const Stimulus* now = stimulus();
-  if (now == nullptr) return 0.0;
-  const double force_N = now->size * interval_share(in_phase_);
-  if (now->stroke_N == nullptr) return force_N;
-  return in_phase_ < now->stroke_N->size() ? force_N * (*now->stroke_N)[in_phase_] : 0.0;
-}
-
-void StudyPresenter::read_orders() noexcept {
-  if (stopped_.load(std::memory_order_acquire)) {
-    state_.phase = PresentationPhase::stopped;
-    return;
-  }
-  if (!orders_.refresh()) return;
-  order_ = orders_.value();
-  state_.presentation = order_.presentation;
-  state_.phase = PresentationPhase::lead_in;
-  state_.first_rendered_N = state_.second_rendered_N = state_.reminder_rendered_N = 0.0;
-  state_.worst_N = 0.0;
-  state_.limited = false;
-  in_phase_ = 0;
-}
-
-// Records the force that the device rendered for the last tick.
+// Records the force that the device rendered for the last command.
 void StudyPresenter::record(double rendered_N) noexcept {
-  if (!sent_stimulus_ || !std::isfinite(rendered_N)) return;
-  state_.worst_N = std::max(state_.worst_N, std::abs(rendered_N - sent_commanded_N_));
-  if (!sent_held_) return;
-  double& mean_N = sent_phase_ == PresentationPhase::first    ? state_.first_rendered_N
-                   : sent_phase_ == PresentationPhase::second ? state_.second_rendered_N
-                                                              : state_.reminder_rendered_N;
-  mean_N += rendered_N / kHold_ticks;
+  if (state_.interval < 0 || !std::isfinite(rendered_N)) return;
+  state_.worst_N = std::max(state_.worst_N, std::abs(rendered_N - commanded_N_));
+  if (is_held(in_interval_)) state_.rendered_N[static_cast<std::size_t>(state_.interval)] += rendered_N / kHold_ticks;
 }
 
-void StudyPresenter::advance() noexcept {
-  while (state_.phase != PresentationPhase::idle && state_.phase < PresentationPhase::finished &&
-         in_phase_ >= length(state_.phase)) {
-    state_.phase = static_cast<PresentationPhase>(static_cast<int>(state_.phase) + 1);
-    in_phase_ = 0;
-    if (state_.phase == PresentationPhase::finished) state_.finished_at = state_.tick;
+// Sets the interval and returns the force of this tick of the presentation.
+double StudyPresenter::next_command_N() noexcept {
+  state_.interval = -1;
+  if (stopped_.load(std::memory_order_acquire) || state_.presentation == 0 || state_.finished) return 0.0;
+  const std::uint32_t now = played_++;
+  if (now < kLeadIn_ticks) return 0.0;
+  const Stimuli& stimuli = orders_.value().stimuli;
+  const std::uint32_t since = now - kLeadIn_ticks, period = kInterval_ticks + kPause_ticks;
+  const std::uint32_t interval = since / period + (stimuli.has_reminder() ? 0 : 1);
+  in_interval_ = since % period;
+  if (in_interval_ < kInterval_ticks) {
+    state_.interval = static_cast<int>(interval);
+    return (interval == 0 ? stimuli.reminder : interval == 1 ? stimuli.first : stimuli.second).force_N(in_interval_);
   }
+  state_.finished = interval == 2;
+  if (state_.finished) state_.finished_at = state_.tick;
+  return 0.0;
 }
 
 double StudyPresenter::tick(double rendered_N) noexcept {
   record(rendered_N);
-  read_orders();
-  advance();
-  sent_commanded_N_ = commanded_N();
-  state_.force_N = limiter_.limit(sent_commanded_N_, kStudyTick_s);
-  if (limiter_.flags() & (force_limit::kClamped | force_limit::kSlewed | force_limit::kNotFinite)) {
-    state_.limited = true;
+  if (orders_.refresh()) {
+    state_ = {.presentation = orders_.value().presentation, .tick = state_.tick};
+    played_ = 0;
   }
-  sent_phase_ = state_.phase;
-  sent_stimulus_ = stimulus() != nullptr;
-  sent_held_ = is_held();
-  ++in_phase_;
+  commanded_N_ = next_command_N();
+  state_.force_N = limiter_.limit(commanded_N_, kStudyTick_s);
+  const auto changed = force_limit::kClamped | force_limit::kSlewed | force_limit::kNotFinite;
+  if ((limiter_.flags() & changed) != 0) state_.limited = true;
   ++state_.tick;
   states_.write(state_);
   return state_.force_N;

@@ -1,18 +1,14 @@
-// Presents two forces one after the other with the accuracy of a tick, optionally after a third one as a reminder.
-//
-//   idle --present--> lead_in [-> reminder -> pause] -> first -> pause -> second
-//        -> finished --present--> ...
-//   any  --stop-----> stopped, permanently
-//
+// Presents two forces one after the other with the accuracy of a tick, optionally after a third one as a reminder:
+//   lead-in [-> reminder -> pause] -> first -> pause -> second
 // Time is counted in ticks of 1 ms. Within an interval the force, constant or a stroke, is multiplied by a cosine ramp
 // at its beginning and end. Outside of the intervals it is zero, so that no force lasts longer than its interval,
 // whatever the slow side does. A ForceLimiter limits the result to 4 N and 100 N/s; it also ramps the force down within
-// 40 ms when a presentation is stopped.
-// Positive forces push towards the hand.
-// Thread guarantee: `tick` on the haptics thread, `stop` on any, both wait-free
-// and without allocation; the rest on one slow thread.
+// 40 ms when a presentation is stopped. Positive forces push towards the hand.
+// Thread guarantee: `tick` on the haptics thread, `stop` on any, both wait-free and without allocation; the rest on one
+// slow thread.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <vector>
@@ -34,52 +30,42 @@ inline constexpr std::uint32_t kInterval_ticks = 2 * kRamp_ticks + kHold_ticks;
 
 // The factor of the force at a tick of an interval, 0 to 1: cosine ramps at both ends, 1 between them.
 double interval_share(std::uint32_t tick) noexcept;
+// Whether a tick of an interval is between the ramps.
+constexpr bool is_held(std::uint32_t tick) noexcept { return tick >= kRamp_ticks && tick < kRamp_ticks + kHold_ticks; }
 
 // The force of an interval: `size` in newtons, or `size` times a stroke. A stroke has one force per tick of an interval
 // and outlives the presentation.
 struct Stimulus {
   double size = 0.0;
   const std::vector<double>* stroke_N = nullptr;
+
+  double force_N(std::uint32_t tick) const noexcept;  // with the ramps
 };
 struct Stimuli {
   Stimulus first;
   Stimulus second;
   Stimulus reminder;  // without a stroke there is no reminder
-};
 
-enum class PresentationPhase : std::uint8_t {
-  idle,
-  lead_in,
-  reminder,
-  reminder_pause,
-  first,
-  pause,
-  second,
-  finished,
-  stopped
+  bool has_reminder() const noexcept { return reminder.stroke_N != nullptr; }
 };
 
 struct PresentationState {
   std::uint64_t presentation = 0;  // number of the presentation; 0: none yet
   std::uint64_t tick = 0;          // since the presenter was made
   std::uint64_t finished_at = 0;   // tick after the end of the second interval
-  PresentationPhase phase = PresentationPhase::idle;
-  double force_N = 0.0;  // returned by the last tick
-  // Means of the rendered force between the ramps.
-  double first_rendered_N = 0.0;
-  double second_rendered_N = 0.0;
-  double reminder_rendered_N = 0.0;
-  double worst_N = 0.0;  // largest |rendered - commanded force| in the intervals
-  bool limited = false;  // the limiter changed a force of this presentation
+  bool finished = false;
+  int interval = -1;                   // that is presented now: 0 the reminder, 1 or 2; -1 none
+  double force_N = 0.0;                // returned by the last tick
+  bool limited = false;                // the limiter changed a force of this presentation
+  double worst_N = 0.0;                // largest |rendered - commanded force| in the intervals
+  std::array<double, 3> rendered_N{};  // means between the ramps, by interval
 };
 
 class StudyPresenter {
  public:
-  StudyPresenter() noexcept : limiter_(kLimits) {}
-
   // Slow side. Begins a presentation at the next tick and cancels a running one. Returns its number.
   std::uint64_t present(const Stimuli& stimuli) noexcept;
-  void stop() noexcept { stopped_.store(true, std::memory_order_release); }
+  void stop() noexcept { stopped_.store(true, std::memory_order_release); }  // permanently
   const PresentationState& newest() noexcept { return states_.newest(); }
 
   // Haptics thread. `rendered_N`: the force that the device received for the return value of the previous tick, after
@@ -87,18 +73,12 @@ class StudyPresenter {
   double tick(double rendered_N) noexcept;
 
  private:
-  static constexpr ForceLimits kLimits{kLargestStudyForce_N, kFastestStudyForce_N_per_s, 0.0};
   struct Order {
     std::uint64_t presentation = 0;
     Stimuli stimuli;
   };
-  std::uint32_t length(PresentationPhase phase) const noexcept;
-  const Stimulus* stimulus() const noexcept;  // of this phase; null: none
-  bool is_held() const noexcept;
-  double commanded_N() const noexcept;
-  void read_orders() noexcept;
   void record(double rendered_N) noexcept;
-  void advance() noexcept;
+  double next_command_N() noexcept;
 
   TripleBuffer<Order> orders_;
   TripleBuffer<PresentationState> states_;
@@ -106,14 +86,11 @@ class StudyPresenter {
   std::uint64_t ordered_ = 0;  // slow side
 
   // Haptics thread.
-  ForceLimiter limiter_;
-  Order order_;
+  ForceLimiter limiter_{ForceLimits{kLargestStudyForce_N, kFastestStudyForce_N_per_s, 0.0}};
   PresentationState state_;
-  std::uint32_t in_phase_ = 0;                              // ticks since the phase began
-  PresentationPhase sent_phase_ = PresentationPhase::idle;  // at the previous tick, as the following
-  double sent_commanded_N_ = 0.0;
-  bool sent_stimulus_ = false;
-  bool sent_held_ = false;
+  std::uint32_t played_ = 0;       // ticks since the presentation began
+  std::uint32_t in_interval_ = 0;  // of the last command
+  double commanded_N_ = 0.0;       // by the last tick
 };
 
 }  // namespace palpate

@@ -1,34 +1,43 @@
 // Takes a study session through its states as a subject in front of it would.
 #pragma once
 
+#include <signal.h>
+#include <sys/resource.h>
+
 #include <cmath>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "scenes/study/study_session.h"
 
 namespace palpate::test {
 
-// Keeps answers in memory.
-class MemoryStore final : public StudyStore {
+// A session with the study file `path`, which may exist.
+inline Result<std::unique_ptr<StudySession>> session_at(const std::string& path, const StudyHeader& header = {"S01"},
+                                                        std::uint64_t rest_ticks = 0) {
+  auto file = StudyFile::open(path, header);
+  if (!file) return file.error();
+  return StudySession::create(std::move(*file), rest_ticks);
+}
+
+// No file of this process can grow beyond `bytes` while this exists, as on a full disk.
+class FullDisk {
  public:
-  bool consented() const noexcept override { return consented_; }
-  const std::vector<StudyRecord>& records() const noexcept override { return records_; }
-  Status consent(const std::string&, const std::string&) override {
-    consented_ = true;
-    return {};
+  explicit FullDisk(std::uintmax_t bytes) {
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit full{static_cast<rlim_t>(bytes), before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &full);
   }
-  Status append(const StudyRecord& record) override {
-    records_.push_back(record);
-    return {};
-  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
 
  private:
-  bool consented_ = false;
-  std::vector<StudyRecord> records_;
+  rlimit before_{};
 };
 
 // A force that grows from 1 N by 1 mN a tick, and `share` of it, for an interval.
@@ -38,14 +47,13 @@ inline std::shared_ptr<const StrokePair> example_strokes(double share) {
   strokes->comparison = "greedy-100";
   strokes->recording = "silicone 2";
   strokes->from_s = 12.3;
-  strokes->to_s = 13.4;
-  strokes->checksum = static_cast<std::uint32_t>(std::lround(1000.0 * share));
+  strokes->checksum = static_cast<std::uint64_t>(std::lround(1000.0 * share));
   double sum_N = 0.0;
   for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
     const double force_N = 1.0 + 0.001 * i;
     strokes->reference_N.push_back(force_N);
     strokes->comparison_N.push_back(share * force_N);
-    if (i >= kRamp_ticks && i < kRamp_ticks + kHold_ticks) sum_N += force_N / kHold_ticks;
+    if (is_held(i)) sum_N += force_N / kHold_ticks;
   }
   strokes->reference_mean_N = std::round(1e4 * sum_N) / 1e4;
   strokes->comparison_mean_N = std::round(1e4 * share * sum_N) / 1e4;
@@ -75,7 +83,7 @@ inline std::size_t answer_trials(StudySession& session, std::size_t trials,
     run_until_asked(session);
     if (session.state() != StudyState::answering) break;
     session.answer(second_is_larger(session.trial()));
-    if (session.state() == StudyState::unsaved) break;
+    if (session.state() == StudyState::answering) break;  // it could not be stored
     ++answered;
   }
   return answered;

@@ -22,8 +22,7 @@ TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
   EXPECT_NE(run.out.find("conservative "), std::string::npos) << run.out;
-  for (const char* name :
-       {"S01.csv", "S03.csv", "results.csv", "jnd.json", "figure3.gp", "figure3.svg", "figure3.png"}) {
+  for (const char* name : {"S01.csv", "S03.csv", "results.csv", "jnd.json", "figure3.svg", "figure3.png"}) {
     EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
   }
   EXPECT_EQ(read_study(out + "/S02.csv")->records.size(), 328u);
@@ -54,10 +53,7 @@ TEST(Study, SaysWhatToDoWithoutGnuplot) {
   const std::string out = folder.file("study");
   const auto run = run_palpate({"study", "simulate", "--subjects", "3", "--out", out}, {"PATH=" + folder.path()});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_EQ(
-      run.err,
-      "error: found no gnuplot in PATH, which draws the figures; install it (Debian: apt-get install gnuplot-nox)\n");
-  EXPECT_TRUE(std::filesystem::exists(out + "/figure3.gp"));
+  EXPECT_NE(run.err.find("apt-get install gnuplot-nox"), std::string::npos) << run.err;
   EXPECT_TRUE(std::filesystem::exists(out + "/results.csv"));
   EXPECT_TRUE(std::filesystem::exists(out + "/jnd.json"));
 }

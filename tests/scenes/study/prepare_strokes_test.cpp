@@ -7,6 +7,7 @@
 
 #include "tests/support/live_doubles.h"
 #include "tests/support/study_driving.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -41,7 +42,6 @@ TEST(PrepareStrokes, TakesTheStrokeThatDiffersMost) {
   EXPECT_EQ(pair.recording, "spring");
   EXPECT_GT(pair.from_s, 4.8 - 1.1) << "of the third press";
   EXPECT_LT(pair.from_s, 6.0);
-  EXPECT_NEAR(pair.to_s - pair.from_s, 1.1, 1e-9);
   EXPECT_NEAR(pair.max_over_jnd, 0.5, 0.01);
   EXPECT_GT(pair.mean_over_jnd, 0.3);
   ASSERT_EQ(pair.reference_N.size(), kInterval_ticks);
@@ -79,20 +79,20 @@ TEST(PrepareStrokes, LeavesOutWhatAStudyMayNotPresent) {
   }
   const auto none = strokes_of(presses({-0.01}, 0.0), spring(100.0), spring(80.0), jnd);
   ASSERT_FALSE(none.ok());
-  EXPECT_EQ(
-      none.error().message,
-      "found no piece of a stroke of 1.1 s, up to 3.8 N (2.5 N root mean square) and 90 N/s, in spring, expected one "
-      "that a still hand can be given; name another recording");
+  EXPECT_NE(none.error().message.find("1.1 s, up to 3.8 N (2.5 N root mean square) and 90 N/s, in spring"),
+            std::string::npos)
+      << none.error().message;
 }
 
 TEST(PrepareStrokes, CanBePresentedAsTheyAre) {
   const auto strokes = strokes_of(presses({0.03, 0.035}, 0.0), spring(100.0), spring(95.0), {});
   ASSERT_TRUE(strokes.ok()) << strokes.error().message;
-  auto session = StudySession::create({"S01", *strokes}, std::make_unique<test::MemoryStore>(), 0);
+  const test::TemporaryFolder folder;
+  const auto session = test::session_at(folder.file("S01.csv"), {"S01", *strokes});
   ASSERT_TRUE(session.ok()) << session.error().message;
   (*session)->accept_consent("");
   EXPECT_EQ(test::answer_trials(**session, 1000, test::truly_like), 104u);
-  for (const StudyRecord& record : (*session)->store().records()) {
+  for (const StudyRecord& record : (*session)->file().records()) {
     EXPECT_FALSE(record.limited);
     EXPECT_EQ(record.worst_N, 0.0);
   }
@@ -102,8 +102,8 @@ TEST(PrepareStrokes, RefusesWhatCannotBeCompared) {
   const auto silicone = load_scene("silicone_block");
   const auto study = load_scene("jnd_study");
   ASSERT_TRUE(silicone.ok() && study.ok());
-  EXPECT_EQ(prepare_strokes({*silicone, {"greedy", "random", "direct"}, ""}).error().message,
-            "found 3 models, expected one, to tell from the recorded force, or two; leave some out");
+  EXPECT_NE(prepare_strokes({*silicone, {"greedy", "random", "direct"}, ""}).error().message.find("found 3 models"),
+            std::string::npos);
   EXPECT_NE(prepare_strokes({*silicone, {"best"}, ""}).error().message.find("found no model \"best\""),
             std::string::npos);
   EXPECT_NE(prepare_strokes({*study, {}, ""}).error().message.find("has no virtual material"), std::string::npos);

@@ -69,17 +69,5 @@ TEST(Psychometrics, SaysWhichAnswersBoundNothing) {
   EXPECT_EQ(fit.determined, (std::vector<bool>{true, false, false, false}));
 }
 
-TEST(Psychometrics, AnswersOfOneKindShareACell) {
-  std::vector<AnswerCell> cells;
-  add_answers(cells, {0, 0.1, true, 1.0, 1.0});
-  add_answers(cells, {0, 0.10005, true, 0.0, 1.0});
-  add_answers(cells, {0, 0.1, false, 1.0, 1.0});
-  add_answers(cells, {0, 0.102, true, 1.0, 1.0});
-  add_answers(cells, {1, 0.1, true, 1.0, 1.0});
-  ASSERT_EQ(cells.size(), 4u);
-  EXPECT_EQ(cells[0].trials, 2.0);
-  EXPECT_EQ(cells[0].judged_larger, 1.0);
-}
-
 }  // namespace
 }  // namespace palpate

@@ -4,16 +4,16 @@
 
 #include <cmath>
 
-#include "scenes/study/psychometrics.h"
 #include "tests/support/study_driving.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
 
 double share_of_second(const SubjectTraits& traits, double first_N, double second_N) {
-  SimulatedSubject subject(traits, 3);
+  RandomStream random(3, 31);
   int second = 0;
-  for (int i = 0; i < 20000; ++i) second += subject.second_feels_larger(first_N, second_N) ? 1 : 0;
+  for (int i = 0; i < 20000; ++i) second += second_feels_larger(traits, first_N, second_N, random) ? 1 : 0;
   return second / 20000.0;
 }
 
@@ -37,11 +37,14 @@ TEST(SimulatedSubject, GivesAllAnswersOfAPlanAndRepeatsThem) {
   EXPECT_EQ(one.size(), 328u);
   EXPECT_EQ(one, simulated_answers({"S01"}, {}, 7));
   EXPECT_NE(one, simulated_answers({"S01"}, {}, 8));
-  // A session takes them up as given: they are to its plan.
-  auto store = std::make_unique<test::MemoryStore>();
-  ASSERT_TRUE(store->consent("", "").ok());
-  for (const StudyRecord& record : one) ASSERT_TRUE(store->append(record).ok());
-  const auto session = StudySession::create({"S01"}, std::move(store));
+  // A session accepts them as answers to its plan.
+  const test::TemporaryFolder folder;
+  {
+    auto file = StudyFile::open(folder.file("S01.csv"), {"S01"});
+    ASSERT_TRUE(file.ok() && (*file)->consent("").ok());
+    for (const StudyRecord& record : one) ASSERT_TRUE((*file)->append(record).ok());
+  }
+  const auto session = test::session_at(folder.file("S01.csv"));
   ASSERT_TRUE(session.ok()) << session.error().message;
   EXPECT_EQ((*session)->state(), StudyState::done);
 }
