@@ -1,4 +1,4 @@
-// Reads the JND line from the result file of a JND study (scenes/study/jnd_lines.h). A scene can name such a file.
+// Reads the JND line from the result file of a JND study (scenes/study/study_analysis.h). A scene can name such a file.
 // JSON: "format": "palpate-jnd", "version": 1, "offset_N" (above 0, up to 100) and "weber_fraction" (0 to 1) of the
 // conservative line. "criterion", "subjects", "fitted" and "points" are allowed and ignored.
 // Thread guarantee: slow side (does I/O).
