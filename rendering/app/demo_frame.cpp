@@ -32,7 +32,7 @@ Viewport pixels_of(const SceneArea& area) {
 
 void DemoApp::draw() {
   style_.update(window_->ui_size(), view_.exhibit.on ? kExhibitText : view_.settings.text_size, view_.settings.theme);
-  ui_->begin_frame();
+  ui_->begin_frame(input_.tapped());
   input_.keep_wheel();
   // With a software renderer, clearing is faster than filling a rectangle.
   const Rgb& panel_colour = palette(view_.settings.theme).panel;

@@ -78,6 +78,7 @@ struct FilePicker {
   std::string folder;              // empty: the dialog is closed
   std::vector<std::string> files;  // in `folder`
   std::array<char, 512> path{};    // the path that is being typed
+  bool takes_focus = false;        // the path gets the focus: the dialog or another folder was opened
 };
 
 // Settings that are kept between runs.
