@@ -22,6 +22,7 @@ namespace {
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 3;
+constexpr CameraTurn kCloseUp{0.0F, 0.0F, 0.85F};  // of the reveal of an exhibit
 
 // If real-time priority was refused, lowers the priority of the picture instead, which needs no privilege.
 void yield_to_haptics(const RtStatus& granted) {
@@ -135,7 +136,9 @@ void DemoApp::handle_keys() {
   if (view_.exhibit.tool_is_held) key_velocity_m_per_s_ = 0.0;
   input_.drive_tool(*session_, key_velocity_m_per_s_);
   // The next visitor starts with the initial view.
+  const bool was_close = view_.exhibit.close_up;
   if (view_.exhibit.on && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
+  if (view_.exhibit.close_up != was_close) blocks_->camera().turn(view_.exhibit.close_up ? kCloseUp : CameraTurn{});
 }
 
 void DemoApp::run_commands(const std::vector<KeyPress>& keys) {

@@ -111,6 +111,7 @@ struct Dialogs {
 struct ExhibitState {
   bool on = false;
   bool blind = false;         // hides which model is active
+  bool close_up = false;      // the camera is nearer
   bool tool_is_held = false;  // keeps the tool out of the block; the mouse has no effect
 };
 
