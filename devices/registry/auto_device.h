@@ -40,6 +40,9 @@ class AutoDevice final : public Device, public ToolInput {
   // A target stops the simulated hand.
   void set_target(double position_m, double now_s) noexcept override { mouse_.set_target(position_m, now_s); }
   void nudge(double by_m, double now_s) noexcept override { mouse_.nudge(by_m, now_s); }
+  void drive(double velocity_m_per_s, double limit_m, double now_s) noexcept override {
+    mouse_.drive(velocity_m_per_s, limit_m, now_s);
+  }
   void release() noexcept override { mouse_.release(); }
   // Any thread, wait-free.
   bool hand_is_exploring() const noexcept override { return exploring_.load(std::memory_order_relaxed); }

@@ -29,22 +29,54 @@ void MouseDevice::set_target(double position_m, double now_s) noexcept {
 
 void MouseDevice::nudge(double by_m, double now_s) noexcept { set_target(target_m() + by_m, now_s); }
 
+// A tick between the two stores sees the old velocity with the new limit. It is on the other side and stops the target.
+void MouseDevice::drive(double velocity_m_per_s, double limit_m, double now_s) noexcept {
+  if (!std::isfinite(velocity_m_per_s) || !std::isfinite(limit_m)) return;
+  drive_limit_m_.store(std::clamp(limit_m, settings_.highest_m, settings_.deepest_m), std::memory_order_relaxed);
+  drive_m_per_s_.store(velocity_m_per_s, std::memory_order_relaxed);
+  last_input_s_.store(now_s, std::memory_order_relaxed);
+}
+
 void MouseDevice::release() noexcept {
+  drive_m_per_s_.store(0.0, std::memory_order_relaxed);
   last_input_s_.store(-std::numeric_limits<double>::infinity(), std::memory_order_relaxed);
 }
 
 bool MouseDevice::idle(double now_s) const noexcept {
-  return !(now_s - last_input_s_.load(std::memory_order_relaxed) < settings_.idle_time_s);
+  return drive_m_per_s_.load(std::memory_order_relaxed) == 0.0 &&
+         !(now_s - last_input_s_.load(std::memory_order_relaxed) < settings_.idle_time_s);
 }
 
 void MouseDevice::resume_at(double position_m, double velocity_m_per_s, double now_s) noexcept {
   smooth_m_ = position_m_ = position_m;
   velocity_m_per_s_ = velocity_m_per_s;
+  // A key moves the tool from where it is; the last target may be far away.
+  if (drive_m_per_s_.load(std::memory_order_relaxed) != 0.0) target_m_.store(position_m, std::memory_order_relaxed);
   start_at(now_s);
+}
+
+void MouseDevice::move_target(double gap_s) noexcept {
+  const double wanted_m_per_s = drive_m_per_s_.load(std::memory_order_relaxed);
+  const double most_m_per_s = settings_.drive_acceleration_m_per_s2 * gap_s;
+  target_velocity_m_per_s_ += std::clamp(wanted_m_per_s - target_velocity_m_per_s_, -most_m_per_s, most_m_per_s);
+  if (target_velocity_m_per_s_ == 0.0) return;
+  const double limit_m = drive_limit_m_.load(std::memory_order_relaxed);
+  double from_m = target_m();
+  double to_m = from_m + gap_s * target_velocity_m_per_s_;
+  if (target_velocity_m_per_s_ > 0.0) {
+    // The spring of the hand is stretched in contact, so the target may be deeper than the limit of the tool.
+    if (position_m_ >= limit_m) to_m = from_m;
+    to_m = std::min(to_m, settings_.deepest_m);
+  } else {
+    to_m = std::max(to_m, std::min(from_m, limit_m));
+  }
+  // A target that the window has set in the meantime is newer and stays.
+  target_m_.compare_exchange_strong(from_m, to_m, std::memory_order_relaxed);
 }
 
 // Semi-implicit Euler, which is stable for much larger steps with these constants.
 void MouseDevice::advance(double gap_s, double force_N) noexcept {
+  move_target(gap_s);
   const int steps = static_cast<int>(std::ceil(gap_s / kMouseSubstep_s));
   for (int i = 0; i < steps; ++i) {
     const double step_s = gap_s / steps;

@@ -2,6 +2,8 @@
 // coupled to the low-pass filtered target by a spring and a damper:
 //   m a = k (y - x) + c (dy/dt - v) - F,   dy/dt = (y0 - y) / tau
 // The rendered force F therefore pushes the tool back, and a jump of the mouse is no jump of the tool.
+// While a key is held, every tick moves the target at the velocity of `drive`, so that the motion does not depend on
+// the frames of the window.
 #pragma once
 
 #include <atomic>
@@ -18,6 +20,8 @@ struct MouseSettings {
   double highest_m = -0.03;         // lower limit of targets
   double deepest_m = 0.03;          // upper limit of targets
   double idle_time_s = 20.0;        // see `idle`
+  // Limits the change of the velocity of `drive`: 18 mm/s after 60 ms.
+  double drive_acceleration_m_per_s2 = 0.3;
 };
 
 class MouseDevice final : public SimulatedDevice, public ToolInput {
@@ -30,11 +34,12 @@ class MouseDevice final : public SimulatedDevice, public ToolInput {
   void set_target(double position_m, double now_s) noexcept override;
   // The same for a relative motion, by a wheel or a key.
   void nudge(double by_m, double now_s) noexcept override;
+  void drive(double velocity_m_per_s, double limit_m, double now_s) noexcept override;
   void release() noexcept override;
   bool hand_is_exploring() const noexcept override { return false; }
   // Any thread, wait-free.
   double target_m() const noexcept { return target_m_.load(std::memory_order_relaxed); }
-  // Any thread, wait-free. Whether no target was set for idle_time_s, or since `leave`.
+  // Any thread, wait-free. Whether no target was set for idle_time_s, or since `release`. False while it is driven.
   bool idle(double now_s) const noexcept;
 
   // Haptics thread: continues from this position and velocity of the tool.
@@ -44,15 +49,19 @@ class MouseDevice final : public SimulatedDevice, public ToolInput {
 
  private:
   void advance(double gap_s, double force_N) noexcept override;
+  void move_target(double gap_s) noexcept;
 
   MouseSettings settings_;
   std::atomic<double> target_m_;
   std::atomic<double> last_input_s_;
+  std::atomic<double> drive_m_per_s_{0.0};  // of the key that is held
+  std::atomic<double> drive_limit_m_{0.0};
   static_assert(std::atomic<double>::is_always_lock_free);
   // Haptics thread only.
   double smooth_m_;  // y
   double position_m_;
   double velocity_m_per_s_ = 0.0;
+  double target_velocity_m_per_s_ = 0.0;  // follows drive_m_per_s_
 };
 
 }  // namespace palpate

@@ -40,6 +40,9 @@ class ToolInput {
   // A target that is not finite is ignored.
   virtual void set_target(double position_m, double now_s) noexcept = 0;
   virtual void nudge(double by_m, double now_s) noexcept = 0;
+  // Moves the target at this velocity, positive inwards, until the next call. Inwards it stops when the tool is at
+  // `limit_m`, outwards when the target is there. 0 stops it.
+  virtual void drive(double velocity_m_per_s, double limit_m, double now_s) noexcept = 0;
   // The user no longer moves the tool.
   virtual void release() noexcept = 0;
   // Whether the tool moves by itself until the user moves it.

@@ -22,6 +22,7 @@ namespace {
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 3;
+constexpr CameraTurn kCloseUp{0.0F, 0.0F, 0.85F};  // of the reveal of an exhibit
 
 // If real-time priority was refused, lowers the priority of the picture instead, which needs no privilege.
 void yield_to_haptics(const RtStatus& granted) {
@@ -124,22 +125,33 @@ void DemoApp::handle_key_event(int key, int action, int modifiers) {
 void DemoApp::handle_keys() {
   const std::vector<KeyPress> keys = input_.take_keys();
   const auto escape = [](const KeyPress& press) { return press.key == GLFW_KEY_ESCAPE; };
-  if (ImGui::GetIO().WantTextInput) {  // the user types text
+  key_velocity_m_per_s_ = 0.0;
+  const bool typing = ImGui::GetIO().WantTextInput;
+  if (typing) {
     if (std::any_of(keys.begin(), keys.end(), escape)) close_windows();
     input_.let_go();
-    return;
+  } else {
+    run_commands(keys);
   }
-  input_.run_held(commands_, session_->replay() != nullptr);
+  if (view_.exhibit.tool_is_held) key_velocity_m_per_s_ = 0.0;
+  input_.drive_tool(*session_, key_velocity_m_per_s_);
+  // The next visitor starts with the initial view.
+  const bool was_close = view_.exhibit.close_up;
+  if (view_.exhibit.on && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
+  if (view_.exhibit.close_up != was_close) blocks_->camera().turn(view_.exhibit.close_up ? kCloseUp : CameraTurn{});
+}
+
+void DemoApp::run_commands(const std::vector<KeyPress>& keys) {
+  const bool menu = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  const KeyContext context{session_->replay() != nullptr, menu || view_.dialogs.any()};
+  input_.run_held(keys, commands_, context);
   for (const KeyPress& press : keys) {
-    if (press.key == GLFW_KEY_ENTER && view_.dialogs.recording_roles.any()) use_recording_roles();
     if (view_.exhibit.on) {
       handle_exhibit_key(press);
     } else {
-      DemoInput::run(press, commands_, session_->replay() != nullptr);
+      DemoInput::run(press, commands_, context);
     }
   }
-  // The next visitor starts with the initial view.
-  if (view_.exhibit.on && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
 }
 
 void DemoApp::handle_exhibit_key(const KeyPress& press) {

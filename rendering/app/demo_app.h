@@ -72,6 +72,7 @@ class DemoApp {
   void listen();
   std::vector<WindowCommand> make_commands();
   void handle_keys();
+  void run_commands(const std::vector<KeyPress>& keys);
   void handle_exhibit_key(const KeyPress& press);
   void close_windows();
   void select_listed(std::size_t number);
@@ -121,6 +122,7 @@ class DemoApp {
   Resolution resolution_;
   std::vector<Toast> toasts_;
   std::vector<WindowCommand> commands_;
+  double key_velocity_m_per_s_ = 0.0;  // of the tool by the keys of this frame, positive inwards
   double frame_began_s_ = 0.0;
   double frame_s_ = 0.0;       // time since the frame before, at most 0.1 s
   double last_frame_s_ = 0.0;  // end of the last frame

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-// Speed of the tool while a key is pressed. It is independent of the frame rate.
+// Speed of the tool while a key is held.
 constexpr double kKeySpeed_m_per_s = 0.018;
 constexpr double kScrollSpeed = 6.0;  // seconds per second
 constexpr double kSeekStep_s = 2.0;
@@ -42,12 +42,11 @@ std::vector<WindowCommand> DemoApp::make_commands() {
   using When = WindowCommand::When;
   return {
       {.shown = "mouse", .help = "moves the probe, over the block; down is deeper"},
-      {.shown = "wheel", .help = "moves the probe step by step; with Ctrl the view comes nearer"},
+      {.shown = "wheel", .help = "moves the probe step by step; with Ctrl: zooms the view"},
       {.shown = "right button", .help = "turns the view"},
       {.keys = {GLFW_KEY_DOWN, GLFW_KEY_UP},
-       .help = "press deeper, and let go",
-       .run =
-           [this](std::size_t key) { nudge_tool(*session_, (key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s * frame_s_); },
+       .help = "press deeper; lift the probe to just above the surface",
+       .run = [this](std::size_t key) { key_velocity_m_per_s_ += (key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s; },
        .when = When::held},
       {.keys = {GLFW_KEY_1, GLFW_KEY_2, GLFW_KEY_3, GLFW_KEY_4, GLFW_KEY_5, GLFW_KEY_6, GLFW_KEY_7, GLFW_KEY_8,
                 GLFW_KEY_9},
@@ -79,13 +78,13 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       toggle({GLFW_KEY_H, GLFW_KEY_SLASH}, "Help", "what the picture shows, and all keys", view_.dialogs.help),
       {.keys = {GLFW_KEY_SPACE},
        .label = "Freeze",
-       .help = "freeze curves and picture to look back, and go on",
+       .help = "freeze curves and picture to look back; continue",
        .run = [this](std::size_t) { pause_or_run(); },
        .on = [this] { return view_.time.paused; },
        .label_on = "Go on"},
       {.keys = {GLFW_KEY_C},
        .label = "Clear",
-       .help = "forget the errors so far, and alarms that were seen",
+       .help = "clear the errors so far and the alarms",
        .run = [this](std::size_t) { session_->reset_figures(); }},
       {.keys = {GLFW_KEY_N},
        .help = "the next set of models: Ladder, 2009, Palpate",
@@ -93,7 +92,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       toggle({GLFW_KEY_X}, "Arrows x 10", "arrows that show ten times the difference, and back", view_.exaggerated),
       {.keys = {GLFW_KEY_J},
        .label = "Feel",
-       .help = "make the active model stiffer or more damped in the hand, and as it is again",
+       .help = "scale the stiffness and damping of the rendered force; back to the model",
        .run =
            [this](std::size_t) {
              turn(view_.scales_force);
@@ -121,7 +120,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .help = "save the active model to a file",
        .run = [this](std::size_t) { files_.save_model(*session_); }},
       {.shown = "a row, right button", .help = "renames a model, takes it out"},
-      {.shown = "on the curves", .help = "drag zooms, the wheel goes back, double click goes on"},
+      {.shown = "on the curves", .help = "drag: zoom; wheel: scroll back; double click: continue"},
       {.keys = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT},
        .help = "scroll back and forth while the curves stand still",
        .run = [this](std::size_t key) { scroll_curves((key == 0 ? 1.0 : -1.0) * kScrollSpeed * frame_s_); },
@@ -135,27 +134,27 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .label_on = "Play"},
       {.keys = {GLFW_KEY_BACKSPACE},
        .label = "Back to the hand",
-       .help = "press what was recorded, in place of the replay",
+       .help = "end the replay and press the block yourself",
        .run = [this](std::size_t) { use_device(first_device_); },
        .replay = true},
       {.keys = {GLFW_KEY_COMMA},
        .label = "<",
-       .help = "one sample back in a recording, which then pauses",
+       .help = "one sample back; the recording pauses",
        .run = [this](std::size_t) { session_->replay()->step(-1); },
        .when = When::repeated,
        .replay = true},
       {.keys = {GLFW_KEY_PERIOD},
        .label = ">",
-       .help = "one sample on in a recording, which then pauses",
+       .help = "one sample forward; the recording pauses",
        .run = [this](std::size_t) { session_->replay()->step(1); },
        .when = When::repeated,
        .replay = true},
       {.keys = {GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN},
-       .help = "2 s back and on in a recording",
+       .help = "2 s back or forward in a recording",
        .run = [this](std::size_t key) { seek_replay(key == 0 ? -kSeekStep_s : kSeekStep_s); },
        .replay = true},
       {.keys = {GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET},
-       .help = "a recording slower and faster",
+       .help = "play a recording slower or faster",
        .run =
            [this](std::size_t key) {
              session_->replay()->set_speed(session_->replay()->speed() * (key == 0 ? 1.0 / kSpeedStep : kSpeedStep));
@@ -172,10 +171,10 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .help = "the device's tool is at its rest position: zero it there",
        .run = [this](std::size_t) { session_->start_zeroing(); }},
       {.keys = {GLFW_KEY_D},
-       .help = "push only while G, then while the handle's switch is held, and off again",
+       .help = "the device pushes only while G is held, only while its grip is held, or always",
        .run = [this](std::size_t) { next_dead_man(); }},
       {.keys = {GLFW_KEY_G},
-       .help = "held: the device may push, where D asks for it",
+       .help = "hold it to let the device push, if D requires it",
        .run =
            [this](std::size_t) {
              if (session_->dead_man() == DeadMan::key) session_->hold();

@@ -32,7 +32,7 @@ Viewport pixels_of(const SceneArea& area) {
 
 void DemoApp::draw() {
   style_.update(window_->ui_size(), view_.exhibit.on ? kExhibitText : view_.settings.text_size, view_.settings.theme);
-  ui_->begin_frame();
+  ui_->begin_frame(input_.tapped());
   input_.keep_wheel();
   // With a software renderer, clearing is faster than filling a rectangle.
   const Rgb& panel_colour = palette(view_.settings.theme).panel;
@@ -75,12 +75,15 @@ void DemoApp::draw_blocks() {
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {
+  if (view_.exhibit.on) {
+    const std::vector<BlockPose> revealed = exhibit_.reveal_poses(*session_, view_.settings.theme);
+    return revealed.empty() ? true_poses() : revealed;
+  }
   std::vector<BlockPose> poses = true_poses();
   const float deepest_m = 0.7F * static_cast<float>(blocks_->geometry().height_m);
   const auto deeper = [&](float depth_m) {
     return depth_m > 0.0F ? std::min(kDeeperDents * depth_m, std::max(depth_m, deepest_m)) : depth_m;
   };
-  if (view_.exhibit.on) return poses;
   for (BlockPose& pose : poses) {
     pose.tool_m = deeper(pose.tool_m);
     pose.dent_m = deeper(pose.dent_m);
@@ -124,7 +127,7 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
   const bool exaggerated = view_.exaggerated && !view_.exhibit.on && std::isfinite(reference_N);
   const double shown_N = exaggerated ? reference_N + kExaggeration * (force_N - reference_N) : force_N;
   pose.force_N = std::isfinite(shown_N) ? static_cast<float>(std::max(0.0, shown_N)) : 0.0F;
-  pose.arrow = view_.exhibit.on ? method_colour(model.method, view_.settings.theme)
+  pose.arrow = view_.exhibit.on ? exhibit_colour(model.method, model.paper, view_.settings.theme)
                                 : slot_colour(models, slot, view_.settings.theme);
   pose.chosen = slot == models.selected;
   if (view_.exhibit.blind) pose.arrow = palette(view_.settings.theme).text;

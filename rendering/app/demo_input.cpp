@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "engine/live/pacer.h"
@@ -24,6 +25,13 @@ constexpr float kMouseGain = 0.33F;
 constexpr float kClick_px = 4.0F;
 // The share of the distance from the surface to the lower edge at which the tool is at the largest trained depth.
 constexpr float kReach = 0.8F;
+
+// Whether ImGui uses the key to move through a list or to choose in it.
+bool moves_in_lists(int key) {
+  constexpr int kKeys[] = {GLFW_KEY_UP,    GLFW_KEY_DOWN,      GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_PAGE_UP,
+                           GLFW_KEY_SPACE, GLFW_KEY_PAGE_DOWN, GLFW_KEY_HOME, GLFW_KEY_END,   GLFW_KEY_ENTER};
+  return std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
+}
 
 // Once the mouse was over a block, it moves the tool in all of the picture, so that a fast move beyond the block still
 // presses. The full trained depth is within reach above the lower edge.
@@ -63,6 +71,16 @@ void nudge_tool(const LiveSession& session, double by_m) {
     tool->nudge(by_m, steady_now_s());
 }
 
+void DemoInput::drive_tool(const LiveSession& session, double velocity_m_per_s) {
+  ToolInput* tool = session.tool_input();
+  // Without a key, the simulated hand and the mouse are left alone.
+  if (tool == nullptr || (velocity_m_per_s == 0.0 && !drives_)) return;
+  drives_ = velocity_m_per_s != 0.0;
+  constexpr double kFar_m = 1.0;
+  const double limit_m = velocity_m_per_s > 0.0 ? limited_depth_m(session, kFar_m) : kHover_m;
+  tool->drive(velocity_m_per_s, limit_m, steady_now_s());
+}
+
 void DemoInput::add_key(int key, int action, int modifiers) {
   std::erase(down_, key);
   if (action == GLFW_RELEASE) return;
@@ -77,21 +95,37 @@ void DemoInput::let_go() {
   down_.clear();
 }
 
-void DemoInput::run_held(const std::vector<WindowCommand>& commands, bool replays) const {
+bool DemoInput::is_down(int key) const { return std::find(down_.begin(), down_.end(), key) != down_.end(); }
+
+std::vector<int> DemoInput::tapped() const {
+  std::vector<int> tapped;
+  for (const KeyPress& press : keys_) {
+    if (!is_down(press.key)) tapped.push_back(press.key);
+  }
+  return tapped;
+}
+
+void DemoInput::run_held(const std::vector<KeyPress>& pressed, const std::vector<WindowCommand>& commands,
+                         const KeyContext& context) const {
+  const auto was_pressed = [&](int key) {
+    return std::any_of(pressed.begin(), pressed.end(), [&](const KeyPress& press) { return press.key == key; });
+  };
   for (const WindowCommand& command : commands) {
-    if (command.when != WindowCommand::When::held || (command.replay && !replays)) continue;
+    if (command.when != WindowCommand::When::held || (command.replay && !context.replays)) continue;
     for (std::size_t i = 0; i < command.keys.size(); ++i) {
-      if (std::find(down_.begin(), down_.end(), command.keys[i]) != down_.end()) command.run(i);
+      if (context.in_list && moves_in_lists(command.keys[i])) continue;
+      if (is_down(command.keys[i]) || was_pressed(command.keys[i])) command.run(i);
     }
   }
 }
 
-void DemoInput::run(const KeyPress& press, const std::vector<WindowCommand>& commands, bool replays) {
+void DemoInput::run(const KeyPress& press, const std::vector<WindowCommand>& commands, const KeyContext& context) {
+  if (context.in_list && moves_in_lists(press.key)) return;
   const bool control = (press.modifiers & GLFW_MOD_CONTROL) != 0;
   for (const WindowCommand& command : commands) {
     const auto key = std::find(command.keys.begin(), command.keys.end(), press.key);
     if (key == command.keys.end() || command.control != control) continue;
-    if (command.replay && !replays) continue;
+    if (command.replay && !context.replays) continue;
     const bool wanted =
         command.when == WindowCommand::When::repeated || (command.when == WindowCommand::When::pressed && !press.again);
     if (wanted) command.run(static_cast<std::size_t>(key - command.keys.begin()));

@@ -14,8 +14,16 @@ struct KeyPress {
   bool again = false;  // repeated by the keyboard
 };
 
+// What the keys apply to in this frame.
+struct KeyContext {
+  bool replays = false;  // a recording is replayed, see WindowCommand::replay
+  bool in_list = false;  // a list or menu is open, which takes the keys that move through it
+};
+
 // Position of the tool in the air after the mouse has left the picture.
 inline constexpr double kRest_m = -0.008;
+// Position just above the surface, at which the key that lifts the tool stops.
+inline constexpr double kHover_m = -0.002;
 
 // Limits a depth smoothly to 8 % beyond the depth up to which the models were trained.
 double limited_depth_m(const LiveSession& session, double requested_m);
@@ -30,10 +38,17 @@ class DemoInput {
   std::vector<KeyPress> take_keys();
   // Forgets all keys.
   void let_go();
-  // Runs the commands whose keys are held, or were pressed. `replays`: a recording is replayed, see
-  // WindowCommand::replay.
-  void run_held(const std::vector<WindowCommand>& commands, bool replays) const;
-  static void run(const KeyPress& press, const std::vector<WindowCommand>& commands, bool replays);
+  // The keys that were pressed and released since the last call of take_keys.
+  std::vector<int> tapped() const;
+  // Runs the commands whose keys are held, or were pressed. A held command runs at least once for each press in
+  // `pressed`, even if the key was released within a slow frame.
+  void run_held(const std::vector<KeyPress>& pressed, const std::vector<WindowCommand>& commands,
+                const KeyContext& context) const;
+  static void run(const KeyPress& press, const std::vector<WindowCommand>& commands, const KeyContext& context);
+
+  // Call it once a frame with the velocity of the held keys, positive inwards; 0: none is held. The loop moves the
+  // tool, at most to the depth of limited_depth_m and out to kHover_m.
+  void drive_tool(const LiveSession& session, double velocity_m_per_s);
 
   // Stores the motion of the wheel; call it within a frame, because ImGui clears it at the end.
   void keep_wheel();
@@ -42,8 +57,11 @@ class DemoInput {
                     const SceneArea& area);
 
  private:
+  bool is_down(int key) const;
+
   std::vector<KeyPress> keys_;
   std::vector<int> down_;  // keys that are held
+  bool drives_ = false;    // a key moved the tool in the frame before
   float wheel_ = 0.0F;
   bool orbiting_ = false;
   bool over_scene_ = false;  // in the frame before

@@ -59,6 +59,42 @@ Result<std::string> png_of(const std::vector<unsigned char>& pixels, const Frame
   return file;
 }
 
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+// The free part of the screen that shows the upper left corner of the window, else of the primary screen.
+Rectangle free_part(const Rectangle& window) {
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  Rectangle found;
+  for (int i = count - 1; i >= 0; --i) {  // the primary screen is the first
+    Rectangle part;
+    glfwGetMonitorWorkarea(monitors[i], &part.x, &part.y, &part.width, &part.height);
+    found = part;
+    if (window.x >= part.x && window.x < part.x + part.width && window.y >= part.y && window.y < part.y + part.height)
+      break;
+  }
+  return found;
+}
+
+// Shrinks and moves the window so that it and its frame are inside the screen.
+void keep_on_screen(GLFWwindow* handle) {
+  Rectangle window;
+  int left = 0, top = 0, right = 0, bottom = 0;  // of the frame
+  glfwGetWindowPos(handle, &window.x, &window.y);
+  glfwGetWindowSize(handle, &window.width, &window.height);
+  glfwGetWindowFrameSize(handle, &left, &top, &right, &bottom);
+  const Rectangle room = free_part(window);
+  const int width = std::min(window.width, room.width - left - right);
+  const int height = std::min(window.height, room.height - top - bottom);
+  if (width <= 0 || height <= 0) return;  // no screen is known
+  if (width != window.width || height != window.height) glfwSetWindowSize(handle, width, height);
+  const int x = std::clamp(window.x, room.x + left, room.x + room.width - right - width);
+  const int y = std::clamp(window.y, room.y + top, room.y + room.height - bottom - height);
+  if (x != window.x || y != window.y) glfwSetWindowPos(handle, x, y);
+}
+
 Error no_display() {
   const std::string display = set("DISPLAY") ? "DISPLAY=" + std::string(std::getenv("DISPLAY")) : "DISPLAY is not set";
   return Error{"no display (" + display + ": " + last_problem() +
@@ -92,6 +128,7 @@ Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
     return error;
   }
   glfwSetWindowSizeLimits(handle, kSmallestWidth, kSmallestHeight, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  if (monitor == nullptr) keep_on_screen(handle);
   glfwMakeContextCurrent(handle);
   if (epoxy_gl_version() < 33) {
     const Error error{"found OpenGL " + std::to_string(epoxy_gl_version() / 10) + "." +

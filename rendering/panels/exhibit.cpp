@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -42,6 +43,7 @@ ExhibitTick tick_of(const HistoryPoint& point, const ExhibitRound& round) {
   if (round.first) tick.over_jnd -= static_cast<double>(point.sustained_over_jnd[round.first->slot]);
   tick.in_contact = point.in_contact;
   tick.out_of_domain = point.out_of_domain;
+  tick.position_m = static_cast<double>(point.position_m);
   return tick;
 }
 
@@ -54,6 +56,10 @@ std::optional<ExhibitRound> first_round(const LiveSession& session) {
 }
 
 }  // namespace
+
+Rgb exhibit_colour(const std::string& method, bool paper, Theme theme) {
+  return method_colour(paper ? "voxel" : method, theme);
+}
 
 void Exhibit::set_up(std::vector<ExhibitWords> languages, const std::string& tally_folder, const ExhibitTimes& times) {
   languages_ = std::move(languages);
@@ -79,7 +85,7 @@ bool Exhibit::update(LiveSession& session, ViewState& view) {
   if (left) forget(session, view);
   if (game_.state() == State::attract && !shown_) shown_ = first_round(session);
   read_ticks(session);
-  note_result();
+  begin_reveal(session);
   // Outside attract and press, the tool is kept out of the block, so that the visitor cannot press it.
   view.exhibit.tool_is_held = game_.state() != State::attract && game_.state() != State::press;
   if (view.exhibit.tool_is_held) let_go(session);
@@ -89,7 +95,9 @@ bool Exhibit::update(LiveSession& session, ViewState& view) {
   const ExhibitRound* now = pair();
   const bool blind = game_.state() == State::press && game_.has_force();
   view.exhibit.blind = blind;
-  view.settings.block_count = game_.state() != State::attract && game_.has_force() ? 1 : 2;
+  view.exhibit.close_up = game_.state() == State::reveal;
+  const bool one_block = game_.has_force() && game_.state() != State::attract && game_.state() != State::reveal;
+  view.settings.block_count = one_block ? 1 : 2;
   if (now != nullptr) session.select(blind ? game_.rendered().slot : now->second.slot);
   return left;
 }
@@ -126,18 +134,44 @@ void Exhibit::let_go(LiveSession& session) {
   if (session.tool_input() != nullptr) session.tool_input()->set_target(kLifted_m, steady_now_s());
 }
 
-void Exhibit::note_result() {
+void Exhibit::begin_reveal(const LiveSession& session) {
   if (game_.state() != State::reveal) {
-    noted_ = false;
+    revealed_ = false;
     return;
   }
-  if (std::exchange(noted_, true)) return;
-  // Each day has its own tally file. A tally that cannot be written is no error.
+  if (std::exchange(revealed_, true)) return;
+  reveal_.start(game_.trace(), session.jnd(), times_.slowness, session.newest().loop_time_s);
+  note_result();
+}
+
+bool Exhibit::reveal_is_done(const LiveSession& session) const {
+  return revealed_ && reveal_.done(session.newest().loop_time_s);
+}
+
+// Each day has its own tally file. A tally that cannot be written is no error.
+void Exhibit::note_result() {
   const std::string path = tally_path();
   if (!path.empty()) tally_ = read_tally(path);
   ++tally_.answers;
   if (game_.round().correct()) ++tally_.as_expected;
   if (!path.empty()) (void)write_tally(path, tally_);
+}
+
+std::vector<BlockPose> Exhibit::reveal_poses(const LiveSession& session, Theme theme) const {
+  if (game_.state() != State::reveal || !revealed_) return {};
+  const ExhibitReveal::Moment moment = reveal_.at(session.newest().loop_time_s);
+  BlockPose first;
+  first.tool_m = static_cast<float>(moment.position_m);
+  first.dent_m = std::max(0.0F, first.tool_m);
+  first.force_N = static_cast<float>(moment.first_N);
+  first.arrow = first_colour(theme);
+  first.shows_error = false;
+  BlockPose second = first;
+  second.force_N = static_cast<float>(std::max(0.0, reveal_.second_N(moment)));
+  second.error_over_jnd = static_cast<float>(std::abs(moment.over_jnd));
+  second.arrow = second_colour(theme);
+  second.shows_error = true;
+  return first_is_left() ? std::vector{first, second} : std::vector{second, first};
 }
 
 void Exhibit::begin(const LiveSession& session) {
@@ -175,7 +209,7 @@ void Exhibit::press_key(int key, const LiveSession& session) {
         game_.answer(key == words()("key_differ").front());
       break;
     case State::reveal:
-      if (first || on) leave_reveal();
+      if ((first || on) && reveal_is_done(session)) leave_reveal();
       break;
   }
 }

@@ -4,7 +4,7 @@
 //   guess     a description of the model of this round; would a hand notice a difference?
 //   press     without a force device: 15 s with one stroke on both blocks and a live plot of the difference;
 //             with a force device: the visitor compares two blocks and answers
-//   reveal    the result, and both forces where they differed most
+//   reveal    the press with the largest difference in slow motion (exhibit_reveal.h), then the result
 //   score     the visitor's score and a summary
 //
 // Buttons, touch and keys are equivalent; each button shows its key. The tool is kept out of the block in all other
@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "rendering/panels/exhibit_reveal.h"
 #include "rendering/panels/layout.h"
 #include "rendering/panels/window_view.h"
 #include "rendering/picture/block_view.h"
@@ -32,9 +33,14 @@ namespace palpate {
 
 struct ExhibitTimes {
   double press_s = ExhibitGame::kPress_s;
-  double stay_s = 60.0;  // time without a movement until the exhibit starts again
-  double warn_s = 15.0;  // countdown at the end of it
+  double stay_s = 60.0;   // time without a movement until the exhibit starts again
+  double warn_s = 15.0;   // countdown at the end of it
+  double slowness = 4.0;  // of the reveal
 };
+
+// The colour of a model in the exhibit. It differs between the rounds: the model of the paper's recipe has the colour
+// of a method that is in no round.
+Rgb exhibit_colour(const std::string& method, bool paper, Theme theme);
 
 class Exhibit {
  public:
@@ -54,6 +60,9 @@ class Exhibit {
   void draw(const LiveSession& session, const WindowView& shown, const BlockView& blocks, const UiStyle& style,
             const WindowLayout& layout);
 
+  // The blocks of the reveal; empty in the other screens.
+  std::vector<BlockPose> reveal_poses(const LiveSession& session, Theme theme) const;
+
   const ExhibitGame& game() const noexcept { return game_; }
   const ExhibitTrace& attract_trace() const noexcept { return trace_; }
   const ExhibitTally& tally() const noexcept { return tally_; }
@@ -67,7 +76,9 @@ class Exhibit {
   void forget(LiveSession& session, ViewState& view);
   void read_ticks(const LiveSession& session);
   void note_device(const LiveSession& session);
+  void begin_reveal(const LiveSession& session);
   void note_result();
+  bool reveal_is_done(const LiveSession& session) const;
   std::string tally_path() const;  // today's file; empty: no tally is stored
   void leave_reveal() { game_.go_on(); }
   void begin(const LiveSession& session);
@@ -82,7 +93,8 @@ class Exhibit {
   void draw_host(const Canvas& canvas);
   void draw_names(const Canvas& canvas, const BlockView& blocks, const SceneArea& scene) const;
   void draw_difference(const Canvas& canvas, const ExhibitTrace& trace, double right_s);
-  void draw_forces(const Canvas& canvas);
+  void draw_slow_motion(const Canvas& canvas);
+  void draw_growing_number(const Canvas& canvas, const SceneArea& scene);
   float begin_plot(const Canvas& canvas, const std::string& title);
   bool button(const Canvas& canvas, const std::string& text, const std::string& key, float width, bool down = false);
   void say(const std::string& text);
@@ -92,12 +104,17 @@ class Exhibit {
   std::string verdict() const;
   std::string number(double value) const;
   std::string name_of(bool first, const LiveSession& session) const;
+  Rgb first_colour(Theme theme) const;
+  Rgb second_colour(Theme theme) const;
+  // Whether the first of the pair has the left block. A reference is the right one.
+  bool first_is_left() const { return pair()->first.has_value(); }
   const ExhibitWords& words() const { return languages_[language_]; }
 
   ExhibitGame game_;
   ExhibitTimes times_;
   std::optional<ExhibitRound> shown_;  // in the state attract
   ExhibitTrace trace_;                 // in the state attract
+  ExhibitReveal reveal_;
   std::vector<ExhibitWords> languages_{1};
   std::size_t language_ = 0;
   std::string tally_folder_;
@@ -109,7 +126,7 @@ class Exhibit {
   double moved_s_ = -1e9;     // loop time of the visitor's last action
   double seen_s_ = 0.0;       // loop time of the last processed tick
   double device_at_m_ = 0.0;  // position of the device's tool at its last movement
-  bool noted_ = false;        // the result of this round is in the tally
+  bool revealed_ = false;     // the reveal of this round has begun, and its result is in the tally
 };
 
 }  // namespace palpate

@@ -17,12 +17,7 @@ constexpr auto kVisitorWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags
                                 ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                 ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
 constexpr double kMost_jnd = 4.0;  // fixed range of the axis, so that rounds are comparable
-constexpr double kForces_s = 3.0;  // duration of the plot of both forces, around the largest difference
 constexpr double kPerSecond = 1.0 / ExhibitTrace::kColumn_s;
-
-const char* kind_of(const ExhibitModel& model) {
-  return model.paper ? "paper" : model.method == "position" ? "depth" : model.method == "greedy" ? "best" : "other";
-}
 
 bool pointer_moved() {
   const ImGuiIO& io = ImGui::GetIO();
@@ -52,18 +47,31 @@ struct Exhibit::Canvas {
   const UiStyle& style;
   SceneArea panel;
   float foot = 0.0F;  // height of the foot
-  std::string centres_of(const ExhibitModel& model) const {
-    return std::to_string(shown.models.slots[model.slot].centres);
+  int centres(const ExhibitModel& model) const { return shown.models.slots[model.slot].centres; }
+  std::string centres_of(const ExhibitModel& model) const { return std::to_string(centres(model)); }
+  // The ending of the keys of the texts about a model. A trend without a correction has no centres.
+  std::string kind_of(const ExhibitModel& model) const {
+    if (model.paper) return "paper";
+    if (model.method == "position") return "depth";
+    if (model.method != "greedy") return "other";
+    return centres(model) > 0 ? "best" : "trend";
   }
-  Rgb colour_of(const ExhibitModel& model) const {
-    return method_colour(model.method, style.theme());  // one model at a time, so no shades
-  }
+  Rgb colour_of(const ExhibitModel& model) const { return exhibit_colour(model.method, model.paper, style.theme()); }
 };
 
 std::string Exhibit::name_of(bool first, const LiveSession& session) const {
   if (!first) return words()("name_computer");
   if (pair()->first) return words()("name_other");
   return words()(session.comparison().reference() == ReferenceKind::measured ? "name_measured" : "name_simulated");
+}
+
+Rgb Exhibit::first_colour(Theme theme) const {
+  const auto& first = pair()->first;
+  return first ? exhibit_colour(first->method, first->paper, theme) : kReferenceColour;
+}
+
+Rgb Exhibit::second_colour(Theme theme) const {
+  return exhibit_colour(pair()->second.method, pair()->second.paper, theme);
 }
 
 // The number with the digits that a reader needs.
@@ -78,7 +86,7 @@ std::string Exhibit::verdict() const {
   const ExhibitRound& round = game_.round();
   if (round.is_catch()) return words()("verdict_catch");
   if (round.near_jnd()) return words()("verdict_edge");
-  return words()(round.noticed() ? "verdict_noticed" : "verdict_unnoticed", number(round.largest_over_jnd));
+  return words()(round.noticed() ? "verdict_noticed" : "verdict_unnoticed");
 }
 
 void Exhibit::say(const std::string& text) {
@@ -127,6 +135,7 @@ void Exhibit::draw(const LiveSession& session, const WindowView& shown, const Bl
   if (host_) draw_host(canvas);
   ImGui::End();
   draw_names(canvas, blocks, layout.scene);
+  if (game_.state() == State::reveal) draw_growing_number(canvas, layout.scene);
 }
 
 // A button that is high enough for a finger, with its key in the corner.
@@ -159,7 +168,7 @@ void Exhibit::draw_attract(const Canvas& canvas) {
 void Exhibit::draw_guess(const Canvas& canvas) {
   say_quietly(canvas, words()("round", std::to_string(game_.number()), std::to_string(game_.rounds().size())));
   const ExhibitModel& model = game_.round().second;
-  say(words()(std::string("hint_") + kind_of(model), canvas.centres_of(model)));
+  say(words()("hint_" + canvas.kind_of(model), canvas.centres_of(model)));
   say(words()("question_guess"));
   space(canvas.style, 0.4F);
   const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
@@ -198,26 +207,68 @@ void Exhibit::draw_press(const Canvas& canvas) {
 
 void Exhibit::draw_reveal(const Canvas& canvas) {
   const ExhibitRound& round = game_.round();
+  if (!reveal_is_done(canvas.session)) {
+    say(words()("slow_motion", fixed(times_.slowness, 0)));
+    space(canvas.style, 0.2F);
+    say_quietly(canvas, words()("slow_motion_how"));
+    return draw_slow_motion(canvas);
+  }
   const bool edge = round.near_jnd() && !round.is_catch();
+  ImGui::PushFont(canvas.style.fonts().big);
   say(words()(edge ? "edge" : round.correct() ? "right" : "wrong"));
-  space(canvas.style, 0.2F);
+  ImGui::PopFont();
   say(verdict());
   space(canvas.style, 0.4F);
   if (button(canvas, words()(game_.number() < game_.rounds().size() ? "next" : "to_score"), "Enter", -1.0F)) {
     leave_reveal();
     return;
   }
-  space(canvas.style, 0.6F);
   if (game_.has_force()) {  // shows which model had which key
+    space(canvas.style, 0.4F);
     draw_key(canvas, *round.first, "block_1");
     draw_key(canvas, round.second, "block_2");
   }
-  draw_forces(canvas);
+  draw_slow_motion(canvas);
+}
+
+// Draws the arrows in the rest of the panel.
+void Exhibit::draw_slow_motion(const Canvas& canvas) {
+  const float line = height_of(canvas.style.fonts().body);
+  const float top = ImGui::GetCursorScreenPos().y + line;
+  const float bottom = canvas.panel.at.y + canvas.panel.size.y - canvas.foot - 1.6F * line;
+  const float left = ImGui::GetCursorScreenPos().x;
+  const float width = ImGui::GetContentRegionAvail().x;
+  const Theme theme = canvas.style.theme();
+  reveal_.draw_arrows(canvas.style, {{left, top}, {width, std::max(bottom - top, 4.0F * line)}},
+                      canvas.session.newest().loop_time_s, first_colour(theme), second_colour(theme), first_is_left());
+}
+
+// Draws the largest difference so far over the blocks.
+void Exhibit::draw_growing_number(const Canvas& canvas, const SceneArea& scene) {
+  const double largest = reveal_.largest_over_jnd(canvas.session.newest().loop_time_s);
+  const Palette& p = canvas.style.colours();
+  ImFont* big = canvas.style.fonts().big;
+  ImFont* font = canvas.style.fonts().heading;
+  const float room = 0.93F * scene.size.x;
+  float y = scene.at.y + 0.8F * height_of(font);
+  const auto centred = [&](ImFont* with, float scale, const std::string& text, ImU32 colour) {
+    const float height = scale * height_of(with);
+    std::istringstream lines(text);
+    for (std::string one; std::getline(lines, one); y += height) {
+      const float wide = with->CalcTextSizeA(height, 1e6F, 0.0F, one.c_str()).x;
+      ImGui::GetBackgroundDrawList()->AddText(with, height, {scene.at.x + 0.5F * (scene.size.x - wide), y}, colour,
+                                              one.c_str());
+    }
+  };
+  centred(big, 1.4F, number(largest), ink(largest > 1.0 ? kAboveJndColour : p.text));
+  ImGui::PushFont(font);  // in_lines measures with it
+  centred(font, 1.0F, in_lines(words()("reveal_times"), room), ink(p.text));
+  ImGui::PopFont();
 }
 
 void Exhibit::draw_key(const Canvas& canvas, const ExhibitModel& model, const char* block) {
   ImGui::PushStyleColor(ImGuiCol_Text, paint(canvas.colour_of(model)));
-  say(words()(block) + ": " + words()(std::string("name_") + kind_of(model), canvas.centres_of(model)));
+  say(words()(block) + ": " + words()("name_" + canvas.kind_of(model), canvas.centres_of(model)));
   ImGui::PopStyleColor();
 }
 
@@ -241,7 +292,7 @@ void Exhibit::draw_score(const Canvas& canvas) {
 
 // Draws the largest difference of a round as a bar, in JND.
 void Exhibit::draw_bar(const Canvas& canvas, const ExhibitRound& round) {
-  const std::string name = round.is_catch() ? "name_catch" : std::string("name_") + kind_of(round.second);
+  const std::string name = round.is_catch() ? "name_catch" : "name_" + canvas.kind_of(round.second);
   say_quietly(canvas, words()(name, canvas.centres_of(round.second)) + ": " + number(round.largest_over_jnd) + ", " +
                           words()(round.correct() ? "row_right" : "row_wrong"));
   const float height = 0.8F * height_of(canvas.style.fonts().body);
@@ -265,7 +316,10 @@ float Exhibit::begin_plot(const Canvas& canvas, const std::string& title) {
 
 void Exhibit::draw_difference(const Canvas& canvas, const ExhibitTrace& trace, double right_s) {
   const Palette& p = canvas.style.colours();
-  const float height = begin_plot(canvas, words()("axis_difference"));
+  // Outside the plot, where no curve crosses them.
+  say_quietly(canvas, words()("axis_difference"));
+  const double largest = trace.largest_over_jnd();
+  const float height = begin_plot(canvas, largest > 0.0 ? words()("so_far", number(largest)) : words()("in_band"));
   {
     const LivePlot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
                         {{0.0, right_s}, {-kMost_jnd, kMost_jnd}, "s", "", true});
@@ -286,44 +340,6 @@ void Exhibit::draw_difference(const Canvas& canvas, const ExhibitTrace& trace, d
       }
     }
     flush();
-    plot.caption(words()("in_band"), 0.5F, 0.98F, ink(p.text));
-    if (trace.largest_over_jnd() > 0.0)
-      plot.caption(words()("so_far", number(trace.largest_over_jnd())), 0.03F, 0.03F, ink(p.text));
-  }
-  ImGui::PopFont();
-}
-
-// Draws both forces where they differed most, with a band of one JND around the first.
-void Exhibit::draw_forces(const Canvas& canvas) {
-  const ExhibitRound& round = game_.round();
-  const std::vector<ExhibitTrace::Column>& columns = game_.trace().columns();
-  const double middle_s = static_cast<double>(game_.trace().largest_at()) / kPerSecond;
-  const double last_s = std::max(kForces_s, static_cast<double>(columns.size()) / kPerSecond);
-  const double from_s = std::clamp(middle_s - 0.5 * kForces_s, 0.0, last_s - kForces_s);
-  const JndLine& jnd = canvas.session.jnd();
-  double most_N = 0.5;
-  const auto first_column = static_cast<std::size_t>(from_s * kPerSecond);
-  const std::size_t end = std::min(columns.size(), first_column + static_cast<std::size_t>(kForces_s * kPerSecond) + 1);
-  for (std::size_t i = first_column; i < end; ++i)
-    most_N = std::max({most_N, columns[i].first_N + jnd.at(columns[i].first_N), columns[i].second_N});
-  const float height = begin_plot(canvas, words()("axis_force"));
-  {
-    const LivePlot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
-                        {{from_s, from_s + kForces_s}, {0.0, 1.05 * most_N}, "s", "N", true});
-    std::vector<ImVec2> upper, lower, first, second;
-    for (std::size_t i = first_column; i < end; ++i) {
-      if (columns[i].ticks == 0) continue;
-      const float x = plot.x_px((static_cast<double>(i) + 0.5) / kPerSecond);
-      const double band_N = jnd.at(columns[i].first_N);
-      upper.emplace_back(x, plot.y_px(columns[i].first_N + band_N));
-      lower.emplace_back(x, plot.y_px(columns[i].first_N - band_N));
-      first.emplace_back(x, plot.y_px(columns[i].first_N));
-      second.emplace_back(x, plot.y_px(columns[i].second_N));
-    }
-    const float thick = 2.5F * canvas.style.scale();  // thin enough to see the band
-    plot.band(upper, lower, ink(canvas.style.colours().band));
-    plot.line(first, ink(round.first ? canvas.colour_of(*round.first) : kReferenceColour), thick);
-    plot.line(second, ink(canvas.colour_of(round.second)), thick);
   }
   ImGui::PopFont();
 }
@@ -353,23 +369,22 @@ void Exhibit::draw_host(const Canvas& canvas) {
 // Draws the name of each block at its foot.
 void Exhibit::draw_names(const Canvas& canvas, const BlockView& blocks, const SceneArea& scene) const {
   if (pair() == nullptr) return;
-  const bool has_force = game_.state() != State::attract && game_.has_force();
-  const bool reference_last = !pair()->first;
-  const std::size_t count = has_force ? 1 : 2;
+  const bool revealed = game_.state() == State::reveal;
+  const bool blind = game_.state() != State::attract && game_.has_force() && !revealed;
+  const std::size_t count = blind ? 1 : 2;
   const BlockGeometry& block = blocks.geometry();
   ImFont* font = canvas.style.fonts().heading;
   for (std::size_t i = 0; i < count; ++i) {
-    const bool first = (i == 1) == reference_last;
-    std::string text =
-        has_force ? words()(game_.chosen() == 2 ? "block_2" : "block_1") : name_of(first, canvas.session);
-    if (has_force && game_.state() != State::press) text.clear();
+    const bool first = (i == 0) == first_is_left();
+    std::string text = blind ? words()(game_.chosen() == 2 ? "block_2" : "block_1") : name_of(first, canvas.session);
+    if (blind && game_.state() != State::press) text.clear();
+    if (game_.has_force() && revealed) text = words()(first ? "block_1" : "block_2");
     const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text.c_str());
     const glm::vec2 foot = blocks.on_screen(
         i, count, {0.0F, -1.05F * static_cast<float>(block.height_m), 0.5F * static_cast<float>(block.length_m)},
         {scene.size.x, scene.size.y});
-    const Rgb colour = has_force ? canvas.style.colours().text
-                       : first   ? (pair()->first ? canvas.colour_of(*pair()->first) : kReferenceColour)
-                                 : canvas.colour_of(pair()->second);
+    const Theme theme = canvas.style.theme();
+    const Rgb colour = blind ? canvas.style.colours().text : first ? first_colour(theme) : second_colour(theme);
     ImGui::GetBackgroundDrawList()->AddText(
         font, height_of(font),
         {scene.at.x + std::clamp(foot.x - 0.5F * size.x, 4.0F, scene.size.x - size.x - 4.0F),

@@ -46,6 +46,10 @@ inline constexpr auto kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_A
                                 ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove;
 // Places the next ImGui window in the middle and limits its size.
 void begin_in_the_middle();
+// Whether Enter was pressed in this frame.
+bool enter_pressed();
+// An entry of a list. Returns whether it was chosen with the mouse, the space bar or Enter.
+bool list_entry(const std::string& text, bool selected = false, bool enabled = true);
 
 // Dialogs in the middle.
 void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area);

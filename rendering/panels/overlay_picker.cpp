@@ -1,6 +1,7 @@
 // The dialog that opens files: the files of one folder, a path to type, and recent files. And the list of devices.
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "rendering/panels/overlay_parts.h"
 #include "rendering/panels/panel_parts.h"
@@ -13,10 +14,12 @@ namespace fs = std::filesystem;
 void go_to(FilePicker& picker, const fs::path& folder) {
   picker.folder = folder.string();
   picker.files = pickable_files(picker.folder);
+  picker.takes_focus = true;
 }
 
 // Enters a folder, or opens a file. Returns whether `path` was a file.
 bool pick(FilePicker& picker, const std::string& path, const OverlayActions& actions) {
+  if (path.empty()) return false;
   std::error_code missing;
   if (fs::is_directory(path, missing)) {
     go_to(picker, path);
@@ -64,20 +67,20 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   bool done = false;
   ImGui::TextDisabled("A recording, another program's table, or a model (.json). A path, then Enter:");
   ImGui::SetNextItemWidth(width);
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  if (std::exchange(picker.takes_focus, false)) ImGui::SetKeyboardFocusHere();
   if (ImGui::InputText("##path", picker.path.data(), picker.path.size(),
                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
     done = pick(picker, picker.path.data(), actions);
   for (const std::string& file : std::vector<std::string>(view.settings.recent))
-    if (ImGui::Selectable(("opened of late: " + fs::path(file).filename().string() + "###" + file).c_str()))
+    if (list_entry("recently opened: " + fs::path(file).filename().string() + "###" + file))
       done = pick(picker, file, actions);
   ImGui::TextUnformatted(fitting(picker.folder, width).c_str());
   tip(picker.folder.c_str());
-  ImGui::BeginChild("files", {width, std::min(14.0F * line, 0.5F * all.y)}, true);
+  ImGui::BeginChild("files", {width, std::min(14.0F * line, 0.5F * all.y)}, true, ImGuiWindowFlags_NavFlattened);
   std::string chosen;
-  if (ImGui::Selectable("../")) chosen = fs::path(picker.folder).parent_path().string();
+  if (list_entry("../")) chosen = fs::path(picker.folder).parent_path().string();
   for (const std::string& name : picker.files)
-    if (ImGui::Selectable(name.c_str())) chosen = (fs::path(picker.folder) / name).string();
+    if (list_entry(name)) chosen = (fs::path(picker.folder) / name).string();
   if (picker.files.empty()) ImGui::TextDisabled("nothing here that can be opened");
   ImGui::EndChild();
   ImGui::End();
@@ -95,8 +98,7 @@ void draw_device_list(ViewState& view, const std::string& in_use, const OverlayA
   for (const DeviceChoice& device : view.dialogs.devices) {
     const bool own = device.name == in_use;
     const bool usable = own || device.problem.empty();
-    if (ImGui::Selectable((device.name + "###" + device.name).c_str(), own,
-                          usable ? 0 : ImGuiSelectableFlags_Disabled)) {
+    if (list_entry(device.name, own, usable)) {
       actions.use_device(device.name);
       view.dialogs.device_list = false;
     }

@@ -16,11 +16,12 @@ namespace {
 
 constexpr const char* kPictureHelp[] = {
     "The probe presses the same block with several models at once; the sentence at the top says which one to take.",
-    "JND: the smallest difference of force that a hand can feel, 0.065 N and 6 % of the force. Grey band: one JND to "
-    "either side of the reference. A curve inside it cannot be told from the reference by a hand.",
+    "JND: the smallest difference of force that a hand can feel, 0.065 N plus 6 % of the force. Grey band: one JND to "
+    "either side of the reference. A hand cannot feel the difference between the reference and a curve in the band.",
     "Green: the reference, the true or the recorded force. Other colours: one for each method; hollow marks: the "
     "recipe of 2009. On a dent: its error, from light (0) to green (1 JND); magenta is above.",
-    "Centres: the points that a radial basis function model is made of. More are closer, and slower."};
+    "Centres: the points that a radial basis function model is made of. More centres make it more accurate and "
+    "slower."};
 
 }  // namespace
 
@@ -36,6 +37,14 @@ void begin_in_the_middle() {
   const float margin = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({0.5F * all.x, 0.5F * all.y}, ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, {all.x - margin, all.y - margin});
+}
+
+bool enter_pressed() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false); }
+
+bool list_entry(const std::string& text, bool selected, bool enabled) {
+  const bool chosen = ImGui::Selectable(text.c_str(), selected, enabled ? 0 : ImGuiSelectableFlags_Disabled);
+  if (selected) ImGui::SetItemDefaultFocus();
+  return chosen || (enabled && ImGui::IsItemFocused() && enter_pressed());
 }
 
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area, float top_px) {
@@ -131,7 +140,7 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
     const auto scene = load_scene(name);
     // The scene of the study has no block.
     if (!scene || name == "jnd_study") continue;
-    if (ImGui::Selectable((scene->title + "###" + name).c_str(), name == session.scene().name)) {
+    if (list_entry(scene->title + "###" + name, name == session.scene().name)) {
       view.dialogs.scene_list = false;
       actions.use_scene(name);
     }
@@ -252,13 +261,13 @@ void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
     ImGui::TextUnformatted(roles.problem.c_str());
     ImGui::TextDisabled(
         "What it asks for is an option of `palpate import FILE --out REC.csv`; drop that recording here.");
+    if (roles.recordings.empty() && (ImGui::Button("OK (Enter)") || enter_pressed())) open = false;
   }
   for (std::size_t i = 0; i < roles.recordings.size(); ++i) draw_role(roles, i);
   if (!roles.recordings.empty()) {
     ImGui::TextUnformatted(recording_roles_words(roles).c_str());
     const bool ready = !roles.training().empty() || !roles.test().empty();
-    const bool typing = ImGui::GetIO().WantTextInput;
-    if ((ImGui::Button("Start (Enter)") || (!typing && ImGui::IsKeyPressed(ImGuiKey_Enter))) && ready) {
+    if ((ImGui::Button("Start (Enter)") || (!ImGui::GetIO().WantTextInput && enter_pressed())) && ready) {
       actions.use_recording_roles();
       open = false;
     }

@@ -32,7 +32,7 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
       if (slot == models.selected || view.centres_together) session.refit(slot, centres);
     }
   }
-  tip("Fits the active model anew with so many centres; with \"all\", every model that has centres.\n"
+  tip("Fits the active model again with this number of centres; with \"all\", every model that has centres.\n"
       "Drag to the left, and watch the curve leave its band.");
   ImGui::SameLine();
   ImGui::Checkbox("all", &view.centres_together);

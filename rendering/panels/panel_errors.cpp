@@ -99,9 +99,9 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
       plot.list().AddText({at.x + 9.0F * size, at.y - 0.6F * ImGui::GetFontSize()}, ink(p.text), view.name.c_str());
     }
   }
-  tip("Every model: what a whole tick of it costs, and the error that 99 % of the samples do not exceed.\n"
-      "Left and low is better. Filled: this program's fits; hollow: the 2009 recipe. The dash is where it is now.\n"
-      "Both are columns of the table. E shows the error against the force instead.");
+  tip("For each model: the time of a whole tick, and the error that 99 % of the samples do not exceed.\n"
+      "Left and low is better. Filled: this program's fits; hollow: the 2009 recipe. The dash is the present error.\n"
+      "Both values are columns of the table. E shows the error against the force instead.");
 }
 
 void draw_error_bins(const ModelsView& models, const UiStyle& style, float height) {

@@ -121,14 +121,14 @@ void ForceCurves::draw_titles_of_force(const Drawing& drawing, float width) cons
   const std::string fits = fitting(words, width - ImGui::GetCursorPosX());
   ImGui::TextDisabled("%s", fits.c_str());
   tip((words + "\nForce of every model, and in green what they are compared with.\n"
-               "The grey band is one just noticeable difference (JND) either way.\n"
+               "The grey band is one just noticeable difference (JND) to either side.\n"
                "Marks at the top: missed deadlines, and in red faults (L lists them).\n"
-               "Drag to zoom, wheel to go back, double click or Space to go on.")
+               "Drag to zoom, turn the wheel to scroll back, double-click or press Space to continue.")
           .c_str());
   ImGui::SameLine(width + ImGui::GetStyle().WindowPadding.x);
   section_title(drawing.style, "AGAINST DEPTH");
-  tip("The same force against the depth of the tool: loading and unloading are two ways (hysteresis).\n"
-      "Green: what the models are compared with; the band is one JND either way; the active model in its colour.");
+  tip("The same force against the depth of the tool. Loading and unloading differ (hysteresis).\n"
+      "Green: what the models are compared with; the band is one JND to either side; the active model in its colour.");
 }
 
 void ForceCurves::draw_titles_of_error(const Drawing& drawing) const {
@@ -140,7 +140,7 @@ void ForceCurves::draw_titles_of_error(const Drawing& drawing) const {
   if (drawing.shown.models.out_of_domain()) {
     ImGui::TextColored(paint(drawing.style.colours().fault), "away from the recorded data");
   } else if (drawing.view.time.paused) {
-    ImGui::TextDisabled("stopped, Space goes on");
+    ImGui::TextDisabled("paused; Space continues");
   } else {
     quiet_words(difference ? "outside the band a hand could feel it" : "above 1 a hand could feel it");
   }

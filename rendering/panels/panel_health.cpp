@@ -74,8 +74,8 @@ std::string device_line(const HealthView& health) {
   if (device.interval_s > 0.0) line += text_of(", %.0f samples a second", 1.0 / device.interval_s);
   if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
   if (softened) {
-    line += text_of(", force %.1f ms late: rendered at %.0f %% of the stiffness, more would swing", health.lag_ms,
-                    100.0 * health.stiffness_share);
+    line += text_of(", force %.1f ms late: rendered at %.0f %% of the stiffness, because more would oscillate",
+                    health.lag_ms, 100.0 * health.stiffness_share);
   }
   line += text_of(", motor heat %.0f %%", 100.0 * health.heat_share);
   return line;
@@ -109,7 +109,7 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
   }
   const double missed = health.missed_of_late;
   if (missed > kManyMissed) {
-    return {text_of("%.1f %% of the deadlines missed of late: close other programs", 100.0 * missed) +
+    return {text_of("%.1f %% of the recent deadlines missed: close other programs", 100.0 * missed) +
                 (health.scheduling.realtime ? "" : ", or allow real-time priority"),
             true};
   }

@@ -30,7 +30,7 @@ void draw_feel(LiveSession& session, const UiStyle& style, const SceneArea& area
                              "+ %.1f N s/m", ImGuiSliderFlags_AlwaysClamp) ||
           moved;
   ImGui::PopItemWidth();
-  tip("In the hand alone: curves and figures are of the models as they are. J ends it.");
+  tip("Changes only the rendered force. Curves and figures show the unchanged models. J ends it.");
   ImGui::End();
   if (moved) session.use_scale({static_cast<double>(stiffness), static_cast<double>(damping)});
 }
@@ -61,7 +61,7 @@ void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style
   if (!alone && session.newest().rendered_N > kPressed_N) view.has_pressed = true;
   if (!alone && view.has_pressed) return;
   const std::string hint = alone ? "The hand moves by itself. Move the mouse down over the block to press it."
-                                 : "Move down over the block to press: no button, only the way of the mouse.";
+                                 : "Move the mouse down over the block to press it. No button is needed.";
   const float line = height_of(style.fonts().body);
   text_at(style.fonts().body, {area.at.x + 0.9F * line, top_px}, ink(style.colours().quiet), hint,
           area.size.x - 1.8F * line);
@@ -77,7 +77,7 @@ float draw_buttons(const SceneArea& area, const std::vector<WindowCommand>& comm
     ImGui::SameLine(0.0F, 4.0F);
   }
   if (ImGui::Button("Menu")) ImGui::OpenPopup("menu");
-  tip("All else that can be done, with its keys");
+  tip("All other commands and their keys");
   if (ImGui::BeginPopup("menu")) {
     for (const WindowCommand& command : commands) {
       if (command.label.empty() || command.replay || command.bar) continue;
@@ -110,7 +110,7 @@ void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift,
   if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s()), "")) {
     replay.seek(static_cast<double>(at_s));
   }
-  tip("Where in the recording");
+  tip("Position in the recording");
   ImGui::SameLine();
   ImGui::Text("%5.1f of %.1f s", replay.playhead_s(), replay.duration_s());
   ImGui::SameLine();
@@ -119,15 +119,15 @@ void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift,
   if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) {
     replay.set_speed(static_cast<double>(speed));
   }
-  tip("Its speed");
+  tip("Speed of the replay");
   ImGui::SameLine();
   ImGui::Text("%.2f x", replay.speed());
   if (session.replay_test().found_m() != 0.0) {
     bool moved = session.replay_test().moved();
     const std::string label =
-        "surface " + fixed(1e3 * session.replay_test().found_m(), 2) + " mm from the models'; moved there";
+        "surface " + fixed(1e3 * session.replay_test().found_m(), 2) + " mm from that of the models; move it there";
     if (ImGui::Checkbox(label.c_str(), &moved)) session.move_surface(moved);
-    tip("Where the forces of the models fit the recording best; off: positions as recorded");
+    tip("On: the surface is moved to where the models fit the recording best. Off: the positions are as recorded.");
   }
   ImGui::End();
 }

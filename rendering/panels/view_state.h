@@ -78,6 +78,7 @@ struct FilePicker {
   std::string folder;              // empty: the dialog is closed
   std::vector<std::string> files;  // in `folder`
   std::array<char, 512> path{};    // the path that is being typed
+  bool takes_focus = false;        // the path gets the focus: the dialog or another folder was opened
 };
 
 // Settings that are kept between runs.
@@ -110,6 +111,7 @@ struct Dialogs {
 struct ExhibitState {
   bool on = false;
   bool blind = false;         // hides which model is active
+  bool close_up = false;      // the camera is nearer
   bool tool_is_held = false;  // keeps the tool out of the block; the mouse has no effect
 };
 

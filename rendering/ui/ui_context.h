@@ -2,6 +2,8 @@
 // Thread guarantee: the window's thread.
 #pragma once
 
+#include <vector>
+
 struct GLFWwindow;
 
 namespace palpate {
@@ -14,7 +16,8 @@ class UiContext {
   UiContext& operator=(const UiContext&) = delete;
   ~UiContext();
 
-  void begin_frame();
+  // `tapped`: keys of GLFW that were pressed and released since the last frame.
+  void begin_frame(const std::vector<int>& tapped = {});
   // Draws all widgets since `begin_frame`.
   void end_frame();
 

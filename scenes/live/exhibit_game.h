@@ -30,6 +30,7 @@ struct ExhibitTick {
   double over_jnd = 0.0;  // mean over 50 ms of difference / JND, signed; NaN: none
   bool in_contact = false;
   bool out_of_domain = false;
+  double position_m = 0.0;
 };
 
 // Both forces during the first minute after the first contact, averaged over columns of 25 ms.
@@ -37,10 +38,11 @@ class ExhibitTrace {
  public:
   static constexpr double kColumn_s = 0.025;
   struct Column {
-    double first_N = 0.0;   // mean
-    double second_N = 0.0;  // mean
-    double over_jnd = 0.0;  // the value of largest magnitude, signed
-    int ticks = 0;          // ticks within the training domain; 0: the curve has a gap
+    double first_N = 0.0;     // mean
+    double second_N = 0.0;    // mean
+    double position_m = 0.0;  // mean
+    double over_jnd = 0.0;    // the value of largest magnitude, signed
+    int ticks = 0;            // ticks within the training domain; 0: the curve has a gap
   };
 
   void clear();

@@ -81,6 +81,14 @@ class DemoWindowTest : public ::testing::Test {
     glfwSetKeyCallback(window, callback);
     frames(2);
   }
+  // Characters, as a keyboard sends them to a text field.
+  void type(const std::string& text) {
+    GLFWwindow* window = app_->window().handle();
+    const GLFWcharfun callback = glfwSetCharCallback(window, nullptr);
+    glfwSetCharCallback(window, callback);
+    for (const char letter : text) callback(window, static_cast<unsigned char>(letter));
+    frames(2);
+  }
   // Down until `done`.
   template <typename Done>
   void hold(int key, Done done) {

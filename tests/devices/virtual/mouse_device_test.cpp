@@ -59,6 +59,30 @@ TEST(MouseDevice, KeepsTargetsInReachAndFinite) {
   EXPECT_EQ(device.target_m(), 0.03 - 1e-3);
 }
 
+TEST(MouseDevice, IsDrivenWithARampAndStopsWhereItIsTold) {
+  MouseDevice device;
+  advance(device, 0.0, 100);
+  device.drive(0.018, 0.004, 0.1);
+  DeviceSample sample = advance(device, 0.1, 30);
+  EXPECT_LT(sample.tool.velocity_m_per_s, 0.01) << "half of the ramp of 60 ms, and the low-pass";
+  sample = advance(device, 0.13, 200);
+  EXPECT_NEAR(sample.tool.velocity_m_per_s, 0.018, 1e-3);
+  EXPECT_FALSE(device.idle(1e6)) << "a held key is not idle";
+  EXPECT_NEAR(advance(device, 0.33, 2000).tool.position_m, 0.004, 6e-4) << "inwards to the limit";
+  // In contact the target goes deeper than the tool.
+  EXPECT_NEAR(advance(device, 2.33, 2000, 2.0).tool.position_m, 0.004, 6e-4);
+  device.drive(-0.018, -0.002, 4.33);
+  EXPECT_NEAR(advance(device, 4.33, 2000).tool.position_m, -0.002, 1e-6) << "outwards to the limit";
+  device.set_target(-0.008, 6.33);
+  EXPECT_NEAR(advance(device, 6.33, 1000).tool.position_m, -0.008, 1e-6) << "further out already";
+  device.drive(0.0, 0.0, 7.33);
+  EXPECT_TRUE(device.idle(1e6));
+  const double rest_m = advance(device, 7.33, 1000).tool.position_m;
+  EXPECT_NEAR(advance(device, 8.33, 1000).tool.position_m, rest_m, 1e-9);
+  device.drive(std::numeric_limits<double>::quiet_NaN(), 0.0, 9.33);
+  EXPECT_NEAR(advance(device, 9.33, 1000).tool.position_m, rest_m, 1e-9);
+}
+
 TEST(MouseDevice, SaysWhenItIsIdle) {
   MouseDevice device;
   EXPECT_TRUE(device.idle(0.0)) << "never touched";

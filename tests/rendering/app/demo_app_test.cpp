@@ -190,6 +190,28 @@ TEST_F(DemoAppTest, AMissingFileIsCalledMissingAndNotRemembered) {
   EXPECT_TRUE(app_->view().settings.recent.empty());
 }
 
+// The screen of the tests has 1920x1080 pixels.
+TEST_F(DemoAppTest, StartsInsideItsScreen) {
+  DemoRequest request;
+  request.session.scene = "skin";
+  request.session.device = "hand";
+  request.session.models = {folder_.file("soft.json")};
+  request.session.realtime = false;
+  request.window.width = 2600;
+  request.window.height = 1500;
+  auto app = DemoApp::create(request);
+  ASSERT_TRUE(app.ok()) << app.error().message;
+  app_ = std::move(*app);
+  frames(3);
+  const Framebuffer picture = app_->window().framebuffer();
+  EXPECT_EQ(picture.window_width, 1920);
+  EXPECT_EQ(picture.window_height, 1080);
+  int x = -1, y = -1;
+  glfwGetWindowPos(app_->window().handle(), &x, &y);
+  EXPECT_EQ(x, 0);
+  EXPECT_EQ(y, 0);
+}
+
 TEST_F(DemoAppTest, FollowsTheSizeOfItsWindow) {
   open("hand");
   glfwSetWindowSize(app_->window().handle(), 1920, 1080);
@@ -231,6 +253,10 @@ TEST_F(DefaultStart, TheHeadlineIsOfAModelOnTheStageAndOfTheTablesNumbers) {
   EXPECT_NE(shown.models.verdict.headline.find(tick_share(best.tick_ns())), std::string::npos);
   const nlohmann::json stats = nlohmann::json::parse(stats_text(app_->session(), shown, app_->frames()));
   EXPECT_EQ(stats["verdict"], shown.models.verdict.headline);
+  // A verdict is cleared with its errors.
+  app_->session().reset_figures();
+  EXPECT_FALSE(app_->session().verdict().chosen.has_value());
+  EXPECT_EQ(app_->session().figures(chosen).errors.samples, 0u);
 }
 
 // PALPATE_PICTURES=DIR saves what it looks like with all models, for people.

@@ -12,7 +12,14 @@
 namespace palpate {
 namespace {
 
-using DemoCommandsTest = test::DemoWindowTest;
+class DemoCommandsTest : public test::DemoWindowTest {
+ protected:
+  // A list has the focus a few frames after its key.
+  void open_list(int key) {
+    press(key);
+    frames(4);
+  }
+};
 
 TEST_F(DemoCommandsTest, EveryRowIsReachedByItsKeysAndListedInTheHelp) {
   const std::string replayed = folder_.file("strokes.csv");
@@ -89,6 +96,97 @@ TEST_F(DemoCommandsTest, TheFilePickerListsFoldersAndWhatCanBeOpened) {
   EXPECT_EQ(overlay::pickable_files(folder_.path()),
             (std::vector<std::string>{"lab/", "a.json", "b.csv", "firm.json", "soft.json"}));
   EXPECT_TRUE(overlay::pickable_files(folder_.file("nowhere")).empty());
+}
+
+TEST_F(DemoCommandsTest, OpenTakesTheFocusAndATypedPathReplacesTheOldOne) {
+  open("hand");
+  save("third.json", 3, 1.2);
+  open_list(GLFW_KEY_M);
+  ASSERT_TRUE(ImGui::GetIO().WantTextInput) << "the path can be typed at once";
+  type(folder_.file("nowhere.json"));
+  press(GLFW_KEY_ENTER);
+  EXPECT_TRUE(told("there is no file " + folder_.file("nowhere.json")));
+  EXPECT_TRUE(app_->view().settings.recent.empty());
+  EXPECT_FALSE(app_->view().dialogs.file_list);
+  open_list(GLFW_KEY_M);
+  type(folder_.file("third.json"));
+  EXPECT_EQ(app_->view().dialogs.picker.path.data(), folder_.file("third.json"));
+  press(GLFW_KEY_ENTER);
+  EXPECT_EQ(app_->session().models().size(), 3u);
+  EXPECT_EQ(app_->view().settings.recent, std::vector<std::string>{folder_.file("third.json")});
+}
+
+TEST_F(DemoCommandsTest, AFileThatCannotBeReadIsNotARecentOne) {
+  open("hand");
+  const std::string model = folder_.with_file("bad.json", "{\"format\": \"palpate-model\"}");
+  const std::string table = folder_.with_file("bad.csv", "time_s,position_m,force_N\n0,0,nan\n");
+  drop(model);
+  ASSERT_TRUE(until([&] { return told("bad.json"); }));
+  drop(table);
+  ASSERT_TRUE(until([&] { return !app_->view().dialogs.recording_roles.problem.empty(); }));
+  EXPECT_TRUE(app_->view().settings.recent.empty());
+  press(GLFW_KEY_ENTER);
+  EXPECT_FALSE(app_->view().dialogs.recording_roles.any()) << "read";
+}
+
+TEST_F(DemoCommandsTest, AFileIsChosenWithKeysAlone) {
+  open("hand");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::create_directory(folder_.file("lab"));
+  save("lab/third.json", 3, 1.2);
+  std::filesystem::current_path(folder_.path());
+  open_list(GLFW_KEY_M);
+  press(GLFW_KEY_DOWN);  // ../
+  press(GLFW_KEY_DOWN);  // lab/
+  press(GLFW_KEY_ENTER);
+  std::filesystem::current_path(before);
+  ASSERT_TRUE(app_->view().dialogs.file_list);
+  EXPECT_EQ(app_->view().dialogs.picker.files, std::vector<std::string>{"third.json"});
+  frames(4);
+  press(GLFW_KEY_DOWN);
+  press(GLFW_KEY_DOWN);  // third.json
+  press(GLFW_KEY_ENTER);
+  EXPECT_EQ(app_->session().models().size(), 3u);
+  EXPECT_FALSE(app_->view().dialogs.file_list);
+}
+
+TEST_F(DemoCommandsTest, ListsAreUsedWithKeysAlone) {
+  open("mouse");
+  open_list(GLFW_KEY_W);
+  press(GLFW_KEY_RIGHT);
+  press(GLFW_KEY_SPACE);
+  EXPECT_EQ(app_->view().settings.block_count, 2u);
+  EXPECT_FALSE(app_->view().time.paused) << "the space bar belongs to the list";
+  const double before_m = app_->session().newest().tick.position_m;
+  press(GLFW_KEY_DOWN);
+  frames(20);
+  EXPECT_NEAR(app_->session().newest().tick.position_m, before_m, 1e-6) << "so do the arrows";
+  press(GLFW_KEY_ESCAPE);
+  EXPECT_FALSE(app_->view().dialogs.any());
+
+  // The scene in use has the focus at first.
+  open_list(GLFW_KEY_O);
+  const ImGuiID own = ImGui::GetFocusID();
+  press(GLFW_KEY_DOWN);
+  EXPECT_NE(ImGui::GetFocusID(), own);
+  press(GLFW_KEY_UP);
+  EXPECT_EQ(ImGui::GetFocusID(), own);
+  press(GLFW_KEY_ENTER);
+  EXPECT_FALSE(app_->view().dialogs.scene_list);
+  EXPECT_EQ(app_->session().scene().name, "skin");
+
+  open_list(GLFW_KEY_U);
+  ASSERT_TRUE(until([&] { return !app_->view().dialogs.devices.empty(); }));
+  frames(4);
+  for (int i = 0; i < 9; ++i) press(GLFW_KEY_UP);
+  for (int i = 0; i < 9 && app_->view().dialogs.device_list; ++i) {
+    if (ImGui::FindWindowByName("Device")->GetID("hand") == ImGui::GetFocusID()) {
+      press(GLFW_KEY_ENTER);
+    } else {
+      press(GLFW_KEY_DOWN);
+    }
+  }
+  EXPECT_EQ(app_->session().device_name(), "hand");
 }
 
 TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {

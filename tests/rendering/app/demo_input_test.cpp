@@ -1,5 +1,7 @@
 // Mouse and wheel on the window.
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "tests/support/demo_window.h"
 
@@ -93,6 +95,65 @@ TEST_F(DemoInputTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
   const double high_m = app_->session().newest().tick.position_m;
   glfwSetCursorPos(window, 384.0, 430.0);
   ASSERT_TRUE(until([&] { return app_->session().newest().tick.position_m > high_m + 0.001; }));
+}
+
+// The window does not draw for 0.3 s: the loop moves the probe all the same, tick by tick.
+TEST_F(DemoInputTest, AHeldKeyMovesTheProbeAtEveryTickOfTheLoop) {
+  open("mouse");
+  LiveSession& session = app_->session();
+  const double before_s = session.newest().loop_time_s;
+  const double before_m = session.newest().tick.position_m;
+  hold(GLFW_KEY_DOWN, [&, frame = 0]() mutable {
+    if (++frame == 3) std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    return frame == 5;
+  });
+  EXPECT_GT(session.newest().tick.position_m, before_m + 0.004) << "18 mm/s for 0.3 s, less the ramp";
+  const ForceHistory& history = session.comparison().history();
+  double fastest_m_per_s = 0.0;
+  double last_m_per_s = 0.0;
+  double jerk_m_per_s = 0.0;
+  for (std::size_t i = history.first_at(before_s) + 1; i < history.size(); ++i) {
+    const double step_s = history[i].loop_time_s - history[i - 1].loop_time_s;
+    const auto step_m = static_cast<double>(history[i].position_m - history[i - 1].position_m);
+    if (step_s > 2e-3) continue;  // ticks that the machine missed
+    fastest_m_per_s = std::max(fastest_m_per_s, step_m / step_s);
+    jerk_m_per_s = std::max(jerk_m_per_s, std::abs(step_m / step_s - last_m_per_s));
+    last_m_per_s = step_m / step_s;
+  }
+  EXPECT_LT(fastest_m_per_s, 0.03);
+  EXPECT_GT(fastest_m_per_s, 0.01);
+  EXPECT_LT(jerk_m_per_s, 0.012) << "no step of the velocity from one tick to the next";
+}
+
+TEST_F(DemoInputTest, TheKeyThatLiftsStopsJustAboveTheSurface) {
+  open("mouse");
+  LiveSession& session = app_->session();
+  hold(GLFW_KEY_DOWN, [&] { return session.newest().tick.depth_m > 0.003; });
+  const double began_s = session.newest().loop_time_s;
+  hold(GLFW_KEY_UP, [&] { return session.newest().loop_time_s > began_s + 2.0; });
+  EXPECT_NEAR(session.newest().tick.position_m, kHover_m, 1e-4);
+}
+
+TEST_F(DemoInputTest, AHeldKeyEndsWhereTheDataEnd) {
+  open("mouse");
+  LiveSession& session = app_->session();
+  const double known_m = session.models().trained_depth_m();
+  const double began_s = session.newest().loop_time_s;
+  double deepest_m = 0.0;
+  hold(GLFW_KEY_DOWN, [&] {
+    deepest_m = std::max(deepest_m, session.newest().tick.position_m);
+    return session.newest().loop_time_s > began_s + 3.0;
+  });
+  EXPECT_LT(deepest_m, 1.15 * known_m);
+  EXPECT_GT(deepest_m, 0.95 * known_m);
+}
+
+// Pressed and released before the next frame is drawn.
+TEST_F(DemoInputTest, ATapOfAKeyIsNotLostOnASlowFrame) {
+  open("mouse");
+  const double before_m = app_->session().newest().tick.position_m;
+  press(GLFW_KEY_DOWN);
+  EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > before_m + 2e-5; }));
 }
 
 // A flick leaves the block: the probe goes on with the mouse, as deep as there are data at the lower edge, and

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <glm/geometric.hpp>
 
 #include "tests/support/demo_window.h"
 #include "tests/support/fake_device_bus.h"
@@ -34,7 +35,7 @@ class ExhibitTest : public test::DemoWindowTest {
   }
 
   struct Setting {
-    ExhibitTimes times{1.0, 4.0, 2.0};
+    ExhibitTimes times{1.0, 4.0, 2.0, 0.5};
     DeviceBus* bus = nullptr;  // a force device
     bool learned = false;      // the models of the exhibit, which take a while, in place of made up ones
     int height = 720;
@@ -150,12 +151,16 @@ class ExhibitTest : public test::DemoWindowTest {
   }
   void visit_with_keys() {
     const std::map<std::string, int> keys = {{"1", GLFW_KEY_1}, {"2", GLFW_KEY_2}, {"Enter", GLFW_KEY_ENTER}};
-    play([&](const char* button) { press(keys.at(button)); },
-         [&] {
-           const auto over = [&] { return state() != State::press; };
-           hold(GLFW_KEY_DOWN, [&] { return over() || app_->session().newest().tick.depth_m > 0.003; });
-           hold(GLFW_KEY_UP, [&] { return over() || !app_->session().newest().tick.in_contact; });
-         });
+    play(
+        [&](const char* button) {
+          ASSERT_TRUE(until([&] { return shows(button); })) << button;
+          press(keys.at(button));
+        },
+        [&] {
+          const auto over = [&] { return state() != State::press; };
+          hold(GLFW_KEY_DOWN, [&] { return over() || app_->session().newest().tick.depth_m > 0.003; });
+          hold(GLFW_KEY_UP, [&] { return over() || !app_->session().newest().tick.in_contact; });
+        });
   }
 };
 
@@ -179,11 +184,51 @@ TEST_F(ExhibitTest, IsPlayedByTouchAlone) {
   visit_by_touch();
 }
 
+// The result is said at the end, with both blocks at the moment of the largest difference.
+TEST_F(ExhibitTest, TheRevealIsTheVisitorsOwnPressInSlowMotion) {
+  open_exhibit({{1.0, 300.0, 2.0, 2.0}});
+  press(GLFW_KEY_1);
+  press(GLFW_KEY_1);
+  hold(GLFW_KEY_DOWN, [&] { return state() == State::reveal; });
+  const ExhibitTrace& trace = game().trace();
+  double deepest_m = 0.0;
+  for (const auto& column : trace.columns()) deepest_m = std::max(deepest_m, column.position_m);
+  ASSERT_GT(deepest_m, 0.002);
+  const auto poses = [&] { return app_->exhibit().reveal_poses(app_->session(), Theme::dark); };
+  const double began_s = app_->session().newest().loop_time_s;
+  double shown_m = 0.0;
+  ASSERT_TRUE(until([&] {
+    if (poses().size() == 2) shown_m = std::max(shown_m, static_cast<double>(poses()[0].tool_m));
+    EXPECT_FALSE(shows("Enter") && app_->session().newest().loop_time_s < began_s + 0.5) << "not yet";
+    return shows("Enter");
+  }));
+  EXPECT_NEAR(shown_m, deepest_m, 1e-3) << "the press that was made";
+  EXPECT_GT(app_->session().newest().loop_time_s, began_s + 0.9) << "twice as slow";
+  EXPECT_LT(app_->session().newest().tick.position_m, 0.0) << "the tool itself is out of the block";
+  const std::vector<BlockPose> last = poses();
+  ASSERT_EQ(last.size(), 2u);
+  const std::size_t second = game().round().first ? 1 : 0;
+  EXPECT_NEAR(static_cast<double>(last[second].error_over_jnd), game().round().largest_over_jnd, 1e-3);
+  EXPECT_NEAR(static_cast<double>(last[second].tool_m), trace.columns()[trace.largest_at()].position_m, 1e-6);
+  frames(10);
+  EXPECT_EQ(poses()[second].force_N, last[second].force_N) << "it stands still";
+}
+
+TEST_F(ExhibitTest, TheRoundsDifferInColour) {
+  for (const Theme theme : {Theme::light, Theme::dark}) {
+    const Rgb depth = exhibit_colour("position", false, theme), paper = exhibit_colour("greedy", true, theme),
+              best = exhibit_colour("greedy", false, theme);
+    EXPECT_GT(glm::distance(depth, paper), 0.3F);
+    EXPECT_GT(glm::distance(paper, best), 0.3F);
+    EXPECT_GT(glm::distance(depth, best), 0.3F);
+  }
+}
+
 // Pictures are of what the exhibit learns; without them its models are made up.
 TEST_F(ExhibitTest, EveryScreenIsDrawnInBothLanguagesAtBothSizes) {
   const bool learned = std::getenv("PALPATE_PICTURES") != nullptr;
   for (const int height : {720, 1080}) {
-    open_exhibit({{learned ? 6.0 : 1.0, 300.0, 285.0}, nullptr, learned, height});
+    open_exhibit({{learned ? 6.0 : 1.0, 300.0, 285.0, learned ? 4.0 : 0.5}, nullptr, learned, height});
     for (const char* language : {"en", "de"}) {
       pictures_ = language + std::to_string(height) + "-";
       until([&] { return app_->exhibit().attract_trace().seconds() > 0.6 * (learned ? 6.0 : 1.0); });
@@ -204,6 +249,9 @@ TEST_F(ExhibitTest, EveryScreenIsDrawnInBothLanguagesAtBothSizes) {
         });
         hold(GLFW_KEY_UP, [&] { return over() || !app_->session().newest().tick.in_contact; });
         ASSERT_TRUE(until([&] { return state() == State::reveal; }));
+        if (learned) frames(60);
+        picture(std::string("slow") + round);
+        ASSERT_TRUE(until([&] { return shows("Enter"); }));
         picture(std::string("reveal") + round);
         press(GLFW_KEY_ENTER);
       }
@@ -217,7 +265,7 @@ TEST_F(ExhibitTest, EveryScreenIsDrawnInBothLanguagesAtBothSizes) {
 }
 
 TEST_F(ExhibitTest, TheObviousIsNoticedAndTheBestIsNot) {
-  open_exhibit({{4.0, 30.0, 2.0}, nullptr, true});
+  open_exhibit({{4.0, 30.0, 2.0, 0.5}, nullptr, true});
   visit_with_keys();
   EXPECT_TRUE(game().rounds()[0].noticed()) << game().rounds()[0].largest_over_jnd;
   EXPECT_FALSE(game().rounds()[2].noticed()) << game().rounds()[2].largest_over_jnd;
@@ -257,7 +305,7 @@ TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
 }
 
 TEST_F(ExhibitTest, NobodyIsThrownOutWhileReading) {
-  open_exhibit({{1.0, 3.0, 2.0}});
+  open_exhibit({{1.0, 3.0, 2.0, 0.5}});
   visit_with_keys();
   ASSERT_TRUE(until([&] { return says("Ends in "); })) << "a countdown";
   move(block(0, 10.0F));
@@ -279,7 +327,7 @@ TEST_F(ExhibitTest, LanguagesHaveKeysOfTheirOwnAndTheHostsTallyIsHidden) {
 
 // Two models make a pair and a catch trial.
 TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
-  open_exhibit({{1.0, 300.0, 2.0}, &bus_});
+  open_exhibit({{1.0, 300.0, 2.0, 0.5}, &bus_});
   press(GLFW_KEY_Z);
   ASSERT_TRUE(until([&] { return app_->session().newest().device.may_push(); }));
   pictures_ = "felt-";
@@ -300,6 +348,7 @@ TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
     picture(std::string("press") + round);
     press(game().round().is_catch() ? GLFW_KEY_S : GLFW_KEY_D);
     ASSERT_EQ(state(), State::reveal);
+    ASSERT_TRUE(until([&] { return shows("Enter"); }));
     EXPECT_EQ(says("It was a catch"), game().round().is_catch()) << "announced";
     was_catch = was_catch || game().round().is_catch();
     picture(std::string("reveal") + round);

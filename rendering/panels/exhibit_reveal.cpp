@@ -1,0 +1,128 @@
+#include "rendering/panels/exhibit_reveal.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+using PressColumn = ExhibitTrace::Column;
+
+// The longest parts of the press before and after the largest difference that are shown, and the approach before it.
+constexpr std::size_t kBefore = static_cast<std::size_t>(1.0 / ExhibitTrace::kColumn_s);
+constexpr std::size_t kAfter = static_cast<std::size_t>(0.6 / ExhibitTrace::kColumn_s);
+constexpr std::size_t kApproach = static_cast<std::size_t>(0.15 / ExhibitTrace::kColumn_s);
+constexpr double kBack_s = 0.25;  // duration of the motion back to the largest difference, times the slowness
+
+bool is_pressed(const PressColumn& column) { return column.ticks > 0 && column.position_m > 0.0; }
+
+ExhibitReveal::Moment between(const ExhibitReveal::Moment& a, const ExhibitReveal::Moment& b, double share) {
+  return {std::lerp(a.position_m, b.position_m, share), std::lerp(a.first_N, b.first_N, share),
+          std::lerp(a.over_jnd, b.over_jnd, share)};
+}
+
+void draw_force_arrow(ImDrawList& list, const ImVec2& foot, float length, float width, ImU32 colour) {
+  const float head = std::min(1.1F * width, length);
+  list.AddRectFilled({foot.x - 0.3F * width, foot.y - length + head}, {foot.x + 0.3F * width, foot.y}, colour);
+  list.AddTriangleFilled({foot.x, foot.y - length}, {foot.x + 0.75F * width, foot.y - length + head},
+                         {foot.x - 0.75F * width, foot.y - length + head}, colour);
+}
+
+}  // namespace
+
+void ExhibitReveal::start(const ExhibitTrace& trace, const JndLine& jnd, double slowness, double now_s) {
+  jnd_ = jnd;
+  slowness_ = slowness;
+  began_s_ = now_s;
+  moments_.assign(1, {});
+  largest_at_ = 0;
+  const std::vector<PressColumn>& columns = trace.columns();
+  if (columns.empty()) return;
+  std::size_t first = trace.largest_at();
+  std::size_t last = first;
+  const std::size_t largest = first;
+  while (first > 0 && largest - first < kBefore && is_pressed(columns[first - 1])) --first;
+  while (last + 1 < columns.size() && last - largest < kAfter && is_pressed(columns[last + 1])) ++last;
+  for (std::size_t i = 0; i < kApproach && first > 0 && columns[first - 1].ticks > 0; ++i) --first;
+  moments_.clear();
+  for (std::size_t i = first; i <= last; ++i)
+    moments_.push_back({columns[i].position_m, columns[i].first_N, columns[i].over_jnd});
+  largest_at_ = largest - first;
+}
+
+double ExhibitReveal::way_back(double now_s) const noexcept {
+  const double press_s = static_cast<double>(moments_.size() - 1) * ExhibitTrace::kColumn_s;
+  const double share = std::clamp(((now_s - began_s_) / slowness_ - press_s) / kBack_s, 0.0, 1.0);
+  return share * share * (3.0 - 2.0 * share);
+}
+
+double ExhibitReveal::playhead(double now_s) const noexcept {
+  const double end = static_cast<double>(moments_.size() - 1);
+  const double pressed = (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s;
+  if (pressed < end) return std::max(0.0, pressed);
+  return std::lerp(end, static_cast<double>(largest_at_), way_back(now_s));
+}
+
+bool ExhibitReveal::done(double now_s) const noexcept {
+  const double press_s = static_cast<double>(moments_.size() - 1) * ExhibitTrace::kColumn_s;
+  return now_s - began_s_ >= slowness_ * (press_s + kBack_s);
+}
+
+ExhibitReveal::Moment ExhibitReveal::at(double now_s) const noexcept {
+  const double at = playhead(now_s);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, moments_.size() - 1);
+  return between(moments_[below], moments_[above], at - static_cast<double>(below));
+}
+
+double ExhibitReveal::largest_over_jnd(double now_s) const noexcept {
+  const double shown = std::max(0.0, (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < moments_.size() && static_cast<double>(i) <= shown; ++i)
+    largest = std::max(largest, std::abs(moments_[i].over_jnd));
+  return largest;
+}
+
+double ExhibitReveal::second_N(const Moment& moment) const noexcept {
+  return moment.first_N + moment.over_jnd * jnd_.at(moment.first_N);
+}
+
+double ExhibitReveal::highest_N(const Moment& moment) const noexcept {
+  return std::max(moment.first_N + jnd_.at(moment.first_N), second_N(moment));
+}
+
+void ExhibitReveal::draw_arrows(const UiStyle& style, const SceneArea& area, double now_s, const Rgb& first,
+                                const Rgb& second, bool first_is_left) const {
+  const Moment moment = at(now_s);
+  double press_N = 0.1;
+  for (const Moment& one : moments_) press_N = std::max(press_N, highest_N(one));
+  const double still_N = std::max(0.1, highest_N(moments_[largest_at_]));
+  // During the motion back the present arrows may be higher than both.
+  const double most_N = std::max(std::lerp(press_N, still_N, way_back(now_s)), highest_N(moment));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float px_per_N = area.size.y / static_cast<float>(most_N);
+  const float ground = area.at.y + area.size.y;
+  const auto height = [&](double force_N) { return px_per_N * static_cast<float>(std::max(0.0, force_N)); };
+  const double jnd_N = jnd_.at(moment.first_N);
+  list.AddRectFilled({area.at.x, ground - height(moment.first_N + jnd_N)},
+                     {area.at.x + area.size.x, ground - height(moment.first_N - jnd_N)}, ink(style.colours().band));
+  const float thick = 3.0F * style.scale();
+  const float width = 0.11F * area.size.x;
+  const float left = area.at.x + 0.25F * area.size.x, right = area.at.x + 0.75F * area.size.x;
+  const ImVec2 first_tip(first_is_left ? left : right, ground - height(moment.first_N));
+  const ImVec2 second_tip(first_is_left ? right : left, ground - height(second_N(moment)));
+  draw_force_arrow(list, {first_tip.x, ground}, ground - first_tip.y, width, ink(first));
+  draw_force_arrow(list, {second_tip.x, ground}, ground - second_tip.y, width, ink(second));
+  // The difference between the tips, in the colour of errors above one JND where it leaves the band.
+  const bool above = std::abs(moment.over_jnd) > 1.0;
+  const float middle = 0.5F * (left + right);
+  const float half = 4.0F * thick;
+  list.AddRectFilled({middle - half, std::min(first_tip.y, second_tip.y)},
+                     {middle + half, std::max(first_tip.y, second_tip.y)},
+                     ink(above ? kAboveJndColour : style.colours().quiet));
+  list.AddLine(first_tip, {middle, first_tip.y}, ink(first), thick);
+  list.AddLine({middle, second_tip.y}, second_tip, ink(second), thick);
+  list.AddLine({area.at.x, ground}, {area.at.x + area.size.x, ground}, ink(style.colours().quiet), thick);
+}
+
+}  // namespace palpate

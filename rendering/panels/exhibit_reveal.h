@@ -1,0 +1,53 @@
+// The reveal of a round of the exhibit: the visitor's press with the largest difference, in slow motion. The blocks
+// show its motion and dents. Two arrows beside each other show the forces, in front of a band of one JND about the
+// first. Then the motion goes back to the moment of the largest difference and stands still there. Thread guarantee:
+// the window's thread.
+#pragma once
+
+#include <imgui.h>
+
+#include <vector>
+
+#include "engine/tick/jnd.h"
+#include "rendering/panels/layout.h"
+#include "rendering/ui/ui_style.h"
+#include "scenes/live/exhibit_game.h"
+
+namespace palpate {
+
+class ExhibitReveal {
+ public:
+  struct Moment {
+    double position_m = 0.0;
+    double first_N = 0.0;
+    double over_jnd = 0.0;  // difference / JND, signed, as the verdict of the round counts it
+  };
+
+  // `slowness`: duration of the reveal / duration of the press. `now_s`: any clock, also below.
+  void start(const ExhibitTrace& trace, const JndLine& jnd, double slowness, double now_s);
+  bool done(double now_s) const noexcept;
+  Moment at(double now_s) const noexcept;
+  // The largest magnitude of Moment::over_jnd up to now.
+  double largest_over_jnd(double now_s) const noexcept;
+  // JND(first_N) * over_jnd more than the first force.
+  double second_N(const Moment& moment) const noexcept;
+
+  // Draws both arrows, the first at the left if `first_is_left`, and the band into `area`. All moments of the press
+  // have the same scale. On the way back to the largest difference, the arrows grow until they fill the area.
+  void draw_arrows(const UiStyle& style, const SceneArea& area, double now_s, const Rgb& first, const Rgb& second,
+                   bool first_is_left) const;
+
+ private:
+  // Share of the way back from the end of the press to the largest difference, 0 to 1, with a smooth start and end.
+  double way_back(double now_s) const noexcept;
+  double playhead(double now_s) const noexcept;  // index into moments_, with a fraction
+  double highest_N(const Moment& moment) const noexcept;
+
+  std::vector<Moment> moments_{1};  // one for each column of the trace
+  std::size_t largest_at_ = 0;
+  JndLine jnd_;
+  double slowness_ = 1.0;
+  double began_s_ = 0.0;
+};
+
+}  // namespace palpate
