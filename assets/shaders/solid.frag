@@ -1,5 +1,4 @@
-// Polished or dull: what a surface shines with is the room in it, bright above and
-// dark below, and the lamp. A flat sign when shininess is 0.
+// A polished or dull surface; polished ones reflect the room and the lamp.
 in vec3 world;
 in vec3 surface_normal;
 
