@@ -220,7 +220,8 @@ void BlockView::refresh_still(std::size_t count, const Bodies& bodies, Theme the
 
 // Of each block the top and the tool with its arrow, which are drawn in each frame.
 std::vector<Viewport> BlockView::moving_parts(const std::vector<BlockPose>& blocks) const {
-  const auto half_x = 0.5F * static_cast<float>(geometry_.width_m), half_z = 0.5F * static_cast<float>(geometry_.length_m);
+  const auto half_x = 0.5F * static_cast<float>(geometry_.width_m),
+             half_z = 0.5F * static_cast<float>(geometry_.length_m);
   const auto radius = static_cast<float>(geometry_.tool_radius_m);
   std::vector<Viewport> parts;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -233,8 +234,9 @@ std::vector<Viewport> BlockView::moving_parts(const std::vector<BlockPose>& bloc
                                 at + glm::vec3(thick, kToolLength * radius - pose.tool_m, thick)));
     if (pose.force_N < kShortestArrow_N) continue;
     const glm::vec3 foot = at + arrow_foot(), head(arrow_width_ * kArrowRadius_m, 0.0F, arrow_width_ * kArrowRadius_m);
-    parts.push_back(part_around(foot - head - glm::vec3(0.0F, dome_m_, 0.0F),
-                                foot + head + glm::vec3(0.0F, arrow_length_m(pose) + arrow_width_ * kArrowTip_m, 0.0F)));
+    parts.push_back(
+        part_around(foot - head - glm::vec3(0.0F, dome_m_, 0.0F),
+                    foot + head + glm::vec3(0.0F, arrow_length_m(pose) + arrow_width_ * kArrowTip_m, 0.0F)));
   }
   return parts;
 }
@@ -327,7 +329,6 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at, const Bodi
   begin(solid_shader_);
   solid_shader_.set("offset", at - glm::vec3(0.0F, pose.tool_m, 0.0F));
   solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
-  solid_shader_.set("opacity", 1.0F);
   const auto part = [&](const GpuMesh& mesh, const Rgb& colour, float shininess) {
     solid_shader_.set("colour", colour);
     solid_shader_.set("shininess", shininess);

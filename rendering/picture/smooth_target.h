@@ -55,7 +55,7 @@ class SmoothTarget {
   std::optional<EdgeFilter> filter_;
   Viewport viewport_;
   Pixels pixels_, still_;
-  Pixels smoothed_;  // the filtered picture, upside down; see `end`
+  Pixels smoothed_;              // the filtered picture, upside down; see `end`
   std::vector<Viewport> parts_;  // in which this frame, or the one before, differs from the static picture
   std::vector<Viewport> drawn_;  // `parts` of this frame
   bool refused_ = false;
