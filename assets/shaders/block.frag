@@ -141,7 +141,7 @@ void main() {
   float grazing = 1.0 - facing;
   float fresnel = 0.04 + 0.96 * grazing * grazing * grazing * grazing * grazing;
   lit += gloss * open * (0.9 * fresnel * mirrored_room(mirrored) + 0.30 * lamp * mirrored_lamp(mirrored, 28.0));
-  // The dark lines give the frame a contrast of 3:1 on every material.
+  // The dark lines separate the frame from a material of similar brightness.
   vec2 cover = framed(material.xz) * top;
   lit = mix(mix(lit, 0.25 * frame_colour, cover.y), frame_colour, cover.x);
   pixel = vec4(lit, 1.0);
