@@ -1,10 +1,10 @@
-// A block of soft material; its top gives way under the ball (dent.glsl).
+// A block of soft material. Its top deforms under the ball (dent.glsl).
 layout(location = 0) in vec3 position;  // metres; the flat top at y = 0
 layout(location = 1) in vec3 normal;
 
 uniform vec3 offset;
 
-out vec3 material;  // where this point is when nothing presses
+out vec3 material;  // position without deformation
 out vec3 world;
 out vec3 surface_normal;
 

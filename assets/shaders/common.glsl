@@ -1,11 +1,10 @@
-#version 330 core
-// Before every shader of this folder: where the eye and the lamp are.
+// Precedes every shader of this folder.
 uniform mat4 view_projection;
-uniform vec3 eye;
+uniform vec3 eye;    // position of the camera
 uniform vec3 light;  // towards the lamp, length 1
 
-// The room as a smooth surface mirrors it, bright above and dark below.
+// Brightness of the room that a smooth surface reflects: bright above, dark below.
 float mirrored_room(vec3 direction) { return smoothstep(-0.35, 0.75, direction.y); }
 float mirrored_lamp(vec3 direction, float sharpness) { return pow(max(dot(direction, light), 0.0), sharpness); }
-// Light that goes around a body by `wrap`, 0..1, as it does where it comes out beside where it went in.
+// Diffuse light of a translucent body. `wrap`, 0..1: how far light reaches beyond the terminator.
 vec3 wrapped(vec3 n, vec3 wrap) { return max((dot(n, light) + wrap) / (1.0 + wrap), 0.0); }

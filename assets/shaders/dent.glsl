@@ -1,21 +1,21 @@
-// How deep the surface lies at the distance `r` from the ball's axis, and its slope (rendering/picture/dent.h):
-//   r <= a:  u = d - R + sqrt(R^2 - r^2)                                        the ball
+// Depth of the surface at the distance `r` from the ball's axis, and its slope (rendering/picture/dent.h):
+//   r <= a:  u = d - R + sqrt(R^2 - r^2)                                            the ball
 //   r >  a:  u = u_a (2 / pi) ((2 - x^2) asin(1 / x) + sqrt(x^2 - 1)), x = r / a    the half-space beside it
-// It fades towards the rim, so that the sides stand still.
-// A dome of the rise h over the radius b lies at u_0 = h (1 - (1 - r^2 / b^2)^2). Where it has snapped through, its
-// middle is its own mirror image at the depth d / 2, which bends a thin shell without stretching it (Pogorelov 1988).
+// The depth decreases to 0 towards the rim, so that the sides do not move.
+// With DOME: a dome of the rise h and the radius b has the depth u_0 = h (1 - (1 - r^2 / b^2)^2). After the snap its
+// middle is mirrored at the depth d / 2; a thin shell can take this shape without stretching (Pogorelov 1988).
 uniform float dent;         // d, metres
 uniform float contact;      // a, metres, above 0
 uniform float edge;         // u_a, metres
 uniform float tool_radius;  // R, metres
 uniform float rim;          // metres from the middle to the nearest side
-uniform float dome;         // h, metres; 0: flat
+uniform float dome;         // h, metres; 0: the sides of the block
 uniform float dome_radius;  // b, metres
 
 struct Surface {
   float depth;  // metres below the undisturbed top
   float slope;
-  float given;  // how far it has given way, metres
+  float given;  // displacement by the ball, metres
 };
 
 Surface surface_at(float r) {
@@ -34,8 +34,8 @@ Surface surface_at(float r) {
   bool pressed = dent > 0.0;
   Surface here = Surface(pressed ? u * kept : 0.0, pressed ? slope : 0.0, 0.0);
   here.given = here.depth;
+#ifdef DOME
   if (dome <= 0.0) return here;
-
   float inside = max(1.0 - r * r / (dome_radius * dome_radius), 0.0);
   float rest = dome * (1.0 - inside * inside);
   float rest_slope = dome * 4.0 * inside * r / (dome_radius * dome_radius);
@@ -46,5 +46,6 @@ Surface surface_at(float r) {
   here.depth = mix(rest + here.depth, mirror + ridge, through);
   here.slope = mix(rest_slope + here.slope, rest_slope * above / ridge, through);
   here.given = here.depth - rest;
+#endif
   return here;
 }

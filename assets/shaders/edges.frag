@@ -1,16 +1,16 @@
-// Smooth edges of a finished picture: fast approximate anti-aliasing (Lottes 2009). An edge is where
-// brightness jumps between neighbours. Along it the picture is walked to both ends of the step; the
-// pixel is read that far across the edge as the step covers it there. Drawn only where find_edges.frag
-// has found one: the depth test spares the others, which a branch would not where the processor draws.
+// Second pass of the edge filter: fast approximate anti-aliasing (Lottes 2009). An edge is where the brightness of
+// neighbours differs. The shader follows the edge to both ends of its step. It then samples the picture across the edge,
+// at the distance that corresponds to the coverage of this pixel. Only the pixels that find_edges.frag has marked are
+// drawn, by the depth test; a branch would save nothing with a software renderer. The result is upside down.
 uniform sampler2D picture;
-uniform vec2 corner;  // of what is drawn into, pixels
-uniform int steps;    // along an edge to either side; a number that the compiler knows would be unrolled
+uniform int steps;  // along an edge in each direction; the compiler would unroll a constant number
 
 out vec4 pixel;
 
 void main() {
   vec2 whole = vec2(textureSize(picture, 0));
-  vec2 at = (gl_FragCoord.xy - corner) / whole;
+  vec2 at = gl_FragCoord.xy / whole;
+  at.y = 1.0 - at.y;
   float here = textureLod(picture, at, 0.0).g;
   float up = textureLodOffset(picture, at, 0.0, ivec2(0, 1)).g;
   float down = textureLodOffset(picture, at, 0.0, ivec2(0, -1)).g;
@@ -40,11 +40,11 @@ void main() {
     back_end = textureLod(picture, on_edge - back * along, 0.0).g - middle;
     forth_end = textureLod(picture, on_edge + forth * along, 0.0).g - middle;
   }
-  // The end that is nearer says whether the step covers this pixel, and how much of it.
+  // The nearer end determines whether the step covers this pixel, and how much of it.
   float end = back < forth ? back_end : forth_end;
   bool covered = (end < 0.0) != (here < middle);
   float share = covered ? 0.5 - min(back, forth) / (back + forth) : 0.0;
-  // Thin lines are no steps: where a pixel differs from all its neighbours.
+  // A thin line is not a step: its pixels differ from the neighbours on both sides.
   float thin = smoothstep(0.0, 1.0, abs(0.25 * (up + down + left + right) - here) / (high - low));
   pixel = textureLod(picture, at + max(share, 0.5 * thin * thin) * side * across, 0.0);
 }

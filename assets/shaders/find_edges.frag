@@ -1,16 +1,17 @@
-// The picture as it is, and in the depth where it has an edge: 0 there, 1 elsewhere. An edge is where brightness
-// jumps between neighbours (edges.frag). Green stands for brightness.
+// First pass of the edge filter. It copies the picture and writes the depth 0 at edges and 1 elsewhere. An edge is where
+// the brightness of neighbours differs (edges.frag); green is used as brightness. The result is upside down
+// (SmoothTarget::end).
 uniform sampler2D picture;
-uniform vec2 corner;  // of what is drawn into, pixels
 
 out vec4 pixel;
 
-const float kLeastContrast = 1.0 / 32.0;  // less is no edge that is seen
-const float kShare = 1.0 / 12.0;          // nor is less than this of what is bright there
+const float kLeastContrast = 1.0 / 32.0;  // smaller differences are not visible
+const float kShare = 1.0 / 12.0;          // of the largest brightness; smaller differences are not visible either
 
 void main() {
   ivec2 last = textureSize(picture, 0) - 1;
-  ivec2 texel = ivec2(gl_FragCoord.xy - corner);
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  texel.y = last.y - texel.y;
   ivec2 low_end = max(texel - 1, 0), high_end = min(texel + 1, last);
   pixel = texelFetch(picture, texel, 0);
   float up = texelFetch(picture, ivec2(texel.x, high_end.y), 0).g;

@@ -1,11 +1,9 @@
-// Polished or dull: what a surface shines with is the room in it, bright above and
-// dark below, and the lamp. A flat sign when shininess is 0.
+// A polished or dull surface; polished ones reflect the room and the lamp.
 in vec3 world;
 in vec3 surface_normal;
 
 uniform vec3 colour;
 uniform float shininess;
-uniform float opacity;
 
 out vec4 pixel;
 
@@ -16,5 +14,5 @@ void main() {
   float edge = 1.0 - max(dot(n, to_eye), 0.0);
   vec3 dull = colour * (0.40 + 0.20 * n.y + 0.50 * wrapped(n, vec3(0.35))) + vec3(0.12 * edge * edge * shininess);
   vec3 polished = colour * (0.34 + 0.95 * mirrored_room(mirrored)) + vec3(0.55 * mirrored_lamp(mirrored, 16.0));
-  pixel = vec4(mix(dull, polished, shininess), opacity);
+  pixel = vec4(mix(dull, polished, shininess), 1.0);
 }

@@ -1,4 +1,4 @@
-// Tool and arrow: a lathe around y, stretched along it.
+// Tool and arrow: a body of revolution around y, scaled by `stretch`.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 

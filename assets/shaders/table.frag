@@ -1,13 +1,13 @@
-// The table: a pool of light that fades into the background, and under every
-// block a soft shadow, from the distance to a rounded box.
+// The table is light in the middle and fades into the background. Every block has a soft shadow, computed from the
+// distance to a rounded box.
 in vec2 place;
 
 uniform vec3 table_colour;
 uniform vec3 background;
-uniform float reach;       // metres to where the table has faded
+uniform float reach;       // radius at which the table has faded, metres
 uniform vec2 half_size;    // of a block, metres
 uniform int block_count;
-uniform vec2 blocks[4];    // where they stand
+uniform vec2 blocks[4];    // their positions, metres
 
 out vec4 pixel;
 
@@ -22,7 +22,7 @@ void main() {
   float light = 1.0;
   for (int i = 0; i < block_count; ++i) {
     vec2 from = place - blocks[i];
-    // A wide soft one away from the lamp, and a narrow dark one where it stands.
+    // A wide soft shadow away from the lamp, and a narrow dark one at the contact.
     float away = box_distance(from + vec2(-0.010, 0.013));
     float wide = smoothstep(-0.034, 0.052, away);
     float contact = smoothstep(-0.003, 0.012, box_distance(from));

@@ -19,10 +19,9 @@ constexpr float kBetween = 1.32F;        // distance of neighbouring blocks, in 
 constexpr float kStrongestArrow = 0.3F;  // for the scene's strongest press, in sizes of a block
 constexpr float kLongestArrow = 0.6F;
 constexpr float kUsualSize_m = 0.1F;
-constexpr float kArrowTip_m = 0.0085F;
+constexpr float kArrowTip_m = 0.0085F, kArrowRadius_m = 0.0038F;
 constexpr float kShortestArrow_N = 0.03F;
-constexpr float kRailGap_m = 0.005F, kRailHeight_m = 0.003F;  // around the active block
-constexpr float kHiddenRail = 0.2F;                           // opacity of hidden parts of the rail
+constexpr float kFrameWidth_m = 0.0022F;  // of the frame on the active block
 // Rise and radius of a dome, in radii of the tool: the rise of the virtual button (scenes/material/button_block.h), and
 // a visible width.
 constexpr float kDomeRise = 0.5F, kDomeRadius = 2.6F;
@@ -33,6 +32,14 @@ struct Material {
 constexpr Material kMaterials[] = {{0.75F, 0.55F, 0.0F, 0.20F}, {0.25F, 0.06F, 0.30F, 0.10F},
                                    {1.00F, 1.00F, 0.0F, 0.12F}, {0.05F, 0.45F, 0.0F, 0.25F},
                                    {0.90F, 0.20F, 0.0F, 0.12F}, {0.30F, 0.50F, 0.0F, 0.14F}};
+// Only the parts of the block's shader that the material needs: a software renderer computes both sides of a branch.
+std::string definitions_of(Finish finish) {
+  std::string lines;
+  if (kMaterials[static_cast<std::size_t>(finish)].pores > 0.0F) lines += "#define PORES\n";
+  if (finish == Finish::dome) lines += "#define DOME\n";
+  return lines;
+}
+
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
 
 Rgb rgb(const Colour& colour) {
@@ -42,7 +49,7 @@ Rgb rgb(const Colour& colour) {
 
 // The tool, in units of the ball's radius, with the tip at y = 0: a polished ball on a stem, the disc of a force
 // sensor, and a dull handle.
-constexpr float kToolLength = 15.2F;
+constexpr float kToolLength = 15.2F, kToolWidth = 1.44F;
 std::vector<glm::vec2> ball_profile(const Detail& detail) {
   std::vector<glm::vec2> profile;
   const int steps = 2 * detail.around / 3;
@@ -58,7 +65,7 @@ std::vector<glm::vec2> ball_profile(const Detail& detail) {
   return profile;
 }
 std::vector<glm::vec2> sensor_profile() {
-  return {{0.80F, 6.0F}, {1.36F, 6.001F}, {1.44F, 6.1F}, {1.44F, 6.9F}, {1.36F, 7.0F}, {0.9F, 7.001F}};
+  return {{0.80F, 6.0F}, {1.36F, 6.001F}, {kToolWidth, 6.1F}, {kToolWidth, 6.9F}, {1.36F, 7.0F}, {0.9F, 7.001F}};
 }
 std::vector<glm::vec2> handle_profile() {
   std::vector<glm::vec2> profile{{0.9F, 7.0F}, {1.02F, 7.3F}, {1.04F, 8.0F}, {0.98F, 9.4F}, {1.10F, 12.6F}};
@@ -72,7 +79,7 @@ std::vector<glm::vec2> handle_profile() {
 // The two points of a corner differ slightly, because equal points have no normal.
 std::vector<glm::vec2> shaft_profile() { return {{1e-4F, 0.0F}, {0.0014F, 1e-5F}, {0.0014F, 1.0F}}; }
 std::vector<glm::vec2> tip_profile() {
-  return {{1e-4F, 0.0F}, {0.0038F, 1e-5F}, {0.0037F, 2e-4F}, {1e-4F, kArrowTip_m}};
+  return {{1e-4F, 0.0F}, {kArrowRadius_m, 1e-5F}, {0.0037F, 2e-4F}, {1e-4F, kArrowTip_m}};
 }
 
 }  // namespace
@@ -84,14 +91,13 @@ BlockView::Bodies::Bodies(const BlockGeometry& block, float dome_m, const Detail
       sensor(lathe_mesh(sensor_profile(), detail.around)),
       handle(lathe_mesh(handle_profile(), detail.around)),
       shaft(lathe_mesh(shaft_profile(), detail.around / 2)),
-      tip(lathe_mesh(tip_profile(), detail.around)),
-      rail(rail_mesh(glm::vec2(block.width_m, block.length_m), kRailGap_m, kRailHeight_m, detail)) {}
+      tip(lathe_mesh(tip_profile(), detail.around)) {}
 
 Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene, std::optional<Smoothing> smoothing) {
   const auto assets = find_assets();
   if (!assets) return assets.error();
   const std::string folder = *assets + "/shaders";
-  auto block = Shader::load(folder, "block", "block", {"common", "dent"});
+  auto block = Shader::load(folder, "block", "block", {"common", "dent"}, definitions_of(scene.finish));
   if (!block) return block.error();
   auto solid = Shader::load(folder, "solid", "solid");
   if (!solid) return solid.error();
@@ -184,16 +190,17 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   glDisable(GL_BLEND);
   glEnable(GL_CULL_FACE);
   smooth_.begin(viewport, scale);
-  if (smooth_.filters() && refresh_still(blocks.size(), shown, theme)) {
-    smooth_.use_still();
+  if (smooth_.keeps_still()) {
+    refresh_still(blocks.size(), shown, theme);
+    smooth_.use_still(moving_parts(blocks));
   } else {
+    still_ = {};
     draw_all_still(blocks.size(), shown, theme);
   }
   glEnable(GL_DEPTH_TEST);
   for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()), shown, theme);
-  for (std::size_t i = 0; i < blocks.size(); ++i) draw_top(blocks[i], place(i, blocks.size()), shown);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (blocks.size() > 1 && blocks[i].chosen) draw_rail(blocks[i].arrow, place(i, blocks.size()), shown);
+    draw_top(blocks[i], place(i, blocks.size()), shown, blocks[i].chosen && blocks.size() > 1);
   }
   glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);
@@ -201,14 +208,54 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   smooth_.end();
 }
 
-// Updates the stored picture of the still parts if necessary. Returns false if the driver refuses.
-bool BlockView::refresh_still(std::size_t count, const Bodies& bodies, Theme theme) {
+// Updates the stored picture of the static parts if necessary.
+void BlockView::refresh_still(std::size_t count, const Bodies& bodies, Theme theme) {
   const Still now{view_projection_, smooth_.width(), smooth_.height(), count, theme};
-  if (now == still_) return true;
-  if (!smooth_.begin_still()) return false;
+  if (now == still_) return;
+  smooth_.begin_still();
   draw_all_still(count, bodies, theme);
+  smooth_.end_still();
   still_ = now;
-  return true;
+}
+
+// Of each block the top and the tool with its arrow, which are drawn in each frame.
+std::vector<Viewport> BlockView::moving_parts(const std::vector<BlockPose>& blocks) const {
+  const auto half_x = 0.5F * static_cast<float>(geometry_.width_m),
+             half_z = 0.5F * static_cast<float>(geometry_.length_m);
+  const auto radius = static_cast<float>(geometry_.tool_radius_m);
+  std::vector<Viewport> parts;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const BlockPose& pose = blocks[i];
+    const glm::vec3 at = place(i, blocks.size());
+    const float lowest = std::min(-pose.dent_m, -dome_m_);
+    parts.push_back(part_around(at + glm::vec3(-half_x, lowest, -half_z), at + glm::vec3(half_x, 0.0F, half_z)));
+    const float thick = kToolWidth * radius;
+    parts.push_back(part_around(at + glm::vec3(-thick, -pose.tool_m, -thick),
+                                at + glm::vec3(thick, kToolLength * radius - pose.tool_m, thick)));
+    if (pose.force_N < kShortestArrow_N) continue;
+    const glm::vec3 foot = at + arrow_foot(), head(arrow_width_ * kArrowRadius_m, 0.0F, arrow_width_ * kArrowRadius_m);
+    parts.push_back(
+        part_around(foot - head - glm::vec3(0.0F, dome_m_, 0.0F),
+                    foot + head + glm::vec3(0.0F, arrow_length_m(pose) + arrow_width_ * kArrowTip_m, 0.0F)));
+  }
+  return parts;
+}
+
+// The part of the picture that contains a box and the pixels around it that the edge filter changes with it.
+Viewport BlockView::part_around(const glm::vec3& low, const glm::vec3& high) const {
+  const glm::vec2 size(smooth_.width(), smooth_.height());
+  glm::vec2 least = size, most(0.0F);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 point((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                          (corner & 4) != 0 ? high.z : low.z);
+    const glm::vec2 pixel = project(view_projection_, point, size);
+    least = glm::min(least, pixel);
+    most = glm::max(most, pixel);
+  }
+  least = glm::clamp(glm::floor(least) - SmoothTarget::kReach_px, glm::vec2(0.0F), size);
+  most = glm::clamp(glm::ceil(most) + SmoothTarget::kReach_px, least, size);
+  return {static_cast<int>(least.x), static_cast<int>(size.y - most.y), static_cast<int>(most.x - least.x),
+          static_cast<int>(most.y - least.y)};
 }
 
 void BlockView::draw_all_still(std::size_t count, const Bodies& bodies, Theme theme) const {
@@ -240,26 +287,6 @@ void BlockView::draw_table(std::size_t count, Theme theme) const {
   square_.draw();
 }
 
-// Hidden parts of the rail are drawn transparently.
-void BlockView::draw_rail(const Rgb& colour, const glm::vec3& at, const Bodies& bodies) const {
-  begin(solid_shader_);
-  solid_shader_.set("offset", at - glm::vec3(0.0F, static_cast<float>(geometry_.height_m), 0.0F));
-  solid_shader_.set("stretch", glm::vec3(1.0F));
-  solid_shader_.set("colour", colour);
-  solid_shader_.set("shininess", 0.0F);
-  glDepthMask(GL_FALSE);
-  solid_shader_.set("opacity", 1.0F);
-  bodies.rail.draw();
-  glDepthFunc(GL_GREATER);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  solid_shader_.set("opacity", kHiddenRail);
-  bodies.rail.draw();
-  glDisable(GL_BLEND);
-  glDepthFunc(GL_LESS);
-  glDepthMask(GL_TRUE);
-}
-
 // Sets what the top and the sides of a block have in common.
 void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
   const Material& material = kMaterials[static_cast<std::size_t>(finish_)];
@@ -279,15 +306,18 @@ void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
   block_shader_.set("pores", material.pores);
   block_shader_.set("grid", material.grid);
   block_shader_.set("mark", 0.0F);
+  block_shader_.set("frame", 0.0F);
   block_shader_.set("tip", -1.0F);  // the tip is far above
   block_shader_.set("arrow", glm::vec3(0.0F));
 }
 
-void BlockView::draw_top(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies) const {
+void BlockView::draw_top(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies, bool framed) const {
   begin_block(dent_under_ball(pose.dent_m, static_cast<float>(geometry_.tool_radius_m)), at);
   block_shader_.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
   // Shallow dents have no colour, because there is no error to show.
   block_shader_.set("mark", pose.shows_error ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
+  block_shader_.set("frame", framed ? kFrameWidth_m : 0.0F);
+  block_shader_.set("frame_colour", pose.arrow);
   block_shader_.set("dome", dome_m_);
   block_shader_.set("tip", pose.tool_m);
   const glm::vec3 foot = arrow_foot();
@@ -299,7 +329,6 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at, const Bodi
   begin(solid_shader_);
   solid_shader_.set("offset", at - glm::vec3(0.0F, pose.tool_m, 0.0F));
   solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
-  solid_shader_.set("opacity", 1.0F);
   const auto part = [&](const GpuMesh& mesh, const Rgb& colour, float shininess) {
     solid_shader_.set("colour", colour);
     solid_shader_.set("shininess", shininess);

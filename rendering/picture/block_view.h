@@ -27,7 +27,7 @@ struct BlockPose {
   float error_over_jnd = 0.0F;
   float force_N = 0.0F;
   Rgb arrow{0.0F};
-  bool chosen = false;      // the active model, marked by a rail
+  bool chosen = false;      // the active model, marked by a frame on the block
   bool shows_error = true;  // the dent has the colour of the error
 };
 // Factor by which depths are exaggerated; the window's title says so.
@@ -58,7 +58,7 @@ class BlockView {
   // The meshes of one block and its probe, at one level of detail.
   struct Bodies {
     Bodies(const BlockGeometry& block, float dome_m, const Detail& detail);
-    GpuMesh top, sides, ball, sensor, handle, shaft, tip, rail;
+    GpuMesh top, sides, ball, sensor, handle, shaft, tip;
   };
   // All that the picture of the static parts depends on.
   struct Still {
@@ -73,11 +73,12 @@ class BlockView {
   float arrow_length_m(const BlockPose& pose) const;
   glm::vec3 arrow_foot() const;  // relative to the middle of a block's top
   const Bodies& bodies(std::size_t count, const Viewport& viewport) const;
-  bool refresh_still(std::size_t count, const Bodies& bodies, Theme theme);
+  void refresh_still(std::size_t count, const Bodies& bodies, Theme theme);
+  std::vector<Viewport> moving_parts(const std::vector<BlockPose>& blocks) const;
+  Viewport part_around(const glm::vec3& low, const glm::vec3& high) const;
   void draw_all_still(std::size_t count, const Bodies& bodies, Theme theme) const;
   void draw_table(std::size_t count, Theme theme) const;
-  void draw_rail(const Rgb& colour, const glm::vec3& place, const Bodies& bodies) const;
-  void draw_top(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies) const;
+  void draw_top(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies, bool framed) const;
   void draw_tool(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies, Theme theme) const;
   void draw_arrow(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies) const;
   void begin(const Shader& shader) const;

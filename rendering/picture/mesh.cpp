@@ -113,19 +113,6 @@ Mesh block_sides(const glm::vec2& size_m, float height_m, const Detail& detail) 
   return mesh;
 }
 
-Mesh rail_mesh(const glm::vec2& size_m, float gap_m, float height_m, const Detail& detail) {
-  Mesh mesh;
-  const Outline edge = outline(0.5F * size_m, detail);
-  for (const float y : {height_m, 0.0F}) {
-    for (const Vertex& point : edge) {
-      const glm::vec3 up(0.0F, 1.0F, 0.0F);
-      mesh.vertices.push_back({point.position + gap_m * point.normal + y * up, up});
-    }
-  }
-  join_rings(mesh, edge.size());
-  return mesh;
-}
-
 Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides) {
   Mesh mesh;
   const auto around = static_cast<std::uint32_t>(sides);

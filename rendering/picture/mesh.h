@@ -37,9 +37,6 @@ Mesh block_top(const glm::vec2& size_m, const Detail& detail);
 // The rounded edge and the sides of that block.
 Mesh block_sides(const glm::vec2& size_m, float height_m, const Detail& detail);
 
-// A low rail around such a block, with a gap, on the ground y = 0. Its normals point upwards.
-Mesh rail_mesh(const glm::vec2& size_m, float gap_m, float height_m, const Detail& detail);
-
 // A body of revolution around y: `profile` has (radius, y) from bottom to top.
 Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides);
 

@@ -25,7 +25,8 @@ bool Pixels::make() {
   if (samples_ > 0) {
     glTexImage2DMultisample(kind, samples_, GL_RGBA8, width_, height_, GL_TRUE);
   } else {
-    glTexImage2D(kind, 0, GL_RGBA8, width_, height_, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    // The order of colours of a window, so that a software renderer copies memory without converting it.
+    glTexImage2D(kind, 0, GL_RGBA8, width_, height_, 0, GL_BGRA, GL_UNSIGNED_BYTE, nullptr);
     for (const int filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
       glTexParameteri(kind, static_cast<GLenum>(filter), GL_LINEAR);
     for (const int wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
@@ -51,10 +52,11 @@ bool Pixels::draw_into(int width, int height) {
   return true;
 }
 
-void Pixels::copy_to(const Pixels& other) const {
+void Pixels::copy_to(const Pixels& other, const Viewport& part) const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, other.framebuffer_);
-  glBlitFramebuffer(0, 0, width_, height_, 0, 0, other.width_, other.height_, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT,
+  const int right = part.x + part.width, top = part.y + part.height;
+  glBlitFramebuffer(part.x, part.y, right, top, part.x, part.y, right, top, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT,
                     GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, other.framebuffer_);
 }

@@ -4,6 +4,12 @@
 
 namespace palpate {
 
+// In pixels of a framebuffer; the origin is the lower left corner.
+struct Viewport {
+  int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Viewport&) const = default;
+};
+
 class Pixels {
  public:
   // `samples` per pixel; 0: no multisampling, so that `colour` is a plain texture.
@@ -15,8 +21,8 @@ class Pixels {
   // Makes it the target of drawing. The contents are kept unless the size changes. False: the driver refuses; the
   // contents are lost.
   bool draw_into(int width, int height);
-  // Copies colour and depth into `other`, scaled to its size, and makes `other` the target of drawing.
-  void copy_to(const Pixels& other) const;
+  // Copies colour and depth of `part` into `other`, which has the same size, and makes `other` the target of drawing.
+  void copy_to(const Pixels& other, const Viewport& part) const;
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }
   unsigned framebuffer() const noexcept { return framebuffer_; }

@@ -39,8 +39,8 @@ Id compile(const std::string& path, const std::string& text, unsigned kind) {
 }  // namespace
 
 Result<Shader> Shader::load(const std::string& folder, const std::string& vertex, const std::string& fragment,
-                            const std::vector<std::string>& parts) {
-  std::string before;
+                            const std::vector<std::string>& parts, const std::string& definitions) {
+  std::string before = "#version 330 core\n" + definitions;
   for (const std::string& part : parts) {
     const auto text = read_plain_file(folder + "/" + part + ".glsl", "a shader", kElsewhere);
     if (!text) return text.error();

@@ -15,10 +15,11 @@ namespace palpate {
 
 class Shader {
  public:
-  // Compiles and links `vertex`.vert and `fragment`.frag in `folder`, each preceded by the text of the files
-  // `parts`.glsl. Errors: a file cannot be read; the driver does not compile or link it, with its message.
+  // Compiles and links `vertex`.vert and `fragment`.frag in `folder`, each preceded by `definitions`, which are lines
+  // of the preprocessor, and the text of the files `parts`.glsl. Errors: a file cannot be read; the driver does not
+  // compile or link it, with its message.
   static Result<Shader> load(const std::string& folder, const std::string& vertex, const std::string& fragment,
-                             const std::vector<std::string>& parts = {"common"});
+                             const std::vector<std::string>& parts = {"common"}, const std::string& definitions = {});
   Shader(Shader&& other) noexcept;
   Shader& operator=(Shader&&) = delete;
   ~Shader();

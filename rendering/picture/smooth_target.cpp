@@ -13,6 +13,11 @@ constexpr int kSamples = 4;
 // Steps of the search along an edge in both directions; the flattest edge that it finds rises by one pixel in 26.
 constexpr int kSteps = 8;
 
+Viewport around_both(const Viewport& a, const Viewport& b) {
+  const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
+}
+
 }  // namespace
 
 Smoothing smoothing_for(std::string_view renderer) noexcept {
@@ -36,43 +41,63 @@ void SmoothTarget::begin(const Viewport& viewport, float scale) {
   const auto drawn = [part](int size) {
     return std::max(1, static_cast<int>(std::round(part * static_cast<float>(size))));
   };
-  refused_ = !pixels_.draw_into(drawn(viewport.width), drawn(viewport.height));
+  const int width = drawn(viewport.width), height = drawn(viewport.height);
+  refused_ = filters() && !(still_.draw_into(width, height) && smoothed_.draw_into(width, height));
+  refused_ = !pixels_.draw_into(width, height) || refused_;
   if (!refused_) return;
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
 }
 
-bool SmoothTarget::begin_still() { return !refused_ && still_.draw_into(pixels_.width(), pixels_.height()); }
+void SmoothTarget::begin_still() { still_.draw_into(width(), height()); }
 
-void SmoothTarget::use_still() { still_.copy_to(pixels_); }
+void SmoothTarget::end_still() {
+  const Viewport whole{0, 0, width(), height()};
+  filter_edges(still_, {whole});
+  still_.copy_to(pixels_, whole);
+  drawn_.clear();
+}
+
+void SmoothTarget::use_still(std::vector<Viewport> parts) {
+  parts_ = parts;
+  if (parts.size() == drawn_.size()) {
+    std::transform(parts.begin(), parts.end(), drawn_.begin(), parts_.begin(), around_both);
+  } else {
+    parts_.insert(parts_.end(), drawn_.begin(), drawn_.end());
+  }
+  drawn_ = std::move(parts);
+  for (const Viewport& part : parts_) still_.copy_to(pixels_, part);
+  pixels_.draw_into(width(), height());
+}
 
 void SmoothTarget::end() {
   if (refused_) return;
+  if (filters()) filter_edges(pixels_, parts_);
   const Viewport& to = viewport_;
-  const bool enlarged = filters() && (width() != to.width || height() != to.height);
-  if (filters() && !enlarged) {
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    filter_edges(to);
-    return;
-  }
-  if (enlarged && smoothed_.draw_into(width(), height())) filter_edges({0, 0, width(), height()});
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, enlarged ? smoothed_.framebuffer() : pixels_.framebuffer());
+  const bool enlarged = width() != to.width || height() != to.height;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, filters() ? smoothed_.framebuffer() : pixels_.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glBlitFramebuffer(0, 0, width(), height(), to.x, to.y, to.x + to.width, to.y + to.height, GL_COLOR_BUFFER_BIT,
+  // In memory the first row of a window is the upper one. The filtered picture has the same order, so that a software
+  // renderer copies it as it is.
+  const int bottom = filters() ? height() : 0, top = height() - bottom;
+  glBlitFramebuffer(0, bottom, width(), top, to.x, to.y, to.x + to.width, to.y + to.height, GL_COLOR_BUFFER_BIT,
                     enlarged ? GL_LINEAR : GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 // The first pass copies the picture and finds its edges; the second redraws the pixels at edges.
-void SmoothTarget::filter_edges(const Viewport& to) const {
-  glViewport(to.x, to.y, to.width, to.height);
-  glBindTexture(GL_TEXTURE_2D, pixels_.colour());
+void SmoothTarget::filter_edges(const Pixels& picture, const std::vector<Viewport>& parts) {
+  smoothed_.draw_into(width(), height());
+  glBindTexture(GL_TEXTURE_2D, picture.colour());
   glBindVertexArray(no_vertices_);
+  glEnable(GL_SCISSOR_TEST);
   const auto draw = [&](const Shader& shader) {
     shader.use();
-    shader.set("corner", glm::vec2(to.x, to.y));
     shader.set("steps", kSteps);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    for (const Viewport& part : parts) {
+      glScissor(part.x, height() - part.y - part.height, part.width, part.height);
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
   };
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
@@ -84,6 +109,7 @@ void SmoothTarget::filter_edges(const Viewport& to) const {
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
   glDisable(GL_DEPTH_TEST);
+  glDisable(GL_SCISSOR_TEST);
   glBindVertexArray(0);
 }
 

@@ -1,22 +1,18 @@
 // Antialiasing of the 3-D view; text and curves have their own. A graphics card uses multisampling. With a software
 // renderer each sample would cost as much as a pixel: there the edges of the finished picture are filtered
-// (assets/shaders/edges.frag), static parts are drawn once, and the picture may have fewer pixels and is enlarged.
+// (assets/shaders/edges.frag). The static picture is drawn and filtered once; a frame draws and filters only the
+// parts in which something moves. The picture may have fewer pixels than the window and is enlarged.
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "rendering/picture/pixels.h"
 #include "rendering/picture/shader.h"
 
 namespace palpate {
-
-// In pixels of the framebuffer; the origin is the lower left corner.
-struct Viewport {
-  int x = 0, y = 0, width = 0, height = 0;
-  bool operator==(const Viewport&) const = default;
-};
 
 enum class Smoothing { samples, filter };
 // For the renderer's name of OpenGL: the filter for a software renderer, else multisampling.
@@ -34,6 +30,8 @@ class SmoothTarget {
   SmoothTarget& operator=(const SmoothTarget&) = delete;
   ~SmoothTarget();
 
+  // The edge filter changes pixels up to this distance from what is drawn.
+  static constexpr float kReach_px = 15.0F;
   bool filters() const noexcept { return filter_.has_value(); }
   // Size of the picture after `begin`, pixels.
   int width() const noexcept { return pixels_.width(); }
@@ -41,20 +39,25 @@ class SmoothTarget {
   // Begins the picture for a part of the window. With the filter it has `scale` (0..1) times the pixels per side. Where
   // the driver refuses, drawing goes directly into the window.
   void begin(const Viewport& viewport, float scale);
-  // Begins the static part, which is kept for `use_still`. False: the driver refuses; draw the static part in each
-  // frame.
-  bool begin_still();
-  // Copies colour and depth of the static part into the picture. The next draws go on top of it.
-  void use_still();
+  // Whether a static picture is kept. If not, draw all parts in each frame.
+  bool keeps_still() const noexcept { return filters() && !refused_; }
+  // Between the two calls the static picture is drawn. It is kept until the size changes.
+  void begin_still();
+  void end_still();
+  // Begins a frame from the static picture. All that is then drawn must be inside `parts`, in pixels of the picture.
+  void use_still(std::vector<Viewport> parts);
   // Copies the picture to the window and makes the window the target again.
   void end();
 
  private:
-  void filter_edges(const Viewport& to) const;
+  void filter_edges(const Pixels& picture, const std::vector<Viewport>& parts);
 
   std::optional<EdgeFilter> filter_;
   Viewport viewport_;
-  Pixels pixels_, still_, smoothed_;
+  Pixels pixels_, still_;
+  Pixels smoothed_;              // the filtered picture, upside down; see `end`
+  std::vector<Viewport> parts_;  // in which this frame, or the one before, differs from the static picture
+  std::vector<Viewport> drawn_;  // `parts` of this frame
   bool refused_ = false;
   unsigned no_vertices_ = 0;  // vertex array without buffers, for a triangle
 };
