@@ -43,7 +43,8 @@ void print_analysis(const StudyAnalysis& analysis) {
   }
   for (const SubjectJnd& subject : analysis.subjects) {
     if (subject.unusable == 0) continue;
-    std::printf("%s: %zu trials left out, their forces were not rendered\n", subject.subject.c_str(), subject.unusable);
+    std::printf("%s: %zu trials were left out because their forces were not rendered\n", subject.subject.c_str(),
+                subject.unusable);
   }
   if (!analysis.lines.ok()) return;
   const JndLines& lines = *analysis.lines;
@@ -90,7 +91,7 @@ void print_discrimination(const DiscriminationAnalysis& analysis) {
   std::printf("error/JND    mean %.2f, max %.2f, as predicted (JND %.4g N + %.4g %%)\n", strokes.mean_over_jnd,
               strokes.max_over_jnd, strokes.jnd.offset_N, 100.0 * strokes.jnd.weber_fraction);
   if (analysis.all.unusable > 0)
-    std::printf("%zu trials left out, their forces were not rendered\n", analysis.all.unusable);
+    std::printf("%zu trials were left out because their forces were not rendered\n", analysis.all.unusable);
   std::printf("%s\n", discrimination_verdict(analysis.all, strokes).c_str());
 }
 
@@ -156,8 +157,8 @@ Status run_simulate(const StudyOptions& options) {
 
 void add_output_options(CLI::App* verb, StudyOptions& options) {
   verb->add_flag("--pang", options.with_published,
-                 "The line goes below Pang, Tan & Durlach's point (1991) too: 9 % at 2.5 N");
-  verb->add_option("--out", options.out, "Folder for results.csv and, for a JND, jnd.json and figure 3 (a) and (b)")
+                 "Keep the JND line also below the point of Pang, Tan & Durlach (1991): 9 % at 2.5 N");
+  verb->add_option("--out", options.out, "Folder for results.csv, and for a JND also jnd.json and figure 3 (a) and (b)")
       ->required();
   verb->add_flag("--force", options.force, "Replace files that exist");
 }
@@ -165,7 +166,7 @@ void add_output_options(CLI::App* verb, StudyOptions& options) {
 void add_analyse(CLI::App& study, Verbs& verbs) {
   auto options = std::make_shared<StudyOptions>();
   CLI::App* verb = study.add_subcommand(
-      "analyse", "From the files of the subjects to the JND line, its file and figure, or to who told strokes apart");
+      "analyse", "Analyse the files of the subjects: the JND line, its file and figures, or a discrimination");
   verb->add_option("files", options->files, "Study files, one per subject (CSV)")->required();
   add_output_options(verb, *options);
   verbs.emplace_back(verb, [options] { return run_analyse(*options); });
@@ -179,33 +180,37 @@ void add_stroke_options(CLI::App* verb, const std::shared_ptr<StudyOptions>& opt
                 options->discriminates = true;
                 options->recording = recording;
               },
-              "Which of two renderings of a stroke is which (100 trials), of this recording [a virtual one]")
+              "Discriminate two renderings of a stroke of this recording in 100 trials [a virtual recording]")
           ->type_name("[REC.csv]")
           ->expected(0, 1);
-  verb->add_option("--scene", options->strokes_scene, "To discriminate in")->capture_default_str()->needs(discriminate);
+  verb->add_option("--scene", options->strokes_scene, "Scene of the discrimination")
+      ->capture_default_str()
+      ->needs(discriminate);
   verb->add_option("--model", options->models,
-                   "To tell from the recorded force, or two to tell apart [the scene's first]")
+                   "Model to compare with the recorded force, or two models to compare [the scene's first]")
       ->type_name("FILE_OR_METHOD")
       ->needs(discriminate);
 }
 
 void add_simulate(CLI::App& study, Verbs& verbs) {
   auto options = std::make_shared<StudyOptions>();
-  CLI::App* verb =
-      study.add_subcommand("simulate", "A whole study with simulated subjects, from the first trial to the figure");
-  verb->add_option("--subjects", options->subjects, "How many")->check(CLI::Range(1, 99))->capture_default_str();
+  CLI::App* verb = study.add_subcommand("simulate", "Simulate the subjects of a study and analyse their answers");
+  verb->add_option("--subjects", options->subjects, "Number of subjects")
+      ->check(CLI::Range(1, 99))
+      ->capture_default_str();
   add_stroke_options(verb, options);
-  verb->add_option("--seed", options->seed, "Which subjects")->capture_default_str();
-  verb->add_option("--offset", options->traits.jnd.offset_N, "Their JND at no force, N")
+  verb->add_option("--seed", options->seed, "Seed of the subjects")->capture_default_str();
+  verb->add_option("--offset", options->traits.jnd.offset_N, "JND of the subjects at 0 N, in N")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();
-  verb->add_option("--weber", options->traits.jnd.weber_fraction, "What it grows by with the force")
+  verb->add_option("--weber", options->traits.jnd.weber_fraction,
+                   "Weber fraction of the subjects: JND per newton of force")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  verb->add_option("--bias", options->traits.order_bias_jnd, "What they add to the second force, multiples of the JND")
+  verb->add_option("--bias", options->traits.order_bias_jnd, "Bias added to the second force, in multiples of the JND")
       ->check(CLI::Range(-2.0, 2.0))
       ->capture_default_str();
-  verb->add_option("--lapse", options->traits.lapse_rate, "Share of answers that are wrong whatever the force")
+  verb->add_option("--lapse", options->traits.lapse_rate, "Lapse rate: share of answers that are wrong at any force")
       ->check(CLI::Range(0.0, 0.2))
       ->capture_default_str();
   add_output_options(verb, *options);
@@ -215,8 +220,8 @@ void add_simulate(CLI::App& study, Verbs& verbs) {
 }  // namespace
 
 void add_study(CLI::App& app, Verbs& verbs) {
-  CLI::App* study =
-      app.add_subcommand("study", "The force-discrimination study (palpate-demo --scene jnd_study): analyse, simulate");
+  CLI::App* study = app.add_subcommand(
+      "study", "Analyse or simulate the force-discrimination study (palpate-demo --scene jnd_study)");
   study->require_subcommand(1);
   verbs.emplace_back(study, [] { return Status(); });
   Verbs parts;
