@@ -120,7 +120,7 @@ TEST_F(ExportVerb, InSinglePrecisionNobodyFeelsTheDifference) {
 TEST_F(ExportVerb, AnotherStepIsWhatTheFileIsToldAndSays) {
   const std::string text = exported(recording("silicone", 6.0, 1), {"--method", "trend"}, {"--encoder-step", "1e-6"});
   EXPECT_NE(text.find("#define PALPATE_ENCODER_STEP_M 1e-06"), std::string::npos);
-  EXPECT_NE(text.find("Positions are taken to be in steps of 1e-06 m."), std::string::npos);
+  EXPECT_NE(text.find("The positions are assumed to be in steps of 1e-06 m."), std::string::npos);
   EXPECT_NE(printed_.find("steps of 1 um"), std::string::npos) << printed_;
 }
 
