@@ -114,11 +114,11 @@ Result<OpenedDevice> BridgeBus::open_and_identify() {
     }
     if (!said.empty()) return Error{info_.path + ": found text, expected frames of 28 bytes: \"" + said + "\""};
     return Error{info_.path + ": no frame within " + fixed(patience_s, 0) +
-                 " s; is the device's program running, at this baud rate?"};
+                 " s; check that the device's program runs and that the baud rate is right"};
   }
   result.info = info_;
   result.info.product = result.measures_force ? "measures force" : "measures no force";
-  if (target_.remote) result.info.product += ", on a network: its delays count";
+  if (target_.remote) result.info.product += ", on a network, which adds delay";
   result.protocol = &kBridgeProtocol;
   result.connection = std::move(*opened);
   return Result<OpenedDevice>(std::move(result));

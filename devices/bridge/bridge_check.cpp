@@ -31,10 +31,12 @@ class BridgeTest {
     if (gone_) return Error{opened_.info.path + ": the line ended during the test; " + "run the test again"};
     const std::string start = opened_.info.path + ": ";
     if (sent_at_s_.empty() || round_trips_s_.empty()) {
-      return Error{start + "confirms no frame of the host; bytes 22 and 23 must be the low half of its sequence"};
+      return Error{start +
+                   "the device confirms no frame of the host; bytes 22 and 23 must be the low half of its sequence"};
     }
     if (!silence_s) return Error{start + no_stop("after the last frame")};
-    if (!woke) return Error{start + "stays stopped although valid frames come again; clear status bit 2 then"};
+    if (!woke)
+      return Error{start + "the device stays stopped after valid frames return; clear status bit 2 when they return"};
     if (!stands_still_s) return Error{start + no_stop("after the heartbeat stood still")};
     return text(drove, *silence_s, *stands_still_s);
   }
@@ -46,8 +48,8 @@ class BridgeTest {
   };
 
   static std::string no_stop(const std::string& when) {
-    return "did not show within 100 ms that its watchdog stopped it " + when +
-           " (status bit 2); do not touch it before it does";
+    return "the device did not report within 100 ms that its watchdog stopped it " + when +
+           " (status bit 2); do not touch the device before this works";
   }
 
   void send(bool drive, bool beat) {
@@ -123,12 +125,13 @@ class BridgeTest {
     const double mean_s = part(intervals_s_, 0.5);
     return opened_.info.path + "\n  samples     " + fixed(mean_s > 0.0 ? 1.0 / mean_s : 0.0, 0) +
            " a second by the device's clock, " + ms(part(intervals_s_, 0.01)) + " to " + ms(part(intervals_s_, 0.99)) +
-           " apart\n  round trip  " + ms(part(round_trips_s_, 0.5)) + ", " + ms(part(round_trips_s_, 0.99)) +
-           " in one of a hundred\n  position    " + fixed(1e-6 * last_.counts, 3) + " mm; it moved by " +
+           " apart\n  round trip  " + "median " + ms(part(round_trips_s_, 0.5)) + ", 99th percentile " +
+           ms(part(round_trips_s_, 0.99)) + "\n  position    " + fixed(1e-6 * last_.counts, 3) + " mm; it moved by " +
            fixed(1e-6 * (highest_nm_ - lowest_nm_), 3) + " mm in the test\n  force       " +
            (std::isfinite(last_.measured_N) ? fixed(last_.measured_N, 3) + " N measured" : "not measured") +
-           "\n  drive       " + (drove ? "yes, it got a force of 0" : "it never said that it drives (status bit 1)") +
-           "\n  watchdog    stopped " + ms(silence_s) + " after the last frame (limit 50 ms, told with a sample)" +
+           "\n  drive       " +
+           (drove ? "yes, it got a force of 0" : "no, the device never reported that it drives (status bit 1)") +
+           "\n  watchdog    stopped " + ms(silence_s) + " after the last frame (limit 50 ms, reported with a sample)" +
            "\n  heartbeat   stopped " + ms(stands_still_s) + " after it stood still (limit 50 ms)\n";
   }
 

@@ -45,7 +45,7 @@ Result<BridgeTarget> parse_bridge_target(const std::string& text) {
     const std::size_t comma = target.path.rfind(',');
     if (comma != std::string::npos) {
       target.baud = whole_number(target.path.substr(comma + 1), 4'000'000);
-      if (target.baud == 0) return wrong(text, "a baud rate behind the comma, as in /dev/ttyACM0,1000000");
+      if (target.baud == 0) return wrong(text, "a baud rate after the comma, as in /dev/ttyACM0,1000000");
       target.path.resize(comma);
     }
   } else {

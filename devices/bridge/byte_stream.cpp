@@ -71,13 +71,14 @@ Opened open_serial(const BridgeTarget& target) {
     const bool denied = errno == EACCES || errno == EPERM;
     return failure(target.path, errno,
                    denied ? "join the group that owns it (sudo adduser $USER dialout), then log in again"
-                          : "is the device plugged in? ls /dev/tty* shows the ports");
+                          : "check that the device is plugged in; ls /dev/tty* lists the ports");
   }
   if (flock(line, LOCK_EX | LOCK_NB) != 0) {
     return close_with(line, Error{target.path + ": in use by another program; close it"});
   }
   termios settings{};
-  if (tcgetattr(line, &settings) != 0) return close_with(line, Error{target.path + ": is no serial line; name a tty"});
+  if (tcgetattr(line, &settings) != 0)
+    return close_with(line, Error{target.path + ": is not a serial line; name a tty"});
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | HUPCL);  // so that closing the line does not reset the board
@@ -143,8 +144,8 @@ Opened open_tcp(const BridgeTarget& target) {
   for (const addrinfo* one = list; one != nullptr; one = one->ai_next) {
     if (!target.remote && !is_loopback(one->ai_addr)) {
       return Error{name +
-                   ": is another computer, and whoever can reach the line moves the device; --bridge-remote "
-                   "allows it, an SSH tunnel to 127.0.0.1 is better"};
+                   ": is another computer, so others on the network could move the device; use an SSH tunnel to "
+                   "127.0.0.1, or allow it with --bridge-remote"};
     }
     const int descriptor = socket(one->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (descriptor < 0) continue;
@@ -203,7 +204,7 @@ Opened open_any(const BridgeTarget& target) {
     case BridgeTarget::Kind::command:
       return open_command(target);
   }
-  return Error{"no such kind of line"};
+  return Error{"found no such kind of line"};
 }
 
 }  // namespace

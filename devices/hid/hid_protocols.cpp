@@ -14,7 +14,7 @@ const DeviceProtocol* hid_protocol_of(const DeviceNode& node) {
 std::vector<HidDiagnosis> diagnose(DeviceBus& bus) {
   std::vector<HidDiagnosis> all;
   for (const DeviceNode& node : bus.list()) {
-    HidDiagnosis diagnosis{node, nullptr, "none that this program uses", ""};
+    HidDiagnosis diagnosis{node, nullptr, "not supported", ""};
     if (const DeviceProtocol* const protocol = hid_protocol_of(node)) {
       diagnosis.use = protocol->description;
       const Result<std::unique_ptr<DeviceConnection>> connection = bus.open(node);

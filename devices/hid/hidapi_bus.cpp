@@ -78,8 +78,8 @@ std::string open_error_words(const std::string& path, int error_number) {
     case ENXIO:
     case ENODEV:
       return path +
-             ": no node although the device is plugged in; unplug it and plug it in again (in a container: "
-             "pass the node in)";
+             ": the device is plugged in but has no node; unplug it and plug it in again (in a container, pass the "
+             "node in)";
     case EACCES:
     case EPERM:
       return path +
@@ -132,7 +132,7 @@ Result<std::unique_ptr<DeviceConnection>> HidapiBus::open(const DeviceNode& info
     const std::string words = narrow(hid_error(nullptr));
     if (reader != nullptr) hid_close(reader);
     ::close(descriptor);
-    return Error{info.path + ": is no HID device that can be opened (" + words + "); plug it in again"};
+    return Error{info.path + ": cannot be opened as a HID device (" + words + "); plug it in again"};
   }
   return Result<std::unique_ptr<DeviceConnection>>(
       std::make_unique<HidapiConnection>(reader, writer, descriptor, wait_ms_));

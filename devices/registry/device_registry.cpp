@@ -30,7 +30,7 @@ DeviceBus& bus_of(const DeviceRequest& request) { return request.bus != nullptr 
 
 Result<DeviceCalibration> calibration_of(const DeviceRequest& request, const DeviceProtocol& protocol) {
   if (request.calibrations.empty()) {
-    return Error{"the calibrations of HID devices are nowhere; set PALPATE_ASSETS to the assets folder"};
+    return Error{"found no calibrations of HID devices; set PALPATE_ASSETS to the assets folder"};
   }
   return read_calibration(request.calibrations, protocol);
 }
@@ -67,7 +67,7 @@ Made make_auto(const std::string&, const DeviceRequest& request) {
   bool no_mouse = false;
   auto mouse = make_hid_device<SpaceMouse>(request, false, no_mouse);
   if (!mouse && !no_mouse) note += "; " + mouse.error().message;
-  note += std::string(": a simulated hand until the mouse") + (mouse ? " or the SpaceMouse (no force)" : "") +
+  note += std::string(": a simulated hand moves until the mouse") + (mouse ? " or the SpaceMouse (no force)" : "") +
           " takes over";
   if (mouse) device->use(std::move(*mouse));
   device->explain(std::move(note));
@@ -108,14 +108,16 @@ std::string known_names(const std::vector<DeviceEntry>& entries) {
 
 const std::vector<DeviceEntry>& device_entries() {
   static const std::vector<DeviceEntry> all = {
-      {{"auto", "a haptic device, else the simulated hand until the mouse takes over", Holder::simulated, ""},
+      {{"auto", "a haptic device if there is one, otherwise a simulated hand until the mouse takes over",
+        Holder::simulated, ""},
        make_auto},
-      {{"hand", "a simulated hand that explores by itself and feels the force", Holder::simulated, ""}, make_hand},
+      {{"hand", "a simulated hand that moves by itself and yields to the force", Holder::simulated, ""}, make_hand},
       {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", Holder::simulated, ""}, make_mouse},
       {{"hid", "a haptic device on a USB port, or a SpaceMouse without force", Holder::person, ""}, make_hid},
-      {{"replay:FILE", "a recording at its own pace, over and over; its force is the reference", Holder::none, ""},
+      {{"replay:FILE", "a recording, repeated at its own speed; its force is the reference", Holder::none, ""},
        make_replay},
-      {{"bridge:TARGET", "any device: /dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT, exec:COMMAND", Holder::person, ""},
+      {{"bridge:TARGET", "a device with the bridge protocol: /dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT, exec:COMMAND",
+        Holder::person, ""},
        make_bridge},
   };
   return all;

@@ -103,7 +103,7 @@ void Importer::read_labview_head() {
   const bool even = !times && parse_table_number(step, table_.layout.decimal, step_s) && step_s > 0.0;
   if (!even || request_.rate_Hz) return;
   request_.rate_Hz = 1.0 / step_s;
-  note("rows evenly spaced by the Delta_X above the table");
+  note("the rows are evenly spaced by the Delta_X above the table");
 }
 
 Status Importer::find_columns() {
@@ -239,7 +239,7 @@ Status Importer::find_time_unit() {
   }
   to_si_[0] = possible.front().to_si;
   column.unit = std::string(possible.front().name);
-  note("the header has no unit of the time: taken as " + column.unit + ", the only one in which its steps of " +
+  note("the header has no unit of time: taken as " + column.unit + ", the only unit in which steps of " +
        short_number(step) + " are a rate of 10 Hz to 20 kHz");
   return {};
 }
@@ -288,10 +288,9 @@ Error Importer::explain_row(std::string_view line, std::uint64_t number) {
     const std::string_view field = trimmed(fields_[role]);
     const std::string found =
         field.empty() ? "an empty field" : std::string("\"").append(printable(field)).append("\"");
-    return fail_at(number,
-                   "found " + found + " in column " + std::to_string(index_[role] + 1) + quoted_name(role) +
-                       ", expected the " + kRoleNames[role] +
-                       "; remove the row, repair the value, or say how many such rows may go: --skip-bad-rows N");
+    return fail_at(number, "found " + found + " in column " + std::to_string(index_[role] + 1) + quoted_name(role) +
+                               ", expected the " + kRoleNames[role] +
+                               "; remove the row, repair the value, or leave up to N such rows out: --skip-bad-rows N");
   }
   return fail_at(number, "found no number in column " + std::to_string(velocity_ ? velocity_->column + 1 : 1) +
                              ", the velocity; remove the row or repair the value");
@@ -388,23 +387,24 @@ Status Importer::read_rows() {
     if (!std::exchange(started_, true)) first_ = time;
     last_time_s_ = own_seconds(time);
   }
-  if (comments > 0) note(count_of(comments, "comment line") + " between the rows left out");
-  if (repeated_ > 0) note(count_of(repeated_, "row") + " with the time of the row before left out");
-  if (bad_rows > 0) note(count_of(bad_rows, "row") + " that could not be read left out");
+  if (comments > 0) note("left out " + count_of(comments, "comment line") + " between the rows");
+  if (repeated_ > 0) note("left out " + count_of(repeated_, "row") + " with the time of the previous row");
+  if (bad_rows > 0) note("left out " + count_of(bad_rows, "unreadable row"));
   if (footer_lines > 0) {
-    note(count_of(footer_lines, "line") + " behind the table left out, from line " + std::to_string(footer_line) +
+    note("left out " + count_of(footer_lines, "line") + " after the table, from line " + std::to_string(footer_line) +
          " \"" + printable(footer) + "\"");
   }
   return {};
 }
 
 void Importer::describe_time() {
-  if (request_.rate_Hz) return note("time from --rate " + short_number(*request_.rate_Hz) + ": rows evenly spaced");
+  if (request_.rate_Hz)
+    return note("the rows are evenly spaced at the --rate of " + short_number(*request_.rate_Hz) + " Hz");
   if (clock_)
-    return note(has_date_ ? "times are dates: counted from the first row"
-                          : "times are times of day: counted from the first row");
+    return note(has_date_ ? "the times are dates: time_s is 0 at the first row"
+                          : "the times are times of day: time_s is 0 at the first row");
   const double start_s = (static_cast<double>(first_.whole) + first_.fraction) * to_si_[0];
-  if (start_s != 0.0) note("time began at " + short_number(start_s) + " s and begins at 0 now");
+  if (start_s != 0.0) note("the first time was " + short_number(start_s) + " s: time_s is 0 there");
 }
 
 // Warns if the given rate changes the duration.
@@ -413,7 +413,7 @@ void Importer::check_rate() {
   const double seconds = table_.recording.rows.back().time_s;
   if (std::abs(seconds - last_time_s_) <= kRateTolerance * last_time_s_) return;
   note("warning: with --rate " + short_number(*request_.rate_Hz) + " the recording is " + short_number(seconds) +
-       " s long, by the times of the file " + short_number(last_time_s_) + " s");
+       " s long, but " + short_number(last_time_s_) + " s by the times in the file");
 }
 
 // Drops a velocity that is not the derivative of the position (unsigned, a set value): the slope of one over the other
@@ -431,9 +431,9 @@ void Importer::check_velocity() {
   const std::string column =
       "column " + std::to_string(velocity_->column + 1) + " \"" + printable(header_[velocity_->column].header) + "\"";
   table_.recording.columns.velocity = squares > 0.0 && std::abs(both / squares - 1.0) <= kVelocitySlope;
-  if (table_.recording.columns.velocity) return note("velocity from " + column);
+  if (table_.recording.columns.velocity) return note("the velocity is " + column);
   for (RecordingRow& row : rows) row.velocity_m_per_s = 0.0;
-  note(column + " is not the rate of the position: left out");
+  note(column + " is not the derivative of the position: left out");
 }
 
 Result<ImportedTable> Importer::run() {

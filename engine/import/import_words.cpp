@@ -38,7 +38,7 @@ std::vector<std::string> import_origin(const std::string& file, const ImportRequ
   for (std::size_t role = 0; role < kRoles; ++role) {
     comments.push_back(std::string(kRoleNames[role]) + ": " + column_words(table.columns[role]));
   }
-  for (const std::string& flip : flipped_roles(request)) comments.push_back(flip + ": sign turned round");
+  for (const std::string& flip : flipped_roles(request)) comments.push_back(flip + ": sign reversed");
   return comments;
 }
 

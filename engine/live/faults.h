@@ -62,7 +62,7 @@ struct Fault {
 
 // In the order of the reports.
 inline constexpr std::array<Fault, 23> kFaults = {{
-    {FaultSource::device, device_fault::kUnplugged, "the device is gone: connect it again", true, true},
+    {FaultSource::device, device_fault::kUnplugged, "the device is disconnected: connect it again", true, true},
     {FaultSource::device, device_fault::kLate, "reports come late: no force until they are on time again", true, true},
     {FaultSource::device, device_fault::kOutOfOrder,
      "a report came out of order: no force until they are in order again", true, true},
@@ -80,25 +80,25 @@ inline constexpr std::array<Fault, 23> kFaults = {{
      true, true},
     {FaultSource::device, device_fault::kWrongFirmware,
      "the firmware speaks another version of the protocol: install the one in devices/", true, true},
-    {FaultSource::loop, loop_fault::kBadSample, "the device gave a sample that is not a number; the force let go", true,
-     true},
+    {FaultSource::loop, loop_fault::kBadSample, "the device gave a sample that is not a number: the force was released",
+     true, true},
     {FaultSource::loop, loop_fault::kTimeNotLater,
-     "the device gave a sample that is not later than the one before; skipped", false, true},
+     "the device gave a sample that is not later than the previous one: it was skipped", false, true},
     // Of one model, selected or not.
-    {FaultSource::loop, loop_fault::kModelNotFinite, "a model gave a force that is not a number; 0 N instead", true,
-     true},
-    {FaultSource::loop, loop_fault::kForceNotFinite, "the force became not a number; 0 N instead", true, true},
-    {FaultSource::loop, loop_fault::kForceClamped, "the force was above what the device may be given; held back", false,
+    {FaultSource::loop, loop_fault::kModelNotFinite, "a model gave a force that is not a number: 0 N was used instead",
+     true, true},
+    {FaultSource::loop, loop_fault::kForceNotFinite, "the force was not a number: 0 N was used instead", true, true},
+    {FaultSource::loop, loop_fault::kForceClamped, "the force was above the limit of the device: it was limited", false,
      true},
     // Normal at every ramp and at hard impacts.
     {FaultSource::loop, loop_fault::kForceSlewed, "", false, false},
-    {FaultSource::loop, loop_fault::kStaleSample, "the device's newest sample is too old to push by; the force let go",
+    {FaultSource::loop, loop_fault::kStaleSample, "the newest sample of the device is too old: the force was released",
      true, true},
-    {FaultSource::loop, loop_fault::kForceThermal, "the motor is near its thermal limit; the force held back", false,
+    {FaultSource::loop, loop_fault::kForceThermal, "the motor is near its thermal limit: the force was reduced", false,
      true},
     // Reported by the device's own rows.
     {FaultSource::loop, loop_fault::kDeviceFault, "", true, false},
-    {FaultSource::loop, loop_fault::kDeadlineMissed, "a tick was late and its deadline missed", false, false},
+    {FaultSource::loop, loop_fault::kDeadlineMissed, "a tick was late and missed its deadline", false, false},
     {FaultSource::window, window_fault::kDropped, "the window was too slow to show every tick", false, false},
     {FaultSource::window, window_fault::kStall, "the haptics loop stood still for more than 50 ms", false, true},
 }};

@@ -34,7 +34,7 @@ Status HapticsLoop::start() {
       if (settings_.realtime) {
         status = make_this_thread_realtime({});
       } else {
-        status.scheduling = "normal, as asked";
+        status.scheduling = "normal, as requested";
         system_rt_calls().set_timer_slack_1ns();
       }
       granted.set_value(std::move(status));

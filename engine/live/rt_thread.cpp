@@ -66,7 +66,7 @@ std::string program_path() {
 std::string fix_for(const std::string& refused, bool root) {
   if (root) {
     return refused +
-           " refused although this is root: a container holds it back; start the container with "
+           " refused by the container although this is root; start the container with "
            "--cap-add=SYS_NICE --cap-add=IPC_LOCK --ulimit rtprio=99 --ulimit memlock=-1";
   }
   const std::string user = user_name();

@@ -86,13 +86,14 @@ bool Checker::check_signal() {
   const bool motion = travel_m() > kLeastTravel_m;
   if (!force) {
     add("no_force", Severity::fatal, force_range_N(),
-        words("the force changes by %.3g N over the whole recording, its noise is %.3g N", force_range_N(), noise_N_),
-        "check the sensor's cable and which column was recorded as force_N");
+        words("the force changes by only %.3g N over the whole recording, and its noise is %.3g N", force_range_N(),
+              noise_N_),
+        "check the sensor's cable, and check that force_N has the right column");
   }
   if (!motion) {
     add("no_motion", Severity::fatal, travel_m(),
-        words("the position changes by %.3g mm over the whole recording", 1e3 * travel_m()),
-        "check the encoder and which column was recorded as position_m");
+        words("the position changes by only %.3g mm over the whole recording", 1e3 * travel_m()),
+        "check the encoder, and check that position_m has the right column");
   }
   return force && motion;
 }
@@ -102,17 +103,16 @@ void Checker::check_faults() {
   if (dropouts > 0) {
     const double share = static_cast<double>(dropouts) / static_cast<double>(faults_.rows);
     add("dropouts", Severity::warning, share,
-        words("single rows leave the course of the position %zu times and that of the force %zu times, %.2g %% of the "
-              "rows: they are left out",
+        words("the position jumps away and back in %zu single rows and the force in %zu, %.2g %% of the rows: these "
+              "rows are left out",
               faults_.position_dropouts, faults_.force_dropouts, 100.0 * share),
         "check cables, connectors and the interface of the sensor");
   }
   if (faults_.update_step_s > 0.0) {
     add("repeated_positions", Severity::warning, faults_.update_step_s,
-        words(
-            "the position changes every %.3g ms only and is repeated in the rows between: the %zu rows with a new one "
-            "are used",
-            1e3 * faults_.update_step_s, faults_.updates),
+        words("the position changes only every %.3g ms and is repeated in the rows between: only the %zu rows with a "
+              "new position are used",
+              1e3 * faults_.update_step_s, faults_.updates),
         "read the position as often as the force");
   }
 }
@@ -124,24 +124,23 @@ void Checker::check_signs() {
   const bool flipped = direction.position_flipped || direction.force_flipped;
   if (flipped && !direction.certain) {
     add("signs", Severity::warning, change_N,
-        words("the force is %.3g N at the %s end of the positions and %.3g N at the other: a material that softens or "
-              "drags, or a sign that is flipped",
+        words("the force is %.3g N at the %s end of the positions and %.3g N at the other end: either the material "
+              "softens or drags, or a sign is wrong",
               direction.deep_force_N, direction.position_flipped ? "low" : "high", direction.shallow_force_N),
-        "where pressing makes position_m or force_N fall, turn its sign round (palpate import --flip)");
+        "if pressing decreases position_m or force_N, reverse its sign (palpate import --flip)");
     return;
   }
   if (direction.position_flipped) {
     add("position_sign", Severity::fatal, change_N,
-        words("free air lies at the highest positions and force at the lowest: %.3g N there, %.3g N at the highest",
+        words("the force is %.3g N at the lowest positions and %.3g N at the highest positions, as in free air",
               direction.deep_force_N, direction.shallow_force_N),
-        "position_m must be positive inside the block: turn its sign round (palpate import --flip position)");
+        "position_m must be positive inside the block: reverse its sign (palpate import --flip position)");
   }
   if (direction.force_flipped) {
     add("force_sign", Severity::fatal, change_N,
-        words("the force falls from %.3g N at the surface to %.3g N at the deepest", direction.shallow_force_N,
+        words("the force falls from %.3g N at the surface to %.3g N at the deepest position", direction.shallow_force_N,
               direction.deep_force_N),
-        "force_N must be positive when the block pushes the tool out: turn its sign round (palpate import --flip "
-        "force)");
+        "force_N must be positive when the block pushes the tool out: reverse its sign (palpate import --flip force)");
   }
 }
 
@@ -149,24 +148,26 @@ void Checker::check_units() {
   const double peak_N = std::max(std::abs(measures_.highest_force_N), std::abs(measures_.lowest_force_N));
   if (travel_m() > kStrangeDepth_m && depth_m() > kStrangeDepth_m) {
     add("position_unit", Severity::warning, depth_m(), words("the tool goes %.3g m deep", depth_m()),
-        "position_m must be in metres: if it is in millimetres, divide by 1000 (palpate import --units mm,N)");
+        "position_m must be in metres: if it is in millimetres, divide it by 1000 (palpate import --units mm,N)");
   }
   const double stiffness_N_per_m = force_range_N() / std::max(travel_m(), kLeastTravel_m);
   if (peak_N <= kLargestForce_N && stiffness_N_per_m <= kHardRubber_N_per_m) return;
   add("force_unit", Severity::warning, peak_N,
-      words("the force reaches %.4g N over %.3g mm, %.3g kN/m: stiffer than hard rubber under a punch of 20 mm", peak_N,
-            1e3 * travel_m(), 1e-3 * stiffness_N_per_m),
-      "where the file is not in newtons and metres, import it with its units (palpate import --units)");
+      words("the force reaches %.4g N over %.3g mm: this stiffness of %.3g kN/m is above that of hard rubber under a "
+            "punch of 20 mm",
+            peak_N, 1e3 * travel_m(), 1e-3 * stiffness_N_per_m),
+      "if the file is not in newtons and metres, import it with its units (palpate import --units)");
 }
 
 void Checker::check_sampling() {
   const double rate_Hz = 1.0 / measures_.median_step_s;
-  add("rate", Severity::note, rate_Hz, words("%.4g rows a second for %.3g s", rate_Hz, measures_.duration_s),
-      rate_Hz < kSlowRate_Hz ? "slow motion only: record faster for presses by hand (500 Hz or more)" : "");
+  add("rate", Severity::note, rate_Hz,
+      words("the recording has %.4g rows per second and lasts %.3g s", rate_Hz, measures_.duration_s),
+      rate_Hz < kSlowRate_Hz ? "this rate suits only slow motion: record presses by hand at 500 Hz or more" : "");
   if (measures_.largest_step_s <= std::max(kGap_s, kGapSteps * measures_.median_step_s)) return;
   add("gap", Severity::warning, measures_.largest_step_s,
       words("nothing was recorded for %.3g s from %.4g s on", measures_.largest_step_s, measures_.largest_step_at_s),
-      "the material's memory across the gap is unknown: split the recording there");
+      "the state of the material after the gap is unknown: split the recording there");
 }
 
 void Checker::check_sensors() {
@@ -174,13 +175,13 @@ void Checker::check_sensors() {
   if (sensor.encoder_step_m > 0.0) {
     const bool coarse = sensor.encoder_step_m > 0.02 * std::max(depth_m(), kLeastTravel_m);
     add("encoder_step", coarse ? Severity::warning : Severity::note, sensor.encoder_step_m,
-        words("the position comes in steps of %.3g um", 1e6 * sensor.encoder_step_m),
-        coarse ? "less than 50 steps over the depth: use a finer encoder or press deeper" : "");
+        words("the position has steps of %.3g um", 1e6 * sensor.encoder_step_m),
+        coarse ? "the depth spans fewer than 50 steps: use a finer encoder or press deeper" : "");
   }
   const bool loud = noise_N_ > 0.5 * request_.jnd.offset_N;
   add("force_noise", loud ? Severity::warning : Severity::note, noise_N_,
-      words("the force noise is %.3g mN rms", 1e3 * noise_N_),
-      loud ? "small forces drown in it: shield or filter the sensor, and read errors against the noise floor" : "");
+      words("the force noise is %.3g mN RMS", 1e3 * noise_N_),
+      loud ? "the noise hides small forces: shield or filter the sensor, and compare errors with the noise floor" : "");
 }
 
 void Checker::check_zero() {
@@ -196,7 +197,7 @@ void Checker::check_zero() {
       std::isfinite(surface_.force_zero_error_N)) {
     add("force_zero_drift", Severity::warning, surface_.force_zero_drift_N,
         words("the force in free air drifts by %.3g N over the recording", surface_.force_zero_drift_N),
-        "let the sensor warm up, tare it again, record in shorter parts");
+        "let the sensor warm up, tare it again, and record in shorter parts");
   }
 }
 
@@ -205,8 +206,8 @@ void Checker::check_clipping() {
   if (!(measures_.highest_force_N > 0.0)) return;
   if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < kClippedTravelShare * travel_m()) return;
   add("clipping", Severity::warning, measures_.highest_force_N,
-      words("the force stays at exactly %.5g N for %zu rows while the tool moves on by %.3g mm",
-            measures_.highest_force_N, measures_.flat_rows, 1e3 * measures_.flat_travel_m),
+      words("the force stays at exactly %.5g N for %zu rows while the tool moves by %.3g mm", measures_.highest_force_N,
+            measures_.flat_rows, 1e3 * measures_.flat_travel_m),
       "the sensor or its amplifier is at its limit: press less or choose a larger range");
 }
 
@@ -234,15 +235,15 @@ void Checker::check_lag() {
     surface_.standard_error_m = HUGE_VAL;
     surface_.offset_m = 0.0;
     add("lag_unknown", Severity::note, 0.0,
-        "the force may come at another time than the position, but by how much cannot be told, and so not the surface",
-        "record both with one clock");
+        "the force may lag or lead the position, but neither this lag nor the surface can be identified",
+        "record both with the same clock");
   }
   if (lag.at == 0.0) return;
   surface_ = estimate_surface(without_lag(rows, lag.at), noise_N_, lag.standard_error);
   add("lag", Severity::warning, lag.at,
-      words("the force comes %.3g ms (+- %.2g) %s the position", 1e3 * std::abs(lag.at), 1e3 * lag.standard_error,
-            lag.at > 0.0 ? "behind" : "before"),
-      "record both with one clock; palpate fit takes it off");
+      words("the force %s the position by %.3g ms (+- %.2g)", lag.at > 0.0 ? "lags" : "leads", 1e3 * std::abs(lag.at),
+            1e3 * lag.standard_error),
+      "record both with the same clock; palpate fit corrects this lag");
 }
 
 void Checker::check_surface() {
@@ -250,32 +251,34 @@ void Checker::check_surface() {
   check_.surface_offset_m = surface_.offset_m;
   if (!surface_.identified()) {
     add("surface_unknown", Severity::note, 0.0,
-        surface_.free_air ? "where force begins cannot be told; depth counts from position 0"
-                          : "the tool never leaves the material for certain: where its surface lies cannot be told; "
-                            "depth counts from position 0",
+        surface_.free_air
+            ? "the position where the force begins cannot be identified: depth is measured from position 0"
+            : "the tool may never leave the material, so the surface cannot be identified: depth is measured from "
+              "position 0",
         "");
   }
   if (surface_.offset_m != 0.0) {
     add("surface_offset", Severity::note, surface_.offset_m,
-        words("force begins at %+.3g mm (+- %.2g), not at 0", 1e3 * surface_.offset_m, 1e3 * surface_.standard_error_m),
-        "a model of such recordings has its surface there; tested with another model it has to be moved");
+        words("the force begins at %+.3g mm (+- %.2g), not at 0", 1e3 * surface_.offset_m,
+              1e3 * surface_.standard_error_m),
+        "a model fitted to this recording has its surface there; to test another model, move the surface");
   }
   if (surface_.tool_mass_kg > 0.0) {
     add("tool_mass", Severity::note, surface_.tool_mass_kg,
-        words("the force sensor carries %.3g g: in free air its force follows the acceleration",
+        words("the force sensor carries a mass of %.3g g: in free air the force follows the acceleration",
               1e3 * surface_.tool_mass_kg),
         "");
   }
   const double pull_N = surface_.force_zero_N - measures_.lowest_force_N;
   if (surface_.free_air && !(surface_.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
     add("adhesion", Severity::note, pull_N,
-        words("the material pulls at the tool by up to %.3g N: a fit learns it, and renders it", pull_N), "");
+        words("the material pulls the tool with up to %.3g N: a fitted model renders this adhesion", pull_N), "");
   }
   if (std::isfinite(surface_.offset_drift_error_m) &&
       std::abs(surface_.offset_drift_m) > std::max(kSurfaceDrift_m, 3.0 * surface_.offset_drift_error_m)) {
     add("surface_drift", Severity::warning, surface_.offset_drift_m,
         words("the surface moves by %+.3g mm between the first touch and the last", 1e3 * surface_.offset_drift_m),
-        "the specimen creeps or has slipped: fasten it, let it recover between strokes");
+        "the specimen creeps or slips: fasten it, and let it recover between strokes");
   }
   if (measures_.contact_rows == 0) {  // as recorded, the surface at 0
     add("no_contact", Severity::fatal, measures_.highest_position_m,
@@ -288,11 +291,11 @@ void Checker::check_surface() {
 void Checker::check_exploration() {
   const double from_m = measures_.outermost_contact_m;
   add("strokes", Severity::note, measures_.strokes,
-      words("%d %s, %.3g s in contact, from %.4g to %.4g mm", measures_.strokes,
+      words("the recording has %d %s with %.3g s in contact, from %.4g to %.4g mm", measures_.strokes,
             measures_.strokes == 1 ? "stroke" : "strokes",
             static_cast<double>(measures_.contact_rows) * measures_.median_step_s, 1e3 * from_m,
             1e3 * measures_.highest_position_m),
-      measures_.strokes < kFewStrokes ? "record more strokes of different depth and speed" : "");
+      measures_.strokes < kFewStrokes ? "record more strokes of different depths and speeds" : "");
   const double pressed_m = measures_.highest_position_m - from_m;
   if (!(pressed_m > 0.0)) return;
   int empty = 0;
@@ -310,7 +313,7 @@ void Checker::check_exploration() {
   }
   const int cells = static_cast<int>(kDepthQuarters * kSpeedBands);
   add("explored", Severity::note, static_cast<double>(cells - empty) / cells,
-      words("%d of %d cells of depth and speed were visited", cells - empty, cells),
+      words("the strokes cover %d of %d cells of depth and speed", cells - empty, cells),
       where.empty() ? "" : std::string("record next: ").append(where));
 }
 
@@ -321,16 +324,17 @@ void Checker::check_memory() {
   if (measures_.outward_travel_m < kMonotonicShare * measures_.inward_travel_m) {
     add("monotonic", Severity::warning,
         measures_.outward_travel_m / std::max(measures_.inward_travel_m, kLeastTravel_m),
-        "the tool goes in and hardly comes out, so that depth and memory cannot be told apart",
+        "the tool moves in and hardly out, so the effects of depth and memory cannot be separated",
         "record releases and holds");
   }
   if (measures_.duration_s < kRelaxationsToSee * longest_s) {
     add("too_short", Severity::warning, measures_.duration_s,
-        words("%.3g s are too short for a relaxation time of %.3g s", measures_.duration_s, longest_s),
+        words("the recording lasts %.3g s, which is too short for a relaxation time of %.3g s", measures_.duration_s,
+              longest_s),
         words("record at least %.2g s", kRelaxationsToSee * longest_s));
   } else if (measures_.longest_hold_s < longest_s) {
     add("no_hold", Severity::note, measures_.longest_hold_s,
-        words("the longest hold in contact is %.2g s, the scene's longest relaxation time %.3g s",
+        words("the longest hold in contact is %.2g s, and the scene's longest relaxation time is %.3g s",
               measures_.longest_hold_s, longest_s),
         words("hold still for %.2g s at two or three depths", 2.0 * longest_s));
   }

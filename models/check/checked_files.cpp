@@ -25,8 +25,10 @@ void add_repetitions(std::vector<CheckedFile>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (files[i].check.content_hash != files[j].check.content_hash) continue;
-      add_finding(files[i], {"repeated", Severity::warning, 1.0, "it has the same rows as " + files[j].path,
-                             "name every recording once: a repeated one counts twice, and errors on it say nothing"});
+      add_finding(
+          files[i],
+          {"repeated", Severity::warning, 1.0, "the file has the same rows as " + files[j].path,
+           "name every recording once: a repeated recording counts twice in a fit and proves nothing in a test"});
       break;
     }
   }
@@ -41,10 +43,10 @@ void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
       const bool speed = found->speed_ratio > kOtherSpeed;
       add_finding(files[i], {"contradiction", Severity::warning, found->force_N,
                              "its forces differ by " + general(std::abs(found->force_N), 2) + " N from those of " +
-                                 files[j].path + " at the same depth: another specimen, a preload, " +
-                                 (speed ? "a force zero, or the " + general(found->speed_ratio, 2) + "-fold speed"
-                                        : std::string("or a force zero")),
-                             "no single model renders both: fit them one by one, or subtract what differs"});
+                                 files[j].path + " at the same depth: the cause may be another specimen, a preload" +
+                                 (speed ? ", a force zero or a speed ratio of " + general(found->speed_ratio, 2)
+                                        : std::string(" or a force zero")),
+                             "one model cannot render both: fit them separately, or correct the difference first"});
       return;
     }
   }

@@ -46,25 +46,25 @@ std::string head(const ModelData& data, const ExportRequest& request) {
          " * " +
          real + " palpate_force(" + real + " time_s, " + real +
          " position_m): the force in N, positive out of the\n"
-         " *   material. position_m: as in the recordings, whose undisturbed surface lies at\n"
+         " *   material. position_m: as in the recordings, whose undisturbed surface is at\n"
          " *   " +
          exact.number(surface_position_m(data.features)) +
-         " m, positive inside. A value that is\n"
-         " *   not finite, or a time that is not later than the last one: 0, and nothing changes.\n"
+         " m, positive inside. If a value\n"
+         " *   is not finite or the time is not later than the last one: 0 N, and the state is kept.\n"
          " * " +
          real + " palpate_force_after(" + real + " step_s, " + real +
          " position_m): the same, `step_s` after the last\n"
          " *   call; better in single precision, where a large time has coarse steps.\n"
-         " * int palpate_out_of_domain(void): the last motion was unlike the recordings.\n"
+         " * int palpate_out_of_domain(void): 1 if the last motion was outside the recorded domain.\n"
          " * void palpate_reset(void): the next sample begins a new contact.\n"
          " *\n"
          " * One tool, one thread: the state is static. For two models in one program compile one\n"
          " * with -Dpalpate_force=other_force and so on.\n"
-         " * Positions are taken to be " +
+         " * The positions are assumed to be " +
          sensor_text(exact, request.sensor) +
          ". For another sensor define\n"
-         " * PALPATE_ENCODER_STEP_M and PALPATE_POSITION_NOISE_M when compiling: the step that\n"
-         " * positions come in, 0 where there is none, and the deviation beside it.\n"
+         " * PALPATE_ENCODER_STEP_M and PALPATE_POSITION_NOISE_M when compiling: the step of the\n"
+         " * positions (0 if there is none) and the standard deviation of the additional noise.\n"
          " * A recording of such positions, without measured velocity or acceleration, gives the\n"
          " * forces of palpate replay.\n"
          " */\n"

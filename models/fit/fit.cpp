@@ -65,9 +65,8 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   if (!corrects && method.can_take(kTakesCentres)) fitted->size = "0";
   MethodFit fit{prepared.common, std::move(fitted->report)};
   if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
-    fit.report.notes.push_back(
-        "at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
-        " samples were used, beginnings and stretches of the recordings; those in contact are of these");
+    fit.report.notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
+                               " samples were used: the beginnings and some sections of the recordings");
   }
   fit.data.method = method.name;
   fit.data.provenance.seed = request.seed;

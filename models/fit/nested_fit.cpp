@@ -69,7 +69,7 @@ FittedRbf NestedWeights::solve(Eigen::Index count) const {
 Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const MethodRequest& request,
                                   const FitControl& control) {
   if (request.method->choose == nullptr) {
-    return Error{std::string("the method \"") + request.method->name + "\" does not go on from fewer centres"};
+    return Error{std::string("the method \"") + request.method->name + "\" cannot continue from fewer centres"};
   }
   const Eigen::VectorXd jnd_N = site_thresholds(prepared);
   const auto sequence =

@@ -250,7 +250,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   if (!control.may_continue(0.05)) return interrupted();
   if (!(extent->depth_m > 0.0)) {
     return Error{
-        "no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
+        "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; "
         "record a press, check the sign of position_m, or set its zero (palpate import FILE --zero contact)"};
   }
   // Contact with a material that pulls is not one-sided: a force of 0 counts like any other.

@@ -80,7 +80,7 @@ Status add_item(std::string_view item, FeatureList& list) {
     for (const double threshold_mm : values) list.stop_thresholds_m.push_back(1e-3 * threshold_mm);
     return {};
   }
-  return wrong(item, "depth, velocity, maxwell:, stops: and creep:, of which only maxwell: may come again");
+  return wrong(item, "depth, velocity, maxwell:, stops: and creep:, where only maxwell: may be repeated");
 }
 
 std::size_t feature_count(const FeatureList& list) {
@@ -169,7 +169,7 @@ Status check_fit_options(const FitOptions& options) {
   const std::string centres = options.centres >= 1 && options.centres <= kMostCentres
                                   ? ""
                                   : "found " + std::to_string(options.centres) + ", expected 1 to " +
-                                        std::to_string(kMostCentres) + "; for every site there is direct";
+                                        std::to_string(kMostCentres) + "; direct uses every site";
   const std::pair<const char*, std::string> checks[] = {
       {"method", check_one_of(names, options.method)},
       {"centres", centres},
@@ -186,8 +186,8 @@ Status check_fit_options(const FitOptions& options) {
     if (!wrong.empty()) return Error{std::string(name) + ": " + wrong};
   }
   if (!options.relaxation.empty() && options.features != "auto" && options.features != "scene") {
-    return Error{"relaxation: these are times of the scene's features, and the features are \"" + options.features +
-                 "\"; leave one of the two out"};
+    return Error{"relaxation: found the features \"" + options.features +
+                 "\", expected the scene's features; leave one of the two out"};
   }
   return {};
 }

@@ -25,7 +25,7 @@ nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
     list.push_back({{"name", surface.name},
                     {"surface_offset_m", surface.offset_m},
                     {"standard_error_m", surface.standard_error_m},  // not finite: null
-                    {"told", std::isfinite(surface.standard_error_m)},
+                    {"identified", std::isfinite(surface.standard_error_m)},
                     {"force_zero_N", surface.force_zero_N},
                     {"force_lag_s", surface.lag_s}});
   }

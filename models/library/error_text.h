@@ -48,7 +48,7 @@ T guarded(T failed, Place place, Work&& work) noexcept {
   } catch (const std::exception& error) {
     place.fail(error.what());
   } catch (...) {
-    place.fail("unexpected: something that is no std::exception");
+    place.fail("unexpected: an exception that is not a std::exception");
   }
   return failed;
 }

@@ -50,7 +50,7 @@ class Check {
     positive(field + ".reference_depth_m", curve.reference_depth_m);
     that(std::all_of(curve.coefficient_N.begin(), curve.coefficient_N.end(), is_force) &&
              std::all_of(curve.knot_N.begin(), curve.knot_N.end(), is_force),
-         field, "a number that is no force", "at most 1e9 N");
+         field, "a number beyond any force", "at most 1e9 N");
   }
   const Status& status() const { return status_; }
 

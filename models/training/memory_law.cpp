@@ -113,8 +113,7 @@ Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& l
   if (Status status = search.add(surface, {}, true); !status) return status.error();
   const std::size_t found = surface.best();
   const bool lags = found == 1;
-  gains.push_back(
-      {"surface that lags", lags, surface.errors[1].rms_at_mean_score(), surface.errors[0].rms_at_mean_score()});
+  gains.push_back({"surface lag", lags, surface.errors[1].rms_at_mean_score(), surface.errors[0].rms_at_mean_score()});
 
   Tried slower{{surface.laws[found]}, {surface.errors[found]}};
   for (const double slowing : kSlowings) {
@@ -124,7 +123,7 @@ Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& l
   }
   const std::size_t chosen = slower.best();
   gains.push_back(
-      {"slower when deeper", chosen != 0,
+      {"depth-dependent relaxation", chosen != 0,
        chosen != 0 ? slower.errors[chosen].rms_at_mean_score() : slower.lowest_error(1, slower.errors.size()),
        slower.errors[0].rms_at_mean_score()});
   FeatureList result = list;

@@ -72,7 +72,8 @@ Result<std::vector<double>> identify_relaxation(MotionSource& source, const Tren
   if (!rows) return rows.error();
   const auto& ladder_s = rows->relaxation_times_s();
   if (ladder_s.empty()) {
-    return Error{"the recordings are too short to tell a relaxation time; record longer, or pass --relaxation scene"};
+    return Error{
+        "the recordings are too short to identify a relaxation time; record for longer, or pass --relaxation scene"};
   }
   const TrendRegression regression(*rows, source.folds(), problem, TrendRegression::Smoothness::fixed);
   Choice best = with_one_more(regression, *rows, {{}, regression.cross_validate(columns_of(*rows, {}))});

@@ -228,7 +228,7 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   set.contact_samples = static_cast<std::uint64_t>(moments.count);
   if (set.contact_samples == 0) {
     return Error{
-        "no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
+        "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; "
         "record a press, or check the sign and zero of position_m"};
   }
   set.normalisation = moments.normalisation();

@@ -37,7 +37,7 @@ void print_check_json(const std::vector<CheckedFile>& files) {
                     {"verdict", file.check.verdict()},
                     {"findings", findings},
                     {"noise_floor_within_jnd", file.check.noise_floor_within_jnd},
-                    {"surface_told", file.check.surface_identified},
+                    {"surface_identified", file.check.surface_identified},
                     {"surface_offset_m", file.check.surface_offset_m},
                     {"force_zero_N", file.check.force_zero_N}});
   }
@@ -73,9 +73,9 @@ std::string check_text(const CheckedFile& file) {
          << std::string(finding.code.size() < 17 ? 17 - finding.code.size() : 1, ' ') << finding.text
          << (finding.advice.empty() ? "" : "; " + finding.advice) << "\n";
   }
-  text << "  the noise of the force sensor alone leaves " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
-       << " % of the contact samples within the JND; it says nothing of a model\n";
-  if (!file.whole) text << "  checked by its first " << kMostCheckedRows << " rows\n";
+  text << "  because of the force noise, a perfect model would have "
+       << fixed(100.0 * file.check.noise_floor_within_jnd, 1) << " % of the contact samples within the JND\n";
+  if (!file.whole) text << "  only the first " << kMostCheckedRows << " rows were checked\n";
   return text.str();
 }
 
@@ -98,9 +98,10 @@ Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>
 
 void add_check(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* verb = app.add_subcommand("check", "Is this recording fit to be fitted?");
-  verb->add_option("recording", options->recordings, "Recordings")->required()->type_name("REC.csv");
-  verb->add_option("--scene", options->scene, "Scene whose relaxation times and JND line count")->capture_default_str();
+  CLI::App* verb = app.add_subcommand("check", "Check whether recordings are suitable for a fit");
+  verb->add_option("recording", options->recordings, "Recordings to check (CSV)")->required()->type_name("REC.csv");
+  verb->add_option("--scene", options->scene, "Scene that gives the relaxation times and the JND line")
+      ->capture_default_str();
   verb->add_flag("--json", options->json, "Print one JSON object");
   verbs.emplace_back(verb, [options] { return run_check(*options); });
 }

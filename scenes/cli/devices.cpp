@@ -17,15 +17,15 @@ namespace palpate::cli {
 namespace {
 
 void print_hid_protocols() {
-  std::printf("\nWHAT hid KNOWS\n");
+  std::printf("\nSUPPORTED BY hid\n");
   for (const DeviceProtocol* protocol : kHidProtocols) {
-    std::printf("  %s: %s; tried %s\n", protocol->name, protocol->description, kTried);
+    std::printf("  %s: %s; tested %s\n", protocol->name, protocol->description, kTried);
   }
 }
 
 void print_plugged_in(const std::vector<HidDiagnosis>& all, const std::string& assets) {
   std::printf("\nPLUGGED IN (hidraw)\n");
-  if (all.empty()) std::printf("  nothing; a haptic device shows up here as soon as it is plugged in\n");
+  if (all.empty()) std::printf("  none; a haptic device appears here when it is plugged in\n");
   bool problems = false;
   for (const HidDiagnosis& one : all) {
     std::printf("  %s  %04x:%04x  %s: %s\n", one.node.path.empty() ? "(no node)" : one.node.path.c_str(),
@@ -36,7 +36,7 @@ void print_plugged_in(const std::vector<HidDiagnosis>& all, const std::string& a
   }
   if (!problems) return;
   std::printf(
-      "\nThe udev rule, once: sudo cp %s/udev/70-palpate.rules /etc/udev/rules.d/ && sudo udevadm control "
+      "\nInstall the udev rule once: sudo cp %s/udev/70-palpate.rules /etc/udev/rules.d/ && sudo udevadm control "
       "--reload && sudo udevadm trigger\n",
       assets.c_str());
 }
@@ -53,7 +53,7 @@ Status print_devices() {
   std::size_t width = 0;
   for (const DeviceDescription& device : devices) width = std::max(width, device.name.size());
   const int column = static_cast<int>(width);
-  std::printf("%-*s  %-5s  %-6s  %s\n", column, "DEVICE", "FORCE", "USABLE", "WHAT IT IS");
+  std::printf("%-*s  %-5s  %-6s  %s\n", column, "DEVICE", "FORCE", "USABLE", "DESCRIPTION");
   for (const DeviceDescription& device : devices) {
     std::printf("%-*s  %-5s  %-6s  %s\n", column, device.name.c_str(), device.holder != Holder::none ? "yes" : "no",
                 device.problem.empty() ? "yes" : "no", device.summary.c_str());
@@ -87,9 +87,9 @@ Status run_devices(const DevicesOptions& options) {
 void add_devices(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<DevicesOptions>();
   CLI::App* command = app.add_subcommand("devices", "List the devices and say why one cannot be opened");
-  command->add_option("--test", options->test, "Moves nothing: lets a device show that its watchdog stops it")
+  command->add_option("--test", options->test, "Test the watchdog of a bridge device with a force of 0 N")
       ->type_name("bridge:TARGET");
-  command->add_flag("--bridge-remote", options->bridge_remote, "bridge:tcp: may name another computer");
+  command->add_flag("--bridge-remote", options->bridge_remote, "Allow bridge:tcp: to name another computer");
   verbs.emplace_back(command, [options] { return run_devices(*options); });
 }
 

@@ -20,9 +20,8 @@ struct ExportArguments {
 };
 
 std::string source_of_sensor(const ExportArguments& arguments, const ModelData& data) {
-  if (arguments.encoder_step_m > 0.0) return "as told";
-  return data.sensor ? "as in the recordings of the model"
-                     : "the model does not know its recordings' step: see --encoder-step";
+  if (arguments.encoder_step_m > 0.0) return "from --encoder-step";
+  return data.sensor ? "from the model's recordings" : "the model has no step of its recordings; see --encoder-step";
 }
 
 void print_summary(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
@@ -30,8 +29,8 @@ void print_summary(const ExportArguments& arguments, const ModelData& data, cons
   std::printf("%s: %s in %s precision, %zu bytes of C\n", arguments.out.c_str(), data.name.c_str(),
               arguments.single_precision ? "single" : "double", file.text.size());
   std::printf(
-      "takes positions in steps of %g um with a noise of %g um beside (%s);\n"
-      "a recording of such positions alone gives the forces of palpate replay\n",
+      "expects positions in steps of %g um with an additional noise of %g um (%s);\n"
+      "for a recording of such positions alone, it gives the forces of palpate replay\n",
       1e6 * request.sensor.encoder_step_m, 1e6 * request.sensor.position_noise_m,
       source_of_sensor(arguments, data).c_str());
   std::printf("tables %zu bytes, state %zu bytes\n", file.table_bytes, file.state_bytes);
@@ -56,13 +55,13 @@ void add_export(CLI::App& app, Verbs& verbs) {
   const auto arguments = std::make_shared<ExportArguments>();
   command->add_option("model", arguments->model, "Model file (JSON)")->required();
   command->add_option("--c", arguments->out, "C file to write")->required();
-  command->add_flag("--float", arguments->single_precision, "Single precision");
+  command->add_flag("--float", arguments->single_precision, "Compute in single precision [double]");
   command
       ->add_option("--encoder-step", arguments->encoder_step_m,
-                   "Steps that positions come in, metres; 0: those of the model's recordings")
+                   "Step of the positions in metres; 0: the step of the model's recordings")
       ->check(CLI::Range(0.0, 0.1))
       ->capture_default_str();
-  command->add_flag("--force", arguments->force, "Write over an existing file");
+  command->add_flag("--force", arguments->force, "Replace an existing file");
   verbs.emplace_back(command, [arguments] { return run_export(*arguments); });
 }
 

@@ -64,13 +64,13 @@ void check_usage(const CLI::App& verb, const FitArguments& arguments) {
     if (verb.count(needed) == 0) throw CLI::RequiredError(needed);
   }
   if (verb.count("--relaxation") > 0 && verb.count("--features") > 0 && arguments.options.features != "scene") {
-    throw CLI::ValidationError("--relaxation", "these are times of the scene's features, and --features asks for \"" +
-                                                   arguments.options.features + "\"; leave one of the two out");
+    throw CLI::ValidationError("--relaxation", "found --features \"" + arguments.options.features +
+                                                   "\", expected the scene's features; leave one of the two out");
   }
   const Method& method = *find_method(arguments.options.method);
   for (const MethodOnly& only : kMethodOnly) {
     if (verb.count(only.option) == 0 || method.can_take(only.takes)) continue;
-    throw CLI::ValidationError(only.option, std::string("not taken by method ") + method.name + ", only by " +
+    throw CLI::ValidationError(only.option, std::string("method ") + method.name + " does not take this option, only " +
                                                 methods_that_take(only.takes) + "; leave it out");
   }
 }
@@ -101,10 +101,10 @@ std::string training_contradiction(const std::vector<std::string>& recordings, c
   const bool changed = std::any_of(surfaces.begin(), surfaces.end(), [](const RecordingSurface& one) {
     return one.offset_m != 0.0 || one.force_zero_N != 0.0 || one.lag_s != 0.0;
   });
-  return "replayed as recorded, the training recordings have " + fixed(100.0 * as_recorded, 2) + " % within the JND, " +
+  return "the training recordings have " + fixed(100.0 * as_recorded, 2) + " % within the JND as recorded, and " +
          fixed(100.0 * printed, 2) + " % " +
-         (changed ? "with the surfaces, force zeros and lags above taken off"
-                  : "at positions where the model has its material; the rest are forces outside of it");
+         (changed ? "with the surfaces, force zeros and lags above corrected"
+                  : "where the model is in contact; the other forces were measured outside of it");
 }
 
 Status run_fit(const FitArguments& arguments) {
@@ -139,55 +139,64 @@ Status run_fit(const FitArguments& arguments) {
 void add_fit(CLI::App& app, Verbs& verbs) {
   auto arguments = std::make_shared<FitArguments>();
   CLI::App* verb = app.add_subcommand("fit", "Fit a force model to recordings");
-  verb->add_option("--recording", arguments->recordings, "Training recordings; together one training set")
+  verb->add_option("--recording", arguments->recordings,
+                   "Training recordings (CSV); together they form one training set")
       ->type_name("CSV");
   std::vector<std::string> names;
   for (const Method* method : methods()) names.emplace_back(method->name);
-  verb->add_option("--method", arguments->options.method, "One of " + method_names())->check(CLI::IsMember(names));
-  verb->add_flag("--list-methods", arguments->list_methods, "Name the methods, one to a line");
+  verb->add_option("--method", arguments->options.method, "Method of the correction: " + method_names())
+      ->check(CLI::IsMember(names));
+  verb->add_flag("--list-methods", arguments->list_methods, "Print the names of the methods, one per line");
   verb->add_option("--centres", arguments->options.centres,
-                   "Centres of " + methods_that_take(kTakesCentres) + "; for every site there is direct")
+                   "Number of centres, for " + methods_that_take(kTakesCentres) + "; direct uses every site")
       ->check(CLI::Range(1, kMostCentres))
       ->capture_default_str();
   verb->add_option("--candidates", arguments->options.candidates,
-                   "Sites tried per step, or all, of " + methods_that_take(kTakesCandidates))
+                   "Candidate sites per step, a number or all, for " + methods_that_take(kTakesCandidates))
       ->check(CLI::Validator(check_candidates, "N|all"))
       ->capture_default_str();
-  verb->add_option("--kernel", arguments->options.kernel, "The radial function")
+  verb->add_option("--kernel", arguments->options.kernel, "Kernel, for " + methods_that_take(kTakesKernel))
       ->check(CLI::IsMember(kernel_names()))
       ->capture_default_str();
-  verb->add_option("--weighting", arguments->options.weighting, "What an error counts: 1/JND, the paper's 1/f, or 1")
+  verb->add_option("--weighting", arguments->options.weighting,
+                   "Weight of an error: jnd (1/JND), relative (1/force, as in the paper) or none (1)")
       ->check(CLI::IsMember({"jnd", "relative", "none"}))
       ->capture_default_str();
   verb->add_option("--reduction", arguments->options.reduction,
-                   "Which samples become sites: feature space covered, the paper's 50 mN steps, or all")
+                   "Samples that become sites: coverage of the feature space, force (steps of 50 mN, as in the paper) "
+                   "or none (all)")
       ->check(CLI::IsMember({"coverage", "force", "none"}))
       ->capture_default_str();
   CLI::Option* recipe = verb->add_option("--recipe", arguments->options.recipe,
-                                         "The recipe of Hoever & Harders (2009); the same as --reduction force "
-                                         "--weighting relative. It decides these, the features and the surface")
+                                         "The recipe of Hoever & Harders (2009), the same as --reduction force "
+                                         "--weighting relative; it also sets the features and the surface")
                             ->check(CLI::IsMember({kRecipe2009}));
   for (const char* decided : {"--reduction", "--weighting"}) recipe->excludes(decided);
-  verb->add_option("--features", arguments->options.features,
-                   std::string("What the force may depend on: what the recordings support, the scene's features, or a "
-                               "list such as ") +
-                       kFeatureListExample)
+  verb->add_option(
+          "--features", arguments->options.features,
+          std::string("Features of the force: auto (those that the recordings support), scene (the scene's), or a "
+                      "list such as ") +
+              kFeatureListExample)
       ->check(CLI::Validator(check_features, "auto|scene|LIST"))
       ->capture_default_str();
-  verb->add_option("--relaxation", arguments->options.relaxation,
-                   "The scene's features with its relaxation times, identified ones, or these")
+  verb->add_option(
+          "--relaxation", arguments->options.relaxation,
+          "Use the scene's features with these relaxation times: scene (the scene's), auto (identified) or a list in s")
       ->check(CLI::Validator(check_relaxation, "scene|auto|S,S"));
   verb->add_option("--surface", arguments->options.surface,
-                   "Where each recording's surface is: found, or at 0 as recorded")
+                   "Surface position of each recording: auto (estimated) or recorded (0)")
       ->check(CLI::IsMember({"auto", "recorded"}))
       ->capture_default_str();
   for (const char* decided : {"--features", "--surface"}) recipe->excludes(decided);
   verb->add_option("--grid", arguments->options.grid,
-                   "Nodes of the grid per feature [25x11x11x11], of " + methods_that_take(kTakesGrid))
+                   "Nodes of the grid along each feature [25x11x11x11], for " + methods_that_take(kTakesGrid))
       ->check(CLI::Validator(check_grid, "NxN"));
-  verb->add_option("--scene", arguments->scene, "Scene whose features and JND line count")->capture_default_str();
-  verb->add_option("--seed", arguments->options.seed, "Of " + methods_that_take(kTakesSeed))->capture_default_str();
-  verb->add_option("--out", arguments->out, "Model file to write")->type_name("JSON");
+  verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
+      ->capture_default_str();
+  verb->add_option("--seed", arguments->options.seed,
+                   "Seed of the random numbers, for " + methods_that_take(kTakesSeed))
+      ->capture_default_str();
+  verb->add_option("--out", arguments->out, "Model file to write (JSON)")->type_name("JSON");
   verb->add_flag("--force", arguments->force, "Replace an existing file");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   verb->parse_complete_callback([verb, arguments] { check_usage(*verb, *arguments); });

@@ -32,7 +32,8 @@ void print_gains(const std::vector<PartGain>& gains) {
 }
 
 std::string strength_text(const StrengthChoice& strength) {
-  if (strength.strength == 0.0) return "off: it does not lower the cross-validated error, so the model is its trend";
+  if (strength.strength == 0.0)
+    return "off: it does not lower the cross-validated error, so the model is the trend alone";
   return "strength " + fixed(strength.strength, 2) + "; cross-validated error " + fixed(strength.error_over_jnd, 3) +
          " JND, trend alone " + fixed(strength.trend_error_over_jnd, 3) + " JND";
 }
@@ -44,7 +45,7 @@ void print_surfaces(const Provenance& provenance) {
                                   : std::string(" mm (not identified)");
     std::cout << "surface             " << fixed(1e3 * surface.offset_m, 3) << error << ", force zero "
               << fixed(1e3 * surface.force_zero_N, 1) << " mN"
-              << (surface.lag_s != 0.0 ? ", force moved back by " + fixed(1e3 * surface.lag_s, 1) + " ms" : "") << ": "
+              << (surface.lag_s != 0.0 ? ", force lag " + fixed(1e3 * surface.lag_s, 1) + " ms" : "") << ": "
               << surface.name << "\n";
   }
 }
@@ -61,9 +62,11 @@ void print_fit(const RecordingsFit& fitted, const std::string& sensor, const std
   print_surfaces(provenance);
   // The depth is the first feature.
   if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
-    std::cout << "depth begins        at " << fixed(1e3 * begins_m, 3) << " mm, where the recordings' force does\n";
+    std::cout << "depth starts        at " << fixed(1e3 * begins_m, 3)
+              << " mm, where the force of the recordings begins\n";
   std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
-            << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "all of it") << "\n"
+            << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "full strength")
+            << "\n"
             << "fit time            " << fixed(seconds, 2) << " s\n"
             << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %" << sensor << "\n";
   for (const std::string& note : fit.report.notes) std::cout << "note                " << note << "\n";

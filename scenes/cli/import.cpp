@@ -82,9 +82,9 @@ Status move_zero(const std::string& zero, Recording& recording) {
   if (zero == "contact") {
     const SurfaceEstimate surface = estimate_surface(recording);
     if (!surface.identified()) {
-      return Error{"where force begins cannot be told, " +
-                   std::string(surface.free_air ? "although there is free air" : "for there is no free air") +
-                   "; give --zero first, or a position in metres"};
+      return Error{std::string("the position where the force begins cannot be identified") +
+                   (surface.free_air ? "" : ", because there is no free air") +
+                   "; give --zero first or a position in metres"};
     }
     at_m = surface.raw_offset_m;
   } else if (zero != "first") {
@@ -159,8 +159,8 @@ Status run_import(const ImportOptions& options) {
     if (Status status = move_zero(options.zero, table->recording); !status) {
       return Error{options.file + ": " + status.error().message};
     }
-    table->notes.push_back("position 0 is what was " +
-                           fixed(1e3 * (before_m - table->recording.rows.front().position_m), 4) + " mm");
+    table->notes.push_back("position 0 was at " +
+                           fixed(1e3 * (before_m - table->recording.rows.front().position_m), 4) + " mm in the table");
   }
   const Status written =
       write_recording(options.out, table->recording, import_origin(options.file, request, *table), options.force);
@@ -177,29 +177,31 @@ Status run_import(const ImportOptions& options) {
 
 void add_import(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* verb = app.add_subcommand("import", "Turn another program's table into a recording");
-  verb->add_option("file", options->file, "Table as text: CSV, TXT, LVM, TSV, ...")->required()->type_name("FILE");
-  verb->add_option("--out", options->out, "Recording to write")->required()->type_name("REC.csv");
-  verb->add_option("--columns", options->columns, "time=NAME,position=NAME,force=NAME; a name or a number from 1")
+  CLI::App* verb = app.add_subcommand("import", "Convert a table of another program to a recording");
+  verb->add_option("file", options->file, "Table as text (CSV, TXT, LVM, TSV)")->required()->type_name("FILE");
+  verb->add_option("--out", options->out, "Recording to write (CSV)")->required()->type_name("REC.csv");
+  verb->add_option("--columns", options->columns, "Columns, by name or by number from 1 [guessed from the header]")
       ->delimiter(',')
       ->type_name("ROLE=NAME,...");
   verb->add_option("--units", options->units,
-                   "Units that the header does not say or says wrongly, such as mm,N or ms,mm,mN")
+                   "Units that the header lacks or has wrong, such as mm,N or ms,mm,mN [from the header]")
       ->delimiter(',')
       ->type_name("UNIT,...");
-  verb->add_option("--rate", options->rate_Hz, "Rows are evenly spaced at this rate; the file's time is not used")
+  verb->add_option("--rate", options->rate_Hz, "Rate of evenly spaced rows in Hz; the times in the file are ignored")
       ->check(CLI::Range(10.0, 20000.0))
       ->type_name("HZ");
-  verb->add_option("--flip", options->flips, "Turn the sign round: position, force or both")
+  verb->add_option("--flip", options->flips, "Reverse the sign of position, force or both")
       ->delimiter(',')
       ->check(CLI::IsMember({"position", "force", "both"}));
-  verb->add_option("--zero", options->zero, "Where position 0 is: contact (where force begins), first (row), or metres")
+  verb->add_option("--zero", options->zero,
+                   "Position that becomes 0: contact (where the force begins), first (the first row), or a value in m "
+                   "[unchanged]")
       ->check(CLI::Validator(check_zero, "contact|first|M"));
-  verb->add_option("--gain", options->gain_N_per_V, "Newtons in a volt, for a force recorded in volts")
+  verb->add_option("--gain", options->gain_N_per_V, "Newtons per volt, for a force recorded in volts")
       ->type_name("N_PER_V");
-  verb->add_option("--skip-bad-rows", options->skip_bad_rows, "So many rows that do not parse may be left out")
+  verb->add_option("--skip-bad-rows", options->skip_bad_rows, "Largest number of unreadable rows to leave out [0]")
       ->type_name("N");
-  verb->add_option("--decimal", options->decimal, "Instead of the guess: point or comma")
+  verb->add_option("--decimal", options->decimal, "Decimal mark: point or comma [guessed]")
       ->check(CLI::IsMember({"point", "comma"}));
   verb->add_flag("--json", options->json, "Print one JSON object");
   verb->add_flag("--force", options->force, "Replace an existing file");

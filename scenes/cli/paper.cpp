@@ -27,11 +27,11 @@ Status run(PaperRequest request) {
 }  // namespace
 
 void add_paper(CLI::App& app, Verbs& verbs) {
-  CLI::App* verb = app.add_subcommand("paper", "The protocol, figures and claims of Hoever & Harders (2009)");
+  CLI::App* verb = app.add_subcommand("paper", "Repeat the protocol, figures and claims of Hoever & Harders (2009)");
   const auto request = std::make_shared<PaperRequest>();
-  verb->add_option("--out", request->out, "Folder to make")->required()->type_name("DIR");
-  verb->add_flag("--quick", request->quick, "A fifth of the recordings, and fewer fits");
-  verb->add_flag("--force", request->force, "Replace an earlier one");
+  verb->add_option("--out", request->out, "Folder to create")->required()->type_name("DIR");
+  verb->add_flag("--quick", request->quick, "Use a fifth of the recordings and fewer fits");
+  verb->add_flag("--force", request->force, "Replace an earlier result");
   verbs.emplace_back(verb, [request] { return run(*request); });
 }
 

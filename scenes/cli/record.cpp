@@ -151,14 +151,15 @@ Status run_record(const RecordOptions& options) {
   auto device = open_for_recording(options);
   if (!device) return device.error();
   if (options.guide && !(*device)->measures_force()) {
-    return Error{"--guide: " + options.device + " measures no force, and without it nobody knows where the surface is"};
+    return Error{"--guide: " + options.device +
+                 " measures no force, so the surface cannot be found; leave --guide out"};
   }
   const Result<std::string> recorded = record(options, check_request(*scene), **device);
   (*device)->close();
   if (!recorded) return recorded.error();
   std::printf("%s\n", recorded->c_str());
   if (!(*device)->measures_force()) {
-    std::printf("%s has time and motion alone: to fit it, add a column force_N with the force of a sensor\n",
+    std::printf("%s has no force: before a fit, add a column force_N with the force of a sensor\n",
                 options.out.c_str());
     return {};
   }
@@ -173,16 +174,17 @@ Status run_record(const RecordOptions& options) {
 void add_record(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<RecordOptions>();
   CLI::App* verb = app.add_subcommand("record", "Record motion and measured force of a tool, until Ctrl-C");
-  verb->add_option("--device", options->device, "As palpate-demo takes it; palpate devices lists them")
+  verb->add_option("--device", options->device, "Name of the device; palpate devices lists the names")
       ->required()
       ->type_name("NAME");
   verb->add_option("--out", options->out, "Recording to write (CSV)")->required()->type_name("REC.csv");
-  verb->add_option("--seconds", options->seconds, "End by itself after so long")->check(CLI::Range(0.1, 1e6));
-  verb->add_flag("--guide", options->guide, "Say what to press next, and which depths and speeds are still missing");
-  verb->add_option("--scene", options->scene, "Scene whose relaxation times and JND line the check counts with")
+  verb->add_option("--seconds", options->seconds, "Length of the recording in s [until Ctrl-C]")
+      ->check(CLI::Range(0.1, 1e6));
+  verb->add_flag("--guide", options->guide, "Say what to press next, and show which depths and speeds are missing");
+  verb->add_option("--scene", options->scene, "Scene that gives the relaxation times and the JND line")
       ->capture_default_str();
-  verb->add_flag("--bridge-remote", options->bridge_remote, "bridge:tcp: may name another computer");
-  verb->add_flag("--force", options->force, "Replace --out if it exists");
+  verb->add_flag("--bridge-remote", options->bridge_remote, "Allow bridge:tcp: to name another computer");
+  verb->add_flag("--force", options->force, "Replace an existing file");
   verbs.emplace_back(verb, [options] { return run_record(*options); });
 }
 

@@ -14,9 +14,9 @@ constexpr double kRest = 10.0;  // pause after a check, as a multiple of its dur
 constexpr int kSmallStrokes = 10;
 
 constexpr const char* kPresses[kSpeedBands] = {
-    "slow presses: take five seconds for the way in and as long for the way out",
-    "presses by hand: half a second in, half a second out",
-    "fast presses: as quick taps, in and out at once",
+    "press slowly: five seconds in and five seconds out",
+    "press at normal speed: half a second in and half a second out",
+    "press fast: quick taps, in and out without a pause",
 };
 
 bool visited(const RecordingMeasures& measures, std::size_t quarter, std::size_t band) {
@@ -35,7 +35,8 @@ std::string guide_advice(const RecordingMeasures& measures, double longest_relax
   if (measures.longest_hold_s < longest_relaxation_s) {
     return "press, and hold still for " + fixed(2.0 * longest_relaxation_s, 1) + " s";
   }
-  if (measures.small_strokes < kSmallStrokes) return "small strokes: stay in the block and go a little in and out";
+  if (measures.small_strokes < kSmallStrokes)
+    return "make small strokes: stay in the block and move a little in and out";
   return {};
 }
 

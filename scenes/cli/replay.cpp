@@ -114,7 +114,7 @@ OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
   object["tick_ns"] = time_json(replayed.time.tick, replayed.time.measured);
   add_figures(object["surface_moved"], replayed.surface_moved);
   object["surface_offset_m"] = replayed.surface.at;
-  object["surface_told"] = replayed.surface.identified;
+  object["surface_identified"] = replayed.surface.identified;
   const PredictedErrors& predicted = replayed.predicted;
   object["predicted_error"] = {{"bound_95_held", number_or_null(!std::isnan(predicted.coverage), predicted.coverage)},
                                {"median_bound_N", number_or_null(!std::isnan(predicted.median_N), predicted.median_N)}};
@@ -164,8 +164,8 @@ std::string ambiguity_remark(const ReplayedRecording& replayed, const std::vecto
     if (surface.force_offset_N == 0.0) continue;
     char text[320];
     std::snprintf(text, sizeof text,
-                  "a surface that lies at %+.3f mm for %s and a force that is %+.3f N too large explain this recording "
-                  "as well as each other: neither is taken off",
+                  "a surface at %+.3f mm for %s and a force offset of %+.3f N explain this recording equally well: "
+                  "neither is corrected",
                   1e3 * surface.minimum_at, models[i].name.substr(0, 64).c_str(), surface.force_offset_N);
     return text;
   }
@@ -189,8 +189,8 @@ std::string surface_remark(const ReplayedRecording& replayed, const std::vector<
   char text[320];
   std::snprintf(text, sizeof text,
                 "the surface of this recording is at %+.3f mm for %s, which changes the figures: "
-                "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface moved, which "
-                "uses these forces",
+                "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface moved; the "
+                "surface is estimated from these same forces",
                 1e3 * replayed.models[most].surface.at, models[most].name.substr(0, 64).c_str(), 1e2 * plain.within_jnd,
                 1e3 * plain.rms_error_N, 1e2 * moved.within_jnd, 1e3 * moved.rms_error_N);
   return text;
@@ -293,20 +293,19 @@ Status run(const Options& options) {
 void add_replay(CLI::App& app, Verbs& verbs) {
   CLI::App* command = app.add_subcommand("replay", "Run models over recordings and measure their errors");
   const auto options = std::make_shared<Options>();
-  command->add_option("--recording", options->recordings, "Recordings to replay; repeat the option or list them")
+  command->add_option("--recording", options->recordings, "Recordings to replay (CSV), one or more")
       ->required()
       ->type_name("CSV");
-  command->add_option("--model", options->models, "Model file (JSON); up to 16, repeat the option or list them")
-      ->required();
-  command->add_option("--name", options->names, "What to call the models, one for each, in their order");
-  command->add_option(
-      "--plot", options->plot,
-      "Draw force, differences in the JND band and errors (.svg or .png); of several recordings PLOT_NAME, one each");
-  command->add_option(
-      "--out", options->out,
-      "Write features and forces, row by row, to this file (CSV); of several recordings OUT_NAME, one each");
+  command->add_option("--model", options->models, "Model files (JSON), 1 to 16")->required();
+  command->add_option("--name", options->names,
+                      "Names of the models in the results, one for each --model in the same order [as in the files]");
+  command->add_option("--plot", options->plot,
+                      "Figure to draw (.svg or .png): force, errors in JND, and errors over force; for several "
+                      "recordings PLOT_RECORDING");
+  command->add_option("--out", options->out,
+                      "File to write (CSV): features and forces of every row; for several recordings OUT_RECORDING");
   command->add_flag("--json", options->json, "Print one JSON object instead of a table");
-  command->add_flag("--force", options->force, "Write over an existing file");
+  command->add_flag("--force", options->force, "Replace an existing file");
   verbs.emplace_back(command, [options] { return run(*options); });
 }
 

@@ -74,14 +74,17 @@ Status run(const Arguments& arguments) {
 }  // namespace
 
 void add_report(CLI::App& app, Verbs& verbs) {
-  CLI::App* verb = app.add_subcommand("report", "Fit every method, measure speed and error, write a page");
+  CLI::App* verb =
+      app.add_subcommand("report", "Fit every method, measure speed and error, and write a page of results");
   const auto arguments = std::make_shared<Arguments>();
-  verb->add_option("--train", arguments->train, "Recordings to train on; none: the virtual silicone")->type_name("CSV");
-  verb->add_option("--test", arguments->test, "Recordings to test on; none: k-fold over the training recordings")
+  verb->add_option("--train", arguments->train, "Training recordings (CSV) [virtual silicone]")->type_name("CSV");
+  verb->add_option("--test", arguments->test,
+                   "Test recordings (CSV) [k-fold cross-validation of the training recordings]")
       ->type_name("CSV");
-  verb->add_option("--scene", arguments->scene, "Scene whose features and JND line count")->capture_default_str();
-  verb->add_option("--out", arguments->out, "Folder to make")->required()->type_name("DIR");
-  verb->add_flag("--quick", arguments->quick, "Fewer models: some 10 seconds instead of a minute");
+  verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
+      ->capture_default_str();
+  verb->add_option("--out", arguments->out, "Folder to create")->required()->type_name("DIR");
+  verb->add_flag("--quick", arguments->quick, "Fit fewer models: about 10 s instead of a minute");
   verb->add_flag("--force", arguments->force, "Replace an earlier report");
   verbs.emplace_back(verb, [arguments] { return run(*arguments); });
 }

@@ -37,7 +37,7 @@ struct StudyOptions {
 constexpr std::uint64_t kPopulationStream = 51;
 
 void print_left_out(const std::string& who, std::size_t unusable) {
-  if (unusable > 0) std::printf("%s: %zu trials left out, their forces were not rendered\n", who.c_str(), unusable);
+  if (unusable > 0) std::printf("%s: %zu trials were left out because their forces were not rendered\n", who.c_str(), unusable);
 }
 
 void print_analysis(const StudyAnalysis& analysis) {
@@ -186,8 +186,8 @@ void add_simulate_options(CLI::App* verb, StudyOptions& options) {
 }  // namespace
 
 void add_study(CLI::App& app, Verbs& verbs) {
-  CLI::App* study =
-      app.add_subcommand("study", "The force-discrimination study (palpate-demo --scene jnd_study): analyse, simulate");
+  CLI::App* study = app.add_subcommand(
+      "study", "Analyse or simulate the force-discrimination study (palpate-demo --scene jnd_study)");
   study->require_subcommand(1);
   const auto options = std::make_shared<StudyOptions>();
   CLI::App* analyses = study->add_subcommand(

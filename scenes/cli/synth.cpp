@@ -67,17 +67,16 @@ Status run_synth(const SynthOptions& options) {
 
 void add_synth(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<SynthOptions>();
-  CLI::App* verb = app.add_subcommand("synth", "Make a recording: a virtual hand presses a virtual material");
-  verb->add_option("--material", options->rig.material, "What to press; --list names them");
-  verb->add_option("--seed", options->rig.seed, "Which hand motion and noise")
+  CLI::App* verb = app.add_subcommand("synth", "Make a recording in which a virtual hand presses a virtual material");
+  verb->add_option("--material", options->rig.material, "Material to press; --list prints the names");
+  verb->add_option("--seed", options->rig.seed, "Seed of the hand motion and the sensor noise")
       ->check(whole_number)
       ->capture_default_str();
-  options->seconds =
-      verb->add_option("--seconds", options->rig.seconds, "How long; the material's own length if not given");
-  verb->add_option("--rate", options->rig.rate_Hz, "Rows per second, 10 to 20000")->capture_default_str();
+  options->seconds = verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]");
+  verb->add_option("--rate", options->rig.rate_Hz, "Rows per second (Hz), 10 to 20000")->capture_default_str();
   verb->add_option("--out", options->out, "Recording to write (CSV)");
-  verb->add_flag("--force", options->force, "Replace --out if it exists");
-  verb->add_flag("--list", options->list, "Name the materials and their relaxation times");
+  verb->add_flag("--force", options->force, "Replace an existing file");
+  verb->add_flag("--list", options->list, "Print the materials and their relaxation times");
   verb->parse_complete_callback([options] { check_usage(*options); });
   verbs.emplace_back(verb, [options] { return run_synth(*options); });
 }

@@ -220,7 +220,7 @@ void LiveSession::publish(std::string why) {
 }
 
 void LiveSession::remove(std::size_t slot) {
-  if (models_.remove(slot)) publish(models_.info(slot).name + " was taken out");
+  if (models_.remove(slot)) publish(models_.info(slot).name + " was removed");
 }
 
 void LiveSession::treat_as_this_material(std::size_t slot) {
@@ -323,9 +323,9 @@ Verdict LiveSession::verdict() const {
   const bool of_model = comparison_.reference() == ReferenceKind::direct;
   Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");
   if (of_model && verdict.detail.empty())
-    verdict.detail = "No true force is known here: test on a second recording (M).";
-  if (replay() != nullptr && replays_training()) verdict.detail += " Tested on its own training.";
-  if (!models_.all_settled()) verdict.detail = "So far: others are still being fitted. " + verdict.detail;
+    verdict.detail = "There is no true force here: test on a second recording (M).";
+  if (replay() != nullptr && replays_training()) verdict.detail += " This is its training recording.";
+  if (!models_.all_settled()) verdict.detail = "Preliminary: other models are still being fitted. " + verdict.detail;
   return verdict;
 }
 
@@ -401,7 +401,7 @@ void LiveSession::hold() {
 std::vector<std::string> LiveSession::recording_comments() const {
   return {"recorded live; scene " + scene_.name + ", device " + device_->name(),
           "force_N: " + reference_words() + ", not what the device rendered",
-          "a stream that starts over (end of a replay, seek) begins 30 s later than the last one ended",
+          "when the stream restarts (end of a replay, seek), time_s continues 30 s later",
           "position_m: " + (test_.offset_m() == 0.0
                                 ? std::string("as the device gave it")
                                 : "moved to the models' surface by " + fixed(-1e3 * test_.offset_m(), 3) + " mm")};

@@ -217,7 +217,7 @@ bool SessionModels::remove(std::size_t index) {
   if (index >= slots_.size() || slots_[index]->removed) return false;
   Slot& slot = *slots_[index];
   if (ready_slots().size() == (slot.takes_part() ? 1 : 0)) {
-    notices_.push_back({"the last model stays: there must be one to press", false});
+    notices_.push_back({"the last model cannot be removed", false});
     return false;
   }
   slot.removed = true;
@@ -276,7 +276,7 @@ bool SessionModels::has_room(const std::string& what) {
     if (slots_[i]->hidden() && direct_ != i) return true;
   }
   notices_.push_back({"cannot " + what + ": there are " + std::to_string(kMaxModels) +
-                          " models already; take one out (right button on its row)",
+                          " models already; remove one (right button on its row)",
                       true});
   return false;
 }
@@ -358,7 +358,7 @@ bool SessionModels::load_file(const std::string& path) {
   join(loaded_.back(), finished);
   notices_.push_back(
       {"loaded " + slot.info.name + " from " + path +
-           (slot.info.other_material ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
+           (slot.info.other_material ? ": of " + recordings_of(*slot.model) + ", without a reference force here" : ""),
        false});
   return true;
 }

@@ -156,7 +156,7 @@ Notice SessionRecorder::finish() {
   char length[64];
   std::snprintf(length, sizeof length, " (%.1f s)", time_.last_s() - time_.gaps_s());
   return {"recorded " + std::to_string(writer_->rows()) + " rows" + length + " into " + request_.path +
-              counted(dropped, "were lost, the disk was too slow") +
+              counted(dropped, "were lost because the disk was too slow") +
               counted(counts_.unusable, "that the loop could not use were left out") +
               counted(counts_.without_force, "without a force were left out"),
           dropped > 0};

@@ -11,7 +11,7 @@ namespace {
 
 // The largest depth of nesting; the format needs three levels.
 constexpr int kJndNesting = 8;
-constexpr const char* kAdvice = "; write it anew with palpate study analyse";
+constexpr const char* kAdvice = "; write it again with palpate study analyse";
 
 }  // namespace
 
@@ -27,12 +27,12 @@ Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path) {
   }
   const JsonNode version = fields.member(top, "version", "1");
   if (version.value != nullptr && *version.value != 1) {
-    fields.complain(version.pointer, found(*version.value) + ", expected the version 1");
+    fields.complain(version.pointer, found(*version.value) + ", expected version 1");
     return *fields.error();
   }
   const JndLine line{fields.number(top, "offset_N", {0.0, 100.0, true}),
                      fields.number(top, "weber_fraction", {0.0, 1.0})};
-  for (const char* told : {"criterion", "subjects", "fitted", "points"}) fields.optional_member(top, told);
+  for (const char* ignored : {"criterion", "subjects", "fitted", "points"}) fields.optional_member(top, ignored);
   fields.refuse_unknown(top);
   if (const std::optional<Error> error = fields.error()) return *error;
   return line;

@@ -96,7 +96,7 @@ class SceneReader : private JsonFields {
       has_depth = has_depth || scene_.features.back().kind == FeatureKind::depth;
     }
     if (!has_depth) {
-      complain("/features", "found no feature of kind \"depth\", expected one: no force without it");
+      complain("/features", "found no feature of kind \"depth\", expected one: every force depends on the depth");
     }
   }
 

@@ -68,14 +68,12 @@ std::string plan_name(const SlotPlan& plan) {
 const std::vector<LineUp>& line_ups() {
   static const std::vector<LineUp> all = {
       {"Ladder",
-       "few centres beside many: the paper's recipe with 10 centres, and this program's own",
+       "the paper's recipe with 10 centres beside this program's fits",
        {"greedy", "paper:random-10", "paper:greedy-10", "paper:kdtree-10", "voxel", "direct", "trend"}},
       {"2009",
-       "the paper's recipe: few centres, the grid and all sites",
+       "the paper's recipe with few centres, the grid and all sites",
        {"paper:random-10", "paper:kdtree-10", "paper:greedy-10", "paper:voxel", "paper:direct"}},
-      {"Palpate",
-       "this program's own fits of every method",
-       {"greedy", "kdtree", "random", "voxel", "direct", "trend"}}};
+      {"Palpate", "this program's fit of every method", {"greedy", "kdtree", "random", "voxel", "direct", "trend"}}};
   return all;
 }
 

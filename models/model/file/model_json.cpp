@@ -236,8 +236,9 @@ class ModelReader {
   void kind(FeatureKind& value) {
     const JsonNode node = fields_.member(at_, "kind", "a text");
     if (node.value != nullptr && *node.value == "fading_peak") {
-      fields_.complain(node.pointer,
-                       "found \"fading_peak\", a feature that fits no longer use; fit again (palpate fit)");
+      fields_.complain(
+          node.pointer,
+          "found \"fading_peak\", a feature that this version does not have; fit the model again (palpate fit)");
       return;
     }
     std::vector<std::string> names;
@@ -403,7 +404,8 @@ Status check(const ModelData& data) {
     plausible = plausible && std::isfinite(surface.offset_m) && std::isfinite(surface.force_zero_N) &&
                 surface.standard_error_m >= 0.0;
   }
-  if (!plausible) return Error{"provenance: found a number that is negative or not finite, expected finite ones"};
+  if (!plausible)
+    return Error{"provenance: found a number that is negative or not finite, expected finite numbers of 0 or more"};
   return {};
 }
 

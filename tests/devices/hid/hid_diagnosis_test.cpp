@@ -35,7 +35,7 @@ TEST(DeviceBus, SaysWhatAPluggedInDeviceIsAndWhyItCannotBeUsed) {
   EXPECT_EQ(diagnose(mouse).at(0).protocol, &kSpaceMouseProtocol);
   FakeDeviceBus keyboard(DeviceNode{"/dev/hidraw0", "Keyboard", 1, 2, 1, 6});
   diagnosis = diagnose(keyboard).at(0);
-  EXPECT_EQ(diagnosis.use, "none that this program uses");
+  EXPECT_EQ(diagnosis.use, "not supported");
   EXPECT_EQ(diagnosis.problem, "");
   EXPECT_EQ(keyboard.opened, 0);
 }

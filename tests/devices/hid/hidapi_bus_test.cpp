@@ -13,7 +13,9 @@ TEST(HidapiBus, SaysWhatToDoAboutAnErrorOfTheSystem) {
             "/dev/hidraw0: no permission; install assets/udev/70-palpate.rules in /etc/udev/rules.d, then plug the "
             "device in again");
   EXPECT_EQ(open_error_words("/dev/hidraw0", EBUSY), "/dev/hidraw0: in use by another program; close it");
-  EXPECT_EQ(open_error_words("/dev/hidraw0", ENOENT).rfind("/dev/hidraw0: no node although", 0), 0u);
+  EXPECT_EQ(
+      open_error_words("/dev/hidraw0", ENOENT).rfind("/dev/hidraw0: the device is plugged in but has no node; ", 0),
+      0u);
   EXPECT_EQ(open_error_words("/dev/hidraw0", EIO), "/dev/hidraw0: Input/output error");
 }
 

@@ -105,7 +105,7 @@ TEST(SpaceMouse, IsADeviceWithoutForce) {
       std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol}))));
   EXPECT_EQ(device.holder(), Holder::simulated);
   EXPECT_EQ(device.note(),
-            "SpaceMouse, input only: no force: SpaceNavigator, /dev/hidraw8; tried on real hardware: no; on an "
+            "SpaceMouse, input only: no force: SpaceNavigator, /dev/hidraw8; tested on real hardware: no; on an "
             "emulated device: yes");
   ASSERT_TRUE(device.open().ok());
   DeviceSample sample;

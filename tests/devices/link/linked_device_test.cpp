@@ -31,7 +31,7 @@ TEST(LinkedDevice, PushesAfterZeroingAndLetsGoWhenClosed) {
   FakeDeviceBus bus;
   auto device = open_board(bus);
   EXPECT_EQ(device->note(),
-            "OpenFFBoard, one axis: FFBoard, /dev/hidraw7; tried on real hardware: no; on an emulated device: yes");
+            "OpenFFBoard, one axis: FFBoard, /dev/hidraw7; tested on real hardware: no; on an emulated device: yes");
   EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth& health) {
     return health.faults == 0 && health.zeroing == Zeroing::needed;
   }));

@@ -51,7 +51,7 @@ TEST(DeviceRegistry, AutoPrefersAHapticDevice) {
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->name(), "hid");
   EXPECT_EQ((*device)->note(),
-            "OpenFFBoard, one axis: FFBoard, /dev/hidraw7; tried on real hardware: no; on an emulated device: yes");
+            "OpenFFBoard, one axis: FFBoard, /dev/hidraw7; tested on real hardware: no; on an emulated device: yes");
   EXPECT_EQ((*device)->limits().largest_N, 5.0);
   EXPECT_FALSE((*device)->health(0.0).may_push()) << "not zeroed";
   for (const DeviceDescription& description : list_devices(request_with(bus))) EXPECT_EQ(description.problem, "");
@@ -61,26 +61,27 @@ TEST(DeviceRegistry, AutoSaysWhatItFellBackToAndWhy) {
   auto device = open_device("auto", request_with(nothing_plugged_in()));
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->name(), "auto");
-  EXPECT_EQ((*device)->note(), "no haptic device is plugged in: a simulated hand until the mouse takes over");
+  EXPECT_EQ((*device)->note(), "no haptic device is plugged in: a simulated hand moves until the mouse takes over");
   test::FakeDeviceBus refused;
   refused.refusals = 1000;
   device = open_device("auto", request_with(refused));
   ASSERT_TRUE(device.ok());
-  EXPECT_EQ((*device)->note(), "/dev/hidraw7: no permission: a simulated hand until the mouse takes over");
+  EXPECT_EQ((*device)->note(), "/dev/hidraw7: no permission: a simulated hand moves until the mouse takes over");
   test::FakeDeviceBus mouse(test::found_space_mouse());
   mouse.silent = true;
   device = open_device("auto", request_with(mouse));
   ASSERT_TRUE(device.ok());
-  EXPECT_EQ((*device)->note(),
-            "no haptic device is plugged in: a simulated hand until the mouse or the SpaceMouse (no force) takes over");
+  EXPECT_EQ(
+      (*device)->note(),
+      "no haptic device is plugged in: a simulated hand moves until the mouse or the SpaceMouse (no force) takes over");
   test::FakeDeviceBus board;
   DeviceRequest request;
   request.bus = &board;
   device = open_device("auto", request);
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->note(),
-            "the calibrations of HID devices are nowhere; set PALPATE_ASSETS to the assets folder: "
-            "a simulated hand until the mouse takes over");
+            "found no calibrations of HID devices; set PALPATE_ASSETS to the assets folder: "
+            "a simulated hand moves until the mouse takes over");
 }
 
 TEST(DeviceRegistry, HidIsNeverAnythingElse) {
@@ -112,7 +113,7 @@ TEST(DeviceRegistry, TheProgramListsThem) {
     EXPECT_NE(run.out.find(description.name), std::string::npos) << run.out;
   }
   for (const DeviceProtocol* protocol : kHidProtocols) {
-    EXPECT_NE(run.out.find(std::string(protocol->description) + "; tried on real hardware: no"), std::string::npos)
+    EXPECT_NE(run.out.find(std::string(protocol->description) + "; tested on real hardware: no"), std::string::npos)
         << run.out;
   }
   EXPECT_NE(run.out.find("PLUGGED IN"), std::string::npos) << run.out;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -128,9 +129,8 @@ TEST(ImportTable, SaysWhatIsBrokenAndWhere) {
       "rig.txt: found no rows of numbers in the first 2 lines, expected a table with columns of time, position and "
       "force; export the recording as CSV");
   const std::string header = "t [s],pos [mm],F [N]\n";
-  EXPECT_EQ(message(header + rows_of(",") + "0.030,oops,1\n0.040,0.5,1\n"),
-            "rig.txt:14: found \"oops\" in column 2 \"pos [mm]\", expected the position; remove the row, repair the "
-            "value, or say how many such rows may go: --skip-bad-rows N");
+  EXPECT_TRUE(test::has_parts(message(header + rows_of(",") + "0.030,oops,1\n0.040,0.5,1\n"),
+                              {"rig.txt:14: ", "\"oops\" in column 2 \"pos [mm]\"", "position", "--skip-bad-rows N"}));
   EXPECT_EQ(message(header + rows_of(",") + "0.020,0.5,1\n"),
             "rig.txt:14: found a time 0.001 s before that of the row above \"t [s]\", expected later times in every "
             "row; split the file there, or sort its rows; if the rows are evenly spaced, add --rate 1000");
@@ -144,7 +144,7 @@ TEST(ImportTable, ShiftsTheTimeAndSaysSo) {
   ASSERT_TRUE(table.ok());
   EXPECT_EQ(table->recording.rows.front().time_s, 0.0);
   ASSERT_FALSE(table->notes.empty());
-  EXPECT_EQ(table->notes.front(), "time began at 0.01 s and begins at 0 now");
+  EXPECT_NE(table->notes.front().find("0.01 s"), std::string::npos);
 }
 
 ImportedTable imported(const std::string& bytes, const ImportRequest& request = {}) {
@@ -162,13 +162,13 @@ TEST(ImportTable, KeepsTheFirstOfRowsWithOneTime) {
   const ImportedTable table = imported("t [s],pos [mm],F [N]\n" + rows_of(",") + "0.021,0.7,9\n0.022,0.5,1\n");
   ASSERT_EQ(table.recording.rows.size(), 13u);
   EXPECT_NEAR(table.recording.rows[11].position_m, 0.5e-3, 1e-12);
-  EXPECT_TRUE(notes_have(table, "1 row with the time of the row before left out"));
+  EXPECT_TRUE(notes_have(table, "1 row with the time of the previous row"));
 }
 
 TEST(ImportTable, ComparesARateWithTheTimesOfTheFile) {
   const std::string text = "t [s],pos [mm],F [N]\n" + rows_of(",");
-  EXPECT_TRUE(notes_have(imported(text, request({}, {}, 500.0)), "by the times of the file 0.011 s"));
-  EXPECT_FALSE(notes_have(imported(text, request({}, {}, 1000.0)), "by the times of the file"));
+  EXPECT_TRUE(notes_have(imported(text, request({}, {}, 500.0)), "0.011 s by the times in the file"));
+  EXPECT_FALSE(notes_have(imported(text, request({}, {}, 1000.0)), "by the times in the file"));
 }
 
 TEST(ImportTable, KnowsUnitsAndNamesOfManyPrograms) {

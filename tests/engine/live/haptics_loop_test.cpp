@@ -132,7 +132,7 @@ TEST(HapticsLoop, RunsBesideABusySlowSide) {
   HapticsLoop loop(device, settings);
   loop.publish_models(springs(1, device));
   ASSERT_TRUE(loop.start().ok());
-  EXPECT_EQ(loop.scheduling().scheduling, "normal, as asked");
+  EXPECT_EQ(loop.scheduling().scheduling, "normal, as requested");
 
   std::vector<LoopSnapshot> snapshots(64);
   std::uint64_t received = 0;

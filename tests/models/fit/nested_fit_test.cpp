@@ -142,7 +142,7 @@ TEST(NestedFit, RefusesAMethodThatDoesNotGoOnFromFewerCentres) {
   request.method = &kDirectMethod;
   const auto nested = NestedFit::make(prepared, request);
   ASSERT_FALSE(nested.ok());
-  EXPECT_EQ(nested.error().message, "the method \"direct\" does not go on from fewer centres");
+  EXPECT_EQ(nested.error().message, "the method \"direct\" cannot continue from fewer centres");
 }
 
 }  // namespace

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""What palpate says of a recording, against what is known.
+"""Compares the findings of palpate about recordings with known values.
 
 Usage: evidence.py [--planted] PALPATE [FOLDER...]
 
 Virtual recordings get a known shift, lag, zero, tool mass, adhesion or no free air;
 recordings in the FOLDERs get a known shift or lag on top of what they have. Prints one
 row for each: found, true, error, and whether it is right. Dropouts, repeated positions, repeated time stamps and
-offsets of the force are planted into both (--planted: these alone). "not told" is right where the recording
-cannot tell, harmless where it could, and never wrong. The last lines are a table: finding by right, wrong and
-silent. Ends with 1 when something was told and false.
+offsets of the force are added to both (--planted: only these). "not identified" is right if the recording does not
+determine the value, and harmless otherwise. The last lines are a table with the numbers of right, wrong and missing
+findings. The exit code is 1 if an identified value is wrong.
 """
 import json
 import math
@@ -24,7 +24,7 @@ FOLDERS = ARGUMENTS[1:]
 WORK = tempfile.mkdtemp()
 STIFF_MM, SOFT_MM, LAG_MS, ZERO_N = 0.1, 0.3, 2.0, 0.01
 counts = {}  # finding: how many right, wrong, silent
-COLUMN = {"right": 0, "rightly not told": 0, "WRONG": 1, "not told": 2}
+COLUMN = {"right": 0, "rightly not identified": 0, "WRONG": 1, "not identified": 2}
 
 
 def run(*arguments):
@@ -54,9 +54,9 @@ def write(name, rows):
 
 
 def row(case, what, found, true, tolerance, unit):
-    """`found`: None where it was not told; `true`: None where it cannot be told."""
+    """`found`: None if not identified; `true`: None if it cannot be identified."""
     if found is None:
-        verdict = "rightly not told" if true is None else "not told"
+        verdict = "rightly not identified" if true is None else "not identified"
     elif true is None:
         verdict = "WRONG" if abs(found) > tolerance else "right"
     else:
@@ -78,9 +78,9 @@ def checked(path):
 
 def row_check(case, path, true_mm, tolerance_mm=SOFT_MM, zero_N=0.0, lag_ms=0.0):
     one, codes = checked(path)
-    told = one.get("surface_told", True)
-    row(case, "surface", 1e3 * one["surface_offset_m"] if told else None, true_mm, tolerance_mm, "mm")
-    row(case, "zero", one["force_zero_N"] if told else None, zero_N, ZERO_N, "N")
+    identified = one.get("surface_identified", True)
+    row(case, "surface", 1e3 * one["surface_offset_m"] if identified else None, true_mm, tolerance_mm, "mm")
+    row(case, "zero", one["force_zero_N"] if identified else None, zero_N, ZERO_N, "N")
     # No finding is "0", and right where the true lag is small enough to be the material's.
     lag = 1e3 * codes["lag"] if "lag" in codes else (0.0 if abs(lag_ms) <= LAG_MS else None)
     row(case, "lag", lag, lag_ms, LAG_MS, "ms")
@@ -96,12 +96,12 @@ def row_pair(case, paths, names, true_mm, tolerance_mm):
         return
     by_name = {one["name"].rsplit(".csv", 1)[0].split("/")[-1]: one for one in found["recordings"]}
     first, second = (by_name[name] for name in names)
-    told = second.get("told", True) and first.get("told", True)
+    identified = second.get("identified", True) and first.get("identified", True)
     shift = 1e3 * (second["surface_offset_m"] - first["surface_offset_m"])
-    if not told and abs(shift) > 1e-6:
-        row(case + " (not told, moved)", "shift", shift, true_mm, 0.0, "mm")
+    if not identified and abs(shift) > 1e-6:
+        row(case + " (not identified, moved)", "shift", shift, true_mm, 0.0, "mm")
     else:
-        row(case, "shift", shift if told else None, true_mm, tolerance_mm, "mm")
+        row(case, "shift", shift if identified else None, true_mm, tolerance_mm, "mm")
 
 
 def changed(rows, **by):

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -162,9 +163,7 @@ TEST(TrainingSet, RefusesRecordingsWithoutContact) {
   MotionSource source = source_of(recording_of(100, [](int) { return std::pair{-1e-3, 0.0}; }));
   const auto set = make_training_set(source, test::position_features(), Reduction::coverage, 0.01);
   ASSERT_FALSE(set.ok());
-  EXPECT_EQ(set.error().message,
-            "no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; record a "
-            "press, or check the sign and zero of position_m");
+  EXPECT_TRUE(test::has_parts(set.error().message, {"in contact (position_m > 0)", "; ", "position_m"}));
 }
 
 }  // namespace

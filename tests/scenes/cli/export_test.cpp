@@ -89,7 +89,7 @@ TEST_F(ExportVerb, EveryMethodGivesReplaysForcesOfAnotherRecording) {
     const std::string text = exported(train, {"--method", method->name});
     EXPECT_LT(worst_N(other, text), 1e-9) << method->name;
     EXPECT_TRUE(has_feature(FeatureKind::stops)) << method->name;
-    EXPECT_NE(printed_.find("steps of 30 um with a noise of 0 um"), std::string::npos) << printed_;
+    EXPECT_NE(printed_.find("steps of 30 um with an additional noise of 0 um"), std::string::npos) << printed_;
   }
 }
 
@@ -120,7 +120,7 @@ TEST_F(ExportVerb, InSinglePrecisionNobodyFeelsTheDifference) {
 TEST_F(ExportVerb, AnotherStepIsWhatTheFileIsToldAndSays) {
   const std::string text = exported(recording("silicone", 6.0, 1), {"--method", "trend"}, {"--encoder-step", "1e-6"});
   EXPECT_NE(text.find("#define PALPATE_ENCODER_STEP_M 1e-06"), std::string::npos);
-  EXPECT_NE(text.find("Positions are taken to be in steps of 1e-06 m."), std::string::npos);
+  EXPECT_NE(text.find("The positions are assumed to be in steps of 1e-06 m."), std::string::npos);
   EXPECT_NE(printed_.find("steps of 1 um"), std::string::npos) << printed_;
 }
 

@@ -16,6 +16,7 @@
 #include "models/fit/methods.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -117,10 +118,11 @@ TEST_F(FitVerb, TheTrendAloneHasNoCentres) {
 // Rather than ignored without a word.
 TEST_F(FitVerb, RefusesAnOptionThatTheMethodHasNoUseFor) {
   expect_refused(fit({"--grid", "4x3x3x3"}, "greedy"), 2,
-                 "--grid: not taken by method greedy, only by voxel; leave it out");
-  expect_refused(fit({"--candidates", "20"}, "random"), 2, "--candidates: not taken by method random, only by greedy");
+                 "--grid: method greedy does not take this option, only voxel");
+  expect_refused(fit({"--candidates", "20"}, "random"), 2,
+                 "--candidates: method random does not take this option, only greedy");
   expect_refused(fit({"--centres", "20"}, "trend"), 2,
-                 "--centres: not taken by method trend, only by random, kdtree, greedy");
+                 "--centres: method trend does not take this option, only random, kdtree, greedy");
 }
 
 TEST_F(FitVerb, EveryOptionHasAUse) {
@@ -171,8 +173,7 @@ TEST_F(FitVerb, TheSameRecordingTwiceIsTold) {
   const ProgramRun run =
       run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out", out(), "--json"});
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_EQ(run.err, "warning: " + recording() + ": repeated: it has the same rows as " + recording() +
-                         "; name every recording once: a repeated one counts twice, and errors on it say nothing\n");
+  EXPECT_TRUE(test::has_parts(run.err, {"warning: " + recording() + ": repeated: ", recording(), "; "}));
 }
 
 TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
@@ -184,7 +185,7 @@ TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
   expect_refused(fit({"--centres", "100000"}), 2, "2000");
   for (const char* features : {"auto", "depth"}) {
     expect_refused(fit({"--features", features, "--relaxation", "0.1,1"}), 2,
-                   std::string("--features asks for \"") + features + "\"; leave one of the two out");
+                   std::string("found --features \"") + features + "\", expected the scene's features");
   }
   expect_refused(fit({"--candidates", "some"}), 2, "expected a whole number of at least 1, or all");
   for (const char* times : {"0.1,", "0", "nan", "soon", "1,2,3,4,5,6,7"}) {

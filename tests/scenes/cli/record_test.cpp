@@ -7,6 +7,7 @@
 #include "engine/recording/recording.h"
 #include "scenes/cli/record_guide.h"
 #include "tests/support/bridge_session.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -32,7 +33,7 @@ TEST(Record, WritesMotionAndForceOfADeviceAndChecksThem) {
   const auto run = run_palpate({"record", "--device", kBridge, "--seconds", "3", "--out", path});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out.rfind("recorded ", 0), 0u) << run.out;
-  EXPECT_NE(run.out.find("the noise of the force sensor alone"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("% of the contact samples within the JND"), std::string::npos) << run.out;
   const auto recording = read_recording(path);
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_GT(recording->rows.size(), 500u);
@@ -49,11 +50,11 @@ TEST(Record, KeepsMotionAloneOfADeviceThatMeasuresNoForce) {
   const std::string path = folder.file("motion.csv");
   const auto run = run_palpate({"record", "--device", "hand", "--seconds", "1.5", "--out", path});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("has time and motion alone"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("has no force"), std::string::npos) << run.out;
   EXPECT_NE(test::read_text(path).find("\ntime_s,position_m,velocity_m_per_s"), std::string::npos);
   const auto guided = run_palpate({"record", "--device", "hand", "--guide", "--out", folder.file("guided.csv")});
   EXPECT_EQ(guided.exit_code, 1);
-  EXPECT_EQ(guided.err, "error: --guide: hand measures no force, and without it nobody knows where the surface is\n");
+  EXPECT_TRUE(test::has_parts(guided.err, {"error: --guide: hand measures no force", "; "})) << guided.err;
 }
 
 TEST(Record, CtrlCEndsItWell) {
@@ -102,7 +103,7 @@ TEST(DevicesTest, RefusesADeviceThatNeverSaysThatItStopped) {
   const auto run = run_palpate(
       {"devices", "--test", "bridge:exec:python3 " + folder.file("mute.py") + " none 1 " + folder.file("log")});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.err.find("did not show within 100 ms that its watchdog stopped it after the last frame"),
+  EXPECT_NE(run.err.find("did not report within 100 ms that its watchdog stopped it after the last frame"),
             std::string::npos)
       << run.err;
 }
@@ -121,13 +122,13 @@ TEST(RecordGuide, AsksForWhatIsMissingFromTheSlowToTheFast) {
   EXPECT_EQ(cli::guide_advice(explored(), 1.27), "");
   RecordingMeasures measures = explored();
   measures.small_strokes = 3;
-  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("small strokes", 0), 0u);
+  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("make small strokes", 0), 0u);
   measures.longest_hold_s = 0.5;
   EXPECT_EQ(cli::guide_advice(measures, 1.27), "press, and hold still for 2.5 s");
   measures.seconds[3][2] = 0.0;
-  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("fast presses", 0), 0u);
+  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("press fast", 0), 0u);
   measures.seconds[2][0] = 0.01;
-  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("slow presses", 0), 0u);
+  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("press slowly", 0), 0u);
 }
 
 TEST(RecordGuide, MarksTheCellsThatCheckCounts) {

@@ -71,8 +71,8 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
     EXPECT_EQ(keys(model),
               (std::vector<std::string>{"name", "method", "centres", "rms_error_N", "max_error_N", "within_jnd",
                                         "p99_error_over_jnd", "max_error_over_jnd", "out_of_domain_samples",
-                                        "evaluation_ns", "tick_ns", "surface_moved", "surface_offset_m", "surface_told",
-                                        "predicted_error", "bins"}));
+                                        "evaluation_ns", "tick_ns", "surface_moved", "surface_offset_m",
+                                        "surface_identified", "predicted_error", "bins"}));
     EXPECT_EQ(keys(model["surface_moved"]), (std::vector<std::string>{"rms_error_N", "max_error_N", "within_jnd",
                                                                       "p99_error_over_jnd", "max_error_over_jnd"}));
     EXPECT_EQ(keys(model["evaluation_ns"]), (std::vector<std::string>{"median", "p99"}));

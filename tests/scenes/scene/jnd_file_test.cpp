@@ -11,14 +11,14 @@ std::string complaint(const std::string& text) {
 }
 
 TEST(JndFile, RefusesWithPlaceFoundAndExpected) {
-  const std::string advice = "; write it anew with palpate study analyse";
+  const std::string advice = "; write it again with palpate study analyse";
   const std::string start = "{\"format\": \"palpate-jnd\",\n\"version\": 1,\n";
   EXPECT_EQ(complaint(start + "\"offset_N\": 0.1, \"weber_fraction\": 0}"), "accepted");
   EXPECT_EQ(complaint("[]"), "jnd.json:1:1: found no \"format\": \"palpate-jnd\", expected a JND file" + advice);
   EXPECT_EQ(complaint("{\"format\": 3}"),
             "jnd.json:1:1: found no \"format\": \"palpate-jnd\", expected a JND file" + advice);
   EXPECT_EQ(complaint("{\"format\": \"palpate-jnd\",\n\"version\": 2}"),
-            "jnd.json:2:12: version: found 2, expected the version 1" + advice);
+            "jnd.json:2:12: version: found 2, expected version 1" + advice);
   EXPECT_EQ(complaint(start + "\"weber_fraction\": 0}"),
             "jnd.json:1:1: offset_N: found no such field, expected a number above 0 up to 100" + advice);
   EXPECT_EQ(complaint(start + "\"offset_N\": 0, \"weber_fraction\": 0}"),

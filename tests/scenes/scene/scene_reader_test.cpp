@@ -94,9 +94,10 @@ TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
   for (const Material& material : materials()) known.append(known.empty() ? "" : ", ").append(material.name);
   EXPECT_EQ(complaint_after("\"material\": null", "\"material\": \"silicon\""),
             "x.json:5:15: material: found \"silicon\", expected one of " + known);
-  EXPECT_EQ(complaint_after("\"depth\"", "\"dept\""),
-            "x.json:7:14: features[0].kind: found \"dept\", expected one of depth, velocity, lowpass_velocity\n"
-            "x.json:6:15: features: found no feature of kind \"depth\", expected one: no force without it");
+  EXPECT_EQ(
+      complaint_after("\"depth\"", "\"dept\""),
+      "x.json:7:14: features[0].kind: found \"dept\", expected one of depth, velocity, lowpass_velocity\n"
+      "x.json:6:15: features: found no feature of kind \"depth\", expected one: every force depends on the depth");
   EXPECT_EQ(complaint_after("0.5", "-1"),
             "x.json:8:55: features[1].relaxation_time_s: found -1, expected a number above 0 up to 100");
   EXPECT_EQ(complaint_after(", \"relaxation_time_s\": 0.5", ""),

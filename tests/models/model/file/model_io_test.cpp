@@ -216,7 +216,8 @@ TEST(ModelIo, WhatCannotBeReadIsNotWritten) {
             }),
             "cannot write m.json: centres, weights and tail must be finite numbers");
   EXPECT_EQ(message([](ModelData& data) { data.provenance.training_within_jnd = -1.0; }),
-            "cannot write m.json: provenance: found a number that is negative or not finite, expected finite ones");
+            "cannot write m.json: provenance: found a number that is negative or not finite, expected finite numbers "
+            "of 0 or more");
 }
 
 TEST(ModelIo, AnExistingFileSurvivesUnlessToldOtherwise) {
