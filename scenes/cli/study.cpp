@@ -37,7 +37,8 @@ struct StudyOptions {
 constexpr std::uint64_t kPopulationStream = 51;
 
 void print_left_out(const std::string& who, std::size_t unusable) {
-  if (unusable > 0) std::printf("%s: %zu trials were left out because their forces were not rendered\n", who.c_str(), unusable);
+  if (unusable > 0)
+    std::printf("%s: %zu trials were left out because their forces were not rendered\n", who.c_str(), unusable);
 }
 
 void print_analysis(const StudyAnalysis& analysis) {
