@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "scenes/plot/draw.h"
 #include "scenes/plot/inline_svg.h"
@@ -9,6 +10,8 @@
 
 namespace palpate {
 namespace {
+
+constexpr double kPageWidth_rem = 52.0;
 
 Result<std::string> read_template(const std::string& name) {
   const auto assets = find_assets();
@@ -37,9 +40,10 @@ Status draw_figures(const ReportFolder& folder, std::vector<Figure>& figures) {
 }
 
 std::string figure_html(const Figure& figure) {
-  return "<figure>" + inline_svg(figure.svg, figure.plot.name, figure.caption) + "<figcaption>" +
-         escape_html(figure.caption) + " <a class=\"data\" href=\"figures/" + figure.plot.name +
-         ".gp\">data and script</a></figcaption></figure>\n";
+  // Text has the same size in narrow figures and in wide ones.
+  return "<figure style=\"max-width: " + general(kPageWidth_rem * figure.plot.width, 3) + "rem\">" +
+         inline_svg(figure.svg, figure.plot.name, figure.caption) + "<figcaption>" + escape_html(figure.caption) +
+         " <a class=\"data\" href=\"figures/" + figure.plot.name + ".gp\">data and script</a></figcaption></figure>\n";
 }
 
 Result<std::string> fill_page(const std::string& name, std::map<std::string, std::string> values) {
