@@ -6,10 +6,6 @@
 #include <string>
 #include <utility>
 
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
-
 #include "engine/base/atomic_file.h"
 #include "engine/base/signals.h"
 #include "engine/live/pacer.h"
@@ -180,23 +176,12 @@ int run_program(int argc, char** argv) {
   return status ? kDone : fail(status.error().message);
 }
 
-// Keeps freed memory in the process. A software renderer allocates and frees the memory of a frame in each frame;
-// returning it to the system took a fifth of the time of drawing.
-void keep_freed_memory() {
-#if defined(__GLIBC__)
-  constexpr int kKept = 64 << 20;
-  mallopt(M_MMAP_THRESHOLD, kKept / 2);  // the default value; without this, the next line would fix it at 128 KiB
-  mallopt(M_TRIM_THRESHOLD, kKept);
-#endif
-}
-
 }  // namespace
 }  // namespace palpate
 
 int main(int argc, char** argv) {
   try {
     palpate::ignore_broken_pipes();
-    palpate::keep_freed_memory();
     palpate::prepare_to_fit();
     const palpate::StopListener listener;
     return palpate::run_program(argc, argv);
