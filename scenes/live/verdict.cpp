@@ -25,9 +25,21 @@ std::string formatted(const char* pattern, double value) {
   return text;
 }
 
-std::string listed(const std::vector<std::size_t>& slots, const SessionModels& models) {
+// A model without centres is the trend alone, by whatever method it was fitted. A name that somebody gave stays.
+std::string spoken_name(const ModelInfo& info) {
+  const bool named_by_method = info.method != "position" && info.name.rfind(info.method, 0) == 0;
+  return info.centres == 0 && named_by_method ? "trend" : info.name;
+}
+
+std::string listed(const std::vector<std::size_t>& slots, const SessionModels& models, const std::string& chosen) {
+  std::vector<std::string> spoken{chosen};
   std::string names;
-  for (const std::size_t slot : slots) names += (names.empty() ? "" : ", ") + models.info(slot).name;
+  for (const std::size_t slot : slots) {
+    const std::string name = spoken_name(models.info(slot));
+    if (std::find(spoken.begin(), spoken.end(), name) != spoken.end()) continue;
+    spoken.push_back(name);
+    names += (names.empty() ? "" : ", ") + name;
+  }
   return names;
 }
 
@@ -58,15 +70,18 @@ Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionM
   }
   const ModelInfo& info = models.info(chosen.slot);
   const std::string from = reference_name.empty() ? "" : " from " + reference_name;
+  const std::string name = spoken_name(info);
   verdict.headline =
-      info.name +
+      name +
       (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +
       from + "; uses " + tick_share(info.tick_ns()) + " of the time there is";
   if (verdict.noticeable)
     verdict.detail = "Its error is at most " + formatted("%.1f", chosen.unit_errors.p99_error_over_jnd) +
                      " times what a hand can feel, 99 % of the time. ";
-  if (!as_good.empty()) verdict.detail += "As good, no faster: " + listed(as_good, models) + ". ";
-  if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
+  if (const std::string names = listed(as_good, models, name); !names.empty())
+    verdict.detail += "As good, no faster: " + names + ". ";
+  if (const std::string names = listed(noticed, models, name); !names.empty())
+    verdict.detail += "You can feel the difference of " + names + ".";
   return verdict;
 }
 
