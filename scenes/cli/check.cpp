@@ -73,8 +73,8 @@ std::string check_text(const CheckedFile& file) {
          << std::string(finding.code.size() < 17 ? 17 - finding.code.size() : 1, ' ') << finding.text
          << (finding.advice.empty() ? "" : "; " + finding.advice) << "\n";
   }
-  text << "  because of the force noise, a perfect model would have "
-       << fixed(100.0 * file.check.noise_floor_within_jnd, 1) << " % of the contact samples within the JND\n";
+  text << "  the noise of the force sensor alone leaves " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
+       << " % of the contact samples within the JND; this says nothing about a model\n";
   if (!file.whole) text << "  only the first " << kMostCheckedRows << " rows were checked\n";
   return text.str();
 }
