@@ -26,21 +26,31 @@ std::string formatted(const char* pattern, double value) {
 }
 
 // A model without centres is the trend alone, by whatever method it was fitted. A name that somebody gave stays.
-std::string spoken_name(const ModelInfo& info) {
-  const bool named_by_method = info.method != "position" && info.name.rfind(info.method, 0) == 0;
-  return info.centres == 0 && named_by_method ? "trend" : info.name;
+bool is_trend(const ModelInfo& info) {
+  return info.centres == 0 && info.method != "position" && info.name.rfind(info.method, 0) == 0;
 }
 
-std::string listed(const std::vector<std::size_t>& slots, const SessionModels& models, const std::string& chosen) {
-  std::vector<std::string> spoken{chosen};
+// Whether both are the trend of the same recordings: their errors are equal.
+bool are_one_trend(const EvaluatedSlot& a, const EvaluatedSlot& b, const SessionModels& models) {
+  return is_trend(models.info(a.slot)) && is_trend(models.info(b.slot)) &&
+         a.unit_errors.p99_error_over_jnd == b.unit_errors.p99_error_over_jnd;
+}
+
+std::string listed(const std::vector<std::size_t>& slots, const SessionModels& models) {
   std::string names;
-  for (const std::size_t slot : slots) {
-    const std::string name = spoken_name(models.info(slot));
-    if (std::find(spoken.begin(), spoken.end(), name) != spoken.end()) continue;
-    spoken.push_back(name);
-    names += (names.empty() ? "" : ", ") + name;
-  }
+  for (const std::size_t slot : slots) names += (names.empty() ? "" : ", ") + models.info(slot).name;
   return names;
+}
+
+// The recommended model; of several that are one trend, the one with its name.
+std::size_t recommended(const std::vector<const EvaluatedSlot*>& evaluated, const SessionModels& models,
+                        std::size_t ranked_first) {
+  for (std::size_t i = 0; i < evaluated.size(); ++i) {
+    if (models.info(evaluated[i]->slot).method == "trend" &&
+        are_one_trend(*evaluated[i], *evaluated[ranked_first], models))
+      return i;
+  }
+  return ranked_first;
 }
 
 }  // namespace
@@ -57,31 +67,29 @@ Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionM
     candidates.push_back({one->unit_errors.p99_error_over_jnd, one->unit_errors.unit_p99, one->tick});
   const Ranking ranking = rank(candidates);
   Verdict verdict;
-  const EvaluatedSlot& chosen = *evaluated[ranking.recommended];
+  const std::size_t best = recommended(evaluated, models, ranking.recommended);
+  const EvaluatedSlot& chosen = *evaluated[best];
   verdict.chosen = chosen.slot;
   verdict.noticeable = chosen.unit_errors.p99_error_over_jnd > 1.0;
   std::vector<std::size_t> as_good, noticed;
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const bool tied = std::find(ranking.qualified.begin(), ranking.qualified.end(), i) != ranking.qualified.end();
     if (tied) verdict.tied.push_back(evaluated[i]->slot);
-    if (i == ranking.recommended) continue;
+    if (i == best || are_one_trend(*evaluated[i], chosen, models)) continue;
     if (tied) as_good.push_back(evaluated[i]->slot);
     if (!tied && evaluated[i]->unit_errors.p99_error_over_jnd > 1.0) noticed.push_back(evaluated[i]->slot);
   }
   const ModelInfo& info = models.info(chosen.slot);
   const std::string from = reference_name.empty() ? "" : " from " + reference_name;
-  const std::string name = spoken_name(info);
   verdict.headline =
-      name +
+      info.name +
       (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +
       from + "; uses " + tick_share(info.tick_ns()) + " of the time there is";
   if (verdict.noticeable)
     verdict.detail = "Its error is at most " + formatted("%.1f", chosen.unit_errors.p99_error_over_jnd) +
                      " times what a hand can feel, 99 % of the time. ";
-  if (const std::string names = listed(as_good, models, name); !names.empty())
-    verdict.detail += "As good, no faster: " + names + ". ";
-  if (const std::string names = listed(noticed, models, name); !names.empty())
-    verdict.detail += "You can feel the difference of " + names + ".";
+  if (!as_good.empty()) verdict.detail += "As good, no faster: " + listed(as_good, models) + ". ";
+  if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
   return verdict;
 }
 

@@ -249,8 +249,7 @@ TEST_F(DefaultStart, TheHeadlineIsOfAModelOnTheStageAndOfTheTablesNumbers) {
   const std::size_t chosen = *shown.models.verdict.chosen;
   const ModelView& best = shown.models.slots[chosen];
   EXPECT_EQ(std::count(shown.blocks.begin(), shown.blocks.end(), chosen), 1);
-  const std::string name = best.centres == 0 ? "trend" : best.name;
-  EXPECT_EQ(shown.models.verdict.headline.rfind(name + ": ", 0), 0u) << shown.models.verdict.headline;
+  EXPECT_EQ(shown.models.verdict.headline.rfind(best.name + ": ", 0), 0u) << shown.models.verdict.headline;
   EXPECT_NE(shown.models.verdict.headline.find(tick_share(best.tick_ns())), std::string::npos);
   const nlohmann::json stats = nlohmann::json::parse(stats_text(app_->session(), shown, app_->frames()));
   EXPECT_EQ(stats["verdict"], shown.models.verdict.headline);
