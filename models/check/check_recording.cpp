@@ -211,20 +211,11 @@ void Checker::check_clipping() {
       "the sensor or its amplifier is at its limit: press less or choose a larger range");
 }
 
-// Returns every `step`-th row.
-Recording every_so_many(const Recording& recording, std::size_t step) {
-  Recording thin{recording.name, recording.columns, {}};
-  for (std::size_t i = 0; i < recording.rows.size(); i += step) thin.rows.push_back(recording.rows[i]);
-  return thin;
-}
-
 // A lag of the force biases the surface and the force zero, so both are estimated after the lag is removed.
 void Checker::check_lag() {
-  // A long recording is thinned: the onset needs no more rows, and estimating the motion costs more than reading.
-  const std::size_t step = (recording_.rows.size() + kSurfaceRows - 1) / kSurfaceRows;
-  const std::vector<SurfaceRow> rows = all_rows(step > 1 ? every_so_many(recording_, step) : recording_);
+  const std::vector<SurfaceRow> rows = thinned_rows(recording_, kSurfaceRows);
   surface_ = estimate_surface(rows, noise_N_);
-  if (step == 1) {
+  if (rows.size() == recording_.rows.size()) {
     check_.motion.reserve(rows.size());
     for (const SurfaceRow& row : rows) check_.motion.push_back(row.motion);
   }
