@@ -117,15 +117,35 @@ void expect_stop_after_kill(const std::shared_ptr<const ForceModel>& model) {
 
 TEST(Hapkit, StopsWithin60MsWhenTheHostIsKilled) { expect_stop_after_kill(test::spring(1000.0)); }
 
+// 12 s of silicone. Again, at most five times, if this machine held up the board or the recorder for 50 ms: neither is
+// what a Hapkit on a desk does, and a press with pieces missing is no test of a fit.
+bool record_without_gaps(const std::string& seed, const std::string& path) {
+  for (int trial = 0; trial < 5; ++trial) {
+    const Board board("--material silicone --seed " + seed);
+    const auto run =
+        run_palpate({"record", "--device", "bridge:" + board.port(), "--seconds", "12", "--force", "--out", path});
+    const auto recording = read_recording(path);
+    if (run.exit_code != 0 || !recording.ok()) {
+      ADD_FAILURE() << run.err;
+      return false;
+    }
+    double longest_s = 0.0;
+    for (std::size_t i = 1; i < recording->rows.size(); ++i) {
+      longest_s = std::max(longest_s, recording->rows[i].time_s - recording->rows[i - 1].time_s);
+    }
+    const std::string held_up = board.line_with("held up");
+    if (held_up.empty() && longest_s < 0.05) return true;
+    std::printf("recorded again: %s, longest gap %.0f ms\n", held_up.c_str(), 1e3 * longest_s);
+  }
+  return false;
+}
+
 // From a box to a felt model: another hand's press is within the JND, and the model is
 // rendered until the host is killed.
 TEST(Hapkit, WhatWasRecordedThroughItIsFittedReplayedAndRendered) {
   const test::TemporaryFolder folder;
   for (const std::string seed : {"1", "2"}) {
-    const Board board("--material silicone --seed " + seed);
-    const auto run = run_palpate(
-        {"record", "--device", "bridge:" + board.port(), "--seconds", "12", "--out", folder.file(seed + ".csv")});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_TRUE(record_without_gaps(seed, folder.file(seed + ".csv")));
   }
   const auto fit = run_palpate(
       {"fit", "--recording", folder.file("1.csv"), "--method", "greedy", "--out", folder.file("press.json")});
