@@ -59,6 +59,8 @@ Sentence errors_of(const ModelResult& model) {
   return sentence;
 }
 
+std::string changed(double jnd) { return three_digits(std::abs(jnd)) + (jnd < 0.0 ? " smaller" : " larger"); }
+
 // Compares time and error of `other` with the recommended model.
 Sentence compared(const ModelResult& other, const ModelResult& recommended) {
   const PairedDifference difference = paired_difference(other.errors, recommended.errors);
@@ -72,8 +74,8 @@ Sentence compared(const ModelResult& other, const ModelResult& recommended) {
       number(other, "difference", three_digits(std::abs(difference.p99))),
       {difference.p99 < 0.0 ? " JND smaller" : " JND larger"}};
   if (difference.interval.known()) {
-    const double ends[] = {difference.interval.low, difference.interval.high};
-    append(sentence, {{" (95 %: " + three_digits(ends[0]) + " to " + three_digits(ends[1]) + ")"}});
+    append(sentence,
+           {{" (95 %: " + changed(difference.interval.low) + " to " + changed(difference.interval.high) + ")"}});
   }
   append(sentence, {{". "}});
   return sentence;
@@ -121,6 +123,11 @@ Sentence answer(const ReportData& data) {
     if (one.plan.recipe == Recipe::paper && one.plan.request.method == &kGreedyMethod) paper = &one;
   }
   if (best != &use) append(sentence, compared(*best, use));
+  if (data.choice.dominating) {
+    append(sentence, {{"Another size was faster and more accurate in this test: "}});
+    append(sentence, compared(data.models[*data.choice.dominating], use));
+    append(sentence, {{"A size that is chosen by a test has to be tested on another recording. "}});
+  }
   if (paper != nullptr && paper != &use && paper != best) append(sentence, compared(*paper, use));
   return sentence;
 }

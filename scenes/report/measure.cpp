@@ -327,6 +327,14 @@ Choice choose(const std::vector<ModelResult>& models) {
   choice.best = choice.candidates[ranking.best];
   choice.recommended = choice.candidates[ranking.recommended];
   for (const std::size_t i : ranking.qualified) choice.qualified.push_back(choice.candidates[i]);
+  const Candidate recommended = candidates[ranking.recommended];
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (!models[i].model || models[i].plan.main) continue;
+    const Candidate one = candidate(models[i].errors, models[i].time);
+    if (!dominates(one, recommended)) continue;
+    if (choice.dominating && one.error_over_jnd >= models[*choice.dominating].errors.p99_error_over_jnd) continue;
+    choice.dominating = i;
+  }
   return choice;
 }
 

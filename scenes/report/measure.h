@@ -60,6 +60,9 @@ struct Choice {
   std::vector<std::size_t> qualified;   // non-inferior candidates
   std::size_t best = 0;                 // the candidate with the smallest 99 % error
   std::size_t recommended = 0;
+  // The most accurate model of another size that dominates the recommended one. It is no candidate, because that would
+  // choose its size by the test.
+  std::optional<std::size_t> dominating;
   bool correction_off = false;  // the correction is 0, so that all of this program's methods equal the trend
 };
 

@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "models/model/fitted_model.h"
+#include "models/recordings/recording_faults.h"
+#include "scenes/evaluation/ranking.h"
 #include "scenes/material/rig.h"
 #include "scenes/report/plan.h"
 #include "tests/support/example_model.h"
+#include "tests/support/fitting.h"
 
 namespace palpate {
 namespace {
@@ -67,6 +72,45 @@ TEST(Choose, TakesOneSizeOfEachMethodAndTheFastestThatQualifies) {
   EXPECT_EQ(choice.best, 2u);
   EXPECT_FALSE(choice.correction_off);
   EXPECT_TRUE(choose({ModelResult{}, result("trend", Recipe::trend, 2.0, 100.0)}).correction_off);
+}
+
+TEST(Choose, NamesAnotherSizeThatIsFasterAndMoreAccurate) {
+  const Choice choice = choose({ModelResult{}, result("greedy-100", Recipe::palpate, 0.5, 300.0),
+                                result("greedy-10", Recipe::palpate, 0.4, 100.0, false),
+                                result("greedy-20", Recipe::palpate, 0.3, 110.0, false),
+                                result("greedy-200", Recipe::palpate, 0.1, 310.0, false)});
+  EXPECT_EQ(choice.recommended, 1u) << "a size is not chosen by the test";
+  EXPECT_EQ(choice.dominating, 3u);
+}
+
+TEST(Choose, OnEveryRecordedSetNoMethodDominatesTheRecommendedOne) {
+  int sets = 0;
+  for (const std::filesystem::path& folder : {test::real_data(), test::real_data() / "../labs"}) {
+    if (!std::filesystem::exists(folder)) continue;
+    for (const auto& set : std::filesystem::directory_iterator(folder)) {
+      std::vector<SharedRecording> recordings[2];
+      if (!set.is_directory()) continue;
+      for (const auto& file : std::filesystem::directory_iterator(set.path())) {
+        const std::string name = file.path().filename().string();
+        const bool tested = name.find("test") != std::string::npos;
+        if (file.path().extension() != ".csv" || (!tested && name.find("train") == std::string::npos)) continue;
+        recordings[tested].push_back(std::make_shared<const Recording>(*read_usable_recording(file.path().string())));
+      }
+      const auto split = split_recordings(recordings[0], recordings[1]);
+      if (recordings[0].empty() || recordings[1].empty() || !split.ok()) continue;  // no test, or one trained on
+      const auto data = measure(*split, *load_scene("silicone_block"), true, {});
+      ASSERT_TRUE(data.ok()) << set.path() << data.error().message;
+      ++sets;
+      const auto entry = [&](std::size_t i) { return candidate(data->models[i].errors, data->models[i].time); };
+      for (const std::size_t i : data->choice.candidates) {
+        EXPECT_FALSE(dominates(entry(i), entry(data->choice.recommended)))
+            << set.path() << ": " << data->models[i].plan.name << " dominates "
+            << data->models[data->choice.recommended].plan.name;
+      }
+    }
+  }
+  if (sets == 0) GTEST_SKIP() << "skipped: the recordings are not there";
+  EXPECT_GE(sets, 10);
 }
 
 TEST(WorstStretch, IsWhereTheFirstModelErrs) {
