@@ -10,8 +10,8 @@
 #include "engine/tick/jnd.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/check/recording_measures.h"
-#include "models/surface/force_lag.h"
-#include "models/surface/surface_estimate.h"
+#include "models/recordings/force_lag.h"
+#include "models/recordings/surface_estimate.h"
 
 namespace palpate {
 namespace {

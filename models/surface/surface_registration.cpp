@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
-#include "models/surface/common_fit.h"
-#include "models/surface/force_lag.h"
-#include "models/surface/free_air.h"
-#include "models/surface/surface_estimate.h"
-#include "models/surface/surface_numbers.h"
+#include "models/recordings/common_fit.h"
+#include "models/recordings/force_lag.h"
+#include "models/recordings/free_air.h"
+#include "models/recordings/surface_estimate.h"
+#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/tick/features.h"
-#include "models/surface/common_fit.h"
-#include "models/surface/surface_numbers.h"
+#include "models/recordings/common_fit.h"
+#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {

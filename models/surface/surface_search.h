@@ -10,8 +10,8 @@
 
 #include "engine/tick/force_model.h"
 #include "engine/tick/jnd.h"
-#include "models/surface/profile_search.h"
-#include "models/surface/surface_rows.h"
+#include "models/recordings/profile_search.h"
+#include "models/recordings/surface_rows.h"
 
 namespace palpate {
 

@@ -23,16 +23,12 @@
 #include <vector>
 
 #include "engine/tick/jnd.h"
+#include "models/linear/non_negative.h"
 #include "models/training/selection.h"
 #include "models/training/trend_rows.h"
 #include "models/training/weighting.h"
 
 namespace palpate {
-
-// Minimises x^T G x - 2 b^T x subject to x >= 0. `gram`: G, n x n, symmetric, positive semidefinite; a ridge of 1e-8
-// separates equal columns. `start`: initial x, n values >= 0, or empty. Returns n values.
-Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right_side,
-                                   const Eigen::VectorXd& start = {});
 
 using ColumnList = std::vector<Eigen::Index>;
 

@@ -11,7 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
 #include "engine/import/import_words.h"
-#include "models/surface/surface_estimate.h"
+#include "models/recordings/surface_estimate.h"
 #include "scenes/cli/output.h"
 #include "scenes/cli/verbs.h"
 

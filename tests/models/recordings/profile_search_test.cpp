@@ -1,5 +1,5 @@
 // The one search: told where blocks agree, and never at an edge or between two places.
-#include "models/surface/profile_search.h"
+#include "models/recordings/profile_search.h"
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "models/surface/profile_search.h"
-#include "models/surface/surface_rows.h"
+#include "models/recordings/profile_search.h"
+#include "models/recordings/surface_rows.h"
 
 namespace palpate {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "models/surface/surface_rows.h"
+#include "models/recordings/surface_rows.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-// Paired comparison of the costs of two candidate offsets (models/surface/profile_search.h).
+// Paired comparison of the costs of two candidate offsets (models/recordings/profile_search.h).
 //
 // Both candidates have the same n blocks of samples. Block k gives the relative difference
 // r_k = (a_k - b_k) / (a_k + b_k + m / 10), where m is the mean of the b. Candidate a is significantly worse if

@@ -1,13 +1,13 @@
-#include "models/surface/surface_onset.h"
+#include "models/recordings/surface_onset.h"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "models/surface/surface_estimate.h"
-#include "models/surface/surface_numbers.h"
-#include "models/training/trend_regression.h"
+#include "models/linear/non_negative.h"
+#include "models/recordings/surface_estimate.h"
+#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {

@@ -1,9 +1,9 @@
-#include "models/surface/force_lag.h"
+#include "models/recordings/force_lag.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "models/surface/common_fit.h"
+#include "models/recordings/common_fit.h"
 
 namespace palpate {
 namespace {

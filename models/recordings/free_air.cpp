@@ -1,9 +1,9 @@
-#include "models/surface/free_air.h"
+#include "models/recordings/free_air.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "models/surface/surface_numbers.h"
+#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "models/surface/surface_estimate.h"
+#include "models/recordings/surface_estimate.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 // sections at its lowest minima find the best offset. Its standard error is the jackknife's, with one block left out
 // at a time (Quenouille 1956; Tukey 1958): sqrt((n - 1)/n sum_b (x_b - mean)^2). The offset is not identified if two
 // standard errors reach an end of the range or exceed `widest`, or if another minimum is not significantly worse
-// (acceptance.h). Within two standard errors of 0 it is 0, unless 0 is outside the range.
+// (paired_costs.h). Within two standard errors of 0 it is 0, unless 0 is outside the range.
 // An effect of the material that looks like an offset (friction like a shift, viscosity like a lag) is the same in all
 // blocks, and a jackknife does not see it. In such a case the offset is identified only if 0 is significantly worse.
 // If the effect reaches as far as `systematic_effect`, the costs at `systematic_effect` on either side must be
@@ -46,7 +46,7 @@ struct SearchRange {
 OffsetEstimate estimate_offset(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
 
 // Tests whether a force offset explains the data as well as `shift`: whether the lowest cost over force offsets of
-// -most_N to most_N exceeds that of the shift by at most one standard error (acceptance.h). If so, the shift is not
+// -most_N to most_N exceeds that of the shift by at most one standard error (paired_costs.h). If so, the shift is not
 // identified. `cost`: J by blocks for a force offset in N.
 OffsetEstimate unless_force_offset(OffsetEstimate shift, const std::function<BlockCosts(double)>& cost, double most_N);
 

@@ -1,12 +1,12 @@
-#include "models/surface/surface_estimate.h"
+#include "models/recordings/surface_estimate.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/tick/sensor_identification.h"
-#include "models/surface/free_air.h"
-#include "models/surface/surface_numbers.h"
-#include "models/surface/surface_onset.h"
+#include "models/recordings/free_air.h"
+#include "models/recordings/surface_numbers.h"
+#include "models/recordings/surface_onset.h"
 
 namespace palpate {
 namespace {

@@ -1,11 +1,11 @@
-#include "models/surface/profile_search.h"
+#include "models/recordings/profile_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "models/surface/surface_numbers.h"
-#include "models/training/acceptance.h"
+#include "models/recordings/paired_costs.h"
+#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {

@@ -1,5 +1,5 @@
 // A late force is told from viscosity, which is early, and from nothing.
-#include "models/surface/force_lag.h"
+#include "models/recordings/force_lag.h"
 
 #include <gtest/gtest.h>
 

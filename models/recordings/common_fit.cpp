@@ -1,12 +1,12 @@
-#include "models/surface/common_fit.h"
+#include "models/recordings/common_fit.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "engine/tick/sensor_identification.h"
-#include "models/surface/surface_numbers.h"
-#include "models/training/trend_regression.h"
+#include "models/linear/non_negative.h"
+#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "engine/recording/recording.h"
-#include "models/surface/surface_rows.h"
+#include "models/recordings/surface_rows.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "models/surface/surface_rows.h"
+#include "models/recordings/surface_rows.h"
 
 #include <gtest/gtest.h>
 

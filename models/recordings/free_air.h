@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "models/surface/surface_rows.h"
+#include "models/recordings/surface_rows.h"
 
 namespace palpate {
 

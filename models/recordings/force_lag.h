@@ -7,8 +7,8 @@
 // Thread guarantee: slow side, pure.
 #pragma once
 
-#include "models/surface/profile_search.h"
-#include "models/surface/surface_rows.h"
+#include "models/recordings/profile_search.h"
+#include "models/recordings/surface_rows.h"
 
 namespace palpate {
 
