@@ -5,13 +5,10 @@
 #include <cstdio>
 #include <utility>
 
-#include "engine/recording/content_hash.h"
 #include "engine/recording/press_direction.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/check/recording_measures.h"
-#include "models/recordings/force_lag.h"
-#include "models/recordings/surface_estimate.h"
 
 namespace palpate {
 namespace {
@@ -33,8 +30,6 @@ constexpr double kRelaxationsToSee = 3.0;
 constexpr double kSlowRate_Hz = 100.0;
 constexpr double kSurfaceDrift_m = 0.1e-3;
 constexpr int kFewStrokes = 5;
-// Ten minutes at 500 Hz.
-constexpr std::size_t kSurfaceRows = 300000;
 
 template <typename... Values>
 std::string words(const char* format, Values... values) {
@@ -45,8 +40,13 @@ std::string words(const char* format, Values... values) {
 
 class Checker {
  public:
-  Checker(const Recording& recording, const CheckRequest& request, const RecordingFaults& faults)
-      : recording_(recording), request_(request), faults_(faults) {}
+  Checker(const PreparedRecording& prepared, const CheckRequest& request, const RecordingFaults& faults)
+      : prepared_(prepared),
+        recording_(prepared.recording),
+        surface_(prepared.offsets.surface),
+        noise_N_(prepared.force_noise_N),
+        request_(request),
+        faults_(faults) {}
   RecordingCheck run();
 
  private:
@@ -71,13 +71,14 @@ class Checker {
   double travel_m() const { return measures_.highest_position_m - measures_.lowest_position_m; }
   double depth_m() const { return measures_.highest_position_m - check_.surface_offset_m; }
 
+  const PreparedRecording& prepared_;
   const Recording& recording_;
+  const SurfaceEstimate& surface_;
+  const double noise_N_;
   const CheckRequest& request_;
   const RecordingFaults& faults_;
   RecordingCheck check_;
   RecordingMeasures measures_;
-  SurfaceEstimate surface_;
-  double noise_N_ = 0.0;
 };
 
 // Without force or motion all other checks are meaningless.
@@ -171,7 +172,7 @@ void Checker::check_sampling() {
 }
 
 void Checker::check_sensors() {
-  const SensorSpec sensor = identify_sensor(recording_.rows.data(), recording_.rows.size(), recording_.columns);
+  const SensorSpec& sensor = prepared_.sensor;
   if (sensor.encoder_step_m > 0.0) {
     const bool coarse = sensor.encoder_step_m > 0.02 * std::max(depth_m(), kLeastTravel_m);
     add("encoder_step", coarse ? Severity::warning : Severity::note, sensor.encoder_step_m,
@@ -211,26 +212,14 @@ void Checker::check_clipping() {
       "the sensor or its amplifier is at its limit: press less or choose a larger range");
 }
 
-// A lag of the force biases the surface and the force zero, so both are estimated after the lag is removed.
 void Checker::check_lag() {
-  const std::vector<SurfaceRow> rows = thinned_rows(recording_, kSurfaceRows);
-  surface_ = estimate_surface(rows, noise_N_);
-  if (rows.size() == recording_.rows.size()) {
-    check_.motion.reserve(rows.size());
-    for (const SurfaceRow& row : rows) check_.motion.push_back(row.motion);
-  }
-  // Without an onset a lag cannot be distinguished from the material's memory.
-  if (!surface_.free_air) return;
-  const OffsetEstimate lag = find_force_lag(rows, noise_N_);
+  const OffsetEstimate& lag = prepared_.offsets.lag;
   if (lag.not_zero && !lag.identified) {
-    surface_.standard_error_m = HUGE_VAL;
-    surface_.offset_m = 0.0;
     add("lag_unknown", Severity::note, 0.0,
         "the force may lag or lead the position, but neither this lag nor the surface can be identified",
         "record both with the same clock");
   }
   if (lag.at == 0.0) return;
-  surface_ = estimate_surface(without_lag(rows, lag.at), noise_N_, lag.standard_error);
   add("lag", Severity::warning, lag.at,
       words("the force %s the position by %.3g ms (+- %.2g)", lag.at > 0.0 ? "lags" : "leads", 1e3 * std::abs(lag.at),
             1e3 * lag.standard_error),
@@ -345,9 +334,6 @@ void Checker::find_noise_floor() {
 }
 
 RecordingCheck Checker::run() {
-  const auto& rows = recording_.rows;
-  check_.content_hash = content_hash(recording_);
-  noise_N_ = identify_force_noise_N(rows.data(), rows.size());
   measures_ = measure_recording(recording_, 0.0);
   check_faults();
   check_sampling();
@@ -388,8 +374,9 @@ const char* RecordingCheck::verdict() const {
   return kVerdicts[static_cast<std::size_t>(gravest)];
 }
 
-RecordingCheck check_recording(const Recording& recording, const CheckRequest& request, const RecordingFaults& faults) {
-  return Checker(recording, request, faults).run();
+RecordingCheck check_recording(const PreparedRecording& prepared, const CheckRequest& request,
+                               const RecordingFaults& faults) {
+  return Checker(prepared, request, faults).run();
 }
 
 }  // namespace palpate

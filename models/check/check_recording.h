@@ -6,15 +6,13 @@
 // Thread guarantee: slow side, pure but for check_recording_file (does I/O).
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
-#include "engine/tick/motion_estimator.h"
 #include "models/check/recording_measures.h"
+#include "models/recordings/prepared_recording.h"
 #include "models/recordings/recording_faults.h"
 #include "models/training/motion_source.h"
 
@@ -45,18 +43,15 @@ struct RecordingCheck {
   bool surface_identified = false;  // whether the surface is identified
   double surface_offset_m = 0.0;    // to be subtracted from position_m; 0 if not identified
   double force_zero_N = 0.0;        // to be subtracted from force_N
-  std::uint64_t content_hash = 0;   // of all rows; equal for copies of a file
-  // The estimates of all rows for a fit; empty if the check did not compute them (long or unusable recordings).
-  std::vector<MotionEstimate> motion;
   RecordingMeasures measures;
 
   // "usable", "care" (at least one warning) or "unusable" (at least one fatal finding).
   const char* verdict() const;
 };
 
-// `recording`: at least kRecordingMinimumRows rows.
+// `prepared`: at least kRecordingMinimumRows rows.
 // `faults`: the rows that were removed from it.
-RecordingCheck check_recording(const Recording& recording, const CheckRequest& request,
+RecordingCheck check_recording(const PreparedRecording& prepared, const CheckRequest& request,
                                const RecordingFaults& faults = {});
 
 // Of longer recordings only the first rows are checked: 100 minutes at 1 kHz.
@@ -64,10 +59,11 @@ inline constexpr std::size_t kMostCheckedRows = 6000000;
 
 struct CheckedFile {
   std::string path;
-  Recording recording;  // the checked rows, without its faults
-  bool whole = true;    // false: the file is longer than kMostCheckedRows
+  PreparedRecordingPointer prepared;  // the checked rows, without its faults
+  bool whole = true;                  // false: the file is longer than kMostCheckedRows
   RecordingCheck check;
-  std::vector<bool> left_out{};  // MotionSource::Input
+
+  const Recording& recording() const { return prepared->recording; }
 };
 
 // Errors: those of RecordingReader.

@@ -24,7 +24,7 @@ void add_finding(CheckedFile& file, Finding finding) {
 void add_repetitions(std::vector<CheckedFile>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (files[i].check.content_hash != files[j].check.content_hash) continue;
+      if (files[i].prepared->content_hash != files[j].prepared->content_hash) continue;
       add_finding(
           files[i],
           {"repeated", Severity::warning, 1.0, "the file has the same rows as " + files[j].path,
@@ -38,7 +38,7 @@ void add_repetitions(std::vector<CheckedFile>& files) {
 void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
   for (std::size_t i = 1; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const auto found = find_contradiction(files[j].recording, files[i].recording, jnd);
+      const auto found = find_contradiction(files[j].recording(), files[i].recording(), jnd);
       if (!found) continue;
       const bool speed = found->speed_ratio > kOtherSpeed;
       add_finding(files[i], {"contradiction", Severity::warning, found->force_N,
@@ -63,8 +63,9 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
   auto recording = read_usable_recording(path, kMostCheckedRows, &faults);
   if (!recording) return recording.error();
   const bool whole = faults.rows < kMostCheckedRows;
-  RecordingCheck check = check_recording(*recording, request, faults);
-  return CheckedFile{path, std::move(*recording), whole, std::move(check)};
+  PreparedRecordingPointer prepared = prepare_recording(std::move(*recording));
+  RecordingCheck check = check_recording(*prepared, request, faults);
+  return CheckedFile{path, std::move(prepared), whole, std::move(check)};
 }
 
 Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths,
@@ -83,13 +84,7 @@ Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::st
 std::vector<MotionSource::Input> training_inputs(std::vector<CheckedFile> files) {
   std::vector<MotionSource::Input> inputs;
   for (CheckedFile& file : files) {
-    MotionSource::Input input{std::move(file.path), nullptr};
-    if (file.whole) input.loaded = std::make_shared<const Recording>(std::move(file.recording));
-    if (file.whole && !file.check.motion.empty()) {
-      input.motion = std::make_shared<const std::vector<MotionEstimate>>(std::move(file.check.motion));
-    }
-    input.left_out = std::move(file.left_out);
-    inputs.push_back(std::move(input));
+    inputs.push_back({std::move(file.path), file.whole ? std::move(file.prepared) : nullptr});
   }
   return inputs;
 }

@@ -133,9 +133,10 @@ Result<RecordingsFit> fit_memory(const std::vector<const palpate_recording*>& re
                                  const palpate_fit_options& options) {
   return fit_checked(options, [&](const CheckRequest& request) -> Result<std::vector<CheckedFile>> {
     std::vector<CheckedFile> checked;
-    for (const palpate_recording* one : recordings)
-      checked.push_back(
-          {one->recording.name, one->recording, true, check_recording(one->recording, request), one->left_out});
+    for (const palpate_recording* one : recordings) {
+      const PreparedRecordingPointer prepared = prepare_recording(one->recording, one->left_out);
+      checked.push_back({one->recording.name, prepared, true, check_recording(*prepared, request)});
+    }
     return checked;
   });
 }

@@ -9,20 +9,14 @@
 #include "engine/tick/sensor_identification.h"
 #include "models/recordings/common_fit.h"
 #include "models/recordings/force_lag.h"
-#include "models/recordings/free_air.h"
 #include "models/recordings/surface_estimate.h"
 #include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {
 
-// The minimum of rows of a recording in the common fit, which has kSearchRows rows in all, and the maximum of rows for
-// its onset.
+// The minimum of rows of a recording in the common fit, which has kSearchRows rows in all.
 constexpr std::size_t kLeastMemberRows = 300;
-constexpr std::size_t kOnsetRows = 400000;
-// With a larger interval an approach has too few rows to identify the onset. Of a recording of hours at 1 kHz the
-// first seven minutes are used.
-constexpr double kCoarsestOnset_s = 1.5e-3;
 // Two recordings must overlap by this share of the smaller range of positions.
 constexpr double kLeastOverlap = 0.3;
 constexpr double kCoarseSteps = 120.0;
@@ -41,12 +35,10 @@ struct Member {
 };
 
 // The common lag; 0 if less than half of the recordings identify one, or if they disagree.
-double common_lag_s(const std::vector<std::vector<SurfaceRow>>& recordings, double force_noise_N) {
+double common_lag_s(const std::vector<RecordingOffsets>& recordings) {
   std::vector<double> lags_s;
-  for (const auto& rows : recordings) {
-    if (!find_free_air(rows, force_noise_N).found) continue;
-    const OffsetEstimate lag = find_force_lag(rows, force_noise_N);
-    if (lag.at != 0.0) lags_s.push_back(lag.at);
+  for (const RecordingOffsets& one : recordings) {
+    if (one.lag.at != 0.0) lags_s.push_back(one.lag.at);
   }
   if (lags_s.empty() || 2 * lags_s.size() < recordings.size()) return 0.0;
   const double lag_s = median_of(lags_s);
@@ -55,9 +47,9 @@ double common_lag_s(const std::vector<std::vector<SurfaceRow>>& recordings, doub
   return agree ? lag_s : 0.0;
 }
 
-Member member_of(const std::vector<SurfaceRow>& rows, double force_noise_N, std::size_t common_rows) {
+Member member_of(const std::vector<SurfaceRow>& rows, const SurfaceEstimate& own, std::size_t common_rows) {
   Member member;
-  member.own = estimate_surface(rows, force_noise_N);
+  member.own = own;
   member.rows = thinned_rows(rows, common_rows);
   const auto [low, high] = std::minmax_element(rows.begin(), rows.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
     return a.motion.position_m < b.motion.position_m;
@@ -238,13 +230,22 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
       control, fraction);
   if (!status) return status.error();
   recordings.push_back(rows.rows());
-  const double lag_s = common_lag_s(recordings, source.force_noise_N());
-  if (!control.may_continue(fraction)) return interrupted();
-  for (auto& recording : recordings) {
-    if (lag_s != 0.0) recording = without_lag(recording, lag_s);
+  std::vector<RecordingOffsets> offsets;
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    const PreparedRecording* prepared = source.prepared(r);
+    offsets.push_back(prepared != nullptr ? prepared->offsets
+                                          : estimate_offsets(recordings[r], source.force_noise_N()));
+    if (!control.may_continue(fraction)) return interrupted();
   }
+  const double lag_s = common_lag_s(offsets);
   const std::size_t share = std::max(kLeastMemberRows, kSearchRows / recordings.size());
-  for (const auto& recording : recordings) members.push_back(member_of(recording, source.force_noise_N(), share));
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    std::vector<SurfaceRow>& rows = recordings[r];
+    if (lag_s != 0.0) rows = without_lag(rows, lag_s);
+    const bool same_lag = offsets[r].lag.at == lag_s;
+    members.push_back(
+        member_of(rows, same_lag ? offsets[r].surface : estimate_surface(rows, source.force_noise_N()), share));
+  }
   if (!control.may_continue(fraction)) return interrupted();
   RegisteredSurfaces result = registered(std::move(members), source.force_noise_N(), control);
   result.lag_s = lag_s;

@@ -19,8 +19,8 @@ class RowStream {
  public:
   static Result<RowStream> open(const MotionSource::Input& input) {
     RowStream stream;
-    stream.loaded_ = input.loaded;
-    if (input.loaded) return stream;
+    stream.prepared_ = input.prepared.get();
+    if (input.prepared) return stream;
     auto reader = RecordingReader::open(input.path);
     if (!reader) return reader.error();
     stream.reader_.emplace(std::move(*reader));
@@ -28,14 +28,14 @@ class RowStream {
     return stream;
   }
 
-  const std::string& name() const { return loaded_ ? loaded_->name : reader_->name(); }
-  RecordingColumns columns() const { return loaded_ ? loaded_->columns : reader_->columns(); }
+  const std::string& name() const { return prepared_ != nullptr ? prepared_->recording.name : reader_->name(); }
+  RecordingColumns columns() const { return prepared_ != nullptr ? prepared_->recording.columns : reader_->columns(); }
 
   // The next kSensorIdentificationRows rows, fewer only at the end, so that the identification of the sensor gets the
   // same rows from a file as from memory. Empty at the end.
   Result<std::span<const RecordingRow>> next() {
-    if (loaded_) {
-      const auto rows = std::span(loaded_->rows).subspan(position_);
+    if (prepared_ != nullptr) {
+      const auto rows = std::span(prepared_->recording.rows).subspan(position_);
       const auto some = rows.first(std::min(kSensorIdentificationRows, rows.size()));
       position_ += some.size();
       return some;
@@ -51,7 +51,7 @@ class RowStream {
   }
 
  private:
-  std::shared_ptr<const Recording> loaded_;
+  const PreparedRecording* prepared_ = nullptr;
   std::optional<RecordingReader> reader_;
   std::vector<RecordingRow> chunk_;
   std::size_t position_ = 0;
@@ -134,28 +134,32 @@ Status MotionSource::read(const Input& input, const Thinning& thinning, OneRecor
   one.recorded = 0;
   ContentHash hash;
   std::optional<MotionEstimator> estimator;
-  const MotionEstimate* known = input.motion ? input.motion->data() : nullptr;
-  if (input.loaded) one.rows.reserve(std::min(input.loaded->rows.size(), most_rows_));
+  const PreparedRecording* prepared = one.prepared = input.prepared.get();
+  const MotionEstimate* known = prepared != nullptr && !prepared->motion.empty() ? prepared->motion.data() : nullptr;
+  if (prepared != nullptr) one.rows.reserve(std::min(prepared->recording.rows.size(), most_rows_));
   while (true) {
     const auto chunk = stream->next();
     if (!chunk) return chunk.error();
     if (chunk->empty()) break;
     if (!estimator) {
-      const SensorSpec sensor = identify_sensor(chunk->data(), chunk->size(), stream->columns());
+      const SensorSpec sensor =
+          prepared != nullptr ? prepared->sensor : identify_sensor(chunk->data(), chunk->size(), stream->columns());
       estimator.emplace(sensor);
       std::tie(encoder_step_m_, position_noise_m_) = std::max(
           std::pair{encoder_step_m_, position_noise_m_}, std::pair{sensor.encoder_step_m, sensor.position_noise_m});
-      force_noise_N_ = std::max(force_noise_N_, identify_force_noise_N(chunk->data(), chunk->size()));
+      force_noise_N_ =
+          std::max(force_noise_N_, prepared != nullptr ? prepared->force_noise_N
+                                                       : identify_force_noise_N(chunk->data(), chunk->size()));
     }
     for (const RecordingRow& recorded : *chunk) {
-      hash.add(recorded);
+      if (prepared == nullptr) hash.add(recorded);
       MotionRow row;
       row.sample = tool_sample(recorded);
       row.force_N = recorded.force_N;
       row.motion = known != nullptr ? *known++ : estimator->update(row.sample);
       row.first = one.recorded == 0;
       const bool between = thinning.is_run_up(one.recorded);
-      row.run_up = between || (one.recorded < input.left_out.size() && input.left_out[one.recorded]);
+      row.run_up = between || (prepared != nullptr && !prepared->left_out.empty() && prepared->left_out[one.recorded]);
       if (!between || one.recorded % thinning.sparse == 0) one.rows.push_back(row);
       ++one.recorded;
     }
@@ -163,7 +167,7 @@ Status MotionSource::read(const Input& input, const Thinning& thinning, OneRecor
     if (thinning.sparse == 1 && one.rows.size() > most_rows_) one.rows.clear();
     if (!control.may_continue(fraction)) return interrupted();
   }
-  one.hash = hash.value();
+  one.hash = prepared != nullptr ? prepared->content_hash : hash.value();
   return {};
 }
 

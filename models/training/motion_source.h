@@ -18,9 +18,9 @@
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
-#include "engine/recording/recording.h"
 #include "engine/tick/motion_estimator.h"
 #include "engine/tick/tool_sample.h"
+#include "models/recordings/prepared_recording.h"
 #include "models/training/fold_assignment.h"
 
 namespace palpate {
@@ -52,14 +52,10 @@ struct RowCorrection {
 
 class MotionSource {
  public:
-  // One training recording: a file, or rows in memory.
+  // One training recording: a file that is read in each pass, or rows in memory.
   struct Input {
-    std::string path;  // used when `loaded` is empty
-    std::shared_ptr<const Recording> loaded;
-    // The estimate of every row of `loaded` if it was computed before, else null.
-    std::shared_ptr<const std::vector<MotionEstimate>> motion{};
-    // True for rows of `loaded` that only update filters, because validation uses them. Empty: none.
-    std::vector<bool> left_out{};
+    std::string path;  // used when `prepared` is null
+    PreparedRecordingPointer prepared;
   };
 
   // `most_rows`: the approximate number of rows to keep in memory.
@@ -86,6 +82,8 @@ class MotionSource {
 
   // Valid after the first pass, as all below.
   const std::vector<std::string>& names() const { return names_; }
+  // The recording of that number; null: a file.
+  const PreparedRecording* prepared(std::size_t recording) const { return recordings_[recording].prepared; }
   const std::vector<std::uint64_t>& hashes() const { return hashes_; }  // engine/recording/content_hash.h
   // The number of recorded rows, of which about `most_rows` are kept.
   std::size_t rows() const { return rows_; }
@@ -98,6 +96,7 @@ class MotionSource {
  private:
   struct OneRecording {
     std::string name;
+    const PreparedRecording* prepared = nullptr;
     std::size_t recorded = 0;
     std::uint64_t hash = 0;       // of its content
     std::vector<MotionRow> rows;  // without corrections

@@ -52,7 +52,7 @@ constexpr MethodOnly kMethodOnly[] = {{"--centres", kTakesCentres},
 // The sensors behind the training error: an accelerometer reduces it, and a device may have none.
 std::string sensor_text(const std::vector<CheckedFile>& files) {
   const bool any = std::any_of(files.begin(), files.end(),
-                               [](const CheckedFile& one) { return one.recording.columns.acceleration; });
+                               [](const CheckedFile& one) { return one.recording().columns.acceleration; });
   return any ? " (with the accelerometer)" : " (from positions alone)";
 }
 

@@ -212,7 +212,7 @@ void print_recording(const ReplayedRecording& replayed, const std::vector<Loaded
 }
 
 RowSource rows_of_checked(const CheckedFile& file) {
-  return file.whole ? rows_of(file.recording) : rows_of_file(file.path);
+  return file.whole ? rows_of(file.recording()) : rows_of_file(file.path);
 }
 
 // Output files of one recording; empty: not requested. `forces`: features and forces. `plot`: a figure.

@@ -56,8 +56,8 @@ Status run(const Arguments& arguments) {
                         command_line(arguments),
                         "palpate " PALPATE_VERSION};
   for (std::size_t i = 0; i < checked->size(); ++i) {
-    (i < arguments.train.size() ? request.train : request.test)
-        .push_back(std::make_shared<const Recording>(std::move((*checked)[i].recording)));
+    const PreparedRecordingPointer& prepared = (*checked)[i].prepared;
+    (i < arguments.train.size() ? request.train : request.test).emplace_back(prepared, &prepared->recording);
   }
   const Result<std::string> answer = [&] {
     ProgressLine line("reporting");

@@ -95,7 +95,7 @@ class Measurement {
 
   Result<Preparations> prepare(const std::vector<SharedRecording>& training) {
     std::vector<MotionSource::Input> inputs;
-    for (const SharedRecording& recording : training) inputs.push_back({"", recording});
+    for (const SharedRecording& recording : training) inputs.push_back({"", prepare_recording(*recording)});
     const TrainingRequest request = training_request(scene_);
     std::vector<PreparedTraining> made;
     for (const TrainingRequest& one : {recipe_2009_request(request), request}) {

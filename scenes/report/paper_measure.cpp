@@ -152,7 +152,7 @@ Status PaperMeasurement::record(const std::string& material) {
 }
 
 Result<PreparedTraining> PaperMeasurement::prepare(TrainingRequest request) {
-  MotionSource source({{"", train_}});
+  MotionSource source({{"", prepare_recording(*train_)}});
   auto prepared = prepare_training(source, request, part());
   if (!prepared) return prepared.error();
   if (prepared->set.reduction_force_N != kStep_N)

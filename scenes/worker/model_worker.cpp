@@ -150,7 +150,7 @@ Status ModelWorker::prepare_recordings() {
   for (const std::string& path : scene_.recordings) {
     Result<Recording> recording = read_usable_recording(path);
     if (!recording) return recording.error();
-    inputs.push_back({"", std::make_shared<const Recording>(std::move(*recording))});
+    inputs.push_back({"", prepare_recording(std::move(*recording))});
   }
   if (inputs.empty()) {
     RigSettings settings;
@@ -158,7 +158,7 @@ Status ModelWorker::prepare_recordings() {
     settings.seed = seed_;
     Result<Recording> recording = record_sensors(settings, control(0.0, kRecorded).progress);
     if (!recording) return recording.error();
-    inputs.push_back({"", std::make_shared<const Recording>(std::move(*recording))});
+    inputs.push_back({"", prepare_recording(std::move(*recording))});
   }
   recordings_ = std::move(inputs);
   return {};

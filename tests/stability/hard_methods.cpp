@@ -35,7 +35,7 @@ std::vector<HardCaseResult> FittedMethods::finish(const std::vector<OutcomeCount
 }
 
 FittedMethods fit_methods(const std::string& name, const Recording& recording, const TrainingRequest& request) {
-  MotionSource source({{"", std::make_shared<const Recording>(recording)}});
+  MotionSource source({{"", prepare_recording(recording)}});
   const Result<PreparedTraining> prepared = prepare_training(source, request);
   FittedMethods all;
   for (const Method* method : methods()) {

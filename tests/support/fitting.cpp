@@ -66,7 +66,7 @@ TrainingRequest position_request() { return scene_request("elastic_block"); }
 
 PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request) {
   std::vector<MotionSource::Input> inputs;
-  for (const RecordingPtr& recording : recordings) inputs.push_back({"", recording});
+  for (const RecordingPtr& recording : recordings) inputs.push_back({"", prepare_recording(*recording)});
   MotionSource source(std::move(inputs));
   return must(prepare_training(source, request));
 }

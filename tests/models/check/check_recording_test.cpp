@@ -21,6 +21,10 @@ Recording silicone() {
   return made;
 }
 
+RecordingCheck checked(const Recording& recording, const CheckRequest& request, const RecordingFaults& faults = {}) {
+  return check_recording(*prepare_recording(recording), request, faults);
+}
+
 const Finding* find(const RecordingCheck& check, const std::string& code) {
   for (const Finding& finding : check.findings) {
     if (finding.code == code) return &finding;
@@ -84,7 +88,7 @@ TEST(CheckRecording, FindsEachFault) {
     SCOPED_TRACE(fault.code);
     Recording recording = silicone();
     fault.apply(recording);
-    const RecordingCheck check = check_recording(recording, kSilicone);
+    const RecordingCheck check = checked(recording, kSilicone);
     const Finding* const finding = find(check, fault.code);
     EXPECT_NE(finding, nullptr) << all_of(check);
     EXPECT_STREQ(check.verdict(), fault.verdict) << all_of(check);
@@ -96,7 +100,7 @@ TEST(CheckRecording, FindsEachFault) {
 TEST(CheckRecording, WarnsOfNoForceThatAMachineReaches) {
   Recording recording = silicone();
   each(recording, [](RecordingRow& row) { row.force_N *= 100.0; });  // 700 N
-  const RecordingCheck check = check_recording(recording, kSilicone);
+  const RecordingCheck check = checked(recording, kSilicone);
   EXPECT_EQ(find(check, "force_unit"), nullptr) << all_of(check);
 }
 
@@ -143,12 +147,12 @@ TEST(CheckRecording, AdviceThatIsFollowedChangesTheFinding) {
     SCOPED_TRACE(advice.code);
     Recording recording = silicone();
     advice.fault(recording);
-    const RecordingCheck before = check_recording(recording, kSilicone);
+    const RecordingCheck before = checked(recording, kSilicone);
     const Finding* const finding = find(before, advice.code);
     ASSERT_NE(finding, nullptr) << all_of(before);
     EXPECT_FALSE(finding->advice.empty());
     advice.remedy(recording);
-    const Finding* const after = find(check_recording(recording, kSilicone), advice.code);
+    const Finding* const after = find(checked(recording, kSilicone), advice.code);
     EXPECT_TRUE(after == nullptr || after->advice.empty());
   }
 }
@@ -160,7 +164,7 @@ TEST(CheckRecording, AdviceScalesWithTheRecording) {
     const double pressed_m = 23e-6 * (1.0 - std::cos(2e-3 * i));
     cable.rows.push_back({1e-2 * i, 17.2e-3 + pressed_m, 1e5 * pressed_m, 0.0, 0.0});
   }
-  const RecordingCheck check = check_recording(cable, CheckRequest{});
+  const RecordingCheck check = checked(cable, CheckRequest{});
   const Finding* const strokes = find(check, "strokes");
   ASSERT_NE(strokes, nullptr) << all_of(check);
   EXPECT_GT(strokes->value, 5.0) << all_of(check);
@@ -175,7 +179,7 @@ TEST(CheckRecording, NamesTheRowsThatWereLeftOut) {
   faults.rows = 20000;
   faults.position_dropouts = 300;
   faults.update_step_s = 0.044;
-  const RecordingCheck check = check_recording(silicone(), kSilicone, faults);
+  const RecordingCheck check = checked(silicone(), kSilicone, faults);
   const Finding* const dropouts = find(check, "dropouts");
   ASSERT_NE(dropouts, nullptr);
   EXPECT_NEAR(dropouts->value, 0.015, 1e-12);
@@ -186,13 +190,13 @@ TEST(CheckRecording, NamesTheRowsThatWereLeftOut) {
 // On retreat 0.3 N more pull than the material's own force, over its last millimetre.
 TEST(CheckRecording, TellsThatTheMaterialPulls) {
   Recording sticky = silicone();
-  EXPECT_EQ(find(check_recording(sticky, kSilicone), "adhesion"), nullptr);
+  EXPECT_EQ(find(checked(sticky, kSilicone), "adhesion"), nullptr);
   double before_m = 0.0;
   each(sticky, [&](RecordingRow& row) {
     if (row.position_m < before_m && row.position_m > 0.0 && row.position_m < 1e-3) row.force_N -= 0.3;
     before_m = row.position_m;
   });
-  const RecordingCheck check = check_recording(sticky, kSilicone);
+  const RecordingCheck check = checked(sticky, kSilicone);
   const Finding* const finding = find(check, "adhesion");
   ASSERT_NE(finding, nullptr) << all_of(check);
   EXPECT_NEAR(finding->value, 0.3, 0.1);
@@ -206,7 +210,7 @@ TEST(CheckRecording, WithoutFreeAirNothingIsToldOfSurfaceAndZero) {
     const double depth_m = 5.5e-3 - 2.5e-3 * std::cos(2e-3 * 3.0 * i);
     recording.rows.push_back({2e-3 * i, depth_m, 500.0 * depth_m + 0.1 * std::sin(7.0 * i) * 0.05, 0.0, 0.0});
   }
-  const RecordingCheck check = check_recording(recording, CheckRequest{});
+  const RecordingCheck check = checked(recording, CheckRequest{});
   EXPECT_FALSE(check.surface_identified);
   EXPECT_EQ(check.surface_offset_m, 0.0);
   EXPECT_EQ(check.force_zero_N, 0.0);
@@ -224,7 +228,7 @@ TEST(CheckRecording, OnlyWarnsOfSignsWhereAMaterialMayBeLikeThat) {
     const double force_N = share < 0.2 ? 0.2 + 8.0 * share : 1.8 - 1.9 * (share - 0.2);
     softening.rows.push_back({1e-2 * i, 2e-3 * share, force_N, 0.0, 0.0});
   }
-  const RecordingCheck check = check_recording(softening, CheckRequest{});
+  const RecordingCheck check = checked(softening, CheckRequest{});
   EXPECT_STRNE(check.verdict(), "unusable") << all_of(check);
 }
 
@@ -237,7 +241,7 @@ TEST(CheckRecording, CountsStrokesAlikeAtEveryRate) {
       const double depth_m = 5e-3 * (1.0 - std::cos(2.0 * 3.141592653589793 * 0.25 * time_s)) - 1e-3;
       recording.rows.push_back({time_s, depth_m, 300.0 * std::max(0.0, depth_m), 0.0, 0.0});
     }
-    const RecordingCheck check = check_recording(recording, CheckRequest{});
+    const RecordingCheck check = checked(recording, CheckRequest{});
     const Finding* const strokes = find(check, "strokes");
     ASSERT_NE(strokes, nullptr) << all_of(check);
     EXPECT_EQ(strokes->value, 5.0) << rate_Hz;
@@ -250,8 +254,8 @@ TEST(CheckRecording, FindsAMonotonicCompressionOnlyForASceneWithMemory) {
     const double depth_m = 1e-5 * i;
     recording.rows.push_back({0.05 * i, depth_m, 500.0 * depth_m, 0.0, 0.0});
   }
-  EXPECT_NE(find(check_recording(recording, kSilicone), "monotonic"), nullptr);
-  EXPECT_EQ(find(check_recording(recording, CheckRequest{}), "monotonic"), nullptr);
+  EXPECT_NE(find(checked(recording, kSilicone), "monotonic"), nullptr);
+  EXPECT_EQ(find(checked(recording, CheckRequest{}), "monotonic"), nullptr);
 }
 
 TEST(CheckRecording, BlamesNoVirtualMaterial) {
@@ -261,7 +265,7 @@ TEST(CheckRecording, BlamesNoVirtualMaterial) {
       RigSettings settings;
       settings.material = std::string(material.name);
       settings.seed = seed;
-      const RecordingCheck check = check_recording(*test::rig_recording(settings), CheckRequest{});
+      const RecordingCheck check = checked(*test::rig_recording(settings), CheckRequest{});
       for (const Finding& finding : check.findings) {
         EXPECT_NE(finding.severity, Severity::fatal) << all_of(check);
         EXPECT_NE(finding.code, "lag") << all_of(check);

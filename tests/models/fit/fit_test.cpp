@@ -27,7 +27,7 @@ Result<PreparedTraining> prepare(const Recordings& recordings, const TrainingReq
                                  const FitControl& control = {}) {
   std::vector<MotionSource::Input> inputs;
   for (const Recording& recording : recordings) {
-    inputs.push_back({"", std::make_shared<const Recording>(recording)});
+    inputs.push_back({"", prepare_recording(recording)});
   }
   MotionSource source(std::move(inputs));
   return prepare_training(source, request, control);

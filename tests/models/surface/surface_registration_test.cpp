@@ -36,7 +36,7 @@ RecordingPtr rig(const std::string& material, std::uint64_t seed, double offset_
 
 RegisteredSurfaces registered(const std::vector<RecordingPtr>& recordings) {
   std::vector<MotionSource::Input> inputs;
-  for (const RecordingPtr& recording : recordings) inputs.push_back({"", recording});
+  for (const RecordingPtr& recording : recordings) inputs.push_back({"", prepare_recording(*recording)});
   MotionSource source(std::move(inputs));
   return test::must(register_surfaces(source));
 }

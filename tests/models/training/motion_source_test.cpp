@@ -12,7 +12,7 @@ namespace {
 
 using Input = MotionSource::Input;
 
-Input in_memory(Recording recording) { return {"", std::make_shared<const Recording>(std::move(recording))}; }
+Input in_memory(Recording recording) { return {"", prepare_recording(std::move(recording))}; }
 
 std::vector<MotionRow> rows_of(MotionSource& source) {
   std::vector<MotionRow> rows;
@@ -36,33 +36,31 @@ void expect_same(const std::vector<MotionRow>& a, const std::vector<MotionRow>& 
   }
 }
 
-// Known motion, as a check has estimated it, stands in for the estimator.
-TEST(MotionSource, TakesMotionThatIsKnown) {
+// From memory, with the motion of prepare_recording, and from a file.
+TEST(MotionSource, AFileGivesWhatMemoryGives) {
   const Recording recording = test::example_recording(5000, 1000.0, 30e-6);
-  MotionSource estimated({in_memory(recording)});
-  const auto rows = rows_of(estimated);
-  std::vector<MotionEstimate> motion;
-  for (const MotionRow& row : rows) motion.push_back(row.motion);
-  Input input = in_memory(recording);
-  input.motion = std::make_shared<const std::vector<MotionEstimate>>(std::move(motion));
-  MotionSource known({input});
-  expect_same(rows, rows_of(known));
-  expect_same(rows, rows_of(known));  // again, from where the rows are
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_recording(folder.file("r.csv"), recording, {}, false).ok());
+  const Input file{folder.file("r.csv"), nullptr};
+  MotionSource read({file});
+  MotionSource known({in_memory(recording)});
+  expect_same(rows_of(read), rows_of(known));
+  expect_same(rows_of(read), rows_of(known));  // a second pass
+  EXPECT_EQ(read.hashes(), known.hashes());
 
-  // Two of them, and moved, as if the motion were not known.
-  MotionSource twice({input, input});
-  MotionSource estimated_twice({in_memory(recording), in_memory(recording)});
-  for (MotionSource* source : {&twice, &estimated_twice}) source->correct({{1e-3, 0.5}, {0.0, 0.0}});
-  for (int pass = 0; pass < 2; ++pass) expect_same(rows_of(estimated_twice), rows_of(twice));
+  // Two of them, with corrections.
+  MotionSource twice({in_memory(recording), in_memory(recording)});
+  MotionSource read_twice({file, file});
+  for (MotionSource* source : {&twice, &read_twice}) source->correct({{1e-3, 0.5}, {0.0, 0.0}});
+  for (int pass = 0; pass < 2; ++pass) expect_same(rows_of(read_twice), rows_of(twice));
 }
 
 TEST(MotionSource, RowsThatAreLeftOutAreARunUpOfTheOthers) {
   const Recording recording = test::example_recording(3000, 1000.0, 30e-6);
   MotionSource whole({in_memory(recording)});
-  Input input = in_memory(recording);
-  input.left_out.assign(recording.rows.size(), false);
-  std::fill(input.left_out.begin() + 1000, input.left_out.begin() + 2000, true);
-  MotionSource source({input});
+  std::vector<bool> left_out(recording.rows.size(), false);
+  std::fill(left_out.begin() + 1000, left_out.begin() + 2000, true);
+  MotionSource source({{"", prepare_recording(recording, left_out)}});
   const auto rows = rows_of(source);
   expect_same(rows_of(whole), rows);
   for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i].run_up, i >= 1000 && i < 2000) << i;

@@ -21,7 +21,7 @@ Recording presses(int rows) {
 }
 
 TEST(TrainingExtent, MeasuresDepthStrokesAndWays) {
-  MotionSource source({{"", std::make_shared<const Recording>(presses(10000))}});
+  MotionSource source({{"", prepare_recording(presses(10000))}});
   const auto extent = measure_extent(source, {});
   ASSERT_TRUE(extent.ok());
   EXPECT_NEAR(extent->depth_m, 2e-3, 1e-4);  // what the motion estimate may be off at a turn
@@ -40,7 +40,7 @@ double beginning_of(double preload_N, double noise_N, double stiffness_N_per_m) 
     RecordingRow& row = recording.rows[i];
     row.force_N = preload_N + (i % 2 == 0 ? noise_N : -noise_N) + stiffness_N_per_m * row.position_m;
   }
-  MotionSource source({{"", std::make_shared<const Recording>(recording)}});
+  MotionSource source({{"", prepare_recording(recording)}});
   const auto extent = measure_extent(source, {});
   const auto beginning_m = find_preload_surface(source, *extent, {}, {});
   return beginning_m.ok() ? *beginning_m : 1.0;

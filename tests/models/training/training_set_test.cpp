@@ -12,9 +12,7 @@
 namespace palpate {
 namespace {
 
-MotionSource source_of(Recording recording) {
-  return MotionSource({{"", std::make_shared<const Recording>(std::move(recording))}});
-}
+MotionSource source_of(Recording recording) { return MotionSource({{"", prepare_recording(std::move(recording))}}); }
 
 // A recording at 1 kHz whose positions and forces are given.
 template <typename Function>

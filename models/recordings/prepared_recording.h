@@ -1,0 +1,50 @@
+// A recording with what it says by itself, computed once: check reports it, and every fit uses it.
+// Thread guarantee: an immutable value; prepare_recording is pure, slow side.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/recording/recording.h"
+#include "engine/tick/motion_estimator.h"
+#include "models/recordings/profile_search.h"
+#include "models/recordings/surface_estimate.h"
+#include "models/recordings/surface_rows.h"
+
+namespace palpate {
+
+// The maximum number of rows from which a surface is estimated, and their largest interval: with a larger one an
+// approach has too few rows to identify the onset. Of a recording of hours at 1 kHz the first seven minutes are used.
+inline constexpr std::size_t kOnsetRows = 400000;
+inline constexpr double kCoarsestOnset_s = 1.5e-3;
+
+// The lag of the force, in s, and the surface after this lag was removed. A lag is searched only where there is free
+// air, because without an onset it cannot be distinguished from the material's memory. If the lag differs from 0 but
+// is not identified, the surface is not identified either.
+struct RecordingOffsets {
+  OffsetEstimate lag;
+  SurfaceEstimate surface;
+};
+
+// `rows`: in time order. `force_noise_N`: standard deviation.
+RecordingOffsets estimate_offsets(const std::vector<SurfaceRow>& rows, double force_noise_N);
+
+struct PreparedRecording {
+  Recording recording;
+  // True for rows that only update filters, because validation uses them. Empty: none.
+  std::vector<bool> left_out;
+  std::uint64_t content_hash = 0;  // engine/recording/content_hash.h
+  SensorSpec sensor;
+  double force_noise_N = 0.0;          // standard deviation
+  std::vector<MotionEstimate> motion;  // of every row; empty for more than kOnsetRows rows
+  RecordingOffsets offsets;            // from the rows before the first one that is left out
+};
+
+using PreparedRecordingPointer = std::shared_ptr<const PreparedRecording>;
+
+// `recording`: at least one row. `left_out`: empty, or one value for each row.
+PreparedRecordingPointer prepare_recording(Recording recording, std::vector<bool> left_out = {});
+
+}  // namespace palpate
