@@ -1,5 +1,5 @@
-"""syntax.py BUILD: every command of BUILD/compile_commands.json, without the code that it would
-make: what a compiler says of the sources at a third of the price. Precompiled headers come first."""
+"""syntax.py BUILD: runs every command of BUILD/compile_commands.json as a syntax check that generates
+no code. This finds all errors and warnings in a third of the time. Precompiled headers are built first."""
 import json
 import os
 import pathlib

@@ -1,21 +1,21 @@
-# Sourced by scenes/run.sh, tests/run.sh and .ci/: what must be there before
-# a program can run. Does only what is missing and is silent when nothing is.
-# Sets `root`, the source tree; the caller has `set -euo pipefail`.
+# Sourced by scenes/run.sh, tests/run.sh and .ci/: installs missing packages and builds.
+# Prints nothing if nothing is missing. Sets `root`, the source tree.
+# The caller must have `set -euo pipefail`.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-# The one list of Debian packages: to build and run, to test, and for .ci/run.
+# The only list of Debian packages. These are needed to build and run.
 packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev libhwy-dev
   libcli11-dev nlohmann-json3-dev gnuplot-nox
   pkg-config libglfw3-dev libglm-dev libepoxy-dev libimgui-dev libpng-dev libgl1-mesa-dri
   fonts-dejavu-core libhidapi-dev)
-# For the tests and benchmarks: of the window a display in memory (xauth: for
-# xvfb-run), of devices an emulated one and an emulated board with its compiler, of numbers
-# a German locale.
+# Needed by the tests and benchmarks: a virtual display for the window (xvfb-run needs
+# xauth), an emulated HID device, an emulated AVR board with its compiler, and a German
+# locale for number formats.
 test_packages=(libgtest-dev libbenchmark-dev python3 python3-numpy python3-matplotlib locales xvfb xauth xkb-data
   x11-xkb-utils libumockdev-dev umockdev
   gcc-avr avr-libc simavr libsimavr-dev)
-# What makes the empty roots of .ci/run; its steps ask for what they need in there.
+# Needed by .ci/run to make empty roots. Its steps install their own packages there.
 ci_packages=(mmdebstrap debian-archive-keyring lintian git)
 
 say() { printf '== %s\n' "$*"; }
@@ -35,7 +35,7 @@ quietly() {
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
-# install_packages NAME...: those that are missing, as root or through sudo.
+# install_packages NAME...: installs the missing ones, as root or with sudo.
 install_packages() {
   local name missing=() as_root=()
   command -v dpkg-query >/dev/null || return 0  # not Debian: the build says what it lacks
@@ -55,7 +55,7 @@ install_packages() {
     apt-get install -y -q --no-install-recommends "${missing[@]}"
 }
 
-# How many compilers at once: every core, but 1.5 GB of memory for each.
+# Prints the number of parallel jobs: one per core, and at least 1.5 GB of memory per job.
 job_count() {
   local cores memory_kb limit
   cores=$(nproc)
@@ -67,9 +67,9 @@ job_count() {
   echo $((by_memory < cores ? by_memory : cores))
 }
 
-# build_in FOLDER TARGETS [CMAKE OPTION...]: configures when the folder is new or
-# options are given, with those of PALPATE_CMAKE_OPTIONS too, then builds. TARGETS: one or
-# several, in one word.
+# build_in FOLDER TARGETS [CMAKE OPTION...]: builds the targets. First runs cmake if the
+# folder is new or options are given, with PALPATE_CMAKE_OPTIONS added. TARGETS is one
+# argument; several targets are separated by spaces.
 build_in() {
   local folder=$1 targets more
   read -r -a targets <<<"$2"

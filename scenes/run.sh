@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The main job, on a fresh Debian 12 too. With a display: the window program,
-# arguments and all. Without one: fits every method on a recording of the
-# virtual silicone block, replays another and prints the comparison; or, with a
-# verb as first argument (`bash scenes/run.sh scenes`), runs `palpate` with it.
+# Builds and runs Palpate, on a fresh Debian 12 too. With a display: starts the
+# window program with all arguments. Without one: fits every method to a
+# recording of the virtual silicone block, replays another and prints the errors;
+# with a verb as first argument (`bash scenes/run.sh scenes`), runs `palpate`.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 
@@ -23,8 +23,8 @@ compare_methods() {
 }
 
 install_packages "${packages[@]}"
-# Nothing but the two programs. What the tests need is configured by their own
-# command, which installs it.
+# Builds only the two programs. tests/run.sh installs and configures what the
+# tests need.
 options=()
 [ -f "$root/build/build.ninja" ] || options=(-DBUILD_TESTING=OFF)
 build_in "$root/build" "palpate palpate-demo" "${options[@]}"
