@@ -1,6 +1,6 @@
-// Away from its data every model must be safe and sane: finite, bounded,
-// continuous, pushing only, marked as out of domain, and on motions unlike the
-// training never worse than a model of position alone.
+// Extrapolation: outside its training data every model must be finite, bounded,
+// continuous, nonnegative and marked as out of domain. On motions unlike the
+// training its error must not exceed that of a model of position alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,10 +33,10 @@ struct Subject {
   std::vector<ModelPtr> models;  // one of each method
   double deepest_m = 0.0;
   double largest_N = 0.0;
-  double speed_m_per_s = 0.0;  // as the training moves
+  double speed_m_per_s = 0.0;  // of the training
   double onset_N = 0.0;        // force with which the recorded contact begins
-  // Largest step with a 30 um encoder that counts as passed, over what it counts
-  // as with exact positions.
+  // The limit of a force step with a 30 um encoder, relative to the limit with
+  // exact positions.
   double encoder_allowance = 1.0;
 };
 
@@ -51,7 +51,7 @@ Subject subject_of(const std::string& name, const PreparedTraining& prepared, do
   return subject;
 }
 
-// At 250 Hz, for direct fits in little time; judged at 1 kHz all the same.
+// 250 Hz keeps direct fits short. The tests still run at 1 kHz.
 constexpr double kTrainingRate_Hz = 250.0;
 
 const Subject& silicone() {
@@ -72,13 +72,13 @@ const Subject& press() {
     Subject made = subject_of(
         "press", prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block")),
         0.01);
-    // Its position counts from where the force first passed 0.1 N.
+    // Position 0 is where the force first exceeded 0.1 N.
     made.onset_N = 0.1;
-    // Falls short of one JND with an encoder unlike its own. Below 1 N, where
-    // the recorded speeds end, such steps make the velocity ripple by 0.7 mm/s in
-    // a sample, a 25th of its spread. Direct fits the force noise there (50 mN,
-    // one cycle) and swings by its whole correction limit of 0.31 N: 3.3 JND.
-    // For the others that ripple crosses much of the guard's edge: 1.4 JND.
+    // Known limitation: with an encoder coarser than its own, steps exceed one JND.
+    // Below 1 N the recorded speeds end. There the encoder makes the velocity ripple by
+    // 0.7 mm/s per sample, a 25th of its spread. Direct fits the force noise there (50 mN)
+    // and moves by its whole correction limit of 0.31 N: 3.3 JND. In the other models
+    // the ripple crosses much of the zone in which trust falls from 1 to 0: 1.4 JND.
     made.encoder_allowance = 4.0;
     return made;
   }();
@@ -92,14 +92,14 @@ std::vector<const Subject*> subjects() {
 }
 
 struct Stroke {
-  double largest_step_over_jnd = 0.0;  // between consecutive samples, over what is allowed
+  double largest_step_over_jnd = 0.0;  // between consecutive samples, relative to the allowed step
   double largest_N = 0.0;
   std::size_t outside = 0;  // samples deeper than 1.3 times the training
   std::size_t outside_unmarked = 0;
 };
 
-// Replays `motion`. A step may be one JND, or as large as that of the true
-// material where that is larger.
+// Replays `motion`. The allowed step is one JND or the step of the true
+// material, whichever is larger.
 std::vector<Stroke> stroke_over(const Subject& subject, const ScriptedPress& motion) {
   std::vector<Stroke> strokes(subject.models.size());
   std::vector<double> last_N(subject.models.size(), 0.0);
@@ -162,14 +162,14 @@ TEST(AwayFromData, HoldsTenTimesAsLong) {
   }
 }
 
-// Three times as fast a force may climb three times as much in a millisecond.
+// At three times the speed the force may rise three times as fast.
 TEST(AwayFromData, ThreeTimesAsFast) {
   for (const Subject* subject : subjects()) {
     expect_sane(*subject, "faster", press_and_hold(0.9 * subject->deepest_m, 3.0 * subject->speed_m_per_s, 0.5), 3.0);
   }
 }
 
-// From the middle of the data out along every axis, near and to infinity.
+// From the middle of the data along every axis: by 1e-6 to 1e6.
 TEST(AwayFromData, SweepsOfEveryFeature) {
   for (const Subject* subject : subjects()) {
     for (const ModelPtr& model : subject->models) {
@@ -188,9 +188,9 @@ TEST(AwayFromData, SweepsOfEveryFeature) {
           }
           EXPECT_TRUE(model->evaluate(x.data()).out_of_domain) << model->name() << ", axis " << axis;
         }
-        // A thousandth of the spread at a time: no cliff anywhere. A change of
-        // one spread is one of the whole force or so, hence a thousandth of it
-        // many times over still stays below a JND.
+        // Steps of a thousandth of the spread: the force has no jump. A change of
+        // one spread changes the force by about its whole range, so that
+        // each of these steps must be far below one JND.
         double last_N = -1.0;
         for (double u = -5.0; u <= 5.0; u += 1e-3) {
           x[axis] = data.offset(k) + u * data.scale(k);
@@ -205,7 +205,7 @@ TEST(AwayFromData, SweepsOfEveryFeature) {
   }
 }
 
-// Both kinds of model from the same training; every method against its twin.
+// Compares each method with the same method fitted to position alone.
 void expect_no_worse_than_position(const std::string& what, const RecordingPtr& train, const RecordingPtr& test_run,
                                    const std::string& scene) {
   const std::vector<ModelPtr> full = fit_all(prepare({train}, scene_request(scene)));
@@ -219,7 +219,7 @@ void expect_no_worse_than_position(const std::string& what, const RecordingPtr& 
   }
 }
 
-// Every fourth row: kTrainingRate_Hz.
+// Every fourth row, that is kTrainingRate_Hz.
 RecordingPtr thinned(const RecordingPtr& recording) {
   auto copy = std::make_shared<Recording>(*recording);
   copy->rows.clear();

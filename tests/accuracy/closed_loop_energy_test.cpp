@@ -1,5 +1,5 @@
-// Energy in the closed loop (closed_loop_test.cpp): cycles and strokes take more than they
-// give.
+// Energy in the closed loop (closed_loop_test.cpp): cycles and strokes absorb more energy
+// than they return.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,12 +35,12 @@ using test::Ticking;
 
 TEST(ClosedLoop, NoCycleInSiliconeGivesEnergy) {
   for (const ModelPtr& model : silicone_models()) {
-    // By itself: nothing is left for the controller to do.
+    // The model alone is passive, without the controller.
     const double least = least_damping_Ns_per_m(model, kFirm.depth_m, false);
     say("cycles, " + model->name(), "damping of %.2f N s/m or more, %.2f needed", least, 0.0);
     EXPECT_GE(least, 0.0) << model->name();
   }
-  // What a spring does is known in closed form; at 40 Hz a tenth more.
+  // The result of a spring has a closed form; at 40 Hz it is a tenth larger.
   for (const double stiffness : {kSoftSpring_N_per_m, kStiffSpring_N_per_m}) {
     const double expected = held_and_late_Ns_per_m(stiffness);
     EXPECT_NEAR(least_damping_Ns_per_m(spring(stiffness), kFirmOnStiff.depth_m, 5e-6, 5e-4, Ticking::even, false),
@@ -48,9 +48,9 @@ TEST(ClosedLoop, NoCycleInSiliconeGivesEnergy) {
   }
 }
 
-// An encoder turns a step late on the way in and a step late on the way out: at
-// most that, over the largest force, may come out of a stroke for nothing.
-// Silicone keeps a fifth of every stroke and needs none of it.
+// An encoder reverses a step late at the turn, on the way in and out. So a stroke may
+// return at most one step times the largest force more than it absorbed.
+// Silicone absorbs a fifth of every stroke and returns less than it took.
 TEST(ClosedLoop, StrokesIntoSiliconeGiveLessThanTheyTake) {
   for (const ModelPtr& model : silicone_models()) {
     double worst_return = 0.0, worst_bounce = 0.0;
@@ -69,8 +69,8 @@ TEST(ClosedLoop, StrokesIntoSiliconeGiveLessThanTheyTake) {
     say("strokes, " + model->name(), "%.1f %% comes out again, of a thrown mass %.1f %%", 100.0 * worst_return,
         100.0 * worst_bounce);
     EXPECT_LE(worst_return, 1.0) << model->name();
-    // Of a mass that is thrown at the surface and never gets to where silicone is
-    // viscous one encoder step hides a part. Measured: 1.09; 1.19 without the controller.
+    // A mass thrown at the surface stays where silicone has little viscosity, and one
+    // encoder step hides energy. Measured: 1.09; 1.19 without the controller.
     EXPECT_LE(worst_bounce, 1.15) << model->name();
   }
   for (const Grip& grip : test::grips()) {
@@ -80,10 +80,10 @@ TEST(ClosedLoop, StrokesIntoSiliconeGiveLessThanTheyTake) {
   }
 }
 
-// What the controller takes of the force in a hand, in JNDs: nothing on silicone, which
-// keeps a fifth of every stroke; on the stiff block what a held and late force gives
-// back too much, on the way out. Measured: 0 and 0 JND; 0.67 JND on the mean of all
-// ticks in contact, 13 JND in the fastest of them, out of the block within 50 ms.
+// The force that the controller takes away in a hand, in JNDs: none on silicone, which
+// absorbs a fifth of every stroke; on the stiff block the excess that a held and delayed force
+// returns on the way out. Measured: silicone 0 JND; stiff block 0.67 JND (mean of all
+// ticks in contact) and 13 JND (largest, when the tool leaves the block within 50 ms).
 TEST(ClosedLoop, TheControllerCostsAHandLessThanOneJnd) {
   const auto cost = [](const std::string& block, const std::vector<ModelPtr>& models, const Press& press) {
     Strokes worst;

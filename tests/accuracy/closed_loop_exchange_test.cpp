@@ -1,4 +1,4 @@
-// Models exchanged while they are felt in the closed loop (closed_loop_test.cpp).
+// Exchanges models in contact, in the closed loop (closed_loop_test.cpp).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,8 +42,8 @@ long sets_alive(const std::vector<ForcePtr>& models, const std::vector<long>& ow
   return alive;
 }
 
-// Presses for a second, then a new set every 10 ms for two seconds. The largest
-// change of the rendered force within 10 ms, over the JND of the smaller force.
+// Presses for a second, then publishes a new set every 10 ms for two seconds. Returns the
+// largest change of the rendered force within 10 ms, over the JND of the smaller force.
 double largest_change_jnd(const std::vector<ForcePtr>& models, const Grip& grip, double encoder_m) {
   std::vector<long> own;
   for (const ForcePtr& model : models) own.push_back(model.use_count());
@@ -67,7 +67,7 @@ double largest_change_jnd(const std::vector<ForcePtr>& models, const Grip& grip,
           }
           if (time_s.back() < 1.0 + 0.01 * static_cast<double>(published)) return;
           loop.publish(models[++published % models.size()]);
-          // In the hand, fading out, pending, retired since.
+          // The active set, the one fading out, the pending one and a retired one.
           EXPECT_LE(sets_alive(models, own), 4);
         });
     EXPECT_GE(published, 190u);
@@ -93,9 +93,9 @@ TEST(ClosedLoop, AHundredExchangesASecondAreNotFelt) {
     std::vector<ForcePtr> models;
     double led_jnd, in_hand_jnd;
   };
-  // A model half as stiff makes the hand move a millimetre and back all the time,
-  // and what the models say of that motion passes through unhindered: 1.24 JND. Behind an encoder of
-  // 30 um silicone is rendered at 78 % (StabilityLimit) and that spring as it is: 1.12 JND with the tool led.
+  // With a model half as stiff the hand moves a millimetre to and fro. The blend does not
+  // limit the force changes due to that motion: 1.24 JND. With a 30 um encoder StabilityLimit
+  // renders silicone at 78 % and that spring at 100 %: 1.12 JND with the tool led.
   const Exchange exchanges[] = {{"methods", methods, 1.0, 1.0},
                                 {"weights of 1e300", with_broken, 1.0, 1.0},
                                 {"half as stiff", with_foreign, 1.2, 1.4}};

@@ -1,5 +1,5 @@
-// The closed loop (closed_loop_test.cpp) over a line that is late or slow: what is rendered is bounded by what delay
-// and rate allow (engine/live/stability_limit.h), so that no hand is driven.
+// The closed loop (closed_loop_test.cpp) with delay or a low sample rate: the rendered stiffness is limited to the
+// stable range (engine/live/stability_limit.h), so that no hand oscillates.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,24 +20,24 @@ using test::Grip;
 using test::LoopSettings;
 using test::spring;
 
-// 50 to 300 g, each as little damped as relaxed hands are, 0.35 to 0.7 of critical.
+// 50 to 300 g, with the low damping of relaxed hands, 0.35 to 0.7 of critical.
 const Grip kHands[] = {{"finger, 50 g", 0.05, 100.0, 2.2},
                        {"relaxed, 80 g", 0.08, 150.0, 3.5},
                        {"braced, 120 g", 0.12, 800.0, 14.0},
                        {"loose, 300 g", 0.3, 150.0, 4.7}};
 
-// What is left are some steps of the encoder, of a light finger that is hardly damped. Measured: 0.09 mm with one of
-// 5 um, 0.11 with 10; falls short, visibly, with 30 um, 0.31 mm. Without the limit: 11 mm.
+// A light finger with little damping still oscillates by some encoder steps. Measured: 0.09 mm with an encoder of
+// 5 um, 0.11 mm with 10 um. Known limitation: 0.31 mm with 30 um. Without the limit: 11 mm.
 constexpr double kSwing_m = 0.12e-3, kCoarseSwing_m = 0.35e-3;
 constexpr double kCoarse_m = 30e-6;
-// Within half a second; a cycle of 0.1 mm that takes a tenth of its energy from the device gives ten times as much. It
-// grows with the square of the encoder's step; measured with 30 um: 0.27 mJ.
+// The largest energy from the device in half a second. A cycle of 0.1 mm that takes a tenth of its energy from the
+// device would get ten times as much. The energy grows with the square of the encoder step; measured at 30 um: 0.27 mJ.
 constexpr double kGiven_J = 100e-6, kCoarseGiven_J = 300e-6;
 
 struct Swing {
   double position_m = 0.0;  // peak to peak in the last half second
-  double given_J = 0.0;     // by the rendered force in it
-  double share = 1.0;       // of the stiffness that was rendered
+  double given_J = 0.0;     // energy from the rendered force in that time
+  double share = 1.0;       // rendered share of the stiffness
 };
 
 // Presses with a newton, gets a knock, and holds still.
@@ -67,7 +67,7 @@ Swing swing(const std::shared_ptr<const ForceModel>& model, const LoopSettings& 
   return result;
 }
 
-// What a user adds is part of the same sum and has the same limits.
+// The stability limit includes the stiffness scale and the damping that a user sets.
 TEST(ClosedLoop, NeitherScaleNorDampingOfTheUserDrivesAHand) {
   for (const double encoder_m : {5e-6, 10e-6}) {
     for (const ForceScale& scale : {ForceScale{4.0, 0.0}, ForceScale{1.0, 20.0}, ForceScale{4.0, 20.0}}) {

@@ -1,8 +1,7 @@
-// The closed loop (closed_loop_test.cpp) over the materials whose recordings ask for
-// memory: friction, softening, a power law, a layer, a fluid. Every feature is the
-// recording's choice, so that stops, fading deepest depths and whole spectra of relaxation
-// are in the loop. One line for each material, model, hand, encoder and delay; the table
-// goes to the log.
+// The closed loop (closed_loop_test.cpp) over materials with memory: friction, softening,
+// a power law, a layer, a fluid. The features are those that the fit selects for each
+// recording, e.g. stops and spectra of relaxation times. The log has one line for each
+// material, model, hand, encoder and delay.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +34,7 @@ using test::Ticking;
 
 constexpr const char* kMaterials[] = {"friction", "softening", "sponge", "layered", "tissue"};
 
-// Trend alone, all sites, a grid, and what users take by default; fitted once.
+// The trend alone, all sites, a grid, and the default method. Fitted once.
 const std::vector<ModelPtr>& models_of(const std::string& material) {
   static std::map<std::string, std::vector<ModelPtr>> fitted;
   std::vector<ModelPtr>& models = fitted[material];
@@ -51,7 +50,7 @@ const std::vector<ModelPtr>& models_of(const std::string& material) {
   return models;
 }
 
-// Half of what the training went to.
+// About half of the force and depth of the training.
 Press press_of(const ModelPtr& model) {
   return {0.4 * model->data().largest_force_N, 0.6 * model->data().trend.reference_depth_m};
 }
@@ -63,13 +62,13 @@ std::string features_text(const ModelPtr& model) {
 }
 
 // These are three to ten times as stiff as the silicone of closed_loop_test.cpp (2 kN/m, and
-// 7 kN/m within the bend of the bristles of friction): held and late that asks for 3 to 10
-// N s/m. A firm hand has it, and what it feels at rest is the encoder's step. A relaxed
-// finger has 3.5 N s/m: it feels a buzz that neither grows nor ends. Measured with 1 and
-// 3 ms: firm 0.97 JND, on friction 2.96; relaxed 10.4 JND and 0.82 mm, on tissue and
-// softening foam with 1 ms below 1 JND. Falls short, visibly: the sponge is 3.3 kN/m at
-// once, and 3 ms late it throws a relaxed finger to and fro by 4.2 mm, 21 JND; with 1 ms
-// it rests within 1.1 JND.
+// 7 kN/m before friction slips), so that a held and late force needs 3 to 10 N s/m of
+// damping. A firm hand has that much and feels at most the encoder step. A relaxed finger has
+// 3.5 N s/m and feels a buzz that neither grows nor ends. Measured with 1 and 3 ms of delay:
+// firm 0.97 JND, on friction 2.96 JND; relaxed 10.4 JND and 0.82 mm, but below 1 JND on tissue
+// and softening foam with 1 ms. Known limitation: the sponge has an instantaneous stiffness of
+// 3.3 kN/m. With 3 ms of delay a relaxed finger on it oscillates by 4.2 mm, 21 JND; with 1 ms
+// by 1.1 JND.
 constexpr double kFirmStill_jnd = 1.2;
 constexpr double kFirmOnFriction_jnd = 4.0;
 constexpr double kRelaxedBuzz_jnd = 12.0;
@@ -105,10 +104,10 @@ TEST(ClosedLoop, ComesToRestOnMaterialsWithMemory) {
   }
 }
 
-// An encoder turns a step late on the way in and out; see closed_loop_energy_test.cpp.
-// Falls short, visibly: on the sponge, 17 N at 3.3 kN/m, up to 106 % of a stroke comes out
-// again and 6.8 mJ of it at most, which the controller, bounded to 12 N s/m, does not take
-// away within 50 ms. All others: 0.95.
+// The limit of the others is that of closed_loop_energy_test.cpp; measured: 0.95. Known
+// limitation: the sponge (17 N at 3.3 kN/m) returns up to 106 % of the energy of a stroke and
+// a surplus of up to 6.8 mJ. The controller, limited to 12 N s/m, cannot dissipate that
+// within 50 ms.
 constexpr double kReturnOnSponge = 1.25;
 constexpr double kGivenOnSponge_J = 0.01;
 
@@ -136,9 +135,9 @@ TEST(ClosedLoop, StrokesIntoMaterialsWithMemoryGiveLessThanTheyTake) {
   }
 }
 
-// Held and late, up to 4 kN/m take 6 N s/m away. With the controller less than half of what
-// a relaxed finger has, 3.5, is left. Measured: -1.65 (sponge), -0.62 (layered) to 2.3
-// (friction).
+// A held and late force of up to 4 kN/m acts like -6 N s/m of damping. With the controller
+// it lacks less than the 3.5 N s/m of a relaxed finger. Measured: -1.65 (sponge), -0.62
+// (layered) to 2.3 (friction).
 constexpr double kMostLacking_Ns_per_m = 2.0;
 
 TEST(ClosedLoop, CyclesInMaterialsWithMemoryGiveLessThanAFingerTakes) {
@@ -154,8 +153,8 @@ TEST(ClosedLoop, CyclesInMaterialsWithMemoryGiveLessThanAFingerTakes) {
   }
 }
 
-// From one material to another in mid-press and back, a hundred times a second: memories
-// that both have go on, the others begin at rest; nothing allocates.
+// Exchanges two materials in mid-press, a hundred times a second. Memory that both have
+// continues, other memory starts at rest, and nothing allocates.
 TEST(ClosedLoop, MaterialsExchangedInMidPressStayBounded) {
   const Grip grip = test::grips()[1];
   ClosedLoop loop({grip, 30e-6, kOneTick_s, Ticking::gaps});
@@ -178,7 +177,7 @@ TEST(ClosedLoop, MaterialsExchangedInMidPressStayBounded) {
   if (test::rt_guard_works()) {
     EXPECT_EQ(loop.offences(), 0);
   }
-  // Back in the air nothing is left.
+  // Back in the air the force is zero.
   loop.run(1.0, [](double time_s) { return test::minimum_jerk(6e-3, -5e-3, 0.3, time_s); });
   EXPECT_EQ(loop.tool().force_N(), 0.0);
 }

@@ -28,10 +28,10 @@ using test::stiff_models;
 using test::Ticking;
 using test::worst_hold;
 
-// Falls short, visibly: one step of 30 um is 0.35 JND on 3 kN/m, and a relaxed
-// hand has less damping than the 4.5 N s/m that the block asks for, so that it
-// feels a buzz of 2 JND with such an encoder. Measured: 3.9 steps, 2.0 JND; with
-// a 5 um encoder 0.3 JND.
+// Known limitation: one step of 30 um is 0.35 JND on 3 kN/m, and a relaxed hand
+// has less damping than the 4.5 N s/m that the block requires. With such an
+// encoder it feels a buzz of 2 JND. Measured: 3.9 steps, 2.0 JND; with a 5 um
+// encoder 0.3 JND.
 constexpr double kStiffStill_steps = 6.0;
 constexpr double kStiffStill_jnd = 3.0;
 constexpr double kFineStill_jnd = 0.5;
@@ -53,14 +53,13 @@ TEST(ClosedLoop, TheStiffBlockIsStableInAHand) {
     EXPECT_LE(fine.force_jnd, kFineStill_jnd) << model->name();
     EXPECT_GE(least, held_and_late_Ns_per_m(kStiffSpring_N_per_m)) << model->name() << ": its own viscosity helps";
   }
-  // What the model's viscosity is worth: a spring as stiff goes on for ever.
+  // For comparison: a spring of the same stiffness, without viscosity, never comes to rest.
   EXPECT_GT(worst_hold(spring(kStiffSpring_N_per_m), test::grips()[0], kFirmOnStiff, 3.0, false).force_jnd, 10.0);
 }
 
-// A mass that nothing holds takes energy from the held and late force of the stiff
-// block and would be thrown about. The controller brings it to a buzz of some encoder
-// steps, 6 N s/m in the device to rest. Measured: 137 mm without the controller, 0.2 mm
-// with it.
+// A free mass gains energy from the held and late force of the stiff block and oscillates
+// widely. The controller reduces this to a buzz of some encoder steps; with 6 N s/m in the
+// device the mass comes to rest. Measured: 137 mm without the controller, 0.2 mm with it.
 constexpr double kBuzz_m = 0.4e-3;
 
 TEST(ClosedLoop, TheStiffBlockDoesNotThrowAMassAbout) {

@@ -1,15 +1,15 @@
-// The loop closed over a hand that feels the force: every method's model of
-// silicone and of the stiff block behind an encoder of 30 or 5 um, a tick at
-// 1 kHz, and a force that comes one tick late. No limit cycle at rest, no energy
-// out of nothing, no step when models change. A plain spring in the same loop
-// shows what these tests can tell.
+// The closed loop with a simulated hand: every method's model of silicone and of
+// the stiff block, an encoder of 30 or 5 um, ticks at 1 kHz, and one tick of force
+// delay. The tests require no limit cycle at rest, no energy generation and no force
+// step when models are exchanged. A plain spring in the same loop fails, which shows
+// that the tests detect such faults.
 //
-// What to expect. A force that is held for a tick T and comes t_d late acts as a
-// spring K beside the damping -K (T / 2 + t_d): -0.9 N s/m on 600 N/m, -4.5 N s/m
-// on 3 kN/m (Colgate & Schenkel 1997, for t_d = 0). Somebody has to provide as
-// much: the model's own viscosity, the hand, the device, or, for the rest, the
-// passivity controller (engine/live/passivity_controller.h). What it is needed for is
-// shown without it.
+// Theory: a spring force that is held for a tick T and delayed by t_d acts as a
+// spring K with the damping -K (T / 2 + t_d): -0.9 N s/m on 600 N/m, -4.5 N s/m
+// on 3 kN/m (Colgate & Schenkel 1997, for t_d = 0). The viscosity of the model, the
+// hand and the device must provide that much damping; the passivity controller
+// (engine/live/passivity_controller.h) adds what is missing. Some tests switch it
+// off to show its effect.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,9 +38,9 @@ using test::spring;
 using test::Ticking;
 using test::worst_hold;
 
-// An encoder says in which of its steps the tool is: one that lies on an edge is in
-// either of two, and the loop sees it leave only when it enters a third. One JND
-// is what a hand can feel at all. Measured: 1.7 steps and 0.6 JND.
+// A tool on an edge of the encoder may be in either of two steps, and the loop sees it
+// move only when it enters a third. A hand cannot feel less than one JND.
+// Measured: 1.7 steps and 0.6 JND.
 constexpr double kStill_steps = 3.0;
 constexpr double kStill_jnd = 1.0;
 
@@ -56,13 +56,13 @@ TEST(ClosedLoop, ComesToRestOnSiliconeInEveryHand) {
     EXPECT_LE(worst.position_steps, kStill_steps) << model->name();
     EXPECT_LE(worst.force_jnd, kStill_jnd) << model->name();
   }
-  // A spring of the same stiffness has no damping to give.
+  // For comparison: a spring of the same stiffness, without damping.
   EXPECT_GT(worst_hold(spring(kSoftSpring_N_per_m), mass_alone(), kFirm, 1.5, false).position_steps, 100.0);
 }
 
-// A transport that takes 2 or 3 ms: every millisecond costs 0.6 N s/m of damping.
-// Measured: 2.0 steps and 0.6 JND; a mass that nothing holds goes on by 5.4 steps of 30 um, for the controller sees
-// nothing within one.
+// A force delay of 2 or 3 ms: every millisecond costs 0.6 N s/m of damping.
+// Measured: 2.0 steps and 0.6 JND. A free mass keeps moving by 5.4 steps of 30 um, because the controller sees no
+// motion within one step.
 constexpr double kMassAlone_steps = 6.0;
 TEST(ClosedLoop, ComesToRestOnSiliconeWithThreeMillisecondsOfDelay) {
   for (const double delay_s : {2e-3, 3e-3}) {
@@ -85,11 +85,11 @@ TEST(ClosedLoop, ComesToRestOnSiliconeWithThreeMillisecondsOfDelay) {
   }
 }
 
-// Near its surface silicone has next to no viscosity, so that a mass that nothing
-// holds, pushed with 0.3 N, would keep bouncing some millimetres high: the 450 N/m
-// there, held and late, ask for 0.7 N s/m. With the controller the energy that one
-// step of the encoder hides is left, 9 uJ at 0.3 N. Measured: 4.1 mm without, 1.0 mm
-// with it; with 1.5 N s/m in the device it rests.
+// Near its surface silicone has almost no viscosity, so that a free mass pushed with
+// 0.3 N would keep bouncing by some millimetres: the held and late force of 450 N/m
+// needs 0.7 N s/m of damping. The controller leaves the energy that one encoder step
+// hides, 9 uJ at 0.3 N. Measured: 4.1 mm without the controller, 1.0 mm with it; with
+// 1.5 N s/m in the device the mass comes to rest.
 constexpr double kBounce_m = 1.5e-3;
 constexpr double kEnoughDamping_Ns_per_m = 1.5;
 
@@ -107,10 +107,10 @@ TEST(ClosedLoop, AMassThatNothingHoldsBouncesOnTheSurfaceAndNoMore) {
   }
 }
 
-// A rig that never leaves the material counts depth from a preload, here 0.9 N, and the trend
-// begins where that load would be 0 (models/training/training_extent.h). A force that stood
-// at the surface at once would buzz under a relaxed finger. Measured: 0.7 steps and 0.8 JND;
-// a mass that nothing holds goes on, by 27 steps when it is pushed firmly.
+// A rig that never leaves the material measures depth from a preload, here 0.9 N. The trend
+// starts where that load would be 0 (models/training/training_extent.h); a force step at the
+// surface would make a relaxed finger buzz. Measured: 0.7 steps and 0.8 JND;
+// a free mass that is pushed firmly keeps moving, by 27 steps.
 TEST(ClosedLoop, ComesToRestInEveryHandOnAModelOfRecordingsThatBeginUnderLoad) {
   Recording recording;
   recording.name = "preloaded";

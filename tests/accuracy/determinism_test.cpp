@@ -1,5 +1,5 @@
-// The same data and request give the same bits; so does a model saved and
-// loaded; and no fitted model does in a tick what a tick must not do.
+// The same data and request give bit-identical models, also after saving and
+// loading. No fitted model allocates or locks in a tick (tests/support/rt_guard.h).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ RigSettings short_recording() {
   return settings;
 }
 
-// At 250 Hz, for direct fits in little time.
+// 250 Hz keeps direct fits short.
 std::vector<ModelPtr> fitted_anew() {
   RigSettings settings = short_recording();
   settings.rate_Hz = 250.0;
@@ -36,7 +36,7 @@ const std::vector<ModelPtr>& fitted() {
   return models;
 }
 
-// Every force of a replay of another seed's recording.
+// All forces of a replay of a recording with another seed.
 std::vector<double> forces_of(const std::vector<ModelPtr>& models) {
   RigSettings settings = short_recording();
   settings.seed = 2;

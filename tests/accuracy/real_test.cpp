@@ -1,5 +1,5 @@
-// What the methods are worth on recordings of real materials; skips where the
-// recordings are not beside the sources.
+// Errors of the methods on recordings of real materials. Skipped where the
+// recordings are not present beside the sources.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,13 +49,13 @@ TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
     within += n * summary.within_jnd;
     samples += n;
   }
-  // Measured: 100 % and 34 mN as recorded; moved by -0.2 mm it would be 8 mN, but where the
-  // surface lies these recordings, which begin on it, do not tell: nothing is moved.
+  // Measured: 100 % and 34 mN as recorded. A surface offset of -0.2 mm would give 8 mN, but
+  // these recordings start on the surface and do not determine it, so no offset is applied.
   EXPECT_GE(within / samples, 0.999);
   EXPECT_LE(std::sqrt(squares / samples), 0.040);
 }
 
-// The surface lies elsewhere in every trial, by up to a millimetre.
+// The surface position differs by up to a millimetre between trials.
 TEST_F(RealAccuracy, SiliconeUnderAnIndenterOnAnotherSpot) {
   std::vector<RecordingPtr> training;
   for (const char* trial : {"3", "4", "7", "10", "12"}) {
@@ -68,8 +68,8 @@ TEST_F(RealAccuracy, SiliconeUnderAnIndenterOnAnotherSpot) {
   EXPECT_LE(summary.rms_error_N, 0.015);  // measured: 8.2 mN
 }
 
-// The second cycle leaves what the first one showed: see how many samples are
-// out of domain.
+// The second cycle leaves the domain of the first; the log has the share of samples
+// that are out of domain.
 TEST_F(RealAccuracy, PressOnItsSecondCycle) {
   const PreparedTraining prepared =
       prepare({real_recording("ur3e_press_mit/train_cycle1.csv")}, default_request("silicone_block"));
@@ -82,7 +82,7 @@ TEST_F(RealAccuracy, PressOnItsSecondCycle) {
   }
 }
 
-// As many test machines record: begun and ended at a preload of 3 N, and depth counted from there.
+// As many test machines record: the press starts and ends at a preload of 3 N, which is depth 0.
 TEST_F(RealAccuracy, PressThatCountsDepthFromItsPreload) {
   const auto from_preload = [](const char* file) {
     Recording cut = *real_recording(file);
@@ -99,7 +99,7 @@ TEST_F(RealAccuracy, PressThatCountsDepthFromItsPreload) {
   const ErrorSummary summary =
       evaluate_moved(*from_preload("ur3e_press_mit/test_cycle2.csv"), {fit(prepared, &kGreedyMethod)}).front();
   std::cout << test::figures("cycle 2", summary) << "\n";
-  EXPECT_GE(summary.within_jnd, 0.99);  // 0.92 where depth begins at the preload
+  EXPECT_GE(summary.within_jnd, 0.99);  // 0.92 if the trend started at the preload
 }
 
 TEST_F(RealAccuracy, EcoflexFromPositionAlone) {

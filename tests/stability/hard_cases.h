@@ -1,20 +1,20 @@
-// What the methods do with data that break numerics, and models with
-// motions far from their data: every method meets every case.
+// Numerically hard data and motions far from the data. Every method is tested
+// on every case.
 //
-// Four kinds of case, all made up and always the same:
+// Four kinds of case, all synthetic and deterministic:
 //   sites       coinciding, clustered, flat and badly scaled points; as few as
 //               one; more centres than sites. Evaluated at other points nearby.
 //   recording   what sensors and hands do wrong: noise, drift, outliers, lost
 //               and jittered samples, extreme rates. Evaluated on a clean press.
 //   motion      presses unlike the training: deeper, faster, longer, abrupt.
-//   material    these motions in every virtual material, features as its recording has them.
-// The truth is a closed form, or the material, so the error is known. Of direct interpolation the
-// system of eq. 4 is also solved in long double, where it is small enough.
+//   material    these motions in every virtual material, with automatically selected features.
+// The true force is a closed form or that of the material. For direct interpolation the
+// system of eq. 4 is also solved in long double, if it is small enough.
 //
-// `safe` means: every value finite and bounded (a site case: held-out values
-// within 1.2 times the range of the forces beyond it; the others: forces from 0
-// to 1.2 times the largest training force), or the fit refused with a message.
-// `outcome` says how near the truth that is.
+// `safe` means: every value is finite and bounded (site cases: held-out values
+// at most 1.2 times the range of the forces outside that range; others: forces from
+// 0 to 1.2 times the largest training force), or the fit is refused with a message.
+// `outcome` describes the error.
 // Source: Hoever & Harders (2009), eqs. 2-8, for the system.
 #pragma once
 
@@ -29,23 +29,23 @@ struct HardCaseResult {
   std::string name;             // of the case
   std::string method;           // its name
   std::string outcome;          // in words
-  double condition = 0.0;       // of the system solved, see FitReport
+  double condition = 0.0;       // of the linear system, see FitReport
   double residual = 0.0;        // RMS over the sites, times row_scale: in JNDs
   double smoothing = 0.0;       // chosen, see FitReport
-  double worst_over_jnd = 0.0;  // largest error on what was held out
-  double within_jnd = 0.0;      // share of what was held out
+  double worst_over_jnd = 0.0;  // largest error on the held-out data
+  double within_jnd = 0.0;      // share of the held-out data
   bool safe = false;
 };
 
-// All but the materials, case by case, methods in the order of methods(). Some seconds.
-// Deterministic. Slow side.
+// All cases except the materials, with methods in the order of methods(). Takes some seconds.
+// Deterministic.
 std::vector<HardCaseResult> run_hard_cases();
 
-// Its parts, and the materials.
+// The parts of run_hard_cases().
 std::vector<HardCaseResult> run_hard_sites();
 std::vector<HardCaseResult> run_hard_recordings(FeatureChoice choice);
 std::vector<HardCaseResult> run_hard_motions();
-// Half a minute.
+// The materials. Takes half a minute.
 std::vector<HardCaseResult> run_hard_materials();
 
 }  // namespace palpate

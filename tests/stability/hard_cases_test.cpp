@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// One line a case and method, for the log.
+// Logs one line for each case and method.
 void print(const HardCaseResult& r) {
   std::cout << std::left << std::setw(44) << r.name << std::setw(8) << r.method << std::scientific
             << std::setprecision(1) << r.condition << "  " << r.residual << "  " << r.smoothing << std::defaultfloat
@@ -26,7 +26,7 @@ void expect_safe(const std::vector<HardCaseResult>& results) {
 
 TEST(HardCases, EveryMethodIsSafeWithEverySetOfSites) { expect_safe(run_hard_sites()); }
 
-// What a rig does wrong every day must not cost accuracy.
+// Common faults of a rig must not reduce accuracy.
 TEST(HardCases, EveryMethodIsSafeWithEveryRecording) {
   const std::vector<HardCaseResult> results = run_hard_recordings(FeatureChoice::scene);
   expect_safe(results);
@@ -43,7 +43,7 @@ TEST(HardCases, EveryMethodIsSafeWithEveryRecordingThatDecidesItsFeatures) {
   expect_safe(run_hard_recordings(FeatureChoice::automatic));
 }
 
-// Friction, softening, layers and fluids, and the memories that their recordings ask for.
+// Materials with friction, softening, layers and fluids, with automatically selected features.
 TEST(HardCases, EveryMethodIsSafeInEveryMaterial) { expect_safe(run_hard_materials()); }
 
 TEST(HardCases, EveryMethodIsSafeOnEveryMotion) { expect_safe(run_hard_motions()); }

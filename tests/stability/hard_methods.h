@@ -13,23 +13,23 @@
 
 namespace palpate {
 
-// Depth, velocity and a low-pass; the surface as recorded: these are about numbers, not
-// about where a surface lies.
+// Features: depth, velocity and a low-pass. The surface is as recorded, because these cases
+// test numerics and not registration.
 TrainingRequest clean_request();
 
-// The models, and one result for each method, in the order of methods(); those that were
-// refused have no model.
+// The models, and one result for each method, in the order of methods(). A method that
+// refused the data has no model.
 struct FittedMethods {
   std::vector<std::shared_ptr<const FittedModel>> models;
-  std::vector<std::size_t> at;  // of each model in `results`
+  std::vector<std::size_t> at;  // index of each model in `results`
   std::vector<HardCaseResult> results;
 
-  // The results, with what `counters`, one for each model, have counted.
+  // The results, completed from `counters` (one for each model).
   std::vector<HardCaseResult> finish(const std::vector<OutcomeCounter>& counters) const;
 };
 FittedMethods fit_methods(const std::string& name, const Recording& recording, const TrainingRequest& request);
 
-// Every tick of `press` in contact, for every model.
+// Adds the force of every model at every tick of `press` in contact to `counters`.
 void evaluate_press(const Press& press, const std::vector<std::shared_ptr<const FittedModel>>& models,
                     std::vector<OutcomeCounter>& counters);
 

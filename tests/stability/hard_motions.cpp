@@ -18,7 +18,7 @@ namespace {
 
 using ModelPtr = std::shared_ptr<const FittedModel>;
 
-// Of the recordings of materials: enough for every feature to be found.
+// Recordings of materials: long enough to identify every feature.
 constexpr double kMaterialSeconds = 12.0;
 constexpr double kMaterialRate_Hz = 250.0;
 constexpr double kClosedFormDepth_m = 6e-3;
@@ -29,7 +29,7 @@ struct MotionCase {
   double seconds = kEvaluatedSeconds;
 };
 
-// Unlike a training that went to `depth_m`.
+// Motions unlike a training with the greatest depth `depth_m`.
 std::vector<MotionCase> motion_cases(double depth_m) {
   const double size = depth_m / kClosedFormDepth_m;
   const Path usual = scaled(training_path(1), size, 0.0);
@@ -45,7 +45,7 @@ std::vector<MotionCase> motion_cases(double depth_m) {
   };
 }
 
-// Out along every axis, as far as numbers go, and what is no number.
+// Evaluates the model along every feature axis up to the largest doubles, infinity and NaN.
 OutcomeCounter sweep(const FittedModel& model) {
   OutcomeCounter counter;
   const ModelData& data = model.data();

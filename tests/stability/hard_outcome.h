@@ -1,4 +1,4 @@
-// How a hard case ended, in figures and in words. Internal to hard_cases.
+// Counts errors and unsafe values of a hard case. Internal to hard_cases.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,17 @@ HardCaseResult refused(HardCaseResult result, const std::string& message);
 
 class OutcomeCounter {
  public:
-  // A value where the truth is known; it must be finite and from `low_N` to
-  // `high_N` to count as safe.
+  // Adds a value with a known true force. It is safe if it is finite and from
+  // `low_N` to `high_N`.
   void add(double value_N, double truth_N, double low_N, double high_N);
-  // A value where nobody knows the truth.
+  // Adds a value without a known true force.
   void add_bounded(double value_N, double low_N, double high_N);
-  // `result` with errors, safety and a sentence.
+  // Returns `result` with errors, safety and outcome.
   HardCaseResult finish(HardCaseResult result) const;
 
  private:
   std::size_t count_ = 0;
-  std::size_t known_ = 0;  // with a truth
+  std::size_t known_ = 0;  // values with a known true force
   std::size_t within_ = 0;
   std::size_t not_finite_ = 0;
   std::size_t unbounded_ = 0;

@@ -21,7 +21,7 @@ class PressedBlock {
   explicit PressedBlock(const Path& path) : path_(path), position_m_(path(0.0)) {}
 
   double force_at(double time_s) {
-    // In equal steps: a last one of rounding alone would spoil the velocity.
+    // Equal steps, because a tiny last step would give a wrong velocity.
     const double steps = std::ceil((time_s - time_s_) / kStep_s - 1e-6);
     const double from_s = time_s_;
     for (double i = 1.0; i <= steps; ++i) advance(from_s + (time_s - from_s) * i / steps);
@@ -99,8 +99,8 @@ std::vector<double> even_times(double seconds, double rate_Hz) {
 
 Path training_path(int variant) {
   return [variant](double time_s) {
-    // Two tones that never repeat within a minute, and a squeeze that makes
-    // pauses at the turning points.
+    // Two tones whose sum does not repeat within a minute, compressed so that the
+    // tool pauses at the turning points.
     const double pace = variant == 0 ? 1.0 : 0.93;
     const double slow = std::sin(2.0 * M_PI * 0.41 * pace * time_s + 0.4 * variant);
     const double fast = std::sin(2.0 * M_PI * 1.37 * pace * time_s);

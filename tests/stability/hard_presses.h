@@ -38,7 +38,7 @@ inline constexpr double kTrainingRate_Hz = 125.0;
 inline constexpr double kEvaluatedSeconds = 4.0;
 inline constexpr double kEvaluatedRate_Hz = 1000.0;
 
-// A press that nothing is wrong with, to train on.
+// A training press without faults.
 Press clean_training();
 
 // offset + factor times the path.

@@ -52,7 +52,7 @@ std::vector<double> jittered_times() {
   return times_s;
 }
 
-// One row in ten is lost, and a quarter of a second altogether.
+// One row in ten is lost, and a whole quarter of a second.
 std::vector<double> dropped_times() {
   RandomStream random(7, 6);
   std::vector<double> kept_s;

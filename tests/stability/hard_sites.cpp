@@ -53,8 +53,8 @@ Points even_points(Eigen::Index count, std::uint64_t stream) {
   return points;
 }
 
-// `shape` maps even points of a cube to those of the case; the force belongs
-// to the point that it gives, times `unit` per coordinate.
+// `shape` maps uniform points of a cube to those of the case. The force is
+// true_force_N() of the mapped point.
 SiteCase make_case(const std::string& name, const std::function<void(Points&)>& shape, Eigen::Index count = kSites,
                    Eigen::Index centres = 60) {
   SiteCase made;
@@ -75,7 +75,7 @@ SiteCase make_case(const std::string& name, const std::function<void(Points&)>& 
   return made;
 }
 
-// Few sites say nothing about other points: judged where they are.
+// Few sites do not determine the force at other points, so the fit is evaluated at the sites.
 SiteCase few(Eigen::Index count) {
   SiteCase made = make_case(
       "N = " + std::to_string(count), [](Points&) {}, count);
@@ -174,8 +174,8 @@ std::string compare_with_reference(const SiteCase& one, double smoothing, const 
   Long matrix = saddle_matrix(one.sites, smoothing);
   Long right = Long::Zero(matrix.rows(), 1);
   right.topRows(n) = one.sites.target_N.cast<long double>();
-  // Rows and columns brought to one size (Ruiz 2001), so that the decision on
-  // the rank does not depend on units.
+  // Equilibrates rows and columns (Ruiz 2001), so that the numerical rank does
+  // not depend on units.
   Long scale = Long::Ones(matrix.rows(), 1);
   for (int pass = 0; pass < 12; ++pass) {
     const Long factor = matrix.cwiseAbs().rowwise().maxCoeff().cwiseMax(1e-300L).cwiseSqrt().cwiseInverse();
@@ -219,7 +219,7 @@ HardCaseResult evaluate_site_case(const SiteCase& one, const Method& method) {
   const double margin_N = 1.2 * (high_N - low_N) + JndLine{}.at(high_N);
   OutcomeCounter counter;
   for (Eigen::Index i = 0; i < values.size(); ++i) {
-    // The force of a point belongs to its coordinates before they were scaled.
+    // The true force is a function of the coordinates before scaling.
     Eigen::VectorXd x = one.held_out.col(i);
     if (std::abs(x[1]) > 10.0) x[1] *= 1e-9;
     const double truth_N = zero ? 0.0 : true_force_N(x);

@@ -1,4 +1,4 @@
-// A device of the bridge in real time: a peer process, and a loop that renders a spring.
+// A bridge device in real time: a peer process, and a loop that renders a spring.
 #pragma once
 
 #include <signal.h>
@@ -41,7 +41,7 @@ class ChildProcess {
   void stop() {
     if (pid_ > 0) end(SIGKILL);
   }
-  // Its exit code, 128 + n when signal n ended it.
+  // Sends `signal`; returns the exit code, or 128 + n if signal n ended the process.
   int end(int signal) {
     int status = 0;
     kill(pid_, signal);
@@ -54,7 +54,7 @@ class ChildProcess {
   pid_t pid_;
 };
 
-// Asks every 10 ms; false after so many seconds, far more than it needs.
+// Polls `done` every 10 ms. False if it is not true within `seconds`.
 inline bool wait_for(const std::function<bool()>& done, int seconds = 20) {
   for (int i = 0; i < 100 * seconds; ++i) {
     if (done()) return true;
@@ -63,7 +63,7 @@ inline bool wait_for(const std::function<bool()>& done, int seconds = 20) {
   return false;
 }
 
-// The loop on an open device, with a spring or a model of a test's own.
+// The loop on an open device, with a spring or another model.
 class SpringSession {
  public:
   static constexpr double kStiffness_N_per_m = 1000.0;

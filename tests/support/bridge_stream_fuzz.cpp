@@ -35,7 +35,7 @@ DeviceCalibration calibration() {
 
 struct Stream {
   std::vector<std::uint8_t> bytes;
-  std::vector<std::uint32_t> whole;  // sequences
+  std::vector<std::uint32_t> whole;  // sequence numbers of whole frames
 };
 
 Stream expanded(const std::uint8_t* data, std::size_t size) {
@@ -105,9 +105,9 @@ std::size_t check_bridge_stream(const std::uint8_t* data, std::size_t size) {
   }
   const std::size_t counted = found * bridge::kDeviceBytes + finder.skipped();
   require(counted <= stream.bytes.size() && counted + bridge::kDeviceBytes > stream.bytes.size(), "bytes lost");
-  // One may still be hidden behind an unfinished false beginning.
+  // The last frame may still be inside an unfinished false frame.
   require(next_whole + 1 >= stream.whole.size(), "a whole frame was not found");
-  // As reports, too: whatever was cut.
+  // Also feeds the raw bytes as a report of any length.
   host.take(data, size < kLargestReport ? size : kLargestReport);
   return found;
 }

@@ -1,5 +1,5 @@
-// What must hold for the finder of frames and for what follows it, whatever bytes come;
-// shared by the libFuzzer target and by the test that runs it over made-up streams.
+// Properties of the frame finder and its consumers for arbitrary bytes. Used by the
+// libFuzzer target and by the test that runs it on synthetic streams.
 #pragma once
 
 #include <cstddef>
@@ -7,12 +7,11 @@
 
 namespace palpate::test {
 
-// `data`: bytes of a device's stream; 0x00 0xF5 in it stands for a whole frame, of the next
-// sequence and of a position that the byte behind says. Feeds all of it to the finders of
-// both ends and its frames to a DeviceEndpoint. Aborts when a frame is found that has no right
-// checksum, when one that was whole is not found, when bytes are counted wrongly, or when
-// what is handed over is not finite or a force above the peak would be sent. Returns how
-// many frames were found.
+// `data`: bytes of a device's stream. The bytes 0x00 0xF5 P stand for a whole frame with the
+// next sequence number and a position given by P. Feeds the stream to the finders of both ends
+// and the frames to a DeviceEndpoint. Aborts if a found frame has a wrong checksum, a whole
+// frame is not found, bytes are counted wrongly, a sample is not finite, or a force above
+// the peak would be sent. Returns the number of frames found.
 std::size_t check_bridge_stream(const std::uint8_t* data, std::size_t size);
 
 }  // namespace palpate::test

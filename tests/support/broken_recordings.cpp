@@ -12,7 +12,7 @@ const char* const kHeaderNames = "a header row with time_s, position_m and force
 // Three good rows (lines 2 to 4), then `row` in line 5, then ten more.
 std::string with_row(const std::string& row) { return good_header() + good_rows(3) + row + "\n" + good_rows(10, 4); }
 
-// Good rows whose times are `step` apart, written as whole numbers and `unit`.
+// Good rows with times `step` apart, written as an integer followed by `unit`.
 std::string with_step(int rows, int step, const std::string& unit) {
   std::string text = good_header();
   for (int i = 0; i < rows; ++i) text += std::to_string(i * step) + unit + ",0.001,0.5\n";
@@ -158,7 +158,7 @@ void add_fields(std::vector<BrokenRecording>& table) {
                  "repair the value"}});
 }
 
-// A row with `field` as its force, and the message about it.
+// A recording with `field` as a force, and its message.
 BrokenRecording bad_force(const char* name, const std::string& field, const std::string& found,
                           const std::string& advice, int column = 13) {
   return {

@@ -1,4 +1,4 @@
-// Recordings that must be refused, each with the whole message.
+// Recordings that the reader must refuse, each with the complete message.
 #pragma once
 
 #include <string>

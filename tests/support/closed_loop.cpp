@@ -32,7 +32,7 @@ double SimulatedTool::time_s() const noexcept { return kStep_s * static_cast<dou
 bool SimulatedTool::read(double now_s, DeviceSample& sample) noexcept {
   if (read_step_ == step_) return false;
   read_step_ = step_;
-  // More often than ticks come: the newest of them.
+  // If samples are more frequent than ticks, this is the newest one.
   if (step_ < sample_step_) return false;
   sample_step_ = step_ + std::llround(settings_.sample_s * kStepsPerSecond) -
                  (settings_.sample_s > 1e-3 ? static_cast<std::int64_t>(kLatest) : 0);
@@ -57,8 +57,8 @@ void SimulatedTool::write(double force_N) noexcept {
                                                      step_ + std::llround(settings_.delay_s * kStepsPerSecond)};
 }
 
-// Constant acceleration over the step: what the held force does to the kinetic
-// energy is exactly its work, and a mass alone gets none from the integration.
+// Acceleration is constant within a step, so that the work of the held force is exact
+// and the integration adds no energy to a free mass.
 void SimulatedTool::advance(double aim_m, double aim_m_per_s, double push_N) noexcept {
   while (count_ > 0 && written_[first_].due <= step_) {
     force_N_ = written_[first_].force_N;

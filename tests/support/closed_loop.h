@@ -1,9 +1,9 @@
-// A tool in a hand, simulated around the live tick: what a rendered force does
-// to a hand that can feel it. No wall clock; the same settings give the same bits.
+// Simulates a tool in a hand, in closed loop with the live tick. Uses no wall
+// clock; the same settings give bit-identical results.
 //
 //   m a = k (aim - x) + c (d aim/dt - v) + push - F
-// at 20 kHz. The encoder reads x in whole steps at each tick, the tick is
-// LiveTick::run, and F is what it wrote, held, from `delay_s` after the tick on.
+// at 20 kHz. Each tick reads x in whole encoder steps and calls LiveTick::run. F is
+// the force that it wrote, applied `delay_s` later and held until the next one.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace palpate::test {
 
 struct Grip {
   std::string name;
-  double mass_kg = 0.12;  // tool, handle and what of the hand moves with them
+  double mass_kg = 0.12;  // tool, handle and the moving part of the hand
   double stiffness_N_per_m = 800.0;
   double damping_Ns_per_m = 14.0;
 };
@@ -28,13 +28,13 @@ struct Grip {
 // From a finger that lets the tool rest on it to a clenched fist: stiffness and
 // damping rise together with the grip (Hajian & Howe 1997; Hasser & Cutkosky
 // 2002), the damping 0.5 to 0.7 of critical. `braced` is devices/virtual/hand_motion.h.
-// The last is a mass that nothing holds: it has no damping at all.
+// The last is a free mass without stiffness and damping.
 const std::array<Grip, 4>& grips();
 
 // When the ticks come.
 enum class Ticking {
   even,      // every millisecond
-  jittered,  // up to 0.45 ms late, each by itself
+  jittered,  // each independently up to 0.45 ms late
   gaps,      // jittered, one in 30 left out, and one gap of 5 ms in each 100 ms
 };
 
@@ -43,14 +43,14 @@ struct LoopSettings {
   double encoder_step_m = 30e-6;
   double delay_s = 1e-3;
   Ticking ticking = Ticking::even;
-  ForceLimits limits{10.0, 5000.0, 0.0};  // as a force-feedback device bears
+  ForceLimits limits{10.0, 5000.0, 0.0};  // of a typical force-feedback device
   bool passivity = true;                  // false: without the passivity controller
   double sample_s = 0.0;                  // between samples; 0: one a tick
   ForceScale scale{};
 };
 
-// What the tool has exchanged with the rendered force, joules: `put_in_J` while
-// the force resisted the motion, `got_out_J` while it drove it.
+// Energy exchanged between the tool and the rendered force in joules: `put_in_J` while
+// the force resists the motion, `got_out_J` while it drives the motion.
 struct LoopEnergy {
   double put_in_J = 0.0;
   double got_out_J = 0.0;
@@ -67,7 +67,7 @@ class SimulatedTool final : public Device {
   ForceLimits limits() const noexcept override { return settings_.limits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override;
-  // As an endpoint that knows its delays.
+  // Reports the delay and sample interval, as DeviceEndpoint does.
   DeviceHealth health(double now_s) noexcept override;
 
   // One step of 50 us towards `aim_m`, which moves at `aim_m_per_s`.
@@ -83,7 +83,7 @@ class SimulatedTool final : public Device {
  private:
   struct Written {
     double force_N = 0.0;
-    std::int64_t due = 0;  // step at which it is felt
+    std::int64_t due = 0;  // step at which it takes effect
   };
 
   LoopSettings settings_;
@@ -103,21 +103,21 @@ class ClosedLoop {
   struct Drive {
     double aim_m = 0.0;
     double aim_m_per_s = 0.0;
-    double push_N = 0.0;  // a force that does not depend on where the tool is
+    double push_N = 0.0;  // a force that does not depend on the position
   };
   using Path = std::function<Drive(double time_s)>;
   using AfterTick = std::function<void(const LoopSnapshot&)>;
 
   explicit ClosedLoop(const LoopSettings& settings);
 
-  // A set of one model, to be taken by the next tick.
+  // Publishes a set of one model, which the next tick takes.
   void publish(std::shared_ptr<const ForceModel> model);
-  // For `seconds`; `path` counts its time from here. `after_tick` may be empty.
+  // Runs for `seconds`. The time of `path` starts at 0 with each call. `after_tick` may be empty.
   void run(double seconds, const Path& path, const AfterTick& after_tick = {});
 
   SimulatedTool& tool() { return tool_; }
   ModelSlot<LiveModels>& slot() { return slot_; }
-  // Of the ticks so far, as RtGuard counts; 0 where it does not work.
+  // Sum of the RtGuard counts of all ticks so far; 0 if rt_guard_works() is false.
   int offences() const { return offences_; }
   int ticks() const { return ticks_; }
   std::uint32_t faults() const { return faults_; }

@@ -81,7 +81,7 @@ Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const Press&
       loop.run(
           half_s + 0.3, [&](double time_s) { return minimum_jerk(aim_m, -2e-3, half_s, time_s); }, watch);
     } else {
-      // Thrown from the air, and it flies away again.
+      // The mass is thrown at the block from the air and bounces off.
       loop.tool().place(-1e-3, press.depth_m / half_s);
       loop.run(
           0.6, [](double) { return ClosedLoop::Drive{}; }, watch);

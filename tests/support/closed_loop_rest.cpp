@@ -8,10 +8,10 @@
 namespace palpate::test {
 namespace {
 
-// What the blocks of these tests bear at full stiffness.
+// A force that the blocks of these tests support at full stiffness.
 constexpr double kFirm_N = 3.0;
 
-// At 250 Hz, for direct fits in little time.
+// 250 Hz keeps direct fits short.
 std::vector<ModelPtr> fitted(const std::string& material) {
   RigSettings settings = train_settings(material);
   settings.seconds = 10.0;
@@ -20,8 +20,8 @@ std::vector<ModelPtr> fitted(const std::string& material) {
                          scene_request(material == "maxwell" ? "silicone_block" : material + "_block")));
 }
 
-// Peak to peak after a straight line is taken off: the material creeps while it
-// is held, and that is no oscillation.
+// Peak to peak after subtracting a straight line, because creep during a hold is
+// not an oscillation.
 double ripple(const std::vector<double>& values) {
   const double middle = 0.5 * static_cast<double>(values.size() - 1);
   double sum = 0.0, along = 0.0, squares = 0.0;
@@ -42,8 +42,8 @@ double ripple(const std::vector<double>& values) {
 }  // namespace
 
 const std::vector<ModelPtr>& silicone_models() {
-  // Springs and dashpots with known times: at rest after seconds, where the default
-  // silicone creeps on for minutes.
+  // Springs and dashpots, which come to rest within seconds. The default silicone creeps
+  // for minutes.
   static const std::vector<ModelPtr> models = fitted("maxwell");
   return models;
 }
@@ -57,8 +57,7 @@ Rest hold(const ForcePtr& model, const LoopSettings& settings, const Press& pres
   ClosedLoop loop(settings);
   loop.publish(model);
   const Grip& grip = settings.grip;
-  double share =
-      1.0;  // of the stiffness that is rendered: what nothing holds is pushed by no more than the block bears
+  double share = 1.0;  // rendered share of the stiffness; limits the push on a free mass
   const auto path = [&](double time_s) {
     ClosedLoop::Drive drive;
     if (held(grip)) {

@@ -1,5 +1,5 @@
-// What the tests of the closed loop share: the fitted models, what a press is, and
-// what is left of it when the hand holds still.
+// Shared by the tests of the closed loop: the fitted models, presses, and the
+// residual motion when the hand holds still.
 #pragma once
 
 #include <memory>
@@ -22,17 +22,17 @@ const std::vector<ModelPtr>& stiff_models();
 inline const Grip& mass_alone() { return grips().back(); }
 inline bool held(const Grip& grip) { return grip.stiffness_N_per_m > 0.0; }
 
-// How hard, and how deep in the block that is, roughly.
+// A force and the approximate depth that it causes.
 struct Press {
   double force_N = 0.0;
   double depth_m = 0.0;
 };
-// What still moves when the hand holds still, peak to peak.
+// Residual motion when the hand holds still, peak to peak.
 struct Rest {
   double position_m = 0.0;
-  double position_steps = 0.0;  // of the encoder
+  double position_steps = 0.0;  // in encoder steps
   double force_jnd = 0.0;
-  double largest_N = 0.0;  // ever
+  double largest_N = 0.0;  // over the whole run
 
   void keep_worse(const Rest& other) {
     position_m = std::max(position_m, other.position_m);
@@ -42,11 +42,11 @@ struct Rest {
   }
 };
 
-// Presses within 0.3 s, gets a knock of 1 N for 20 ms at 0.6 s, and holds still;
-// judged over the last 0.25 s of `seconds`.
+// Presses within 0.3 s, receives a pulse of 1 N for 20 ms at 0.6 s, and holds still.
+// Measures the last 0.25 s of `seconds`.
 Rest hold(const ForcePtr& model, const LoopSettings& settings, const Press& press, double seconds);
 
-// The worst of both encoders and of all ways of ticking, with one tick of delay.
+// The worst result over both encoders and all values of Ticking, with one tick of delay.
 Rest worst_hold(const ForcePtr& model, const Grip& grip, const Press& press, double seconds = 1.5,
                 bool passivity = true);
 

@@ -1,4 +1,4 @@
-// An exported C file, compiled as a microcontroller's compiler would and loaded.
+// Compiles an exported C file with the options of a microcontroller's compiler and loads it.
 #pragma once
 
 #include <dlfcn.h>

@@ -1,8 +1,8 @@
-// The real window on a display in memory, for tests of what people do to it.
+// The real window on a virtual display, for tests of user input.
 #pragma once
 
 #include <epoxy/gl.h>
-// After epoxy, which brings OpenGL's functions.
+// Included after epoxy, which declares OpenGL's functions.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
@@ -21,20 +21,20 @@
 
 namespace palpate::test {
 
-// Enough for a loaded machine; nothing waits so long.
+// A timeout for a heavily loaded machine.
 inline constexpr double kPatience_s = 60.0;
 
 class DemoWindowTest : public ::testing::Test {
  protected:
   void SetUp() override {
     ASSERT_FALSE(virtual_display().empty()) << "Xvfb does not start; apt-get install xvfb";
-    setenv("XDG_DATA_HOME", folder_.path().c_str(), 1);  // nothing of a test stays with the user
+    setenv("XDG_DATA_HOME", folder_.path().c_str(), 1);  // keeps test files out of the user's folders
     save("soft.json", 1, 1.0);
     save("firm.json", 2, 1.6);
   }
   void TearDown() override { app_.reset(); }
 
-  // A model of the four features; `firmness` scales what it answers.
+  // Saves a model of the paper's four features. `firmness` scales its force.
   void save(const std::string& file, std::uint64_t seed, double firmness) {
     ModelData data = example_model("greedy", KernelKind::cubic, paper_features(), seed);
     data.name = file.substr(0, file.find('.'));
@@ -42,13 +42,13 @@ class DemoWindowTest : public ::testing::Test {
     ASSERT_TRUE(save_model(folder_.file(file), data, false).ok());
   }
 
-  // A scene without a virtual material: no fit runs beside the test.
+  // Opens a scene without a virtual material, so that no fit runs during the test.
   void open(const std::string& device, bool exhibit = false) {
     DemoRequest request;
     request.session.scene = "skin";
     request.session.device = device;
     request.session.models = {folder_.file("soft.json"), folder_.file("firm.json")};
-    request.session.realtime = false;  // a test does not outrank the machine it runs on
+    request.session.realtime = false;  // tests do not need real-time priority
     request.exhibit = exhibit;
     auto app = DemoApp::create(request);
     ASSERT_TRUE(app.ok()) << app.error().message;
@@ -57,7 +57,7 @@ class DemoWindowTest : public ::testing::Test {
     ASSERT_TRUE(until([&] { return app_->session().models().all_settled(); }));
   }
 
-  // Frames until `done`; whether it came to that.
+  // Draws frames until `done`. False if that takes longer than kPatience_s.
   template <typename Done>
   bool until(Done done) {
     const auto start = std::chrono::steady_clock::now();
@@ -71,7 +71,7 @@ class DemoWindowTest : public ::testing::Test {
     for (int i = 0; i < count; ++i) app_->frame();
   }
 
-  // As the operating system would: through the callbacks that are installed.
+  // Presses a key through the installed GLFW callbacks, as the operating system does.
   void press(int key, int modifiers = 0, bool held = false) {
     GLFWwindow* window = app_->window().handle();
     const GLFWkeyfun callback = glfwSetKeyCallback(window, nullptr);
@@ -81,7 +81,7 @@ class DemoWindowTest : public ::testing::Test {
     glfwSetKeyCallback(window, callback);
     frames(2);
   }
-  // Characters, as a keyboard sends them to a text field.
+  // Sends characters to the focused text field.
   void type(const std::string& text) {
     GLFWwindow* window = app_->window().handle();
     const GLFWcharfun callback = glfwSetCharCallback(window, nullptr);
@@ -89,7 +89,7 @@ class DemoWindowTest : public ::testing::Test {
     for (const char letter : text) callback(window, static_cast<unsigned char>(letter));
     frames(2);
   }
-  // Down until `done`.
+  // Holds the key down until `done`.
   template <typename Done>
   void hold(int key, Done done) {
     GLFWwindow* window = app_->window().handle();
@@ -100,7 +100,7 @@ class DemoWindowTest : public ::testing::Test {
     callback(window, key, 0, GLFW_RELEASE, 0);
     frames(2);
   }
-  // The left button, where the mouse is.
+  // Clicks the left button at the mouse position.
   void click() {
     GLFWwindow* window = app_->window().handle();
     const GLFWmousebuttonfun callback = glfwSetMouseButtonCallback(window, nullptr);

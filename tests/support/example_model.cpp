@@ -159,7 +159,7 @@ ModelData example_model(const std::string& method, KernelKind kernel, std::vecto
   data.correction_limit_N = 0.5;
   data.largest_force_N = 2.5;
   data.cover = make_cover(random_points(static_cast<int>(n), 200, seed + 11));
-  // Wide enough that most of the box counts as near, partly or wholly.
+  // Wide enough that trust is above 0 in most of the box.
   data.cover.inner_radius = 0.3;
   data.cover.outer_radius = 1.0 / 1.1;
   if (method == "voxel") {

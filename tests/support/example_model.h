@@ -1,4 +1,4 @@
-// Models and recordings made by hand, for tests that need one and no fit.
+// Models and recordings without a fit, for tests that only need an example.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +19,19 @@ namespace palpate::test {
 ModelData example_model(const std::string& method, KernelKind kernel, std::vector<FeatureSpec> features,
                         std::uint64_t seed);
 
-// Puts a changed copy in the place of the correction, which must be of that kind.
+// Replaces the correction, which must be of that kind, by a changed copy.
 void change_rbf(ModelData& data, const std::function<void(RbfFunction&)>& change);
 void change_grid(ModelData& data, const std::function<void(VoxelGrid&)>& change);
 
-// Depth; the paper's four features; two Maxwell branches; a spectrum, stops and a fading
-// deepest depth.
+// In order: depth; the paper's four features; depth, velocity and two Maxwell branches;
+// depth, velocity, a spectrum, stops and creep.
 std::vector<FeatureSpec> position_features();
 std::vector<FeatureSpec> paper_features();
 std::vector<FeatureSpec> maxwell_features();
 std::vector<FeatureSpec> memory_features();
 
-// One of every kind: each method, kernel, feature kind, term of the trend, and the
-// paper's own recipe, which corrects no trend. All names differ.
+// Covers each method, kernel, feature kind and term of the trend, and the recipe of
+// the paper, which corrects no trend. All names differ.
 std::vector<ModelData> example_models();
 
 // Strokes into the block and out of it, 6 mm deep at most, beginning in the air;

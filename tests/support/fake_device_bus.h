@@ -1,5 +1,5 @@
-// A bus with one device in real time: an OpenFFBoard, or reports that a
-// test made up; it can be unplugged, refuse to be opened and be slow to write to.
+// A bus with one device in real time: an OpenFFBoard, or reports made by a test.
+// The device can be unplugged, refuse to be opened, and be slow to write to.
 #pragma once
 
 #include <atomic>
@@ -31,7 +31,7 @@ class FakeDeviceBus final : public DeviceBus {
       return Error{found_.path + ": no permission"};
     }
     const std::lock_guard<std::mutex> lock(mutex_);
-    board_.outbox.clear();  // nothing of before is in a queue
+    board_.outbox.clear();  // drops reports from before the connection
     return Result<std::unique_ptr<DeviceConnection>>(std::make_unique<Line>(*this));
   }
 
@@ -45,10 +45,10 @@ class FakeDeviceBus final : public DeviceBus {
   std::atomic<int> refusals{0};
   std::atomic<int> opened{0};
   std::atomic<int> writes{0};
-  std::atomic<int> write_ms{0};  // how long each takes
-  std::atomic<int> counts{0};    // of the encoder
+  std::atomic<int> write_ms{0};  // duration of each write
+  std::atomic<int> counts{0};    // encoder position
   std::atomic<bool> silent{false};
-  Report report;  // instead of the board's; before the threads start
+  Report report;  // replaces the board's reports; set before the threads start
 
  private:
   class Line final : public DeviceConnection {
@@ -82,7 +82,7 @@ class FakeDeviceBus final : public DeviceBus {
     const auto us = std::chrono::duration_cast<std::chrono::microseconds>(since).count();
     board_.step(static_cast<std::uint32_t>(us), counts);
   }
-  // Empty: nobody asked.
+  // Empty if the host did not request a report.
   Report from_board() {
     step();
     if (board_.outbox.empty()) return {};

@@ -1,4 +1,4 @@
-// Features by their numbers, and feeding a filter exact motion estimates.
+// Builds feature specifications and feeds a filter with exact motion estimates.
 #pragma once
 
 #include <cmath>
@@ -43,7 +43,7 @@ inline FeatureSpec creep(std::initializer_list<double> times_s, const DriveCurve
   return spec;
 }
 
-// A motion in contact that ends where it began, of several incommensurable sines.
+// A closed motion in contact, of several incommensurable sines.
 inline double closed_motion_m(double phase) {
   const double angle = 2.0 * std::numbers::pi * phase;
   return 4e-3 - 1.5e-3 * std::cos(angle) + 0.8e-3 * std::sin(7.0 * angle) + 0.3e-3 * std::sin(31.0 * angle);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTestSeconds = 45.272;
 constexpr std::uint64_t kTestSeed = 2;
-// Fewer samples than this say nothing about a bin's deviation.
+// Bins with fewer samples are ignored, because their deviation is unreliable.
 constexpr std::uint64_t kFullBin = 100;
 
 std::vector<EvaluatedModel> evaluated_models(const std::vector<ModelPtr>& models) {

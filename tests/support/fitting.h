@@ -1,8 +1,8 @@
-// Recordings of the virtual rig, fits and error figures in a line each, for
-// tests of what fitted models are worth.
+// Short helpers for tests of fitted models: recordings of the virtual rig, fits
+// and error figures.
 //
-// Every helper throws std::runtime_error with the error's message when
-// something that must work does not, which fails the test that called it.
+// Every helper throws std::runtime_error with the message of an error. That
+// fails the calling test.
 #pragma once
 
 #include <cstdint>
@@ -22,27 +22,27 @@ namespace palpate::test {
 using RecordingPtr = std::shared_ptr<const Recording>;
 using ModelPtr = std::shared_ptr<const FittedModel>;
 
-// The value of `result`, or the exception.
+// Returns the value of `result` or throws.
 template <typename T>
 T must(Result<T> result);
 
-// The recording that everybody trains on (seed 1, 41.499 s) and the one that
-// everybody tests on (45.272 s of another seed).
+// The common training recording (seed 1, 41.499 s) and test recording (45.272 s
+// of another seed).
 RigSettings train_settings(const std::string& material);
 RigSettings test_settings(const std::string& material);
 
 RecordingPtr rig_recording(const RigSettings& settings);
-// Without the acceleration column: the encoder alone.
+// Removes the acceleration column, so that only the encoder is left.
 RecordingPtr encoder_only(const RecordingPtr& recording);
 
-// Real recordings, kept beside the sources and never in them.
+// Real recordings, from a folder beside the sources.
 std::filesystem::path real_data();
 RecordingPtr real_recording(const std::string& file);
 
-// What `palpate fit --scene scene` asks for, by itself and with `--features scene`.
+// The requests of `palpate fit --scene scene`, and of that with `--features scene`.
 TrainingRequest default_request(const std::string& scene);
 TrainingRequest scene_request(const std::string& scene);
-// The same for a model of position alone.
+// A request for a model of position alone.
 TrainingRequest position_request();
 
 PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request);
@@ -53,14 +53,14 @@ std::vector<ModelPtr> fit_all(const PreparedTraining& prepared);
 // One summary per model, over the samples in contact.
 std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models);
 ErrorSummary judge(const Recording& recording, const ModelPtr& model);
-// The same with the surface of the recording moved to where the models have theirs.
+// The same, with the surface of the recording moved to that of the models.
 std::vector<ErrorSummary> evaluate_moved(const Recording& recording, const std::vector<ModelPtr>& models);
 
 // The worst of (mean + standard deviation) / JND over the bins that begin at
 // `from_N` or above and hold at least 100 samples.
 double worst_bin_over_jnd(const ErrorSummary& summary, double from_N = 0.0);
 
-// One line of figures, for the log.
+// One line of error figures for the log.
 std::string figures(const std::string& name, const ErrorSummary& summary);
 
 template <typename T>

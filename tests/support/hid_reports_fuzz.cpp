@@ -70,7 +70,7 @@ void check_sent(const DeviceProtocol* protocol, const OutReports& reports) {
   require(std::abs(out.force_uN) <= 1250, "above the peak");
 }
 
-// One stream of reports into everything that reads them.
+// Feeds a stream of reports to all of their readers.
 class Stream {
  public:
   explicit Stream(const DeviceProtocol* protocol)
@@ -106,13 +106,13 @@ class Stream {
 std::size_t check_hid_reports(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const DeviceProtocol* protocol = kHidProtocols[data[0] % kHidProtocols.size()];
-  // A bit above: frames of the bridge get the checksum they need to be read.
+  // Bit 2: frames of the bridge get a correct checksum.
   const bool mended = (data[0] & 4) != 0;
   Stream stream(protocol);
   std::size_t count = 0;
   for (std::size_t at = 1; at + 2 <= size; ++count) {
     const std::size_t length = std::min<std::size_t>(data[at] % 80u, size - at - 2);
-    // A copy of just its length, for the address sanitizer to watch.
+    // A copy of the exact length, so that the address sanitizer detects overruns.
     std::vector<std::uint8_t> report(data + at + 2, data + at + 2 + length);
     if (mended && protocol == &kBridgeProtocol && length == bridge::kDeviceBytes) {
       const std::uint8_t header[] = {0x50, 0x42, bridge::kVersion, bridge::kFromDevice};

@@ -1,5 +1,5 @@
-// What must hold for the readers of device reports whatever bytes they are given;
-// shared by the libFuzzer target and by the test that runs it over made-up reports.
+// Properties of the readers of device reports for arbitrary bytes. Used by the
+// libFuzzer target and by the test that runs it on synthetic reports.
 #pragma once
 
 #include <cstddef>
@@ -7,12 +7,11 @@
 
 namespace palpate::test {
 
-// `data`: the kind of device, then reports, each behind its length and the time
-// since the one before. Decodes each and feeds it to a DeviceEndpoint and a
-// SpaceMouse. Aborts when a reading is accepted that its encoder would not have
-// written, when time does not go on, when anything that is handed to the haptics
-// thread is not finite, or when a force above the peak would be sent. Returns how
-// many reports there were.
+// `data`: the kind of device, then reports, each preceded by its length and the
+// time since the previous one. Decodes each and feeds it to a DeviceEndpoint and a
+// SpaceMouse. Aborts if an accepted reading cannot have been written by the encoder
+// of that protocol, time does not increase, a value for the haptics thread is not
+// finite, or a force above the peak would be sent. Returns the number of reports.
 std::size_t check_hid_reports(const std::uint8_t* data, std::size_t size);
 
 }  // namespace palpate::test

@@ -1,4 +1,4 @@
-// Ticks by hand for a HID device with its threads, in real time.
+// Calls ticks of a HID device with its threads, in real time.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,8 @@
 
 namespace palpate::test {
 
-// Reads and writes `force_N` about every millisecond until `done`; false when that
-// takes far too long.
+// Reads and writes `force_N` about every millisecond until `done`. False after
+// 10,000 ticks.
 inline bool tick_until(Device& device, double force_N, const std::function<bool(const DeviceHealth&)>& done) {
   for (int i = 0; i < 10'000; ++i) {
     DeviceSample sample;
@@ -23,7 +23,7 @@ inline bool tick_until(Device& device, double force_N, const std::function<bool(
   return false;
 }
 
-// For tests in real time: a slow machine must not look like a slow device.
+// Longer timeouts for tests in real time, so that a slow machine causes no device faults.
 template <typename Calibration>
 Calibration patient(Calibration calibration) {
   calibration.limits.stale_after_s = 1.0;

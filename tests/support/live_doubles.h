@@ -1,5 +1,5 @@
-// Models and devices for tests of the loop: springs, and a tool that moves as a
-// function of time says.
+// Models and devices for tests of the loop: springs, and a tool that follows a
+// function of time.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@
 
 namespace palpate::test {
 
-// F = stiffness x depth; depth is its only feature unless others are given.
+// F = stiffness x depth. By default, depth is its only feature.
 class SpringModel final : public ForceModel {
  public:
   explicit SpringModel(double stiffness_N_per_m, std::vector<FeatureSpec> features = {FeatureSpec{}})
@@ -41,7 +41,7 @@ inline std::shared_ptr<const ForceModel> spring(double stiffness_N_per_m) {
   return std::make_shared<const SpringModel>(stiffness_N_per_m);
 }
 
-// Gives nothing and counts how often it was asked.
+// Returns 0 N and counts its evaluations.
 class CountingModel final : public ForceModel {
  public:
   ForceEstimate evaluate(const double*) const noexcept override {
@@ -61,7 +61,7 @@ class CountingModel final : public ForceModel {
   mutable std::atomic<std::uint64_t> evaluations_ = 0;
 };
 
-// One sample per tick, at the position that `path` gives for the time.
+// Returns one sample per tick, at the position `path(time)`.
 class PathDevice final : public Device {
  public:
   using Path = double (*)(double time_s);
@@ -99,8 +99,8 @@ class PathDevice final : public Device {
 inline double held_5mm(double) { return 5e-3; }
 inline double strokes(double time_s) { return 4e-3 * std::sin(6.0 * time_s); }
 
-// A clock that goes only while it is waited for, each time later than asked by
-// what `lateness_ns` gives for the number of the wait.
+// A simulated clock that advances only during waits. Wait number n ends
+// `lateness_ns(n)` after its deadline.
 class FakePacer final : public Pacer {
  public:
   explicit FakePacer(std::function<std::int64_t(int)> lateness_ns) : lateness_ns_(std::move(lateness_ns)) {}

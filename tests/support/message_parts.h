@@ -1,4 +1,4 @@
-// Compares what matters in a message: position, values, and advice. The rest of the wording may change.
+// Compares only the position, values and advice of a message, so that its wording may change.
 #pragma once
 
 #include <gtest/gtest.h>

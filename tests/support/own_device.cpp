@@ -1,4 +1,4 @@
-// The second file of a new device.
+// The second of the three files of a new device.
 #include "tests/support/own_device.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The first of the three files that a new device takes: six functions. A tool that a motor of its own moves in and out.
+// The first of the three files of a new device: a class of six functions. The tool is moved in and out by a motor.
 #pragma once
 
 #include <memory>
@@ -28,7 +28,7 @@ class OwnDevice final : public Device {
   double read_s_ = -1.0;
 };
 
-// For its row in the table of devices.
+// The factory for its row in the table of devices.
 MadeDevice make_own_device(const std::string& stroke_mm, const DeviceRequest& request);
 
 }  // namespace palpate::test

@@ -1,4 +1,4 @@
-// Kernels and functions in one obvious loop: the reference for the vector form.
+// Kernels and RBF functions in a plain loop: the reference for the vectorised form.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Small reproducible data for tests of the numerics.
+// Small reproducible data for numerical tests.
 #pragma once
 
 #include <Eigen/Core>
@@ -58,8 +58,8 @@ inline Sites smooth_sites(int dimension, int count, double noise_N, std::uint64_
   return sites;
 }
 
-// What no method may stumble over: no force, a constant feature, duplicates, all
-// sites at one point, one site.
+// Degenerate data that every method must accept: zero force, a constant feature,
+// duplicates, all sites at one point, one site.
 inline std::vector<Sites> degenerate_sites() {
   std::vector<Sites> all(4, smooth_sites(3, 50, 0.0, 1));
   all[0].target_N.setZero();

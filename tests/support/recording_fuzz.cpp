@@ -14,7 +14,7 @@
 namespace palpate::test {
 namespace {
 
-// Small, so that short inputs meet the edges of the buffer too.
+// Small, so that short inputs also reach the end of the buffer.
 constexpr std::size_t kBufferBytes = kMaximumLineBytes + 16;
 
 void require(bool holds, const char* what) {
@@ -77,7 +77,7 @@ bool same_row(const RecordingRow& a, const RecordingRow& b) {
 void check_recording_bytes(const std::uint8_t* data, std::size_t size) {
   const std::string text(data, data + size);
   const Outcome whole = parse(text, text.size() + 1, 4096);
-  // Every byte on its own, but not for a gigantic line.
+  // In single bytes, or in larger pieces if the text is long.
   const Outcome pieces = parse(text, size < 4096 ? 1 : 1 + size / 1000, 1);
   require(whole.message == pieces.message, "the verdict depends on how the bytes arrive");
   if (!whole.message.empty()) {

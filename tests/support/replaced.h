@@ -1,4 +1,4 @@
-// A good text with something in it made bad.
+// Makes a broken text from a good one.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 namespace palpate::test {
 
-// `text` with its first `from`, which must be in it, as `to`.
+// Returns `text` with the first `from` (which must occur) replaced by `to`.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t place = text.find(from);
   EXPECT_NE(place, std::string::npos) << from;

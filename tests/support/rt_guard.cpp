@@ -23,7 +23,7 @@
 namespace palpate::test {
 namespace {
 
-// Trivial types only: an allocation during thread start must not construct.
+// Trivial types only: an allocation during thread start must not run a constructor.
 thread_local bool counting = false;
 thread_local RtOffences offences;
 
@@ -56,7 +56,7 @@ using palpate::test::RtOffences;
 
 extern "C" {
 
-// glibc's own entry points: no dlsym, which itself allocates.
+// glibc's entry points are used because dlsym would allocate.
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t number, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
@@ -104,7 +104,7 @@ void free(void* block) noexcept {
 
 int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
   using Lock = int (*)(pthread_mutex_t*);
-  static Lock next = nullptr;  // no guarded static: its guard may lock
+  static Lock next = nullptr;  // a dynamically initialised static could lock
   if (next == nullptr) next = reinterpret_cast<Lock>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
   count(&RtOffences::locks);
   return next(mutex);

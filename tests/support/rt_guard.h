@@ -1,18 +1,18 @@
-// Counts what a haptics tick must not do: allocate, free, lock, sleep, write.
+// Counts operations that are forbidden in a haptics tick: allocation, deallocation,
+// locks, sleeps and writes.
 //
 // The test program replaces malloc, calloc, realloc, free, posix_memalign,
-// aligned_alloc, memalign (operator new and delete go through them),
-// pthread_mutex_lock, clock_nanosleep and write by counting ones that pass the
-// call on. They count only on a thread inside an RtGuard, so that other threads
-// and the test around it may do as they like. Exceptions and large std::function
-// captures show up as allocations.
+// aligned_alloc, memalign (which operator new and delete call),
+// pthread_mutex_lock, clock_nanosleep and write by wrappers that count. They count
+// only on a thread inside an RtGuard. Exceptions and large std::function captures
+// appear as allocations.
 #pragma once
 
 namespace palpate::test {
 
 struct RtOffences {
   int allocations = 0;
-  int deallocations = 0;  // of something; free(nullptr) is none
+  int deallocations = 0;  // free(nullptr) does not count
   int locks = 0;
   int sleeps = 0;
   int writes = 0;
@@ -20,7 +20,7 @@ struct RtOffences {
   int total() const { return allocations + deallocations + locks + sleeps + writes; }
 };
 
-// Counts from construction until `stop` or destruction, on this thread. Not to
+// Counts on this thread, from construction until `stop` or destruction. Must not
 // be nested.
 class RtGuard {
  public:
@@ -29,13 +29,13 @@ class RtGuard {
   RtGuard& operator=(const RtGuard&) = delete;
   ~RtGuard();
 
-  // Ends the counting and returns the counts. The tests' own macros allocate:
-  // stop first, then compare.
+  // Stops counting and returns the counts. Call it before test macros, which
+  // allocate.
   RtOffences stop() noexcept;
 };
 
-// False in builds with a sanitizer that owns malloc or the locks (address,
-// thread, memory): there a guard counts nothing, and tests skip.
+// False in builds with a sanitizer that replaces malloc or the locks (address,
+// thread, memory). There a guard counts nothing, and tests skip.
 bool rt_guard_works() noexcept;
 
 }  // namespace palpate::test

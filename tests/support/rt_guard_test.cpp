@@ -15,7 +15,7 @@
 namespace palpate::test {
 namespace {
 
-// Keeps the compiler from removing an allocation nobody looks at.
+// Prevents the compiler from removing an unused allocation.
 void* volatile sink;
 
 void* keep(void* block) {

@@ -11,7 +11,7 @@
 namespace palpate::test {
 namespace {
 
-// In the child: never returns.
+// Replaces the child process by the program.
 [[noreturn]] void become(const std::vector<std::string>& command, const std::vector<std::string>& environment, int out,
                          int err) {
   const int empty = open("/dev/null", O_RDONLY);

@@ -1,4 +1,4 @@
-// Runs a program and hands back all that it said, for tests of whole programs.
+// Runs a program and returns its output, for tests of whole programs.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ struct ProgramRun {
 };
 
 // Runs `command` (the program's path and its arguments, no shell) with an empty
-// standard input; `environment` holds "NAME=value" to add to this process's
-// own. 127 when it cannot be started. Blocks until it ends.
+// standard input; `environment` holds "NAME=value" additions to that of this
+// process. The exit code is 127 if it cannot be started. Blocks until it ends.
 ProgramRun run_program(const std::vector<std::string>& command, const std::vector<std::string>& environment = {});
 
 // The same for the built `palpate` with `arguments`.

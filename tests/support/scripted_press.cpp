@@ -11,7 +11,7 @@ namespace palpate::test {
 namespace {
 
 constexpr double kStart_m = -0.002;
-constexpr double kStep_s = 0.001;  // Block goes through it in finer ones
+constexpr double kStep_s = 0.001;  // Block divides it into smaller steps
 constexpr double kForceNoise_N = 0.005;
 // Peak speed of a minimum-jerk path of length 1 in time 1.
 constexpr double kPeakSpeed = 1.875;

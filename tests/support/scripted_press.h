@@ -1,4 +1,4 @@
-// Presses along a script, for motions that no hand of the rig makes.
+// Presses along a given path, for motions that the rig's simulated hand does not make.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace palpate::test {
 
-// To `target_m`, along a minimum-jerk path, in `duration_s`.
+// A minimum-jerk move to `target_m` in `duration_s`.
 struct Stretch {
   double target_m = 0.0;
   double duration_s = 0.0;
@@ -20,12 +20,12 @@ struct ScriptedPress {
   std::vector<double> true_N;  // the material's own force, row by row
 };
 
-// Begins at -2 mm in the air. `encoder_step_m` 0: exact positions; otherwise
-// positions come in whole steps. Force noise 5 mN.
+// Starts at -2 mm in the air. `encoder_step_m` 0: exact positions; otherwise
+// positions are whole steps. Force noise: 5 mN.
 ScriptedPress scripted_press(const std::string& material, const std::vector<Stretch>& script, double encoder_step_m,
                              std::uint64_t seed);
 
-// In, a hold of `hold_s`, and out again to -2 mm, at a peak speed of `speed_m_per_s`.
+// A press to `depth_m`, a hold of `hold_s`, and a return to -2 mm, with the peak speed `speed_m_per_s`.
 std::vector<Stretch> press_and_hold(double depth_m, double speed_m_per_s, double hold_s);
 
 }  // namespace palpate::test

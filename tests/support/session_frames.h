@@ -9,7 +9,7 @@
 
 namespace palpate::test {
 
-// Until `done`; false when that takes absurdly long. `each` after every one.
+// Runs frames until `done` and calls `each` after every frame. False after a long timeout.
 inline bool frames_until(LiveSession& session, const std::function<bool()>& done,
                          const std::function<void()>& each = {}) {
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);

@@ -1,6 +1,6 @@
-// Host and device in simulated time, without threads: a DeviceEndpoint behind a
-// LiveTick on one side, the reference firmware (or what is known of the others)
-// on the other, reports between them that a test may hold back, change or lose.
+// Host and device in simulated time, without threads. The host is a LiveTick with a
+// DeviceEndpoint; the device is the reference firmware or a model of another one. A
+// test may delay, change or drop the reports between them.
 #pragma once
 
 #include <algorithm>
@@ -42,19 +42,19 @@ inline DeviceCalibration example_calibration(const DeviceProtocol* protocol) {
   return calibration;
 }
 
-// The device's end. Time in microseconds; `step` once every 250 us, or as often as a test says.
+// The device. Time is in microseconds; `step` is called every SimulatedDevice::step_us, 250 us by default.
 class DeviceModel {
  public:
   virtual ~DeviceModel() = default;
-  virtual void hear(const Report& report) = 0;  // without the report id 0
+  virtual void hear(const Report& report) = 0;  // `report` excludes the report id 0
   virtual void step(std::uint32_t now_us, std::int32_t counts) = 0;
   virtual void restart() {}
-  virtual double force_units() const = 0;  // what the motor gets
+  virtual double force_units() const = 0;  // force at the motor
   std::deque<Report> outbox;
 };
 
-// The effects manager of an OpenFFBoard, as its source has it: an effect of its own for each
-// `new`, without an end until it is given a duration, which then counts from its last start.
+// The effects manager of an OpenFFBoard, as in its source: each `new` makes another effect. It
+// has no end until it gets a duration, which is then measured from its last start.
 class OpenFfBoardModel final : public DeviceModel {
  public:
   void hear(const Report& report) override {
@@ -70,7 +70,7 @@ class OpenFfBoardModel final : public DeviceModel {
     wire::write32(answer.data() + 13, counts_ < 0 ? 0xFFFFFFFFu : 0u);
     outbox.push_back(answer);
   }
-  // As a host that asks where the tool is.
+  // As if the host requested the position.
   void be_asked() {
     const OutReports asking = kOpenFfBoardProtocol.encode_command({});
     hear(Report(asking.bytes[0].begin(), asking.bytes[0].begin() + static_cast<std::ptrdiff_t>(asking.sizes[0])));
@@ -102,7 +102,7 @@ class OpenFfBoardModel final : public DeviceModel {
   double units_ = 0.0;
 };
 
-// The reference firmware on a board of air: a sample a millisecond, or every `period_us`.
+// The reference firmware on a simulated board: one sample per millisecond, or every `period_us`.
 class BridgeModel final : public DeviceModel {
  public:
   BridgeModel() { restart(); }
@@ -115,12 +115,12 @@ class BridgeModel final : public DeviceModel {
   }
   double force_units() const override { return -pushed_uN_; }
   std::uint32_t period_us = 1000;
-  std::function<std::uint32_t()> next_period_us;  // of an irregular one
+  std::function<std::uint32_t()> next_period_us;  // for irregular samples
   std::uint32_t samples = 0;
-  double clock_drift = 0.0;  // of the times in its frames
+  double clock_drift = 0.0;  // relative error of the clock in its frames
   std::uint32_t clock_offset_us = 0;
 
-  // The board, as bridge_firmware.h names it.
+  // The functions of a board that bridge_firmware.h requires.
   std::uint32_t now_us() const { return now_us_; }
   bool receive(std::uint8_t& byte) {
     if (inbox_.empty()) return false;
@@ -175,7 +175,7 @@ class EndpointDevice final : public Device {
 
 class SimulatedDevice {
  public:
-  static constexpr double kStiffness_N_per_m = 650.0;  // nearly 4 N where the tool is held
+  static constexpr double kStiffness_N_per_m = 650.0;  // 3.9 N at kHeld_m
   static constexpr double kHeld_m = 6e-3;
   static constexpr double kStart_s = 100.0;
 
@@ -188,16 +188,16 @@ class SimulatedDevice {
     hear(calibration.protocol->encode_start());
   }
 
-  // The tool, as the hand moves it, m after `time_s`; with tremor unless frozen.
+  // The position of the tool in the hand, with tremor.
   double position_m() const {
     const double tremor_m = 1e-4 * std::sin(2.0 * 3.14159265358979 * 9.0 * (now_s - kStart_s));
     return calibration.rest_position_m + inside_ * (kHeld_m + tremor_m - calibration.rest_position_m);
   }
-  // What a late or slow line leaves of the spring.
+  // The spring force, reduced by the stability limit for a late or slow line.
   double spring_N(double depth_m) const { return snapshot.stiffness_share * kStiffness_N_per_m * depth_m; }
   double motor_N() const { return std::abs(model->force_units() * calibration.force_N_per_unit); }
 
-  // One haptics tick, and what the device and the two I/O threads do meanwhile.
+  // One haptics tick, with the work of the device and of the two I/O threads in that time.
   const LoopSnapshot& tick() {
     inside_ = rest ? 0.0 : std::min(1.0, inside_ + 0.02);
     for (int i = 0; i < 1000 / step_us; ++i) {
@@ -219,7 +219,7 @@ class SimulatedDevice {
   void run_s(double span_s) {
     for (int i = 0; i < static_cast<int>(std::lround(1e3 * span_s)); ++i) tick();
   }
-  // Zeroed at rest, then pressed into the block until the force is steady.
+  // Zeroes the device at rest, then presses into the block until the force is steady.
   void press() {
     rest = true;
     run_s(0.1);
@@ -238,16 +238,16 @@ class SimulatedDevice {
   LoopSnapshot snapshot;
   double now_s = kStart_s;
   std::int64_t now_us = 0;
-  int step_us = 250;  // of the device's end; divides a millisecond
+  int step_us = 250;  // time step of the device; divides a millisecond
   bool rest = true;
   bool encoder_frozen = false;
   bool writer_hangs = false;
   bool unplugged = false;
   std::int32_t counts_offset = 0;
-  // What becomes of the reports on their way in: may change, drop or hold them
-  // back. Those it returns are delivered.
+  // May change, drop or delay reports from the device. The returned reports are
+  // delivered.
   std::function<std::vector<Report>(const Report&)> on_the_way_in;
-  std::function<bool(Report&)> on_the_way_out;  // false: lost
+  std::function<bool(Report&)> on_the_way_out;  // false: the report is lost
 
  private:
   void deliver() {
@@ -260,7 +260,7 @@ class SimulatedDevice {
       }
     }
   }
-  // Frames of the bridge come out of a stream of bytes.
+  // Bridge frames are sent as a stream of bytes.
   void arrive(const Report& one) {
     if (calibration.protocol != &kBridgeProtocol) return device.endpoint.report_arrived(one.data(), one.size(), now_s);
     const std::uint8_t* at = one.data();

@@ -1,4 +1,4 @@
-// Takes a study session through its states as a subject in front of it would.
+// Drives a study session through its states, as a subject does.
 #pragma once
 
 #include <signal.h>
@@ -23,7 +23,7 @@ inline Result<std::unique_ptr<StudySession>> session_at(const std::string& path,
   return StudySession::create(std::move(*file), rest_ticks);
 }
 
-// No file of this process can grow beyond `bytes` while this exists, as on a full disk.
+// While this exists, no file of this process can grow beyond `bytes`, as on a full disk.
 class FullDisk {
  public:
   explicit FullDisk(std::uintmax_t bytes) {
@@ -40,7 +40,7 @@ class FullDisk {
   rlimit before_{};
 };
 
-// A force that grows from 1 N by 1 mN a tick, and `share` of it, for an interval.
+// An interval of a force that grows from 1 N by 1 mN per tick, and of `share` times that force.
 inline std::shared_ptr<const StrokePair> example_strokes(double share) {
   auto strokes = std::make_shared<StrokePair>();
   strokes->reference = "recorded force";
@@ -57,14 +57,14 @@ inline std::shared_ptr<const StrokePair> example_strokes(double share) {
   }
   strokes->reference_mean_N = std::round(1e4 * sum_N) / 1e4;
   strokes->comparison_mean_N = std::round(1e4 * share * sum_N) / 1e4;
-  // Largest at the largest force, 2 N while it is let through whole.
+  // The maximum is at the largest unlimited force, 2 N.
   strokes->mean_over_jnd = strokes->max_over_jnd = std::abs(share - 1.0) * 2.0 / strokes->jnd.at(2.0);
   return strokes;
 }
 
 inline StudyHeader discrimination_header(double share) { return {"S01", example_strokes(share)}; }
 
-// Ticks until the session wants something of the subject (at most one minute).
+// Ticks until the session waits for the subject (at most one minute).
 inline void run_until_asked(StudySession& session) {
   double rendered_N = 0.0;
   for (int i = 0; i < 60000 && session.state() == StudyState::presenting; ++i) {
@@ -73,8 +73,8 @@ inline void run_until_asked(StudySession& session) {
   }
 }
 
-// Answers `trials` trials, training included, by `second_is_larger`; goes on where
-// it can. Returns how many were answered.
+// Answers `trials` trials, including training, by `second_is_larger`. Returns the
+// number of answered trials.
 inline std::size_t answer_trials(StudySession& session, std::size_t trials,
                                  const std::function<bool(const StudyTrial&)>& second_is_larger) {
   std::size_t answered = 0;
@@ -83,13 +83,13 @@ inline std::size_t answer_trials(StudySession& session, std::size_t trials,
     run_until_asked(session);
     if (session.state() != StudyState::answering) break;
     session.answer(second_is_larger(session.trial()));
-    if (session.state() == StudyState::answering) break;  // it could not be stored
+    if (session.state() == StudyState::answering) break;  // the answer could not be stored
     ++answered;
   }
   return answered;
 }
 
-// Right about which of two strokes is like the reference.
+// The correct answer to which of two strokes equals the reference.
 inline bool truly_like(const StudyTrial& trial) { return trial.comparison_first; }
 
 inline bool truly_larger(const StudyTrial& trial) { return trial.second_N() > trial.first_N(); }

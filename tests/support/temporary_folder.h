@@ -1,4 +1,4 @@
-// A fresh folder for one test, removed with everything in it at the end.
+// An empty folder for one test, removed with its contents at the end.
 #pragma once
 
 #include <stdlib.h>
@@ -49,7 +49,7 @@ class TemporaryFolder {
   std::string path_;
 };
 
-// The whole of a file, empty if it cannot be read.
+// The contents of a file, empty if it cannot be read.
 inline std::string read_text(const std::string& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();

@@ -33,7 +33,7 @@ class Server {
   const std::string& name() const { return name_; }
 
  private:
-  // It picks a free number and says so on `descriptor`.
+  // Xvfb selects a free display number and writes it to `descriptor`.
   [[noreturn]] static void become_server(int descriptor, pid_t parent) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(1);
@@ -41,7 +41,7 @@ class Server {
     dup2(silence, STDOUT_FILENO);
     dup2(silence, STDERR_FILENO);
     const std::string number = std::to_string(descriptor);
-    // Without -noreset it starts anew after the last window, deaf meanwhile to the next.
+    // Without -noreset it restarts after the last window closes and misses new connections meanwhile.
     execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1920x1080x24", "-nolisten", "tcp", "-noreset",
            nullptr);
     _exit(127);

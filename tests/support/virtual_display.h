@@ -1,4 +1,4 @@
-// A display of its own for tests of the window: Xvfb, drawn on by software, the
+// A virtual display for tests of the window: Xvfb with software rendering, the
 // same on every machine.
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace palpate::test {
 
-// Starts one for this process, the first time, and sets DISPLAY to it; ends it
-// with the process. Returns its name, empty when Xvfb does not start.
+// The first call starts a display for this process and sets DISPLAY; it ends with
+// the process. Returns its name, or an empty string if Xvfb does not start.
 const std::string& virtual_display();
 
 }  // namespace palpate::test

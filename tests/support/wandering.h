@@ -1,4 +1,4 @@
-// A smooth wandering motion in and out of a surface, 0 at time 0.
+// A smooth irregular motion in and out of a surface, 0 at time 0.
 #pragma once
 
 #include <cmath>
@@ -33,7 +33,7 @@ struct Wandering {
   double rate_rad_per_s[4];
 };
 
-// Where `block` holds some 5 N.
+// The depth at which the force of `block` is about 5 N.
 inline double depth_of_5_N(const Block& block) {
   double depth_m = 0.0;
   while (block.half_relaxed_force_N(depth_m) < 5.0) depth_m += 1e-4;
