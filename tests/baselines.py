@@ -1,4 +1,4 @@
-"""Two trivial models of force, to compare with in labs.py. Both take depths and forces only.
+"""Two trivial force models, the baselines of labs.py. Both use depths and forces only.
 
 bins   the median force of 60 depths and two directions of motion, linear between them
 ridge  a ridge regression on a polynomial of the depth, low-passed depths, play operators with thresholds up to
@@ -11,10 +11,10 @@ import numpy
 DEPTHS = 60
 DEGREE = 6
 TIMES_S = numpy.array([0.03, 0.1, 0.3, 1.0, 3.0, 10.0])
-THRESHOLDS = 0.5 / 2.0 ** numpy.arange(6)  # of the greatest depth
-RIDGE = 1e-4  # of the sum of squares of a column
-MOST_ROWS = 20000  # to train on; evenly thinned above it
-DIRECTION = 0.005  # motion back by this part of the depth is another direction
+THRESHOLDS = 0.5 / 2.0 ** numpy.arange(6)  # relative to the greatest depth
+RIDGE = 1e-4  # relative to the sum of squares of a column
+MOST_ROWS = 20000  # for training; longer recordings are thinned evenly
+DIRECTION = 0.005  # a reversal by this share of the greatest depth changes the direction of motion
 SHIFTS = numpy.linspace(-1.0, 1.0, 41)
 
 
@@ -55,7 +55,7 @@ class Bins:
             self.lines[way] = ((edges[filled] + edges[numpy.add(filled, 1)]) / 2, medians) if filled else ([0.0], [0.0])
 
     def inward(self, recording):
-        """For each sample, whether the last motion went in."""
+        """For each sample, whether the last motion was inward."""
         state, way, ways = recording.position[0], True, []
         for value in recording.position:
             moved = play(value, state, DIRECTION * self.greatest)
@@ -113,8 +113,8 @@ KINDS = {"bins": Bins, "ridge": Ridge}
 
 
 def figures(model, recording):
-    """As recorded, and with the test's surface moved to where the mean error over the JND is least: the
-    moved figures are fitted to the forces of the test, as those of `palpate replay` are."""
+    """Errors as recorded, and with the surface of the test moved to the minimum of the mean error over the JND.
+    The moved figures are fitted to the forces of the test, as those of `palpate replay` are."""
     def errors(shift, forces):
         rows = recording.contact(shift)
         return (numpy.abs(forces - recording.force) / jnd(recording.force))[rows]

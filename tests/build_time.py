@@ -3,9 +3,9 @@
 
   python3 tests/build_time.py [TARGET ...]      default: palpate palpate-demo
 
-Builds in a folder of its own, which it removes, without a compiler cache. Each
-compiler runs below this script (as CMake's compiler launcher), which asks the
-system what its children took; so a loaded machine does not change the figures much.
+Builds in a temporary folder without a compiler cache. This script is also
+CMake's compiler launcher: it starts each compiler and reads its processor time,
+which depends little on the load of the machine.
 """
 import collections
 import os

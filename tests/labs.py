@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Every set of recordings that there is, fitted and replayed: the bench that decides about the fit.
+"""Fits and replays every available set of recordings. Changes of the fit are decided by its results.
 
   python3 tests/labs.py [--palpate build/palpate] [--recordings DIR ...] [--models NAME ...]
                         [--sets WORD ...] [--no-virtual] [--json FILE] [--against FILE] [--write]
 
-Recorded sets first (every folder of ../shared/data and ../shared/labs, when they are there, with
-train*.csv and test*.csv; or of other folders), then the virtual materials, all from positions alone: the
-accelerometer column of the virtual rig is left out. Columns: share [%] of the samples in contact
-within the JND, as recorded (surface moved), for 0 N and every model; then, of the last model, the 99 % and
-the worst error in JND as recorded, the share of the test within the 95 % bound, and the seconds of its
-fit. "Surface moved" fits the test's own surface (and force zero, lag) to the forces of the test: it shows what
-is left when the rig is registered, and is no prediction. The means of recorded sets and of virtual materials
-are separate. Models are those of the program, and bins and ridge of baselines.py. --json keeps the
-figures, --against prints what changed since such a file. --write puts the table into bench/RESULTS.md, and
-its means into README.md, with what a report says of the silicone and its figure. Minutes on two cores. Needs python3-numpy.
+Recorded sets come first: every folder with train*.csv and test*.csv in ../shared/data and ../shared/labs (if
+present) or in DIR. Virtual materials follow. All use positions only, without the accelerometer column of
+the virtual rig. Columns: the share [%] of the samples in contact within the JND, as recorded (surface
+moved), for 0 N and every model; then, for the last model, the 99 % quantile and the maximum of the error in
+JND as recorded, the coverage of the 95 % bound, and the seconds of the fit. "Surface moved" fits the surface
+of the test (also force zero and lag) to the forces of the test. It shows the error after registration of the
+rig and is not a prediction. Recorded sets and virtual materials have separate means. Models are those of
+the program, and bins and ridge of baselines.py. --json saves the figures; --against prints the differences from
+such a file. --write puts the table into bench/RESULTS.md, and its means into README.md together with the
+sentence and the figure of a report on silicone. Takes minutes on two cores. Needs python3-numpy.
 """
 import argparse
 import concurrent.futures
@@ -35,12 +35,12 @@ BEGIN, END = "<!-- results: python3 tests/labs.py --models recipe trend greedy -
 RESULTS = ROOT / "tests" / "bench" / "RESULTS.md"
 FIGURE = "assets/figures/speed_error.png"
 MODELS = {"trend": ["--method", "trend"],
-          # Two relaxation times, fitted to the recordings; positions as recorded.
+          # The recipe fits two relaxation times to the recordings and uses positions as recorded.
           "recipe": ["--method", "greedy", "--recipe", "paper-2009"],
           "direct": ["--method", "direct"], "voxel": ["--method", "voxel"], "random": ["--method", "random"],
           "kdtree": ["--method", "kdtree"], "greedy": ["--method", "greedy"]}
 TIE = 0.3  # percentage points of a share that count as no difference
-# Beside every folder with train*.csv and test*.csv: cases that a folder's names do not say.
+# Additional sets that do not follow from the file names of a folder.
 # name: training recordings, test recordings.
 MORE = {
     "aurora_skin, one press": (["aurora_skin/train_600mN"], ["aurora_skin/test_400mN", "aurora_skin/test_800mN"]),
@@ -66,7 +66,7 @@ def rows_of(path):
 
 
 def share_of_nothing(test, surface_m):
-    """Share of the samples in contact within the JND of a model that always says 0 N."""
+    """Share of the samples in contact within the JND, for a model that always returns 0 N."""
     forces = abs(test.force[test.contact(surface_m)])
     return 100 * sum(forces <= baselines.jnd(forces)) / max(1, len(forces))
 
@@ -170,7 +170,7 @@ def number(value, digits):
 
 
 def means(kind, names, results, models):
-    """The mean of every model over these sets, and on how many of their tests it differs from the recipe."""
+    """The mean of every model over these sets, and the number of tests on which it differs from the recipe."""
     lines = []
     for model in models:
         tests = {(name, index): one for name in names for index, one in enumerate(results[name, model].get("tests", []))}
@@ -188,7 +188,7 @@ def means(kind, names, results, models):
 
 
 def summary_table(summary):
-    """A row for the mean of every kind of sets and model."""
+    """A table with one row for each mean, by kind of set and model."""
     lines = ["| sets | model | as recorded | surface moved | tests |", "|---|---|---:|---:|---:|"]
     for line in summary:
         found = re.match(r"([^,]+), (\w+): mean ([\d.]+) % as recorded, ([\d.]+) % surface moved, (\d+) tests", line)
@@ -198,7 +198,7 @@ def summary_table(summary):
 
 
 def front_page(options, folder, rows, summary):
-    """All sets into RESULTS.md; the means, the sentence of a report on the silicone and its figure into README.md."""
+    """Writes all sets to RESULTS.md; the means, and the sentence and figure of a report on silicone, to README.md."""
     RESULTS.write_text("\n".join(["# Results", "", "Made by `python3 tests/labs.py --models recipe trend greedy --write`, whose header says what",
                                   "the columns are. Recorded sets first; each has its source and licence in a PROVENANCE.md beside it,",
                                   "outside of this repository.", "", *rows, "", *summary, ""]))

@@ -1,11 +1,11 @@
-"""readme_commands.py SOURCE BUILD COMPILER: every command of every README.
+"""readme_commands.py SOURCE BUILD COMPILER: tests every command of every README.
 
-Fenced `sh` blocks are run line by line in a scratch folder that has what the text takes
-for granted: build/, a table of a rig, recordings, models, answers of subjects. Lines that
+Runs fenced `sh` blocks line by line in a scratch folder with the files that the text
+assumes: build/, a table of a rig, recordings, models, answers of subjects. Lines that
 would take minutes, or need a person, are listed below with the reason. Commands between
-backticks within a sentence have placeholders for names: of these the verb and the options
-are held against --help, scripts must be there. The `cpp` block of the front page is compiled; `python` blocks
-run in the scratch folder."""
+backticks within a sentence contain placeholders: their verb and options must occur in
+--help, and their scripts must exist. The `cpp` block of the front page is compiled; `python`
+blocks run in the scratch folder."""
 import csv
 import os
 import pathlib
@@ -15,17 +15,17 @@ import subprocess
 import sys
 import tempfile
 
-# What is not run here, and where it is.
+# Commands that are not run here, and where they are run.
 LEFT_OUT = {
     "bash scenes/run.sh": "builds and shows the window: the main job, a step of .ci/run",
     "bash tests/run.sh": "runs this very test",
 }
-# What is added to a line, so that it takes seconds or ends without a person.
+# Options added to a command, so that it takes seconds or ends without a person.
 ADDED = {
     "build/palpate report ": " --quick",
     "build/palpate-demo ": " --seconds 3",
 }
-# A word of a command, as it stands in a sentence, that is no verb or option.
+# The name of the window program in a sentence.
 WINDOW = "palpate-demo"
 
 
@@ -54,7 +54,7 @@ def lines_of(block):
 
 
 def inline_commands(text):
-    """Between backticks, beginning with a program; may be broken across lines."""
+    """Commands between backticks that start with a program; they may span lines."""
     without_blocks = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
     for words in re.findall(r"`([^`]+)`", without_blocks):
         command = " ".join(words.split())
@@ -63,15 +63,15 @@ def inline_commands(text):
 
 
 def make_scratch(folder, build):
-    """What the READMEs' commands take for granted."""
+    """Makes the files that the commands of the READMEs assume."""
     os.symlink(build, folder / "build")
     os.symlink(build.parent / "assets", folder / "assets")
     palpate = build / "palpate"
-    # A stroke that a still hand can be given is not in every six seconds.
+    # The test is longer: not every six seconds contain a stroke that a study can use.
     for name, seed, seconds in (("rec-of-the-rig", 1, 6), ("other", 2, 6), ("test", 3, 20)):
         must([palpate, "synth", "--material", "silicone", "--seed", str(seed), "--seconds", str(seconds), "--out",
               name + ".csv"], folder)
-    # A table as another program writes it: millimetres, semicolons, names of its own.
+    # A table as another program writes it: millimetres, semicolons, other column names.
     with open(folder / "rec-of-the-rig.csv", newline="") as source, open(folder / "rig.csv", "w") as target:
         target.write("Time [s];Displacement [mm];Force [N]\n")
         for row in csv.DictReader(line for line in source if not line.startswith("#")):
@@ -85,7 +85,7 @@ def make_scratch(folder, build):
 
 
 def answers_of_subjects(folder):
-    """`analyse` of two people's answers: those of simulated ones, which the line before made."""
+    """Copies the answers of two simulated subjects, made by the previous command, for `analyse`."""
     for number, answers in enumerate(sorted((folder / "who").rglob("discriminate-*.csv"))[:2], 1):
         shutil.copy(answers, folder / ("discriminate-S%02d.csv" % number))
 
@@ -147,7 +147,7 @@ def compile_snippet(readme, source, folder, compiler):
 
 
 def run_python(readme, source, folder, build, environment):
-    """The blocks of one README one after the other, in one process."""
+    """Runs the blocks of one README in order, in one process."""
     blocks = fenced(readme.read_text(), "python")
     if not blocks:
         return

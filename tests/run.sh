@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # Builds and runs every test, on a fresh Debian 12 too. Arguments go to ctest
-# (`bash tests/run.sh -R Scene`); PALPATE_CMAKE_OPTIONS to cmake. The last lines
-# count the tests that were skipped and why; in CI a test that is skipped although
-# all its packages are in the list of scenes/prepare.sh fails the run.
+# (`bash tests/run.sh -R Scene`), PALPATE_CMAKE_OPTIONS to cmake. Ends with the
+# number of skipped tests and the reasons. In CI a skipped test fails the run,
+# because scenes/prepare.sh installs all packages that tests need.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../scenes/prepare.sh"
 
 install_packages "${packages[@]}" "${test_packages[@]}"
 folder=${PALPATE_BUILD_FOLDER:-$root/build}
-# Configured every time: what was installed since the last time must be found.
+# Runs cmake every time, so that newly installed packages are found.
 build_in "$folder" all -DBUILD_TESTING=ON
 
-# A German locale for the tests that show that it changes no number.
+# A German locale, for tests that it does not change number formats.
 if [ ! -d "$folder/locale/de_DE.UTF-8" ] && command -v localedef >/dev/null; then
   mkdir -p "$folder/locale"
   localedef -i de_DE -f UTF-8 "$folder/locale/de_DE.UTF-8" >/dev/null 2>&1 || true
@@ -30,7 +30,7 @@ if [ -z "$skipped" ]; then
 else
   say "skipped: $(wc -l <<<"$skipped") tests"
   printf '%s\n' "$skipped"
-  # What no package changes: the sanitizers' own malloc, and that root may read everything.
+  # These two reasons to skip do not depend on packages.
   if [ -n "${CI:-}" ] && [ "$status" -eq 0 ] && grep -qvE 'sanitizer owns|root may read everything' <<<"$skipped"; then
     printf 'error: tests were skipped although everything they need is installed here\n' >&2
     status=1

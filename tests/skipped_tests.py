@@ -1,4 +1,4 @@
-"""Prints a line for each skipped test of a JUnit report of ctest: name and reason."""
+"""Prints the name and reason of each skipped test in a JUnit report of ctest."""
 import re
 import sys
 import xml.etree.ElementTree as ElementTree

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Palpate on arm64, in an emulator: the library, `palpate` and the tests of the vector loops,
-# cross-compiled; a model that was fitted here gives the same forces there to 1e-9 N, one can
-# be fitted there, and what is exported there compiles. For .ci/run, in a Debian that may be
-# given the packages of another architecture; build/palpate is the one of here.
+# Tests Palpate on arm64 in an emulator. Cross-compiles the library, `palpate` and the tests of
+# the vectorised code. Checks that a model fitted natively gives the same forces on arm64 to
+# 1e-9 N, that arm64 can fit a model, and that its exported C file compiles. For .ci/run: installs
+# arm64 packages. Needs the native program build/palpate.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../scenes/prepare.sh"
 folder=$root/build-arm64

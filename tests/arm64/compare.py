@@ -1,4 +1,4 @@
-"""compare.py A.csv B.csv: the largest difference of the last column, a model's force; at most 1e-9 N."""
+"""compare.py A.csv B.csv: fails if the forces in the last columns differ by more than 1e-9 N."""
 import csv
 import sys
 

@@ -1,5 +1,5 @@
-"""check_schema.py SCHEMA FILE...: validates JSON files by the part of JSON Schema that
-SCHEMA uses, and fails when SCHEMA uses more. Python's own library, nothing else."""
+"""check_schema.py SCHEMA FILE...: validates JSON files. Supports only part of JSON Schema and
+fails if SCHEMA uses more. Needs only Python's standard library."""
 import json
 import sys
 

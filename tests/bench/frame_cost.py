@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""What a frame of the window costs where the processor draws. Unlike a frame rate, processor time a frame hardly
-depends on what else the machine does.
+"""Measures the processor time per frame of the window with software rendering. Unlike the frame rate, it hardly
+depends on other load of the machine.
 
   python3 tests/bench/frame_cost.py build/palpate-demo [OTHER_DEMO ...] [--seconds 20] [--rounds 2]
 
-What starts once (the driver compiles its shaders) is left out: two runs, one of a quarter of the time, and their
-difference. Programs draw under Xvfb in turns, so that before and after share their minutes. Columns: processor
-milliseconds a frame of the main thread, of the driver's threads, and of the whole program with its haptics loop and,
-without --models, the fits of the scene's own models; how late its loop is, and one beside it that does nothing.
+The difference of two runs, one of a quarter of the time, excludes the cost of the start (the driver compiles
+shaders). Programs run alternately under Xvfb, so that they see the same load. Columns: processor milliseconds per
+frame of the main thread, of the driver's threads, and of the whole program (including the haptics loop and,
+without --models, the fits of the scene's models); the lateness of its loop and of an idle loop beside it.
 """
 import argparse
 import ctypes
@@ -21,7 +21,7 @@ import time
 
 
 def thread_seconds(pid):
-    """(thread, name): processor seconds so far."""
+    """Processor seconds so far, by (thread, name)."""
     seconds = {}
     for task in pathlib.Path(f"/proc/{pid}/task").glob("*"):
         try:
@@ -35,7 +35,7 @@ def thread_seconds(pid):
 
 
 class IdealLoop(threading.Thread):
-    """1 kHz of absolute deadlines and nothing to do, FIFO where it is allowed: what the machine grants now."""
+    """An idle loop with absolute deadlines at 1 kHz (SCHED_FIFO if allowed): the lateness due to the machine."""
 
     def __init__(self):
         super().__init__(daemon=True)

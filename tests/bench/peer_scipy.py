@@ -4,10 +4,10 @@ peer_scipy.py FOLDER REPETITIONS
 
 FOLDER/train.csv   d normalised features, force, remainder, left_out (0 or 1)
 FOLDER/test.csv    d normalised features
-Of the settings the one is taken with the least RMS error on the rows left out
-when fitted to the others. Predictions go to FOLDER/<name>_<target>.csv; stdout
-gets one JSON list of {name, target, setting, fit_s, query_s}, medians over
-REPETITIONS, imports excluded.
+Selects the setting with the least RMS error on the left-out rows when fitted to
+the others. Predictions go to FOLDER/<name>_<target>.csv; stdout gets one JSON
+list of {name, target, setting, fit_s, query_s}, medians over REPETITIONS without
+imports.
 """
 
 import json
@@ -19,8 +19,8 @@ from scipy.interpolate import RBFInterpolator
 
 QUERIES = 200  # a repetition
 
-# Cubic with its linear tail, as Palpate; smoothing 0 interpolates. With
-# neighbours a small system is solved at each query.
+# The cubic kernel with a linear tail, as in Palpate; smoothing 0 interpolates. With
+# neighbours, scipy solves a small system at each query.
 PEERS = {
     "scipy_all_sites": [dict(kernel="cubic", degree=1, smoothing=s) for s in (0.0, 1e-4, 1e-3, 1e-2)],
     "scipy_50_neighbours": [

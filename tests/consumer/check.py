@@ -1,8 +1,8 @@
 """check.py PALPATE BUILD SOURCE COMPILER LAUNCHER KIND: builds the consumer project and
 compares its forces with those of `palpate replay`, bit for bit.
-KIND: shared, static (the installed tree, moved to another folder first), pkg-config (also, of
-the static library, for a C program), source (add_subdirectory, then FetchContent in the same
-folder), or system (installed below BUILD). Folders are made below a temporary one and removed."""
+KIND: shared or static (the installed tree, moved to another folder), pkg-config (also for a C
+program with the static library), source (add_subdirectory, then FetchContent in the same
+folder), or system (installed below BUILD). Uses a temporary folder, which is removed."""
 import csv
 import os
 import pathlib
@@ -34,7 +34,7 @@ def model_and_forces(palpate, folder):
 
 
 def installed(build, folder):
-    """The packages of developers, moved after it was installed."""
+    """Installs the library and development files, and moves the installed tree."""
     for component in ("lib", "dev"):
         run("cmake", "--install", build, "--component", component, "--prefix", folder / "first")
     os.rename(folder / "first", folder / "root")
@@ -57,7 +57,7 @@ def build_by_pkg_config(source, folder, compiler, root):
 
     run(compiler, "-std=c++17", source / "tests" / "consumer" / "main.cpp", "-o", folder / "consumer", *flags(),
         "-Wl,-rpath," + str(pc.parent.parent))
-    # A C program has nobody but the .pc file to tell it of the C++ runtime.
+    # A C program gets the C++ runtime only from the .pc file.
     static = folder / "static"
     static.mkdir()
     os.symlink(next(root.rglob("libpalpate_model.a")), static / "libpalpate_model.a")

@@ -2,8 +2,8 @@
 
     python3 tests/golden/nnls_scipy.py > tests/golden/nnls_scipy.json
 
-Each case is min |A x - b|, x >= 0; the file holds the normal equations
-A^T A and A^T b, which the solver takes, and scipy's x and residual.
+Each case is min |A x - b|, x >= 0. The file contains the normal equations
+A^T A and A^T b (the input of the solver), and scipy's x and residual.
 """
 
 import json

@@ -4,9 +4,9 @@
 
 scipy solves eq. 4 of Hoever & Harders (2009) by LU, with the smoothing on the
 diagonal and the tail's variables shifted and scaled to [-1, 1]; `tail` here is
-turned back into coefficients of 1, x_1 ... x_d. Its kernels carry the sign
-that makes them positive definite (linear -r, quintic -r^5), and so do its
-weights. The points are short decimals, so that the file holds them exactly.
+converted to coefficients of 1, x_1 ... x_d. Its kernels have the sign that makes
+them conditionally positive definite (linear -r, quintic -r^5), and its weights
+have it too. The points are short decimals, so that the file stores them exactly.
 """
 
 import json

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# check.sh FOLDER: are the packages in FOLDER (cmake --build build --target package)
-# good for somebody who has nothing but Debian 12? Lintian without errors; installed into
-# an empty Debian 12 root, with what they say they depend on and nothing else, the programs
-# run and the consumer project gives replay's forces. Without mmdebstrap or root the
-# packages are unpacked into a folder instead, with the source tree hidden where the kernel
-# lets us. Everything is made below a temporary folder and removed.
+# check.sh FOLDER: tests the packages in FOLDER (cmake --build build --target package) on a
+# bare Debian 12. Lintian must report no errors. The packages are installed into an empty
+# Debian 12 root with only their declared dependencies; there the programs must run and the
+# consumer project must give the forces of `palpate replay`. Without mmdebstrap or root the
+# packages are unpacked into a folder instead, and the source tree is hidden if the kernel
+# allows that. All files are made below a temporary folder and removed.
 set -euo pipefail
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 packages=$(cd "$1" && pwd)
@@ -25,7 +25,7 @@ else
   say "skipped: lintian is not there (apt install lintian)"
 fi
 
-# What runs in the root: the consumer and its check, and use.sh.
+# The files for the root: the consumer project, its check, and use.sh.
 mkdir -p "$scratch/palpate-check/tests"
 cp -r "$source_folder/tests/consumer" "$scratch/palpate-check/tests/"
 cp "$source_folder/tests/package/use.sh" "$source_folder/tests/models/library/python_test.py" "${debs[@]}" "$scratch/palpate-check/"
@@ -34,7 +34,7 @@ if [ "$(id -u)" -eq 0 ] && command -v mmdebstrap >/dev/null && [ -f /usr/share/k
   say "an empty Debian 12 root"
   sources=/etc/apt/sources.list.d/debian.sources
   [ -f "$sources" ] || sources=
-  # /dev/null: nothing of the root is kept.
+  # /dev/null: the root is not kept.
   mmdebstrap --quiet --variant=apt --format=null \
     --include=g++,cmake,ninja-build,pkg-config,python3,xvfb,xauth,libgl1-mesa-dri \
     --customize-hook="copy-in $scratch/palpate-check /" \

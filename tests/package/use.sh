@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# use.sh FOLDER ROOT: what a user of the packages does, in a root where they are installed
-# (ROOT empty) or with them unpacked below ROOT. FOLDER has tests/consumer and python_test.py. For check.sh.
+# use.sh FOLDER ROOT: uses the packages as a user does. They are installed (ROOT empty) or
+# unpacked below ROOT. FOLDER contains tests/consumer and python_test.py. Called by check.sh.
 set -euo pipefail
 folder=$1
 root=$2

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""A device for Palpate's `--device bridge:`, to be made yours by two functions.
+"""A device for Palpate's `--device bridge:`. Replace two functions to connect your own.
 
   palpate record --device "bridge:exec:python3 assets/examples/bridge/bridge.py" --out rec.csv --seconds 20
   python3 bridge.py tcp 5050         then bridge:tcp:127.0.0.1:5050
   python3 bridge.py unix /tmp/tool   then bridge:unix:/tmp/tool
 
-It stands in for a tool that somebody moves in and out of a spring of 400 N/m.
-devices/README.md#bridge has the frames.
+It simulates a tool that a hand moves in and out of a spring of 400 N/m.
+devices/README.md#bridge describes the frames.
 """
 import math, os, select, socket, struct, sys, time, zlib
 
@@ -15,16 +15,16 @@ WATCHDOG_S = 0.05
 
 
 def read_sample(t_s):
-    """The first of the two: position in metres, positive inside the block, and the measured
-    force in newtons, positive outward (None: there is no sensor)."""
+    """First function: returns the position in metres, positive inside the block, and the measured
+    force in newtons, positive outward (None: no sensor)."""
     depth_m = 0.002 + 0.0012 * math.sin(0.31 * t_s)
     position_m = depth_m * math.sin(2 * math.pi * (1.6 * t_s + 7.5 * (1 - math.cos(0.2 * t_s))))
     return position_m, 400.0 * max(0.0, position_m)
 
 
 def apply_force(force_N):
-    """The second: push the tool with `force_N`, positive out of the block. Palpate limits it;
-    limit it here as well to what your motor bears."""
+    """Second function: push the tool with `force_N`, positive out of the block. Palpate limits it;
+    limit it here as well to the rated force of your motor."""
 
 
 def open_line():
@@ -55,7 +55,7 @@ def main():
                             drive + 2 * (heard and silent), 0, confirmed & 0xFFFF)
         os.write(sink, frame + struct.pack("<I", zlib.crc32(frame)))
         sequence = (sequence + 1) & 0xFFFFFFFF
-        due_s = max(due_s + 1 / RATE_HZ, now_s)  # samples that were missed are not made up for
+        due_s = max(due_s + 1 / RATE_HZ, now_s)  # missed samples are not sent later
         while select.select([source], [], [], max(0.0, due_s - time.monotonic()))[0]:
             came = os.read(source, 4096)
             if not came:

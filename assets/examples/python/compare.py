@@ -1,8 +1,8 @@
-"""compare.py [RECORDING.csv [FIGURE.png]]: three models of one recording, their forces and their errors beside the
-just noticeable difference (JND). Needs matplotlib (Debian: python3-matplotlib).
+"""compare.py [RECORDING.csv [FIGURE.png]]: plots the forces of three models of one recording, and their errors with
+the just noticeable difference (JND). Needs matplotlib (Debian: python3-matplotlib).
 
-The models are fitted to the first half of the recording and shown on the second, with the motion of all of it,
-so that their memory is that of the material."""
+The models are fitted to the first half of the recording and compared on the second. They get the motion of the
+whole recording, so that their state at the start of the second half is right."""
 import pathlib
 import sys
 
@@ -16,7 +16,7 @@ except ImportError:
 import palpate
 
 EXAMPLE = pathlib.Path(__file__).resolve().parents[1] / "silicone_press.csv"
-# Options of palpate.fit, and colours of Okabe & Ito, which the colour-blind can tell apart.
+# Options of palpate.fit, and the colour-blind-safe colours of Okabe & Ito.
 MODELS = {"depth alone": (dict(method="trend", features="depth"), "#0072B2"),
           "recipe of 2009": (dict(method="greedy", centres=60, recipe="paper-2009"), "#E69F00"),
           "greedy": (dict(method="greedy", centres=60), "#D55E00")}

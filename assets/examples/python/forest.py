@@ -1,5 +1,5 @@
-"""forest.py TRAIN.csv: a random forest (Debian: python3-sklearn) on the features of a model, cross-validated on the
-folds that a fit uses, beside the two trivial baselines and our own fit. Minutes for a long recording."""
+"""forest.py TRAIN.csv: cross-validates a random forest (Debian: python3-sklearn) on the features of a model, the two
+trivial baselines and Palpate's fit, with the folds of the fit. Takes minutes for a long recording."""
 import sys
 
 from sklearn.ensemble import RandomForestRegressor

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""A device of `bridge:` that does one thing wrong: peer.py MODE AFTER_S LOG [unix PATH | tcp PORT | pty LINK].
+"""A `bridge:` device with one fault: peer.py MODE AFTER_S LOG [unix PATH | tcp PORT | pty LINK].
 
-It holds its tool 3 mm inside, with tremor; AFTER_S after it was first pushed it does what MODE says, and
-writes into LOG "event SECONDS" and, when it hears a force of 0 next, "zero SECONDS", by CLOCK_MONOTONIC.
+It holds its tool 3 mm inside, with tremor. AFTER_S after the first force it starts the fault MODE and
+writes "event SECONDS" to LOG. At the next force of 0 it writes "zero SECONDS". Times are CLOCK_MONOTONIC.
 """
 import math, os, pty, select, socket, struct, sys, time, tty, zlib
 
@@ -34,7 +34,7 @@ def open_line():
 
 
 def wrong(frame, sequence, held):
-    """What goes out instead of `frame` once the event is there; MODE names them all."""
+    """The bytes that are sent instead of `frame` after the event. MODE selects the fault."""
     if MODE == "corrupt":
         return bytes(b ^ 0x11 if i == 13 else b for i, b in enumerate(frame))
     if MODE == "cut":

@@ -1,8 +1,8 @@
-"""cost.py BUILD: what an exported model costs, beside a call of the library: one line of
-Markdown for each method, in double and in single precision. Fits a virtual recording,
-compiles the exported file with cc -O2 for this machine, and times ticks of one recording,
-each waiting for the last; processor time, the median of nine passes. Code and tables by
-`size`: .text of the compiled file, constants included."""
+"""cost.py BUILD: compares the time of an exported model with a call of the library. Prints one
+line of Markdown for each method, in double and single precision. Fits a virtual recording,
+compiles the exported file with cc -O2 for this machine, and times ticks of one recording, each
+depending on the previous one. Times are processor time, the median of nine passes. Sizes are
+.text of the compiled file, including constants."""
 import csv
 import pathlib
 import subprocess

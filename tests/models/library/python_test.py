@@ -1,4 +1,4 @@
-"""The package palpate: the figures of the programs, wrong arguments, estimators.
+"""Tests the package palpate: the same figures as the programs, wrong arguments, estimators.
 
 PYTHONPATH: its folder; PALPATE_LIBRARY: the library; PALPATE: the program."""
 import csv
@@ -24,7 +24,7 @@ def program(*arguments):
 
 
 def setUpModule():
-    """One fit for all cases; the scratch folder goes with the process."""
+    """Makes one fit for all cases. The scratch folder is removed at exit."""
     Case.scratch = tempfile.TemporaryDirectory()
     Case.folder = pathlib.Path(Case.scratch.name)
     Case.files = [Case.folder / (name + ".csv") for name in "ab"]

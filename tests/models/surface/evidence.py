@@ -81,13 +81,13 @@ def row_check(case, path, true_mm, tolerance_mm=SOFT_MM, zero_N=0.0, lag_ms=0.0)
     identified = one.get("surface_identified", True)
     row(case, "surface", 1e3 * one["surface_offset_m"] if identified else None, true_mm, tolerance_mm, "mm")
     row(case, "zero", one["force_zero_N"] if identified else None, zero_N, ZERO_N, "N")
-    # No finding is "0", and right where the true lag is small enough to be the material's.
+    # No finding counts as 0. It is right if the true lag is so small that the material may cause it.
     lag = 1e3 * codes["lag"] if "lag" in codes else (0.0 if abs(lag_ms) <= LAG_MS else None)
     row(case, "lag", lag, lag_ms, LAG_MS, "ms")
 
 
 def row_pair(case, paths, names, true_mm, tolerance_mm):
-    """How the second lies to the first, by a fit of both."""
+    """The offset of the second recording relative to the first, by a fit of both."""
     model = os.path.join(WORK, "m.json")
     found = run("fit", "--recording", *paths, "--method", "random", "--features", "scene", "--out", model, "--force",
                 "--json")
@@ -202,7 +202,7 @@ def real():
                     row(case, code[:10], 1.0 if code in codes else None, None, 0.0, "")
             if len(names) < 2:
                 continue
-            # The same recording twice, shifted: whatever the rig is, the shift is known.
+            # The same recording twice, one shifted: the offset is known for every rig.
             rows = read(os.path.join(root, names[-1]))
             for shift in (0.4, -2.0, 6.0):
                 paths = [write("first", rows), write("second", changed(rows[:-1], shift_mm=shift))]
@@ -211,7 +211,7 @@ def real():
 
 
 def present(case, what, found, planted):
-    """A finding that is there or not."""
+    """A finding that is present or absent, without a value."""
     row(case, what, 1.0 if found else (None if planted else 0.0), 1.0 if planted else 0.0, 0.0, "")
 
 
@@ -243,7 +243,7 @@ def plant(case, rows):
     present(f"{case} repeated stamps", "stamps", done.get("rows") == len(rows), True)
 
 
-# Folders of which some recordings have other forces at the same depth, as their provenance says.
+# Sets whose recordings have different forces at the same depth, according to their provenance.
 CONTRADICTIONS = {("textile_stretch", "train_31", "train_32"), ("ecoflex_static", "_0T", "_100T")}
 
 
@@ -263,7 +263,7 @@ def pairs(folder, paths):
 
 
 def force_offsets():
-    """A press without free air and the same with an offset: a contradiction from two JND on; never a surface."""
+    """A press without free air, twice, one with a force offset: a contradiction from two JND on, never a surface."""
     base = write("strokes", block(4, 3, 8))
     for offset in (0.1, 0.3, 1.0, 3.0):
         other = write("offset", changed(block(5, 3, 8), zero_N=offset))

@@ -3,13 +3,13 @@
 
   check_report.py REPORT_DIR MODEL=FORCES.csv [MODEL=FORCES.csv ...]
 
-Shares no code with the program: it reads the forces of one test recording, applies the definitions of the page and
+Shares no code with the program. It reads the forces of one test recording, applies the definitions of the page and
 compares
-  - every number of the sentence (index.html marks each with its model and its figure), as it is
-    printed; times, which no FORCES.csv holds, with tables/times.csv,
-  - the row of each model and of one that always says 0 N in tables/models.csv, with its intervals by Student's t
-    over strokes, and its bins in tables/force_bins.csv, to one part in a million.
-The sentence's models must all be given; a number of it that is not recomputed fails.
+  - every number of the sentence, as printed (index.html marks each with its model and figure); times, which
+    FORCES.csv does not contain, are compared with tables/times.csv,
+  - the rows of each model and of one that always returns 0 N: in tables/models.csv with intervals by Student's t
+    over strokes, and in tables/force_bins.csv, to one part in a million.
+All models of the sentence must be given. A number of the sentence that is not recomputed is an error.
 """
 import bisect
 import csv
@@ -25,7 +25,7 @@ OFFSET_N, WEBER = 0.065, 0.0633
 
 
 class Marked(html.parser.HTMLParser):
-    """(model, figure) -> what is printed."""
+    """(model, figure) -> printed text."""
 
     def __init__(self):
         super().__init__()
@@ -53,13 +53,13 @@ def rows_of(path):
 
 
 def strokes_of(path, model):
-    """[[(error, error / JND, measured force)]], a list for each stroke, of the samples in contact; without a
-    model, of one that always says 0 N."""
+    """[[(error, error / JND, measured force)]]: the samples in contact, one list per stroke. Without a
+    model, the errors of one that always returns 0 N."""
     strokes = []
     last_contact = -math.inf
     in_air = True
     for row in rows_of(path):
-        # Five deviations of the force noise are less than the JND at 0 N here.
+        # Here the JND at 0 N exceeds five standard deviations of the force noise.
         if float(row["depth_m"]) <= 0.0 and abs(float(row["force_N"])) <= OFFSET_N:
             in_air = True
             continue
@@ -165,7 +165,7 @@ def check_bins(check, folder, name, strokes):
 
 
 def printed(text):
-    """The number that is printed, and half a unit of its last digit."""
+    """The printed number, and half a unit of its last digit."""
     digits = re.search(r"[-−+]?[\d,]*\.?\d+(e-?\d+)?", text).group(0).replace(",", "").replace("−", "-")
     mantissa, _, exponent = digits.partition("e")
     decimals = len(mantissa.partition(".")[2])
@@ -181,7 +181,7 @@ def check_sentence(check, folder, known, times, recommended):
         if figure in ("tick_ns", "tick_share", "time_ratio"):
             tick = float(times[model]["tick_ns"])
             expected = {"tick_ns": tick, "tick_share": tick / 1e4, "time_ratio": tick / float(times[recommended]["tick_ns"])}
-            # Three significant digits.
+            # Printed with three significant digits.
             check.near(f"sentence: {figure} of {model}", value, expected[figure], max(1.001 * half, 0.006 * value))
             continue
         if model not in known:
@@ -201,7 +201,7 @@ def check_sentence(check, folder, known, times, recommended):
             print(f"the sentence has a {figure} that is not recomputed")
             check.wrong += 1
             continue
-        # A share is rounded down, and a number on the edge may go either way.
+        # Shares are rounded down, and a number on the edge may be rounded either way.
         check.near(f"sentence: {figure} of {model}", value, numbers[figure](), 1.001 * half + (0.0101 if "%" in text else 0))
 
 
