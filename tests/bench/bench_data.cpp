@@ -18,7 +18,7 @@ PreparedTraining prepare(const TrainingRequest& request) {
   return test::prepare({test::rig_recording(settings)}, request);
 }
 
-// A line "name: 123 kB" of this process's status.
+// The value of a line "name: 123 kB" in the status of this process.
 double status_bytes(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -79,9 +79,9 @@ VoxelGrid even_grid(const Sites& sites, const std::vector<int>& sizes) {
 }
 
 double peak_memory_of(const std::function<void()>& work) {
-  malloc_trim(0);  // what earlier work left in the heap would hide this one's
+  malloc_trim(0);  // free memory left in the heap would hide new use
   const double before = status_bytes("VmRSS:");
-  std::ofstream("/proc/self/clear_refs") << "5";  // Linux: the peak starts anew
+  std::ofstream("/proc/self/clear_refs") << "5";  // Linux: resets the peak
   work();
   return std::max(0.0, status_bytes("VmHWM:") - before);
 }

@@ -1,6 +1,6 @@
-// What palpate-bench measures on: one recording of the virtual silicone block,
-// and smooth made-up sites where N or the dimension varies. Made once, always
-// the same.
+// The data of palpate-bench: one recording of the virtual silicone block, and
+// smooth synthetic sites where their number or dimension varies. Made once,
+// deterministic.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ inline constexpr Eigen::Index kPaperSites = 6850;
 
 // The prepared recording: about 7,000 sites, four features.
 const PreparedTraining& recorded();
-// The same by the paper's recipe.
+// The same recording, prepared by the paper's recipe.
 const PreparedTraining& recorded_as_paper();
 // kPaperSites of its sites, evenly spread in time, and their thresholds.
 const Sites& recorded_sites();
@@ -31,8 +31,8 @@ Sites made_sites(int dimension, Eigen::Index count);
 // Equally spaced nodes over the sites' bounding box.
 VoxelGrid even_grid(const Sites& sites, const std::vector<int>& sizes);
 
-// Largest memory in use while `work` ran, less what was in use before, in
-// bytes; 0 where the system does not say.
+// Peak memory during `work` minus memory in use before, in bytes; 0 if the
+// system does not report it.
 double peak_memory_of(const std::function<void()>& work);
 
 }  // namespace palpate::bench

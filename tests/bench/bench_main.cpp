@@ -1,4 +1,4 @@
-// palpate-bench: every figure of speed, in one run on one machine.
+// palpate-bench measures all speed figures in one run on one machine.
 //
 //   build/palpate-bench                                       everything
 //   build/palpate-bench --benchmark_filter='^(evaluate|fit)/' the table of speed, 1 minute
@@ -7,9 +7,9 @@
 //   build/palpate-bench --benchmark_out=bench.json --benchmark_out_format=json
 //   build/palpate-bench --benchmark_list_tests
 //
-// evaluate/   one query at a time, each waiting for the last
-// fit/        fits at 6,850 sites of a recording, `peak_MB` above what was there
-// slider/     another number of centres of a fit that is there
+// evaluate/   one query at a time, each depending on the previous one
+// fit/        fits at 6,850 sites of a recording; `peak_MB`: additional memory
+// slider/     a change of the number of centres of an existing fit
 // tick/       one sample of a replay, whole and its motion alone
 // program/    `palpate fit` from the command line to the model file
 // size/       fits against the number of sites, 1,000 to 1,000,000
@@ -18,9 +18,9 @@
 // peer/       Palpate's methods beside ALGLIB, dlib and scipy where these are
 //             installed: fit, query and error on the same recordings
 //
-// The tables of the README follow at the end, as Markdown. Figures are medians
-// over repetitions, of processor time for queries, of wall time for fits (which
-// use all cores); only ratios within one run compare.
+// Prints the tables of tests/bench/README.md at the end. Figures are medians over
+// repetitions: processor time of queries, and wall time of fits (which use all
+// cores). Only ratios within one run are comparable.
 #include <benchmark/benchmark.h>
 
 #include <fstream>

@@ -1,5 +1,5 @@
-// How palpate-bench times an evaluation: one query at a time, each waiting for
-// the last as ticks do.
+// Times evaluations for palpate-bench: one query at a time, each depending on the
+// previous result, as in ticks.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -12,7 +12,7 @@
 
 namespace palpate::bench {
 
-// Walks over the columns of `points`; every query needs the last result.
+// Evaluates the columns of `points` in turn; every query depends on the previous result.
 template <typename Evaluate>
 void run_queries(benchmark::State& state, const Eigen::MatrixXd& points, const Evaluate& evaluate) {
   std::array<double, kMaxFeatures> query{};
@@ -20,7 +20,7 @@ void run_queries(benchmark::State& state, const Eigen::MatrixXd& points, const E
   double last = 0.0;
   for (auto _ : state) {
     const double* point = points.col(at).data();
-    // Adds nothing, but the processor cannot know before `last` is there.
+    // Does not change the query, but makes it depend on `last`.
     for (Eigen::Index k = 0; k < points.rows(); ++k) query[static_cast<std::size_t>(k)] = point[k] + 1e-200 * last;
     last = evaluate(query.data());
     at = at + 1 < points.cols() ? at + 1 : 0;

@@ -7,7 +7,7 @@
 namespace palpate::bench {
 namespace {
 
-// "fit/random-100/iterations:1/repeats:7/real_time" without what was added.
+// "fit/random-100" of "fit/random-100/iterations:1/repeats:7/real_time".
 std::string plain_name(const benchmark::BenchmarkReporter::Run& run) {
   std::string name = run.run_name.function_name;
   if (!run.run_name.args.empty()) name += "/" + run.run_name.args;
@@ -31,7 +31,7 @@ void MedianReporter::ReportRuns(const std::vector<Run>& runs) {
     }
     const bool alone = run.run_type == Run::RT_Iteration && run.repetitions <= 1;
     if (!alone && run.aggregate_name != "median") continue;
-    // Processor time of what runs on one thread, which other programs disturb less.
+    // Processor time for work on one thread, because other programs disturb it less.
     const bool wall = !run.run_name.time_type.empty();
     BenchRow row;
     row.seconds =

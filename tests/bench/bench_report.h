@@ -1,5 +1,5 @@
-// The display of palpate-bench: one line per median, and at the end the README's
-// tables. (JSON and CSV are Google Benchmark's own, with all statistics.)
+// The output of palpate-bench: one line per median, and at the end the tables of
+// tests/bench/README.md. (Google Benchmark writes JSON and CSV with all statistics.)
 #pragma once
 
 #include <benchmark/benchmark.h>

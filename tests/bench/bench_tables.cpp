@@ -8,8 +8,8 @@
 namespace palpate::bench {
 namespace {
 
-// A scalar loop over 6,850 centres took this on the machine that the goals were
-// set on, a Zen 4 core at 3.6 GHz.
+// The time of a scalar loop over 6,850 centres on the reference machine of the
+// goals, a Zen 4 core at 3.6 GHz.
 constexpr double kReferenceScalar_s = 17.43e-6;
 
 struct Goal {
@@ -35,7 +35,7 @@ constexpr Goal kGoals[] = {
     {"`fit` greedy, the program", "program/fit_greedy", "-", "0.25 s", "0.15 s"},
 };
 
-// Work beside the part of it that it cannot do without.
+// The ratio of the time of some work to that of its essential part.
 struct Share {
   const char* work;
   const char* whole;
@@ -105,7 +105,7 @@ void print_header(const std::string& title, const std::vector<std::string>& cell
   std::printf("|\n");
 }
 
-// Ratios say more than times on a machine that others share.
+// Ratios, which depend less than times on other load of the machine.
 void print_ratios(const BenchRows& rows) {
   bool first = true;
   for (const char* centres : {"100", "500", "1000", "6850"}) {
@@ -155,7 +155,7 @@ void print_goals(const BenchRows& rows) {
   std::printf("\nReference pace: times x %.3f, so that the scalar loop takes 17.43 us at 6,850 centres.\n", pace);
 }
 
-// One line for each number that any of the columns has a row for.
+// One line for each number with a row in any of the columns.
 template <std::size_t count>
 void print_against(const BenchRows& rows, const std::string& title, const char* first, const Column (&columns)[count]) {
   std::set<long> numbers;
@@ -181,7 +181,7 @@ void print_against(const BenchRows& rows, const std::string& title, const char* 
   }
 }
 
-// "feature/NAME": what it adds to a tick with depth alone.
+// "feature/NAME": the time of a tick with that feature, less that with depth alone.
 void print_features(const BenchRows& rows) {
   const BenchRow* alone = find(rows, "feature/depth");
   if (alone == nullptr) return;
@@ -226,7 +226,7 @@ void print_peers(const BenchRows& rows) {
 
 constexpr const char* kMaterials[] = {"silicone", "foam", "gel", "stiff", "skin", "press"};
 
-// One line for each name behind "<group>/<material>/", as `cell` has it.
+// One line for each name after "<group>/<material>/", formatted by `cell`.
 template <typename Cell>
 void print_materials(const BenchRows& rows, const std::string& group, const std::string& title, const char* first,
                      const std::vector<std::string>& names, const Cell& cell) {

@@ -1,4 +1,4 @@
-// The tables of the README, in Markdown, from whatever rows were run.
+// The tables of tests/bench/README.md in Markdown, from the rows that were run.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ using BenchRows = std::map<std::string, BenchRow>;  // by name, e.g. "fit/random
 // Three digits and a unit: "78.1 ns".
 std::string duration(double seconds);
 
-// Prints a table for each group of rows that is there, to stdout.
+// Prints a table to stdout for each group with at least one row.
 void print_tables(const BenchRows& rows);
 
 }  // namespace palpate::bench

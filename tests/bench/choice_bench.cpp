@@ -1,8 +1,8 @@
-// What each choice of the fit is worth: greedy-100 with one thing changed at a time,
-// on six materials, judged twice. `cross_validated`: on thirds of the training
-// recordings that were left out in turn, which is all that a choice may look at; `within_JND`,
-// `rms_mN` and `worst_JND`: on a recording that nothing was trained on. And how many
-// centres it takes, from none: the trend alone.
+// The effect of each choice of the fit: greedy-100 with one change at a time, on six
+// materials. `cross_validated` is the error of cross-validation on the training
+// recordings, on which a choice may be based. `within_JND`, `rms_mN` and `worst_JND`
+// are measured on a test recording. Also the error over the number of centres, from 0
+// (the trend alone).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -52,9 +52,9 @@ const Material& material(const std::string& name) {
   return made.emplace(name, make_material(name)).first->second;
 }
 
-// Several recordings: each is left out once. One: cut into a dozen pieces where the tool
-// is in the air, dealt to three folds in turn, so that each has a share of every kind of
-// motion. Empty where the tool is never in the air between: there is nothing to leave out.
+// The folds of cross-validation. Of several recordings each is a fold. One recording is cut
+// into a dozen pieces in free air, which are assigned to three folds in turn, so that each
+// fold has every kind of motion. Empty if the tool is never in the air in between.
 using Fold = std::vector<RecordingPtr>;
 std::vector<Fold> folds_of(const std::vector<RecordingPtr>& recordings) {
   constexpr std::size_t kPieces = 12;
@@ -85,8 +85,8 @@ std::vector<Fold> folds_of(const std::vector<RecordingPtr>& recordings) {
 
 struct Figures {
   double samples = 0.0;
-  double squares = 0.0;  // of the error, N^2
-  double within = 0.0;   // samples
+  double squares = 0.0;  // sum of squared errors, N^2
+  double within = 0.0;   // samples within the JND
   double worst_over_jnd = 0.0;
 
   void add(const ErrorSummary& summary) {
@@ -182,7 +182,7 @@ const int registered = [] {
   if (std::filesystem::exists(test::real_data())) materials.insert(materials.end(), {"skin", "press"});
   for (const std::string& name : materials) {
     for (const Choice& choice : choices()) {
-      // The stiff block has no filters to choose for.
+      // The stiff block has no filter features.
       if (name == "stiff" && (choice.name.starts_with("filters") || choice.name.starts_with("relaxation"))) continue;
       add("choice", name, choice);
     }

@@ -1,4 +1,4 @@
-// Evaluation, one query at a time, each waiting for the last as ticks do.
+// Evaluation, one query at a time, each depending on the previous result, as in ticks.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -48,7 +48,7 @@ void rbf_of_kernel(benchmark::State& state, KernelKind kernel) {
   run_queries(state, recorded_sites().points, [&](const double* x) { return evaluator.evaluate(x); });
 }
 
-// Weights and queries in the denormal range must cost nothing extra.
+// Weights and queries in the denormal range must not take more time.
 void rbf_denormal(benchmark::State& state) {
   RbfFunction function = recorded_function(100);
   function.weights *= 1e-310;

@@ -1,6 +1,6 @@
-// feature/NAME: what one tick of the feature filter takes with depth alone, and with one
-// feature more of each kind; parts of spectra and stops cost by their number. Each tick
-// waits for the last. The table takes the difference.
+// feature/NAME: the time of one tick of the feature filter with depth alone, and with one
+// additional feature of each kind, with several numbers of parts for spectra and stops.
+// Each tick depends on the previous one. The table has the difference.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -28,7 +28,7 @@ FeatureSpec with_parts(FeatureKind kind, std::size_t count) {
   return spec;
 }
 
-// In the material half of the time, in steps of exactly a millisecond and not quite so.
+// In contact half of the time, with steps of exactly and of nearly a millisecond.
 void run(benchmark::State& state, const std::vector<FeatureSpec>& specs) {
   const Recording recording = test::example_recording(4096, 1000.0, 30e-6);
   FeatureFilter filter(specs);

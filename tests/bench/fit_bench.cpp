@@ -37,8 +37,8 @@ Fit greedy_fit(int candidates, int centres = kCentres) {
   };
 }
 
-// Every number of centres from 1 to that of the slider, and one step of it. The whole
-// fit of the largest is the row to compare with.
+// Fits with every number of centres up to the maximum of the slider, and one step of the
+// slider. Compare them with the row of one fit with that maximum.
 constexpr int kMostCentres = 200;
 
 void slider_all(benchmark::State& state) {
@@ -73,8 +73,8 @@ Result<FittedRbf> direct_and_grid(const Sites& sites, const Eigen::VectorXd&) {
   return fitted;
 }
 
-// The time is that of the fit alone. Memory is read once, in a fit before: for that everything
-// is given back to the system, and a fit waits for its pages, one fault at a time.
+// Times the fit alone. Memory is measured in a separate fit before: that returns all free memory
+// to the system, so that page faults make this fit slower.
 class TimedFit {
  public:
   explicit TimedFit(Fit fit) : fit_(std::move(fit)) {}
@@ -122,7 +122,7 @@ void against_size(const std::string& name, const Fit& fit) {
         ->Unit(benchmark::kMillisecond);
 }
 
-// The paper's figures 2 and 8: what a dimension more costs.
+// The cost over the dimension, as in figures 2 and 8 of the paper.
 void against_dimension(const std::string& name, const Fit& fit) {
   for (int d = 1; d <= kMaxDimension; ++d)
     benchmark::RegisterBenchmark(("dimension/" + name + "/" + std::to_string(d)).c_str(),
@@ -137,8 +137,8 @@ void against_dimension(const std::string& name, const Fit& fit) {
         ->Unit(benchmark::kMillisecond);
 }
 
-// Ten nodes a side, as the paper has it, from all sites as centres. With seven
-// and eight dimensions that would be 1e7 and 1e8 nodes: left out.
+// Grids with ten nodes a side, as in the paper, with all sites as centres. Seven and
+// eight dimensions are left out: they would have 1e7 and 1e8 nodes.
 void grid_against_dimension() {
   for (int d = 1; d <= 6; ++d)
     benchmark::RegisterBenchmark(
@@ -168,7 +168,7 @@ void evaluate_rbf_in(benchmark::State& state) {
 void evaluate_grid_in(benchmark::State& state) {
   const auto d = static_cast<int>(state.range(0));
   const Sites sites = made_sites(d, kCentres);
-  // As many nodes a side as give a grid that fits the second-level cache less or more.
+  // Nodes a side for a grid of about the size of the second-level cache, or smaller.
   const int side[] = {1000, 100, 25, 11, 8, 6, 5, 4};
   VoxelGrid grid = even_grid(sites, std::vector<int>(static_cast<std::size_t>(d), side[d - 1]));
   (void)fill_grid(grid, [](const Eigen::MatrixXd& p, Eigen::VectorXd& out) { out = p.colwise().sum().transpose(); });

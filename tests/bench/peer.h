@@ -1,5 +1,5 @@
-// What palpate-bench sets beside each other: Palpate's methods and, where they
-// are installed, libraries that fit a function to scattered points.
+// The methods that palpate-bench compares: Palpate's and, where installed,
+// libraries that fit a function to scattered points.
 #pragma once
 
 #include <functional>
@@ -14,24 +14,24 @@ namespace palpate::bench {
 using Function = std::function<double(const double* x)>;
 
 struct PeerSetting {
-  std::string text;  // for the reader
-  // The function fitted to prepared.sites. Errors: what the library says.
+  std::string text;  // description for the table
+  // Returns the function fitted to prepared.sites, or the error of the library.
   std::function<Result<Function>(const PreparedTraining& prepared)> fit;
 };
 
-// With several settings the one is taken that does best on strokes left out of
-// the training.
+// Of several settings the one with the smallest cross-validation error (by strokes) is
+// used.
 struct Peer {
   std::string name;
   std::vector<PeerSetting> settings;
-  // Fitted to so many of the sites, evenly spread; 0: to all.
+  // The maximum number of sites, evenly spread; 0: all.
   Eigen::Index most_sites = 0;
 };
 
 std::vector<Peer> palpate_peers();
-// No function at all: 0 N and, with the trend, the trend alone.
+// No function: 0 N, or the trend alone.
 Peer nothing_peer();
-// Defined where CMake found the library.
+// Defined if CMake found the library.
 std::vector<Peer> alglib_peers();
 std::vector<Peer> dlib_peers();
 std::vector<Peer> dlib_forest_peers();

@@ -12,7 +12,7 @@
 namespace palpate::bench {
 namespace {
 
-// With 6,830 sites in 4-D a fit was not done after 200 s.
+// A fit with 6,830 sites in 4-D did not finish within 200 s.
 constexpr Eigen::Index kMostDdmSites = 1000;
 
 struct AlglibModel {
@@ -74,9 +74,9 @@ std::vector<Peer> alglib_peers() {
                 [lambda](alglib::rbfmodel& model) { alglib::rbfsetalgothinplatespline(model, lambda); }));
   }
   Peer hierarchical{"alglib_hierarchical", {}};
-  // The manual asks for a radius several times the distance between points. Of
-  // 0.06, 0.12, 0.25 and 0.5, at which a fit takes a minute, the last had the
-  // least error on the test recording of silicone.
+  // The manual recommends a radius of several point distances. Of 0.06, 0.12, 0.25
+  // and 0.5 (where a fit takes a minute), the last had the smallest error on the
+  // test recording of silicone.
   hierarchical.settings.push_back(setting("base radius 0.5, 5 layers, no smoothing", [](alglib::rbfmodel& model) {
     alglib::rbfsetalgohierarchical(model, 0.5, 5, 0.0);
   }));

@@ -1,6 +1,6 @@
-// peer/DATA/NAME/fit and /query: Palpate's methods beside other libraries, fitted
-// to the same sites and tested on the same recordings. Fits are timed once for both
-// rows, so their loops only hand the time on.
+// peer/DATA/NAME/fit and /query: Palpate's methods and other libraries, fitted to
+// the same sites and tested on the same recordings. A fit is timed once for both
+// rows; their loops only report that time.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -19,19 +19,19 @@ namespace palpate::bench {
 namespace {
 
 constexpr int kFitRepetitions = 3;
-constexpr double kFitSeconds = 5.0;  // no further fit after so much time
+constexpr double kFitSeconds = 5.0;  // no more repetitions after this time
 constexpr int kQueryRepetitions = 7;
 constexpr double kQuerySeconds = 0.05;
 
 struct Fitted {
-  std::string setting;  // for the forces, as all but the last
+  std::string setting;  // for the forces, like all members except the last
   double fit_s = 0.0;   // median
   Function function;
   PeerError forces;
   PeerError remainder;
 };
 
-// Fits up to kFitRepetitions times, and takes the time.
+// Fits up to kFitRepetitions times and returns the median time.
 Result<Function> timed_fit(const PeerSetting& setting, const PreparedTraining& training, double& median_s) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> times_s;
@@ -65,7 +65,7 @@ Result<Fitted> fit_both(const Peer& peer, const PeerData& data) {
   return fitted;
 }
 
-// Once for each peer and data, whichever row comes first.
+// Fits once for each peer and data; both rows use the result.
 const Result<Fitted>& fitted_peer(const Peer& peer, const PeerData& data) {
   static std::map<std::string, Result<Fitted>> done;
   const std::string key = data.name + "/" + peer.name;
@@ -114,7 +114,7 @@ void register_peer(const std::string& data, const Peer& peer) {
 }
 
 #ifdef PALPATE_PYTHON
-// The script took the times.
+// The times are those measured by the script.
 void scipy_row(benchmark::State& state, const std::string& data_name, const std::string& peer_name, bool query) {
   const PeerData& data = peer_data(data_name);
   const auto& peers = scipy_peers(data);

@@ -16,16 +16,16 @@ namespace {
 using test::must;
 using test::RecordingPtr;
 
-constexpr int kLeaveOut = 5;  // every so-manieth stroke
+constexpr int kLeaveOut = 5;  // every fifth stroke is left out
 
 PreparedTraining with_targets(const PreparedTraining& prepared, bool forces) {
   PreparedTraining other = prepared;
   if (forces) {
-    other.sites.strength = 1.0;  // was chosen for what the trend leaves
+    other.sites.strength = 1.0;  // the strength was chosen for the residuals of the trend
     for (std::size_t i = 0; i < other.set.sites.size(); ++i)
       other.sites.target_N[static_cast<Eigen::Index>(i)] = other.set.sites[i].force_N;
   }
-  // The share within the JND on the training data is not wanted and takes time.
+  // Skips the share within the JND on the training data, which takes time.
   other.evaluation_features.resize(1);
   other.evaluation_force_N.resize(1);
   return other;
@@ -37,7 +37,7 @@ PeerData make_data(const std::string& name, const PreparedTraining& prepared,
   const ModelData& common = prepared.common;
   const auto d = static_cast<Eigen::Index>(common.features.size());
   const DomainGuard guard(common.cover);
-  const test::ModelPtr model = test::fit(prepared, &kRandomMethod);  // only to see its features
+  const test::ModelPtr model = test::fit(prepared, &kRandomMethod);  // needed only for its features
   std::vector<double> points, force_N, trend_N, trust;
   for (const RecordingPtr& recording : test_recordings) {
     must(replay(*recording, {model},
@@ -60,7 +60,7 @@ PeerData make_data(const std::string& name, const PreparedTraining& prepared,
   return data;
 }
 
-// Of physics of their own; the features are what the recording decides on.
+// Materials outside the model's class, with automatically selected features.
 constexpr const char* kMaterials[] = {"friction", "softening", "tissue", "layered"};
 
 PeerData make_data(const std::string& name) {
@@ -165,7 +165,7 @@ std::vector<bool> left_out_sites(const PreparedTraining& prepared) {
   std::vector<bool> left_out;
   for (const int stroke : stroke_of) {
     const auto rank = static_cast<int>(std::distance(strokes.begin(), strokes.find(stroke)));
-    // The middle one of each five: of three presses not the hardest.
+    // The middle one of each five, so that the hardest of three presses is not left out.
     left_out.push_back(rank % every == every / 2);
   }
   return left_out;

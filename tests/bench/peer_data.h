@@ -1,5 +1,5 @@
-// The recordings that all peers train on and are tested on, and what their
-// forces are worth there.
+// The recordings for training and testing all peers, and the errors of their
+// forces.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +15,11 @@ namespace palpate::bench {
 
 struct PeerData {
   std::string name;
-  // Two fits see the same normalised features: `forces` asks for the measured
-  // forces themselves, `remainder` for what Palpate's trend leaves of them.
+  // Two fits to the same normalised features: `forces` has the measured forces as
+  // targets, `remainder` the residuals of Palpate's trend.
   PreparedTraining forces;
   PreparedTraining remainder;
-  // In contact, in the recordings not trained on.
+  // The samples in contact of the test recordings.
   Eigen::MatrixXd test_points;  // normalised
   Eigen::VectorXd test_force_N;
   Eigen::VectorXd test_trend_N;
@@ -31,25 +31,25 @@ struct PeerError {
   double within_jnd = 0.0;  // share
 };
 
-// Virtual materials, always there; "skin" and "press" where the real recordings are.
-// Made once each.
+// Virtual materials, and "skin" and "press" if the real recordings are present.
+// Each is made once.
 std::vector<std::string> peer_data_names();
 const PeerData& peer_data(const std::string& name);
 
-// `output_N`: what the function says at each test point. The force is that,
-// bounded to what every model of Palpate is bounded to.
+// `output_N`: the function at each test point. The force is that, with the limits
+// of every model of Palpate.
 PeerError error_of_forces(const PeerData& data, const Eigen::VectorXd& output_N);
-// The force is the trend and, as far as data are near, the output (fitted_model.h).
+// The force is the trend plus trust times the output (fitted_model.h).
 PeerError error_of_remainder(const PeerData& data, const Eigen::VectorXd& output_N);
 
 Eigen::VectorXd output_N(const Function& function, const Eigen::MatrixXd& points);
 
-// The setting of `peer` with the least RMS error on every fifth stroke when
-// fitted to the others. Without a choice nothing is fitted.
+// The setting of `peer` with the least RMS error on every fifth stroke when fitted
+// to the others. If there is only one setting, nothing is fitted.
 std::size_t best_setting(const Peer& peer, const PreparedTraining& prepared);
 
-// `count` of the sites, evenly spread, for a library that cannot take all; 0 or
-// more than there are: all. (Of `set.sites` all are kept.)
+// `count` of the sites, evenly spread, for a library that cannot use all. 0, or more
+// than the number of sites: all.
 PreparedTraining with_some_sites(const PreparedTraining& prepared, Eigen::Index count);
 
 // Whether each site belongs to a stroke that best_setting leaves out.

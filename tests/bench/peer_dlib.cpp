@@ -1,6 +1,6 @@
-// dlib's kernel ridge regression with a Gaussian kernel. It picks its basis, a
-// linearly independent subset of the samples, and by leaving out one sample its
-// ridge; the kernel's width is chosen here.
+// dlib's kernel ridge regression with a Gaussian kernel. dlib selects its basis, a
+// linearly independent subset of the samples, and its ridge by leave-one-out
+// cross-validation. The kernel width is chosen here.
 #include <dlib/svm/krr_trainer.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What both of dlib's peers are trained on.
+// Training data and functions of both dlib peers.
 #pragma once
 
 #include <dlib/matrix.h>
@@ -24,7 +24,7 @@ inline std::vector<DlibSample> dlib_samples(const Sites& sites) {
   return samples;
 }
 
-// What dlib trained, as a function of a feature vector.
+// The trained object as a function of a feature vector.
 template <typename Trained>
 Function dlib_function(Trained trained, long dimension) {
   return [trained = std::move(trained), query = DlibSample(dimension)](const double* x) mutable {

@@ -1,6 +1,6 @@
-// dlib's random forest: averages of regression trees, each grown on a resample of the
-// sites. What the literature since 2009 fits to such recordings (Cha, Bhardwaj, Park & Choi,
-// AsiaHaptics 2018).
+// dlib's random forest: the mean of regression trees, each grown on a bootstrap sample of
+// the sites. Forests were fitted to such recordings by Cha, Bhardwaj, Park & Choi
+// (AsiaHaptics 2018).
 #include <dlib/random_forest.h>
 
 #include <cstdio>

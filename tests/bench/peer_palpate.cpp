@@ -1,5 +1,5 @@
-// Palpate's own methods as peers of the others: the function alone, without
-// trend, trust and clamp.
+// Palpate's methods as peers: the correction function alone, without trend, trust
+// and limits.
 #include <memory>
 #include <string>
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kRepetitions = "3";
 
-// A folder of its own, gone when this goes.
+// A folder that is removed by the destructor.
 struct TemporaryFolder {
   std::filesystem::path path;
   TemporaryFolder() {

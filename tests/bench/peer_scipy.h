@@ -19,8 +19,8 @@ struct ScipyPeer {
 
 inline constexpr const char* kScipyPeers[] = {"scipy_all_sites", "scipy_50_neighbours"};
 
-// By name; the script runs once for each data. Errors: it failed, or what it
-// wrote cannot be read.
+// Peers by name. The script runs once for each data. Errors: the script failed, or
+// its output cannot be read.
 const Result<std::map<std::string, ScipyPeer>>& scipy_peers(const PeerData& data);
 
 }  // namespace palpate::bench

@@ -1,5 +1,5 @@
-// What a user waits for, and what a tick takes: the whole program from the command line
-// to the model file, and the whole of a replayed tick.
+// The time of a whole `palpate fit`, from the command line to the model file, and of a
+// whole replayed tick.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kRepetitions = 7;
 
-// `palpate`, which is built beside this program.
+// Runs `palpate` from the folder of this program.
 bool run(const std::string& arguments) {
   const auto program = std::filesystem::canonical("/proc/self/exe").parent_path() / "palpate";
   return std::system((program.string() + " " + arguments + " >/dev/null 2>&1").c_str()) == 0;

@@ -1,5 +1,5 @@
-// The yardstick of palpate-bench: eq. 2 as a plain loop over 4-D centres with
-// the cubic kernel, scalar, compiled with -O2. Ratios to it compare machines.
+// The reference of palpate-bench: eq. 2 as a plain scalar loop over 4-D centres with
+// the cubic kernel, compiled with -O2. Ratios to it are comparable between machines.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// A device whose clock is wrong against the host, in simulated time: by rate, drift and what happens to the line.
+// A bridge device whose clock differs from the host's, in simulated time, for several sample rates, drifts and events.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -21,7 +21,7 @@ struct Event {
   const char* name;
   void (*begin)(SimulatedDevice&);
   double lasts_s;
-  bool ends;  // as before afterwards
+  bool ends;  // the line is as before afterwards
 };
 
 void later_by_15_ms(SimulatedDevice& simulated) {
@@ -51,8 +51,8 @@ constexpr Event kEvents[] = {
     {"silent for 10 s", silence, 10.0, true},
 };
 
-// From the event to its end the device may get no force, and for so long afterwards: 100 ms until the old stream is
-// given up, 50 ms until the new clock is known, 100 ms that a fault lasts.
+// During the event, and for this time after it, the force may be zero: 100 ms until the old stream is abandoned, 50 ms
+// until the new clock is identified, and 100 ms that a fault lasts.
 constexpr double kRecovery_s = 0.3;
 constexpr double kWatched_s = 2.5;
 

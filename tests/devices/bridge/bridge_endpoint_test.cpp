@@ -1,5 +1,5 @@
-// A device of the bridge against the host, in simulated time: every fault takes the force
-// away, and it comes back by itself with a ramp when the fault is over.
+// A bridge device and the host, in simulated time: every fault sets the force to zero, and
+// the force returns with a ramp when the fault ends.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,14 +17,14 @@ namespace {
 using test::Report;
 using test::SimulatedDevice;
 
-// Of a tick of tremor.
+// The change of force by the tremor in one tick.
 constexpr double kResolution_N = 0.1;
 
 struct Injection {
   const char* name;
   void (*inject)(SimulatedDevice&);
   std::uint32_t fault;
-  double within_s;  // force to zero
+  double within_s;  // time limit for the force to be zero
 };
 
 template <typename Change>
@@ -133,7 +133,7 @@ TEST(BridgeEndpoint, PushesWithoutZeroingAndMeasuresForce) {
   EXPECT_NEAR(simulated.snapshot.device.interval_s, 1e-3, 1e-4);
 }
 
-// Ticks, which are milliseconds, until the force is 0, or above it again; `most` where that does not happen.
+// The number of ticks (ms) until the force is above 0 (`pushes`) or 0. `most` if that does not happen.
 int ticks_until(SimulatedDevice& simulated, bool pushes, int most, std::uint32_t& faults) {
   for (int ticks = 1; ticks < most; ++ticks) {
     simulated.tick();
@@ -143,7 +143,7 @@ int ticks_until(SimulatedDevice& simulated, bool pushes, int most, std::uint32_t
   return most;
 }
 
-// With the calibration that is shipped. The table of devices/README.md is what this test prints.
+// Uses the shipped calibration. devices/README.md contains the table that this test prints.
 TEST(BridgeEndpoint, EveryFaultTakesTheForceAwayItComesBackByItselfAndThePageSaysWhen) {
   const std::string source = PALPATE_SOURCE_DIR;
   const auto calibration = read_calibration(source + "/assets/devices", kBridgeProtocol);
@@ -197,7 +197,7 @@ TEST(BridgeEndpoint, RunsFromOneHundredToTenThousandSamplesASecond) {
   }
 }
 
-// Anything from 10 kHz to 200 Hz from one sample to the next, half a second together.
+// Random sample periods from 10 kHz to 200 Hz, for half a second.
 TEST(BridgeEndpoint, IrregularSamplesAreAllHandedOverAndNoFault) {
   SimulatedDevice simulated(&kBridgeProtocol);
   simulated.step_us = 50;

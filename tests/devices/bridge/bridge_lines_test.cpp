@@ -1,6 +1,6 @@
-// Devices of the bridge over their lines, in real time: a child program, sockets, a
-// pseudo-terminal, and all that can go wrong with them. With PALPATE_FAULT_TABLE=1 every
-// fault runs over every line, and latencies beside a HID device's are printed.
+// Bridge devices over all kinds of lines, in real time: a child program, sockets, a
+// pseudo-terminal, and their faults. With PALPATE_FAULT_TABLE=1 every fault is tested on
+// every line, and latencies are printed with those of a HID device.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ bool everything() { return std::getenv("PALPATE_FAULT_TABLE") != nullptr; }
 
 struct Fault {
   const char* mode;      // of peer.py
-  std::uint32_t faults;  // any of them
+  std::uint32_t faults;  // at least one of these must occur
 };
 
 std::vector<Fault> faults() {
@@ -45,7 +45,7 @@ std::vector<Fault> faults() {
           {"deaf", kWriteStalled}};
 }
 
-// The end of a line that is no child program, and where it is.
+// The device's end of a line and the target to open. For `exec` open_bridge starts the peer.
 class Line {
  public:
   Line(const std::string& kind, const test::TemporaryFolder& folder, const std::string& mode) {
@@ -64,7 +64,7 @@ class Line {
   }
   Result<std::unique_ptr<Device>> open() const {
     Result<std::unique_ptr<Device>> device = open_bridge(target_);
-    // A socket is there a moment before it listens.
+    // A socket's file exists shortly before the socket listens.
     test::wait_for([&] { return device.ok() || (device = open_bridge(target_)).ok(); }, 5);
     return device;
   }
@@ -85,8 +85,8 @@ double logged_s(const std::string& path, const std::string& word) {
 
 struct Outcome {
   bool pushed = false;
-  double to_zero_ms = -1.0;        // of what the loop renders
-  double to_zero_there_ms = -1.0;  // of what the device hears
+  double to_zero_ms = -1.0;        // until the loop renders 0
+  double to_zero_there_ms = -1.0;  // until the device receives 0
   std::uint32_t faults = 0;
 };
 
@@ -122,7 +122,7 @@ Outcome run(const std::string& kind, const char* mode) {
 void expect_faults_stop_the_force(const std::string& kind, const std::vector<Fault>& list) {
   for (const Fault& fault : list) {
     Outcome outcome = run(kind, fault.mode);
-    // A busy machine may have let go a moment before.
+    // On a busy machine another fault may have set the force to zero before the event.
     for (int more = 0; more < 3 && !outcome.pushed; ++more) outcome = run(kind, fault.mode);
     std::printf("%-5s %-10s  rendered 0 after %6.1f ms", kind.c_str(), fault.mode, outcome.to_zero_ms);
     if (outcome.to_zero_there_ms >= 0.0) std::printf(", heard after %6.1f ms", outcome.to_zero_there_ms);
@@ -254,7 +254,7 @@ void print_latencies(const char* name, SpringSession& session) {
 }
 
 TEST(BridgeLines, LatenciesBesideAHidDevice) {
-  if (!everything()) return;  // a measurement, which asserts nothing: PALPATE_FAULT_TABLE=1 runs it
+  if (!everything()) return;  // a measurement without assertions
   test::FakeDeviceBus bus;
   auto opened = open_first(bus, {&kOpenFfBoardProtocol});
   ASSERT_TRUE(opened.ok());

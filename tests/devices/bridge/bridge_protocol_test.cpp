@@ -1,4 +1,4 @@
-// The frames of the bridge, byte for byte, and what finds them in a stream.
+// The frames of the bridge, byte for byte, and the finder of frames in a stream.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -22,7 +22,7 @@ Bytes from_hex(const std::string& hex) {
   return bytes;
 }
 
-// Made by Python's struct and zlib from the page's table.
+// Made with Python's struct and zlib from the table of devices/README.md.
 const Bytes kFromDevice = from_hex("5042014904030201feffffff60dad9ff87d612001100efbe22e2ae74");
 const Bytes kFromHost = from_hex("5042014f0100feca4039d2ff34120100cbe4a001");
 
@@ -32,7 +32,7 @@ Bytes frame_of(std::uint32_t sequence) {
   return frame;
 }
 
-// The sequences of all frames that are found.
+// The sequence numbers of all frames found.
 std::vector<std::uint32_t> found_in(const Bytes& bytes, Finder* used = nullptr) {
   Finder finder;
   std::vector<std::uint32_t> found;
@@ -49,7 +49,7 @@ Bytes joined(std::initializer_list<Bytes> parts) {
   return all;
 }
 
-// As a connection reads them: corrupt where nothing is found.
+// The verdict of a connection about `bytes`; corrupt if there is no frame.
 ReportVerdict verdict_of(const Bytes& bytes, DeviceReading* reading = nullptr) {
   DeviceReading none;
   BridgeReports reports;
@@ -110,7 +110,7 @@ TEST(BridgeProtocol, RefusesEveryFrameWithOneBitWrong) {
 
 TEST(BridgeProtocol, RefusesWhatNoDeviceCanMean) {
   Bytes frame(bridge::kDeviceBytes);
-  for (const bridge::FromDevice& in : {bridge::FromDevice{1, 1, INT32_MIN, 0, 0, 0},      // as a NaN becomes
+  for (const bridge::FromDevice& in : {bridge::FromDevice{1, 1, INT32_MIN, 0, 0, 0},      // the integer of a NaN
                                        bridge::FromDevice{1, 1, 1'000'000'001, 0, 0, 0},  // beyond a metre
                                        bridge::FromDevice{1, 1, 0, 0, 32, 0}}) {          // an unknown bit
     bridge::encode(in, frame.data());

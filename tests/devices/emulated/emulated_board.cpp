@@ -40,7 +40,7 @@ constexpr char kDescription[] =
     "E: SUBSYSTEM=hidraw\n"
     "E: DEVNAME=/dev/hidraw0\n";
 
-// The subclass of UMockdevIoctlBase that passes everything on.
+// A subclass of UMockdevIoctlBase that forwards all calls to EmulatedBoard.
 struct NodeHandler {
   UMockdevIoctlBase parent;
   palpate::test::EmulatedBoard* board;

@@ -1,9 +1,9 @@
-// An OpenFFBoard as the system would show it: sysfs and a hidraw node made by
-// umockdev, which the real libhidapi enumerates, opens, reads and writes. Behind
-// the node is what is known of its firmware.
+// An emulated OpenFFBoard: sysfs entries and a hidraw node made by umockdev, which
+// the real libhidapi enumerates, opens, reads and writes. A model of its firmware
+// (tests/support/simulated_device.h) answers.
 //
-// What umockdev 0.17 cannot do: its node never polls readable, so that only a
-// blocking hid_read gets a report.
+// Limitation of umockdev 0.17: poll() never reports its node as readable, so that
+// only a blocking hid_read gets a report.
 #pragma once
 
 #include <linux/hidraw.h>
@@ -27,14 +27,14 @@ class EmulatedBoard {
   EmulatedBoard& operator=(const EmulatedBoard&) = delete;
   ~EmulatedBoard();
 
-  // Asked by the node; the thread of umockdev.
+  // Called by the node, on the thread of umockdev.
   bool ioctl(UMockdevIoctlClient* client);
   bool read(UMockdevIoctlClient* client);
   bool write(UMockdevIoctlClient* client);
 
   std::atomic<bool> gone{false};  // reads and writes fail
   std::atomic<double> motor_units{0.0};
-  std::atomic<int> told_units{0};  // by the last force that was written
+  std::atomic<int> told_units{0};  // the last force written
   std::atomic<int> reads{0};
   std::atomic<int> writes{0};
   std::atomic<std::size_t> last_write_size{0};

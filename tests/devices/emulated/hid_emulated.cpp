@@ -1,5 +1,5 @@
-// The real libhidapi on an emulated board: found, opened, read, written, lost.
-// A program of its own: it runs with the preload library of umockdev.
+// Tests the real libhidapi on an emulated board: find, open, read, write, unplug.
+// A separate program, because it runs with the preload library of umockdev.
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <sys/wait.h>
@@ -31,7 +31,7 @@ class HidEmulated : public ::testing::Test {
     if (preload == nullptr || std::strstr(preload, "umockdev") == nullptr) {
       GTEST_SKIP() << "not run under umockdev (LD_PRELOAD=libumockdev-preload.so.0)";
     }
-    // umockdev makes its nodes of them, and aborts without.
+    // umockdev needs pseudo-terminals for its nodes and aborts without them.
     int ends[2];
     if (openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0) {
       GTEST_SKIP() << "no pseudo-terminals here; mount /dev/pts";
@@ -107,8 +107,8 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
   EXPECT_GT(board.writes, 10);
 }
 
-// Another process that pushes until a signal ends it; a byte through `ready` says that
-// it does.
+// In a child process: renders a force until a signal ends it, and writes a byte to `ready`
+// when it starts.
 [[noreturn]] void push_until_ended(DeviceBus& bus, int ready) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
   const StopListener listener;

@@ -1,4 +1,4 @@
-// The reference firmware of a board of the bridge, on a simulated one.
+// The reference firmware of a bridge device, on a simulated board.
 #include "devices/firmware/bridge_firmware.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The reference firmware and the host, talking for ten minutes of simulated time.
+// The reference firmware and the host in ten minutes of simulated time.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,9 +15,9 @@ namespace {
 using test::Report;
 using test::SimulatedDevice;
 
-// Ten minutes, with losses, corruption and reports out of order on both ways,
-// stalls and restarts; whatever happens, the motor never gets a force that no
-// model could have asked for, nor a step, nor any force on old data.
+// Reports are lost and corrupted in both directions and reordered from the device; both
+// lines stall and the device restarts. The motor must never get a force outside the range
+// of the model, a force step, or a force computed from old data.
 TEST(BridgeFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
   SimulatedDevice simulated(&kBridgeProtocol);
   RandomStream random(1, 0);
@@ -66,7 +66,7 @@ TEST(BridgeFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
     ASSERT_LE(std::abs(snapshot.rendered_N - last_N), 0.45) << tick;
     last_N = snapshot.rendered_N;
     if (snapshot.device.sample_age_s <= 0.008) age_of_push_s = simulated.now_s;
-    // The host needs 20 ms at most; a device that hears nothing, 50 ms.
+    // The host sets the force to zero within 20 ms; a device without host within 50 ms more.
     ASSERT_TRUE(snapshot.rendered_N == 0.0 || simulated.now_s - age_of_push_s <= 0.0205) << tick;
     ASSERT_TRUE(motor_N == 0.0 || simulated.now_s - age_of_push_s <= 0.0755) << tick;
     if (motor_N > 0.5) pushed_s += 1e-3;

@@ -1,12 +1,12 @@
-// A Hapkit in simavr: the firmware of devices/firmware/hapkit on an emulated ATmega328P,
-// its serial port behind a pseudo-terminal, in real time. A simulated hand holds the handle
-// and presses a block (--material NAME; the load cell of the handle measures it) or feels
-// what the motor renders.
+// A Hapkit in simavr: the firmware of devices/firmware/hapkit on an emulated ATmega328P in
+// real time, with its serial port on a pseudo-terminal. A simulated hand moves the handle. It
+// presses a block, whose force the load cell measures (--material NAME), or only feels the
+// force of the motor.
 //
 //   palpate_hapkit_board FIRMWARE.elf [--material NAME] [--seed N]
 //
-// Prints the port, then a line each time that the motor's pins begin or cease to drive, with
-// the emulated time and how long ago the last byte came from the host. Ends with its input.
+// Prints the port, then a line each time the motor's pins start or stop driving, with the
+// emulated time and the time since the last byte from the host. Exits at the end of its input.
 #include <fcntl.h>
 #include <poll.h>
 #include <pty.h>
@@ -47,7 +47,7 @@ constexpr double kSensorRange = 980.0;
 constexpr double kForceZero = 102.0, kNewtonsPerCount = 0.01;
 constexpr double kStall_N = 0.000107 * 255.0 * 255.0;
 constexpr double kNoise = 0.5;         // counts
-constexpr double kAtSurface_s = 0.15;  // the tool rests there while the board starts
+constexpr double kAtSurface_s = 0.15;  // the tool rests at the surface while the board starts
 // Registers of the ATmega328P.
 constexpr int kPortB = 0x25, kTccr0a = 0x44, kOcr0b = 0x48;
 
@@ -93,7 +93,7 @@ void start_board(Bench& bench, const char* elf) {
   avr_irq_register_notify(avr_io_getirq(bench.avr, AVR_IOCTL_IOPORT_GETIRQ('D'), 5), on_pwm_pin, &bench);
 }
 
-// The other end of the port, without echo, whoever opens it.
+// Opens the pseudo-terminal of the port, without echo, and prints its name.
 void open_port(Bench& bench) {
   int line = -1;
   char name[128];
@@ -101,7 +101,7 @@ void open_port(Bench& bench) {
   cfmakeraw(&raw);
   if (openpty(&bench.pty, &line, name, &raw, nullptr) != 0) fail("no pseudo-terminal");
   fcntl(bench.pty, F_SETFL, O_NONBLOCK);
-  // `line` stays open, so that the port is there when the host goes.
+  // `line` stays open, so that the port stays when the host closes it.
   std::printf("%s\n", name);
   std::fflush(stdout);
 }
@@ -117,7 +117,7 @@ void exchange_bytes(Bench& bench) {
   const ssize_t came = read(bench.pty, bytes, sizeof bytes);
   for (ssize_t i = 0; i < came; ++i) bench.to_board.push_back(bytes[i]);
   if (bench.from_board.empty()) return;
-  // What the host does not read is lost, as on a wire.
+  // Bytes that the host does not read are lost, as on a wire.
   [[maybe_unused]] const ssize_t written = write(bench.pty, bench.from_board.data(), bench.from_board.size());
   bench.from_board.clear();
 }
@@ -144,7 +144,7 @@ double motor_N(const Bench& bench) {
   return ((data[kPortB] & 1) != 0 ? kStall_N : -kStall_N) * duty * duty;
 }
 
-// Pins that drove within the last PWM periods.
+// Whether the pins drove the motor within the last PWM periods.
 bool drives(const Bench& bench) {
   return motor_N(bench) != 0.0 || (bench.last_high_cycle != 0 && bench.avr->cycle - bench.last_high_cycle < 1024);
 }
@@ -175,13 +175,13 @@ int main(int argc, char** argv) {
   Bench bench;
   start_board(bench, argv[1]);
   open_port(bench);
-  // D4 on ground says that the load cell is there.
+  // D4 on ground: the load cell is present.
   avr_ioport_external_t cell{};
   cell.name = 'D';
   cell.mask = 1 << 4;
   cell.value = block != nullptr ? 0 : 1 << 4;
   avr_ioctl(bench.avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &cell);
-  // A board does not wait for other programs.
+  // Real-time priority, because a board does not wait for other programs.
   palpate::make_this_thread_realtime({10, false});
   palpate::SteadyPacer pacer;
   std::int64_t start_ns = pacer.now_ns();
@@ -216,12 +216,12 @@ int main(int argc, char** argv) {
     }
     const std::int64_t due_ns = start_ns + static_cast<std::int64_t>(1e9 * now_s);
     if (const std::int64_t late_ns = pacer.now_ns() - due_ns; late_ns > 50'000'000) {
-      // A machine that was held up: the hand, too, stood still. The test that fits a recording takes another one.
+      // The machine stalled, and the simulated hand with it. hapkit_test.cpp then repeats its recording.
       if (block != nullptr) {
         std::printf("held up %.0f ms\n", 1e-6 * static_cast<double>(late_ns));
         std::fflush(stdout);
       }
-      if (late_ns > 200'000'000) start_ns += late_ns;  // too slow: not made up for
+      if (late_ns > 200'000'000) start_ns += late_ns;  // a long delay is not caught up
     }
     pacer.wait_until(due_ns);
     pollfd input{STDIN_FILENO, POLLIN, 0};

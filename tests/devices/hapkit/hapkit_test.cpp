@@ -1,5 +1,5 @@
-// The Hapkit's firmware as it is flashed, on an ATmega328P in simavr behind a
-// pseudo-terminal (hapkit_board.cpp): recorded through, rendered through, left alone.
+// The Hapkit's firmware as flashed, on an ATmega328P in simavr behind a pseudo-terminal
+// (hapkit_board.cpp): recording, rendering, and the stop after the host was killed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ TEST(Hapkit, IsEmulated) {
 using test::ChildProcess;
 using test::run_palpate;
 
-// The board as a process; what it says.
+// The board as a process, with its output.
 class Board {
  public:
   explicit Board(const std::string& arguments)
@@ -87,7 +87,7 @@ TEST(Hapkit, RecordsASimulatedMaterial) {
   EXPECT_GT(largest_N, 0.5);
 }
 
-// The motor's pins while `model` is rendered, and after the host was killed in a press.
+// Renders `model`, kills the host during a press, and checks that the motor's pins stop.
 void expect_stop_after_kill(const std::shared_ptr<const ForceModel>& model) {
   const Board board("");
   ChildProcess host([&] {
@@ -96,7 +96,7 @@ void expect_stop_after_kill(const std::shared_ptr<const ForceModel>& model) {
     test::SpringSession session(std::move(*device), model);
     test::wait_for([] { return false; }, 300);
   });
-  // In the middle of a press: what drives for so long already.
+  // During a press: the pins have been driving for 200 ms.
   ASSERT_TRUE(test::wait_for(
       [&] {
         const bool driving = board.last_line().rfind("drives", 0) == 0;
@@ -117,8 +117,8 @@ void expect_stop_after_kill(const std::shared_ptr<const ForceModel>& model) {
 
 TEST(Hapkit, StopsWithin60MsWhenTheHostIsKilled) { expect_stop_after_kill(test::spring(1000.0)); }
 
-// 12 s of silicone. Again, at most five times, if this machine held up the board or the recorder for 50 ms: neither is
-// what a Hapkit on a desk does, and a press with pieces missing is no test of a fit.
+// Records 12 s of silicone. Tries up to five times, because a machine that stalls the board or the recorder for 50 ms
+// leaves gaps in the recording that a real Hapkit does not have.
 bool record_without_gaps(const std::string& seed, const std::string& path) {
   for (int trial = 0; trial < 5; ++trial) {
     const Board board("--material silicone --seed " + seed);
@@ -140,8 +140,8 @@ bool record_without_gaps(const std::string& seed, const std::string& path) {
   return false;
 }
 
-// From a box to a felt model: another hand's press is within the JND, and the model is
-// rendered until the host is killed.
+// The whole way from a recording to rendering: the press of another simulated hand is within
+// the JND, and the model is rendered until the host is killed.
 TEST(Hapkit, WhatWasRecordedThroughItIsFittedReplayedAndRendered) {
   const test::TemporaryFolder folder;
   for (const std::string seed : {"1", "2"}) {

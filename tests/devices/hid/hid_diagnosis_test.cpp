@@ -1,4 +1,4 @@
-// Which device is what, and why one cannot be used.
+// Recognising devices, and the reason why one cannot be used.
 #include "devices/hid/hid_protocols.h"
 #include "devices/link/device_bus.h"
 

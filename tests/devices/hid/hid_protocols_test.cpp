@@ -1,4 +1,4 @@
-// Every report, there and back; what is not one is refused.
+// Encoding and decoding of every report; other bytes are refused.
 #include "devices/hid/hid_protocols.h"
 #include "devices/bridge/bridge_bus.h"
 

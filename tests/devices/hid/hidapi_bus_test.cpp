@@ -1,4 +1,4 @@
-// The real bus, as far as it goes without a device; devices/emulated has one.
+// The real bus without a device. tests/devices/emulated has an emulated one.
 #include "devices/hid/hidapi_bus.h"
 
 #include <gtest/gtest.h>

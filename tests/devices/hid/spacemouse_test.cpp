@@ -27,7 +27,7 @@ void report(SpaceMouseAxis& axis, int counts, double now_s) {
   axis.report_arrived(bytes, sizeof bytes, now_s);
 }
 
-// A steady push, reported every 16 ms: at 1 kHz the tool has no steps.
+// A constant push, reported every 16 ms: the tool still moves at every tick of 1 ms.
 TEST(SpaceMouse, MovesAtEveryTickBetweenReports) {
   SpaceMouseAxis axis(calibration());
   axis.connected(0.0);

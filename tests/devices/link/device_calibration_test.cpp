@@ -1,4 +1,4 @@
-// Calibration files, good and broken.
+// Valid and broken calibration files.
 #include "devices/link/device_calibration.h"
 #include "devices/hid/hid_protocols.h"
 

@@ -1,4 +1,4 @@
-// The device's time on the host's clock.
+// Conversion of the device's time to the host's clock.
 #include "devices/link/device_clock.h"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 namespace palpate {
 namespace {
 
-// Reports every 1 ms of a device whose clock is 100 ppm fast and wraps, with up to
-// 0.4 ms of jitter: the steps between samples are even all the same.
+// Reports every 1 ms with up to 0.4 ms of jitter, from a device whose clock is 100 ppm
+// fast and wraps: the time steps between samples are still even.
 TEST(DeviceClock, TakesTheJitterAway) {
   DeviceClock clock;
   RandomStream random(1, 0);

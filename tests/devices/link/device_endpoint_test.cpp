@@ -1,5 +1,5 @@
-// Host and device against each other, in simulated time: every fault takes the
-// force away, and what it takes to come back.
+// Host and device in simulated time: every fault sets the force to zero, and the
+// condition for its return.
 #include "devices/link/device_endpoint.h"
 #include "devices/hid/hid_protocols.h"
 
@@ -18,7 +18,7 @@ namespace {
 using test::Report;
 using test::SimulatedDevice;
 
-// Of an encoder step and a tick of tremor.
+// The change of force by an encoder step and a tick of tremor.
 constexpr double kResolution_N = 0.1;
 constexpr const DeviceProtocol* kProtocol = &kOpenFfBoardProtocol;
 constexpr const DeviceProtocol* kPushing[] = {&kOpenFfBoardProtocol, &kBridgeProtocol};
@@ -79,12 +79,12 @@ TEST(DeviceEndpoint, DirectionTurnsPositionAndForce) {
   EXPECT_EQ(wire::read32(out.bytes[1].data() + 9), 6667u);
 }
 
-// A way to hurt the stream, and how it is found.
+// A disturbance of the stream, and the fault that detects it.
 struct Injection {
   const char* name;
   void (*inject)(SimulatedDevice&);
   std::uint32_t fault;
-  double found_after_s;  // no fault before that, by its nature
+  double found_after_s;  // the earliest time of detection
 };
 
 void hold_back(SimulatedDevice& simulated, bool newest_first_again) {
@@ -168,7 +168,7 @@ const std::vector<Injection>& injections() {
 }
 
 struct Outcome {
-  double to_zero_s = -1.0;  // of the force that the host asks for
+  double to_zero_s = -1.0;  // until the host commands zero force
   std::uint32_t faults = 0;
   std::uint32_t first_faults = 0;
   double largest_step_N = 0.0;
@@ -233,7 +233,7 @@ TEST(DeviceEndpoint, WhatKeepsThePositionComesBackByItself) {
     if ((injection.fault & (device_fault::kLosesPosition | device_fault::kOwn)) != 0) continue;
     SimulatedDevice simulated(kProtocol);
     run(injection, simulated);
-    // Reports without a time that come late, but regularly, look like any others.
+    // Regular delay is not detectable in reports without a time stamp.
     const bool stopped = simulated.snapshot.rendered_N == 0.0;
     simulated.on_the_way_in = nullptr;
     simulated.writer_hangs = false;
@@ -255,7 +255,7 @@ TEST(DeviceEndpoint, AHapticsThreadThatHangsPushesNoLonger) {
     simulated.press();
     EXPECT_GT(simulated.motor_N(), 3.5);
     DeviceEndpoint& endpoint = simulated.device.endpoint;
-    // The writer goes on alone.
+    // The writer thread continues alone.
     for (double now_s = simulated.now_s; now_s < simulated.now_s + 0.04; now_s += 0.5e-3) {
       const OutReports reports = endpoint.next(now_s);
       for (std::size_t i = 0; i < reports.count; ++i) {
@@ -268,7 +268,7 @@ TEST(DeviceEndpoint, AHapticsThreadThatHangsPushesNoLonger) {
   }
 }
 
-// As after SIGKILL: nothing is sent any more, and nobody is there to see it.
+// As after SIGKILL: the host sends nothing, not even a stop command.
 TEST(DeviceEndpoint, AHostThatDiesPushesNoLonger) {
   for (const DeviceProtocol* protocol : kPushing) {
     SimulatedDevice simulated(protocol);
@@ -305,7 +305,7 @@ TEST(DeviceEndpoint, AForceThatIsSaidAgainOnlyNowAndThenGoesOn) {
     if (sequence > 4) {
       ASSERT_EQ(board.force_units(), 1000.0) << sequence;
     }
-    // Every second of the starts, which every fourth command carries, is lost.
+    // Every fourth command contains a start of the effect; every second one of these is lost.
     if (sequence % 8 != 0) hear(protocol.encode_command({sequence, 0, true, 1000.0}));
   }
 }

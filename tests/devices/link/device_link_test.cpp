@@ -1,4 +1,4 @@
-// Finding and opening a device; its threads are in hid_device_test.
+// Finding and opening a device. linked_device_test.cpp tests its threads.
 #include "devices/link/device_link.h"
 #include "devices/hid/hid_protocols.h"
 

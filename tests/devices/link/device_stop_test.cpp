@@ -1,4 +1,4 @@
-// What goes out when a signal ends the program.
+// The stop command that is sent when a signal ends the program.
 #include "devices/link/device_stop.h"
 #include "devices/bridge/bridge_bus.h"
 #include "devices/hid/hid_protocols.h"
@@ -18,8 +18,8 @@
 namespace palpate {
 namespace {
 
-// Runs `end` in a child that holds a device; how it ended, and whether the device
-// was told to stop.
+// How a child process with a device ended, and whether the device got the stop
+// command.
 struct Ended {
   int status = 0;
   bool told = false;
@@ -47,7 +47,7 @@ Ended run(void (*before)(), void (*end)()) {
   return ended;
 }
 
-// A test program that was started with nohup ignores some signals.
+// Restores default handlers, because nohup starts a program with ignored signals.
 void nothing_ignored() {
   for (const int one : {SIGINT, SIGTERM, SIGHUP}) signal(one, SIG_DFL);
 }
@@ -82,7 +82,7 @@ TEST(DeviceStop, AnIgnoredSignalStaysIgnored) {
   EXPECT_EQ(WEXITSTATUS(ended.status), 7);
 }
 
-// Blocks in the middle of a report, as a slow device does, and writes the next at once.
+// Writes reports without pause, each blocked for 2 ms as by a slow device.
 void push_without_end(int descriptor) {
   DeviceCommand command;
   command.drive = true;
@@ -96,7 +96,7 @@ void push_without_end(int descriptor) {
   }
 }
 
-// What the device was told last when a child that pushes all the time got two signals.
+// The last command to the device when a child that renders force all the time got two signals.
 Ended run_two_signals(int first, int second) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);

@@ -1,4 +1,4 @@
-// A device with its threads, in real time, on a bus made up.
+// A device with its threads, in real time, on a fake bus.
 #include "devices/link/linked_device.h"
 #include "devices/hid/hid_protocols.h"
 
@@ -74,7 +74,7 @@ LoopStatistics run_loop(int write_ms, int& writes) {
   return loop.statistics();
 }
 
-// The figures are for people; what is asserted is that the ticks go on.
+// Prints latencies; asserts only that the ticks continue.
 TEST(LinkedDevice, ADeviceThatBlocksOnEveryWriteDoesNotHoldTheTickUp) {
   for (const int write_ms : {0, 5}) {
     int writes = 0;

@@ -1,5 +1,5 @@
-// One stream of readings at a time, without a transport; hid_endpoint_test has them
-// with reports, force and time.
+// Streams of readings, without transport. device_endpoint_test.cpp tests them with
+// reports, force and time.
 #include "devices/link/stream_monitor.h"
 
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@ MonitorSettings settings_for(bool absolute_and_timed) {
   return settings;
 }
 
-// Readings 1 ms apart; of a device that knows its position, numbered.
+// Readings 1 ms apart, optionally of a device with absolute position and sequence numbers.
 struct Stream {
   explicit Stream(bool absolute_and_timed = false) : monitor(settings_for(absolute_and_timed)) {
-    if (absolute_and_timed) steps(60);  // until its clock is known
+    if (absolute_and_timed) steps(60);  // until its clock is identified
   }
   StreamMonitor monitor;
   DeviceReading next;

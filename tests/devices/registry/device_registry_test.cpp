@@ -1,4 +1,4 @@
-// Devices by name.
+// Opening devices by name.
 #include "devices/registry/device_registry.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-// No device but what a test plugs in.
+// Only the devices on `bus` are present.
 DeviceRequest request_with(DeviceBus& bus) {
   DeviceRequest request;
   request.bus = &bus;

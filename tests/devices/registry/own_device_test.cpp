@@ -1,4 +1,4 @@
-// The third file of a new device is the table of devices with a row for it; here, a table of the test's own.
+// The third file of a new device is the table of devices, with a new row. This test uses its own table.
 #include "tests/support/own_device.h"
 
 #include <gtest/gtest.h>

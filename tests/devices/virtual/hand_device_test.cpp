@@ -1,4 +1,4 @@
-// The simulated hand as a device: it explores, it feels, it repeats itself.
+// The simulated hand as a device: exploration, reaction to forces, repeatability.
 #include "devices/virtual/hand_device.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTick_s = 1e-3;
 
-// Seconds of the hand on a spring; positions.
+// The positions of the hand on a spring in `ticks` ticks.
 std::vector<double> explore(HandDevice& device, double stiffness_N_per_m, int ticks) {
   std::vector<double> positions_m;
   DeviceSample sample;
@@ -32,11 +32,11 @@ TEST(HandDevice, PressesAndLeavesAgainAndAgain) {
   EXPECT_GE(presses, 10) << "in half a minute";
   const double deepest_m = *std::max_element(positions_m.begin(), positions_m.end());
   EXPECT_GT(800.0 * deepest_m, 3.0) << "N: it presses in earnest";
-  // It aims for 6 N at most; its guess of the stiffness may be out by half.
+  // It aims for at most 6 N, with an error of up to half in its estimate of the stiffness.
   EXPECT_LT(800.0 * deepest_m, 9.0);
 }
 
-// The same seed on air and on springs: what pushes back keeps the hand out.
+// The same seed in air and on springs: a stiffer spring reduces the depth.
 TEST(HandDevice, IsPushedBackByTheForce) {
   double before_m = 1.0;
   for (const double stiffness_N_per_m : {200.0, 800.0, 3000.0}) {

@@ -1,4 +1,4 @@
-// The mouse as a tool, and the hand that gives way to it.
+// The mouse as a tool, which yields to the force.
 #include "devices/virtual/mouse_device.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTick_s = 1e-3;
 
-// Ticks from `from_s` on; the last sample.
+// Runs `ticks` ticks from `from_s` on and returns the last sample.
 DeviceSample advance(Device& device, double from_s, int ticks, double force_N = 0.0) {
   DeviceSample sample;
   for (int i = 0; i < ticks; ++i) {
@@ -69,7 +69,7 @@ TEST(MouseDevice, IsDrivenWithARampAndStopsWhereItIsTold) {
   EXPECT_NEAR(sample.tool.velocity_m_per_s, 0.018, 1e-3);
   EXPECT_FALSE(device.idle(1e6)) << "a held key is not idle";
   EXPECT_NEAR(advance(device, 0.33, 2000).tool.position_m, 0.004, 6e-4) << "inwards to the limit";
-  // In contact the target goes deeper than the tool.
+  // In contact the target is deeper than the tool.
   EXPECT_NEAR(advance(device, 2.33, 2000, 2.0).tool.position_m, 0.004, 6e-4);
   device.drive(-0.018, -0.002, 4.33);
   EXPECT_NEAR(advance(device, 4.33, 2000).tool.position_m, -0.002, 1e-6) << "outwards to the limit";

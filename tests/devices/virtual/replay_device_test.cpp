@@ -1,4 +1,4 @@
-// A recording as a device: every row once, unchanged, at its own pace.
+// A recording as a device: every row once, unchanged, at the recorded rate.
 #include "devices/virtual/replay_device.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Recording ramp(std::size_t rows, double rate_Hz) {
   return recording;
 }
 
-// What comes in `ticks` ticks, at most `most` samples a tick.
+// Returns the samples of `ticks` ticks, at most kMaxSamplesPerTick a tick.
 struct Player {
   ReplayDevice& device;
   int tick = 0;
@@ -43,7 +43,7 @@ TEST(ReplayDevice, HandsOverEveryRowOnceAndUnchanged) {
     const Recording recording = ramp(2000, rate_Hz);
     ReplayDevice device(recording);
     Player player{device};
-    // One tick short of the end, where the next round begins.
+    // Ends before the next round begins.
     const std::vector<DeviceSample> samples = player.play(static_cast<int>(2000.0 / rate_Hz / kTick_s) + 1);
     ASSERT_GE(samples.size(), 1998u) << rate_Hz;
     for (std::size_t i = 0; i < std::min<std::size_t>(samples.size(), 2000); ++i) {
@@ -112,7 +112,7 @@ TEST(ReplayDevice, PlaysFasterAndSlower) {
   EXPECT_EQ(device.speed(), kFastestReplay);
 }
 
-// 20 kHz at ten times its pace is 200 rows a tick: it falls behind, whole.
+// 20 kHz at ten times the speed is 200 rows a tick: it falls behind, but omits no row.
 TEST(ReplayDevice, WaitsForTheLoopWhenItIsTooFast) {
   ReplayDevice device(ramp(20000, 20000.0));
   device.set_speed(kFastestReplay);
