@@ -32,8 +32,8 @@ int in_child(const std::function<void()>& body) {
   return status;
 }
 
-// A child in the middle of writing "out", more than one buffer already on disk,
-// that then sends itself `signal_number`.
+// A child process that writes more than one buffer of "out" and then sends itself
+// `signal_number`.
 int killed_while_writing(const TemporaryFolder& folder, int signal_number) {
   return in_child([&] {
     own_signals();
@@ -146,7 +146,7 @@ TEST(AtomicFile, ReportsAFullDiskAndKeepsTheOldFile) {
   const std::string path = folder.with_file("out", "old");
   const int status = in_child([&] {
     own_signals();
-    const rlimit limit{1000, 1000};  // stands in for a disk with 1000 bytes left
+    const rlimit limit{1000, 1000};  // simulates a disk with 1000 free bytes
     setrlimit(RLIMIT_FSIZE, &limit);
     const Status written = write_file_atomically(path, kMegabyte, true);
     const bool explained = !written.ok() && written.error().message == "cannot write " + path + ": File too large";

@@ -34,7 +34,7 @@ TEST(IsUtf8, FollowsRfc3629) {
   for (const char* good : {"", "a", "\xC2\xB5", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "\xED\x9F\xBF"}) {
     EXPECT_TRUE(is_utf8(good, bad_offset)) << good;
   }
-  // Lone, overlong, surrogate, beyond U+10FFFF, cut short.
+  // Invalid UTF-8: lone, overlong, surrogate, beyond U+10FFFF, truncated.
   for (const char* bad : {"a\x80", "a\xC0\x80", "a\xE0\x80\x80", "a\xED\xA0\x80", "a\xF4\x90\x80\x80",
                           "a\xF5\x80\x80\x80", "a\xE2\x82", "a\xF0\x9F\x98z"}) {
     EXPECT_FALSE(is_utf8(bad, bad_offset));

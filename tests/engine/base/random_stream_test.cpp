@@ -22,7 +22,7 @@ TEST(RandomStream, StreamsAndSeedsDiffer) {
 }
 
 // Standard errors at 200,000 draws: mean 1/sqrt(n) = 0.0022, variance
-// sqrt(1.9/n) = 0.0031; four of them allowed.
+// sqrt(1.9/n) = 0.0031. The tolerance is four standard errors.
 TEST(RandomStream, NormalHasMeanZeroAndVarianceOne) {
   RandomStream random(1, 1);
   double sum = 0.0, squares = 0.0;
@@ -57,7 +57,7 @@ TEST(RandomStream, IndexReachesEveryPlaceAboutEquallyOften) {
   RandomStream random(4, 0);
   int count[6] = {};
   for (int i = 0; i < 60000; ++i) ++count[random.index(6)];
-  // Standard deviation of a count of 10,000 is 91; five of them allowed.
+  // The standard deviation of a count of 10,000 is 91. The tolerance is five of these.
   for (const int c : count) EXPECT_NEAR(c, 10000, 460);
 }
 

@@ -16,11 +16,11 @@ int trace_descriptor = -1;
 void trace(char letter) { [[maybe_unused]] const auto written = write(trace_descriptor, &letter, 1); }
 
 struct Ended {
-  int signal = 0;     // that ended the child; 0: none did
-  std::string trace;  // f: forces stopped, others: the child's own
+  int signal = 0;     // the signal that ended the child; 0: none
+  std::string trace;  // f: forces stopped; others: written by the child
 };
 
-// Runs `body` in a child with forces to stop and default handlers.
+// Runs `body` in a child process that has forces to stop and default handlers.
 Ended in_child(const std::function<void()>& body) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);

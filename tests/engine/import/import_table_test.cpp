@@ -1,4 +1,4 @@
-// Tables as rigs write them, each with the press that stands in it.
+// Tables in the formats of rigs, each with the same press.
 #include "engine/import/import_table.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ std::vector<RigFile> rig_files() {
       {"22_outward.csv", {}},
       {"23_r.txt", {}},
   };
-  files[9].request.flip_force = true;      // the sensor's own axis points in
+  files[9].request.flip_force = true;      // the axis of the sensor points inward
   files[21].request.flip_position = true;  // a height above the table
   return files;
 }
@@ -79,7 +79,7 @@ TEST(ImportTable, ReadsTheSamePressFromEveryRig) {
     for (std::size_t i = 0; i < 24; ++i) {
       const RecordingRow expected = press_row(i);
       const RecordingRow& row = table->recording.rows[i];
-      // Half of the last digit that the files print: 0.5 ms, 0.5 um, 0.005 gram-force.
+      // Half a unit of the last printed digit: 0.5 ms, 0.5 um, 0.005 gram-force.
       EXPECT_NEAR(row.time_s, expected.time_s, 0.6e-3) << i;
       EXPECT_NEAR(row.position_m, expected.position_m, 0.6e-6) << i;
       EXPECT_NEAR(row.force_N, expected.force_N, 0.6e-4) << i;

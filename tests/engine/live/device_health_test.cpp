@@ -1,4 +1,4 @@
-// What people are told of a device.
+// Messages about the state of a device.
 #include "engine/live/device_health.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What is kept of a fault.
+// The recorded ticks around a fault.
 #include "engine/live/fault_recorder.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ LoopSnapshot tick_at(int index, bool fault) {
   return tick;
 }
 
-// The number of the tick with which the next fault is whole; -1: none was up to `end`.
+// The tick at which the record of the next fault is complete; -1: none before `end`.
 int whole_at(FaultRecorder& recorder, int begin, int end, bool (*faulty)(int)) {
   for (int i = begin; i < end; ++i) {
     if (recorder.add(tick_at(i, faulty(i)))) return i;

@@ -1,4 +1,4 @@
-// Each limit on its own; without it, its test fails.
+// Tests each limit separately. Without a limit, its test fails.
 #include "engine/live/force_limiter.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTick_s = 1e-3;
 
-// One limit at work, the others out of reach.
+// A limiter in which only one limit is reached.
 ForceLimiter with(double largest_N, double fastest_N_per_s, double ramp_s) {
   return ForceLimiter({largest_N, fastest_N_per_s, ramp_s});
 }
@@ -59,7 +59,7 @@ TEST(ForceLimiter, ChangesNoFasterThanItMay) {
     last_N = force_N;
   }
   EXPECT_NEAR(ticks, 20, 1);
-  // A fault is no licence either, but it has only 10 ms.
+  // After a fault the slew rate is limited too, so that the force reaches 0 within 10 ms.
   EXPECT_NEAR(limiter.limit(kNaN, kTick_s), 18.0, 1e-12);
   EXPECT_EQ(limiter.flags(), force_limit::kNotFinite | force_limit::kSlewed);
 }
@@ -77,7 +77,7 @@ TEST(ForceLimiter, AStallOrABrokenClockLicensesNoJump) {
   }
 }
 
-// Share of a constant 4 N over time since the beginning, or since a fault.
+// Expects a linear ramp to a constant 4 N within 100 ticks.
 void expect_ramp(ForceLimiter& limiter) {
   double last_N = -1.0;
   for (int i = 0; i < 100; ++i) {
@@ -87,7 +87,7 @@ void expect_ramp(ForceLimiter& limiter) {
     EXPECT_GT(force_N, last_N);
     last_N = force_N;
   }
-  limiter.limit(4.0, kTick_s);  // rounding may leave the last bit of the ramp to this one
+  limiter.limit(4.0, kTick_s);  // rounding may extend the ramp by this tick
   EXPECT_EQ(limiter.limit(4.0, kTick_s), 4.0);
   EXPECT_EQ(limiter.flags(), 0u);
 }
@@ -102,7 +102,7 @@ TEST(ForceLimiter, RampsUpAtTheStartAndAfterEachFault) {
   expect_ramp(limiter);
 }
 
-// Ticks from a steady 8 N until there is no force, under `conditions`.
+// Ticks from a steady 8 N until the force is zero, under `conditions`.
 int ticks_to_zero(const ForceConditions& conditions, std::uint32_t flag) {
   ForceLimits limits = {10.0, 100.0, 0.0};
   ForceLimiter limiter(limits);
@@ -146,7 +146,7 @@ TEST(ForceLimiter, RampsUpAfterEachStop) {
   }
 }
 
-// Peak 10 N, 2 N for ever, 10 s to warm up.
+// Peak force 10 N, continuous force 2 N, thermal time constant 10 s.
 ForceLimiter with_budget() {
   ForceLimits limits = {10.0, 1e9, 0.0};
   limits.continuous_N = 2.0;
@@ -166,8 +166,8 @@ TEST(ForceLimiter, TheThermalBudgetLeavesTheContinuousForce) {
   }
   EXPECT_NEAR(limiter.force_N(), 2.0, 0.05);
   EXPECT_EQ(limiter.flags(), force_limit::kClamped | force_limit::kThermal);
-  // A winding at the continuous force takes 240 N^2 s in a minute; what comes on
-  // top is the part of the budget that was left at the start, 0.2 x 4 N^2 x 10 s.
+  // A winding at the continuous force takes 240 N^2 s in a minute. The excess is the
+  // part of the budget that was left at the start, 0.2 x 4 N^2 x 10 s.
   EXPECT_LE(energy, 240.0 + 8.0 + 1.0);
 }
 
@@ -177,7 +177,7 @@ TEST(ForceLimiter, TheThermalBudgetComesBackWithRest) {
   for (int i = 0; i < 30'000; ++i) limiter.limit(0.0, kTick_s);
   EXPECT_LT(limiter.heat_share(), 0.1);
   EXPECT_EQ(limiter.limit(10.0, kTick_s), 10.0);
-  // In a stall the last force stays on: a minute of it is a minute of warming.
+  // During a stall of a minute the last force is held, and heats for that minute.
   limiter.limit(10.0, 60.0);
   EXPECT_NEAR(limiter.force_N(), 2.0, 0.05);
 }

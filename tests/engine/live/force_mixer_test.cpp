@@ -1,4 +1,4 @@
-// Switching models without a kick.
+// Switching models without a force step.
 #include "engine/live/force_mixer.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 constexpr double kTick_s = 1e-3;
 constexpr int kWindow = 10;  // ticks in 10 ms
 
-// The largest change within any 10 ms, as a multiple of the JND of its smaller end.
+// The largest change within any 10 ms, over the JND of the smaller force.
 double worst_over_jnd(const std::vector<double>& forces_N) {
   const JndLine jnd;
   double worst = 0.0;

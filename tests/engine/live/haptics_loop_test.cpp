@@ -1,4 +1,4 @@
-// The haptics thread: what it counts, and that it shares nothing it should not.
+// The haptics thread: its statistics, and its data shared with other threads.
 #include "engine/live/haptics_loop.h"
 
 #include <gtest/gtest.h>
@@ -86,8 +86,8 @@ TEST(HapticsLoop, RehearsesTwiceBeforeADeadlineUnlessItWakesLate) {
   loop.publish_models(
       std::make_unique<LiveModels>(1, device.sensor(), std::vector<std::shared_ptr<const ForceModel>>{counting}));
   std::vector<std::uint64_t> evaluations;
-  // Each tick waits three times: until it wakes up, until the last quarter, and for the
-  // deadline; one that wakes up too late twice.
+  // Each tick waits three times: for the wake-up, for the last quarter before the deadline,
+  // and for the deadline. A tick that wakes up too late waits twice.
   constexpr int kWakesLate = 30;
   constexpr int kStays = 45;
   FakePacer pacer([&](int wait) -> std::int64_t {
@@ -100,7 +100,7 @@ TEST(HapticsLoop, RehearsesTwiceBeforeADeadlineUnlessItWakesLate) {
   loop.run(pacer);
   EXPECT_EQ(loop.statistics().ticks, 20u);
   EXPECT_EQ(loop.statistics().lateness.max_us, 0.0) << "waking up late is not being late";
-  // Between the waits: a rehearsal, a second one, a tick.
+  // Between the waits are a rehearsal, a second rehearsal, and the tick.
   const auto between = [&](std::size_t wait) { return evaluations[wait + 1] - evaluations[wait]; };
   for (std::size_t wait = 3; wait < kWakesLate; ++wait) EXPECT_EQ(between(wait), 1u) << wait;
   EXPECT_EQ(between(kWakesLate), 0u) << "no time for any";
@@ -121,13 +121,13 @@ TEST(HapticsLoop, DropsAndCountsSnapshotsThatNobodyReads) {
   EXPECT_EQ(loop.statistics().dropped_snapshots, 10u);
 }
 
-// The real clock and the real thread beside a slow side that changes models and
-// the model in the hand, and reads all it can. What it checks does not depend on
-// when things happen; the thread sanitizer watches the rest.
+// The real clock and thread, while another thread publishes models, changes the
+// selected model and reads snapshots. The checks do not depend on timing; the
+// thread sanitizer checks for data races.
 TEST(HapticsLoop, RunsBesideABusySlowSide) {
   PathDevice device(test::strokes);
   LoopSettings settings;
-  settings.realtime = false;  // a test does not outrank the machine it runs on
+  settings.realtime = false;  // tests do not need real-time priority
   settings.rehearse_ns = 60'000;
   HapticsLoop loop(device, settings);
   loop.publish_models(springs(1, device));
@@ -160,7 +160,7 @@ TEST(HapticsLoop, RunsBesideABusySlowSide) {
   EXPECT_EQ(received + loop.statistics().dropped_snapshots, loop.statistics().ticks);
   EXPECT_GT(loop.newest().models_id, 1u);
   EXPECT_EQ(device.force_N(), 0.0);
-  loop.stop();  // again: nothing happens
+  loop.stop();  // a second call has no effect
 }
 
 TEST(HapticsLoop, IsStoppedByItsEnd) {

@@ -1,5 +1,5 @@
-// What the live tick makes of trouble: a device that is not well, nobody at the
-// switch, and the ticks that are kept of it.
+// The live tick under faults: device faults, a released dead-man switch, and the
+// recorded ticks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using test::spring;
 
 constexpr double kTick_s = 1e-3;
 
-// A device that says how it is.
+// A device whose health a test sets.
 class FrailDevice final : public Device {
  public:
   const std::string& name() const noexcept override { return name_; }
@@ -57,14 +57,14 @@ TEST(LiveTickSafety, NobodyAtTheDeadManKeyIsNoForce) {
   controls.dead_man = DeadMan::key;
   EXPECT_EQ(run(500, controls).rendered_N, 0.0);
   EXPECT_TRUE(run(1, controls).dead_man_released);
-  // Seen held in each frame of a window at 60 Hz.
+  // A window at 60 Hz reports in each frame that the key is held.
   for (int frame = 0; frame < 60; ++frame) {
     controls.held_s = kTick_s * tick;
     run(16, controls);
   }
   EXPECT_NEAR(device.force_N(), 1.5, 1e-9);
   EXPECT_FALSE(run(1, controls).dead_man_released);
-  // The window hangs with the key down.
+  // The window hangs while the key is held.
   EXPECT_EQ(run(250, controls).rendered_N, 0.0);
   EXPECT_TRUE(run(1, controls).dead_man_released);
 }
@@ -102,7 +102,7 @@ TEST(LiveTickSafety, AScaledForceIsEasedAndLimitedAndNeverPulls) {
   EXPECT_GT(largest_N, 9.0);
 }
 
-// In the air for a second, then shaken inside the block, as an encoder of 30 um sees it.
+// The tool is in the air for a second, then shaken inside the block. Read with a 30 um encoder.
 double shaken(double time_s) {
   const double position_m = time_s < 1.0 ? -1e-3 : 2e-3 + 1.5e-3 * std::sin(125.0 * time_s);
   return 30e-6 * std::round(position_m / 30e-6);
@@ -163,7 +163,7 @@ TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
   }
 }
 
-// Models are evaluated in contact once before they are used; nothing of that reaches a device.
+// The warm-up evaluates models in contact. Its forces must not reach a device.
 TEST(LiveTickSafety, ADeviceThatHasGivenNothingIsNotDriven) {
   class SilentDevice final : public Device {
    public:

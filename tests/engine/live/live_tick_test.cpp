@@ -1,5 +1,5 @@
-// The body of the live loop: the same forces as replay, nothing forbidden, and
-// no kick when models change.
+// The body of the live loop: the same forces as replay, no forbidden operations,
+// and no force step when models are exchanged.
 #include "engine/live/live_tick.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ ForceModels all_models() {
   return models;
 }
 
-// What replay gives for `recording`, tick by tick.
+// The snapshots of a replay of `recording`.
 std::vector<TickSnapshot> replayed(const Recording& recording) {
   std::vector<TickSnapshot> snapshots;
   const auto visit = [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
@@ -41,9 +41,9 @@ std::vector<TickSnapshot> replayed(const Recording& recording) {
   return snapshots;
 }
 
-// Twice through the recording, so that its second round is compared as well.
-// Faster than the loop, snapshots are of the last sample of a tick: those are
-// found by their time.
+// Plays the recording twice, so that its second round is compared as well. At more
+// than 1 kHz a snapshot is that of the last sample of a tick; the number of samples
+// so far identifies it.
 void expect_live_equals_replay(double rate_Hz) {
   const Recording recording = test::example_recording(1500, rate_Hz, 30e-6);
   const std::vector<TickSnapshot> expected = replayed(recording);
@@ -57,7 +57,7 @@ void expect_live_equals_replay(double rate_Hz) {
   int rounds = 0;
   const int ticks = static_cast<int>(2.0 * device.duration_s() / kTick_s);
   for (int i = 0; i < ticks; ++i) {
-    if (i % 3 > 0) live.rehearse();  // whether or not, the bits are the same
+    if (i % 3 > 0) live.rehearse();  // must not change the result
     const LoopSnapshot& snapshot = live.run(kTick_s * i, {});
     if (snapshot.samples == 0) continue;
     if (snapshot.restarted) {
@@ -82,7 +82,7 @@ TEST(LiveTick, GivesTheBitsOfReplay) {
   for (const double rate_Hz : {500.0, 1000.0, 2000.0, 20000.0}) expect_live_equals_replay(rate_Hz);
 }
 
-// Ten thousand ticks with changes of models and of the model in the hand.
+// Ten thousand ticks with exchanges of models and of the selected model.
 int offences(Device& device) {
   ModelSlot<LiveModels> slot;
   LiveTick live(device, slot);
@@ -127,7 +127,7 @@ TEST(LiveTick, DoesNothingForbiddenWithAnyDevice) {
   EXPECT_EQ(offences(faulty), 0) << "bad samples";
 }
 
-// One tick at a time on a tool held 5 mm deep.
+// A live tick with a tool held 5 mm deep.
 struct Held {
   PathDevice device{test::held_5mm};
   ModelSlot<LiveModels> slot;
@@ -142,7 +142,7 @@ struct Held {
     for (int end = tick + ticks; tick < end; ++tick) snapshot = live.run(kTick_s * tick, controls);
     return snapshot;
   }
-  // The forces that the device got.
+  // Runs `ticks` ticks and returns the forces written to the device.
   std::vector<double> felt_N(int ticks, const LoopControls& controls = {}) {
     std::vector<double> forces_N;
     for (int i = 0; i < ticks; ++i) {
@@ -201,7 +201,7 @@ TEST(LiveTick, ControlsOfAnotherSetDoNotCount) {
   EXPECT_EQ(held.run(10, {7, 0}).selected, 1u) << "the choice stays";
 }
 
-// Memory of the material survives a change of models in mid-press.
+// The state of the material's memory is kept when models are exchanged in mid-press.
 TEST(LiveTick, ANewSetGoesOnWithTheFiltersOfTheOld) {
   const auto run = [](bool change) {
     PathDevice device(test::strokes);
@@ -294,7 +294,7 @@ TEST(LiveTick, StepsTheReferenceOfTheNewestSet) {
   EXPECT_EQ(reference->restarts, 3);
 }
 
-// Several samples a tick, of which a snapshot has the last.
+// With several samples a tick, a snapshot contains only the last.
 TEST(LiveTick, HandsOverEverySampleWhileRecording) {
   const Recording recording = test::example_recording(4000, 4000.0);
   ReplayDevice device(recording);
@@ -328,7 +328,7 @@ TEST(LiveTick, HandsOverEverySampleWhileRecording) {
   }
 }
 
-// A study's force takes the models' place, behind the same limiter.
+// The force of a study replaces that of the models, with the same limiter.
 TEST(LiveTick, AForceSourceTakesThePlaceOfTheModels) {
   class Source final : public ForceSource {
    public:

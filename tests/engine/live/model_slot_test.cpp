@@ -1,5 +1,5 @@
-// Sets of models change hands without being lost, used after deletion, or
-// deleted by the tick.
+// Sets of models are passed between threads without being lost, used after
+// deletion, or deleted by the tick.
 #include "engine/live/model_slot.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST(ModelSlot, KeepsTheOldSetWhileTheRetireRingIsFull) {
   slot.publish(std::make_unique<Set>(0));
   Set* waiting = slot.acquire();
   slot.publish(std::make_unique<Set>(9));
-  // Nobody collects: the ring takes eight.
+  // Without collect() the ring is full after eight sets.
   for (int i = 1; i <= 8; ++i) slot.retire(new Set(i));
   EXPECT_EQ(slot.acquire(), nullptr) << "no room for the one that would be given up";
   EXPECT_EQ(slot.collect(), 8u);
@@ -93,7 +93,7 @@ TEST(ModelSlot, UnderStressEverySetIsDeletedOnceAndNeverInTheTick) {
       slot.publish(std::make_unique<Set>(i));
       if (i % 3 == 0) std::this_thread::yield();
     }
-    // A full ring would keep the last one waiting.
+    // While the ring is full, the tick cannot take the last set.
     while (alive > 0) {
       slot.collect();
       std::this_thread::yield();

@@ -17,7 +17,7 @@ constexpr double kSpeed_m_per_s = kStep_m / kTick_s;
 constexpr double kDamping_Ns_per_m = 12.0;
 constexpr PassivityController::Loop kLoop{1e-3, kDamping_Ns_per_m};
 
-// A tool moved one step a tick; what it is given is felt two ticks later, as the
+// A tool that moves one step a tick. A written force acts two ticks later, as the
 // observer assumes.
 struct Stroke {
   PassivityController controller;
@@ -26,7 +26,7 @@ struct Stroke {
   bool model_changing = false;
 
   explicit Stroke(double encoder_step_m = 0.0) : controller(encoder_step_m) {}
-  // `steps` above 0: inwards. The last force.
+  // Moves inward if `steps` is above 0. Returns the last force.
   double move(int steps, double commanded_N) {
     const double direction = steps < 0 ? -1.0 : 1.0;
     for (int i = 0; i < std::abs(steps); ++i) {
@@ -50,20 +50,20 @@ TEST(PassivityController, LeavesWhatDissipatesAlone) {
 TEST(PassivityController, TakesWhatIsGivenBackTooMuchAndNoMore) {
   Stroke stroke;
   stroke.move(200, 1.0);
-  // 2 N are asked for on the way out, b v = 0.12 N less are given; two ticks of the
-  // way in's force are felt at the turn.
+  // On the way out 2 N are commanded and b v = 0.12 N less are rendered. At the turn, the
+  // force of the way in acts for two more ticks.
   EXPECT_NEAR(stroke.move(-50, 2.0), 2.0 - kDamping_Ns_per_m * kSpeed_m_per_s, 1e-12);
   const double debt_J = stroke.controller.debt_J();
   EXPECT_NEAR(debt_J, 50 * kStep_m * (1.88 - 1.0), 3 * kStep_m);
-  // Too little is asked for: the debt is repaid, by what is taken as well, to 0.
+  // A smaller force is commanded: this and the damping repay the debt down to 0.
   stroke.move(-40, 0.3);
   EXPECT_LT(stroke.controller.debt_J(), debt_J);
   EXPECT_EQ(stroke.move(-60, 0.3), 0.3) << "repaid: the force is what was asked for";
   EXPECT_EQ(stroke.controller.debt_J(), 0.0);
 }
 
-// The reference follows the depth: a leak deep inside is seen at once, whatever was
-// stored or lost on the way there.
+// The energy reference depends on depth: energy generation deep inside is detected at
+// once, regardless of the energy stored or dissipated on the way there.
 TEST(PassivityController, SeesALeakThoughMuchIsStored) {
   Stroke stroke;
   stroke.move(400, 5.0);
@@ -84,7 +84,7 @@ TEST(PassivityController, ForgetsInTheAir) {
   EXPECT_EQ(stroke.controller.debt_J(), 0.0);
 }
 
-// A firmer material pushes the tool out with more than the softer one took.
+// After an exchange, a firmer material returns more energy than the softer one absorbed.
 TEST(PassivityController, BeginsAnewWithAnotherMaterial) {
   Stroke stroke;
   stroke.move(100, 1.0);
@@ -102,7 +102,7 @@ TEST(PassivityController, AFlickeringEncoderIsNoMotion) {
   double written_N = 0.0;
   for (int tick = 0; tick < 5000; ++tick) {
     const double depth_m = 1e-3 + (tick / 3 % 2 == 0 ? 0.0 : kEncoder_m);
-    // Late: more on the way out than on the way in.
+    // A delayed force: larger on the way out than on the way in.
     const double force_N = 3000.0 * (1e-3 + (tick / 3 % 2 == 0 ? kEncoder_m : 0.0));
     written_N =
         controller.apply(force_N, {depth_m, tick / 3 % 2 == 0 ? -1e-3 : 1e-3, true, false}, kLoop, written_N, kTick_s);

@@ -1,4 +1,4 @@
-// What is said when the system refuses.
+// The message if the system refuses real-time priority.
 #include "engine/live/rt_thread.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Every value in order, or counted as dropped.
+// Every value arrives in order or is counted as dropped.
 #include "engine/live/spsc_ring.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(SpscRing, UnderStressLosesOnlyWhatItCounts) {
   std::uint64_t sent = 0;
   std::thread producer([&] {
     for (std::uint64_t i = 1; i <= kLast; ++i) sent += ring.push({i, i}) ? 1 : 0;
-    // The last one arrives for certain.
+    // Retries the last value until it is accepted.
     while (!ring.push({kLast + 1, kLast + 1})) std::this_thread::yield();
     ++sent;
   });

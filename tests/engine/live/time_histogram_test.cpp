@@ -1,4 +1,4 @@
-// Percentiles without keeping the times.
+// Percentiles from a histogram, without storing the times.
 #include "engine/live/time_histogram.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ TEST(TimeHistogram, GivesPercentilesWithinABin) {
   for (std::int64_t time_us = 1; time_us <= 10000; ++time_us) histogram.add(1000 * time_us);
   const TimePercentiles result = histogram.percentiles();
   EXPECT_EQ(result.count, 10000u);
-  // A bin is a 32nd of a doubling: 3.2 % wide, and its top is given.
+  // Bins are a 32nd of an octave, 3.2 % wide; a percentile is the upper edge of its bin.
   EXPECT_NEAR(result.p50_us, 5000.0, 0.032 * 5000.0);
   EXPECT_NEAR(result.p99_us, 9900.0, 0.032 * 9900.0);
   EXPECT_NEAR(result.p99_9_us, 9990.0, 0.032 * 9990.0);

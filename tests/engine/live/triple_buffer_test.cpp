@@ -1,4 +1,4 @@
-// The newest value, whole, and never an older one after a newer one.
+// A reader gets the newest complete value, never an older one after a newer one.
 #include "engine/live/triple_buffer.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-// Torn when its words differ.
+// A value is torn if its words differ.
 struct Words {
   std::array<std::uint64_t, 40> all{};
 };

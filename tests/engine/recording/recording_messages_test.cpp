@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// What the parser says about `text`, or "accepted".
+// The message of the parser about `text`, or "accepted".
 std::string verdict(const std::string& text, std::size_t piece_bytes) {
   auto parser = RecordingReader::from(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv");
   if (!parser) return parser.error().message;
@@ -31,7 +31,7 @@ TEST(RecordingMessages, NameThePlaceAndSayWhatToDo) {
 
 TEST(RecordingMessages, DoNotDependOnHowTheBytesArrive) {
   for (const auto& broken : test::broken_recordings()) {
-    // Byte by byte would be slow on the gigantic lines.
+    // Single bytes would be slow for long texts.
     const std::size_t piece_bytes = std::max<std::size_t>(1, broken.text.size() / 1000);
     EXPECT_EQ(verdict(broken.text, piece_bytes), broken.message) << broken.name;
   }

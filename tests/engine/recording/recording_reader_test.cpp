@@ -8,14 +8,14 @@
 namespace palpate {
 namespace {
 
-// The number in `text` and whether all of it was one.
+// Whether all of `text` is a number, and its value.
 std::pair<bool, double> number(std::string_view text) {
   double value = 0.0;
   const char* const end = text.data() + text.size();
   return {parse_recording_number(text.data(), end, value) == end, value};
 }
 
-// strtod is exactly rounded in glibc, which makes it an independent truth.
+// glibc's strtod is exactly rounded and serves as an independent reference.
 TEST(ParseRecordingNumber, IsExactlyRounded) {
   for (const char* text : {"0.1", "123456.7890123", "9007199254740993", "1.7976931348623157e308", "4.9e-324",
                            "0.00000000012345678901234567890", "-2.2250738585072011e-308"}) {

@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-// What the rules say in the end about `count` rows, `step_s` apart.
+// The final verdict of the rules on `count` rows, `step_s` apart.
 std::optional<RowFault> verdict(int count, double step_s) {
   RowRules rules;
   for (int i = 0; i < count; ++i) {

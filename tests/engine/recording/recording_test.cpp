@@ -21,7 +21,7 @@ std::string message_for(const std::string& path) {
   return recording ? "accepted" : recording.error().message;
 }
 
-// Rows of `text` when it is read as a file; fails the test if it is refused.
+// Reads `text` as a file; fails the test if it is refused.
 Recording accepted(const std::string& text) {
   const TemporaryFolder folder;
   auto recording = read_recording(folder.with_file("rec.csv", text));
@@ -49,7 +49,7 @@ TEST(Recording, ReadsRowsAndItsNameFromTheFile) {
 TEST(Recording, RefusesEveryBrokenFileWithItsWholeMessage) {
   const TemporaryFolder folder;
   for (const auto& broken : test::broken_recordings()) {
-    // The command that imports it names the file by its whole path.
+    // The suggested `palpate import` command contains the full path.
     std::string expected = folder.path() + "/" + broken.message;
     if (const auto at = expected.find("palpate import rec.csv"); at != std::string::npos) {
       expected.insert(at + std::string("palpate import ").size(), folder.path() + "/");

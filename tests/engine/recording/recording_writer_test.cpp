@@ -132,7 +132,7 @@ TEST(WriteRecording, RefusesWhatTheReaderWouldRefuse) {
             "rec.csv: found a comment of 70000 bytes, expected at most 65534; shorten it");
 }
 
-// Caps the size of files this process writes, as a full disk would.
+// Limits the size of files written by this process, as a full disk does.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {

@@ -1,4 +1,4 @@
-// Parts four at a time against the equations of features.h one at a time.
+// Compares parts computed four at a time with the equations of features.h.
 #include "engine/tick/feature_lanes.h"
 
 #include <gtest/gtest.h>
@@ -22,14 +22,14 @@ DriveCurve drive_of(std::size_t i) {
 }
 double time_of(std::size_t i) { return 1e-3 * std::pow(2.5, static_cast<double>(i)); }
 
-// In and out again, beyond some of the drives' reference depths.
+// A motion in and out, beyond the reference depth of some drives.
 double depth_at(int i) { return std::max(0.0, 9e-3 * std::sin(0.01 * i)); }
 
 class FeatureLanes : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(Parts, FeatureLanes, testing::Values(1, 2, 3, 4, 5, 13, 64),
                          [](const auto& instance) { return std::to_string(instance.param); });
 
-// What all groups of either kind remember.
+// The memory of all groups of one kind.
 template <typename Lanes>
 using Memory = std::array<V4, Lanes::kMemory * kMaxLaneGroups>;
 
@@ -51,8 +51,8 @@ TEST_P(FeatureLanes, BranchesFollowTheirEquation) {
       z[i] = one.keep * z[i] + one.gain * (drive_of(i).at(depth_at(t)) - drive_of(i).at(depth_at(t - 1)));
       held += z[i];
     }
-    lanes.advance(step, 0.123e-3, memory.data(), trial.data());  // in vain
-    // Two exponentials, each within an ulp, of a thousand steps.
+    lanes.advance(step, 0.123e-3, memory.data(), trial.data());  // a trial step must not change `memory`
+    // A thousand steps of two exponentials, each accurate to an ulp.
     const double rounding = 1e-12 * static_cast<double>(z.size());
     ASSERT_NEAR(lanes.advance(step, depth_at(t), memory.data(), memory.data()), held, rounding);
     for (std::size_t i = 0; i < z.size(); ++i) {
@@ -71,7 +71,7 @@ TEST_P(FeatureLanes, StopsFollowTheirEquation) {
   for (int t = 1; t < 1000; ++t) {
     lanes.advance(depth_at(t - 1), depth_at(t), 1e-3, bend_m.data(), force_N.data());
     for (std::size_t i = 0; i < bend.size(); ++i) {
-      // Out of contact a stop lets go.
+      // Out of contact a stop relaxes to zero.
       const double limit_m = depth_at(t) > 0.0 ? threshold(i) : 0.0;
       bend[i] = std::clamp(bend[i] + depth_at(t) - depth_at(t - 1), -limit_m, limit_m);
       ASSERT_EQ(BristleLanes::force_N(force_N.data(), i, 1), drive_of(i).at(depth_at(t)) * bend[i] / threshold(i))
@@ -93,7 +93,7 @@ TEST_P(FeatureLanes, CreepFollowsItsEquation) {
     for (std::size_t i = 0; i < bend.size(); ++i) {
       const auto half = [&](double q) { return q / std::sqrt(1.0 + kStep_s / time(i) * (q / 5e-3) * (q / 5e-3)); };
       bend[i] = half(half(bend[i]) + depth_at(t) - depth_at(t - 1));
-      // Products in another order: some ulps a step, which creep forgets.
+      // Products are in another order: a difference of some ulps a step, which creep forgets.
       ASSERT_NEAR(BristleLanes::force_N(force_N.data(), i, 1), drive_of(i).at(depth_at(t)) * bend[i] / 5e-3, 1e-12)
           << i << " at " << t;
     }

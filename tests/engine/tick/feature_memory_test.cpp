@@ -1,5 +1,5 @@
-// What features remember of the material: a surface that lags, times that slow with the
-// depth, and the memory that a change of models keeps (engine/tick/features.h).
+// The memory of features: a lagging surface, relaxation times that depend on depth, and the
+// memory kept in an exchange of models (engine/tick/features.h).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 using namespace test;
 
-// A spring of 300 N/m beside a branch of 600 N/m and 0.2 s, relaxed at 4 mm: at once the
-// surface comes back to s with 300 s + 600 (s - 4 mm) = 0, then it creeps back by
+// A spring of 300 N/m in parallel with a branch of 600 N/m and 0.2 s, relaxed at 4 mm. The
+// surface returns at once to s with 300 s + 600 (s - 4 mm) = 0, then creeps back by
 // ds/dt = -s / (3 x 0.2 s) until it meets the tool.
 TEST(FeatureMemory, TheSurfaceLeavesAToolThatRetreatsFastAndComesBack) {
   const DriveCurve elastic{5e-3, {1.5}};
@@ -27,14 +27,14 @@ TEST(FeatureMemory, TheSurfaceLeavesAToolThatRetreatsFastAndComesBack) {
   for (int k = 0; k <= 300; ++k, ++i) {
     const auto& values = feed(filter, 1e-3 * i, 2e-3).values;
     const double free_m = 4e-3 * (2.0 / 3.0) * std::exp(-1e-3 * k / 0.6);
-    // The surface is found to 10 uN, and the first step relaxes for 1 ms.
+    // The surface is solved to 10 uN, and the first step relaxes for 1 ms.
     ASSERT_NEAR(values[0], std::max(0.0, free_m - 2e-3), 5e-6) << k;
     ASSERT_NEAR(filter.surface_m(), 2e-3 + values[0], 1e-15);
   }
 }
 
-// As above, with a time that grows e-fold in every 2 mm: while the tool is away, by the
-// depth of the surface that comes back, not by that of the tool.
+// As above, with a relaxation time that grows e-fold per 2 mm. Without contact it depends on
+// the depth of the returning surface, not on that of the tool.
 TEST(FeatureMemory, ASurfaceOnItsOwnRelaxesByItsOwnDepth) {
   const DriveCurve elastic{5e-3, {1.5}};
   FeatureSpec branch = maxwell(0.2, DriveCurve{5e-3, {3.0}});
@@ -45,14 +45,14 @@ TEST(FeatureMemory, ASurfaceOnItsOwnRelaxesByItsOwnDepth) {
   double free_m = 4e-3 * (2.0 / 3.0);
   for (int k = 0; k <= 2000; ++k, ++i) {
     feed(filter, 1e-3 * i, 0.1e-3);
-    // A lag of one step, and 10 uN.
+    // Tolerance: a lag of one step, and 10 uN.
     ASSERT_NEAR(filter.surface_m(), free_m, 1e-5) << k;
     for (int part = 0; part < 10; ++part) free_m -= 1e-4 * free_m / (3.0 * 0.2 * std::exp(2.5 * free_m / 5e-3));
   }
   EXPECT_LT(free_m, 1.5e-3) << "it came back a good way";
 }
 
-// The same touches in the frame of a rig whose zero lies half a millimetre above.
+// The same motion relative to a surface at half a millimetre gives the same features.
 TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
   std::vector<FeatureSpec> specs = {FeatureSpec{},
                                     {FeatureKind::velocity},
@@ -67,7 +67,7 @@ TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
     const FeatureVector& a = feed(plain, 1e-3 * i, position_m, 0.01);
     const FeatureVector& b = feed(moved, 1e-3 * i, position_m + 0.5e-3, 0.01);
     ASSERT_EQ(a.in_contact, b.in_contact);
-    // Positions differ by rounding, 1e-19 m of some N/mm.
+    // Positions differ by rounding, 1e-19 m at some N/mm.
     for (std::size_t k = 0; k < specs.size(); ++k) ASSERT_NEAR(a.values[k], b.values[k], 1e-12) << k;
   }
 }
@@ -82,8 +82,8 @@ TEST(FeatureMemory, ABranchMaySlowDownWithDepth) {
   EXPECT_NEAR(filter.vector().values[0], start_N * std::exp(-1.0 / (0.2 * std::exp(1.0))), 1e-9);
 }
 
-// Of a whole material, force never below zero: what it gave in the first cycles it had
-// to be given first, so that the sum over all of them counts.
+// A complete material with nonnegative force. Energy returned in a cycle may have been stored
+// in an earlier one, so the sum over all cycles from rest must be positive.
 TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
   const DriveCurve elastic{5e-3, {0.5, 0.4}};
   for (const double slowing : {0.0, 3.0, -2.0}) {
@@ -108,7 +108,7 @@ TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
   }
 }
 
-// What a change of models in mid-press does: the memory of the same features goes on.
+// After an exchange of models in mid-press, the memory of equal features continues.
 TEST(FeatureMemory, AnotherFilterAdoptsTheMemoryOfTheSameFeatures) {
   const std::vector<FeatureSpec> before_specs = {FeatureSpec{}, stops({1e-4, 3e-4}, stiffening()),
                                                  creep({2.0}, stiffening()), maxwell(0.3, stiffening())};

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-// Sums of some thousand steps, each rounded: relative error well below this.
+// The relative rounding error of sums over some thousand steps is well below this.
 constexpr double kRounding = 1e-11;
 
 TEST(Features, ASpectrumIsTheSumOfItsBranches) {
@@ -31,7 +31,7 @@ TEST(Features, ASpectrumIsTheSumOfItsBranches) {
 }
 
 TEST(Features, AStopBendsThenSlipsAndTurnsWithTheTool) {
-  // g = 1 N at every depth that is met here: u^1 with a reference of the depth itself.
+  // The drive is g(d) = 1 N d / 5 mm.
   const double threshold_m = 1e-4;
   FeatureFilter filter({stops({threshold_m}, {5e-3, {1.0, 0.0, 0.0, 0.0}})});
   const auto at = [&](double depth_m, double bend_m) { return depth_m / 5e-3 * bend_m / threshold_m; };
@@ -53,14 +53,14 @@ TEST(Features, FreeAirForgetsStopsAndCreepGoesOnInIt) {
   EXPECT_LT(feed(filter, 0.4, 5e-5).values[1], stiffening().at(5e-5) * 5e-5 / 5e-3) << "bent backwards by the way out";
   filter = left;
   for (int i = 1; i <= 20000; ++i) feed(filter, 0.3 + 10.0 * i, -1e-3);
-  // After 4e5 times its own, q = r / sqrt(2 t / tau) is a thousandth of r.
+  // After t = 4e5 tau, q = r / sqrt(2 t / tau) is a thousandth of r.
   EXPECT_NEAR(feed(filter, 200001.0, 5e-5).values[1], stiffening().at(5e-5) * 5e-5 / 5e-3,
               2e-3 * stiffening().at(5e-5));
   EXPECT_NEAR(filter.vector().values[0], stiffening().at(5e-5) * 0.5, 1e-15) << "bristles arrive unbent";
 }
 
-// dq/dt = -(q / tau) (q / r)^2 from q_0: q = q_0 / sqrt(1 + 2 (t / tau) (q_0 / r)^2), and
-// steps of any length give the same.
+// dq/dt = -(q / tau) (q / r)^2 has the solution q = q_0 / sqrt(1 + 2 (t / tau) (q_0 / r)^2).
+// The result does not depend on the step length.
 TEST(Features, CreepFallsWithTheRootOfTime) {
   FeatureFilter filter({creep({0.5}, {5e-3, {1.0, 0.0, 0.0, 0.0}})});
   feed(filter, 0.0, 0.0);
@@ -71,7 +71,7 @@ TEST(Features, CreepFallsWithTheRootOfTime) {
   }
 }
 
-// The work over a closed cycle in the limit cycle, by the trapezoidal rule.
+// The work of a closed cycle after the transient, by the trapezoidal rule.
 double work_of_a_cycle(const FeatureSpec& spec, double duration_s, int steps) {
   FeatureFilter filter({spec});
   double before_N = 0.0;
@@ -137,14 +137,14 @@ TEST(Features, UnevenStepsOfARampGiveTheSameAsEvenOnes) {
   }
   const double rise = 0.01 * (1.0 - std::exp(-t / tau_s));
   EXPECT_NEAR(filter.vector().values[0], rise, 0.01 * kRounding);
-  // Beyond 2 mm a straight drive curve goes on straight: 0.5 N / 2 mm x tau x rise.
+  // A linear drive curve continues linearly beyond 2 mm: 0.5 N / 2 mm x tau x rise.
   EXPECT_NEAR(filter.vector().values[1], 250.0 * tau_s * rise, kRounding);
 }
 
 TEST(Features, AMaxwellBranchWithAStraightDriveIsTheLowpass) {
   const double tau_s = 0.4;
   const double depth_m = 3e-3;
-  // g = d / tau, that is coefficient / depth = 1 / tau.
+  // g(d) = d / tau, that is, coefficient / depth = 1 / tau.
   FeatureFilter filter({lowpass(tau_s), maxwell(tau_s, {depth_m, {depth_m / tau_s, 0.0, 0.0, 0.0}})});
   for (int i = 0; i < 2000; ++i) {
     const double t = 1e-3 * i;
@@ -154,9 +154,9 @@ TEST(Features, AMaxwellBranchWithAStraightDriveIsTheLowpass) {
 }
 
 // dz/dt = g'(d) dd/dt - z / tau by the classical Runge-Kutta method at 10 us, whose
-// own error is below 1e-12 here. The filter at 1 ms takes g(d(t)) as straight
-// between samples; for a smooth drive the error of that is h^2/12 max|g''|/..., measured
-// 2e-6 of the peak, and falls with h^2.
+// own error is below 1e-12 here. The filter at 1 ms assumes that g(d(t)) is linear
+// between samples. For a smooth drive the error of that is proportional to h^2,
+// measured 2e-6 of the peak.
 double integrated_maxwell(const std::function<double(double)>& rate_N_per_s, double tau_s, double end_s) {
   const double h = 1e-5;
   const auto slope = [&](double t, double z) { return rate_N_per_s(t) - z / tau_s; };
@@ -191,9 +191,9 @@ TEST(Features, AMaxwellBranchAgreesWithFineIntegration) {
   }
 }
 
-// The discretisation is exact for straight motion between samples; for this one the
-// depth between two samples at 500 Hz is curved by at most a h^2 / 8 = 0.1 um, and the
-// filters forget it: 0.1 % of each feature's range is a bound with a margin of ten.
+// The discretisation is exact for linear motion between samples. Here the depth
+// deviates from linear by at most a h^2 / 8 = 0.1 um at 500 Hz, and the filters forget
+// it. The tolerance of 0.1 % of each feature's range has a margin of ten.
 void expect_same_at_every_rate(const std::vector<FeatureSpec>& specs) {
   using Values = std::array<double, kMaxFeatures>;
   const auto run = [&](double rate_Hz, std::vector<Values>& at_500_Hz) {
@@ -202,7 +202,7 @@ void expect_same_at_every_rate(const std::vector<FeatureSpec>& specs) {
     for (int i = 0; i <= static_cast<int>(4.0 * rate_Hz); ++i) {
       const double t = static_cast<double>(i) / rate_Hz;
       const double omega = 2.0 * std::numbers::pi * 1.1;
-      // In and out of the block, with a tremor.
+      // Strokes in and out of the block, with tremor.
       const double tremor = 2.0 * std::numbers::pi * 9.0;
       const double position_m = 3e-3 * std::sin(omega * t) + 5e-5 * std::sin(tremor * t);
       const double velocity_m_per_s = 3e-3 * omega * std::cos(omega * t) + 5e-5 * tremor * std::cos(tremor * t);
@@ -254,14 +254,14 @@ TEST(Features, FreeAirRelaxesAndDoesNotLoad) {
                         stops({1e-4}, stiffening()),
                         creep({0.5}, stiffening())});
   int i = 0;
-  // Fast strokes in the air leave everything at rest.
+  // Fast strokes in the air do not change any feature.
   for (; i < 500; ++i) {
     const FeatureVector& vector = feed(filter, 1e-3 * i, -0.02 + 0.019 * std::sin(0.1 * i), 1.9 * std::cos(0.1 * i));
     ASSERT_EQ(vector.values, FeatureVector{}.values);
     ASSERT_FALSE(vector.in_contact);
   }
   feed(filter, 1e-3 * i++, -1e-6);
-  // In by 3 mm, then out within 1 ms: from then on only the decay of what is left.
+  // In by 3 mm, then out within 1 ms. After that the memory only decays.
   for (int k = 0; k < 100; ++k) feed(filter, 1e-3 * i++, 3e-5 * k, 0.03);
   feed(filter, 1e-3 * i++, -1e-3, -4.0);
   const double start = filter.vector().values[2];
@@ -314,7 +314,7 @@ TEST(Features, HaveNamesWithUnits) {
 
 // A million ticks of a sine: the low-pass's steady state is the closed form
 //   y = A w / sqrt(1 + (w tau)^2) cos(w t - atan(w tau)),
-// to the error of taking the depth as straight between ticks, (w h)^2 / 8.
+// up to the error of linear depth between ticks, (w h)^2 / 8.
 TEST(Features, AMillionTicksDoNotDrift) {
   const double tau_s = 1.27;
   const double w = 2.0 * std::numbers::pi * 0.5;
@@ -331,7 +331,7 @@ TEST(Features, AMillionTicksDoNotDrift) {
   EXPECT_LT(worst, 3e-6 * amplitude_m * w);
 }
 
-// An hour at rest, pressed in: filters are exactly zero, by way of no denormal.
+// After an hour at rest in contact, filters are exactly zero and never were denormal.
 TEST(Features, AnHourAtRestLeavesZero) {
   FeatureFilter filter({lowpass(0.17), maxwell(1.27, stiffening())});
   feed(filter, 0.0, 0.0);

@@ -1,5 +1,5 @@
-// The tick: what it must never do, what it says about bad samples, and that it
-// computes each thing once.
+// The tick: no forbidden operations, faults for bad samples, and no repeated
+// computation.
 #include "engine/tick/haptics_tick.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::shared_ptr<const FittedModel> fitted(const ModelData& data) { return std::make_shared<const FittedModel>(data); }
 
-// Gives whatever it is told to.
+// Returns the estimate that a test sets.
 class StubModel final : public ForceModel {
  public:
   explicit StubModel(double force_N, bool outside = false) : force_N_(force_N), outside_(outside) {}
@@ -39,7 +39,7 @@ class StubModel final : public ForceModel {
 };
 
 // 10,000 ticks over strokes that enter, leave and exceed the models' domain, with
-// bad samples among them; offences of all ticks together.
+// bad samples among them. Returns the sum of all offences.
 int offences(const Models& models, const SensorSpec& sensor) {
   Recording recording = test::example_recording(10000, 1000.0, sensor.encoder_step_m);
   recording.rows[500].position_m = kNaN;
@@ -87,7 +87,7 @@ TEST(HapticsTick, LatchesBadSamplesAndKeepsItsState) {
   expect_kept({0.102, 3e-3, 0.0, -kInfinity}, TickFault::bad_sample);
   expect_kept({0.101, 4e-3, 0.0, 0.0}, TickFault::time_not_later);
   expect_kept({0.05, 4e-3, 0.0, 0.0}, TickFault::time_not_later);
-  // The next good sample goes on as if nothing had been there.
+  // The next good sample continues as if the bad one had not existed.
   const TickSnapshot after = tick.step({0.102, 3e-3, 0.0, 0.0});
   EXPECT_EQ(after.fault, TickFault::none);
   EXPECT_EQ(after.tick, 109u) << "bad samples are ticks as well";
@@ -156,7 +156,7 @@ TEST(HapticsTick, OneModelsForceDoesNotDependOnItsNeighbours) {
   }
 }
 
-// In mid-press: what both models have in common is as if the second had always been there.
+// After an exchange in mid-press, common features are as if the second model had run from the start.
 TEST(HapticsTick, AnotherModelGoesOnWithTheMemoriesOfTheFirst) {
   const ModelData first = test::example_model("greedy", KernelKind::cubic, test::memory_features(), 1);
   ModelData second = test::example_model("random", KernelKind::linear, test::memory_features(), 2);
@@ -187,7 +187,7 @@ TEST(HapticsTick, ResetStartsANewStream) {
   HapticsTick tick({30e-6, 0.0}, {fitted(test::example_models().front())});
   std::vector<double> first;
   for (const RecordingRow& row : recording.rows) first.push_back(tick.step(tool_sample(row)).force_N[0]);
-  tick.reset();  // time may begin again, earlier than before
+  tick.reset();  // time may restart at an earlier value
   for (std::size_t i = 0; i < recording.rows.size(); ++i) {
     const TickSnapshot& snapshot = tick.step(tool_sample(recording.rows[i]));
     ASSERT_EQ(snapshot.fault, TickFault::none);

@@ -1,5 +1,5 @@
-// The motion estimator on quantised motion whose velocity is known, beside what
-// others use: raw differences, a 40 Hz low-pass and first-order adaptive windowing.
+// The motion estimator on quantised motion with known velocity, compared with raw
+// differences, a 40 Hz low-pass and first-order adaptive windowing.
 #include "engine/tick/motion_estimator.h"
 
 #include <gtest/gtest.h>
@@ -80,11 +80,11 @@ class Hand {
   std::vector<Wave> tremor_;
 };
 
-// A velocity from one sample after the other.
+// Returns a velocity for each sample in turn.
 using Estimator = std::function<double(const ToolSample&)>;
 
-// Mean square velocity error on 10 s of one hand; the first half second, where every
-// filter starts, does not count.
+// Mean squared velocity error on 10 s of one hand, without the first half second, in which
+// the filters start.
 double mean_square_error(Estimator estimate, bool accelerometer, std::uint64_t seed) {
   const double seconds = 10.0;
   const Hand hand(seconds, seed);
@@ -159,7 +159,7 @@ Estimator adaptive_window(double bound_m, std::size_t longest) {
 
 TEST(MotionEstimator, BeatsTheUsualEstimatorsOnAnEncoder) {
   const double error = rms_error(ours({kStep_m, 0.0}));
-  // The bound and the window that suit adaptive windowing best here.
+  // The bound and window with the smallest error of adaptive windowing.
   double window = 1.0;
   for (const double bound : {0.5, 0.75, 1.0}) {
     for (const std::size_t longest : {16u, 32u, 64u}) {
@@ -172,8 +172,8 @@ TEST(MotionEstimator, BeatsTheUsualEstimatorsOnAnEncoder) {
   RecordProperty("adaptive_window_um_per_s", static_cast<int>(1e6 * window));
   RecordProperty("lowpass_um_per_s", static_cast<int>(1e6 * lowpass));
   RecordProperty("difference_um_per_s", static_cast<int>(1e6 * raw));
-  // Measured 0.76; adaptive windowing is at the best of nine settings, chosen with
-  // the truth in hand.
+  // Measured: 0.76. Adaptive windowing has the best of nine settings, chosen with the
+  // true velocity.
   EXPECT_LT(error, 0.8 * window);
   EXPECT_LT(error, lowpass);
   EXPECT_LT(error, raw);
@@ -200,14 +200,14 @@ TEST(MotionEstimator, FollowsASteadyRampWithoutBias) {
       position_error_m = std::max(position_error_m, std::abs(motion.position_m - speed_m_per_s * t));
       ++counted;
     }
-    // Slow ramps, a step in 75 ms here, come out up to a fifth too slow: 0.1 mm/s,
-    // which a viscosity of 20 Ns/m makes 2 mN, a thirtieth of the smallest JND.
+    // Slow ramps (here a step in 75 ms) are estimated up to a fifth too slow: 0.1 mm/s.
+    // With a viscosity of 20 Ns/m this is 2 mN, a thirtieth of the smallest JND.
     EXPECT_NEAR(sum / counted, speed_m_per_s, 1e-4) << speed_m_per_s;
     EXPECT_LT(position_error_m, kStep_m) << speed_m_per_s;
   }
 }
 
-// On an edge of the encoder the reading may flip with every sample; the tool rests.
+// On an edge of the encoder the reading may flip with every sample while the tool rests.
 TEST(MotionEstimator, DoesNotChatterAtRestOnAnEdge) {
   MotionEstimator estimator({kStep_m, 0.0});
   const double raw_m_per_s = kStep_m / 1e-3;
@@ -232,7 +232,7 @@ TEST(MotionEstimator, ComesToRestWithTheTool) {
   EXPECT_NEAR(motion.position_m, 0.01, kStep_m);
 }
 
-// The time step is taken from the samples: jitter costs little.
+// Time steps are those of the samples, so that jitter increases the error only slightly.
 TEST(MotionEstimator, TakesUnevenTimeSteps) {
   const Hand hand(10.0, 20261120);
   const auto run = [&](double jitter) {
@@ -255,7 +255,7 @@ TEST(MotionEstimator, TakesUnevenTimeSteps) {
   EXPECT_LT(run(0.9), 1.25 * run(0.0));
 }
 
-// From 10 Hz to 20 kHz: finite, and a slow sine is followed as far as the rate allows.
+// From 10 Hz to 20 kHz the estimate is finite and follows a slow sine as far as the rate allows.
 TEST(MotionEstimator, WorksAtEveryRateOfTheContract) {
   for (const double rate_Hz : {10.0, 100.0, 20000.0}) {
     MotionEstimator estimator({kStep_m, 0.0});
@@ -297,7 +297,7 @@ TEST(MotionEstimator, IgnoresASampleThatIsNotLater) {
   EXPECT_EQ(before.velocity_m_per_s, again.velocity_m_per_s);
 }
 
-// Any step from 1 us to a day, any encoder, any repeat: finite, and in the encoder's interval.
+// For time steps from 1 us to a day and any encoder, the estimate is finite and in the encoder's interval.
 TEST(MotionEstimator, StaysFiniteAndInTheEncodersIntervalWhateverTheSteps) {
   for (const double step_m : {0.0, 1e-7, 1e-6, 30e-6, 1e-3}) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
@@ -310,7 +310,7 @@ TEST(MotionEstimator, StaysFiniteAndInTheEncodersIntervalWhateverTheSteps) {
       double scale = 3.0;
       for (int i = 0; i < 2000; ++i) {
         if (share(engine) < 0.01) scale = 6.0 * share(engine);
-        // 1 us to 1 s in runs of like steps, now and then up to a day.
+        // Runs of similar time steps of 1 us to 1 s, and sometimes one of up to a day.
         t += share(engine) < 0.002 ? std::pow(10.0, 5.0 * share(engine))
                                    : std::pow(10.0, -scale) * (0.5 + share(engine));
         if (share(engine) < 0.5)
@@ -321,7 +321,7 @@ TEST(MotionEstimator, StaysFiniteAndInTheEncodersIntervalWhateverTheSteps) {
         ASSERT_TRUE(std::isfinite(motion.velocity_m_per_s)) << step_m << " " << seed << " " << i;
         ASSERT_LE(std::abs(motion.position_m - reading_m), 0.5 * step_m + 1e-15) << step_m << " " << seed << " " << i;
       }
-      // A millisecond each, at rest: the same again as if nothing had been.
+      // After 500 ticks at rest the velocity is near 0 again.
       MotionEstimate motion;
       for (int i = 0; i < 500; ++i) motion = estimator.update({t += 1e-3, 0.0, 0.0, 0.0});
       EXPECT_NEAR(motion.velocity_m_per_s, 0.0, 0.05) << step_m << " " << seed;
@@ -340,7 +340,7 @@ TEST(MotionEstimator, ExactHoldsAtLowRatesAreTheReadings) {
   }
 }
 
-// An hour with the tool elsewhere, an hour at one place.
+// Gaps of up to a day, after which the tool is elsewhere.
 TEST(MotionEstimator, GoesOnAfterALongGap) {
   for (const double gap_s : {0.3, 10.0, 3600.0, 86400.0}) {
     MotionEstimator estimator({kStep_m, 0.0});
@@ -355,7 +355,7 @@ TEST(MotionEstimator, GoesOnAfterALongGap) {
   }
 }
 
-// One reading that is far off is left out; a second one is where the tool is.
+// A single outlier is ignored. A second one at the same position is accepted.
 TEST(MotionEstimator, LeavesOneGlitchOut) {
   for (const double glitch_m : {0.3, -0.3, 1.0}) {
     MotionEstimator with({kStep_m, 0.0});

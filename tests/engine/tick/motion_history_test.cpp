@@ -1,4 +1,4 @@
-// What models that join in mid-press know of the material (engine/tick/motion_history.h).
+// The state of models that join in mid-press (engine/tick/motion_history.h).
 #include "engine/tick/motion_history.h"
 
 #include <gtest/gtest.h>
@@ -15,15 +15,15 @@ namespace {
 using Models = std::vector<std::shared_ptr<const ForceModel>>;
 
 constexpr std::size_t kJoin = 1900;   // in mid-press
-constexpr std::size_t kNotSeen = 40;  // ticks before it that the slow side has not read yet
+constexpr std::size_t kNotSeen = 40;  // ticks before kJoin that the slow side has not read yet
 
 struct Join {
   bool knows_history = true;
-  std::size_t restart = 0;  // the stream begins anew at this tick
+  std::size_t restart = 0;  // the stream restarts at this tick
 };
 
-// The largest difference between a model that joins a tick without models and one that
-// was there from the beginning, over half a second.
+// The largest force difference over half a second between a model that joins at kJoin and
+// one that ran from the start.
 double difference_N(const ModelData& data, const Join& join) {
   const Recording recording = test::example_recording(kJoin + 500, 1000.0);
   EXPECT_GT(recording.rows[kJoin].position_m, 2e-3) << "in mid-press";
@@ -57,7 +57,7 @@ double difference_N(const ModelData& data, const Join& join) {
 ModelData slow_material() { return test::example_model("trend", KernelKind::cubic, test::maxwell_features(), 3); }
 
 TEST(MotionHistory, AModelThatJoinsInMidPressKnowsThePressUpToNow) {
-  // 40 ms of the way are straightened, of branches of 0.1 and 1.1 s: 0.4 mN.
+  // The last 40 ms of the motion are taken as linear, with branches of 0.1 and 1.1 s: 0.4 mN.
   EXPECT_LT(difference_N(slow_material(), {}), 1e-3);
   EXPECT_GT(difference_N(slow_material(), {.knows_history = false}), 0.1) << "at rest under the tool";
 }
@@ -69,10 +69,10 @@ TEST(MotionHistory, OfEveryFeature) {
   }
 }
 
-// As the tick: what was before is gone.
+// Like the tick, the history forgets the previous stream.
 TEST(MotionHistory, ForgetsWithANewStream) {
   EXPECT_LT(difference_N(slow_material(), {.restart = kJoin - 300}), 5e-3);
-  // Nothing was seen of it yet: at rest where it began.
+  // Nothing of the new stream was read yet: the material is at rest at its first sample.
   EXPECT_LT(difference_N(slow_material(), {.restart = kJoin}), 1e-12);
 }
 

@@ -1,4 +1,4 @@
-// Replay is the tick and nothing else.
+// Replay gives exactly the results of the tick.
 #include "engine/tick/replay.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using test::example_recording;
 
-// Every number a replay gives, in order.
+// All numbers of a replay, in order.
 struct Trace {
   std::vector<double> values;
   ReplayVisitor visitor() {
@@ -36,7 +36,7 @@ ForceModels all_models() {
   return models;
 }
 
-// A rig whose material begins at 6.2 mm: what lies before it is air.
+// A rig whose material starts at 6.2 mm; before that is air.
 TEST(Replay, ContactCountsFromTheSurfaceOfTheModel) {
   std::vector<FeatureSpec> features = test::position_features();
   features.front().surface_position_m = 6.2e-3;
@@ -80,8 +80,8 @@ TEST(Replay, EqualsSteppingByHand) {
   EXPECT_NEAR(summary->sensor.encoder_step_m, 30e-6, 1e-12);
 }
 
-// Moved, the tick sees what it would see of a recording with other positions; the
-// visitor gets the row as it is. The offset is a power of two, so that no sum rounds.
+// With an offset, the tick gets the same as from a recording with moved positions; the
+// visitor gets the original row. The offset is a power of two, so that no sum rounds.
 TEST(Replay, MovesTheSurface) {
   const double offset_m = std::ldexp(1.0, -12);
   Recording recording = example_recording(3000, 1000.0);
@@ -105,7 +105,7 @@ TEST(Replay, GivesTheSameEveryTime) {
   EXPECT_EQ(first.values, second.values);
 }
 
-// Longer than the rows that identification looks at, so that chunks follow.
+// Longer than the rows used for identification, so that chunks follow.
 TEST(Replay, InChunksEqualsTheWhole) {
   const test::TemporaryFolder folder;
   const Recording recording = example_recording(kSensorIdentificationRows * 2 + 17, 1000.0, 30e-6);

@@ -20,7 +20,7 @@ double by_powers(double u) {
   return sum;
 }
 
-// Rounding of a dozen terms below 4.
+// The rounding error of a dozen terms below 4.
 constexpr double kRounding = 1e-14;
 
 TEST(RisingCurve, IsThePolynomialAndTheKnots) {

@@ -1,4 +1,4 @@
-// Sensors read off recordings whose sensor is known.
+// Identification of sensors from recordings with a known sensor.
 #include "engine/tick/sensor_identification.h"
 
 #include <gtest/gtest.h>
@@ -38,14 +38,14 @@ TEST(SensorIdentification, FindsTheStepOfAnEncoderInAFile) {
   }
 }
 
-// A program that is told the number of the data sheet gets the bits of replay.
+// The identified step equals the data sheet value exactly, so that both give the same forces.
 TEST(SensorIdentification, AStepOfFewDigitsIsFoundToTheLastBit) {
   for (const double step_m : {30e-6, 25e-6, 1e-6, 1.2345e-5}) {
     EXPECT_EQ(identify(test::example_recording(5000, 1000.0, step_m)).encoder_step_m, step_m);
   }
 }
 
-// A machine's straight strokes, written as they were asked for.
+// Linear strokes of a machine, recorded as commanded positions.
 TEST(SensorIdentification, ARampIsNoEncoder) {
   Recording recording;
   for (int i = 0; i < 1000; ++i) {
@@ -64,8 +64,8 @@ TEST(SensorIdentification, TheLastDigitOfATextIsNoEncoder) {
   EXPECT_EQ(identify(recording).encoder_step_m, 0.0);
 }
 
-// Within the factor of 1.6 that rounding to 1, 2, 5 changes it by, and the 10 % by which
-// the quietest fifth of the windows differs between recordings.
+// The tolerance is a factor of 1.6 for rounding to 1, 2 or 5, and 10 % by which the quietest
+// fifth of the windows differs between recordings.
 TEST(SensorIdentification, FindsTheNoiseOfAPositionThatIsNotQuantised) {
   for (const double noise_m : {1e-6, 5e-6, 20e-6}) {
     Recording recording = test::example_recording(10000, 1000.0);
@@ -76,8 +76,8 @@ TEST(SensorIdentification, FindsTheNoiseOfAPositionThatIsNotQuantised) {
   }
 }
 
-// A velocity that is the difference of encoder readings is wrong by up to a step
-// per sample, evenly: step / dt / sqrt(12).
+// The error of a velocity from encoder differences is uniform, up to a step per
+// sample: its standard deviation is step / dt / sqrt(12).
 TEST(SensorIdentification, KnowsADifferencedVelocityForWhatItIs) {
   Recording recording = test::example_recording(10000, 1000.0, 30e-6);
   recording.columns.velocity = true;
