@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
-// What each room may include beside itself: its own row and, through the rooms
-// named there, theirs. As in the top CMakeLists.txt.
+// The rooms that each room may include: those in its row and, transitively, those in
+// their rows. Must agree with the top-level CMakeLists.txt.
 const std::map<std::string, Names> kRooms = {
     {"engine/base", {}},
     {"engine/json", {"engine/base"}},
@@ -60,7 +60,7 @@ const std::map<std::string, Names> kRooms = {
     {"rendering/app", {"rendering/panels", "scenes/study"}},
 };
 
-// The room of a path such as "models/model/rbf/kernels.h"; empty when it is in none.
+// The room of a path such as "models/model/rbf/kernels.h"; empty if there is none.
 std::string room_of(const std::string& path) {
   const std::size_t top = path.find('/');
   const std::size_t end = top == std::string::npos ? top : path.find('/', top + 1);
@@ -74,13 +74,13 @@ bool reaches(const std::string& from, const std::string& to) {
   return std::any_of(next.begin(), next.end(), [&](const std::string& room) { return reaches(room, to); });
 }
 
-// Drawing sees snapshots and names: no model and no device, although the rooms it
-// stands on do.
+// Rendering uses only snapshots and names. It must not include models or devices, although
+// its rooms depend on them indirectly.
 bool is_hidden_from(const std::string& room, const std::string& included) {
   return room.rfind("rendering/", 0) == 0 && (included.rfind("models/", 0) == 0 || included.rfind("devices/", 0) == 0);
 }
 
-// Third parties by the folders and rooms that may know them; the start of the path counts.
+// The folders and rooms that may include a third-party library, by the start of the include path.
 const std::map<std::string, Names> kOnlyIn = {
     {"GL", {"rendering"}},
     {"GLES", {"rendering"}},
@@ -97,7 +97,7 @@ const std::map<std::string, Names> kOnlyIn = {
     {"nlohmann", {"engine/json", "models", "devices", "scenes", "rendering"}},
 };
 
-// What is wrong with one include in a file of `room`; empty if nothing is.
+// The fault of an include in a file of `room`; empty if it is allowed.
 std::string find_fault(const std::string& room, const std::string& included, bool quoted) {
   const std::string first = included.substr(0, included.find('/'));
   if (first == "tests") return "nothing includes tests";

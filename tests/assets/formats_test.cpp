@@ -1,4 +1,4 @@
-// The documents of the file formats against the files.
+// Checks that the documents of the file formats agree with the files.
 #include <gtest/gtest.h>
 
 #include <regex>

@@ -1,6 +1,6 @@
-// A fitted model in a program of one's own: consumer MODEL.json RECORDING.csv < FORCES.csv
-// reads a table that begins with time and position, and prints the model's force and
-// what a limiter makes of it. The calls are the README's.
+// A fitted model in a user's program: consumer MODEL.json RECORDING.csv < FORCES.csv
+// reads a table that starts with time and position, and prints the model's force and
+// the limited force. The calls are those of the README.
 #include <palpate/palpate.hpp>
 
 #include <cstdio>

@@ -8,8 +8,8 @@
 namespace palpate::test {
 namespace {
 
-// Frames among noise that often begins like one; the function aborts on a fault, so to come
-// back is to pass.
+// Frames in noise that often starts like a frame. The function aborts on a fault, so the
+// test passes if it returns.
 TEST(BridgeStreamFuzz, HoldsForFramesAmongNoise) {
   constexpr std::uint8_t kBeginning[] = {0x50, 0x42, 0x01, 0x49, 0x50, 0x42, 0x02};
   RandomStream random(5, 0);

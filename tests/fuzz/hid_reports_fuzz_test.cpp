@@ -8,8 +8,8 @@
 namespace palpate::test {
 namespace {
 
-// Streams of a hundred reports of the right length, some of them cut or longer; the
-// function aborts on a fault, so to come back is to pass.
+// Streams of a hundred reports of the right length, some of them shorter or longer. The
+// function aborts on a fault, so the test passes if it returns.
 TEST(HidReportsFuzz, HoldsForReportsOfRandomBytes) {
   constexpr std::uint8_t kLengths[] = {64, 25, 7};
   RandomStream random(1, 0);
@@ -22,7 +22,7 @@ TEST(HidReportsFuzz, HoldsForReportsOfRandomBytes) {
         const auto length = odd ? static_cast<std::uint8_t>(random.index(80)) : kLengths[kind % 3];
         data.push_back(length);
         data.push_back(static_cast<std::uint8_t>(random.index(256)));
-        // Mostly zeros, else hardly any report of an OpenFFBoard is one.
+        // Mostly zeros, because random bytes are hardly ever a valid report of an OpenFFBoard.
         for (int byte = 0; byte < length; ++byte) {
           const bool zero = kind % 3 != 0 && byte > 8;
           data.push_back(zero ? std::uint8_t{0} : static_cast<std::uint8_t>(random.next() & 0xFF));

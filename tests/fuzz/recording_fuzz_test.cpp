@@ -12,7 +12,7 @@ void check(const std::string& text) {
   check_recording_bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
 }
 
-// The function aborts on a fault, so to come back is to pass.
+// The function aborts on a fault, so the test passes if it returns.
 TEST(RecordingFuzz, HoldsForEveryBrokenFile) {
   for (const BrokenRecording& broken : broken_recordings()) check(broken.text);
 }

@@ -1,4 +1,4 @@
-// Each fault of a recording is found, and no good recording is blamed for one.
+// Each fault of a recording is found, without false alarms on good recordings.
 #include "models/check/check_recording.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ void each(Recording& recording, const std::function<void(RecordingRow&)>& change
   for (RecordingRow& row : recording.rows) change(row);
 }
 
-// The force of `seconds` ago.
+// Delays the force by `seconds`.
 void delay_force(Recording& recording, double seconds) {
   const Recording before = recording;
   std::size_t j = 0;
@@ -104,7 +104,7 @@ TEST(CheckRecording, WarnsOfNoForceThatAMachineReaches) {
   EXPECT_EQ(find(check, "force_unit"), nullptr) << all_of(check);
 }
 
-// Whatever a finding advises changes the finding when it is done.
+// Following the advice of a finding removes it or its advice.
 TEST(CheckRecording, AdviceThatIsFollowedChangesTheFinding) {
   struct Advice {
     const char* code;
@@ -157,7 +157,7 @@ TEST(CheckRecording, AdviceThatIsFollowedChangesTheFinding) {
   }
 }
 
-// A cable that yields by 46 um, at absolute positions.
+// A cable with an elongation of 46 um, measured at absolute positions.
 TEST(CheckRecording, AdviceScalesWithTheRecording) {
   Recording cable;
   for (int i = 0; i < 20000; ++i) {
@@ -187,7 +187,7 @@ TEST(CheckRecording, NamesTheRowsThatWereLeftOut) {
   EXPECT_STREQ(check.verdict(), "care");
 }
 
-// On retreat 0.3 N more pull than the material's own force, over its last millimetre.
+// Adhesion: on retreat an additional pull of 0.3 N over the last millimetre.
 TEST(CheckRecording, TellsThatTheMaterialPulls) {
   Recording sticky = silicone();
   EXPECT_EQ(find(checked(sticky, kSilicone), "adhesion"), nullptr);
@@ -203,7 +203,7 @@ TEST(CheckRecording, TellsThatTheMaterialPulls) {
   EXPECT_STREQ(check.verdict(), "usable") << all_of(check);
 }
 
-// A block pressed from 3 mm to 8 mm and back, without ever letting go.
+// A block pressed from 3 mm to 8 mm and back, always in contact.
 TEST(CheckRecording, WithoutFreeAirNothingIsToldOfSurfaceAndZero) {
   Recording recording;
   for (int i = 0; i < 8000; ++i) {
@@ -220,7 +220,7 @@ TEST(CheckRecording, WithoutFreeAirNothingIsToldOfSurfaceAndZero) {
   }
 }
 
-// What softens as it goes in looks like a flipped sign, and free air does not.
+// A material that softens with depth looks like a flipped sign, so this is only a warning.
 TEST(CheckRecording, OnlyWarnsOfSignsWhereAMaterialMayBeLikeThat) {
   Recording softening;
   for (int i = 0; i < 1000; ++i) {
@@ -285,7 +285,7 @@ TEST(CheckRecording, BlamesNoRealRecording) {
       ASSERT_TRUE(checked.ok()) << checked.error().message;
       EXPECT_STRNE(checked->check.verdict(), "unusable") << entry.path() << "\n" << all_of(checked->check);
       EXPECT_EQ(find(checked->check, "lag"), nullptr) << entry.path() << "\n" << all_of(checked->check);
-      // The sensor of one rig wanders by 0.2 to 0.4 N.
+      // The force sensor of one rig drifts by 0.2 to 0.4 N.
       const bool wanders = entry.path().string().find("bench_indenter") != std::string::npos;
       EXPECT_TRUE(wanders || find(checked->check, "force_zero_drift") == nullptr) << entry.path();
       const Finding* const strokes = find(checked->check, "strokes");

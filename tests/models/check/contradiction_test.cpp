@@ -1,4 +1,4 @@
-// Forces that differ at the same depth, and what only looks like that.
+// Recordings with different forces at the same depth, and cases that only look like that.
 #include "models/check/contradiction.h"
 
 #include <gtest/gtest.h>
@@ -25,12 +25,12 @@ Recording changed(Recording recording, double shift_m, double offset_N) {
   return recording;
 }
 
-// Slow strokes from 2 mm to 8 mm: no air shows the zero.
+// Slow strokes from 2 mm to 8 mm, without free air that would determine the force zero.
 Recording strokes(double stiffness_N_per_m) {
   Recording made;
   for (int i = 0; i < 4000; ++i) {
     const double x = 5.0 - 3.0 * std::cos(4e-3 * i);  // mm
-    // A shell that buckles: no shift looks like an offset of its force.
+    // A buckling shell: a surface offset cannot explain an offset of its force.
     const double force_N = 1e-3 * stiffness_N_per_m * (0.2 * x + 4.0 * std::exp(-(x - 5.0) * (x - 5.0)));
     made.rows.push_back({1e-2 * i, 1e-3 * x, force_N, 0.0, 0.0});
   }

@@ -1,5 +1,5 @@
-// The exported C file: compiled as a microcontroller's compiler would, and compared
-// with replay sample by sample.
+// The exported C file, compiled with the options of a microcontroller's compiler and
+// compared with replay sample by sample.
 #include "models/export/export_c.h"
 
 #include <gtest/gtest.h>
@@ -60,8 +60,8 @@ TEST(ExportC, InDoublePrecisionItGivesReplaysForcesToANanonewton) {
   }
 }
 
-// A tool that presses, holds and leaves, sampled as badly as can be: uneven steps of 1 us to a
-// second, repeated readings, pauses of up to a day, single readings far off.
+// Presses, holds and releases with bad sampling: uneven steps of 1 us to a second, repeated
+// readings, pauses of up to a day, single outliers.
 std::vector<ToolSample> hard_samples(double encoder_step_m, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> share(0.0, 1.0);
@@ -83,7 +83,7 @@ std::vector<ToolSample> hard_samples(double encoder_step_m, std::uint64_t seed) 
   return samples;
 }
 
-// Of each list of features one.
+// One example model for each list of features.
 std::vector<ModelData> models_by_features() {
   std::vector<ModelData> some;
   for (ModelData& data : test::example_models()) {
@@ -131,7 +131,7 @@ TEST(ExportC, ALongPauseAndAGlitchAreForgottenAtOnce) {
   }
 }
 
-// 1 mN, or a fiftieth of what can be felt.
+// The limit is the larger of 1 mN and a fiftieth of the JND.
 TEST(ExportC, InSinglePrecisionNobodyFeelsTheDifference) {
   const Recording& recording = recordings().front();
   const JndLine jnd;
@@ -149,7 +149,7 @@ TEST(ExportC, InSinglePrecisionNobodyFeelsTheDifference) {
 
 TEST(ExportC, APressDeeperThanRecordedIsOutOfTheDomain) {
   ModelData data = test::example_models().front();
-  data.upper(0) = 3e-3;  // of depth: recordings go to 6 mm
+  data.upper(0) = 3e-3;  // depth; the recordings reach 6 mm
   data.lower(0) = 0.0;
   const Recording& recording = recordings().front();
   const CompiledModel<double> compiled(data, request_for(recording));

@@ -1,6 +1,6 @@
-// A method of another form, made in this file alone: a polynomial in depth and
-// velocity. It is fitted, saved, loaded, replayed, drawn and put into a live slot by
-// code that was never told of it.
+// A new method that exists only in this file: a polynomial in depth and velocity. It
+// is fitted, saved, loaded, replayed, plotted and put into a live slot without changes
+// of other code.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -83,7 +83,7 @@ TEST_F(AnotherMethod, IsFittedSavedLoadedAndReplayed) {
   request.scene = "test";
   request.features = test::paper_features();
   PreparedTraining prepared = test::prepare({recording}, request);
-  prepared.strength.reset();  // a correction whether cross-validation wants one or not
+  prepared.strength.reset();  // a correction regardless of cross-validation
   prepared.sites.strength = 1.0;
   const test::ModelPtr model = test::fit(prepared, find_method("polynomial"));
   const test::ModelPtr trend = test::fit(prepared, &kTrendMethod);

@@ -16,8 +16,8 @@ double between(test::Numbers& numbers, double low, double high) {
 
 constexpr int kFolds = 5;
 
-// `shared`: what every stroke leaves over; `own`: what each has for itself; `first`: the share of
-// the rows that the first has beyond its own.
+// `shared`: size of the residual common to all strokes. `own`: size of the residual that differs
+// between strokes. `first`: additional share of the rows in the first stroke.
 CrossValidationRows make_rows(double shared, double own, double first = 0.0) {
   test::Numbers numbers(3);
   constexpr Eigen::Index kRows = 1000;
@@ -50,11 +50,11 @@ StrengthChoice choose(const CrossValidationRows& rows) {
 TEST(CorrectionStrength, WhatEveryStrokeHasIsCorrected) {
   const StrengthChoice choice = choose(make_rows(0.3, 0.0));
   EXPECT_GE(choice.strength, 0.75);
-  // What is left is the noise of 5 mN, of a JND of 190 mN, and the smoothing.
+  // The remaining error is the noise of 5 mN (with a JND of 190 mN) and the smoothing bias.
   EXPECT_LT(choice.error_over_jnd, 0.1 * choice.trend_error_over_jnd);
 }
 
-// The first stroke has nine tenths of the squares; every stroke counts the same.
+// The first stroke has nine tenths of the squared error, but every stroke has the same weight.
 TEST(CorrectionStrength, AStrokeWithMostOfTheErrorHasOneVoteOfAll) {
   EXPECT_GE(choose(make_rows(0.3, 0.0, 0.8)).strength, 0.75);
 }
@@ -65,8 +65,8 @@ TEST(CorrectionStrength, WhatOnlyOneStrokeHasIsNot) {
   EXPECT_EQ(choice.error_over_jnd, choice.trend_error_over_jnd);
 }
 
-// Every row has rows of other strokes right beside it, so a reach of 0.1 does as well as
-// a wider one but for chance.
+// Every row has close rows of other strokes, so a larger reach than 0.1 has no significant
+// gain in cross-validation.
 TEST(CorrectionStrength, ReachesNoFartherThanStrokesLeftOutReward) {
   const StrengthChoice choice = choose(make_rows(0.3, 0.1));
   EXPECT_GT(choice.strength, 0.0);
@@ -97,7 +97,7 @@ TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
   ASSERT_TRUE(bound.has_value());
   int held = 0;
   for (const CrossValidationPrediction& one : future) held += one.error_N <= bound->at(one.predicted_N, 0.0) ? 1 : 0;
-  // 97 % of 4000, give or take three standard deviations of each half.
+  // The expected coverage is 97 % of 4000. The tolerance is three standard deviations of each half.
   EXPECT_NEAR(held / 4000.0, 0.97, 0.012);
   EXPECT_GE(bound->at(1.0, 1.0), bound->at(1.0, 0.0) + 1.25) << "a quarter of the largest force";
   EXPECT_FALSE(calibrate_bound({}, 0.1, JndLine{}, 5.0).has_value());

@@ -43,7 +43,7 @@ RbfFunction saddle_solution(const Sites& sites, KernelKind kernel, double smooth
   return {kernel, sites.points, solution.head(n), solution.tail(tail.cols())};
 }
 
-// Condition up to 1e7 for these sizes: nine digits are left, eight are asked.
+// The condition number is up to 1e7 here, so nine digits are correct; the test requires eight.
 TEST(FitDirect, SolvesTheSaddleSystemOfEquation4) {
   const Sites sites = smooth_sites(3, 120, 0.01, 1);
   for (const KernelKind kernel : kKernelKinds)
@@ -63,7 +63,7 @@ TEST(FitDirect, InterpolatesWithoutSmoothing) {
   for (const KernelKind kernel : kKernelKinds) {
     const auto fitted = fit_direct(sites, {.kernel = kernel, .smoothing = 0.0});
     ASSERT_TRUE(fitted.ok());
-    // The least smoothing is 1e-15 of the trace; its bias is below 1e-7 here.
+    // The minimum smoothing is 1e-15 of the trace; its bias is below 1e-7 here.
     EXPECT_LE(rms_error(fitted->function, sites), 1e-7) << kernel_name(kernel);
     const Eigen::MatrixXd tail = tail_matrix(tail_degree(kernel), sites.points);
     const double size = fitted->function.weights.cwiseAbs().sum();
@@ -100,16 +100,16 @@ TEST(FitDirect, ChosenSmoothingRemovesNoise) {
   ASSERT_TRUE(fitted.ok());
   const double chosen = rms_error(fitted->function, truth);
   EXPECT_LT(chosen, 0.6 * without);
-  // Near the best of a grid of refits on the noise-free truth.
+  // Close to the best smoothing of a grid, evaluated on the noise-free truth.
   double best = without;
   for (double smoothing = 1e-6; smoothing < 1e6; smoothing *= 10.0)
     best = std::min(best, rms_error(fit_direct(sites, {.smoothing = smoothing})->function, truth));
   EXPECT_LT(chosen, 1.2 * best);
 }
 
-// Forty places with four sites each, 1e-5 apart; strokes that all visit the same
-// places. Leaving out a stroke says nothing about what happens between places,
-// and was seen to choose next to no smoothing: 57 N where the forces are 2 N.
+// Forty clusters of four sites each, 1e-5 apart, as from strokes that repeat the same
+// points. Cross-validation by strokes does not determine the force between clusters and
+// chose almost no smoothing: errors of 57 N with forces of 2 N.
 TEST(ChooseSmoothing, IsNeverFarBelowTheMostLikely) {
   const Sites base = smooth_sites(3, 40, 0.0, 1);
   const Sites truth = smooth_sites(3, 200, 0.0, 99);
@@ -146,8 +146,7 @@ TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
       const auto fitted = fit_direct(sites, {.kernel = kernel});
       ASSERT_TRUE(fitted.ok());
       EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
-      // Nowhere among the data does the fit leave the range of the forces by
-      // more than that range.
+      // At the sites the force is at most twice the largest target.
       const double range = sites.target_N.cwiseAbs().maxCoeff();
       Eigen::VectorXd values;
       RbfEvaluator(fitted->function).evaluate_many(sites.points, values);
@@ -174,7 +173,7 @@ TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
   large.target_N = large.row_scale = Eigen::VectorXd::Ones(kMostDirectSites + 1);
   EXPECT_EQ(fit_direct(large, {}).error().message,
             "a direct fit of 20001 sites is too large, at most 20000; reduce the recording further or use greedy");
-  // Whenever it asks, the last time included; a large factorisation asks on its way.
+  // Interrupts at every progress call, including the last and those within the factorisation.
   const Sites sites = smooth_sites(2, 1100, 0, 1);
   std::vector<double> asked;
   ASSERT_TRUE(fit_direct(sites, {}, {[&](double f) { return asked.push_back(f), true; }}).ok());

@@ -17,8 +17,8 @@ using test::fit_greedy;
 using test::fit_random;
 using test::smooth_sites;
 
-// Section 4.2.3 to the letter: tries every site by solving the least squares
-// problem anew.
+// Section 4.2.3 literally: tries every site by solving the whole least squares
+// problem.
 Eigen::MatrixXd brute_force_centres(const Sites& sites, KernelKind kernel, int count) {
   Eigen::MatrixXd matrix = tail_matrix(tail_degree(kernel), sites.points).array().colwise() * sites.row_scale.array();
   const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
@@ -82,8 +82,8 @@ TEST(FitGreedy, SameSeedSameBits) {
   }
 }
 
-// In one dimension a hundred cubic columns are all but dependent: the case in
-// which |c|^2 - |Q^T c|^2 alone picks at random.
+// In one dimension a hundred cubic columns are almost linearly dependent. Then
+// |c|^2 - |Q^T c|^2 has no correct digits, and selection by it would be random.
 TEST(FitGreedy, KeepsChoosingWellWhenColumnsAreNearlyDependent) {
   const Sites sites = smooth_sites(1, 400, 0.0, 3);
   const auto fitted = fit_greedy(sites, {.centres = 60, .candidates = 0});

@@ -33,7 +33,7 @@ RbfFunction least_squares(const Sites& sites, KernelKind kernel, const Eigen::Ma
   return {kernel, centres, solution.head(centres.cols()), solution.tail(tail.cols())};
 }
 
-// Section 4.2.2 to the letter: a full least squares fit after every split.
+// Section 4.2.2 literally: a full least squares fit after every split.
 Eigen::MatrixXd plain_centres(const Sites& sites, const Eigen::VectorXd& jnd_N, KernelKind kernel, int count) {
   SiteTree tree(sites.points);
   tree.split(0);

@@ -53,7 +53,7 @@ TEST(FitRandom, IdenticalSitesGiveTheirWeightedMean) {
   sites.row_scale.setOnes();
   const auto fitted = fit_random(sites, {});
   ASSERT_TRUE(fitted.ok());
-  // The ridge of four sites may take a share of up to 1e-5 off.
+  // The ridge may reduce the force by a relative 1e-5 with four sites.
   EXPECT_NEAR(rbf_value(fitted->function, sites.points.data()), 3.0, 1e-4);
 }
 

@@ -1,5 +1,5 @@
-// Hard inputs for the whole fit: each ends in a usable, safe model or in one
-// clear error.
+// Hard inputs for the whole fit: each gives a safe model or one clear
+// error.
 #include "models/fit/fit.h"
 
 #include <gtest/gtest.h>
@@ -33,8 +33,8 @@ Result<PreparedTraining> prepare(const Recordings& recordings, const TrainingReq
   return prepare_training(source, request, control);
 }
 
-// Forces of `data` within, around and far beyond its domain: finite, no pull but where the
-// training has one, no more than 1.2 times the largest training force.
+// Inside, near and far outside the domain of `data`, forces are finite, negative only if those of
+// the training are, and at most 1.2 times the largest training force.
 void expect_safe(const ModelData& data) {
   ASSERT_TRUE(validate_model(data).ok());
   const FittedModel model(data);
@@ -51,8 +51,8 @@ void expect_safe(const ModelData& data) {
   }
 }
 
-// Fits every method; `least_within`: the share of the training samples that
-// each model must give within the JND.
+// Fits every method. Each model must have at least the share `least_within` of the
+// training samples within the JND.
 void expect_all_methods(const Recordings& recordings, const TrainingRequest& request, double least_within) {
   const auto prepared = prepare(recordings, request);
   ASSERT_TRUE(prepared.ok()) << prepared.error().message;
@@ -139,7 +139,7 @@ TEST(Fit, JitteredTime) {
   const Recording fine = test::example_recording(15000, 2500.0);
   test::Numbers numbers(3);
   for (std::size_t i = 1; i < recording.rows.size(); ++i) {
-    const double shift = 4.0 * numbers.next();  // of 10 steps
+    const double shift = 4.0 * numbers.next();  // in rows of `fine`, 10 for each row
     recording.rows[i] = fine.rows[10 * i + static_cast<std::size_t>(5.0 + shift) - 5];
   }
   expect_all_methods({recording}, request_for(test::paper_features()), 0.9);
@@ -181,7 +181,7 @@ TEST(Fit, EveryKernelWeightingAndReduction) {
       request.reduction = reduction;
       auto prepared = prepare({recording}, request);
       ASSERT_TRUE(prepared.ok());
-      prepared->strength.reset();  // a correction whether cross-validation wants one or not
+      prepared->strength.reset();  // a correction regardless of cross-validation
       for (const KernelKind kernel : kKernelKinds) {
         MethodRequest asked;
         asked.kernel = kernel;
@@ -231,14 +231,14 @@ TEST(Fit, GivenTimesReplaceTheScenes) {
   EXPECT_EQ(prepared->common.provenance.relaxation_times.size(), 3u);
 }
 
-// Wherever the question comes, the answer "no" ends the fit.
+// Returning false from any progress call interrupts the fit.
 TEST(Fit, StopsWhereverItIsAsked) {
   const Recording recording = test::example_recording(70000, 5000.0);
   const TrainingRequest request = request_for(test::paper_features());
   int questions = 0;
   const auto prepared = prepare({recording}, request, {[&](double) { return ++questions > 0; }});
   ASSERT_TRUE(prepared.ok());
-  ASSERT_GE(questions, 9);  // the passes over 70,000 rows ask too
+  ASSERT_GE(questions, 9);  // includes calls within the passes over 70,000 rows
   for (int stop = 1; stop <= questions; ++stop) {
     int asked = 0;
     const auto stopped = prepare({recording}, request, {[&](double) { return ++asked < stop; }});

@@ -18,7 +18,7 @@ using test::fit_kdtree;
 using test::fit_random;
 using test::smooth_sites;
 
-// The largest difference of two functions' values at the sites.
+// The largest difference of two functions at the sites.
 double difference(const RbfFunction& a, const RbfFunction& b, const Sites& sites) {
   double worst = 0.0;
   for (Eigen::Index i = 0; i < sites.count(); ++i)
@@ -34,9 +34,8 @@ Sites penalised_sites() {
   return sites;
 }
 
-// Forces of about 3 N with columns of condition 1e5: values agree to 1e-11 and
-// better; a ten-thousandth of a nanonewton is far
-// below any threshold.
+// With forces of about 3 N and a condition number of 1e5, values agree to 1e-11 N.
+// The tolerance of 1e-10 N is far below any JND.
 constexpr double kRounding_N = 1e-10;
 
 void expect_direct(const NestedWeights& nested, Eigen::Index count, const Result<FittedRbf>& direct,
@@ -107,7 +106,7 @@ TEST(NestedFit, DegenerateSitesGiveFiniteFunctions) {
   }
 }
 
-// The whole model, name, predicted error and all.
+// Compares the whole model, including name and predicted error.
 TEST(NestedFit, GivesTheModelOfTheDirectFit) {
   RigSettings settings;
   settings.seconds = 8.0;

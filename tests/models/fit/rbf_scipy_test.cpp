@@ -1,4 +1,4 @@
-// Fits and values against scipy's; tests/golden/rbf_scipy.py made the file.
+// Compares fits and values with those of scipy, from tests/golden/rbf_scipy.py.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,21 +40,21 @@ class AgainstScipy : public ::testing::Test {
 TEST_F(AgainstScipy, EvaluatesScipysWeightsToScipysValues) {
   for (const auto& item : golden_.at("cases")) {
     const Eigen::VectorXd tail = vector_of(item.at("tail"));
-    if (tail.size() == 0) continue;  // degree 2: scipy's shifted squares are not turned back
+    if (tail.size() == 0) continue;  // degree 2: scipy's scaled squares are not converted
     const RbfFunction function{*kernel_from_name(item.at("kernel").get<std::string>()), columns_of(item.at("points")),
                                vector_of(item.at("weights")), tail};
     Eigen::VectorXd values;
     RbfEvaluator(function).evaluate_many(columns_of(item.at("queries")), values);
-    // 32 eps of the terms, which the weights' size bounds; distances stay below 4.4.
+    // 32 eps of the sum of absolute terms; distances are below 4.4, so a kernel is below 86.
     const double terms = function.weights.cwiseAbs().sum() * 86.0 + tail.cwiseAbs().sum();
     EXPECT_LE((values - vector_of(item.at("values"))).cwiseAbs().maxCoeff(), 64 * 0x1p-53 * terms);
   }
 }
 
-// Two backward stable solvers, one of which adds the least smoothing (1e-15 of
-// the trace), agree to some 100 eps times the condition number. That is 1e-10
-// or better with smoothing; the quintic in one dimension without any has a
-// condition of 2e13, which leaves no digit, in scipy's weights either.
+// Two backward stable solvers, one with the minimum smoothing (1e-15 of the
+// trace), agree to some 100 eps times the condition number. That is 1e-10 or
+// better with smoothing. The quintic in one dimension without smoothing has a
+// condition number of 2e13 and no correct digit, in scipy's weights either.
 TEST_F(AgainstScipy, FitsTheSameWeightsTailAndValues) {
   for (const auto& item : golden_.at("cases")) {
     Sites sites;

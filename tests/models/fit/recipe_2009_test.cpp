@@ -12,7 +12,7 @@ TEST(Recipe2009, FitsTwoTimesToTheRecording) {
   EXPECT_EQ(request.reduction, Reduction::force);
   EXPECT_EQ(request.weighting, Weighting::relative);
   EXPECT_EQ(request.surface, Surface::recorded);
-  RigSettings settings = test::train_settings("gel");  // 0.05, 0.3, 2 s: not the times of the scene
+  RigSettings settings = test::train_settings("gel");  // 0.05, 0.3, 2 s, unlike the times of the scene
   settings.seconds = 15.0;
   const PreparedTraining prepared = test::prepare({test::rig_recording(settings)}, request);
   const std::vector<RelaxationTime>& times = prepared.common.provenance.relaxation_times;

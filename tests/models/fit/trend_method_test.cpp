@@ -1,4 +1,4 @@
-// The smallest model: the trend, first class in fit, file and evaluation.
+// The smallest model: the trend alone, in fit, file and evaluation.
 #include <gtest/gtest.h>
 
 #include "models/fit/fit.h"
@@ -56,7 +56,7 @@ TEST(TrendMethod, ComesBackFromItsFile) {
   EXPECT_EQ(*write_model_text(*back), *text);
 }
 
-// The command line fills none of it in, so live fits have it too.
+// The fit, not the command line, fills in the provenance, so that live fits have it too.
 TEST(TrendMethod, ProvenanceSaysHowTheDataWerePrepared) {
   const auto fit = fit_trend_alone(Weighting::relative, Reduction::force);
   ASSERT_TRUE(fit.ok()) << fit.error().message;

@@ -1,4 +1,4 @@
-// The C++ face with palpate::fit, as a program of its own sees it: cpp_program TABLE
+// A separate program that uses the C++ interface of palpate::fit: cpp_program TABLE
 // FOLDER imports the table, checks the recording, fits it and replays it.
 #include <palpate/palpate.hpp>
 

@@ -1,4 +1,4 @@
-// palpate::fit: the same models as the program's, from a program of one's own.
+// palpate::fit gives the same models in a separate program as `palpate fit`.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// The C interface: replay's forces to the last bit, its errors, and what it must not do.
+// The C interface: forces bit-identical to replay, errors, and no forbidden operations.
 #include "models/library/palpate/palpate.h"
 
 #include <gtest/gtest.h>
@@ -107,7 +107,7 @@ TEST_F(LibraryC, AStreamGivesReplaysForcesToTheLastBit) {
   }
 }
 
-// The step of the data sheet, not what differences of positions make of it.
+// The identified step is that of the data sheet, without rounding from position differences.
 TEST_F(LibraryC, AnEncoderStepAloneIsEnoughWhenPositionsHaveNoOtherNoise) {
   const ModelHandle model = load(save(test::example_models().front()));
   for (const double step_m : {30e-6, 1e-6, 0.1 / 4096}) {
@@ -225,7 +225,7 @@ TEST_F(LibraryC, AnErrorIsCutBetweenCharacters) {
   }
 }
 
-// A C99 program, built with every warning an error, linked to the shared library.
+// A C99 program, built with warnings as errors and linked to the shared library.
 TEST_F(LibraryC, ACProgramGivesReplaysForces) {
   const Recording recording = test::example_recording(1500, 1000.0, 30e-6);
   const std::string path = save(recording);
@@ -253,7 +253,7 @@ TEST_F(LibraryC, ACProgramGivesReplaysForces) {
   EXPECT_EQ(rows, recording.rows.size());
 }
 
-// In pieces, so that a batch goes on where the last one ended.
+// In pieces, to test that a batch continues where the previous one ended.
 TEST_F(LibraryC, ABatchGivesWhatSamplesGiveOneByOne) {
   const Recording recording = with_channels(test::example_recording(1500, 1000.0, 30e-6));
   std::vector<double> time_s, position_m, velocity_m_per_s, acceleration_m_per_s2;
@@ -292,7 +292,7 @@ TEST_F(LibraryC, ABatchGivesWhatSamplesGiveOneByOne) {
       const double expected_N = palpate_stream_predicted_error(one.get());
       ASSERT_TRUE(bound_N[i] == expected_N || (std::isnan(bound_N[i]) && std::isnan(expected_N)));
     }
-    // The model at a sample's features is the force of the sample.
+    // The model evaluated at the features of a sample gives the force of the sample.
     double at_N = 0.0;
     double trend_N = 0.0;
     ASSERT_EQ(palpate_model_evaluate(model.get(), 1, &features[(n - 500) * width], &at_N, nullptr, &trend_N, nullptr),

@@ -30,11 +30,11 @@ TEST(DomainGuard, EverySiteIsCoveredAndTrusted) {
   }
 }
 
-// What is near a point is left out, wherever in a block of points that one stands.
+// Sites near a point of the cover are left out, wherever that point is in its block.
 TEST(DomainGuard, NoTwoPointsOfACoverAreNearEachOther) {
   for (const int dimension : {1, 2, 4, 8}) {
     const DomainCover cover = make_cover(test::random_points(dimension, 4000, 3));
-    // The inner radius is 1.5 times that of the cover and at least 0.08, that of the cover at least 0.03.
+    // The inner radius is 1.5 times the radius of the cover, at least 0.08; the latter is at least 0.03.
     const double radius = cover.inner_radius > 0.08 ? cover.inner_radius / 1.5 : 0.03;
     for (Eigen::Index i = 1; i < cover.points.cols(); ++i) {
       const Eigen::MatrixXd earlier = cover.points.leftCols(i);

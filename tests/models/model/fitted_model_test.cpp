@@ -72,7 +72,7 @@ TEST(FittedModel, EveryFaultIsNamed) {
       "grid.values_N: found 359 values, expected 360");
 }
 
-// Such a model would jump between no force and the largest one.
+// With such a number, the force would jump between zero and its limit.
 TEST(FittedModel, ANumberFarBeyondTheLimitsOfTheFileIsRefused) {
   void (*const spoils[])(ModelData&) = {
       [](ModelData& d) { d.trend.elastic.pieces_N[3] = 1e300; },
@@ -95,7 +95,7 @@ TEST(FittedModel, ANumberFarBeyondTheLimitsOfTheFileIsRefused) {
             "largest_force_N, correction_limit_N and the JND");
 }
 
-// The equation in the header, term by term.
+// Compares the force with the equation of the header, term by term.
 TEST(FittedModel, IsItsEquation) {
   for (const ModelData& data : test::example_models()) {
     const FittedModel model(data);
@@ -124,7 +124,7 @@ TEST(FittedModel, IsItsEquation) {
 
 TEST(FittedModel, NeverPullsNorExceedsItsLargestForce) {
   for (ModelData data : test::example_models()) {
-    if (rbf_of(data.correction)) test::change_rbf(data, [](RbfFunction& f) { f.weights *= 1e6; });  // a fit gone wild
+    if (rbf_of(data.correction)) test::change_rbf(data, [](RbfFunction& f) { f.weights *= 1e6; });  // a bad fit
     const FittedModel model(data);
     test::Numbers numbers(8);
     bool floor = false;
@@ -165,8 +165,8 @@ TEST(FittedModel, NotANumberGivesNoForceAndIsOutside) {
   }
 }
 
-// A low-pass that is no number costs the correction; the trend, which has no
-// use for it, stands alone.
+// If a low-pass feature is NaN, there is no correction. The force is the trend, which
+// does not use it.
 TEST(FittedModel, ALowPassThatIsNoNumberLeavesTheTrend) {
   const ModelData data = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
   const double x[] = {3e-3, 0.0, kNan, 0.0};

@@ -37,8 +37,8 @@ TEST_P(NearestPointsOnTarget, TheDistanceIsThatOfABruteForceSearch) {
     }
 }
 
-// Not nearly: a force must not depend on which way its trust was found. Also far from the
-// origin, where single precision has little left.
+// Must be exact, because a force must not depend on the algorithm that found its trust. Also far
+// from the origin, where single precision has few digits.
 TEST_P(NearestPointsOnTarget, OneFoundNearIsNoFurther) {
   for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
     for (const int count : {1, 2, 16, 63, 65, 500, 768, 5000})
@@ -56,7 +56,7 @@ TEST_P(NearestPointsOnTarget, OneFoundNearIsNoFurther) {
       }
 }
 
-// What the overlap of the leaves is for: hardly a query has its near points elsewhere.
+// Leaves overlap, so that few queries have their near points only in another leaf.
 TEST_P(NearestPointsOnTarget, HardlyOneThatIsNearIsMissed) {
   const double radius = 0.3;
   const Eigen::MatrixXd points = random_points(3, 768, 1);

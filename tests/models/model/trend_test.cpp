@@ -49,7 +49,7 @@ TEST(Trend, ContinuesAlongItsTangentBeyondTheReferenceDepth) {
   const double slope_N_per_u = 1.0 + 2.0 * 0.5 + 3.0 * 0.25 + 2.0 * 3.0 * 0.625 * 0.625;
   EXPECT_NEAR(at(trend, 10e-3, 0.0), edge + slope_N_per_u, 1e-13);
   EXPECT_NEAR(at(trend, 20e-3, 0.0), edge + 3.0 * slope_N_per_u, 1e-13);
-  // The viscosities keep the value that they have at the edge.
+  // Beyond the edge the viscosities are constant.
   EXPECT_NEAR(at(trend, 10e-3, 0.01) - at(trend, 10e-3, 0.0), at(trend, 5e-3, 0.01) - edge, 1e-13);
 }
 

@@ -1,4 +1,4 @@
-// A late force is told from viscosity, which is early, and from nothing.
+// Identification of a force lag, separately from viscosity (a force lead), and without false alarms.
 #include "models/recordings/force_lag.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ OffsetEstimate lag_of(const std::string& material, double late_s) {
   return find_force_lag(without_lag(all_rows(recording), -late_s), noise_N);
 }
 
-// Two milliseconds, or not told.
+// The tolerance is 2 ms.
 TEST(ForceLag, FindsALateForce) {
   for (const auto& [material, late_s] :
        {std::pair{"silicone", 8e-3}, std::pair{"foam", 30e-3}, std::pair{"stiff", -10e-3}}) {

@@ -1,4 +1,4 @@
-// The one search: told where blocks agree, and never at an edge or between two places.
+// The search for an offset: identified if the blocks agree, never at an edge or between two minima.
 #include "models/recordings/profile_search.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 const SearchRange kRange{-10.0, 10.0, 0.5, 1e-3, 1.0};
 
-// Ten blocks, each a parabola around `at` with a little of its own.
+// Ten blocks, each a parabola with its minimum near `at`.
 BlockCosts bowl(double x, double at, double floor) {
   BlockCosts costs;
   for (int b = 0; b < 10; ++b) costs.push_back(floor + (x - at - 0.02 * (b - 4.5)) * (x - at - 0.02 * (b - 4.5)));
@@ -31,8 +31,8 @@ TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
   EXPECT_EQ(found.at, 0.0);
 }
 
-// All blocks err alike where the material imitates a shift: the jackknife says 0.05 +- 0.02, but
-// no block is better for it by more than its own noise.
+// If the material can imitate an offset, all blocks have the same error. The jackknife gives
+// 0.05 +- 0.02, but the cost is not significantly lower than at 0.
 TEST(ProfileSearch, WhatTheMaterialImitatesIsNotTold) {
   SearchRange with_effect = kRange;
   with_effect.has_systematic_effect = true;
@@ -54,7 +54,7 @@ TEST(ProfileSearch, ABlurIsPartOfTheError) {
   EXPECT_GE(at(3.0).standard_error, 0.5);
 }
 
-// Recordings that do not overlap as recorded fit any way.
+// Recordings that do not overlap at offset 0 have no cost there, which is no evidence for 0.
 TEST(ProfileSearch, ZeroOutsideOfTheRangeSaysNothing) {
   const auto apart = [](double x) { return x == 0.0 ? BlockCosts(10, 0.0) : bowl(x, 5.0, 0.01); };
   const OffsetEstimate found = estimate_offset(apart, {2.0, 10.0, 0.5, 1e-3, 1.0});
@@ -84,7 +84,7 @@ TEST(ProfileSearch, WhatOneBlockAloneSaysIsNotTold) {
   EXPECT_FALSE(estimate_offset(lone, kRange).identified);
 }
 
-// A gap of hours used to make every cost NaN, and the search ended the program.
+// Regression: a gap of hours made all costs NaN, and the search ended the program.
 TEST(ProfileSearch, EndsWhateverTheCostFunctionReturns) {
   const double nan = std::nan("");
   const double infinity = std::numeric_limits<double>::infinity();
@@ -109,7 +109,7 @@ TEST(ProfileSearch, WithoutARangeNothingIsTold) {
   }
 }
 
-// Forces of a straight spring: a shift of 1 is an offset of the force of 3.
+// A linear spring: a surface offset of 1 equals a force offset of 3.
 TEST(ProfileSearch, WhatAForceOffsetExplainsAsWellIsNotTold) {
   const OffsetEstimate shift = estimate_offset([](double x) { return bowl(x, 1.0, 0.01); }, kRange);
   ASSERT_TRUE(shift.identified);

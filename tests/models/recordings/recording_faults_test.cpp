@@ -1,4 +1,4 @@
-// Planted dropouts and repeated positions are found, and no recording without them loses a row.
+// Planted dropouts and repeated positions are found. Other recordings lose no row.
 #include "models/recordings/recording_faults.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(RecordingFaults, FindsDropoutsOfThePosition) {
     Recording recording = silicone();
     const std::size_t planted = drop(recording, &RecordingRow::position_m, share);
     const RecordingFaults faults = remove_faults(recording);
-    // The rest lies where the position is 0 anyway, or two rows on end.
+    // The others are not detectable: the position is near 0 anyway, or two dropouts are adjacent.
     EXPECT_GT(static_cast<double>(faults.position_dropouts), 0.8 * static_cast<double>(planted)) << share;
     EXPECT_LE(faults.position_dropouts, planted + planted / 20) << share;
     EXPECT_EQ(faults.force_dropouts, 0u) << share;
@@ -91,7 +91,7 @@ TEST(RecordingFaults, UsesTheUpdatesOfASlowPositionChannel) {
 }
 
 TEST(RecordingFaults, AnEncoderIsNoSlowChannel) {
-  Recording ramp;  // slower and faster, in steps of 10 um
+  Recording ramp;  // of varying speed, in steps of 10 um
   for (int i = 0; i < 5000; ++i) {
     const double depth_m = 3e-3 * (1.0 - std::cos(2e-3 * i));
     ramp.rows.push_back({1e-3 * i, 10e-6 * std::floor(depth_m / 10e-6), 300.0 * depth_m, 0.0, 0.0});

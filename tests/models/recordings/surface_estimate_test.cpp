@@ -11,9 +11,9 @@
 namespace palpate {
 namespace {
 
-// One press of a spring of 500 N/m from 3 mm out to 5 mm in and back, at 20 mm/s
-// and 1 kHz, then air; begun anew `presses` times, `rest_s` apart. The surface
-// moves by `creep_m` from press to press.
+// Presses of a spring of 500 N/m from 3 mm outside to 5 mm inside and back, at 20 mm/s
+// and 1 kHz. There are `presses` of them, `rest_s` apart in air. The surface moves by
+// `creep_m` from press to press.
 Recording spring_presses(int presses, double rest_s, double creep_m = 0.0) {
   Recording recording;
   recording.name = "spring";
@@ -46,8 +46,8 @@ Recording rig(const std::string& material, std::uint64_t seed) {
   return *test::rig_recording(settings);
 }
 
-// The bound: 0.02 mm, with an encoder of 0.03 mm and force noise of 5 mN. What
-// one touch does not tell from 0 is 0.
+// The required accuracy is 0.02 mm with an encoder of 0.03 mm and force noise of 5 mN. An
+// offset that is not significantly different from 0 is set to 0.
 TEST(SurfaceEstimate, FindsTheShiftAndTheForceZeroOfVirtualRecordings) {
   for (const char* material : {"maxwell", "foam", "gel", "elastic"}) {
     for (const std::uint64_t seed : {1U, 2U}) {
@@ -63,7 +63,7 @@ TEST(SurfaceEstimate, FindsTheShiftAndTheForceZeroOfVirtualRecordings) {
   }
 }
 
-// A ball on a soft solid begins so softly that a touch tells some 0.05 mm at best.
+// With a sphere on a soft solid the force starts so softly that the accuracy is only about 0.05 mm.
 TEST(SurfaceEstimate, FindsLargerShiftsWhereForceBeginsSoftly) {
   for (const char* material : {"silicone", "tissue", "softening"}) {
     for (const std::uint64_t seed : {1U, 2U}) {
@@ -81,9 +81,9 @@ TEST(SurfaceEstimate, InventsNothing) {
   }
 }
 
-// A surface that still recovers meets the tool late: only the touch at rest counts.
+// A surface that is still recovering is touched late, so only touches after a rest count.
 TEST(SurfaceEstimate, OnlyTouchesAtRestCount) {
-  // One touch alone says nothing of a drift.
+  // A single touch does not determine a drift.
   EXPECT_TRUE(std::isinf(estimate_surface(spring_presses(3, 0.5)).offset_drift_error_m));
   EXPECT_TRUE(std::isfinite(estimate_surface(spring_presses(3, kRestBeforeTouch_s)).offset_drift_error_m));
 }
@@ -99,11 +99,11 @@ TEST(SurfaceEstimate, MeasuresADriftingForceZero) {
   Recording recording = spring_presses(3, 6.0);
   const double end_s = recording.rows.back().time_s;
   for (RecordingRow& row : recording.rows) row.force_N += 0.03 * row.time_s / end_s;
-  // Between the middles of the first and the last third.
+  // The drift is measured between the middles of the first and the last third.
   EXPECT_NEAR(estimate_surface(recording).force_zero_drift_N, 0.02, 0.005);
 }
 
-// What an accelerated tool weighs is no force of the material.
+// The inertial force of the tool must not be taken for contact.
 TEST(SurfaceEstimate, TellsInertiaFromContact) {
   Recording recording = rig("silicone", 2);
   for (RecordingRow& row : recording.rows) row.force_N += 0.06 * row.acceleration_m_per_s2;

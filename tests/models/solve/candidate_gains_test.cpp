@@ -14,7 +14,7 @@ namespace {
 
 constexpr KernelKind kKernel = KernelKind::cubic;
 
-// (c . r)^2 / |c'|^2 from a QR factorisation of everything chosen so far.
+// (c . r)^2 / |c'|^2 from a QR factorisation of all columns chosen so far.
 double gain_from_scratch(const Sites& sites, const CandidateGains& gains, const std::vector<Eigen::Index>& chosen,
                          Eigen::Index site) {
   const Eigen::MatrixXd tail = tail_matrix(tail_degree(kKernel), sites.points);
@@ -33,8 +33,8 @@ double gain_from_scratch(const Sites& sites, const CandidateGains& gains, const 
   return c.dot(r) * c.dot(r) / c.squaredNorm();
 }
 
-// Sites come up again after any number of steps, some at every one, some never
-// before the end: what was kept of them must be worth as much as a fresh look.
+// Candidates are updated at various intervals: some at every step, some rarely. The
+// cached gains must equal those computed from scratch.
 TEST(CandidateGains, AreThoseOfAFreshLookHoweverLongAgoTheLastWas) {
   const Sites sites = test::smooth_sites(4, 400, 0.005, 3);
   CandidateGains gains(sites, kKernel);
@@ -65,8 +65,8 @@ TEST(CandidateGains, AreThoseOfAFreshLookHoweverLongAgoTheLastWas) {
   EXPECT_NEAR(gains.gain(never_seen), expected, 1e-6 * expected);
 }
 
-// Beside a chosen centre next to nothing of a column is left: the difference of
-// squares has lost every digit, the column itself has not.
+// Close to a chosen centre a column is almost in the span of the basis. The difference
+// of squares then has no correct digits, but the orthogonalised column has.
 TEST(CandidateGains, KnowsAColumnAllButInsideTheBasis) {
   Sites sites = test::smooth_sites(4, 300, 0.005, 5);
   sites.points.col(1) = sites.points.col(0).array() + 1e-5;

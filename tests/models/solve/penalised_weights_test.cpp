@@ -74,7 +74,7 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
       const auto some = penalised(sites, kernel, sites.points);
       const auto all = fit_direct(sites, {kernel, smoothing});
       ASSERT_TRUE(all.ok());
-      // Two ways through systems with condition numbers up to some 1e6.
+      // Two algorithms for systems with condition numbers up to some 1e6.
       EXPECT_LT(largest_difference(some.function, all->function, sites), 1e-7) << kernel_name(kernel);
     }
   }

@@ -45,7 +45,7 @@ TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
   }
 }
 
-// From so few sites a force of up to 5 N cannot be told from noise.
+// With as few sites as unknowns, signal and noise cannot be separated reliably.
 TEST(SolveWeights, FollowsAsManySitesAsUnknownsToWithinTheSmoothing) {
   const Sites sites = smooth_sites(3, 40, 0.0, 2);
   const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points);
@@ -67,8 +67,8 @@ TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
   EXPECT_LT((weights.head(8) + weights.tail(8) - alone->function.weights).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-// Forty places with six sites each, 1e-6 apart: 44 unknowns, of which the data
-// tell 40. Least squares turns the noise within a place into slopes of 1e4.
+// Forty clusters of six sites each, 1e-6 apart: the data determine 40 of 44
+// unknowns. Least squares fits the noise in a cluster with slopes of 1e4.
 TEST(SolveWeights, TheLikelihoodKeepsNoiseOutOfUnknownsThatTheDataDoNotTell) {
   Sites sites = smooth_sites(3, 240, 0.01, 1);
   const Sites base = smooth_sites(3, 40, 0.0, 1);
@@ -84,12 +84,12 @@ TEST(SolveWeights, TheLikelihoodKeepsNoiseOutOfUnknownsThatTheDataDoNotTell) {
   const auto likely = solve_weights(sites, KernelKind::cubic, base.points);
   ASSERT_TRUE(likely.ok());
   EXPECT_GT(worst_error(least_squares, truth), 100.0);
-  EXPECT_LT(worst_error(likely->function, truth), 2.0);  // 40 places for a cube of forces up to 5 N
+  EXPECT_LT(worst_error(likely->function, truth), 2.0);  // 40 clusters in a cube, with forces up to 5 N
   EXPECT_GT(likely->report.smoothing, 0.0);
   EXPECT_LT(likely->report.residual_rms, 1.1 * (matrix * plain - data).norm() / std::sqrt(240.0));
 }
 
-// Plenty of sites tell their unknowns: least squares, without a side condition.
+// Many sites determine all unknowns: least squares without the side condition.
 TEST(SolveWeights, ManySitesAreLeftAlone) {
   const Sites sites = smooth_sites(3, 2000, 0.001, 1);
   const Eigen::MatrixXd centres = sites.points.leftCols(100);

@@ -49,7 +49,7 @@ TEST(TruncatedSvd, CentresAtOnePointShareTheWeight) {
   ASSERT_TRUE(fitted.ok() && once.ok());
   const Eigen::VectorXd& weights = fitted->function.weights;
   EXPECT_NEAR(weights(0), weights(39), 1e-6 * weights.cwiseAbs().maxCoeff());
-  // The same least squares as without the second of them.
+  // The same least squares error as without the duplicate.
   EXPECT_NEAR(largest_error(sites, fitted->function), largest_error(sites, once->function), 1e-6);
 }
 

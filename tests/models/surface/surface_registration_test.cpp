@@ -41,7 +41,7 @@ RegisteredSurfaces registered(const std::vector<RecordingPtr>& recordings) {
   return test::must(register_surfaces(source));
 }
 
-// Longer recordings come first in a MotionSource: seed 3, 2, 1.
+// A MotionSource orders recordings by length: seed 3, 2, 1.
 TEST(SurfaceRegistration, FindsEveryShiftAndZeroOfASet) {
   for (const double shift_m : {-0.5e-3, 0.5e-3, 4e-3}) {
     const auto surfaces =
@@ -68,8 +68,8 @@ TEST(SurfaceRegistration, InventsNothing) {
   }
 }
 
-// Two ramps of a quasi-linear material (Fung 1993), at 2 and 50 mm/s: quick is stiffer, which a
-// deeper surface would explain, if force did not begin at 0 in both.
+// Two ramps of a quasi-linear material (Fung 1993), at 2 and 50 mm/s. The fast one is stiffer. A
+// surface offset could explain that, but force starts at 0 in both.
 TEST(SurfaceRegistration, TwoSpeedsAreNotAShift) {
   const auto pressed = [](double speed_m_per_s) {
     auto recording = std::make_shared<Recording>();
@@ -91,7 +91,7 @@ TEST(SurfaceRegistration, TwoSpeedsAreNotAShift) {
       RecordingRow row;
       row.time_s = t;
       row.position_m = z;
-      // 2 mN of a wave that no row shares with the next.
+      // Pseudo-noise of 2 mN.
       row.force_N = (z > 0.0 ? std::max(0.0, force_N) : 0.0) + 2e-3 * std::sin(977.0 * t * t + 12.9 * t);
       recording->rows.push_back(row);
     }
@@ -101,7 +101,7 @@ TEST(SurfaceRegistration, TwoSpeedsAreNotAShift) {
   for (const RegisteredSurface& surface : found.recordings) EXPECT_EQ(surface.offset_m, 0.0);
 }
 
-// What all share is the rig's, on either side of 0; nothing is moved by it.
+// An offset common to all recordings, of either sign, is the surface of the model. No recording is moved.
 TEST(SurfaceRegistration, ACommonShiftIsTheModelsSurface) {
   for (const double shift_m : {-0.55e-3, 0.55e-3}) {
     const RegisteredSurfaces found = registered({rig("maxwell", 1, shift_m), rig("maxwell", 2, shift_m)});
@@ -122,7 +122,7 @@ TEST(SurfaceRegistration, ALagThatTheRecordingsShareIsTheRigs) {
   EXPECT_NEAR(registered({late(1), late(2)}).lag_s, 10e-3, 2e-3);
 }
 
-// A press that never lets go, from 1.2 mm to 3.2 mm and back.
+// A press from 1.2 mm to 3.2 mm and back, always in contact.
 RecordingPtr pressed(double seconds, double shift_m) {
   auto recording = std::make_shared<Recording>();
   recording->name = "pressed";
@@ -165,7 +165,7 @@ TEST(SurfaceRegistration, AModelSaysWhereItsRecordingsWere) {
       test::prepare({rig("maxwell", 2, 0.5e-3), rig("maxwell", 3)}, test::scene_request("silicone_block"));
   const auto& surfaces = prepared.common.provenance.surfaces;
   ASSERT_EQ(surfaces.size(), 2u);
-  // Of two either may be the one that is moved.
+  // Either of the two may be moved.
   EXPECT_NEAR(surfaces[1].offset_m - surfaces[0].offset_m, 0.5e-3, 0.1e-3);
   const auto model = test::fit(prepared, &kRandomMethod);
   const ModelData back = test::must(read_model_text(test::must(write_model_text(model->data())), "m.json"));
@@ -175,7 +175,7 @@ TEST(SurfaceRegistration, AModelSaysWhereItsRecordingsWere) {
   EXPECT_EQ(back.provenance.surfaces[1].force_zero_N, surfaces[1].force_zero_N);
 }
 
-// Two files called press.csv: the report moves each by its own offset.
+// Two recordings with the same name: each has its own offset.
 TEST(SurfaceRegistration, SurfacesAreKnownByTheContentOfTheirRecordings) {
   std::vector<RecordingPtr> recordings;
   for (const double offset_m : {0.5e-3, 0.0}) {
@@ -192,7 +192,7 @@ TEST(SurfaceRegistration, SurfacesAreKnownByTheContentOfTheirRecordings) {
   EXPECT_NEAR(offsets_m[0] - offsets_m[1], 0.5e-3, 0.1e-3);
 }
 
-// What one rig records, its model gives back where that rig has it.
+// A model of recordings with a common offset has its surface at that offset.
 TEST(SurfaceRegistration, AModelTouchesWhereItsRecordingsDo) {
   const auto within_jnd = [](double offset_m) {
     const RecordingPtr next = rig("silicone", 2, offset_m);
@@ -204,7 +204,7 @@ TEST(SurfaceRegistration, AModelTouchesWhereItsRecordingsDo) {
     }));
     return errors.summary().within_jnd;
   };
-  // A shift that is found to 0.05 mm costs little.
+  // An error of 0.05 mm in the offset changes the share only slightly.
   for (const double shift_m : {-0.6e-3, 0.6e-3}) EXPECT_NEAR(within_jnd(shift_m), within_jnd(0.0), 0.01) << shift_m;
 }
 

@@ -24,7 +24,7 @@ std::vector<SurfaceRow> moved(const Recording& recording, double offset_m) {
   return thinned_rows(copy, kSearchRows);
 }
 
-// Any size. Gel, whose slowest branch outlasts these short recordings, comes to 0.035 mm.
+// Offsets of any size. Gel is left out: its slowest branch is longer than these recordings (error 0.035 mm).
 TEST(SurfaceSearch, FindsTheShiftOfATestRecording) {
   for (const char* material : {"silicone", "foam", "maxwell"}) {
     const auto training = std::make_shared<const Recording>(shorter(test::train_settings(material), 1));

@@ -66,8 +66,8 @@ TEST(MotionSource, RowsThatAreLeftOutAreARunUpOfTheOthers) {
   for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i].run_up, i >= 1000 && i < 2000) << i;
 }
 
-// Of a recording that is too long the rows are those of the source, in order, from the beginning
-// to the end, in stretches without a gap.
+// A long recording is thinned: the rows are a subset in order, in stretches without gaps
+// from the beginning to the end.
 TEST(MotionSource, OfLongRecordingsKeepsTheBeginningAndStretches) {
   constexpr std::size_t kMost = 8000;
   const std::vector<Input> inputs{in_memory(test::example_recording(60000, 1000.0, 30e-6)),
@@ -105,13 +105,13 @@ TEST(MotionSource, OfLongRecordingsKeepsTheBeginningAndStretches) {
     run_up = row.run_up;
     last = at;
   }
-  EXPECT_LE(longest_gap, kSparse);  // every so-many-th row in between
+  EXPECT_LE(longest_gap, kSparse);  // between stretches every kSparse-th row is kept
   EXPECT_LE(all.size() - last, kSparse);
   EXPECT_GE(stretches[0], 4u);
   EXPECT_GE(stretches[1], 2u);
 }
 
-// Longer than what sensor identification looks at, and than one chunk of the reader.
+// Longer than the rows used for sensor identification, and than one chunk of the reader.
 TEST(MotionSource, FilesAndMemoryGiveTheSameRows) {
   const test::TemporaryFolder folder;
   const Recording recording = test::example_recording(45000, 1000.0, 30e-6);
@@ -120,7 +120,7 @@ TEST(MotionSource, FilesAndMemoryGiveTheSameRows) {
   MotionSource memory({in_memory(recording)});
   const auto first = rows_of(file);
   expect_same(first, rows_of(memory));
-  expect_same(first, rows_of(file));  // the second pass comes from what was kept
+  expect_same(first, rows_of(file));  // the second pass uses the stored rows
   EXPECT_EQ(file.rows(), 45000u);
   EXPECT_EQ(file.names(), std::vector<std::string>{"a"});
   EXPECT_EQ(file.force_noise_N(), memory.force_noise_N());
@@ -154,7 +154,7 @@ TEST(MotionSource, AStrokeDoesNotGoOnIntoTheNextRecording) {
   EXPECT_EQ(rows.back().stroke, 2);
 }
 
-// Contact and strokes follow the moved position.
+// Contact and strokes are determined from the corrected position.
 TEST(MotionSource, CorrectsPositionsAndForces) {
   Recording recording;
   for (int i = 0; i < 40; ++i) recording.rows.push_back({1e-3 * i, i % 10 >= 5 ? 1e-3 : -1e-3, 1.0, 0.0, 0.0});
@@ -207,7 +207,7 @@ TEST(MotionSource, AsksNowAndThenWhetherToGoOn) {
   const FitControl stop{[](double) { return false; }};
   std::size_t seen = 0;
   const auto count = [&](const MotionRow&) { return ++seen > 0; };
-  EXPECT_FALSE(source.for_each(count, stop).ok());  // while it is read
+  EXPECT_FALSE(source.for_each(count, stop).ok());  // during the first pass
   EXPECT_EQ(seen, 0u);
   int questions = 0;
   const FitControl on{[&](double fraction) { return ++questions > 0 && fraction == 0.5; }};
@@ -215,7 +215,7 @@ TEST(MotionSource, AsksNowAndThenWhetherToGoOn) {
   EXPECT_EQ(seen, 200000u);
   EXPECT_GE(questions, 6);
   seen = 0;
-  EXPECT_FALSE(source.for_each(count, stop).ok());  // from what is kept
+  EXPECT_FALSE(source.for_each(count, stop).ok());  // from the stored rows
   EXPECT_EQ(seen, kRowsPerQuestion);
 }
 

@@ -39,7 +39,7 @@ TEST(Selection, TheRootMeanSquareIsOverAllSamples) {
   EXPECT_EQ(FoldErrors(3).rms(), 0.0);
 }
 
-// Equal folds have their own RMS; a hard one counts by its logarithm.
+// For equal folds it equals their RMS. A fold with large errors counts by its logarithm.
 TEST(Selection, TheTypicalErrorIsThatOfTheMeanScore) {
   EXPECT_NEAR(errors_of({4.0, 4.0}).rms_at_mean_score(), 2.0, 1e-12);
   EXPECT_EQ(errors_of({0.0, 0.0}).rms_at_mean_score(), 0.0);

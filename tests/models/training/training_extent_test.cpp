@@ -24,7 +24,7 @@ TEST(TrainingExtent, MeasuresDepthStrokesAndWays) {
   MotionSource source({{"", prepare_recording(presses(10000))}});
   const auto extent = measure_extent(source, {});
   ASSERT_TRUE(extent.ok());
-  EXPECT_NEAR(extent->depth_m, 2e-3, 1e-4);  // what the motion estimate may be off at a turn
+  EXPECT_NEAR(extent->depth_m, 2e-3, 1e-4);  // the error of the motion estimate at a turn
   EXPECT_NEAR(extent->force_N, 1.0, 1e-3);
   EXPECT_EQ(extent->strokes, 10u);
   EXPECT_NEAR(static_cast<double>(extent->contact_samples), 5000.0, 20.0);
@@ -33,7 +33,7 @@ TEST(TrainingExtent, MeasuresDepthStrokesAndWays) {
   EXPECT_NEAR(extent->longest_recording_s, 9.999, 1e-9);
 }
 
-// So many newtons more than the spring gives, and every other sample more or less by the noise.
+// The surface position found for a spring with a preload, with alternating noise of +-`noise_N`.
 double beginning_of(double preload_N, double noise_N, double stiffness_N_per_m) {
   Recording recording = presses(10000);
   for (std::size_t i = 0; i < recording.rows.size(); ++i) {
@@ -49,10 +49,10 @@ double beginning_of(double preload_N, double noise_N, double stiffness_N_per_m) 
 TEST(FindBeginning, IsWhereAForceThatIsFeltBeginsAndElseTheZeroOfPositions) {
   EXPECT_NEAR(beginning_of(0.3, 0.0, 500.0), -0.6e-3, 0.03e-3);
   EXPECT_EQ(beginning_of(0.0, 0.0, 500.0), 0.0);
-  EXPECT_EQ(beginning_of(0.05, 0.0, 500.0), 0.0);  // nobody feels it
-  EXPECT_EQ(beginning_of(0.3, 3.0, 500.0), 0.0);   // within two standard errors of nothing
-  EXPECT_EQ(beginning_of(3.0, 0.0, 500.0), 0.0);   // 6 mm farther out than the recording goes in
-  EXPECT_EQ(beginning_of(-8.0, 0.0, 500.0), 0.0);  // a force zero, or a pull: not a load
+  EXPECT_EQ(beginning_of(0.05, 0.0, 500.0), 0.0);  // the preload is below the JND
+  EXPECT_EQ(beginning_of(0.3, 3.0, 500.0), 0.0);   // the preload is within two standard errors of 0
+  EXPECT_EQ(beginning_of(3.0, 0.0, 500.0), 0.0);   // 6 mm outside, farther than the recording's depth
+  EXPECT_EQ(beginning_of(-8.0, 0.0, 500.0), 0.0);  // a negative offset is not a preload
 }
 
 }  // namespace

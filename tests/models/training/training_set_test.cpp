@@ -14,7 +14,7 @@ namespace {
 
 MotionSource source_of(Recording recording) { return MotionSource({{"", prepare_recording(std::move(recording))}}); }
 
-// A recording at 1 kHz whose positions and forces are given.
+// A recording at 1 kHz with given positions and forces.
 template <typename Function>
 Recording recording_of(int rows, Function position_and_force) {
   Recording recording;
@@ -34,8 +34,8 @@ TrainingSet set_of(const Recording& recording, const std::vector<FeatureSpec>& f
   return *set;
 }
 
-// Noise fills the four dimensions: without a cap nearly every sample would be a
-// site of its own.
+// Noise fills the four dimensions, so that without the cap almost every sample would be
+// a site.
 TEST(TrainingSet, CoverageNeverLeavesMoreThanItsCap) {
   test::Numbers noise(1);
   const Recording recording = recording_of(80000, [&](int i) {
@@ -51,8 +51,8 @@ TEST(TrainingSet, CoverageNeverLeavesMoreThanItsCap) {
   EXPECT_EQ(samples, static_cast<double>(set.contact_samples));
 }
 
-// Position only and the tool at rest in ten places, not evenly apart, which would be the steps of an
-// encoder: ten sites, each with the mean of its samples.
+// The tool rests at ten positions, and the only feature is depth: ten sites, each with the mean of its
+// samples. The positions are unevenly spaced, because equal spaces would look like encoder steps.
 TEST(TrainingSet, ASiteIsTheMeanOfItsCube) {
   const Recording recording = recording_of(5000, [](int i) {
     const int place = i / 500;
@@ -68,15 +68,15 @@ TEST(TrainingSet, ASiteIsTheMeanOfItsCube) {
     depths += site.count * site.features[0];
   }
   EXPECT_EQ(samples, 5000.0);
-  EXPECT_NEAR(forces / samples, 5.5, 1e-9);  // mean of 1 .. 10; rounding of running means
+  EXPECT_NEAR(forces / samples, 5.5, 1e-9);  // the mean of 1 to 10; tolerance: rounding of running means
   EXPECT_NEAR(depths / samples, set.normalisation.offset(0), 1e-12);
   std::size_t large = 0;
   for (const TrainingSite& site : set.sites) {
-    if (site.count < 300.0) continue;  // the estimator needs some samples to arrive
+    if (site.count < 300.0) continue;  // samples during the transient of the motion estimator
     ++large;
     EXPECT_NEAR(site.force_N, std::round(site.force_N), 2e-3);
   }
-  EXPECT_GE(large, 8u);  // the side of a cube may run through a rest
+  EXPECT_GE(large, 8u);  // a rest position may be on the boundary of a cube
 }
 
 TEST(TrainingSet, SamplesWithoutForceShareNoSite) {
@@ -95,7 +95,7 @@ TEST(TrainingSet, ForceReductionKeepsThePapersSamples) {
     return std::pair{3e-3 + 1e-3 * std::sin(0.01 * i), 2.0 + std::sin(0.01 * i) + 0.02 * std::sin(0.7 * i)};
   });
   const TrainingSet set = set_of(recording, test::position_features(), Reduction::force);
-  // The rule of section 2.1, once more.
+  // The rule of section 2.1, implemented independently.
   std::vector<double> expected;
   for (const RecordingRow& row : recording.rows) {
     if (expected.empty() || std::abs(row.force_N - expected.back()) >= 0.05) expected.push_back(row.force_N);
@@ -154,7 +154,7 @@ TEST(TrainingSet, AConstantFeatureHasTheScaleOne) {
   const TrainingSet set = set_of(recording, test::position_features(), Reduction::coverage);
   EXPECT_EQ(set.normalisation.scale(0), 1.0);
   EXPECT_NEAR(set.normalisation.offset(0), 2e-3, 1e-9);
-  EXPECT_LE(set.sites.size(), 2u);  // the side of a cube runs through the mean
+  EXPECT_LE(set.sites.size(), 2u);  // the boundary of a cube is at the mean
 }
 
 TEST(TrainingSet, RefusesRecordingsWithoutContact) {

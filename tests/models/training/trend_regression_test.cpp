@@ -57,13 +57,13 @@ TEST(TrendRegression, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
   const TrendRegression regression(rows, kFolds, problem);
   const Eigen::VectorXd x = regression.solve(regression.all_columns());
   EXPECT_GE(x.minCoeff(), 0.0);
-  // Of up to 4.5 N; the penalty takes what a part's own error of a tenth leaves uncertain.
+  // With forces of up to 4.5 N. The error is a bias of the penalty.
   EXPECT_LT(rms_of(rows, x), 0.02);
   EXPECT_LT(regression.cross_validate(regression.all_columns()).errors.rms(), 0.2);
 }
 
-// On the way in the force is 3 N at the greatest depth, and one sample in four of the way
-// out finds none: the tool has left the material there.
+// The force is 3 N at the greatest depth. On the way out one sample in four has no force,
+// because the tool has left the material.
 TEST(TrendRegression, AForceThatWasNotMeasuredIsNoForceToFollow) {
   int sample_number = 0;
   const TrendRows rows = rows_of(FeatureList{}, [&](const ToolSample&, const MotionEstimate& motion) {
@@ -74,11 +74,11 @@ TEST(TrendRegression, AForceThatWasNotMeasuredIsNoForceToFollow) {
   const TrendRegression regression(rows, kFolds, problem);
   const Trend trend = fitted_trend({}, rows, regression.solve(regression.all_columns()), true).trend;
   const double at[] = {kDepth_m};
-  // Within a JND: what no feature explains is scaled down (weighting.h).
+  // Within a JND: samples that no feature explains get a small weight (weighting.h).
   EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), 3.0, 0.25);
 }
 
-// A soft layer over a hard plate: the force grows thirty-fold over the last tenth of the depth.
+// A soft layer on a hard plate: the force grows thirty-fold in the last tenth of the depth.
 TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
   const auto layer = [](double u) { return 0.3 * u + 9.0 * std::pow(std::max(0.0, u - 0.9) / 0.1, 2); };
   const TrendRows rows = rows_of(FeatureList{}, [&](const ToolSample&, const MotionEstimate& motion) {
@@ -90,12 +90,12 @@ TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
   // The strokes end at 0.975.
   for (const double u : {0.2, 0.5, 0.85, 0.92, 0.95}) {
     const double at[] = {u * kDepth_m};
-    // The JND of the force that was asked for.
+    // The tolerance is the JND of the true force.
     EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), layer(u), 0.065 + 0.0633 * layer(u)) << u;
   }
 }
 
-// What is left out has no influence on the weights that predict it, not even on the robust ones.
+// A left-out fold does not influence the solution that predicts it, nor the robust row weights.
 TEST(TrendRegression, AFoldThatIsLeftOutHasNoInfluence) {
   const auto rows_with = [](double other_N) {
     return rows_of(FeatureList{}, [&](const ToolSample& sample, const MotionEstimate& motion) {

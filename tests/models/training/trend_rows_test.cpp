@@ -75,7 +75,7 @@ TEST(TrendRows, CombinedDriveIsTheWeightedSumOfTheBasis) {
   }
 }
 
-// What says where the surface is: a line is itself, and a rise stays a rise.
+// The coarse curve locates the surface. It must reproduce a line and stay monotonic.
 TEST(TrendRows, TheCoarseCurveIsTheSplineAndRises) {
   const std::vector<ElasticSpline> basis = spline_basis();
   const std::vector<double> ones(kElasticTerms, 1.0);
@@ -88,7 +88,7 @@ TEST(TrendRows, TheCoarseCurveIsTheSplineAndRises) {
   for (int i = 1; i <= 240; ++i) {
     const double u = i / 200.0;
     EXPECT_NEAR(straight.at(u * kDepth_m), u, 1e-12);
-    // Schoenberg's approximation is off by E'' h^2 / 6 with h an eighth, E'' at most 34 here.
+    // The error of Schoenberg's approximation is E'' h^2 / 6, with h = 1/8 and E'' at most 34 here.
     EXPECT_NEAR(coarse.at(std::min(u, 1.0) * kDepth_m), elastic.at(std::min(u, 1.0)), 34.0 / 64.0 / 6.0);
     EXPECT_GE(bend.at(u * kDepth_m), bend.at((u - 0.005) * kDepth_m) - 1e-13);
   }
@@ -125,7 +125,7 @@ TEST(TrendRows, HalvingBoundsTheRowsAndKeepsEvenOnesInOrder) {
     rows.add({1e-3 * i, 0.5, 0.0, 0.0}, {0.5, 0.0}, static_cast<double>(i), i);
     ASSERT_LE(rows.count(), kMaximumTrendRows);
   }
-  // More than four times the bound: every eighth row.
+  // 450,000 rows are more than four times the maximum, so every eighth row is kept.
   ASSERT_EQ(rows.count(), 56250u);
   for (std::size_t i = 0; i < rows.count(); ++i) {
     ASSERT_EQ(rows.force_N(i), 8.0 * static_cast<double>(i));

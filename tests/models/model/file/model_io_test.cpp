@@ -1,5 +1,5 @@
-// Model files: nothing is lost on the way to disk and back, and nothing broken
-// gets in.
+// Model files: writing and reading lose nothing, and broken files are
+// refused.
 #include "models/model/file/model_io.h"
 
 #include <gtest/gtest.h>
@@ -125,7 +125,7 @@ TEST(ModelIo, EveryFieldComesBack) {
     EXPECT_EQ(back.provenance.seed, data.provenance.seed);
     EXPECT_EQ(back.provenance.relaxation_times.size(), 2u);
     EXPECT_EQ(back.provenance.training_within_jnd, data.provenance.training_within_jnd);
-    // All the rest by the text, which holds every field.
+    // The text contains all fields, including those not compared above.
     EXPECT_EQ(text_of(back), text_of(data));
   }
 }
@@ -144,7 +144,7 @@ TEST(ModelIo, AwkwardNumbersRoundTripBitForBit) {
                                        -1e-7,
                                        3.0,
                                        std::nextafter(1.0, 2.0)};
-  // A field that may hold any number.
+  // This field accepts any number.
   for (const double offset_m : awkward) data.provenance.surfaces.push_back({"press-1", offset_m, 0.0, 0.0});
   const ModelData back = read_back(data);
   ASSERT_EQ(back.provenance.surfaces.size(), awkward.size());
@@ -179,7 +179,7 @@ TEST(ModelIo, CentresStandOneToALine) {
   EXPECT_EQ(std::count(centres.begin(), centres.end(), '\n'), 40);
 }
 
-// Files of before had the seconds that the fit took.
+// Older files contain the seconds of the fit.
 TEST(ModelIo, NoTimeIsStoredAndThatOfAnOlderFileIsIgnored) {
   const ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
   const std::string text = text_of(data);

@@ -1,5 +1,5 @@
-// Broken model files: every refusal names the place, the field, what was found,
-// what was expected and what to do.
+// Broken model files: every message has the position, the field, the value found,
+// the expected one and advice.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -21,7 +21,7 @@ std::string text_of(const ModelData& data) {
   return text ? *text : "";
 }
 
-// A small model whose text is short enough to break by hand.
+// A small model whose text is easy to break.
 std::string small_text() {
   ModelData data = example_model("greedy", KernelKind::linear, test::maxwell_features(), 1);
   data.features.resize(3);
@@ -45,7 +45,7 @@ std::string small_grid_text() {
   return text_of(data);
 }
 
-// `text` with the first `from` replaced; the test fails when there is none.
+// `text` with the first `from` replaced by `to`; the test fails if there is none.
 std::string with(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -260,7 +260,7 @@ TEST(ModelReader, RefusesTextThatIsNotJson) {
             "damaged: copy it again or fit the model again");
 }
 
-// Every prefix of a file is refused, and none of them harms the reader.
+// Every truncated file is refused without a crash.
 TEST(ModelReader, RefusesAFileCutAnywhere) {
   const std::string text = small_text();
   for (std::size_t length = 0; length + 2 < text.size(); ++length) {
@@ -269,7 +269,7 @@ TEST(ModelReader, RefusesAFileCutAnywhere) {
   }
 }
 
-// A byte changed anywhere gives a message or another valid model, never a crash.
+// Any changed byte gives a message or another valid model, never a crash.
 TEST(ModelReader, SurvivesAnyChangedByte) {
   const std::string text = small_text();
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -282,7 +282,7 @@ TEST(ModelReader, SurvivesAnyChangedByte) {
   }
 }
 
-// The product of the axes wraps around to the number of values, 0.
+// The product of the axis sizes overflows to 0, the number of values.
 TEST(ModelReader, RefusesAGridThatOverflows) {
   ModelData data = example_model("voxel", KernelKind::cubic, test::paper_features(), 1);
   std::string axis = "[";
@@ -308,7 +308,7 @@ TEST(ModelReader, ExplainsFilesThatCannotBeRead) {
   EXPECT_EQ(message(folder.path()), folder.path() + ": found a folder, expected a model file; name a file in it");
   EXPECT_EQ(message("/dev/null"),
             "/dev/null: found a pipe or a device, expected a model file; save it to a file first");
-  // A sparse file: large in name only.
+  // A sparse file, which occupies almost no disk space.
   const std::string huge = folder.with_file("huge.json", "");
   std::filesystem::resize_file(huge, kMaximumModelFileBytes + 1);
   EXPECT_EQ(message(huge),

@@ -41,7 +41,7 @@ VoxelGrid uneven_grid(int dimension, int size, std::uint64_t seed) {
   return grid;
 }
 
-// In plain loops.
+// The reference, in plain loops.
 double plain_value(const VoxelGrid& grid, const double* x) {
   std::array<std::size_t, kMaxFeatures> cell{};
   std::array<double, kMaxFeatures> fraction{};
@@ -67,8 +67,8 @@ double plain_value(const VoxelGrid& grid, const double* x) {
   return sum;
 }
 
-// Both interpolate between the same values of size 1; a node's coordinate is
-// off by rounding, over the narrowest cell: 1e-16 / 1e-4.
+// Both interpolate between the same values of size 1. The tolerance is the rounding
+// error of a coordinate relative to the narrowest cell: 1e-16 / 1e-4.
 TEST(VoxelLookup, AgreesWithThePlainGridInsideAndOutsideTheBox) {
   for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d) {
     const VoxelGrid grid = uneven_grid(d, d <= 4 ? 9 : 3, 5);

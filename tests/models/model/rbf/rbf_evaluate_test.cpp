@@ -36,7 +36,7 @@ long double reference(const RbfFunction& f, const double* x, long double* size) 
   return sum;
 }
 
-// Runs with every instruction set of this machine, and puts the best back.
+// Runs with every instruction set of this machine, then restores the best.
 class RbfEvaluatorOnTarget : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override { ASSERT_TRUE(simd::choose_target(GetParam())); }
@@ -46,7 +46,7 @@ class RbfEvaluatorOnTarget : public ::testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(Targets, RbfEvaluatorOnTarget, ::testing::ValuesIn(simd::target_names()),
                          [](const auto& instance) { return instance.param; });
 
-// The bound that rbf_evaluate.h states, 32 eps of the sum of sizes.
+// The error bound of rbf_evaluate.h: 32 eps times the sum of absolute terms.
 TEST_P(RbfEvaluatorOnTarget, AgreesWithALongDoubleReferenceForEveryKernelAndDimension) {
   EXPECT_EQ(simd::target_name(), GetParam());
   for (const KernelKind kernel : kKernelKinds)
@@ -108,7 +108,7 @@ TEST_P(RbfEvaluatorOnTarget, ManyPointsAtOnceGiveTheSameBits) {
   for (Eigen::Index i = 0; i < queries.cols(); ++i) EXPECT_EQ(out[i], evaluator.evaluate(queries.col(i).data()));
 }
 
-// Each entry within the 4 ulp (thin-plate 8) of the header.
+// Each entry is within the 4 ulp (thin-plate: 8) of the header.
 TEST_P(RbfEvaluatorOnTarget, KernelMatrixAgreesWithTheScalarKernel) {
   for (const KernelKind kernel : kKernelKinds)
     for (const int rows : {1, 5, 8, 33}) {
