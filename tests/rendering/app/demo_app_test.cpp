@@ -1,4 +1,4 @@
-// The window as a whole: a picture, files, sizes.
+// Tests of the whole window: picture, files, sizes.
 #include "rendering/app/demo_app.h"
 
 #include <imgui_internal.h>
@@ -128,7 +128,7 @@ TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
   EXPECT_EQ(session.models().selected(), 1u) << "keys count what is listed";
 }
 
-// Blocks, words, panels and exhibit read one view, which is made once a frame.
+// Blocks, texts, panels and exhibit use one view, which is made once per frame.
 TEST_F(DemoAppTest, WhatIsShownIsMadeOnceAFrame) {
   open("hand");
   app_->view().settings.block_count = 4;
@@ -138,7 +138,7 @@ TEST_F(DemoAppTest, WhatIsShownIsMadeOnceAFrame) {
   EXPECT_EQ(app_->shown().number, before + 10);
 }
 
-// Two recordings: the models are fitted to one, and judged on the other, all of it, wherever the playhead is.
+// Two recordings: models are fitted to one and tested on the whole other one, independent of the playhead.
 TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   open("hand");
   const std::string train = folder_.file("train.csv"), test = folder_.file("test.csv");
@@ -161,7 +161,7 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   app_->session().replay()->pause(true);
   frames(5);
   EXPECT_EQ(app_->session().figures(best).errors.samples, samples);
-  // Another test: no model is fitted again.
+  // With another test recording, no model is fitted again.
   const std::size_t models = app_->session().models().size();
   app_->view().dialogs.recording_roles.add({train, {}, OpenedRecording::Role::test});
   frames(1);
@@ -171,7 +171,7 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   ASSERT_TRUE(until([&] { return !app_->session().models().ready_slots().empty(); }));
 }
 
-// Neither the scene's files nor the device nor the models: the program ends with a sentence, not with a crash.
+// Without scene files and recording, the program ends with an error message instead of a crash.
 TEST_F(DemoAppTest, ASessionThatCannotBeReopenedEndsTheProgram) {
   open("hand");
   setenv("PALPATE_ASSETS", folder_.file("gone").c_str(), 1);
@@ -190,7 +190,7 @@ TEST_F(DemoAppTest, AMissingFileIsCalledMissingAndNotRemembered) {
   EXPECT_TRUE(app_->view().settings.recent.empty());
 }
 
-// The screen of the tests has 1920x1080 pixels.
+// The virtual display has 1920x1080 pixels.
 TEST_F(DemoAppTest, StartsInsideItsScreen) {
   DemoRequest request;
   request.session.scene = "skin";
@@ -226,7 +226,7 @@ TEST_F(DemoAppTest, FollowsTheSizeOfItsWindow) {
   png_image_free(&image);
 }
 
-// As the program starts: the silicone block, the first line-up, a hand.
+// The default start of the program: the silicone block, the first line-up, a simulated hand.
 class DefaultStart : public test::DemoWindowTest {
  protected:
   void open_as_started() {
@@ -241,7 +241,7 @@ class DefaultStart : public test::DemoWindowTest {
   }
 };
 
-// The sentence names a model that has a block, with the numbers of the table.
+// The headline names a model with a block, and its numbers are those of the table.
 TEST_F(DefaultStart, TheHeadlineIsOfAModelOnTheStageAndOfTheTablesNumbers) {
   open_as_started();
   ASSERT_TRUE(until([&] { return app_->shown().models.verdict.chosen.has_value(); }));
@@ -259,7 +259,7 @@ TEST_F(DefaultStart, TheHeadlineIsOfAModelOnTheStageAndOfTheTablesNumbers) {
   EXPECT_EQ(app_->session().figures(chosen).errors.samples, 0u);
 }
 
-// PALPATE_PICTURES=DIR saves what it looks like with all models, for people.
+// With PALPATE_PICTURES=DIR the test fits all models and saves the pictures in DIR for inspection.
 TEST_F(DefaultStart, IsDrawnAtEverySizeInBothThemes) {
   open_as_started();
   const char* folder = std::getenv("PALPATE_PICTURES");
@@ -274,7 +274,7 @@ TEST_F(DefaultStart, IsDrawnAtEverySizeInBothThemes) {
   for (const auto& [width, height] : {std::pair{1024, 600}, std::pair{1280, 720}, std::pair{1920, 1080}}) {
     if (height == 1080) press(GLFW_KEY_J);
     glfwSetWindowSize(app_->window().handle(), width, height);
-    glfwSetCursorPos(app_->window().handle(), 4.0, 0.5 * height);  // over nothing that explains itself
+    glfwSetCursorPos(app_->window().handle(), 4.0, 0.5 * height);  // away from elements with tooltips
     for (const Theme theme : {Theme::light, Theme::dark}) {
       app_->view().settings.theme = theme;
       frames(folder != nullptr ? 60 : 4);

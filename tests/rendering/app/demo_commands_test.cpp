@@ -14,7 +14,7 @@ namespace {
 
 class DemoCommandsTest : public test::DemoWindowTest {
  protected:
-  // A list has the focus a few frames after its key.
+  // Opens a list. It gets the focus a few frames after its key.
   void open_list(int key) {
     press(key);
     frames(4);
@@ -164,7 +164,7 @@ TEST_F(DemoCommandsTest, ListsAreUsedWithKeysAlone) {
   press(GLFW_KEY_ESCAPE);
   EXPECT_FALSE(app_->view().dialogs.any());
 
-  // The scene in use has the focus at first.
+  // The current scene has the focus at first.
   open_list(GLFW_KEY_O);
   const ImGuiID own = ImGui::GetFocusID();
   press(GLFW_KEY_DOWN);
@@ -270,7 +270,7 @@ TEST_F(DemoCommandsTest, SavesTheModelInTheHand) {
   EXPECT_EQ(models, 1u);
 }
 
-// The recording stays what is pressed; nothing of the replay stays.
+// The recording stays the material. All data of the replay are discarded.
 TEST_F(DemoCommandsTest, FromAReplayBackToTheHandWithTheSameMaterial) {
   const std::string replayed = folder_.file("strokes.csv");
   ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());

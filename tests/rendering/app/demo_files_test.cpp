@@ -1,4 +1,4 @@
-// Files that arrive while others are read; no window.
+// Files that are opened while others are read, without a window.
 #include "rendering/app/demo_files.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-// A reading that takes long holds up nothing: a window that waits for it would let go of the dead man's key.
+// A long read must not block the window, because a blocked window releases the dead-man key.
 TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
   const test::TemporaryFolder folder;
   setenv("XDG_DATA_HOME", folder.path().c_str(), 1);

@@ -1,4 +1,4 @@
-// Mouse and wheel on the window.
+// Mouse, wheel and keys in the window.
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -10,7 +10,7 @@ namespace {
 
 using DemoInputTest = test::DemoWindowTest;
 
-// Never more than one JND in 10 ms, whatever the models differ by.
+// The force changes by at most one JND in 10 ms, for any difference between the models.
 TEST_F(DemoInputTest, SwitchingWhilePressingFadesTheForce) {
   open("mouse");
   LiveSession& session = app_->session();
@@ -33,12 +33,12 @@ TEST_F(DemoInputTest, SwitchingWhilePressingFadesTheForce) {
     const double step_s = history[i].loop_time_s - history[i - 1].loop_time_s;
     const auto from_N = static_cast<double>(history[i - 1].rendered_N);
     const auto to_N = static_cast<double>(history[i].rendered_N);
-    // A tick that comes late may go as far as the time that has passed, up to 10 ms.
+    // After a late tick the change may be that of the elapsed time, up to 10 ms.
     const double allowed_N = session.jnd().at(std::min(from_N, to_N)) * std::clamp(step_s, 0.001, 0.01) / 0.01;
     worst = std::max(worst, std::abs(to_N - from_N) / allowed_N);
   }
-  // The tool gives way while the force changes, and the models' own forces with it:
-  // a tenth more than the fade alone.
+  // The tool moves while the force changes, so that the forces of the models change too.
+  // The tolerance for that is a tenth of the fade.
   EXPECT_LT(worst, 1.1);
 }
 
@@ -75,7 +75,7 @@ TEST_F(DemoInputTest, AHardPressOfTheMouseEndsWhereTheDataEnd) {
 TEST_F(DemoInputTest, SaysWhenTheProbeIsAwayFromTheData) {
   open("mouse");
   EXPECT_FALSE(app_->shown().models.out_of_domain());
-  app_->session().tool_input()->set_target(0.03, steady_now_s());  // example models know 6 mm
+  app_->session().tool_input()->set_target(0.03, steady_now_s());  // the data of example models end at 6 mm
   EXPECT_TRUE(until([&] { return app_->shown().models.out_of_domain(); }));
 }
 
@@ -85,7 +85,7 @@ TEST_F(DemoInputTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
   glfwFocusWindow(window);
   frames(3);
   EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring());
-  // Beside the block nothing happens; over it, lower is deeper.
+  // Beside the block the mouse has no effect; over it, a lower position is deeper.
   glfwSetCursorPos(window, 20.0, 300.0);
   frames(5);
   EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring());
@@ -97,7 +97,7 @@ TEST_F(DemoInputTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
   ASSERT_TRUE(until([&] { return app_->session().newest().tick.position_m > high_m + 0.001; }));
 }
 
-// The window does not draw for 0.3 s: the loop moves the probe all the same, tick by tick.
+// The window does not draw for 0.3 s. The loop still moves the probe at every tick.
 TEST_F(DemoInputTest, AHeldKeyMovesTheProbeAtEveryTickOfTheLoop) {
   open("mouse");
   LiveSession& session = app_->session();
@@ -115,7 +115,7 @@ TEST_F(DemoInputTest, AHeldKeyMovesTheProbeAtEveryTickOfTheLoop) {
   for (std::size_t i = history.first_at(before_s) + 1; i < history.size(); ++i) {
     const double step_s = history[i].loop_time_s - history[i - 1].loop_time_s;
     const auto step_m = static_cast<double>(history[i].position_m - history[i - 1].position_m);
-    if (step_s > 2e-3) continue;  // ticks that the machine missed
+    if (step_s > 2e-3) continue;  // missed ticks
     fastest_m_per_s = std::max(fastest_m_per_s, step_m / step_s);
     jerk_m_per_s = std::max(jerk_m_per_s, std::abs(step_m / step_s - last_m_per_s));
     last_m_per_s = step_m / step_s;
@@ -156,8 +156,8 @@ TEST_F(DemoInputTest, ATapOfAKeyIsNotLostOnASlowFrame) {
   EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > before_m + 2e-5; }));
 }
 
-// A flick leaves the block: the probe goes on with the mouse, as deep as there are data at the lower edge, and
-// is lifted when the mouse leaves.
+// The probe follows the mouse in the whole picture, also beside the block. At the lower edge it is at the depth where
+// the data end, and it is lifted when the mouse leaves the picture.
 TEST_F(DemoInputTest, TheProbeFollowsTheMouseInAllOfThePicture) {
   open("mouse");
   app_->view().settings.block_count = 4;

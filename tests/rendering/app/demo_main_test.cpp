@@ -1,4 +1,4 @@
-// palpate-demo as a whole: how it ends and what it says.
+// The program palpate-demo: exit codes and output.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ ProgramRun demo(std::vector<std::string> arguments, const std::vector<std::strin
   return run_program(arguments, environment);
 }
 
-// One line on stderr, nothing else.
+// Expects one line on stderr and no other output.
 void expect_error(const ProgramRun& run, const std::string& words) {
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_EQ(run.out, "");

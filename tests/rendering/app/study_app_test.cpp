@@ -1,8 +1,8 @@
-// The study's window on a display in memory, from the code to a stored answer.
+// The window of the study on a virtual display, from entering the code to a stored answer.
 #include "rendering/app/study_app.h"
 
 #include <epoxy/gl.h>
-// After epoxy, which brings OpenGL's functions.
+// Included after epoxy, which declares OpenGL's functions.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ class StudyAppTest : public ::testing::Test {
   void start(std::shared_ptr<const StrokePair> strokes) {
     StudyRequest request;
     request.device = "hand";
-    request.realtime = false;  // a test does not outrank the machine it runs on
+    request.realtime = false;  // tests do not need real-time priority
     request.strokes = std::move(strokes);
     app_.reset();
     auto app = StudyApp::create(request);
@@ -86,7 +86,7 @@ TEST_F(StudyAppTest, GoesFromTheConsentToAStoredAnswer) {
   ASSERT_EQ(data->records.size(), 1u);
   const StudyRecord& record = data->records.front();
   EXPECT_FALSE(record.answered_second);
-  // What the device got is what was asked for: nothing was held back.
+  // The device received the commanded forces without limiting.
   EXPECT_NEAR(record.first_rendered_N, record.trial.first_N(), 1e-3);
   EXPECT_NEAR(record.second_rendered_N, record.trial.second_N(), 1e-3);
 }

@@ -1,4 +1,4 @@
-// The saved figure and the saved table are of the same samples.
+// The saved figure and the saved table contain the same samples.
 #include "rendering/panels/curve_files.h"
 
 #include <gtest/gtest.h>

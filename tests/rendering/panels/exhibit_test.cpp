@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-// Of this process in memory, MB.
+// Resident memory of this process in MB.
 double resident_MB() {
   std::ifstream file("/proc/self/statm");
   double total = 0.0, resident = 0.0;
@@ -37,7 +37,7 @@ class ExhibitTest : public test::DemoWindowTest {
   struct Setting {
     ExhibitTimes times{1.0, 4.0, 2.0, 0.5};
     DeviceBus* bus = nullptr;  // a force device
-    bool learned = false;      // the models of the exhibit, which take a while, in place of made up ones
+    bool learned = false;      // fit the models of the exhibit (slow) instead of using example models
     int height = 720;
   };
   void open_exhibit(const Setting& setting) {
@@ -58,7 +58,7 @@ class ExhibitTest : public test::DemoWindowTest {
     ASSERT_TRUE(shows("1")) << "has learned";
   }
 
-  // The handle of a force device into the block and out again, no faster than a hand.
+  // Moves the handle of a force device into the block and out again, at the speed of a hand.
   void stroke_device() {
     for (const int to : {460, 0}) {
       ASSERT_TRUE(until([&] {
@@ -71,7 +71,7 @@ class ExhibitTest : public test::DemoWindowTest {
   test::FakeDeviceBus bus_;  // outlives the window, which a failed test leaves open
   std::string pictures_;
 
-  // So far under the middle of a block's top, in pixels.
+  // The pixel `below_px` below the middle of a block's top.
   ImVec2 block(std::size_t index, float below_px) const {
     const glm::vec2 top = app_->blocks().on_screen(index, 2, {0.0F, 0.0F, 0.0F}, {768.0F, 720.0F});
     return {top.x, top.y + below_px};
@@ -80,13 +80,13 @@ class ExhibitTest : public test::DemoWindowTest {
     glfwSetCursorPos(app_->window().handle(), static_cast<double>(to.x), static_cast<double>(to.y));
     frames(3);
   }
-  // A hand on a mouse goes there and clicks.
+  // Moves the mouse to the button and clicks.
   void click_on(const std::string& button) {
     ASSERT_TRUE(until([&] { return shows(button); })) << button;
     move(app_->exhibit().buttons().at(button));
     click();
   }
-  // A finger: the pointer is there and pressed in the same moment, and nowhere before.
+  // A touch: the pointer appears at `at` and is pressed at the same time.
   void touch(const ImVec2& at, int held_frames = 3) {
     GLFWwindow* window = app_->window().handle();
     const GLFWmousebuttonfun callback = glfwSetMouseButtonCallback(window, nullptr);
@@ -114,7 +114,7 @@ class ExhibitTest : public test::DemoWindowTest {
     })) << "nobody presses while reading";
   }
 
-  // Of this screen, where PALPATE_PICTURES names a folder.
+  // Saves a picture of this screen if PALPATE_PICTURES names a folder.
   void picture(const std::string& name) {
     frames(2);
     const char* folder = std::getenv("PALPATE_PICTURES");
@@ -122,7 +122,7 @@ class ExhibitTest : public test::DemoWindowTest {
     EXPECT_TRUE(app_->screenshot(std::string(folder) + "/" + pictures_ + name + ".png", true).ok());
   }
 
-  // From the invitation to the score, by `press` a button and `stroke` both blocks.
+  // Plays from the invitation to the score. `press_button` presses a button, `stroke` presses both blocks.
   void play(const std::function<void(const char*)>& press_button, const std::function<void()>& stroke) {
     press_button("1");
     for (int round = 1; round <= 3; ++round) {
@@ -184,7 +184,7 @@ TEST_F(ExhibitTest, IsPlayedByTouchAlone) {
   visit_by_touch();
 }
 
-// The result is said at the end, with both blocks at the moment of the largest difference.
+// The result appears at the end, with both blocks at the moment of the largest difference.
 TEST_F(ExhibitTest, TheRevealIsTheVisitorsOwnPressInSlowMotion) {
   open_exhibit({{1.0, 300.0, 2.0, 2.0}});
   press(GLFW_KEY_1);
@@ -224,7 +224,7 @@ TEST_F(ExhibitTest, TheRoundsDifferInColour) {
   }
 }
 
-// Pictures are of what the exhibit learns; without them its models are made up.
+// If pictures are saved, the exhibit fits its models; otherwise it uses example models.
 TEST_F(ExhibitTest, EveryScreenIsDrawnInBothLanguagesAtBothSizes) {
   const bool learned = std::getenv("PALPATE_PICTURES") != nullptr;
   for (const int height : {720, 1080}) {
@@ -274,13 +274,13 @@ TEST_F(ExhibitTest, TheObviousIsNoticedAndTheBestIsNot) {
   EXPECT_GE(game().correct_answers(), 2u);
 }
 
-// As many as PALPATE_VISITORS says (30 take some ten minutes), else three: with a mouse,
-// with keys, by touch, in turns; after every third one nobody comes until all is forgotten.
+// PALPATE_VISITORS visitors (default 3; 30 take about ten minutes) in turn use the mouse, keys
+// and touch. After each one the exhibit must return to its initial state.
 TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
   const char* asked = std::getenv("PALPATE_VISITORS");
   const int visitors = asked != nullptr ? std::atoi(asked) : 3;
   open_exhibit({});
-  frames(60);  // the camera eases to where it stays
+  frames(60);  // until the camera is at rest
   const ImVec2 home = block(0, 0.0F);
   double before_MB = 0.0;
   for (int i = 0; i < visitors; ++i) {
@@ -296,7 +296,7 @@ TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
     EXPECT_TRUE(says("Can you tell")) << "in the first language";
     EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring()) << "the comparison goes on at once";
     EXPECT_NEAR(block(0, 0.0F).x, home.x, 0.5F);
-    // The first visitor with a mouse and the first with keys see screens that nobody saw before them.
+    // The first two visitors see screens for the first time, which may allocate memory.
     if (i < 2) before_MB = resident_MB();
     std::printf("visitor %d: %.1f MB, %llu frames, late p50 %.0f us\n", i + 1, resident_MB(),
                 static_cast<unsigned long long>(app_->frames().frames),
@@ -326,7 +326,7 @@ TEST_F(ExhibitTest, LanguagesHaveKeysOfTheirOwnAndTheHostsTallyIsHidden) {
   EXPECT_TRUE(says("Kannst du Computer und Block unterscheiden?"));
 }
 
-// Two models make a pair and a catch trial.
+// With two models there are a pair and a catch trial.
 TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
   open_exhibit({{1.0, 300.0, 2.0, 0.5}, &bus_});
   press(GLFW_KEY_Z);

@@ -1,4 +1,4 @@
-// What the panel's quiet line says, of a session whose device is unplugged.
+// The status line of the panel in a session whose device is unplugged.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -19,7 +19,7 @@ using test::frames_until;
 TEST(PanelHealth, KeepsTheWordsOfAnAlarmUntilTheyWereSeen) {
   const test::TemporaryFolder folder;
   const auto before = std::filesystem::current_path();
-  std::filesystem::current_path(folder.path());  // for the file of the fault
+  std::filesystem::current_path(folder.path());  // fault files are written here
   const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
   ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
   test::FakeDeviceBus bus;
@@ -41,14 +41,14 @@ TEST(PanelHealth, KeepsTheWordsOfAnAlarmUntilTheyWereSeen) {
   EXPECT_EQ(now.text, "Device: " + words);
   EXPECT_TRUE(now.problem && !now.past);
   bus.plugged_in = true;
-  // It says why it wants to be zeroed until it is; then that it was.
+  // Until the device is zeroed the line has the reason; then it has the past fault.
   ASSERT_TRUE(frames_until(session, [&] { return bus.opened == 2; }));
   session.start_zeroing();
   ASSERT_TRUE(frames_until(session, [&] { return session.newest().device.faults == 0; }));
   const HealthWords later = health_words(health_view(session), 0.0);
   EXPECT_EQ(later.text.rfind("Earlier: " + words, 0), 0u) << later.text;
   EXPECT_TRUE(later.problem && later.past);
-  // A slow machine may make another alarm at once.
+  // A slow machine may cause another alarm at once.
   EXPECT_TRUE(frames_until(
       session, [&] { return session.alarms().empty(); }, [&] { session.reset_figures(); }));
   EXPECT_FALSE(health_words(health_view(session), 0.0).past);

@@ -1,4 +1,4 @@
-// The sentences of the panels from plain views: no session, no thread, no device.
+// The texts of the panels from plain views, without session, threads or device.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -95,7 +95,7 @@ TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
   EXPECT_EQ(data_warning(models), "");
 }
 
-// One number: the table's, of the same samples, and of whom and than what it is.
+// The big number is that of the table, and the text names its model.
 TEST(PanelWords, TheBigNumberIsTheTablesAndSaysOfWhom) {
   ModelsView models = view_of({ready_slot("greedy-100")}, true);
   EXPECT_EQ(big_number(models, true).number, "–");
@@ -113,7 +113,7 @@ TEST(PanelWords, TheBigNumberIsTheTablesAndSaysOfWhom) {
 TEST(PanelWords, WithoutATruthTheBigNumberSaysSo) {
   ModelsView models = view_of({ready_slot("greedy-100")}, true);
   ModelView& greedy = models.slots[0];
-  // What the model predicts of itself, of 0.13 N at 1 N.
+  // The error that the model predicts, relative to a JND of 0.13 N at 1 N.
   models.compared = false;
   models.reference_name = "no truth to compare with";
   EXPECT_EQ(big_number(models, false).number, "–") << "it does not know";

@@ -1,4 +1,4 @@
-// The curves in the hand: what the mouse does to them in the window.
+// The effect of the mouse on the curves of the window.
 #include "rendering/panels/time_plot.h"
 
 #include <imgui.h>
@@ -12,7 +12,7 @@ namespace {
 
 class TimePlotTest : public test::DemoWindowTest {
  protected:
-  // Over the force plot of a window of 1280 x 720.
+  // Moves the mouse over the force plot of a window of 1280 x 720.
   void move(double x) {
     glfwSetCursorPos(app_->window().handle(), x, 100.0);
     frames(3);
@@ -39,7 +39,7 @@ TEST_F(TimePlotTest, ReadsZoomsAndRunsAgain) {
   ASSERT_TRUE(time.paused);
   EXPECT_LT(time.shown_s, 0.6 * kShown_s);
   EXPECT_NEAR(time.end_s(0.0) - time.shown_s, first_s, 1.0) << "from where the drag began; the curves ran on meanwhile";
-  ImGui::GetIO().MouseDoubleClickTime = 5.0F;  // frames are slow where others compile
+  ImGui::GetIO().MouseDoubleClickTime = 5.0F;  // frames may be slow on a loaded machine
   for (const int action : {GLFW_PRESS, GLFW_RELEASE, GLFW_PRESS, GLFW_RELEASE}) button(action);
   EXPECT_FALSE(time.paused);
   EXPECT_EQ(time.shown_s, kShown_s);

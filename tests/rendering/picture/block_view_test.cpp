@@ -1,8 +1,8 @@
-// The picture as pixels, on a display in memory.
+// The pixels of the picture, on a virtual display.
 #include "rendering/picture/block_view.h"
 
 #include <epoxy/gl.h>
-// After epoxy, which brings OpenGL's functions.
+// Included after epoxy, which declares OpenGL's functions.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
@@ -116,7 +116,7 @@ TEST_F(BlockViewTest, WhatStandsStillFollowsCameraThemeAndChoice) {
   expect_fresh("more blocks");
 }
 
-// Half a millimetre, drawn twice as deep: what changes so much that an eye sees it.
+// Counts the pixels that a small dent changes visibly.
 TEST_F(BlockViewTest, ASmallDentIsSeen) {
   for (const Smoothing smoothing : {Smoothing::samples, Smoothing::filter}) {
     const auto one = view(smoothing);

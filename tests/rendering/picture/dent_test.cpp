@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kRadius_m = 0.005F;
 
-// Sneddon (1965): depth of a rigid ball whose contact has the radius a, exact for a half-space.
+// Sneddon (1965): the depth of a rigid sphere with the contact radius a, exact for a half-space.
 double sneddon_depth_m(double a, double radius) { return 0.5 * a * std::log((radius + a) / (radius - a)); }
 
 TEST(Dent, AShallowOneIsHertzs) {

@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-// Triangles face the way that their vertices' normals say.
+// The orientation of triangles agrees with the normals of their vertices.
 void expect_consistent(const Mesh& mesh) {
   ASSERT_EQ(mesh.triangles.size() % 3, 0u);
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {

@@ -27,7 +27,7 @@ TEST(Colours, ContrastIsThatOfWcag) {
   EXPECT_EQ(contrast(Rgb(0.3F), Rgb(0.3F)), 1.0);
 }
 
-// WCAG 2.1, 1.4.11: 3 : 1 for all that carries a meaning.
+// WCAG 2.1, 1.4.11: a contrast of 3 : 1 for all elements with a meaning.
 TEST(Colours, WhatCarriesAMeaningIsSeenInBothThemes) {
   for (const Theme theme : {Theme::light, Theme::dark}) {
     const Palette& p = palette(theme);

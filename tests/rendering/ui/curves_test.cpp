@@ -73,7 +73,7 @@ TEST(CurveColumns, StandOnAGridOfTheirOwnSoThatCurvesDoNotShimmer) {
   EXPECT_FLOAT_EQ(find(other, 100.33).tick.force_N[0], 3.0F);
 }
 
-// Frame after frame, as the window does it, and all at once.
+// Gathering in every frame, as the window does, equals gathering at once.
 TEST(CurveColumns, ScrollingGivesWhatAFreshStartGives) {
   ForceHistory growing;
   CurveColumns scrolled;
@@ -94,13 +94,13 @@ TEST(CurveColumns, ScrollingGivesWhatAFreshStartGives) {
     const CurveColumn& b = fresh.columns()[i];
     EXPECT_EQ(a.any, b.any) << i;
     EXPECT_DOUBLE_EQ(a.time_s, b.time_s);
-    if (!a.any || i == 0) continue;  // the first may have lost its beginning with the history
+    if (!a.any || i == 0) continue;  // the start of the first column may have left the history
     EXPECT_EQ(a.tick.loop_time_s, b.tick.loop_time_s) << i;
     EXPECT_NEAR(a.sustained_over_jnd[0], b.sustained_over_jnd[0], 1e-5F) << i;
   }
 }
 
-// One tick at 2 N off among ticks at 0.1 N off: a mark, and hardly anything to feel.
+// One tick with an error of 2 N among ticks of 0.1 N: a mark, but only a small sustained error.
 TEST(CurveColumns, ASingleTickIsAMarkAndNotSustained) {
   const ForceHistory history = example();
   CurveColumns curves;

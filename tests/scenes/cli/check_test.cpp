@@ -1,4 +1,4 @@
-// palpate check as a user runs it.
+// The program palpate check.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

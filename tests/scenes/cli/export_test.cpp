@@ -1,4 +1,4 @@
-// palpate export with nothing but the model: the file's forces are those of palpate replay.
+// palpate export with only a model: the forces of the file equal those of palpate replay.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using test::run_palpate;
 
 class ExportVerb : public ::testing::Test {
  protected:
-  // Positions and forces of the rig, another seed for each recording.
+  // Positions and forces of the virtual rig.
   Recording recording(const std::string& material, double seconds, std::uint64_t seed, double noise_m = 0.0) {
     RigSettings settings = test::train_settings(material);
     settings.seconds = seconds;
@@ -31,7 +31,7 @@ class ExportVerb : public ::testing::Test {
     return positions;
   }
 
-  // The text that export writes of a fit to `train`.
+  // Fits `train` and returns the text of the exported file.
   std::string exported(const Recording& train, const std::vector<std::string>& fit_options,
                        const std::vector<std::string>& export_options = {}) {
     EXPECT_TRUE(write_recording(folder_.file("train.csv"), train, {}, true).ok());
@@ -54,12 +54,12 @@ class ExportVerb : public ::testing::Test {
                        [&](const FeatureSpec& spec) { return spec.kind == kind; });
   }
 
-  // The largest of `distance(exported force, replay's force)` over the recording.
+  // The maximum of `distance(exported force, replay's force)` over the recording.
   template <typename Real, typename Distance>
   double worst(const Recording& test_recording, const std::string& text, const Distance& distance) {
     const test::CompiledModel<Real> compiled(text);
     if (compiled.force == nullptr) return INFINITY;
-    // As the file of the recording has it, whose decimals are what replay reads.
+    // Writes and reads the file, so that the decimals are those that replay reads.
     EXPECT_TRUE(write_recording(folder_.file("test.csv"), test_recording, {}, true).ok());
     const Recording read = test::must(read_recording(folder_.file("test.csv")));
     double largest = 0.0;
@@ -81,7 +81,7 @@ class ExportVerb : public ::testing::Test {
   std::string printed_;
 };
 
-// Other presses than those of the fit; 1e-9 N is what the issue of the library asks for.
+// Tested on other presses than those of the fit. The required accuracy is 1e-9 N.
 TEST_F(ExportVerb, EveryMethodGivesReplaysForcesOfAnotherRecording) {
   const Recording train = recording("friction", 10.0, 1);
   const Recording other = recording("friction", 6.0, 2);
@@ -99,13 +99,13 @@ TEST_F(ExportVerb, AMaterialThatCreepsIsExportedWithItsMemory) {
   EXPECT_LT(worst_N(recording("softening", 8.0, 2), text), 1e-9);
 }
 
-// The noise of two recordings is never found to be quite the same; the sensor is.
+// The estimated noise differs slightly between two recordings, but the identified sensor is the same.
 TEST_F(ExportVerb, PositionsWithNoiseGiveReplaysForcesToo) {
   const std::string text = exported(recording("silicone", 8.0, 1, 200e-6), {"--method", "random"});
   EXPECT_LT(worst_N(recording("silicone", 8.0, 2, 200e-6), text), 1e-9);
 }
 
-// 1 mN, or a fiftieth of what can be felt.
+// The limit is the larger of 1 mN and a fiftieth of the JND.
 TEST_F(ExportVerb, InSinglePrecisionNobodyFeelsTheDifference) {
   const JndLine jnd;
   const auto over_limit = [&](double a_N, double b_N) {

@@ -1,4 +1,4 @@
-// palpate fit as a user meets it: exit codes, messages, files.
+// The program palpate fit: exit codes, messages, files.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -32,7 +32,7 @@ class FitVerb : public ::testing::Test {
   std::string recording() const { return folder_.file("press.csv"); }
   std::string out() const { return folder_.file("model.json"); }
 
-  // `palpate fit` with these options; those of `more` take their place.
+  // `palpate fit` with default options, which those of `more` replace.
   ProgramRun fit(const Arguments& more, const std::string& method = "greedy") const {
     Arguments arguments = {"fit"};
     std::vector<std::pair<std::string, std::string>> defaults = {
@@ -46,14 +46,14 @@ class FitVerb : public ::testing::Test {
     return run_palpate(arguments);
   }
 
-  // The run made a model that loads.
+  // Expects that the run made a model that loads.
   void expect_model(const ProgramRun& run) const {
     EXPECT_EQ(run.exit_code, 0);
     EXPECT_EQ(run.err, "");
     EXPECT_TRUE(load_model(out()).ok());
   }
 
-  // The run ended in one line and left nothing.
+  // Expects that the run ended with one error line and left no file.
   void expect_refused(const ProgramRun& run, int exit_code, const std::string& words) const {
     EXPECT_EQ(run.exit_code, exit_code);
     EXPECT_EQ(run.out, "");
@@ -69,7 +69,7 @@ class FitVerb : public ::testing::Test {
 TEST_F(FitVerb, JsonIsOneObjectWithTheContractsKeys) {
   const ProgramRun run = fit({"--json"});
   expect_model(run);
-  const auto object = nlohmann::json::parse(run.out);  // refuses anything behind it
+  const auto object = nlohmann::json::parse(run.out);  // refuses any text after the object
   ASSERT_TRUE(object.is_object());
   EXPECT_EQ(object.at("method"), "greedy");
   EXPECT_EQ(object.at("kernel"), "cubic");
@@ -115,7 +115,7 @@ TEST_F(FitVerb, TheTrendAloneHasNoCentres) {
   EXPECT_EQ(object.at("centres"), 0);
 }
 
-// Rather than ignored without a word.
+// The option must not be ignored silently.
 TEST_F(FitVerb, RefusesAnOptionThatTheMethodHasNoUseFor) {
   expect_refused(fit({"--grid", "4x3x3x3"}, "greedy"), 2,
                  "--grid: method greedy does not take this option, only voxel");
@@ -228,8 +228,8 @@ TEST_F(FitVerb, NoContactIsToldInOneLine) {
   expect_refused(fit({}), 1, "no_force: ");
 }
 
-// Starts `palpate fit` and waits until it reads its recording, which is after
-// it took charge of SIGINT; -1 when it never does.
+// Starts `palpate fit` and waits until it reads its recording; its SIGINT handler is
+// installed before. Returns -1 if it never does.
 pid_t start_fit(const Arguments& arguments, const std::string& recording, const std::string& err) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -255,8 +255,8 @@ pid_t start_fit(const Arguments& arguments, const std::string& recording, const 
   return -1;
 }
 
-// Reading alone takes longer than the signal's way; the direct fit behind it
-// takes seconds.
+// Reading takes longer than the delivery of the signal, and the direct fit takes
+// seconds.
 TEST_F(FitVerb, InterruptedItLeavesNoFile) {
   ASSERT_TRUE(write_recording(recording(), example_recording(400000, 1000.0, 30e-6), {}, true).ok());
   const TemporaryFolder elsewhere;

@@ -1,4 +1,4 @@
-// palpate import as a user runs it.
+// The program palpate import.
 #include <gtest/gtest.h>
 
 #include "engine/recording/recording.h"

@@ -1,4 +1,4 @@
-// The program as a whole: exit codes and what it prints where.
+// The whole program: exit codes and output.
 #include <gtest/gtest.h>
 
 #include "tests/support/run_program.h"

@@ -50,8 +50,8 @@ TEST(Progress, ANewLineStartsUninterrupted) {
   EXPECT_TRUE(line.update(0.0));
 }
 
-// Ends of children that send themselves SIGINT `times` times, the line alive or
-// gone; 0 for a normal exit, else the signal.
+// How a child process ends that sends itself SIGINT `times` times, while the line
+// exists or after it. 0: normal exit; else the signal.
 int end_after_interrupts(int times, bool line_alive) {
   const pid_t child = fork();
   if (child == 0) {

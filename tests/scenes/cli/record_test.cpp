@@ -1,4 +1,4 @@
-// palpate record as a user runs it, and what its guide says.
+// The program palpate record, and the advice of its guide.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -19,7 +19,7 @@ using test::run_palpate;
 const std::string kBridge =
     "bridge:exec:python3 " + std::string(PALPATE_SOURCE_DIR) + "/assets/examples/bridge/bridge.py";
 
-// A recording at its own pace: a device that measures force and starts at once.
+// A recording replayed at its recorded rate: a device that measures force and starts at once.
 std::string replayed(const test::TemporaryFolder& folder) {
   const std::string path = folder.file("replayed.csv");
   EXPECT_EQ(run_palpate({"synth", "--material", "foam", "--seconds", "20", "--rate", "2000", "--out", path}).exit_code,
@@ -97,7 +97,7 @@ TEST(DevicesTest, ADeviceShowsThatItsWatchdogStopsIt) {
 TEST(DevicesTest, RefusesADeviceThatNeverSaysThatItStopped) {
   const test::TemporaryFolder folder;
   const std::string peer = std::string(PALPATE_SOURCE_DIR) + "/tests/devices/bridge/peer.py";
-  // Told by bit 2 that its watchdog stops it: this one does not say it.
+  // A device reports by the flag 2 that its watchdog stopped it. This one does not.
   folder.with_file("mute.py", test::read_text(peer).insert(0, "").replace(
                                   test::read_text(peer).find("(2 if heard_s and silent else 0)"), 32, "0"));
   const auto run = run_palpate(
@@ -108,7 +108,7 @@ TEST(DevicesTest, RefusesADeviceThatNeverSaysThatItStopped) {
       << run.err;
 }
 
-// Everything was visited.
+// A complete exploration.
 RecordingMeasures explored() {
   RecordingMeasures measures;
   measures.highest_position_m = 0.004;

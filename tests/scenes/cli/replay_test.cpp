@@ -1,4 +1,4 @@
-// palpate replay as a program: what it prints, writes and refuses.
+// The program palpate replay: output, files, errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -130,7 +130,7 @@ TEST_F(ReplayVerb, ForcesFileHoldsWhatTheFiguresComeFrom) {
   EXPECT_EQ(rows, 3000);
   EXPECT_EQ(contact, object["contact_samples"]);
   for (std::size_t m = 0; m < 3; ++m) {
-    // Only the order of the sums and the last digit printed differ.
+    // The tolerance is for the order of the sums and the last printed digit.
     EXPECT_NEAR(object["models"][m]["rms_error_N"], std::sqrt(squares[m] / contact), 1e-12);
     EXPECT_NEAR(object["models"][m]["within_jnd"], within[m] / contact, 1e-12);
   }
@@ -148,7 +148,7 @@ TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
   std::istringstream lines(ran.out);
   std::vector<std::string> rows;
   for (std::string line; std::getline(lines, line);) rows.push_back(line);
-  ASSERT_GE(rows.size(), 4u) << ran.out;  // and a note where the surface decides
+  ASSERT_GE(rows.size(), 4u) << ran.out;  // a note about the surface may follow
   EXPECT_NE(rows[0].find("3000 samples"), std::string::npos);
   for (const char* title : {"MODEL", "RMS mN", "WITHIN JND %", "TICK ns"}) {
     EXPECT_NE(rows[1].find(title), std::string::npos) << title;
@@ -157,7 +157,7 @@ TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
   EXPECT_EQ(rows[1].size(), rows[3].size());
 }
 
-// A model fitted to a recording, replayed over the same with positions 0.3 mm larger.
+// Replays the training recording with positions moved by 0.3 mm.
 TEST_F(ReplayVerb, GivesEveryErrorAsRecordedAndWithTheSurfaceMoved) {
   Recording recording = test::example_recording(3000, 1000.0, 30e-6);
   const std::string model = folder_.file("fitted.json");
@@ -175,7 +175,7 @@ TEST_F(ReplayVerb, GivesEveryErrorAsRecordedAndWithTheSurfaceMoved) {
   const Json& plain = list[0]["models"][0];
   const Json& moved = list[1]["models"][0];
   EXPECT_EQ(plain["rms_error_N"], plain["surface_moved"]["rms_error_N"]);
-  // 0.3 mm of the 300 N/m that the recording was made with are 90 mN.
+  // 0.3 mm at the recording's stiffness of 300 N/m are 90 mN.
   EXPECT_GT(moved["rms_error_N"], 0.05);
   EXPECT_LT(moved["surface_moved"]["rms_error_N"], 0.1 * moved["rms_error_N"].get<double>());
   EXPECT_GT(moved["surface_moved"]["within_jnd"], 0.99);

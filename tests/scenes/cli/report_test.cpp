@@ -1,4 +1,4 @@
-// palpate report as a program, once from recordings to page, on short recordings.
+// The program palpate report, from short recordings to the page.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using test::run_palpate;
 
-// One report for all cases: it is what takes the time.
+// All cases share one report, because making it takes long.
 class ReportVerb : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -73,7 +73,7 @@ TEST_F(ReportVerb, PageNeedsNothingElse) {
   for (const char* outside : {"http:", "https:", "<script", "<link", "<img", "@import", "src="}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
-  // Every reference is to an id of the page itself or to a file of the folder.
+  // Every reference is to an id of the page or to a file of the folder.
   std::map<std::string, int> ids;
   const std::regex id("\\bid=[\"']([^\"']+)[\"']");
   for (std::sregex_iterator it(page.begin(), page.end(), id), end; it != end; ++it) {
@@ -90,7 +90,7 @@ TEST_F(ReportVerb, PageNeedsNothingElse) {
   }
 }
 
-// Of all models of the tables, not only of the candidates.
+// No candidate is faster with a smaller error. The bounds are checked for all models of the tables.
 TEST_F(ReportVerb, RecommendsNoDominatedModel) {
   const Json report = Json::parse(test::read_text(out() + "/report.json"));
   const std::string recommended = report["timings"]["recommended"];
@@ -186,7 +186,7 @@ TEST_F(ReportVerb, WithoutATestItCrossValidatesAndSaysSo) {
   const Json report = Json::parse(test::read_text(other + "/report.json"));
   EXPECT_EQ(report["folds"], 2);
   EXPECT_NE(test::read_text(other + "/index.html").find("2-fold cross-validation"), std::string::npos);
-  // Both recordings were tested, so the pooled samples are those of both.
+  // Both recordings were tested, so that the pooled samples include both.
   std::uint64_t contact = 0;
   for (const Json& recording : report["tables"]["recordings"])
     contact += recording["contact_samples"].get<std::uint64_t>();
@@ -194,12 +194,12 @@ TEST_F(ReportVerb, WithoutATestItCrossValidatesAndSaysSo) {
   fs::remove_all(other);
 }
 
-// While it fits, and at once: no folder, no hidden one either.
+// Interrupted at once or during a fit, it leaves no folder, not even a hidden one.
 TEST_F(ReportVerb, InterruptedItLeavesNothing) {
   const test::TemporaryFolder empty;
   for (const char* after_s : {"0.1", "2"}) {
-    // In the foreground: else `timeout` signals its group too, and a second signal ends
-    // the program at once.
+    // --foreground: otherwise `timeout` also signals its process group, and a second signal
+    // ends the program at once.
     const auto ran = test::run_program({"timeout", "--foreground", "--preserve-status", "-s", "INT", after_s,
                                         PALPATE_BINARY, "report", "--quick", "--out", empty.file("report")});
     EXPECT_EQ(ran.exit_code, 130) << ran.err;
@@ -208,7 +208,7 @@ TEST_F(ReportVerb, InterruptedItLeavesNothing) {
   }
 }
 
-// Every number of the first screen again, from the forces that `palpate replay` writes, by a
+// Recomputes every number of the first screen from the forces of `palpate replay`, with a
 // script that shares no code with the program.
 TEST_F(ReportVerb, FirstScreenAgreesWithAnIndependentScript) {
   if (test::run_program({"python3", "-c", ""}).exit_code != 0) GTEST_SKIP() << "no python3 here";

@@ -1,4 +1,4 @@
-// palpate study as a user runs it, from the first trial to a scene judged by the result.
+// The program palpate study, from the first trial to errors of a scene in terms of the measured JND.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -30,7 +30,7 @@ TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
   EXPECT_EQ(again.exit_code, 1);
   EXPECT_EQ(again.err, "error: " + out + "/S01.csv exists; pass --force to replace it\n");
 
-  // The same files again: the same result.
+  // The same files give the same result.
   const auto analysed = run_palpate(
       {"study", "analyse", out + "/S01.csv", out + "/S02.csv", out + "/S03.csv", "--out", folder.file("again")});
   ASSERT_EQ(analysed.exit_code, 0) << analysed.err;

@@ -1,4 +1,4 @@
-// palpate synth as a user runs it.
+// The program palpate synth.
 #include <gtest/gtest.h>
 
 #include "engine/recording/recording.h"

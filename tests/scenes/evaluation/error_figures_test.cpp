@@ -13,7 +13,7 @@ TEST(ForceBins, AreTwoJndWideWhateverTheForce) {
   for (const JndLine jnd : {JndLine{}, JndLine{0.5, 0.0}, JndLine{1e-3, 0.2}}) {
     for (const double force_N : {0.01, 0.3, 6.0, 30.0, 3000.0}) {
       const std::size_t bin = force_bin(force_N, jnd);
-      if (bin + 1 == kMaximumForceBins) continue;  // takes the rest
+      if (bin + 1 == kMaximumForceBins) continue;  // contains all larger forces
       const double from_N = force_bin_begin_N(bin, jnd);
       const double to_N = force_bin_begin_N(bin + 1, jnd);
       EXPECT_LE(from_N, force_N * (1.0 + kRounding));

@@ -12,13 +12,13 @@ namespace {
 TEST(StrokeCounter, AStrokeGoesFromTouchToRelease) {
   StrokeCounter counter;
   int strokes = 0;
-  for (int i = 0; i < 1000; ++i) {  // 10 Hz: the step is longer than the pause that noise may make
+  for (int i = 0; i < 1000; ++i) {  // 10 Hz: the step exceeds the longest pause that is ascribed to noise
     strokes += counter.begins_stroke(0.1 * i, i % 100 >= 10) ? 1 : 0;
   }
   EXPECT_EQ(strokes, 10);
 }
 
-// Strokes of 100 samples, of which so many go beyond the JND.
+// Strokes of 100 samples, with `beyond` errors above the JND in each.
 ModelErrors strokes_with(const std::vector<int>& beyond) {
   ModelErrors errors(JndLine{});
   for (const int count : beyond) {
@@ -63,7 +63,7 @@ TEST(ModelErrors, WithoutSamplesThereIsNothing) {
   EXPECT_TRUE(unit_errors.bins.empty());
 }
 
-// Errors 1, 2 ... 1000 mN at a JND of 500 mN throughout.
+// Errors of 1, 2 ... 1000 mN with a constant JND of 500 mN.
 TEST(ModelErrors, UniformErrorsHaveTheirClosedForms) {
   ModelErrors errors(JndLine{0.5, 0.0});
   const int n = 1000;
@@ -94,13 +94,13 @@ TEST(ModelErrors, PercentileIsTheNearestRank) {
   }
 }
 
-// Twelve strokes all within the JND: at 95 % up to 1 - 0.05^(1/12) of strokes may be beyond.
+// Twelve strokes are all within the JND. The exact 95 % limit of the share beyond is 1 - 0.05^(1/12).
 TEST(ModelErrors, WhereNothingGoesBeyondTheBoundIsExact) {
   EXPECT_NEAR(strokes_with(std::vector<int>(12, 0)).unit_errors().within_at_least(), 0.7791, 1e-4);
 }
 
-// One model is worse than another by 0.03 JND in every stroke, and strokes differ by
-// thirty times that: their intervals overlap, and the paired difference separates them.
+// One model has an error larger by 0.03 JND in every stroke, and strokes differ by thirty
+// times that. The intervals overlap, but the interval of the paired difference excludes 0.
 TEST(PairedDifference, SeparatesWhatOverlaps) {
   const JndLine jnd{0.1, 0.0};
   ModelErrors good(jnd), bad(jnd);

@@ -9,7 +9,7 @@ namespace {
 
 Timing around(double median_ns) { return {median_ns, 0.98 * median_ns, 1.02 * median_ns, 1.5 * median_ns}; }
 
-// Errors of ten units: `error` and a scatter that the units of all candidates share, and `own` of its own.
+// Errors of ten units: `error`, plus a scatter common to all candidates, plus an independent one of size `own`.
 Candidate model(double error, double tick_ns, double own = 0.0, std::uint64_t seed = 1) {
   Candidate one{error, {}, around(tick_ns)};
   RandomStream shared(7, 0);
@@ -33,7 +33,7 @@ TEST(Rank, SpeedDoesNotOutweighAnErrorBeyondTheMargin) {
 }
 
 TEST(Rank, AnUncertainDifferenceDoesNotQualify) {
-  // 0.1 JND more on the whole, and units that differ by 0.5: the bound is beyond the margin.
+  // The mean difference is 0.1 JND, but units scatter by 0.5: the upper bound exceeds the margin.
   EXPECT_EQ(rank({model(0.6, 100.0, 0.5, 2), model(0.5, 1000.0, 0.5, 3)}).recommended, 1u);
 }
 
@@ -49,7 +49,7 @@ TEST(Rank, TimesThatOverlapAreEqual) {
   EXPECT_EQ(rank({model(0.6, 100.0), model(0.5, 101.0)}).recommended, 1u) << "then the smaller error counts";
 }
 
-// Whatever the candidates are: no other one is faster and has a smaller error.
+// For random candidates, no other one is faster and has a smaller error.
 TEST(Rank, NeverRecommendsADominatedModel) {
   RandomStream random(11, 0);
   for (int round = 0; round < 2000; ++round) {

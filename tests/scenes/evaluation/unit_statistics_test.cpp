@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-// Published table of Student's t, one-sided 5 and 2.5 %.
+// The published table of Student's t, one-sided 5 and 2.5 %.
 TEST(StudentT, AgreesWithThePublishedTable) {
   EXPECT_NEAR(student_t(0.05, 1), 6.314, 5e-4);
   EXPECT_NEAR(student_t(0.05, 2), 2.920, 5e-4);

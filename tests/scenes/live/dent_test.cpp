@@ -32,7 +32,7 @@ TEST(Dent, IsTheDepthLessTheLowPassedVelocity) {
     const double depth_m = std::max(0.0, sample.position_m);
     dent.step(depth_m, 0.0, i == 0 ? 0.0 : kStep_s);
     const double remembered_m = depth_m - kTau_s * features.values[1];
-    // The feature takes the depth as linear within a step, the dent as constant.
+    // Within a step the feature assumes a linear depth, the dent a constant one.
     ASSERT_NEAR(dent.depth_m(), std::max(depth_m, 0.35 * remembered_m), 1e-5) << i;
   }
   EXPECT_GT(dent.depth_m(), 1e-6) << "still on its way back";

@@ -12,7 +12,7 @@ TEST(ErrorQuantile, IsWhat99PercentDoNotExceed) {
   EXPECT_NEAR(errors.p99(), 1.98, 0.045 * 1.98);
 }
 
-// As the share within the JND has it.
+// An error of exactly 1 JND counts as within, as in the share within the JND.
 TEST(ErrorQuantile, TellsTheSidesOfOneExactly) {
   ErrorQuantile errors;
   for (int i = 0; i < 99; ++i) errors.add(1.0);

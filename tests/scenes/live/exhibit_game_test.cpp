@@ -12,7 +12,7 @@ using State = ExhibitGame::State;
 const std::vector<ExhibitModel> kAll = {
     {0, "greedy", false}, {1, "greedy", true}, {2, "position", false}, {3, "direct", false}};
 
-// A stroke of `seconds` at 2 N, the second force so much larger, in JNDs of 0.1 N.
+// A press of `seconds` at 2 N. The second force is larger by `over_jnd` JNDs of 0.1 N.
 void press(ExhibitGame& game, double from_s, double seconds, double over_jnd) {
   for (int i = 0; i < static_cast<int>(1e3 * seconds); ++i)
     game.add({from_s + 1e-3 * i, 2.0, 2.0 + 0.1 * over_jnd, over_jnd, true, false});
@@ -104,7 +104,7 @@ TEST(ExhibitGame, AnAnswerNeedsBothToBePressed) {
   EXPECT_TRUE(game.round().correct());
 }
 
-// A hand that can feel 1 JND feels 0.9 in some trials, and not 1.2 in others.
+// Near 1 JND an observer notices 0.9 JND in some trials and misses 1.2 JND in others.
 TEST(ExhibitGame, OnTheEdgeEitherAnswerIsRight) {
   for (const double over_jnd : {0.85, 1.2}) {
     for (const bool noticed : {false, true}) {

@@ -1,4 +1,4 @@
-// A whole session without a window, with its real threads.
+// A whole session with its real threads, without a window.
 #include "scenes/live/live_session.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ using test::TemporaryFolder;
 
 using Session = std::unique_ptr<LiveSession>;
 
-// Two model files and a recording, and sessions that need no fit.
+// Two model files and a recording, for sessions without fits.
 struct Files {
   Files() {
     a = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
@@ -44,7 +44,7 @@ struct Files {
     result.realtime = false;
     return result;
   }
-  // Positions as recorded: these models were fitted to nothing and have no surface.
+  // Positions as recorded, because these example models have no registered surface.
   Session replaying() const {
     Session session = must(LiveSession::open(request("replay:" + folder.file("played.csv"))));
     session->move_surface(false);
@@ -86,8 +86,8 @@ TEST(LiveSession, RefusesWhatCannotBeOpened) {
   EXPECT_EQ(error_of(request), "opened") << "a session that waits for a file";
 }
 
-// The loop and replay give the same bits for the same samples. The models join
-// in mid-stream: counted from the recording's next beginning.
+// The loop and replay give bit-identical forces for the same samples. The models
+// join in mid-stream, so the comparison starts with the next round of the recording.
 TEST(LiveSession, GivesTheForcesOfReplayBitForBit) {
   const Files files;
   const ForceModels models{std::make_shared<FittedModel>(files.a), std::make_shared<FittedModel>(files.b)};
@@ -97,7 +97,7 @@ TEST(LiveSession, GivesTheForcesOfReplayBitForBit) {
   }));
   const Session session = files.replaying();
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
-  // Models join in the middle of a round: from the next one on they have seen all of it.
+  // Models join in the middle of a round. Waits for the next one.
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().tick.model_count == 2; }));
   double last_s = session->newest().tick.time_s;
   ASSERT_TRUE(frames_until(
@@ -179,7 +179,7 @@ TEST(LiveSession, MovesTheSurfaceOfARecordingToThatOfTheModels) {
   EXPECT_EQ(session->comparison().figures(0).errors.samples, 0u) << "figures of ticks begin anew";
   EXPECT_EQ(session->replay()->surface_offset_m(), 0.0);
   ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).errors.samples > 300; }));
-  // 0.3 mm of 300 N/m are 90 mN.
+  // 0.3 mm at 300 N/m are 90 mN.
   EXPECT_GT(session->figures(0).errors.rms_error_N, 3.0 * moved_N);
 }
 
@@ -212,7 +212,7 @@ TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
   EXPECT_EQ(session->models().selected(), 2u);
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().selected == 2 && !session->newest().fading; }));
   EXPECT_EQ(session->reference_words(), "no truth to compare with: difference from second") << "there is one now";
-  // In the first points the later models were not there.
+  // The first points have no force of models that were added later.
   EXPECT_TRUE(std::isnan(session->comparison().history()[0].force_N[2]));
   EXPECT_FALSE(std::isnan(session->comparison().history()[session->comparison().history().size() - 1].force_N[2]));
 }
@@ -248,7 +248,7 @@ TEST(LiveSession, ARemovedModelGivesItsPlaceBackAndTheLastOneStays) {
       << "a removal that was refused forgets nothing";
 }
 
-// The hand stays inside of what was recorded, so that what it presses counts.
+// The simulated hand stays in the recorded range of depth and speed, so that its samples count.
 TEST(LiveSession, TheHandPressesNeitherDeeperNorFasterThanWasRecorded) {
   const test::TemporaryFolder folder;
   Recording slow = *test::rig_recording(test::train_settings("elastic"));
@@ -303,7 +303,7 @@ TEST(LiveSession, ClosedWhileRecordingLeavesTheFileWhole) {
   EXPECT_GT(live.rows.size(), 200u);
 }
 
-// The whole of it, with fits: first figures against the material's truth, then a
+// A session with fits: error figures relative to the material's true force, then a
 // recording of the session that a fit accepts.
 TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   const TemporaryFolder folder;
@@ -336,7 +336,7 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   EXPECT_GT(test::judge(*recording, test::fit(prepared, &kRandomMethod)).within_jnd, 0.95);
 }
 
-// One after the other, as somebody drags: the last one counts.
+// Several requests in sequence, as when a slider is dragged: the last one counts.
 TEST(LiveSession, ModelsAreFittedAnewWithOtherCentres) {
   SessionRequest request;
   request.scene = "elastic_block";
@@ -353,7 +353,7 @@ TEST(LiveSession, ModelsAreFittedAnewWithOtherCentres) {
   EXPECT_EQ(session->models().info(0).name, "random-20");
 }
 
-// Of another material than the scene's: everything is held against the recording's own.
+// A recording of another material than that of the scene: errors are relative to the recording's material.
 TEST(LiveSession, ARecordingIsTheMaterialThatIsFittedAndPressed) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("mine.csv");
@@ -384,7 +384,7 @@ TEST(LiveSession, ARecordingIsTheMaterialThatIsFittedAndPressed) {
   EXPECT_LT(replayed->figures(0).errors.p99_error_over_jnd, 1.0);
 }
 
-// A truth is of one material; a file says what it was fitted to.
+// The true force belongs to one material; a model file names the material that it was fitted to.
 TEST(LiveSession, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   const Files files;
   SessionRequest request = files.request("hand");
@@ -408,14 +408,14 @@ TEST(LiveSession, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   beside->treat_as_this_material(loaded);
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(loaded).errors.samples > 100; }));
 
-  // What the window itself has fitted and saved is of this material.
+  // A model that this session fitted and saved is of this material.
   ASSERT_TRUE(beside->save_model(0, files.folder.file("own.json")).ok());
   beside->load_file(files.folder.file("own.json"));
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().all_settled(); }));
   EXPECT_FALSE(beside->models().info(beside->models().size() - 1).other_material);
 }
 
-// What is stepped through and what stands still is judged as what runs.
+// A paused replay adds no samples, and single steps count like a running replay.
 TEST(LiveSession, APausedReplayCountsNothingAndASteppedOneAsItRan) {
   const Files files;
   const Session session = files.replaying();
@@ -443,7 +443,7 @@ TEST(LiveSession, LineUpsShareTheModelsThatBothHave) {
   EXPECT_EQ(session->line_up(), "Palpate");
   const std::size_t before = session->models().size();
   session->use_line_up("Ladder");
-  // Three by the paper's recipe are new; direct, voxel, greedy and trend are there.
+  // Three models by the paper's recipe are new; direct, voxel, greedy and trend exist already.
   EXPECT_EQ(session->models().size(), before + 3);
   std::size_t hidden = 0;
   for (std::size_t i = 0; i < session->models().size(); ++i)

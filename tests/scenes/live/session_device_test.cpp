@@ -1,5 +1,5 @@
-// A whole session with a haptic device on a bus made up: the reference firmware,
-// in real time, unplugged while somebody presses.
+// A whole session with an OpenFFBoard on a fake bus, in real time. The device is
+// unplugged during a press.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,9 +25,9 @@ namespace fs = std::filesystem;
 
 constexpr double kCounts_per_m = 20000.0;
 constexpr double kRestPosition_m = -0.02;
-constexpr int kStep = 20;  // counts a frame, 1 mm: slower than what counts as a jump
+constexpr int kStep = 20;  // counts per frame, 1 mm: slower than a jump fault
 
-// The assets with a calibration that bears a slow machine.
+// The assets with a calibration that tolerates a slow machine.
 void write_assets(const test::TemporaryFolder& folder) {
   const std::string assets = std::string(PALPATE_SOURCE_DIR) + "/assets";
   fs::create_directories(folder.file("assets/devices"));
@@ -41,11 +41,11 @@ void write_assets(const test::TemporaryFolder& folder) {
 class SessionDevice : public ::testing::Test {
  protected:
   void SetUp() override {
-    // Fault files are written beside wherever the program runs.
+    // Fault files are written to the working directory.
     fs::current_path(folder_.path());
     write_assets(folder_);
     setenv("PALPATE_ASSETS", folder_.file("assets").c_str(), 1);
-    // A direct one, so that there is a reference to record.
+    // A direct model, which is the reference for a recording.
     ModelData data = test::example_model("direct", KernelKind::cubic, test::paper_features(), 1);
     ASSERT_TRUE(save_model(folder_.file("model.json"), data, false).ok());
     SessionRequest request;
@@ -65,7 +65,7 @@ class SessionDevice : public ::testing::Test {
     unsetenv("PALPATE_ASSETS");
   }
 
-  // The tool on its way to `target_` meanwhile.
+  // Runs frames until `done` while the tool moves to `target_`.
   bool frames_until(const std::function<bool()>& done) {
     return test::frames_until(*session_, done, [&] {
       bus_.counts += std::clamp(target_ - bus_.counts, -kStep, kStep);
@@ -113,7 +113,7 @@ TEST_F(SessionDevice, GivesNoForceBeforeItKnowsWhereTheToolIs) {
 TEST_F(SessionDevice, UnpluggedInMidPressItLetsGoSaysSoAndKeepsTheRecording) {
   session_->start_zeroing();
   ASSERT_TRUE(frames_until([&] { return zeroed(); }));
-  session_->reset_figures();  // what the start of a slow machine looked like
+  session_->reset_figures();  // clears alarms due to a slow start
   const std::string path = folder_.file("live.csv");
   ASSERT_TRUE(session_->start_recording(path).ok());
   move_to(0.002);
@@ -129,7 +129,7 @@ TEST_F(SessionDevice, UnpluggedInMidPressItLetsGoSaysSoAndKeepsTheRecording) {
   EXPECT_TRUE(std::any_of(session_->faults().events().begin(), session_->faults().events().end(),
                           [&](const FaultEvent& fault) { return fault.text == unplugged && fault.alarm; }));
 
-  // The second before it is on the disk, and a notice says where.
+  // The second before the fault is saved, and a notice names the file.
   ASSERT_TRUE(frames_until([&] { return notice_with("the last second before the fault is in ") != nullptr; }));
   const Notice& notice = *notice_with("the last second before the fault is in ");
   EXPECT_FALSE(notice.problem);
@@ -139,7 +139,7 @@ TEST_F(SessionDevice, UnpluggedInMidPressItLetsGoSaysSoAndKeepsTheRecording) {
   for (std::string line; std::getline(ticks, line);) ++lines;
   EXPECT_GT(lines, 100u) << file;
 
-  // Back again: no force before it is zeroed, and the alarm stays until it was seen.
+  // Plugged in again: no force before it is zeroed, and the alarm stays until it is acknowledged.
   bus_.plugged_in = true;
   ASSERT_TRUE(frames_until([&] { return session_->newest().device.zeroing == Zeroing::needed; }));
   EXPECT_EQ(session_->newest().rendered_N, 0.0);
@@ -150,7 +150,7 @@ TEST_F(SessionDevice, UnpluggedInMidPressItLetsGoSaysSoAndKeepsTheRecording) {
       << session_->device_words();
   EXPECT_FALSE(session_->alarms().empty());
   EXPECT_TRUE(frames_until([&] {
-    session_->reset_figures();  // again where a slow machine makes another alarm
+    session_->reset_figures();  // repeated, because a slow machine may cause another alarm
     return session_->alarms().empty();
   }));
 

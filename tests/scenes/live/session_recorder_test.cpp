@@ -1,4 +1,4 @@
-// Every sample into a file that the reader accepts, whatever the device does.
+// The recorder writes every sample to a file that the reader accepts, whatever the device does.
 #include "scenes/live/session_recorder.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ class DepthForce final : public ReferenceForce {
   double step(const TickSnapshot& snapshot, bool) noexcept override { return 250.0 * snapshot.depth_m; }
 };
 
-// A loop whose first model is the written one, without its thread.
+// A loop without its thread, whose first model is the recorded one.
 struct Rig {
   explicit Rig(Device& device) : loop(device), recorder(loop) {
     auto models = std::make_unique<LiveModels>(1, device.sensor(), std::vector{test::spring(300.0)},
@@ -52,7 +52,7 @@ struct Rig {
     });
     loop.run(pacer);
   }
-  // What the recorder says when it ends by itself, within two seconds.
+  // The notice of a recorder that ends by itself within two seconds.
   Notice outcome() {
     std::optional<Notice> said;
     for (int i = 0; i < 200 && !(said = recorder.read_outcome()); ++i) {
@@ -113,7 +113,7 @@ TEST(SessionRecorder, WritesTheModelsForceWhenThatIsTheReference) {
   }
 }
 
-// 4 kHz, of which a snapshot has every fourth; the end joins the beginning.
+// A replay at 4 kHz, of which a snapshot has every fourth sample. The replay repeats.
 TEST(SessionRecorder, GoesOnWhereARecordingStartsOver) {
   const TemporaryFolder folder;
   Recording played;
@@ -163,7 +163,7 @@ TEST(SessionRecorder, TakesOneAtATimeAndNothingOfTheLast) {
             "already recording into " + folder.file("a.csv") + "; stop that one first");
   rig.run(100);
   EXPECT_FALSE(rig.finish().problem);
-  // The loop has not heard of the end yet: these belong to nobody.
+  // The loop may still send samples of the ended recording. They must be discarded.
   EXPECT_EQ(rig.recorder.start({folder.file("a.csv"), ReferenceKind::truth, {}, {}}).error().message,
             folder.file("a.csv") + " exists; choose another name");
   ASSERT_TRUE(rig.recorder.start({folder.file("b.csv"), ReferenceKind::truth, {}, {}}).ok());
@@ -198,7 +198,7 @@ TEST(SessionRecorder, SaysThatTheFolderIsGone) {
   EXPECT_TRUE(folder.entries().empty());
 }
 
-// Stands in for a full disk: no file of this process may grow beyond 100 kB.
+// Simulates a full disk: no file of this process can grow beyond 100 kB.
 class SmallFiles {
  public:
   SmallFiles() : handler_(signal(SIGXFSZ, SIG_IGN)) {
@@ -261,7 +261,7 @@ TEST(SessionRecorder, KeepsWhatWasOnTheDiskWhenItFillsUp) {
       << notice.text << ", has " << kept->rows.size();
 }
 
-// The loop's own thread beside the recorder's; for the thread sanitizer.
+// The threads of the loop and of the recorder run in parallel, for the thread sanitizer.
 TEST(SessionRecorder, RecordsBesideTheRunningLoop) {
   const TemporaryFolder folder;
   PathDevice device(test::strokes);

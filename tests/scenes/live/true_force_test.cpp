@@ -1,4 +1,4 @@
-// The virtual material's true force along with the tick.
+// The true force of the virtual material in the tick.
 #include "scenes/live/true_force.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(TrueForce, IsTheMaterialsUnderTheSameTool) {
   EXPECT_EQ(force.step(press_at(0.0), false), 0.0);
   double time_s = 0.0;
   for (int i = 1; i < 2000; ++i) {
-    const double step_s = i % 3 == 0 ? 2.5e-3 : 1e-3;  // the real step, whatever it is
+    const double step_s = i % 3 == 0 ? 2.5e-3 : 1e-3;  // uneven time steps
     const double next_s = time_s + step_s;
     const TickSnapshot snapshot = press_at(next_s);
     ASSERT_EQ(force.step(snapshot, false),

@@ -1,4 +1,4 @@
-// What holds of every virtual material, whatever its law.
+// Properties of every virtual material.
 #include "scenes/material/block.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using test::Wandering;
 
 using BlockPtr = std::unique_ptr<Block>;
 
-// Work over a motion by the trapezoid rule.
+// The work of a motion by the trapezoidal rule.
 struct Work {
   void add(double position_m, double force_N) {
     const double part_J = 0.5 * (force_N + last_N) * (position_m - last_m);
@@ -53,7 +53,7 @@ TEST(Block, OneLongStepEqualsItsSubsteps) {
     const double v = 0.05;
     for (int tick = 1; tick <= 100; ++tick) {
       const double from_m = -1e-3 + v * 1e-3 * (tick - 1);
-      // The first step starts at rest and bends, so let both take it alike.
+      // The first step starts at rest and is not linear, so both take the same one.
       if (tick == 1) {
         coarse->step(from_m, v, 1e-4);
         fine->step(from_m, v, 1e-4);
@@ -65,8 +65,8 @@ TEST(Block, OneLongStepEqualsItsSubsteps) {
   }
 }
 
-// The cubic between rows misses the motion between them by v'''' dt^4 / 384, at
-// 12 Hz and 500 Hz below 0.3 um of the depth; a thousandth of the stiffest force.
+// The error of the cubic interpolation between rows is v'''' dt^4 / 384. At 12 Hz and
+// 500 Hz this is below 0.3 um of depth, a thousandth of the stiffest force.
 TEST(Block, SameMotionGivesTheSameForceAtEveryRate) {
   for (const Material& material : materials()) {
     const BlockPtr blocks[] = {material.make_block(), material.make_block(), material.make_block(),
@@ -92,8 +92,8 @@ TEST(Block, SameMotionGivesTheSameForceAtEveryRate) {
   }
 }
 
-// Starting fresh, the work put in is never negative, at no time: what could be
-// taken out was put in before.
+// From rest on, the net work put in is never negative at any time, so that the material
+// is passive.
 TEST(Block, NeverGivesMoreEnergyThanItGot) {
   for (const Material& material : materials()) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -104,8 +104,8 @@ TEST(Block, NeverGivesMoreEnergyThanItGot) {
       for (int i = 1; i <= 100000; ++i) {
         work.add(motion.position_m(i * dt),
                  block->step(motion.position_m(i * dt), motion.velocity_m_per_s(i * dt), dt));
-        // Trapezoid error: h^2/12 F'' dx is below 1e-5 of the energy that
-        // went through.
+        // The error of the trapezoidal rule, h^2/12 F'' dx, is below 1e-5 of the
+        // energy put in.
         ASSERT_GE(work.net_J, -1e-5 * work.put_in_J) << material.name << " seed " << seed << " row " << i;
       }
     }
@@ -121,7 +121,7 @@ TEST(Block, ClosedCycleLosesEnergyUnlessElastic) {
       if (material.name == "elastic") {
         EXPECT_NEAR(work.net_J, 0.0, 1e-6 * work.put_in_J);
       } else {
-        // The lightly damped stiff block loses 1.1 % at 2 Hz, the others more.
+        // The lightly damped stiff block dissipates 1.1 % at 2 Hz, the others more.
         EXPECT_GT(work.net_J, 0.005 * work.put_in_J) << material.name;
       }
     }
@@ -145,7 +145,7 @@ TEST(Block, NeverPullsAndIsSilentInTheAir) {
   }
 }
 
-// A quarter of an hour in the air: all but the slowest part of a power law is gone.
+// After a quarter of an hour in the air only the slowest part of a power law has not relaxed.
 TEST(Block, ForgetsInFreeAir) {
   for (const Material& material : materials()) {
     const BlockPtr block = material.make_block(), fresh = material.make_block();

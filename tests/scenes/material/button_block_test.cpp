@@ -42,7 +42,7 @@ TEST(ButtonBlock, ComesBackAnotherWay) {
   double in_J = 0.0;
   double out_J = 0.0;
   for (std::size_t i = 0; i < slow.out_N.size(); ++i) {
-    // At the same depth: the way in begins a step into the block.
+    // Compares at the same depth: the way in starts one step inside the block.
     const double in_N = i > 0 ? slow.in_N[i - 1] : 0.0;
     EXPECT_LE(slow.out_N[i], in_N + 1e-9) << i;
     in_J += 1e-5 * slow.in_N[i];
@@ -52,8 +52,8 @@ TEST(ButtonBlock, ComesBackAnotherWay) {
   EXPECT_GT(out_J, 0.3 * in_J);
 }
 
-// The truss in equilibrium: at the flat dome the legs push against each other, and only the
-// skirt is felt.
+// The truss in equilibrium: when the dome is flat, the forces of the legs cancel and only that
+// of the skirt is left.
 TEST(ButtonBlock, OnTheFlatOnlyTheSkirtIsFelt) {
   const Stroke slow = stroke(0.0005);
   const auto flat = static_cast<std::size_t>(std::lround(ButtonBlock::kRise_m / 1e-5)) - 1;

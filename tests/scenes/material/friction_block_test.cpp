@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-// Slowly, so that the spectrum has relaxed: 0.1 mm/s.
+// Moves at 0.1 mm/s, slowly enough for the spectrum to relax.
 void slide(Block& block, double& at_m, double to_m, std::vector<double>* forces_N = nullptr) {
   const int steps = static_cast<int>(std::lround(std::abs(to_m - at_m) / 1e-6));
   const double from_m = at_m;
@@ -19,8 +19,8 @@ void slide(Block& block, double& at_m, double to_m, std::vector<double>* forces_
   }
 }
 
-// Full friction both ways, less the presliding at each end: with Dahl's law from
-// -1 to +1 over a way l the area that a corner of the loop misses is
+// Full friction in both directions, less the presliding at each end: with Dahl's
+// law from -1 to +1 over a distance l, each corner of the loop reduces the area by
 // 2 F_c x_p (1 - exp(-l / x_p)).
 TEST(FrictionBlock, LoopAreaIsTwiceFrictionTimesTheWay) {
   FrictionBlock block;
@@ -36,8 +36,8 @@ TEST(FrictionBlock, LoopAreaIsTwiceFrictionTimesTheWay) {
   for (const double force_N : forces_N) area_J -= force_N * 1e-6;
   const double fc = FrictionBlock::kFriction_N, xp = FrictionBlock::kPresliding_m;
   const double expected_J = 2.0 * fc * 2e-3 - 2.0 * 2.0 * fc * xp;
-  // The spectrum, of 50 ms to 2 s, loses some at 0.1 mm/s, and the sum by
-  // rectangles counts one step of the loop's height too many.
+  // The spectrum of 50 ms to 2 s dissipates a little at 0.1 mm/s, and the sum of
+  // rectangles includes one step too many.
   EXPECT_NEAR(area_J / expected_J, 1.0, 0.03);
 }
 

@@ -17,8 +17,8 @@ void advance(Hand& hand, Block& block) {
   hand.feel(block.step(hand.position_m(), hand.velocity_m_per_s(), kStep_s), kStep_s);
 }
 
-// Without any force the hand is linear, so a hand with tremor less one without
-// is the tremor as the hand passes it on.
+// Without a force the hand is linear. So the difference between hands with and without
+// tremor is the tremor after the dynamics of the hand.
 TEST(Hand, TremblesAtEightToTwelveHertz) {
   HandSettings calm;
   calm.tremor_rms_m = 0.0;
@@ -39,7 +39,7 @@ TEST(Hand, TremblesAtEightToTwelveHertz) {
   const double frequency_Hz = crossings / 2.0 / (kSteps * kStep_s);
   EXPECT_GT(frequency_Hz, 8.0);
   EXPECT_LT(frequency_Hz, 12.0);
-  // The hand's own spring and damper pass 8 to 12 Hz on with a gain of 1 to 1.4.
+  // The spring and damper of the hand have a gain of 1 to 1.4 at 8 to 12 Hz.
   const double rms_m = std::sqrt(squares / kSteps);
   EXPECT_GT(rms_m, 0.9 * HandSettings{}.tremor_rms_m);
   EXPECT_LT(rms_m, 1.5 * HandSettings{}.tremor_rms_m);
@@ -55,10 +55,10 @@ TEST(Hand, VelocityAndAccelerationAreTheDerivativesOfPosition) {
   for (int i = 0; i < 200000; ++i) {
     advance(hand, block);
     if (i > 2) {
-      // Central differences. Where the tool meets a surface that still lags by
-      // s, the damper makes the acceleration jump by c s v / m, some 2 m/s^2;
-      // a difference across the jump is off by half of it, and the velocity
-      // by half of it times the step.
+      // Central differences. When the tool meets a surface that still lags by s, the
+      // damper makes the acceleration jump by c s v / m, about 2 m/s^2. The error of a
+      // difference across the jump is half of it, and that of the velocity half of it
+      // times the step.
       ASSERT_NEAR(v1, (hand.position_m() - x0) / (2.0 * kStep_s), 1e-4) << i;
       const double difference = (hand.velocity_m_per_s() - v0) / (2.0 * kStep_s);
       ASSERT_NEAR(a1, difference, 2.0) << i;
@@ -88,7 +88,7 @@ TEST(Hand, HalvingTheStepHardlyChangesTheMotion) {
     }
     worst_m = std::max(worst_m, std::abs(coarse.position_m() - fine.position_m()));
   }
-  // A tenth of an encoder step.
+  // The tolerance is a tenth of an encoder step.
   EXPECT_LT(worst_m, 3e-6);
 }
 

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-// E(s) = 1 N/m s, so that what is beside the depth is the memory.
+// E(s) = 1 N/m s, so that the force is the depth plus the memory.
 class Straight final : public HereditaryBlock {
  public:
   Straight(double shortest_s, double longest_s, double weight)
@@ -26,12 +26,12 @@ TEST(HereditaryBlock, ABoxRelaxesAsItsExponentialIntegrals) {
     for (int i = 0; i < static_cast<int>(std::lround(t / 0.01)); ++i) held_N = block.step(1.0, 0.0, 0.01);
     const double expected = t == 0.0 ? c * std::log(longest_s / shortest_s)
                                      : c * (std::expint(-t / shortest_s) - std::expint(-t / longest_s));
-    // The midpoint rule with a spacing of 0.21 in ln tau.
+    // The tolerance is for the midpoint rule with a spacing of 0.21 in ln tau.
     EXPECT_NEAR(held_N - 1.0, expected, 1e-3 * c) << t;
   }
 }
 
-// dE/dt = 1: M = sum w tau (1 - exp(-t / tau)), whatever the step.
+// dE/dt = 1: M = sum w tau (1 - exp(-t / tau)), for any step.
 TEST(HereditaryBlock, IsExactOnARampAtEveryStep) {
   double memory_N[2];
   const double steps_s[] = {1e-4, 2e-6};

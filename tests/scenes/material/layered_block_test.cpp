@@ -15,7 +15,7 @@ TEST(LayeredBlock, KnowsNothingOfTheInclusionAboveIt) {
   EXPECT_NEAR(block.force_N(), LayeredBlock::kTop.force_N(5.9e-3), 1e-9);
 }
 
-// Held long, two springs in series: k_i (s - g - y)^1.5 = k_s y.
+// After a long hold it equals two springs in series: k_i (s - g - y)^1.5 = k_s y.
 TEST(LayeredBlock, HeldLongIsAContactOnASpring) {
   LayeredBlock block;
   for (int i = 1; i <= 800; ++i) block.step(1e-5 * i, 1e-2, 1e-3);

@@ -33,7 +33,7 @@ TEST(MaxwellBlock, StepHoldRelaxesAsTheSumOfExponentials) {
   for (const MaxwellParameters* material : kAll) {
     MaxwellBlock block(*material);
     const double depth_m = test::depth_of_5_N(block);
-    // So short a step that no branch relaxes: h / tau < 2e-8.
+    // The step is so short that no branch relaxes: h / tau < 2e-8.
     block.step(depth_m, 0.0, 1e-9);
     double start_N[kMaximumBranches] = {};
     for (std::size_t b = 0; b < material->branch_count; ++b) {
@@ -48,7 +48,7 @@ TEST(MaxwellBlock, StepHoldRelaxesAsTheSumOfExponentials) {
         const double tau = material->branches[b].relaxation_time_s;
         expected_N += start_N[b] * std::expm1(-tick * 1e-3 / tau);
       }
-      // Rounding of 30,000 multiplications by exp(-h / tau).
+      // The tolerance is for the rounding of 30,000 multiplications by exp(-h / tau).
       ASSERT_NEAR(force_N, expected_N, 1e-10) << block.parameters().branch_count << " tick " << tick;
     }
   }
@@ -119,7 +119,7 @@ TEST(MaxwellBlock, ForgetsInFreeAir) {
     MaxwellBlock block(*material);
     const double deep_m = test::depth_of_5_N(block);
     for (int i = 0; i < 2000; ++i) block.step(deep_m, 0.0, 1e-3);
-    // The surface comes back with tau (1 + K / k), at most 3 tau here.
+    // The surface returns with the time constant tau (1 + K / k), at most 3 tau here.
     for (int i = 0; i < 100000; ++i) block.step(-1e-3, 0.0, 1e-3);
     EXPECT_LT(block.surface_depth_m(), 1e-6);
     for (std::size_t b = 0; b < material->branch_count; ++b) {
@@ -128,7 +128,7 @@ TEST(MaxwellBlock, ForgetsInFreeAir) {
   }
 }
 
-// Slow enough that no branch matters: what is left is friction.
+// A motion so slow that branches have no effect: only friction is left.
 TEST(MaxwellBlock, FoamHasHysteresisAtRest) {
   MaxwellParameters material = kFoam;
   material.branch_count = 0;

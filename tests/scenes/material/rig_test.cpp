@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// A whole recording and what really was at its rows.
+// A whole recording and the true values at its rows.
 struct RigRecording {
   Recording recording;
   std::vector<RigTruth> truth;
@@ -70,8 +70,8 @@ Spread spread(std::size_t count, Sample sample) {
   return {sum / n, std::sqrt(squares / n - sum / n * sum / n)};
 }
 
-// The paper's recording, section 4: 41,499 samples, of which 6,850 stay; its
-// silicone was pressed to about 6 N.
+// The paper's recording, section 4: 41,499 samples, of which the reduction keeps
+// 6,850. Its silicone was pressed to about 6 N.
 TEST(Rig, SiliconeDefaultsAreThePapersRecording) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const RigRecording rig = made("silicone", seed);
@@ -82,7 +82,7 @@ TEST(Rig, SiliconeDefaultsAreThePapersRecording) {
   EXPECT_EQ(made("silicone", 2, 45.272).recording.rows.size(), 45272u);
 }
 
-// The default hand aims for 6 N; materials of other strength bring their own.
+// The default hand aims for 6 N; some materials have a hand with another force.
 TEST(Rig, EveryMaterialIsPressedAsHardAsItsHandAims) {
   for (const Material& material : materials()) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
@@ -94,7 +94,7 @@ TEST(Rig, EveryMaterialIsPressedAsHardAsItsHandAims) {
         contact += truth.position_m > 0.0;
       }
       EXPECT_GT(strongest_N, 5.0 / 6.0 * material.hand.strongest_press_N) << material.name;
-      // What has snapped through arrives at the floor with speed.
+      // After snapping through, the tool hits the floor at speed.
       const double beyond = material.name == "button" ? 8.4 / 6.0 : 7.8 / 6.0;
       EXPECT_LT(strongest_N, beyond * material.hand.strongest_press_N) << material.name;
       EXPECT_LT(strongest_N, material.force_range_N) << material.name;
@@ -109,10 +109,10 @@ TEST(Rig, SameSeedGivesTheSameBits) {
   EXPECT_FALSE(same_bits(made("foam", 7, 5.0).recording, made("foam", 8, 5.0).recording));
 }
 
-// What the sensors read is whole steps, so the hash does not see the last bits
-// in which mathematics libraries may differ. Maxwell's was the same from g++ 12
-// and clang 14 at -O0, -O2 and -O3, silicone's from g++ 12 at -O3; a change means
-// that all recordings changed.
+// Sensor readings are whole steps, so that the hash does not depend on the last bits
+// in which mathematics libraries may differ. That of maxwell was the same with g++ 12
+// and clang 14 at -O0, -O2 and -O3, that of silicone with g++ 12 at -O3. A change
+// means that all recordings changed.
 TEST(Rig, EveryCompilerGivesTheSameRecording) {
   const auto hash_of = [](const std::string& material) {
     std::uint64_t hash = 14695981039346656037u;  // FNV-1a over whole words
@@ -149,12 +149,12 @@ TEST(Rig, RatesShareMotionAndForce) {
   }
 }
 
-// 300 Hz does not divide the 20 kHz grid; every third row is on it, at 100 Hz.
+// 300 Hz does not divide the 20 kHz grid, but every third row (100 Hz) is on it.
 TEST(Rig, RatesBesideTheGridAreInterpolated) {
   const RigRecording odd = made("gel", 5, 3.0, 300.0);
   const RigRecording grid = made("gel", 5, 3.0, 100.0);
   for (std::size_t i = 0; i < grid.truth.size(); ++i) {
-    // Index times 20000 / 300 is inexact by 1e-11 grid steps.
+    // The rounding error of index times 20000 / 300 is 1e-11 grid steps.
     ASSERT_NEAR(odd.truth[3 * i].force_N, grid.truth[i].force_N, 1e-9);
     ASSERT_NEAR(odd.truth[3 * i].position_m, grid.truth[i].position_m, 1e-12);
   }
@@ -165,7 +165,7 @@ TEST(Rig, TruthIsConsistent) {
   for (std::size_t i = 1; i + 1 < rig.truth.size(); ++i) {
     const RigTruth& truth = rig.truth[i];
     const double slope = (rig.truth[i + 1].position_m - rig.truth[i - 1].position_m) * 0.5 / kRigStep_s;
-    // Positive velocity goes in; see Hand for the tolerance.
+    // Positive velocity is inward. For the tolerance see hand_test.cpp.
     ASSERT_NEAR(truth.velocity_m_per_s, slope, 1e-4);
     ASSERT_GE(truth.force_N, 0.0);
     ASSERT_GE(truth.surface_depth_m, std::max(0.0, truth.position_m));
@@ -192,7 +192,7 @@ TEST(Rig, ForceNoiseIsAsStatedAndInTwelveBitSteps) {
     EXPECT_NEAR(count, std::round(count), 1e-9);
     return rig.recording.rows[i].force_N - rig.truth[i].force_N;
   });
-  // Noise and rounding add as squares; standard errors 2.5e-5 and 1.8e-5 N.
+  // The variances of noise and rounding add. The standard errors are 2.5e-5 and 1.8e-5 N.
   EXPECT_NEAR(error.mean, 0.0, 1e-4);
   EXPECT_NEAR(error.deviation, std::hypot(0.005, step_N / std::sqrt(12.0)), 1e-4);
 }
@@ -218,12 +218,12 @@ TEST(Rig, AccelerometerHasWhiteNoiseAndASlowBias) {
   for (const RecordingRow& row : rig.recording.rows) {
     ASSERT_EQ(row.acceleration_m_per_s2, std::round(row.acceleration_m_per_s2 / step) * step);
   }
-  // Differences of neighbours hold twice the white variance and no bias;
-  // standard error 0.2 %.
+  // Differences of adjacent samples have twice the white variance and no bias.
+  // The standard error is 0.2 %.
   const Spread steps = spread(count - 1, [&](std::size_t i) { return error(i + 1) - error(i); });
   EXPECT_NEAR(steps.deviation / std::sqrt(2.0), 0.07, 0.001);
-  // Over 200 s the bias has some ten independent values of 0.1: its mean and
-  // spread are known to a factor of two.
+  // In 200 s the bias has about ten independent values of 0.1, so its mean and
+  // spread are accurate to a factor of two.
   const Spread bias = spread(count / 1000, [&](std::size_t second) {
     return spread(1000, [&](std::size_t i) { return error(1000 * second + i); }).mean;
   });
@@ -232,7 +232,7 @@ TEST(Rig, AccelerometerHasWhiteNoiseAndASlowBias) {
   EXPECT_LT(bias.deviation, 0.2);
 }
 
-// What real rigs do: the same motion and noise, recorded from elsewhere.
+// As in real rigs: the same motion and noise with another origin of position and force.
 TEST(Rig, DisplacesTheSurfaceAndTheForceZero) {
   RigSettings settings;
   settings.seconds = 5.0;

@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-// From `from_m` to `to_m` at rest in the end, then a hold.
+// Moves from `from_m` to `to_m`, holds, and returns the force at the end.
 double go(Block& block, double from_m, double to_m, double seconds, double hold_s = 0.0) {
   const int steps = static_cast<int>(seconds * 1000.0);
   for (int i = 1; i <= steps; ++i) {
@@ -23,8 +23,8 @@ TEST(SofteningBlock, FirstSlowPressIsTheElasticLaw) {
   EXPECT_NEAR(go(block, 0.0, 6e-3, 1.0, 60.0), block.relaxed_force_N(6e-3), 1e-6);
 }
 
-// Just after a deep press the same depth is softer by r erf(...), and 6 s later by
-// about what the faded deepest depth says.
+// Shortly after a deep press a smaller depth is softer, by at most about kSoftening. After
+// 30 s in the air (five time constants of 6 s) it has healed.
 TEST(SofteningBlock, IsSofterBelowItsDeepestPressAndHeals) {
   SofteningBlock fresh;
   const double first_N = go(fresh, 0.0, 4e-3, 0.2);
@@ -49,7 +49,7 @@ TEST(SofteningBlock, TheDeepestDepthFadesExponentially) {
       << "but for the moment in which the surface comes after";
 }
 
-// Healing while deep gives back what softened: at most the damage that was paid for.
+// Healing during a hold returns energy, but no more than the softening dissipated before.
 TEST(SofteningBlock, HealingMakesNoEnergy) {
   SofteningBlock block;
   double net_J = 0.0, last_m = 0.0, last_N = 0.0;

@@ -16,7 +16,7 @@ TEST(SphereContact, IsHertzNearTheSurface) {
   EXPECT_EQ(contact.force_N(0.0), 0.0);
 }
 
-// Lin et al. (2009) give the neo-Hookean line as a quotient of polynomials in a.
+// Lin et al. (2009) give the neo-Hookean force as a quotient of polynomials in a.
 TEST(SphereContact, IsThePublishedQuotientWithoutStiffening) {
   const double r = 0.01, modulus_Pa = 30e3;
   const SphereContact contact{.radius_m = r, .modulus_Pa = modulus_Pa};

@@ -18,12 +18,12 @@ TEST(SpongeBlock, SlowPressIsTheSkeleton) {
   EXPECT_NEAR(block.force_N() / skeleton_N, 1.0, 2e-3) << "what a diffusion of a second leaves in 10,000";
 }
 
-// Mean pressure of a disc that drains at its rim, uniform at the start:
-// p0 sum 4 / j_n^2 exp(-j_n^2 D t / a^2), j_n the zeros of J0.
+// The mean pressure of a disc that drains at its rim, from a uniform pressure p0:
+// p0 sum 4 / j_n^2 exp(-j_n^2 D t / a^2), with j_n the zeros of J0.
 double drained_share(double t, double diffusivity_m2_per_s) {
   double sum = 0.0;
   for (int n = 1; n <= 200; ++n) {
-    // McMahon's expansion, good to 1e-4 from the first zero on.
+    // McMahon's expansion, accurate to 1e-4 from the first zero on.
     const double b = (n - 0.25) * 3.14159265358979324;
     const double j = b + 1.0 / (8.0 * b) - 124.0 / (3.0 * std::pow(8.0 * b, 3));
     sum +=
@@ -42,7 +42,7 @@ TEST(SpongeBlock, StepDrainsAsTheBesselSeriesSlowerWhenDeep) {
     const double diffusivity = SpongeBlock::kDiffusivity_m2_per_s * std::exp(-SpongeBlock::kPermeabilityFall * strain);
     for (int tick = 1; tick <= 1000; ++tick) {
       block.step(depth_m, 0.0, 1e-3);
-      // Twelve rings are coarse until the front is wider than one: 1 % from there.
+      // Twelve rings are too coarse until the front is wider than one ring; then the error is 1 %.
       if (diffusivity * tick * 1e-3 < 0.015 * SpongeBlock::kRadius_m * SpongeBlock::kRadius_m) continue;
       ASSERT_NEAR((block.force_N() - block.relaxed_force_N(depth_m)) / at_once_N,
                   drained_share(tick * 1e-3, diffusivity), 0.01)

@@ -11,7 +11,7 @@ double relaxation(double t) {
   return 1.0 - TissueBlock::kFractionalShare + TissueBlock::kFractionalShare * std::pow(t, -TissueBlock::kExponent);
 }
 
-// Inside the spectrum's ends, 0.1 ms and 1,000 s, each by a factor of ten or more.
+// Tested at times a factor of ten or more inside the ends of the spectrum, 0.1 ms and 1,000 s.
 TEST(TissueBlock, StepRelaxesAsThePowerLaw) {
   TissueBlock block;
   const double depth_m = 0.006, elastic_N = TissueBlock::kContact.force_N(depth_m);

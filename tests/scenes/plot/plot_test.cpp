@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-// Errors of two methods up to `largest_N`, as the report has them.
+// Errors of two methods up to `largest_N`, as in the report.
 Plot errors_up_to(double largest_N) {
   Plot plot;
   plot.name = "errors";
@@ -39,7 +39,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-// At any force every method keeps its name, both axes their titles, and no tic has more than
+// For any range of forces all method names and both axis titles are shown, and tics have only
 // a few digits.
 TEST(Plot, HoldsFromThreeTenthsOfANewtonToThreeKilonewtons) {
   if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";

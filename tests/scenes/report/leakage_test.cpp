@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// The example's motion with a sensor noise of its own.
+// The example recording with independent sensor noise.
 Recording noisy(const std::string& name, std::uint64_t seed, std::size_t rows = 2000) {
   Recording recording = test::example_recording(rows, 1000.0);
   recording.name = name;
@@ -18,7 +18,7 @@ Recording noisy(const std::string& name, std::uint64_t seed, std::size_t rows = 
   return recording;
 }
 
-// The first is trained on.
+// The first recording is the training recording.
 Status refuse(const std::vector<Recording>& recordings) {
   std::vector<SharedRecording> all;
   for (const Recording& one : recordings) all.push_back(std::make_shared<const Recording>(one));
@@ -51,7 +51,7 @@ TEST(Leakage, ACopyUnderAnotherNameIsRefusedByName) {
 TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
   const Recording train = noisy("train", 1);
   Recording test = noisy("test", 2);
-  // 2 kLeakRows - 1 would be found too; fewer need not be.
+  // A shared stretch of 2 kLeakRows - 1 rows or more is always found, a shorter one not always.
   for (std::size_t i = 0; i < 2 * kLeakRows; ++i) test.rows[777 + i].force_N = train.rows[331 + i].force_N;
   const SharedStretch stretch = shared_stretch(train, test);
   EXPECT_EQ(stretch.rows, 2 * kLeakRows);

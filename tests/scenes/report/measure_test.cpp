@@ -114,7 +114,7 @@ TEST(Choose, OnEveryRecordedSetNoMethodDominatesTheRecommendedOne) {
 }
 
 TEST(WorstStretch, IsWhereTheFirstModelErrs) {
-  // 12 s; from 7 to 8 s the measured force is 50 N more than any model says.
+  // 12 s; from 7 to 8 s the measured force is 50 N larger.
   Recording recording = test::example_recording(12000, 1000.0);
   for (RecordingRow& row : recording.rows) {
     const double since_s = row.time_s - recording.rows.front().time_s;
@@ -137,7 +137,7 @@ TEST(WorstStretch, OfAShortRecordingIsTheWhole) {
   EXPECT_EQ(worst_stretch(recording, {model}, JndLine{}).rows.size(), 500u);
 }
 
-// In one fold the recipe of 2009 has fewer sites than centres, in the other it has more.
+// In one fold the recipe of 2009 has fewer sites than centres, in the other more.
 TEST(Measure, ANameHasTheNumberOfCentresInEveryOrderOfTheFolds) {
   const auto scene = load_scene("silicone_block");
   ASSERT_TRUE(scene.ok()) << scene.error().message;

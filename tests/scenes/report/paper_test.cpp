@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-// Every method with mean plus deviation of 0.8 JND and maxima of 1.5, and times as the paper has them.
+// Every method has a mean plus deviation of 0.8 JND and a maximum of 1.5 JND, and times in the paper's order.
 PaperData example() {
   PaperData data;
   PaperRun run{"silicone", false, {0.17, 1.27}, 41499, 45272, 6850, {}};

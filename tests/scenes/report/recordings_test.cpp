@@ -17,7 +17,7 @@ class ReportRecordings : public ::testing::Test {
  protected:
   std::string recording(const std::string& name, std::size_t rows = 1000) const {
     const std::string path = folder_.file(name + ".csv");
-    // Every name has a noise of its own: a copy would be refused.
+    // Each name has independent noise, because a copy would be refused.
     Recording recording = test::example_recording(rows, 1000.0);
     RandomStream random(std::hash<std::string>{}(name), 0);
     for (RecordingRow& row : recording.rows) row.force_N += 0.005 * random.normal();

@@ -28,7 +28,7 @@ const char* const kGood = R"({
   "default_models": ["greedy"]
 })";
 
-// The good text with `from` replaced; what the reader says about it.
+// The reader's message about the valid text with `from` replaced by `to`.
 std::string complaint_after(const std::string& from, const std::string& to) {
   const auto scene = parse_scene(test::replaced(kGood, from, to), "x.json");
   return scene.ok() ? "accepted" : scene.error().message;
@@ -144,7 +144,7 @@ TEST(SceneReader, RefusesWhatIsNotJson) {
   }
 }
 
-// Every field in turn of a wrong type, and missing: refused, never a crash.
+// Every field in turn has a wrong type or is missing: it is refused without a crash.
 TEST(SceneReader, RefusesEveryFieldOfAWrongTypeOrMissing) {
   const Json good = Json::parse(kGood);
   for (const auto& [key, ignored] : good.items()) {

@@ -39,7 +39,7 @@ TEST(Discrimination, IntervalIsWilsons) {
 TEST(Discrimination, CountsWhatWasRendered) {
   std::vector<StudyRecord> records = answers(60, 100);
   records[0].trial.training = true;
-  records[1].worst_N = 0.033;  // half a JND at no force is 32.5 mN
+  records[1].worst_N = 0.033;  // half a JND at 0 N is 32.5 mN
   records[2].worst_N = 0.032;
   const Discrimination result = discrimination_of("S01", records, *example_strokes(0.9));
   EXPECT_EQ(result.trials, 98u);
@@ -102,7 +102,7 @@ TEST(Discrimination, AnalysesFilesOfTheSameStrokesAlone) {
   EXPECT_NE(complaint({one}).find("no usable answer of subject S01"), std::string::npos);
 }
 
-// The share right of a subject with the JND line `jnd` among `sessions` sessions.
+// The share of correct answers of a subject with the JND line `jnd`, averaged over `sessions`.
 double simulated_share(double stroke_share, const JndLine& jnd, int sessions) {
   const auto strokes = example_strokes(stroke_share);
   double right = 0.0;
@@ -118,7 +118,7 @@ double simulated_share(double stroke_share, const JndLine& jnd, int sessions) {
 TEST(Discrimination, SimulatedSubjectsAnswerAsTheirJndSays) {
   const JndLine jnd{0.1, 0.0};
   EXPECT_NEAR(simulated_share(1.0, jnd, 40), 0.5, 0.024) << "the same stroke twice";
-  // The largest force that is let through whole is 2 N; noise alike at all forces.
+  // The largest unlimited force is 2 N, and the noise does not depend on force.
   EXPECT_NEAR(simulated_share(1.0 - 0.1 / 2.0, jnd, 40), 0.75, 0.024) << "one JND there";
   EXPECT_NEAR(simulated_share(1.0 + 0.1 / 2.0, jnd, 40), 0.75, 0.024) << "the larger one";
   EXPECT_GT(simulated_share(0.5, jnd, 5), 0.99) << "grossly different";

@@ -14,8 +14,8 @@ namespace {
 
 using test::spring;
 
-// Presses of `depths_m`, 1.2 s each and as far apart, into a spring of 100 N/m whose force
-// the sensor gives `offset_N` too high in the last of them.
+// Presses of `depths_m`, 1.2 s each with pauses of 1.2 s, into a spring of 100 N/m. In the last
+// press the measured force is too high by `offset_N`.
 Recording presses(const std::vector<double>& depths_m, double offset_N, double rate_Hz = 1000.0) {
   Recording recording;
   recording.name = "spring";

@@ -8,8 +8,8 @@
 namespace palpate {
 namespace {
 
-// The answers that subjects with these slopes give on average, at the study's
-// differences.
+// The expected answers of subjects with these psychometric functions at the
+// differences of the study.
 std::vector<AnswerCell> expected_answers(std::initializer_list<PsychometricFunction> truths, double trials) {
   std::vector<AnswerCell> cells;
   std::size_t reference = 0;
@@ -58,7 +58,7 @@ TEST(Psychometrics, NoOrderBiasIsTakenForAFlatSlope) {
 }
 
 TEST(Psychometrics, SaysWhichAnswersBoundNothing) {
-  // All right, mere guesses, something between, nothing at all.
+  // All correct, guesses, something between, no answers.
   std::vector<AnswerCell> cells = expected_answers({{5.0, 0.0, 0.0}}, 5.0);
   for (AnswerCell& cell : cells) cell.judged_larger = std::round(cell.judged_larger);
   for (const double difference : {-0.4, -0.1, 0.1, 0.4}) {

@@ -22,7 +22,7 @@ TEST(SimulatedSubject, TellsForcesApartAsItsJndSays) {
   const SubjectTraits traits{{0.065, 0.0633}, 0.0, 0.0};
   for (const double reference_N : {0.3, 2.5}) {
     EXPECT_NEAR(share_of_second(traits, reference_N, reference_N), 0.5, 0.011);
-    // A little less, for the noise of the larger force is larger.
+    // Slightly less than 0.75, because the larger force has larger noise.
     EXPECT_NEAR(share_of_second(traits, reference_N, reference_N + traits.jnd.at(reference_N)), 0.75, 0.017);
   }
 }
@@ -37,7 +37,7 @@ TEST(SimulatedSubject, GivesAllAnswersOfAPlanAndRepeatsThem) {
   EXPECT_EQ(one.size(), 328u);
   EXPECT_EQ(one, simulated_answers({"S01"}, {}, 7));
   EXPECT_NE(one, simulated_answers({"S01"}, {}, 8));
-  // A session accepts them as answers to its plan.
+  // A session accepts the answers as those of its plan.
   const test::TemporaryFolder folder;
   {
     auto file = StudyFile::open(folder.file("S01.csv"), {"S01"});

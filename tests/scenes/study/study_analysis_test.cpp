@@ -14,8 +14,8 @@
 namespace palpate {
 namespace {
 
-// A session of a subject whose answers come out exactly as often as they should:
-// `repetitions` of each pair in each order.
+// A session whose answers have exactly the expected frequencies, with `repetitions` of
+// each pair in each order.
 StudyData average_subject(const std::string& code, const std::vector<double>& relative_jnds, int repetitions) {
   StudyData data{{code}, {}};
   for (std::size_t r = 0; r < kReferenceForces_N.size(); ++r) {
@@ -38,11 +38,11 @@ StudyData average_subject(const std::string& code, const std::vector<double>& re
   return data;
 }
 
-// Section 4.1: 13.3 % at 2.5 N; the line through their points and Pang, Tan & Durlach's
-// (9 % at 2.5 N) has the slope 6.33 %, and shifted below all points it begins at
-// 0.065 N. Their other points are not printed; these have that outcome: with F - mean F
-// = -1.06, -0.86, -0.36, 1.14, 1.14 N (squares 4.592) the JNDs 0.14, 0.1748, 0.1283,
-// 0.3325 and 0.225 N give 0.0633, and 1.0 N lies lowest.
+// Section 4.1: 13.3 % at 2.5 N. The line through their points and that of Pang, Tan &
+// Durlach (9 % at 2.5 N) has the slope 6.33 %; moved below all points it starts at
+// 0.065 N. Their other points are not published; these give the same result: with
+// F - mean F = -1.06, -0.86, -0.36, 1.14, 1.14 N (sum of squares 4.592) the JNDs 0.14,
+// 0.1748, 0.1283, 0.3325 and 0.225 N give 0.0633, and the point at 1.0 N is the lowest.
 TEST(StudyAnalysis, ReproducesThePapersOutcome) {
   const std::vector<double> relative = {0.14 / 0.3, 0.17477 / 0.5, 0.1283, 0.133};
   const auto analysis = analyse_study({average_subject("S01", relative, 1000)}, true);
@@ -58,7 +58,7 @@ TEST(StudyAnalysis, ReproducesThePapersOutcome) {
   EXPECT_EQ(line->offset_N, analysis->lines->conservative.offset_N);
   EXPECT_EQ(line->weber_fraction, analysis->lines->conservative.weber_fraction);
   EXPECT_EQ(text.find("\"standard_error_N\""), std::string::npos) << "one subject has none";
-  // Without the published point another line comes out.
+  // Without the point of Pang, Tan & Durlach the line differs.
   const auto own = analyse_study({average_subject("S01", relative, 1000)}, false);
   EXPECT_GT(own->lines->fitted.weber_fraction, 0.08);
 }
@@ -85,7 +85,7 @@ TEST(StudyAnalysis, JudgesByWhatWasRendered) {
     record.first_rendered_N *= 0.98;
     record.second_rendered_N *= 0.98;
   }
-  data.records[0].second_rendered_N *= 0.7;  // the device was off for a moment
+  data.records[0].second_rendered_N *= 0.7;  // the device was off for part of the time
   data.records[1].trial.training = true;
   data.records[2].rendered = false;  // a rehearsal
   const auto analysis = analyse_study({data}, false);

@@ -64,7 +64,7 @@ TEST_F(StudyFileTest, IsResumedAfterTheLastCompleteRow) {
     ASSERT_TRUE(file->append(example()).ok());
   }
   const std::string whole = read_text(path_);
-  // Cut in the middle of the next row, as by a power cut.
+  // The next row is truncated, as by a power failure.
   folder_.with_file("S01.csv", whole + "training,2,0.5,0.3");
   const auto file = opened(path_);
   EXPECT_TRUE(file->consented());
@@ -76,7 +76,7 @@ TEST_F(StudyFileTest, IsResumedAfterTheLastCompleteRow) {
 
 TEST_F(StudyFileTest, ASecondSessionIsRefused) {
   auto first = opened(path_);
-  const auto waiting = opened(path_);  // neither has consent yet
+  const auto waiting = opened(path_);  // both have no consent yet
   ASSERT_TRUE(first->consent("").ok());
   EXPECT_NE(waiting->consent("").error().message.find("start again to resume it"), std::string::npos);
   EXPECT_NE(complaint(path_).find(path_ + " is in use by another session"), std::string::npos) << complaint(path_);
@@ -112,7 +112,7 @@ TEST_F(StudyFileTest, AFullDiskLosesNothingThatWasAnswered) {
   EXPECT_EQ(read_study(path_)->records.size(), 2u);
 }
 
-// Killed without warning between two trials.
+// The process is killed between two trials.
 TEST_F(StudyFileTest, AKilledSessionIsResumed) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
@@ -146,7 +146,7 @@ TEST_F(StudyFileTest, StrokesAreNamedAndResumed) {
   const std::string whole = read_text(path_);
   EXPECT_NE(whole.find("# procedure discriminate\n"), std::string::npos);
   EXPECT_NE(whole.find("\"from_s\":12.3,"), std::string::npos);
-  folder_.with_file("S01.csv", whole + "study,8,1.69");  // a power cut
+  folder_.with_file("S01.csv", whole + "study,8,1.69");  // a power failure
   {
     const auto session = test::session_at(path_, header);
     ASSERT_TRUE(session.ok()) << session.error().message;

@@ -18,7 +18,7 @@ TEST(StudyPlan, TakesCodesAndNoNames) {
   }
 }
 
-// The trials after the training.
+// The trials of the plan after the training trials.
 std::vector<StudyTrial> study_trials(const std::string& code, const StrokePair* strokes = nullptr) {
   const StudyPlan plan = plan_study(code, strokes);
   return {plan.trials.begin() + static_cast<std::ptrdiff_t>(plan.training), plan.trials.end()};
@@ -40,7 +40,7 @@ TEST(StudyPlan, PresentsEachPairTenTimesBalancedForOrder) {
       EXPECT_GE(pair.second, 0.6 * pair.first - 1e-9);
       EXPECT_LE(pair.second, 1.4 * pair.first + 1e-9);
     }
-    // Each pair once in every 32 trials.
+    // Each pair occurs once in every 32 trials.
     for (std::size_t from = 0; from < 320; from += 32) {
       std::map<std::pair<double, double>, int> round;
       for (std::size_t i = from; i < from + 32; ++i) ++round[{trials[i].reference_N, trials[i].comparison_N}];

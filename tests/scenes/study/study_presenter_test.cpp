@@ -16,7 +16,7 @@ constexpr std::uint32_t kPresentation_ticks = kLeadIn_ticks + 2 * kInterval_tick
 
 Stimuli stimuli(double first_N, double second_N) { return {{first_N}, {second_N}, {}}; }
 
-// The forces of `ticks` ticks, each rendered as it is.
+// The forces of `ticks` ticks. The rendered force is `gain` times each.
 std::vector<double> run(StudyPresenter& presenter, std::size_t ticks, double gain = 1.0) {
   std::vector<double> forces;
   double rendered_N = 0.0;
@@ -144,7 +144,7 @@ TEST(StudyPresenter, TellsHowFarWhatWasRenderedWasFromTheStroke) {
 }
 
 TEST(StudyPresenter, LimitsStrokesAndEndsThem) {
-  const std::vector<double> strong(700, 50.0);  // and too short
+  const std::vector<double> strong(700, 50.0);  // shorter than an interval
   const Stimulus stimulus{1.0, &strong};
   StudyPresenter presenter;
   presenter.present({stimulus, stimulus, stimulus});

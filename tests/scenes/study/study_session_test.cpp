@@ -16,7 +16,7 @@ using test::truly_like;
 
 class StudySessionTest : public ::testing::Test {
  protected:
-  // A session of a subject that has consented.
+  // A session of a subject who has given consent.
   std::unique_ptr<StudySession> begun(const StudyHeader& header = {"S01"}, std::uint64_t rest_ticks = 0) {
     auto session = test::session_at(path_, header, rest_ticks);
     EXPECT_TRUE(session.ok()) << session.error().message;
@@ -32,7 +32,7 @@ const std::vector<StudyRecord>& records_of(const std::unique_ptr<StudySession>& 
   return session->file().records();
 }
 
-// 30 ms without force in the first push, most of which is rendered.
+// The device drops out for 30 ms in the first push.
 TEST_F(StudySessionTest, ATrialInWhichTheDeviceDropsOutComesAgain) {
   const auto session = begun();
   session->proceed();

@@ -1,4 +1,4 @@
-// The same models as palpate fit makes, the quickest first, and gone when told.
+// The worker makes the same models as palpate fit, the fastest first, and can be interrupted.
 #include "scenes/worker/model_worker.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(ModelWorker, FitsWhatPalpateFitDoesTheQuickestFirst) {
   }
 }
 
-// A slider asks for one number after the other: the second one comes from the nested fit.
+// A slider requests several numbers of centres. The second is computed by the nested fit.
 TEST(ModelWorker, AnotherNumberOfCentresIsWhatPalpateFitGives) {
   constexpr double kRounding_N = 1e-9;
   ModelWorker worker(test::must(load_scene("elastic_block")), 1);
