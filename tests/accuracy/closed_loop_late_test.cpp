@@ -40,7 +40,7 @@ struct Swing {
   double share = 1.0;       // rendered share of the stiffness
 };
 
-// Presses with a newton, gets a knock, and holds still.
+// Presses with 1 N, receives a pulse, and holds still.
 Swing swing(const std::shared_ptr<const ForceModel>& model, const LoopSettings& settings) {
   constexpr double kPress_N = 1.0, kSeconds = 2.5, kStill_s = 2.0;
   ClosedLoop loop(settings);

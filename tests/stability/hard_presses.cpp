@@ -15,7 +15,7 @@ constexpr double kDamping_Ns_per_m = 2.0;
 constexpr double kBranchStiffness_N_per_m = 100.0;
 constexpr double kRelaxationTime_s = 0.17;
 
-// The material's state, moved along a path.
+// Moves the state of the material along a path.
 class PressedBlock {
  public:
   explicit PressedBlock(const Path& path) : path_(path), position_m_(path(0.0)) {}

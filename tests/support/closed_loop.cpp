@@ -93,7 +93,7 @@ void ClosedLoop::publish(std::shared_ptr<const ForceModel> model) {
   slot_.publish(std::make_unique<LiveModels>(++id_, tool_.sensor(), std::vector{std::move(model)}));
 }
 
-// The step at which the tick after this one comes.
+// The step of the next tick.
 std::int64_t ClosedLoop::next_tick() {
   deadline_ += kPeriod;
   if (ticking_ == Ticking::even) return deadline_;

@@ -31,7 +31,7 @@ struct Grip {
 // The last is a free mass without stiffness and damping.
 const std::array<Grip, 4>& grips();
 
-// When the ticks come.
+// The timing of ticks.
 enum class Ticking {
   even,      // every millisecond
   jittered,  // each independently up to 0.45 ms late
@@ -97,7 +97,7 @@ class SimulatedTool final : public Device {
   LoopEnergy energy_;
 };
 
-// The loop: the tool, the tick, and when the tick comes.
+// The loop: the tool, the tick, and its timing.
 class ClosedLoop {
  public:
   struct Drive {

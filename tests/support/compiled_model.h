@@ -22,7 +22,7 @@ class CompiledModel {
     EXPECT_TRUE(file.ok()) << data.name;
     if (file) load(file->text);
   }
-  // What `palpate export` wrote.
+  // Compiles and loads the output of `palpate export`.
   explicit CompiledModel(const std::string& text) { load(text); }
 
   Real (*force)(Real, Real) = nullptr;

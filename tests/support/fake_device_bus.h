@@ -35,7 +35,7 @@ class FakeDeviceBus final : public DeviceBus {
     return Result<std::unique_ptr<DeviceConnection>>(std::make_unique<Line>(*this));
   }
 
-  // Any thread.
+  // May be called on any thread.
   double motor_units() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return board_.force_units();

@@ -106,7 +106,7 @@ TEST(StreamMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
   EXPECT_EQ(stream.monitor.state().streams, 2u);
 }
 
-// 5 mm within a millisecond would be 5 m/s from rest, 250 N on 50 g.
+// 5 mm within a millisecond from rest would need 5 m/s, that is 250 N on 50 g.
 TEST(StreamMonitor, AStepFromRestThatNoHandCanMakeIsAJump) {
   for (const int mm : {1, 2, 5}) {
     Stream stream;

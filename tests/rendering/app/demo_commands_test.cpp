@@ -48,7 +48,7 @@ TEST_F(DemoCommandsTest, AButtonDoesWhatItsKeyDoes) {
   ASSERT_NE(buttons, nullptr);
   GLFWwindow* window = app_->window().handle();
   glfwFocusWindow(window);
-  // The first button is Open: its middle, from the window's corner.
+  // Moves the mouse to the first button, Open.
   const ImVec2 padding = ImGui::GetStyle().WindowPadding;
   glfwSetCursorPos(window, static_cast<double>(buttons->Pos.x + padding.x + 8.0F),
                    static_cast<double>(buttons->Pos.y + padding.y + 6.0F));

@@ -148,7 +148,7 @@ TEST_F(DemoInputTest, AHeldKeyEndsWhereTheDataEnd) {
   EXPECT_GT(deepest_m, 0.95 * known_m);
 }
 
-// Pressed and released before the next frame is drawn.
+// The key is pressed and released before the next frame is drawn.
 TEST_F(DemoInputTest, ATapOfAKeyIsNotLostOnASlowFrame) {
   open("mouse");
   const double before_m = app_->session().newest().tick.position_m;
