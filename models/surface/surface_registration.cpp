@@ -214,22 +214,22 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
 
 Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control, double fraction) {
   std::vector<Member> members;
-  GrowingStride rows(kOnsetRows, kCoarsestOnset_s);
+  GrowingStride kept(kOnsetRows, kCoarsestOnset_s);
   std::vector<std::vector<SurfaceRow>> recordings;
   bool beginning = true;
   const Status status = source.for_each(
       [&](const MotionRow& row) {
         if (row.first && row.recording > 0) {
-          recordings.push_back(rows.rows());
-          rows = GrowingStride(kOnsetRows, kCoarsestOnset_s);
+          recordings.push_back(kept.rows());
+          kept = GrowingStride(kOnsetRows, kCoarsestOnset_s);
         }
         beginning = row.first || (beginning && !row.run_up);
-        if (beginning) rows.add({row.sample, row.motion, row.force_N});
+        if (beginning) kept.add({row.sample, row.motion, row.force_N});
         return true;
       },
       control, fraction);
   if (!status) return status.error();
-  recordings.push_back(rows.rows());
+  recordings.push_back(kept.rows());
   std::vector<RecordingOffsets> offsets;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     const PreparedRecording* prepared = source.prepared(r);

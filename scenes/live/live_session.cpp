@@ -308,17 +308,16 @@ ModelFigures LiveSession::figures(std::size_t slot) const {
 }
 
 Verdict LiveSession::verdict() const {
-  std::vector<EvaluatedSlot> tested;
-  std::vector<const EvaluatedSlot*> evaluated;
+  std::vector<EvaluatedSlot> evaluated;
   if (tests_recording()) {
     for (const std::size_t slot : models_.ready_slots()) {
       const UnitErrors* errors = test_.errors(models_.model(slot).get());
-      if (errors != nullptr && errors->samples > 0) tested.push_back({slot, models_.info(slot).tick, *errors});
+      if (errors != nullptr && errors->samples > 0) evaluated.push_back({slot, models_.info(slot).tick, *errors, 0.0});
     }
-    for (const EvaluatedSlot& one : tested) evaluated.push_back(&one);
   } else {
-    for (const EvaluatedSlot& one : background_evaluation_.evaluated()) evaluated.push_back(&one);
+    evaluated = background_evaluation_.evaluated();
   }
+  for (EvaluatedSlot& one : evaluated) one.p99_error_over_jnd = figures(one.slot).errors.p99_error_over_jnd;
   if (evaluated.empty()) return {{}, {}, false, why_no_verdict(), {}};
   const bool of_model = comparison_.reference() == ReferenceKind::direct;
   Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");

@@ -43,11 +43,11 @@ std::string listed(const std::vector<std::size_t>& slots, const SessionModels& m
 }
 
 // The recommended model; of several that are one trend, the one with its name.
-std::size_t recommended(const std::vector<const EvaluatedSlot*>& evaluated, const SessionModels& models,
+std::size_t recommended(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
                         std::size_t ranked_first) {
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
-    if (models.info(evaluated[i]->slot).method == "trend" &&
-        are_one_trend(*evaluated[i], *evaluated[ranked_first], models))
+    if (models.info(evaluated[i].slot).method == "trend" &&
+        are_one_trend(evaluated[i], evaluated[ranked_first], models))
       return i;
   }
   return ranked_first;
@@ -60,24 +60,25 @@ std::string tick_share(double tick_ns) {
   return formatted(percent < 1.0 ? "%.1g %%" : "%.2g %%", percent);
 }
 
-Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionModels& models,
+Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
               const std::string& reference_name) {
   std::vector<Candidate> candidates;
-  for (const EvaluatedSlot* one : evaluated)
-    candidates.push_back({one->unit_errors.p99_error_over_jnd, one->unit_errors.unit_p99, one->tick});
+  for (const EvaluatedSlot& one : evaluated)
+    candidates.push_back({one.unit_errors.p99_error_over_jnd, one.unit_errors.unit_p99, one.tick});
   const Ranking ranking = rank(candidates);
   Verdict verdict;
   const std::size_t best = recommended(evaluated, models, ranking.recommended);
-  const EvaluatedSlot& chosen = *evaluated[best];
+  const EvaluatedSlot& chosen = evaluated[best];
   verdict.chosen = chosen.slot;
-  verdict.noticeable = chosen.unit_errors.p99_error_over_jnd > 1.0;
+  verdict.noticeable = chosen.p99_error_over_jnd > 1.0;
   std::vector<std::size_t> as_good, noticed;
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const bool tied = std::find(ranking.qualified.begin(), ranking.qualified.end(), i) != ranking.qualified.end();
-    if (tied) verdict.tied.push_back(evaluated[i]->slot);
-    if (i == best || are_one_trend(*evaluated[i], chosen, models)) continue;
-    if (tied) as_good.push_back(evaluated[i]->slot);
-    if (!tied && evaluated[i]->unit_errors.p99_error_over_jnd > 1.0) noticed.push_back(evaluated[i]->slot);
+    const EvaluatedSlot& one = evaluated[i];
+    if (tied) verdict.tied.push_back(one.slot);
+    if (i == best || are_one_trend(one, chosen, models)) continue;
+    if (tied) as_good.push_back(one.slot);
+    if (!tied && one.p99_error_over_jnd > 1.0) noticed.push_back(one.slot);
   }
   const ModelInfo& info = models.info(chosen.slot);
   const std::string from = reference_name.empty() ? "" : " from " + reference_name;
@@ -86,7 +87,7 @@ Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionM
       (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +
       from + "; uses " + tick_share(info.tick_ns()) + " of the time there is";
   if (verdict.noticeable)
-    verdict.detail = "Its error is at most " + formatted("%.1f", chosen.unit_errors.p99_error_over_jnd) +
+    verdict.detail = "Its error is at most " + formatted("%.1f", chosen.p99_error_over_jnd) +
                      " times what a hand can feel, 99 % of the time. ";
   if (!as_good.empty()) verdict.detail += "As good, no faster: " + listed(as_good, models) + ". ";
   if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
@@ -123,7 +124,7 @@ void BackgroundEvaluation::update(const SessionModels& models, const Comparison&
     running_ = std::async(std::launch::async, [asked = std::move(asked)] {
       lower_thread_priority();
       std::vector<EvaluatedSlot> evaluated;
-      for (const Asked& one : asked) evaluated.push_back({one.slot, one.tick, one.errors.unit_errors()});
+      for (const Asked& one : asked) evaluated.push_back({one.slot, one.tick, one.errors.unit_errors(), 0.0});
       return evaluated;
     });
   } catch (const std::system_error&) {

@@ -21,7 +21,9 @@ class SessionModels;
 struct EvaluatedSlot {
   std::size_t slot = 0;
   Timing tick;
-  UnitErrors unit_errors;
+  UnitErrors unit_errors;  // decide which model is recommended
+  // The newest 99 % error, which the list of models shows too: what the verdict says about the models.
+  double p99_error_over_jnd = 0.0;
 };
 
 struct Verdict {
@@ -37,7 +39,7 @@ inline constexpr double kLeastContact_s = 1.0;
 
 // `reference_name`: name of the reference model; empty: the true force is known.
 // `models`: for names and times. `evaluated`: at least one, each with samples.
-Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionModels& models,
+Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
               const std::string& reference_name);
 
 // The share of the tick's period of 1 ms, as "0.04 %".
