@@ -182,7 +182,14 @@ std::string run_name(const PaperRun& run) { return run.material + (run.fitted_ti
 std::vector<Claim> paper_claims(const PaperData& data) {
   std::vector<Claim> claims;
   add_accuracy(claims, data);
+  const std::size_t of_accuracy = claims.size();
   add_times(claims, data);
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    const std::vector<bool>& runs = claims[i].reproduced;
+    if (!claims[i].why.empty() || std::find(runs.begin(), runs.end(), false) == runs.end()) continue;
+    claims[i].why = i < of_accuracy ? "not known: the paper's recordings are not public"
+                                    : "another program on another processor";
+  }
   return claims;
 }
 

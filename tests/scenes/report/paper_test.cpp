@@ -45,6 +45,12 @@ TEST(PaperClaims, WhatIsAsThePaperHasItIsReproduced) {
   EXPECT_FALSE(reproduced(data, "maxima at small forces considerably lower")) << "they are equal here";
 }
 
+TEST(PaperClaims, WhatIsNotReproducedHasARemark) {
+  PaperData data = example();
+  data.by_sites[1].seconds[kGreedy100] = 4.0;
+  for (const Claim& one : paper_claims(data)) EXPECT_TRUE(one.reproduced.front() || !one.why.empty()) << one.claim;
+}
+
 TEST(PaperClaims, OneBinAboveTheJndIsEnoughToRefuteAlways) {
   PaperData data = example();
   data.runs[0].models[kTreeCentres].bins[1].std_N *= 2.0;
