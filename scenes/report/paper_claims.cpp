@@ -187,8 +187,8 @@ std::vector<Claim> paper_claims(const PaperData& data) {
   for (std::size_t i = 0; i < claims.size(); ++i) {
     const std::vector<bool>& runs = claims[i].reproduced;
     if (!claims[i].why.empty() || std::find(runs.begin(), runs.end(), false) == runs.end()) continue;
-    claims[i].why = i < of_accuracy ? "not known: the paper's recordings are not public"
-                                    : "another program on another processor";
+    claims[i].why =
+        i < of_accuracy ? "not known: the paper's recordings are not public" : "another program on another processor";
   }
   return claims;
 }
