@@ -37,6 +37,9 @@ std::vector<double> even_tics(const AxisRange& range, std::size_t most) {
   return tics;
 }
 
+// Further right a name would leave the panel. Fraction of the panel.
+constexpr double kRightmostName = 0.7;
+
 const PlotRow* last_point(const Series& series) {
   for (auto row = series.rows.rbegin(); row != series.rows.rend(); ++row) {
     if (std::isfinite(row->y)) return &*row;
@@ -108,8 +111,13 @@ std::vector<NameTag> name_tags(const Panel& panel, double line, double character
     const PlotRow* last = last_point(series);
     if (!panel.names_at_ends || series.name.empty() || series.mark == Mark::area || last == nullptr) continue;
     const bool ends = series.rows.size() > 1;
-    tags.push_back({series.name, series.colour, ends ? 1.0 : fraction_of(panel.x, x, last->x),
-                    std::clamp(fraction_of(panel.y, y, last->y), 0.0, 1.0), ends});
+    NameTag tag{series.name, series.colour, 1.0, std::clamp(fraction_of(panel.y, y, last->y), 0.0, 1.0), ends};
+    if (!ends) {
+      tag.x = fraction_of(panel.x, x, std::isfinite(last->right) ? last->right : last->x);
+      tag.begins_here = tag.x < kRightmostName;
+      if (!tag.begins_here) tag.x = fraction_of(panel.x, x, std::isfinite(last->left) ? last->left : last->x);
+    }
+    tags.push_back(std::move(tag));
   }
   std::stable_sort(tags.begin(), tags.end(), [](const NameTag& a, const NameTag& b) { return a.y < b.y; });
   const auto meets = [&](const NameTag& a, const NameTag& b) {

@@ -32,11 +32,12 @@ struct NameTag {
   double x = 1.0;
   double y = 0.0;
   bool beside_panel = false;
+  bool begins_here = true;  // false: the text ends at x
 };
 
-// The names of horizontal levels and, with `names_at_ends`, of the series: of a series of one point beside the point,
-// of all others beside the panel. They are moved up and down so that they do not overlap. `line`: height of a line of
-// text, `character`: width of a letter, both as fractions of the panel.
+// The names of horizontal levels and, with `names_at_ends`, of the series: of a series of one point beside the point
+// and its bar, of all others beside the panel. They are moved up and down so that they do not overlap. `line`: height
+// of a line of text, `character`: width of a letter, both as fractions of the panel.
 std::vector<NameTag> name_tags(const Panel& panel, double line, double character);
 
 // Marks at the edge, one for each stretch of a line that exceeds the given limits of the y axis.

@@ -102,7 +102,7 @@ std::string level_text(const Level& level) {
 }
 
 std::string tag_text(const NameTag& tag) {
-  const bool left = tag.beside_panel || tag.x < 0.7;
+  const bool left = tag.beside_panel || tag.begins_here;
   return "set label " + quoted(tag.text) + " at graph " + number(tag.x) + ", graph " + number(tag.y) +
          (left ? " left offset character 0.7,0" : " right offset character -0.7,0") + " textcolor rgb " +
          colour_of(tag.colour) + "\n";

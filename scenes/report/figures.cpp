@@ -93,7 +93,7 @@ Figure speed_figure(const ReportData& data) {
       curve.colour = model_colour(one->plan);
       curve.rows.push_back({1e-9 * one->time.tick.median_ns, one->errors.p99_error_over_jnd});
     }
-    panel.series.push_back(std::move(curve));
+    if (curve.rows.size() > 1) panel.series.push_back(std::move(curve));
   }
   for (const std::size_t i : headline_models(data)) {
     const ModelResult& one = data.models[i];

@@ -96,6 +96,20 @@ TEST(Layout, NamesAtTheEndsOfCurvesDoNotOverlap) {
   EXPECT_LE(tags.back().y, 1.0);
 }
 
+TEST(Layout, ANameBesideAPointStandsBesideItsBar) {
+  Panel panel;
+  panel.names_at_ends = true;
+  panel.x = {"", "", false, 0.0, 10.0};
+  panel.series = {{"left", 0, Mark::bars, {{2.0, 0.2, 0.1, 0.3, 1.0, 5.0}}},
+                  {"right", 0, Mark::bars, {{8.0, 0.8, 0.7, 0.9, 7.5, 9.0}}}};
+  const std::vector<NameTag> tags = name_tags(panel, 0.1, 0.01);
+  ASSERT_EQ(tags.size(), 2u);
+  EXPECT_TRUE(tags[0].begins_here);
+  EXPECT_DOUBLE_EQ(tags[0].x, 0.5);
+  EXPECT_FALSE(tags[1].begins_here);
+  EXPECT_DOUBLE_EQ(tags[1].x, 0.75);
+}
+
 TEST(Layout, WhatLeavesTheAxisIsMarkedAtItsEdgeOnceAPeak) {
   Panel panel;
   panel.y = {"", "", false, -1.0, 1.0};
