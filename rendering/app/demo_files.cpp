@@ -74,7 +74,7 @@ void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& came
 
 void DemoFiles::update(const LiveSession& session) {
   if (is_there(arriving_)) {
-    const Result<RecordingOffer> offered = arriving_.get();
+    const Result<ConvertedRecording> offered = arriving_.get();
     if (offered) {
       view_.dialogs.recording_roles.add({offered->path, offered->words});
       remember(reading_);
@@ -108,7 +108,7 @@ void DemoFiles::open(const std::string& path, LiveSession& session) {
   std::error_code unknown;
   if (!std::filesystem::exists(path, unknown)) {
     notify_("there is no file " + path, true);
-  } else if (is_offered(path)) {
+  } else if (may_be_recording(path)) {
     open_recording(path);
   } else if (session.load_file(path)) {
     remember(path);

@@ -12,9 +12,9 @@
 #include "rendering/app/settings.h"
 #include "rendering/panels/curve_files.h"
 #include "rendering/panels/window_view.h"
+#include "scenes/live/convert_recording.h"
 #include "scenes/live/live_session.h"
 #include "scenes/live/notices.h"
-#include "scenes/live/recording_offer.h"
 
 namespace palpate {
 
@@ -23,9 +23,9 @@ class LiveSession;
 class DemoFiles {
  public:
   using Notify = std::function<void(std::string text, bool problem)>;
-  using Read = std::function<Result<RecordingOffer>(const std::string& path, const std::string& folder)>;
+  using Read = std::function<Result<ConvertedRecording>(const std::string& path, const std::string& folder)>;
   // `view` outlives this. `read` is called in a background thread and may block.
-  DemoFiles(ViewState& view, Notify notify, Read read = offer_recording)
+  DemoFiles(ViewState& view, Notify notify, Read read = convert_recording)
       : view_(view), notify_(std::move(notify)), read_(std::move(read)) {}
 
   // Reads the settings from `file`; empty: settings are neither read nor saved.
@@ -54,12 +54,12 @@ class DemoFiles {
   Notify notify_;
   Read read_;
   std::string settings_file_;
-  std::future<Result<RecordingOffer>> arriving_;    // the file that is being read
-  std::string reading_;                             // its path
-  std::vector<std::string> waiting_;                // files to read after it
-  std::future<std::vector<DeviceChoice>> looking_;  // the search for devices
-  std::future<Notice> drawing_;                     // the figure of the curves that is being drawn
-  std::string recording_;                           // the file that is being recorded; empty: none
+  std::future<Result<ConvertedRecording>> arriving_;  // the file that is being read
+  std::string reading_;                               // its path
+  std::vector<std::string> waiting_;                  // files to read after it
+  std::future<std::vector<DeviceChoice>> looking_;    // the search for devices
+  std::future<Notice> drawing_;                       // the figure of the curves that is being drawn
+  std::string recording_;                             // the file that is being recorded; empty: none
 };
 
 }  // namespace palpate

@@ -97,7 +97,7 @@ Status check_outputs(const Arguments& arguments) {
 void sort_files(Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
   for (const std::string& file : arguments.files) {
-    if (is_offered(file)) {
+    if (may_be_recording(file)) {
       arguments.demo.recordings.push_back(file);
     } else {
       session.models.push_back(file);

@@ -37,7 +37,7 @@ constexpr double kShareThatMatters = 0.005;
 struct ReplayedModel {
   ErrorSummary as_recorded;
   ErrorSummary surface_moved;
-  PredictedErrors predicted;
+  BoundCoverage predicted;
   OffsetEstimate surface;
   ModelTiming time;
 };
@@ -115,7 +115,7 @@ OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
   add_figures(object["surface_moved"], replayed.surface_moved);
   object["surface_offset_m"] = replayed.surface.at;
   object["surface_identified"] = replayed.surface.identified;
-  const PredictedErrors& predicted = replayed.predicted;
+  const BoundCoverage& predicted = replayed.predicted;
   object["predicted_error"] = {{"bound_95_held", number_or_null(!std::isnan(predicted.coverage), predicted.coverage)},
                                {"median_bound_N", number_or_null(!std::isnan(predicted.median_N), predicted.median_N)}};
   object["bins"] = bins_json(replayed.as_recorded.bins);

@@ -16,7 +16,7 @@ struct Bounds {
   std::vector<float> bound_N;
   std::size_t held = 0;
 
-  PredictedErrors predicted() const {
+  BoundCoverage predicted() const {
     if (bound_N.empty()) return {};
     std::vector<float> all = bound_N;
     const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);

@@ -48,7 +48,7 @@ struct EvaluationRequest {
 };
 
 // Coverage and median of a model's 95 % error bounds; NaN for a model without bounds.
-struct PredictedErrors {
+struct BoundCoverage {
   double coverage = std::numeric_limits<double>::quiet_NaN();  // share of the errors within the bound
   double median_N = std::numeric_limits<double>::quiet_NaN();
 };
@@ -56,8 +56,8 @@ struct PredictedErrors {
 struct ModelEvaluation {
   ModelErrors as_recorded;
   ModelErrors surface_moved;
-  PredictedErrors predicted;  // with the surface moved
-  OffsetEstimate surface;     // 0 where no offset is determined
+  BoundCoverage predicted;  // with the surface moved
+  OffsetEstimate surface;   // 0 where no offset is determined
 };
 
 struct RecordingEvaluation {

@@ -33,9 +33,9 @@ TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
   ViewState view;
   DemoFiles files(
       view, [](const std::string&, bool) {},
-      [opened](const std::string& path, const std::string&) -> Result<RecordingOffer> {
+      [opened](const std::string& path, const std::string&) -> Result<ConvertedRecording> {
         opened.wait();
-        return RecordingOffer{path, {}};
+        return ConvertedRecording{path, {}};
       });
   const auto began = std::chrono::steady_clock::now();
   files.open_recording("a.csv");

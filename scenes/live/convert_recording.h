@@ -10,16 +10,16 @@
 
 namespace palpate {
 
-struct RecordingOffer {
+struct ConvertedRecording {
   std::string path;                // of the recording
   std::vector<std::string> words;  // columns and guesses of the import; empty: the file was a recording already
 };
 
 // Whether a file may be a recording: it has an extension other than .json (models).
-bool is_offered(const std::string& path);
+bool may_be_recording(const std::string& path);
 
 // `folder`: where a converted recording is written. Errors: those of read_recording or import_table; the new file
 // cannot be written.
-Result<RecordingOffer> offer_recording(const std::string& path, const std::string& folder);
+Result<ConvertedRecording> convert_recording(const std::string& path, const std::string& folder);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "scenes/live/recording_offer.h"
+#include "scenes/live/convert_recording.h"
 
 #include <gtest/gtest.h>
 
@@ -26,46 +26,46 @@ std::string write(const test::TemporaryFolder& folder, const std::string& name, 
   return path;
 }
 
-TEST(RecordingOffer, EverythingButAModelIsOffered) {
-  EXPECT_TRUE(is_offered("a.csv"));
-  EXPECT_TRUE(is_offered("trial.TXT"));
-  EXPECT_FALSE(is_offered("model.json"));
-  EXPECT_FALSE(is_offered("greedy-10")) << "a method";
+TEST(ConvertedRecording, EverythingButAModelMayBeARecording) {
+  EXPECT_TRUE(may_be_recording("a.csv"));
+  EXPECT_TRUE(may_be_recording("trial.TXT"));
+  EXPECT_FALSE(may_be_recording("model.json"));
+  EXPECT_FALSE(may_be_recording("greedy-10")) << "a method";
 }
 
-TEST(RecordingOffer, ARecordingIsOfferedAsItIs) {
+TEST(ConvertedRecording, ARecordingStaysAsItIs) {
   const test::TemporaryFolder folder;
   const std::string path = write(folder, "a.csv", rows("time_s,position_m,force_N", ","));
-  const auto offer = offer_recording(path, folder.path());
-  ASSERT_TRUE(offer.ok()) << offer.error().message;
-  EXPECT_EQ(offer->path, path);
-  EXPECT_TRUE(offer->words.empty());
+  const auto converted = convert_recording(path, folder.path());
+  ASSERT_TRUE(converted.ok()) << converted.error().message;
+  EXPECT_EQ(converted->path, path);
+  EXPECT_TRUE(converted->words.empty());
 }
 
-TEST(RecordingOffer, AnotherTableBecomesOneInTheFolder) {
+TEST(ConvertedRecording, AnotherTableBecomesOneInTheFolder) {
   const test::TemporaryFolder folder;
   const test::TemporaryFolder data;
   const std::string path = write(folder, "trial.txt", rows("Time [s]\tPosition [mm]\tForce [mN]", "\t"));
-  const auto offer = offer_recording(path, data.path());
-  ASSERT_TRUE(offer.ok()) << offer.error().message;
-  EXPECT_EQ(offer->path.rfind(data.path() + "/trial-", 0), 0u) << offer->path;
-  EXPECT_EQ(offer->words.at(2).rfind("position: column 2 \"Position [mm]\" in mm", 0), 0u) << offer->words.at(2);
-  const auto recording = read_recording(offer->path);
+  const auto converted = convert_recording(path, data.path());
+  ASSERT_TRUE(converted.ok()) << converted.error().message;
+  EXPECT_EQ(converted->path.rfind(data.path() + "/trial-", 0), 0u) << converted->path;
+  EXPECT_EQ(converted->words.at(2).rfind("position: column 2 \"Position [mm]\" in mm", 0), 0u) << converted->words.at(2);
+  const auto recording = read_recording(converted->path);
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_NEAR(recording->rows.back().force_N, 0.98e-3, 1e-9);
 }
 
-TEST(RecordingOffer, WhatIsWrongIsSaidOfWhatItWantsToBe) {
+TEST(ConvertedRecording, WhatIsWrongIsSaidOfWhatItWantsToBe) {
   const test::TemporaryFolder folder;
   const auto broken =
-      offer_recording(write(folder, "a.csv", "# mine\ntime_s,position_m,force_N\n0,0,x\n"), folder.path());
+      convert_recording(write(folder, "a.csv", "# mine\ntime_s,position_m,force_N\n0,0,x\n"), folder.path());
   ASSERT_FALSE(broken.ok());
   EXPECT_NE(broken.error().message.find("a.csv:3"), std::string::npos) << broken.error().message;
-  const auto two = offer_recording(
+  const auto two = convert_recording(
       write(folder, "b.csv", "t [s],x [mm],F1 [N],F2 [N]\n0,1,2,3\n1,2,3,4\n2,3,4,5\n3,4,5,6\n"), folder.path());
   ASSERT_FALSE(two.ok());
   EXPECT_NE(two.error().message.find("--columns"), std::string::npos) << two.error().message;
-  EXPECT_FALSE(offer_recording(folder.file("none.csv"), folder.path()).ok());
+  EXPECT_FALSE(convert_recording(folder.file("none.csv"), folder.path()).ok());
 }
 
 }  // namespace

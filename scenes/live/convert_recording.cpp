@@ -1,4 +1,4 @@
-#include "scenes/live/recording_offer.h"
+#include "scenes/live/convert_recording.h"
 
 #include <filesystem>
 #include <memory>
@@ -28,20 +28,20 @@ bool has_our_columns(const std::string& path) {
 
 }  // namespace
 
-bool is_offered(const std::string& path) {
+bool may_be_recording(const std::string& path) {
   const std::filesystem::path ending = std::filesystem::path(path).extension();
   return !ending.empty() && ending != ".json";
 }
 
-Result<RecordingOffer> offer_recording(const std::string& path, const std::string& folder) {
+Result<ConvertedRecording> convert_recording(const std::string& path, const std::string& folder) {
   const auto recording = read_recording(path);
-  if (recording) return RecordingOffer{path, {}};
+  if (recording) return ConvertedRecording{path, {}};
   std::error_code missing;
   if (has_our_columns(path) || !std::filesystem::exists(path, missing)) return recording.error();
   const ImportRequest request;
   const auto table = import_table(path, request);
   if (!table) return table.error();
-  RecordingOffer offer;
+  ConvertedRecording offer;
   offer.path = folder + "/" + std::filesystem::path(path).stem().string() + local_time_text("-%Y%m%d-%H%M%S.csv");
   if (Status status = write_recording(offer.path, table->recording, import_origin(path, request, *table), true);
       !status)
