@@ -41,16 +41,16 @@ Result<ConvertedRecording> convert_recording(const std::string& path, const std:
   const ImportRequest request;
   const auto table = import_table(path, request);
   if (!table) return table.error();
-  ConvertedRecording offer;
-  offer.path = folder + "/" + std::filesystem::path(path).stem().string() + local_time_text("-%Y%m%d-%H%M%S.csv");
-  if (Status status = write_recording(offer.path, table->recording, import_origin(path, request, *table), true);
+  ConvertedRecording converted;
+  converted.path = folder + "/" + std::filesystem::path(path).stem().string() + local_time_text("-%Y%m%d-%H%M%S.csv");
+  if (Status status = write_recording(converted.path, table->recording, import_origin(path, request, *table), true);
       !status)
     return status.error();
-  offer.words.push_back(table_words(*table));
+  converted.words.push_back(table_words(*table));
   for (std::size_t role = 0; role < kRoles; ++role)
-    offer.words.push_back(std::string(kRoleNames[role]) + ": " + column_words(table->columns[role]));
-  offer.words.insert(offer.words.end(), table->notes.begin(), table->notes.end());
-  return offer;
+    converted.words.push_back(std::string(kRoleNames[role]) + ": " + column_words(table->columns[role]));
+  converted.words.insert(converted.words.end(), table->notes.begin(), table->notes.end());
+  return converted;
 }
 
 }  // namespace palpate

@@ -49,7 +49,8 @@ TEST(ConvertedRecording, AnotherTableBecomesOneInTheFolder) {
   const auto converted = convert_recording(path, data.path());
   ASSERT_TRUE(converted.ok()) << converted.error().message;
   EXPECT_EQ(converted->path.rfind(data.path() + "/trial-", 0), 0u) << converted->path;
-  EXPECT_EQ(converted->words.at(2).rfind("position: column 2 \"Position [mm]\" in mm", 0), 0u) << converted->words.at(2);
+  EXPECT_EQ(converted->words.at(2).rfind("position: column 2 \"Position [mm]\" in mm", 0), 0u)
+      << converted->words.at(2);
   const auto recording = read_recording(converted->path);
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_NEAR(recording->rows.back().force_N, 0.98e-3, 1e-9);
