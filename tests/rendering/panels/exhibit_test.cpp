@@ -3,10 +3,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <glm/geometric.hpp>
+#include <numeric>
 
 #include "tests/support/demo_window.h"
 #include "tests/support/fake_device_bus.h"
@@ -282,7 +284,7 @@ TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
   open_exhibit({});
   frames(60);  // until the camera is at rest
   const ImVec2 home = block(0, 0.0F);
-  double before_MB = 0.0;
+  std::vector<double> resident{resident_MB()};
   for (int i = 0; i < visitors; ++i) {
     if (i % 3 == 0) visit_with_mouse();
     if (i % 3 == 1) visit_with_keys();
@@ -296,13 +298,16 @@ TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
     EXPECT_TRUE(says("Can you tell")) << "in the first language";
     EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring()) << "the comparison goes on at once";
     EXPECT_NEAR(block(0, 0.0F).x, home.x, 0.5F);
-    // The first two visitors see screens for the first time, which may allocate memory.
-    if (i < 2) before_MB = resident_MB();
+    resident.push_back(resident_MB());
     std::printf("visitor %d: %.1f MB, %llu frames, late p50 %.0f us\n", i + 1, resident_MB(),
                 static_cast<unsigned long long>(app_->frames().frames),
                 app_->session().loop().statistics().lateness.p50_us);
   }
-  EXPECT_LT(resident_MB(), before_MB + 4.0) << "memory grows with every visitor";
+  // What screens, threads and the driver allocate once comes with one of the first visitors. A leak is in every visit,
+  // and so in the lower median of their growth.
+  std::adjacent_difference(resident.begin(), resident.end(), resident.begin());
+  std::sort(resident.begin() + 2, resident.end());  // all after the first visitor
+  EXPECT_LT(resident[2 + (resident.size() - 3) / 2], 1.0) << "MB: memory grows with every visitor";
 }
 
 TEST_F(ExhibitTest, NobodyIsThrownOutWhileReading) {
