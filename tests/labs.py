@@ -206,7 +206,7 @@ def front_page(options, folder, rows, summary):
     run(options.palpate, "report", "--train", folder / "silicone_1.csv", "--test", folder / "silicone_2.csv", "--out", report)
     answer = json.loads((report / "report.json").read_text())["timings"]["answer"]
     shutil.copyfile(report / "figures" / "speed_error.png", ROOT / FIGURE)
-    text = "\n".join([*summary_table(summary), "", *textwrap.wrap("The report on the silicone: " + answer, 90), "",
+    text = "\n".join([*summary_table(summary), "", *textwrap.wrap("The report on the silicone: " + answer, 110), "",
                       f"![Time of a whole tick against error on the virtual silicone: the 2009 recipe hollow, Palpate filled]({FIGURE})"])
     readme = ROOT / "README.md"
     before, rest = readme.read_text().split(BEGIN)
