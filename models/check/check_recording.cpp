@@ -197,7 +197,8 @@ void Checker::check_zero() {
   if (std::abs(surface_.force_zero_drift_N) > std::max(half_jnd_N, 3.0 * surface_.force_zero_error_N) &&
       std::isfinite(surface_.force_zero_error_N)) {
     add("force_zero_drift", Severity::warning, surface_.force_zero_drift_N,
-        words("the force in free air drifts by %.3g N over the recording", surface_.force_zero_drift_N),
+        words("the force in free air drifts by %.3g N over the %s", surface_.force_zero_drift_N,
+              recording_.rows.size() > kOnsetRows ? "beginning of the recording" : "recording"),
         "let the sensor warm up, tare it again, and record in shorter parts");
   }
 }

@@ -1,4 +1,4 @@
-// A recording with what it says by itself, computed once: check reports it, and every fit uses it.
+// A recording with what it says by itself. check reports this value, and registration and the fit use it.
 // Thread guarantee: an immutable value; prepare_recording is pure, slow side.
 #pragma once
 

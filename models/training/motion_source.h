@@ -52,7 +52,7 @@ struct RowCorrection {
 
 class MotionSource {
  public:
-  // One training recording: a file that is read in each pass, or rows in memory.
+  // One training recording: a file, or rows in memory.
   struct Input {
     std::string path;  // used when `prepared` is null
     PreparedRecordingPointer prepared;

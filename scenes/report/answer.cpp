@@ -124,7 +124,7 @@ Sentence answer(const ReportData& data) {
   }
   if (best != &use) append(sentence, compared(*best, use));
   if (data.choice.dominating) {
-    append(sentence, {{"Another size was faster and more accurate in this test: "}});
+    append(sentence, {{"Another size was faster and had a smaller 99 % error in this test: "}});
     append(sentence, compared(data.models[*data.choice.dominating], use));
     append(sentence, {{"A size that is chosen by a test has to be tested on another recording. "}});
   }

@@ -102,6 +102,11 @@ TEST(Choose, OnEveryRecordedSetNoMethodDominatesTheRecommendedOne) {
       ASSERT_TRUE(data.ok()) << set.path() << data.error().message;
       ++sets;
       const auto entry = [&](std::size_t i) { return candidate(data->models[i].errors, data->models[i].time); };
+      for (std::size_t i = 1; i < data->models.size(); ++i) {
+        if (!data->models[i].plan.main && dominates(entry(i), entry(data->choice.recommended))) {
+          EXPECT_TRUE(data->choice.dominating.has_value()) << set.path() << ": the answer names no other size";
+        }
+      }
       for (const std::size_t i : data->choice.candidates) {
         EXPECT_FALSE(dominates(entry(i), entry(data->choice.recommended)))
             << set.path() << ": " << data->models[i].plan.name << " dominates "
