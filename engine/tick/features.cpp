@@ -16,18 +16,6 @@ constexpr int kSurfaceSteps = 40;
 // A smaller lag, less than an atom, counts as 0.
 constexpr double kNoLag_m = 1e-12;
 
-// The number of lanes of a feature: branches (a maxwell_branch is a spectrum of one) and bristles have lanes.
-std::size_t lane_count(const FeatureSpec& spec) noexcept {
-  if (spec.kind == FeatureKind::maxwell_branch) return 1;
-  return has_parts(spec.kind) ? spec.part_count : 0;
-}
-const DriveCurve& branch_drive(const FeatureSpec& spec, std::size_t part) noexcept {
-  return spec.kind == FeatureKind::maxwell_branch ? spec.drive : spec.parts[part].drive;
-}
-double branch_time_s(const FeatureSpec& spec, std::size_t part) noexcept {
-  return spec.kind == FeatureKind::maxwell_branch ? spec.relaxation_time_s : spec.parts[part].relaxation_time_s;
-}
-
 // The surface above the tool, where elastic response and branches hold no force, by regula falsi with halving (Dowell &
 // Jarratt 1971). At the last surface that force is 0 or pushes, because pulling forces in the branches decay. The last
 // call of `held_N` is for the surface that is returned.
@@ -118,12 +106,13 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs)
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     const FeatureSpec& spec = specs_[i];
     if (spec.kind == FeatureKind::surface_lag) lag_ = i;
-    for (std::size_t p = 0; p < lane_count(spec); ++p) {
+    for (std::size_t p = 0; p < spec.part_count; ++p) {
+      const FeaturePart& part = spec.parts[p];
       const std::size_t place =
-          is_branch(spec.kind) ? branches_.add(branch_drive(spec, p), branch_time_s(spec, p), spec.slowing,
-                                               branch_drive(spec, 0).reference_depth_m)
-                               : bristles_.add(spec.parts[p].drive, spec.parts[p].threshold_m,
-                                               spec.kind == FeatureKind::creep ? spec.parts[p].relaxation_time_s : 0.0);
+          is_branch(spec.kind)
+              ? branches_.add(part.drive, part.relaxation_time_s, spec.slowing, spec.parts[0].drive.reference_depth_m)
+              : bristles_.add(part.drive, part.threshold_m,
+                              spec.kind == FeatureKind::creep ? part.relaxation_time_s : 0.0);
       if (p == 0) place_[i] = place;
     }
   }
@@ -156,9 +145,8 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
           if (std::abs(value) < 1e-30) value = 0.0;
         }
         break;
-      case FeatureKind::maxwell_branch:
       case FeatureKind::maxwell_spectrum:
-        value = BranchLanes::force_N(state.memory, place_[i], lane_count(spec));
+        value = BranchLanes::force_N(state.memory, place_[i], spec.part_count);
         break;
       case FeatureKind::surface_lag:
         value = surface_m - depth_m;
@@ -203,7 +191,7 @@ void FeaturePlan::adopt(FeatureState& state, const FeaturePlan& plan, const Feat
       } else if (spec == old) {
         state.vector.values[i] = before.vector.values[k];
         if (i == lag_) state.surface_m = before.surface_m;
-        for (std::size_t p = 0; p < lane_count(spec); ++p) {
+        for (std::size_t p = 0; p < spec.part_count; ++p) {
           for (std::size_t row = 0; row < BranchLanes::kMemory; ++row) {
             copy_lane(state.memory + row, place_[i] + p, before.memory + row, plan.place_[k] + p, BranchLanes::kMemory);
           }

@@ -4,8 +4,7 @@
 //   depth             d = max(0, estimated position - surface)              [m]
 //   velocity          v = estimated velocity while d > 0, else 0            [m/s]
 //   lowpass_velocity  y with dy/dt = (dd/dt - y) / tau                      [m/s]
-//   maxwell_branch    z with dz/dt = g'(d) dd/dt - z / tau                  [N]
-//   maxwell_spectrum  z = sum_p z_p, each a branch with tau_p and g_p       [N]
+//   maxwell_spectrum  sum of branches z with dz/dt = g'(d) dd/dt - z / tau  [N]
 //   stops             y = sum_p g_p(d) s_p / r_p, s_p a stop operator       [N]
 //   creep             y = sum_p g_p(d) q_p / r_p, q_p a creeping bristle    [N]
 //   surface_lag       s - d, s the depth of the material's surface          [m]
@@ -72,16 +71,7 @@ namespace palpate {
 inline constexpr std::size_t kMaxFeatures = 8;
 inline constexpr std::size_t kMaxFeatureParts = 8;
 
-enum class FeatureKind {
-  depth,
-  velocity,
-  lowpass_velocity,
-  maxwell_branch,
-  maxwell_spectrum,
-  stops,
-  creep,
-  surface_lag
-};
+enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_spectrum, stops, creep, surface_lag };
 
 struct FeatureKindFacts {
   std::string_view name;   // in model files and column names
@@ -93,11 +83,10 @@ struct FeatureKindFacts {
   bool is_bristle = false;  // consists of bristles
 };
 // One row for each kind, in the order of FeatureKind.
-inline constexpr std::array<FeatureKindFacts, 8> kFeatureKinds{{
+inline constexpr std::array<FeatureKindFacts, 7> kFeatureKinds{{
     {.name = "depth", .unit = "_m"},
     {.name = "velocity", .unit = "_m_per_s"},
     {.name = "lowpass_velocity", .unit = "s_m_per_s", .has_time = true},
-    {.name = "maxwell_branch", .unit = "s_N", .has_time = true, .has_drive = true, .is_branch = true},
     {.name = "maxwell_spectrum", .unit = "s_N", .has_parts = true, .is_branch = true},
     {.name = "stops", .unit = "mm_N", .has_parts = true, .is_bristle = true},
     {.name = "creep", .unit = "s_N", .has_parts = true, .is_bristle = true},
@@ -135,11 +124,11 @@ struct FeaturePart {
 
 struct FeatureSpec {
   FeatureKind kind = FeatureKind::depth;
-  double relaxation_time_s = 0.0;  // lowpass_velocity, maxwell_branch
-  DriveCurve drive{};              // g of maxwell_branch; E of surface_lag
+  double relaxation_time_s = 0.0;  // lowpass_velocity
+  DriveCurve drive{};              // E of surface_lag
   std::size_t part_count = 0;      // maxwell_spectrum, stops and creep
   std::array<FeaturePart, kMaxFeatureParts> parts{};
-  double slowing = 0.0;             // b of maxwell_branch and maxwell_spectrum
+  double slowing = 0.0;             // b of maxwell_spectrum
   double surface_position_m = 0.0;  // of the depth feature; valid for all features
 
   bool operator==(const FeatureSpec&) const = default;

@@ -143,15 +143,15 @@ std::string emit_branch(CText& out, const std::string& target, const std::string
          "_drive(s);\n";
 }
 
-std::string branch_name(std::size_t index) { return "drive_" + std::to_string(index); }
-std::string branch_name(std::size_t index, std::size_t part) { return branch_name(index) + "_" + std::to_string(part); }
+std::string branch_name(std::size_t index, std::size_t part) {
+  return "drive_" + std::to_string(index) + "_" + std::to_string(part);
+}
 
 // Writes the force that determines the surface: all branches and the elastic response of the lag.
 void write_surface(CText& out, const std::vector<FeatureSpec>& features, const FeatureSpec& lag) {
   const std::string elastic = write_drive(out, "surface_elastic", lag.drive, "s");
   std::string text = "\nstatic real held(real step_s, real s) {\n  return " + elastic;
   for (std::size_t i = 0; i < features.size(); ++i) {
-    if (features[i].kind == FeatureKind::maxwell_branch) text += " + " + branch_name(i) + "_after(step_s, s)";
     for (std::size_t p = 0; features[i].kind == FeatureKind::maxwell_spectrum && p < features[i].part_count; ++p) {
       text += " + " + branch_name(i, p) + "_after(step_s, s)";
     }
@@ -161,11 +161,6 @@ void write_surface(CText& out, const std::vector<FeatureSpec>& features, const F
 
 std::string emit_surface_lag(CText&, const FeatureSpec&, std::size_t index) {
   return "  value" + index_text(index) + " = s - depth_m;\n";
-}
-
-std::string emit_maxwell(CText& out, const FeatureSpec& spec, std::size_t index) {
-  return emit_branch(out, "value" + index_text(index), branch_name(index), spec.drive, spec.relaxation_time_s,
-                     spec.slowing);
 }
 
 // Emits a branch for every part of a spectrum, and their sum.
@@ -209,8 +204,8 @@ std::string emit_bristles(CText& out, const FeatureSpec& spec, std::size_t index
 }
 
 // In the order of the kinds.
-constexpr FeatureEmitter kEmitters[] = {emit_depth,    emit_velocity, emit_lowpass,  emit_maxwell,
-                                        emit_spectrum, emit_bristles, emit_bristles, emit_surface_lag};
+constexpr FeatureEmitter kEmitters[] = {emit_depth,    emit_velocity, emit_lowpass,    emit_spectrum,
+                                        emit_bristles, emit_bristles, emit_surface_lag};
 static_assert(std::size(kEmitters) == kFeatureKinds.size());
 
 // The C text of the last feature of a kind; 0 if there is none.

@@ -62,7 +62,6 @@ std::vector<FeatureSpec> with_filters(const std::vector<FeatureSpec>& scene, con
 std::vector<RelaxationTime> times_of(const std::vector<FeatureSpec>& features) {
   std::vector<RelaxationTime> times;
   for (const FeatureSpec& spec : features) {
-    if (spec.kind == FeatureKind::maxwell_branch) times.push_back({spec.relaxation_time_s, 0.0});
     for (std::size_t p = 0; spec.kind == FeatureKind::maxwell_spectrum && p < spec.part_count; ++p) {
       times.push_back({spec.parts[p].relaxation_time_s, 0.0});
     }

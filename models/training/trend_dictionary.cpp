@@ -90,13 +90,8 @@ FeatureSpec parts_feature(const FeatureColumns& group, const std::vector<double>
     if (!carries && !all) continue;
     spec.parts[spec.part_count++] = part_of(group.kind, constants[p], weights, rows.reference_depth_m());
   }
-  if (group.kind != FeatureKind::maxwell_spectrum) return spec;
-  spec.slowing = rows.terms().slowing;
-  if (spec.part_count != 1) return spec;
-  // A spectrum of one branch is written as a maxwell_branch.
-  FeatureSpec branch{FeatureKind::maxwell_branch, spec.parts[0].relaxation_time_s, spec.parts[0].drive};
-  branch.slowing = spec.slowing;
-  return branch;
+  if (group.kind == FeatureKind::maxwell_spectrum) spec.slowing = rows.terms().slowing;
+  return spec;
 }
 
 }  // namespace

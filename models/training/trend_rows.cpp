@@ -27,12 +27,6 @@ constexpr auto kViscousBasis = [] {
   return basis;
 }();
 
-std::vector<DriveCurve> branch_curves(const TrendTerms& terms) {
-  std::vector<DriveCurve> curves;
-  for (const FeatureSpec& spec : branch_basis(1.0, terms.reference_depth_m)) curves.push_back(spec.drive);
-  return curves;
-}
-
 // Makes one feature for each term of a bristle.
 std::vector<FeatureSpec> bristle_basis(FeatureKind kind, double threshold_m, double time_s, double reference_depth_m) {
   std::vector<FeatureSpec> specs(kBristleTerms);
@@ -48,14 +42,14 @@ std::vector<FeatureSpec> bristle_basis(FeatureKind kind, double threshold_m, dou
 
 }  // namespace
 
-std::vector<FeatureSpec> branch_basis(double relaxation_time_s, double reference_depth_m) {
-  std::vector<FeatureSpec> specs(kBranchTerms);
+std::vector<DriveCurve> branch_curves(double reference_depth_m) {
+  std::vector<DriveCurve> curves;
   for (std::size_t k = 0; k < kBranchTerms; ++k) {
     std::array<double, kBranchTerms> one{};
     one[k] = 1.0;
-    specs[k] = {FeatureKind::maxwell_branch, relaxation_time_s, combined_drive(one.data(), reference_depth_m)};
+    curves.push_back(combined_drive(one.data(), reference_depth_m));
   }
-  return specs;
+  return curves;
 }
 
 DriveCurve combined_drive(const double* weights, double reference_depth_m) {
@@ -110,7 +104,7 @@ DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m) 
 TrendRows::TrendRows(TrendTerms terms, std::size_t most_rows)
     : terms_(std::move(terms)),
       most_rows_(most_rows),
-      ladder_(terms_.relaxation_times_s, branch_curves(terms_), terms_.slowing),
+      ladder_(terms_.relaxation_times_s, branch_curves(terms_.reference_depth_m), terms_.slowing),
       elastic_basis_(spline_basis()) {
   if (!terms_.surface.empty()) surface_.emplace_back(terms_.surface);
   for (const double threshold_m : terms_.stop_thresholds_m) {

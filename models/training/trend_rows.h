@@ -29,9 +29,9 @@ inline constexpr std::size_t kMaximumTrendRows = 100000;
 inline constexpr std::size_t kSearchedRows = 4000;
 inline constexpr std::size_t kBranchTerms = 3;
 
-// The basis of a branch with one relaxation time: kBranchTerms features. `combined_drive` turns their weights into the
-// drive curve of the branch that is their weighted sum.
-std::vector<FeatureSpec> branch_basis(double relaxation_time_s, double reference_depth_m);
+// The kBranchTerms drive curves of the basis of a branch. `combined_drive` turns their weights into the drive curve of
+// the branch that is their weighted sum.
+std::vector<DriveCurve> branch_curves(double reference_depth_m);
 DriveCurve combined_drive(const double* weights, double reference_depth_m);
 
 // The elastic response with only the kDriveKnots knots of a DriveCurve, for surface_lag: a cubic spline through the

@@ -53,11 +53,9 @@ const int registered = [] {
         ->MinTime(kSeconds)
         ->ReportAggregatesOnly();
   };
-  FeatureSpec branch{FeatureKind::maxwell_branch, 0.17, {6e-3, {0.3, 0.1, 0.0, 0.05}}};
   add("depth", {});
   add("velocity", {{FeatureKind::velocity}});
   add("lowpass_velocity", {{FeatureKind::lowpass_velocity, 0.17}});
-  add("maxwell_branch", {branch});
   for (const std::size_t parts : {std::size_t{1}, std::size_t{3}, std::size_t{8}}) {
     add("maxwell_spectrum of " + std::to_string(parts), {with_parts(FeatureKind::maxwell_spectrum, parts)});
     add("stops of " + std::to_string(parts), {with_parts(FeatureKind::stops, parts)});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/feature_specs.h"
 #include "tests/support/random_points.h"
 
 namespace palpate::test {
@@ -20,7 +21,6 @@ double typical_size(FeatureKind kind) {
       return kVelocity_m_per_s;
     case FeatureKind::lowpass_velocity:
       return 0.5 * kVelocity_m_per_s;
-    case FeatureKind::maxwell_branch:
     case FeatureKind::maxwell_spectrum:
     case FeatureKind::stops:
     case FeatureKind::creep:
@@ -29,14 +29,6 @@ double typical_size(FeatureKind kind) {
       return kDepth_m;
   }
   return 1.0;
-}
-
-FeatureSpec filter(FeatureKind kind, double relaxation_time_s) {
-  FeatureSpec spec;
-  spec.kind = kind;
-  spec.relaxation_time_s = relaxation_time_s;
-  if (kind == FeatureKind::maxwell_branch) spec.drive = {kDepth_m, {0.4, 0.3, 0.2, 0.1}};
-  return spec;
 }
 
 VoxelGrid random_grid(std::size_t dimension, std::uint64_t seed) {
@@ -87,17 +79,12 @@ void change_grid(ModelData& data, const std::function<void(VoxelGrid&)>& change)
 std::vector<FeatureSpec> position_features() { return {FeatureSpec{}}; }
 
 std::vector<FeatureSpec> paper_features() {
-  return {FeatureSpec{},
-          {FeatureKind::velocity, 0.0, {}},
-          filter(FeatureKind::lowpass_velocity, 0.17),
-          filter(FeatureKind::lowpass_velocity, 1.27)};
+  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17), lowpass(1.27)};
 }
 
 std::vector<FeatureSpec> maxwell_features() {
-  return {FeatureSpec{},
-          {FeatureKind::velocity, 0.0, {}},
-          filter(FeatureKind::maxwell_branch, 0.1),
-          filter(FeatureKind::maxwell_branch, 1.0 / 0.9)};
+  const DriveCurve drive{kDepth_m, {0.4, 0.3, 0.2, 0.1}};
+  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, spectrum({0.1}, drive), spectrum({1.0 / 0.9}, drive)};
 }
 
 std::vector<FeatureSpec> memory_features() {

@@ -13,10 +13,6 @@ inline FeatureSpec lowpass(double relaxation_time_s) { return {FeatureKind::lowp
 
 inline DriveCurve stiffening() { return {5e-3, {0.8, 0.5, 0.3, 0.2}}; }
 
-inline FeatureSpec maxwell(double relaxation_time_s, const DriveCurve& drive) {
-  return {FeatureKind::maxwell_branch, relaxation_time_s, drive};
-}
-
 inline const FeatureVector& feed(FeatureFilter& filter, double time_s, double position_m,
                                  double velocity_m_per_s = 0.0) {
   return filter.update({time_s, position_m, 0.0, 0.0}, {position_m, velocity_m_per_s});

@@ -59,6 +59,14 @@ void describe_drive(File& file, DriveCurve& curve) {
   });
 }
 
+// A spectrum of one branch in the form of earlier files, read only.
+template <typename File>
+void describe_earlier_branch(File& file, FeatureSpec& spec) {
+  spec.part_count = 1;
+  file.number("relaxation_time_s", spec.parts[0].relaxation_time_s, Sign::kPositive);
+  describe_drive(file, spec.parts[0].drive);
+}
+
 template <typename File>
 void describe_feature(File& file, FeatureSpec& spec) {
   file.kind(spec.kind);
@@ -69,6 +77,7 @@ void describe_feature(File& file, FeatureSpec& spec) {
   if (is_branch(spec.kind) && file.has("slowing", spec.slowing != 0.0)) file.number("slowing", spec.slowing);
   if (has_drive(spec.kind)) describe_drive(file, spec.drive);
   if (!has_parts(spec.kind)) return;
+  if (is_branch(spec.kind) && file.has("drive", false)) return describe_earlier_branch(file, spec);
   file.each("parts", spec.part_count, kMaxFeatureParts, Layout::one_line, [&](std::size_t p) {
     FeaturePart& part = spec.parts[p];
     if (is_bristle(spec.kind)) file.number("threshold_m", part.threshold_m, Sign::kPositive);
@@ -239,6 +248,10 @@ class ModelReader {
       fields_.complain(
           node.pointer,
           "found \"fading_peak\", a feature that this version does not have; fit the model again (palpate fit)");
+      return;
+    }
+    if (node.value != nullptr && *node.value == "maxwell_branch") {  // of earlier files
+      value = FeatureKind::maxwell_spectrum;
       return;
     }
     std::vector<std::string> names;

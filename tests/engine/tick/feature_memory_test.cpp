@@ -20,7 +20,7 @@ using namespace test;
 TEST(FeatureMemory, TheSurfaceLeavesAToolThatRetreatsFastAndComesBack) {
   const DriveCurve elastic{5e-3, {1.5}};
   const DriveCurve branch{5e-3, {3.0}};
-  FeatureFilter filter({surface_lag(elastic), maxwell(0.2, branch)});
+  FeatureFilter filter({surface_lag(elastic), spectrum({0.2}, branch)});
   int i = 0;
   for (; i < 4000; ++i) feed(filter, 1e-3 * i, 4e-3);
   EXPECT_EQ(filter.vector().values[0], 0.0) << "it lies against a tool that presses";
@@ -37,7 +37,7 @@ TEST(FeatureMemory, TheSurfaceLeavesAToolThatRetreatsFastAndComesBack) {
 // the depth of the returning surface, not on that of the tool.
 TEST(FeatureMemory, ASurfaceOnItsOwnRelaxesByItsOwnDepth) {
   const DriveCurve elastic{5e-3, {1.5}};
-  FeatureSpec branch = maxwell(0.2, DriveCurve{5e-3, {3.0}});
+  FeatureSpec branch = spectrum({0.2}, DriveCurve{5e-3, {3.0}});
   branch.slowing = 2.5;
   FeatureFilter filter({surface_lag(elastic), branch});
   int i = 0;
@@ -57,7 +57,7 @@ TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
   std::vector<FeatureSpec> specs = {FeatureSpec{},
                                     {FeatureKind::velocity},
                                     creep({2.0}, stiffening()),
-                                    maxwell(0.3, stiffening()),
+                                    spectrum({0.3}, stiffening()),
                                     stops({1e-4}, stiffening())};
   FeatureFilter plain(specs);
   specs[0].surface_position_m = 0.5e-3;
@@ -73,7 +73,7 @@ TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
 }
 
 TEST(FeatureMemory, ABranchMaySlowDownWithDepth) {
-  FeatureSpec slow = maxwell(0.2, DriveCurve{5e-3, {3.0}});
+  FeatureSpec slow = spectrum({0.2}, DriveCurve{5e-3, {3.0}});
   slow.slowing = 2.0;
   FeatureFilter filter({slow});
   feed(filter, 0.0, 0.0);
@@ -111,10 +111,10 @@ TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
 // After an exchange of models in mid-press, the memory of equal features continues.
 TEST(FeatureMemory, AnotherFilterAdoptsTheMemoryOfTheSameFeatures) {
   const std::vector<FeatureSpec> before_specs = {FeatureSpec{}, stops({1e-4, 3e-4}, stiffening()),
-                                                 creep({2.0}, stiffening()), maxwell(0.3, stiffening())};
+                                                 creep({2.0}, stiffening()), spectrum({0.3}, stiffening())};
   const DriveCurve softer{5e-3, {0.2, 0.1, 0.0, 0.0}};
-  const std::vector<FeatureSpec> specs = {maxwell(0.3, stiffening()), stops({3e-4, 1e-4}, softer),
-                                          creep({2.0}, stiffening()), maxwell(0.3, softer)};
+  const std::vector<FeatureSpec> specs = {spectrum({0.3}, stiffening()), stops({3e-4, 1e-4}, softer),
+                                          creep({2.0}, stiffening()), spectrum({0.3}, softer)};
   FeatureFilter before(before_specs);
   FeatureFilter always(specs);
   const auto at = [](int i) { return closed_motion_m(2e-4 * i); };

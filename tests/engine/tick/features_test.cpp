@@ -21,7 +21,7 @@ constexpr double kRounding = 1e-11;
 
 TEST(Features, ASpectrumIsTheSumOfItsBranches) {
   FeatureFilter together({spectrum({0.02, 0.3, 4.0}, stiffening())});
-  FeatureFilter apart({maxwell(0.02, stiffening()), maxwell(0.3, stiffening()), maxwell(4.0, stiffening())});
+  FeatureFilter apart({spectrum({0.02}, stiffening()), spectrum({0.3}, stiffening()), spectrum({4.0}, stiffening())});
   for (int i = 0; i < 3000; ++i) {
     const double t = 1e-3 * i;
     const auto& each = feed(apart, t, closed_motion_m(t / 3.0)).values;
@@ -128,7 +128,7 @@ TEST(Features, LowpassDecaysExponentiallyWhileTheToolIsHeld) {
 
 TEST(Features, UnevenStepsOfARampGiveTheSameAsEvenOnes) {
   const double tau_s = 0.3;
-  FeatureFilter filter({lowpass(tau_s), maxwell(tau_s, {2e-3, {0.5, 0.0, 0.0, 0.0}})});
+  FeatureFilter filter({lowpass(tau_s), spectrum({tau_s}, {2e-3, {0.5, 0.0, 0.0, 0.0}})});
   feed(filter, 0.0, 0.0);
   double t = 0.0;
   for (int i = 0; i < 400; ++i) {
@@ -145,7 +145,7 @@ TEST(Features, AMaxwellBranchWithAStraightDriveIsTheLowpass) {
   const double tau_s = 0.4;
   const double depth_m = 3e-3;
   // g(d) = d / tau, that is, coefficient / depth = 1 / tau.
-  FeatureFilter filter({lowpass(tau_s), maxwell(tau_s, {depth_m, {depth_m / tau_s, 0.0, 0.0, 0.0}})});
+  FeatureFilter filter({lowpass(tau_s), spectrum({tau_s}, {depth_m, {depth_m / tau_s, 0.0, 0.0, 0.0}})});
   for (int i = 0; i < 2000; ++i) {
     const double t = 1e-3 * i;
     const FeatureVector& vector = feed(filter, t, 2.5e-3 * std::sin(5.0 * t));
@@ -184,7 +184,7 @@ TEST(Features, AMaxwellBranchAgreesWithFineIntegration) {
   };
   for (const double end_s : {0.1, 0.35, 0.7, 1.5}) {
     const double expected = integrated_maxwell(rate_N_per_s, tau_s, end_s);
-    FeatureFilter filter({maxwell(tau_s, stiffening())});
+    FeatureFilter filter({spectrum({tau_s}, stiffening())});
     const int steps = static_cast<int>(std::lround(end_s * 1e3));
     for (int i = 0; i <= steps; ++i) feed(filter, 1e-3 * i, depth_m(1e-3 * i));
     EXPECT_NEAR(filter.vector().values[0], expected, 1e-5) << end_s;
@@ -235,12 +235,12 @@ TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
                                           {FeatureKind::velocity, 0.0, {}},
                                           lowpass(0.17),
                                           lowpass(1.27),
-                                          maxwell(0.1, stiffening()),
+                                          spectrum({0.1}, stiffening()),
                                           spectrum({0.02, 0.2, 2.0}, stiffening()),
                                           stops({1e-4, 4e-4}, stiffening()),
                                           creep({2.0}, stiffening())};
   expect_same_at_every_rate(specs);
-  FeatureSpec slowing = maxwell(0.1, stiffening());
+  FeatureSpec slowing = spectrum({0.1}, stiffening());
   slowing.slowing = 2.0;
   expect_same_at_every_rate({FeatureSpec{}, surface_lag({5e-3, {0.5, 0.5}}), slowing});
 }
@@ -249,7 +249,7 @@ TEST(Features, FreeAirRelaxesAndDoesNotLoad) {
   FeatureFilter filter({FeatureSpec{},
                         {FeatureKind::velocity, 0.0, {}},
                         lowpass(0.17),
-                        maxwell(0.1, stiffening()),
+                        spectrum({0.1}, stiffening()),
                         spectrum({0.1}, stiffening()),
                         stops({1e-4}, stiffening()),
                         creep({0.5}, stiffening())});
@@ -305,7 +305,7 @@ TEST(Features, HaveNamesWithUnits) {
   EXPECT_EQ(feature_name({FeatureKind::velocity, 0.0, {}}), "feature_velocity_m_per_s");
   EXPECT_EQ(feature_name(lowpass(0.17)), "feature_lowpass_velocity_0.17s_m_per_s");
   EXPECT_EQ(feature_name(lowpass(1.0 / 3.0)), "feature_lowpass_velocity_0.3333s_m_per_s");
-  EXPECT_EQ(feature_name(maxwell(1.27, stiffening())), "feature_maxwell_branch_1.27s_N");
+  EXPECT_EQ(feature_name(spectrum({1.27}, stiffening())), "feature_maxwell_spectrum_1.27s_N");
   EXPECT_EQ(feature_name(spectrum({0.02, 0.3}, stiffening())), "feature_maxwell_spectrum_0.02-0.3s_N");
   EXPECT_EQ(feature_name(stops({1e-4}, stiffening())), "feature_stops_0.1mm_N");
   EXPECT_EQ(feature_name(creep({0.1, 6.0}, stiffening())), "feature_creep_0.1-6s_N");
@@ -333,7 +333,7 @@ TEST(Features, AMillionTicksDoNotDrift) {
 
 // After an hour at rest in contact, filters are exactly zero and never were denormal.
 TEST(Features, AnHourAtRestLeavesZero) {
-  FeatureFilter filter({lowpass(0.17), maxwell(1.27, stiffening())});
+  FeatureFilter filter({lowpass(0.17), spectrum({1.27}, stiffening())});
   feed(filter, 0.0, 0.0);
   FeatureVector vector;
   for (int i = 1; i <= 3600000; ++i) {

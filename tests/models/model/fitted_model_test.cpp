@@ -30,8 +30,8 @@ TEST(FittedModel, EveryFaultIsNamed) {
   const Case cases[] = {
       {[](ModelData& d) { d.features.clear(); }, "features: found 0 features, expected 1 to 8"},
       {[](ModelData& d) { d.features.assign(9, {}); }, "features: found 9 features, expected 1 to 8"},
-      {[](ModelData& d) { d.features[2].relaxation_time_s = 0.0; },
-       "features.relaxation_time_s: found 0.000000, expected a positive number"},
+      {[](ModelData& d) { d.features[2].parts[0].relaxation_time_s = 0.0; },
+       "features.parts.relaxation_time_s: found 0.000000, expected a positive number"},
       {[](ModelData& d) { d.features[2].drive.reference_depth_m = -1.0; },
        "features.drive.reference_depth_m: found -1.000000, expected a positive number"},
       {[](ModelData& d) { d.features[3].drive.coefficient_N[1] = kNan; },

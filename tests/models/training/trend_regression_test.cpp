@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "models/training/trend_dictionary.h"
+#include "tests/support/feature_specs.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -44,7 +45,7 @@ double rms_of(const TrendRows& rows, const Eigen::VectorXd& x) {
 }
 
 TEST(TrendRegression, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
-  FeatureFilter branch({{FeatureKind::maxwell_branch, 0.1, {kDepth_m, {1.5, 0.5, 0.0, 0.0}}}});
+  FeatureFilter branch({test::spectrum({0.1}, {kDepth_m, {1.5, 0.5, 0.0, 0.0}})});
   FeatureList list;
   list.velocity = true;
   list.relaxation_times_s = {{0.01, 0.1, 1.0}};

@@ -7,6 +7,7 @@
 
 #include "models/model/bernstein.h"
 #include "models/model/trend.h"
+#include "tests/support/feature_specs.h"
 
 namespace palpate {
 namespace {
@@ -27,12 +28,19 @@ Step step_at(int i) {
   return {{time_s, position_m, 0.0, 0.0}, {position_m, kDepth_m * std::cos(angle) * 2.0 * std::numbers::pi / 1.5}};
 }
 
+// One branch for each drive curve of the basis.
+std::vector<FeatureSpec> branch_basis(double relaxation_time_s) {
+  std::vector<FeatureSpec> specs;
+  for (const DriveCurve& drive : branch_curves(kDepth_m)) specs.push_back(test::spectrum({relaxation_time_s}, drive));
+  return specs;
+}
+
 TEST(TrendRows, ColumnsAreTheTrendsTerms) {
   TrendRows rows({kDepth_m, kThinning_m_per_s, {0.17, 1.27}, {}});
   const std::vector<ElasticSpline> elastic = spline_basis();
   ASSERT_EQ(rows.columns(), kElasticTerms + 2 * kViscosityCoefficients + 2 * kBranchTerms);
-  FeatureFilter first(branch_basis(0.17, kDepth_m));
-  FeatureFilter second(branch_basis(1.27, kDepth_m));
+  FeatureFilter first(branch_basis(0.17));
+  FeatureFilter second(branch_basis(1.27));
   rows.begin_recording();
   std::size_t contact = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -65,8 +73,8 @@ TEST(TrendRows, ColumnsAreTheTrendsTerms) {
 // the filter is linear in it.
 TEST(TrendRows, CombinedDriveIsTheWeightedSumOfTheBasis) {
   const double weights[] = {0.5, 2.0, 0.25};
-  FeatureFilter basis(branch_basis(0.3, kDepth_m));
-  FeatureFilter one({{FeatureKind::maxwell_branch, 0.3, combined_drive(weights, kDepth_m)}});
+  FeatureFilter basis(branch_basis(0.3));
+  FeatureFilter one({test::spectrum({0.3}, combined_drive(weights, kDepth_m))});
   for (int i = 0; i < 2000; ++i) {
     const auto [sample, motion] = step_at(i);
     const FeatureVector& parts = basis.update(sample, motion);
@@ -96,10 +104,10 @@ TEST(TrendRows, TheCoarseCurveIsTheSplineAndRises) {
 
 TEST(TrendRows, ALadderIsItsBranches) {
   for (const double slowing : {0.0, 2.0}) {
-    std::vector<FeatureSpec> specs = branch_basis(0.3, kDepth_m);
+    std::vector<FeatureSpec> specs = branch_basis(0.3);
     for (FeatureSpec& spec : specs) spec.slowing = slowing;
     FeatureFilter filter(specs);
-    BranchLadder ladder({0.02, 0.3}, {specs[0].drive, specs[1].drive, specs[2].drive}, slowing);
+    BranchLadder ladder({0.02, 0.3}, branch_curves(kDepth_m), slowing);
     for (int i = 0; i < 2000; ++i) {
       const auto [sample, motion] = step_at(i);
       const double depth_m = std::max(0.0, motion.position_m);

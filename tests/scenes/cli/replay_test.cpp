@@ -103,7 +103,7 @@ TEST_F(ReplayVerb, ForcesFileHoldsWhatTheFiguresComeFrom) {
   EXPECT_EQ(line,
             "time_s,position_m,force_N,depth_m,feature_depth_m,feature_velocity_m_per_s,"
             "feature_lowpass_velocity_0.17s_m_per_s,feature_lowpass_velocity_1.27s_m_per_s,"
-            "feature_maxwell_branch_0.1s_N,feature_maxwell_branch_1.111s_N,"
+            "feature_maxwell_spectrum_0.1s_N,feature_maxwell_spectrum_1.111s_N,"
             "direct-cubic-1_N,kdtree-thin-plate-4_N,greedy-cubic-6_N");
   std::array<double, 3> squares{};
   std::array<double, 3> within{};

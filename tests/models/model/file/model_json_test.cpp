@@ -105,18 +105,18 @@ TEST(ModelReader, RefusesWrongNamesAndFeatures) {
            "commas and quotes; fit the model again"},
           {"\"kind\": \"velocity\"", "\"kind\": \"speed\"",
            "m.json:8:14: features[1].kind: found \"speed\", expected one of depth, velocity, "
-           "lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, creep, surface_lag; fit "
+           "lowpass_velocity, maxwell_spectrum, stops, creep, surface_lag; fit "
            "the model again"},
           {"{\"kind\": \"velocity\"}", "7",
            "m.json:8:5: features[1]: found 7, expected an object with \"kind\"; fit the model again"},
           {"\"relaxation_time_s\": 0.1", "\"relaxation_time_s\": 0",
-           "m.json:9:53: features[2].relaxation_time_s: found 0, expected a number above 0; fit the model "
+           "m.json:9:66: features[2].parts[0].relaxation_time_s: found 0, expected a number above 0; fit the model "
            "again"},
           {"\"relaxation_time_s\": 0.1", "\"relaxation_time_s\": \"0.1\"",
-           "m.json:9:53: features[2].relaxation_time_s: found \"0.1\", expected a number above 0; fit the "
+           "m.json:9:66: features[2].parts[0].relaxation_time_s: found \"0.1\", expected a number above 0; fit the "
            "model again"},
           {"[0.4, 0.3, 0.2, 0.1]", "[0.4, 0.3, 0.2]",
-           "m.json:9:113: features[2].drive.coefficient_N: found a list of 3, expected 4 coefficients; fit "
+           "m.json:9:126: features[2].parts[0].drive.coefficient_N: found a list of 3, expected 4 coefficients; fit "
            "the model again"},
           {"{\"kind\": \"depth\"},", "",
            "m.json:12:15: normalisation.offset: found a list of 3, expected 2 numbers, one per feature; fit the model "
@@ -129,6 +129,15 @@ TEST(ModelReader, RefusesWrongNamesAndFeatures) {
            "again\n"
            "m.json:52:5: centres[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again"},
       });
+}
+
+TEST(ModelReader, ReadsTheSingleBranchOfEarlierFiles) {
+  const std::string text = small_text();
+  const std::string earlier =
+      with(with(text, "\"maxwell_spectrum\", \"parts\": [{", "\"maxwell_branch\", "), "]}}]}", "]}}");
+  const Result<ModelData> data = read_model_text(earlier, "m.json");
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  EXPECT_EQ(text_of(*data), text);
 }
 
 TEST(ModelReader, RefusesWrongNumbersAndSizes) {
