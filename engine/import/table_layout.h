@@ -32,9 +32,9 @@ struct TableLayout {
   std::size_t data_offset = 0;  // in the text
 };
 
-// `said`: the decimal mark if the user has given it. Errors (without the file's name): no rows of numbers; a comma that
-// may be a decimal mark or a thousands mark.
-Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> said);
+// `given_decimal`: the decimal mark if the user has given it. Errors (without the file's name): no rows of numbers; a
+// comma that may be a decimal mark or a thousands mark.
+Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> given_decimal);
 
 // The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
 // line are omitted.

@@ -112,7 +112,7 @@ void keep_freed_memory() {
 
 int main(int argc, char** argv) {
   try {
-    palpate::own_signals();
+    palpate::install_signal_handlers();
     palpate::prepare_blas();
     palpate::cli::keep_freed_memory();
     return palpate::cli::run_program(argc, argv);
