@@ -15,7 +15,8 @@ namespace palpate {
 inline constexpr std::size_t kDepthQuarters = 4;
 inline constexpr std::size_t kSpeedBands = 3;
 inline constexpr std::array<double, kSpeedBands - 1> kSpeedEdges_per_s = {1.0, 5.0};
-inline constexpr double kLeastCell_s = 0.05;  // a cell with less time counts as not visited
+// A cell (depth quarter x speed band) with less time counts as not visited.
+inline constexpr double kLeastCell_s = 0.05;
 
 struct RecordingMeasures {
   double duration_s = 0.0;
