@@ -6,8 +6,8 @@
 // With a force device (`has_force`) a round is a blind comparison of two models under the keys 1 and 2: are they the
 // same or different? One round is a catch trial with the same model twice:
 //   attract -> press -> reveal -> press ... -> score
-// A difference is noticeable when the mean over 50 ms of difference / JND (HistoryPoint) exceeded 1 anywhere in the
-// visitor's own strokes within the models' training domain. From 0.8 to 1.25 either answer is correct.
+// A difference is noticeable when the magnitude of the mean over 50 ms of difference / JND (HistoryPoint) exceeded 1
+// anywhere in the visitor's own strokes within the models' training domain. From 0.8 to 1.25 either answer is correct.
 // The same seed and the same models give the same rounds.
 // Thread guarantee: one thread; `add` allocates nothing after the first minute.
 #pragma once

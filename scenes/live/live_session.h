@@ -36,7 +36,7 @@ struct SessionRequest {
   std::vector<std::string> recordings;
   std::string device = "auto";
   std::vector<std::string> models;  // methods or model files; empty: those of `line_up`
-  std::string line_up;              // a name of line_ups(); empty or unknown: the scene's default models
+  std::string line_up;              // a name of line_ups() (slot_plan.h); empty or unknown: the scene's default models
   // Models of an earlier session (SessionModels::plans), in addition. `refits` false: there are no others.
   std::vector<SlotPlan> kept;
   bool refits = true;

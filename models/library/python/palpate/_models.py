@@ -380,7 +380,7 @@ def _whole(name, value):
 
 
 def _careful(progress, failure):
-    """A callback whose exceptions, Control-C among them, stop the fit and are raised behind it."""
+    """A callback whose exceptions, Control-C among them, stop the fit and are raised after it."""
     def report(fraction, _):
         try:
             return int(progress is None or progress(fraction) is not False)
