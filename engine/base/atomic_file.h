@@ -1,5 +1,4 @@
 // Files that appear under their final name only when they are complete, or grow there by complete pieces.
-//
 // Thread guarantee: slow side only.
 #pragma once
 

@@ -2,7 +2,6 @@
 // found and the value expected:
 //   path:line:column: field[index].field: found X, expected Y; what to do
 // All errors of a file are collected, except those that follow from an earlier one.
-//
 // Thread guarantee: one thread per object; slow side (allocates).
 #pragma once
 

@@ -1,5 +1,4 @@
 // The interface of a haptic device, a simulated hand or a recording: it returns samples of the tool and takes a force.
-//
 // Thread guarantee: `open` and `close` are slow side, before and after the haptics thread. `read` and `write` belong to
 // the haptics thread: wait-free, they allocate nothing, make no system call and never throw. A device whose transport
 // blocks has its own thread and passes its samples on.

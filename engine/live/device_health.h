@@ -1,5 +1,4 @@
 // The state of a device, for the limiter, the panel and the user.
-//
 // Thread guarantee: values; `zeroing_words` is slow side (allocates).
 #pragma once
 

@@ -1,5 +1,4 @@
 // The table of all faults of the live loop, from the tick to the panel; all other code uses its rows.
-//
 // Thread guarantee: constants; functions that return strings are slow side (allocate).
 #pragma once
 

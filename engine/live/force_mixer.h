@@ -6,7 +6,6 @@
 // with the JND at the smaller of the two forces. Switching thus changes the force by at most one JND in 10 ms, for any
 // difference between the models, and is immediate in air, where all forces are 0. Changes of the models' own forces are
 // not limited.
-//
 // Thread guarantee: one thread at a time; wait-free, allocates nothing.
 #pragma once
 

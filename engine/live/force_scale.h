@@ -3,7 +3,6 @@
 //
 //   F' = k F + b v     in contact; k: stiffness, b: damping_Ns_per_m, v: velocity inward; b v never changes the sign
 //                      of a positive force
-//
 // Thread guarantee: the haptics thread; wait-free.
 #pragma once
 

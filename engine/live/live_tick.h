@@ -4,7 +4,6 @@
 //
 //   take a new set of models -> read the device -> HapticsTick for each sample
 //   -> mix (the active model) -> scale -> passivity -> limit -> write the device -> snapshot
-//
 // Thread guarantee: constructed on the slow side; `run` and `release` belong to the haptics thread, are wait-free,
 // allocate nothing, lock nothing and never throw.
 #pragma once

@@ -50,7 +50,6 @@
 // Sources: Visintin (1994), "Differential models of hysteresis" (stop and play operators); Dahl (1968) (friction with
 // presliding); Bergstrom & Boyce (1998), "Constitutive modeling of the large strain time-dependent behavior of
 // elastomers".
-//
 // Thread guarantee: value types; `update` is wait-free, allocates nothing and never throws; one thread at a time.
 #pragma once
 

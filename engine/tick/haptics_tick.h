@@ -3,7 +3,6 @@
 //
 // The order is: motion estimate (once), features (once per distinct feature list among the models), forces (every
 // model). Out of contact every force is 0.
-//
 // Thread guarantee: construction allocates (slow side); `step` is wait-free, allocates nothing, locks nothing, does no
 // I/O and never throws; one thread at a time.
 #pragma once

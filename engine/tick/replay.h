@@ -7,7 +7,6 @@
 // For the visitor, a sample is in contact beyond the surface, or if the measured force exceeds both the JND at 0 N and
 // five times its noise, because an adhesive material also pulls outside. The surface is the outermost one of the models
 // whose surface is not at 0, else 0.
-//
 // Thread guarantee: slow side; one thread at a time.
 #pragma once
 

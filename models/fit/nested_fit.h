@@ -6,7 +6,6 @@
 // The columns of k centres are non-zero only in the rows of T up to the last of these columns, which leaves a system
 // of that size. The weights equal those of a separate fit to rounding, with the same ridge or penalty. Smoothing and
 // strength do not depend on the number of centres (correction_strength.h); the error bound is that of the maximum.
-//
 // Thread guarantee: immutable; `fit` is slow side and may be called by several threads.
 // Source: Golub & Van Loan, Matrix Computations, section 6.5 (QR of fewer columns).
 #pragma once

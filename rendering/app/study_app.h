@@ -1,8 +1,7 @@
 // The window of the studies: the JND (--scene jnd_study) and the discrimination of two strokes (--discriminate). It
 // asks for the subject code and then shows the screens of the session.
 // Every button has a key. Esc ends the session at any time; the answers are kept. Nothing that could reveal an answer
-// is shown before the end.
-// Thread guarantee: main thread only.
+// is shown before the end. Thread guarantee: main thread only.
 #pragma once
 
 #include <memory>
