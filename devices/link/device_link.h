@@ -54,7 +54,7 @@ class DeviceLink {
   DeviceLink& operator=(const DeviceLink&) = delete;
   ~DeviceLink();
 
-  // Slow side. Errors: no thread.
+  // Slow side. Errors: a thread cannot be started.
   Status start();
   // Slow side, blocking: ends the writer, sends the stop report, which removes the force, and ends the reader.
   void stop() noexcept;

@@ -68,7 +68,8 @@ std::vector<DeviceChoice> device_choices();
 class LiveSession {
  public:
   // Reads the scene, recordings and model files, opens the device and starts the loop; models are fitted in the
-  // background. Errors: those of load_scene, read_usable_recording, plan_slots and open_device; no thread.
+  // background. Errors: those of load_scene, read_usable_recording, plan_slots and open_device; a thread cannot be
+  // started.
   static Result<std::unique_ptr<LiveSession>> open(const SessionRequest& request);
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;

@@ -56,7 +56,7 @@ class ModelWorker {
   // no material to fit to.
   Result<std::shared_ptr<const FittedModel>> make(const SlotPlan& plan);
 
-  // Starts the thread. Errors: no thread.
+  // Errors: the thread cannot be started.
   Status start();
   // Adds a job in the order of expected times. A job of the same id that has not begun is replaced. `at_once`: before
   // all others.
