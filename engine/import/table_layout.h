@@ -1,9 +1,10 @@
 // Determines the layout of the table in a foreign text: separator of fields, decimal mark, the lines of column names
 // and of units, and the first line of numbers.
 //
-// Every pair of separator and decimal mark is tried on the first lines. Pairs without fields that begin as a number
-// but are none are preferred, then the pair with most numbers. The longest run of rows of numbers is the table, and the
-// nearest line above it with names for all columns is the header; lines further above are a preamble.
+// Every pair of separator and decimal mark is tried on the first lines. Pairs are preferred in which no field begins
+// like a number without being one, and among these the pair with the most numbers. The longest run of rows of numbers
+// is the table, and the nearest line above it with names for all columns is the header; lines further above are a
+// preamble.
 // Thread guarantee: slow side only.
 #pragma once
 

@@ -26,8 +26,8 @@ struct DeviceSample {
   bool restart = false;
 };
 
-// The maximum number of samples that a tick reads from a device: those of a recording at 20 kHz, or at 2 kHz played
-// ten times as fast, and half as many again.
+// The maximum number of samples that a tick reads from a device: the 20 of a recording at 20 kHz, or at 2 kHz played
+// ten times as fast, and a margin.
 inline constexpr int kMaxSamplesPerTick = 32;
 
 // A tool that mouse and keys of a window can move. Called by the window's thread only; wait-free. `now_s`: steady

@@ -24,9 +24,9 @@
 // tau exp(b s / reference depth): a fluid that is squeezed through closing pores has one time scale for all its times,
 // which grows with the strain (Lai & Mow 1980: permeability and strain).
 //
-// A branch is dissipative: with q = g(d) - z, dq/dt = z / tau. The stored energy
-// integral_0^d g ds - q d + integral_0^q g^-1 ds decreases by (d - g^-1(q)) (g(d) - q) / tau >= 0 while g increases,
-// for any current tau > 0.
+// A branch is dissipative: with q = g(d) - z, dq/dt = z / tau. Of the power z dd/dt it dissipates
+// (d - g^-1(q)) (g(d) - q) / tau, which is >= 0 if g increases, for any current tau > 0; the rest changes the stored
+// energy integral_0^d g ds - q d + integral_0^q g^-1 ds.
 //
 // A stop operator of threshold r is the deflection of a bristle that follows the depth, bends by at most r and then
 // slips: s' = clamp(s + d' - d, -r, r), and 0 out of contact. A weighted sum of stops is a Prandtl-Ishlinskii operator:

@@ -8,9 +8,9 @@
 // (paired_costs.h). Within two standard errors of 0 it is 0, unless 0 is outside the range.
 //
 // An effect of the material that looks like an offset (friction like a shift, viscosity like a lag) is the same in all
-// blocks, and a jackknife does not see it. In such a case the offset is identified only if 0 is significantly worse.
-// If the effect reaches as far as `systematic_effect`, the costs at `systematic_effect` on either side must be
-// significantly worse, too, and 0 must be further away by `systematic_effect`.
+// blocks, so that the jackknife does not show it. With such an effect the offset is identified only if 0 is
+// significantly worse. If its size is given (`systematic_effect`), the costs at this distance on either side must be
+// significantly worse, too, and the offset must exceed this distance plus two standard errors to differ from 0.
 // Thread guarantee: slow side, pure.
 #pragma once
 
