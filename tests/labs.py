@@ -199,9 +199,9 @@ def summary_table(summary):
 
 def front_page(options, folder, rows, summary):
     """Writes all sets to RESULTS.md; the means, and the sentence and figure of a report on silicone, to README.md."""
-    RESULTS.write_text("\n".join(["# Results", "", "Made by `python3 tests/labs.py --models recipe trend greedy --write`, whose header says what",
-                                  "the columns are. Recorded sets first; each has its source and licence in a PROVENANCE.md beside it,",
-                                  "outside of this repository.", "", *rows, "", *summary, ""]))
+    RESULTS.write_text("\n".join(["# Results", "", "Made by `python3 tests/labs.py --models recipe trend greedy --write`, whose header describes",
+                                  "the columns. Recorded sets come first; the source and licence of each are in a PROVENANCE.md beside it,",
+                                  "outside this repository.", "", *rows, "", *summary, ""]))
     report = folder / "report"
     run(options.palpate, "report", "--train", folder / "silicone_1.csv", "--test", folder / "silicone_2.csv", "--out", report)
     answer = json.loads((report / "report.json").read_text())["timings"]["answer"]

@@ -2,7 +2,8 @@
 // on an ATmega328P, paddle.ino on a Teensy, the tests on a simulated board.
 // A frame is obeyed when its drive flag is 0 or its sequence is newer than the last one. The motor is off after
 // HostWatch::kTimeout_us without such a frame or without a new heartbeat, until both return, and while motor or sensor
-// has a fault. Thread guarantee: one thread.
+// has a fault.
+// Thread guarantee: one thread.
 #pragma once
 
 #ifndef ARDUINO  // a sketch includes the files of its folder itself

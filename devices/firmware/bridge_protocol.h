@@ -1,5 +1,4 @@
-// The frames of the bridge protocol, version 1. Host and firmware include this file; devices/README.md#bridge has the
-// byte offsets.
+// The frames of the bridge protocol, version 1 (devices/README.md#bridge), for host and firmware.
 // C++11 with no library but stdint. All numbers are little-endian on every machine.
 // Thread guarantee: pure functions and values, wait-free, never throw.
 #pragma once

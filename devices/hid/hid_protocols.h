@@ -1,5 +1,5 @@
-// The supported USB HID protocols. To add one, add a source file here, two lines below, and a calibration in
-// assets/devices/. Thread guarantee: slow side.
+// The supported USB HID protocols (README.md says how to add one).
+// Thread guarantee: slow side.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Interfaces of a bus and of an open device on it: USB HID (devices/hid), a byte stream (devices/bridge), or a test
-// double.
+// Interfaces of a bus, which lists devices and opens them, and of an open device. A bus is USB HID (devices/hid), a
+// byte stream (devices/bridge), or a test double.
 #pragma once
 
 #include <cstddef>

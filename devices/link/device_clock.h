@@ -6,7 +6,8 @@
 // The line is the highest one below all points of the last half second (the linear programme of Moon, Skelly &
 // Towsley, "Estimation and removal of clock skew from network delay measurements", INFOCOM 1999). This removes jitter
 // and follows drift at every rate of reports. A longer constant delay becomes part of the line after half a second.
-// Only the lowest point of each 50 ms is used. Thread guarantee: one thread; wait-free, never throws.
+// Only the lowest point of each 50 ms is used.
+// Thread guarantee: one thread; wait-free, never throws.
 #pragma once
 
 #include <algorithm>

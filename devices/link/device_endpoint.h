@@ -46,7 +46,7 @@ class DeviceEndpoint final : public LinkListener {
 
   // Writer thread, wait-free. The reports to write now; empty when none is due.
   OutReports next(double now_s) noexcept override;
-  // Call it after they were written, with the time then.
+  // Writer thread, wait-free: the reports were written.
   void written(double now_s) noexcept override;
 
   // Haptics thread, wait-free; as Device.

@@ -58,7 +58,7 @@ DeviceLink::DeviceLink(DeviceBus& bus, LinkListener& listener, OpenedDevice open
 DeviceLink::~DeviceLink() { stop(); }
 
 std::string DeviceLink::description() const {
-  return std::string(protocol_.description) + ": " + info_.product + ", " + info_.path + "; tested " + kTried;
+  return std::string(protocol_.description) + ": " + info_.product + ", " + info_.path + "; tested " + kTestedOn;
 }
 
 std::shared_ptr<DeviceConnection> DeviceLink::connection() noexcept {

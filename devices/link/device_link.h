@@ -24,7 +24,7 @@ class LinkListener {
   virtual void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept = 0;
   virtual void unplugged() noexcept = 0;
   // Writer thread.
-  virtual OutReports next(double now_s) noexcept = 0;
+  virtual OutReports next(double now_s) noexcept = 0;  // empty: nothing to write now
   virtual void written(double now_s) noexcept = 0;
 };
 
@@ -54,7 +54,7 @@ class DeviceLink {
   DeviceLink& operator=(const DeviceLink&) = delete;
   ~DeviceLink();
 
-  // Slow side. Errors: no thread.
+  // Slow side. Errors: a thread cannot be started.
   Status start();
   // Slow side, blocking: ends the writer, sends the stop report, which removes the force, and ends the reader.
   void stop() noexcept;

@@ -1,5 +1,5 @@
-// A device protocol as data and pure functions, which decode reports and encode commands. Each protocol is one file in
-// devices/hid or devices/bridge; the link layer does not depend on any of them.
+// A device protocol: its properties, and pure functions that decode reports and encode commands. Each protocol is one
+// file in devices/hid or devices/bridge; the link layer does not depend on any of them.
 // Thread guarantee: pure functions, any thread; wait-free, never throw, read nothing beyond `size`.
 #pragma once
 
@@ -38,11 +38,11 @@ struct OutReports {
   std::size_t count = 0;
 };
 
-// The test status of all protocols.
-inline constexpr const char* kTried = "on real hardware: no; on an emulated device: yes";
+// What all protocols were tested on.
+inline constexpr const char* kTestedOn = "on real hardware: no; on an emulated device: yes";
 
 struct DeviceProtocol {
-  const char* name;         // in messages and of its calibration file
+  const char* name;         // in messages; name of its calibration file
   const char* description;  // a few words
   // Independent capabilities.
   bool renders_force = false;

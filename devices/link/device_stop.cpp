@@ -71,7 +71,7 @@ void stop_all_devices() noexcept {
 
 void stop_devices_on_signals() noexcept {
   stop_forces_by(stop_all_devices);
-  own_signals();
+  install_signal_handlers();
 }
 
 }  // namespace palpate

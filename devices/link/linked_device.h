@@ -29,7 +29,7 @@ class LinkedDevice final : public Device {
   Holder holder() const noexcept override { return Holder::person; }
   bool measures_force() const noexcept override { return measures_force_; }
   ForceLimits limits() const noexcept override { return endpoint_.limits(); }
-  // Errors: no thread.
+  // Errors: a thread cannot be started.
   Status open() override;
   void close() noexcept override { link_.stop(); }
   bool read(double, DeviceSample& sample) noexcept override { return endpoint_.read(sample); }

@@ -10,7 +10,7 @@ namespace {
 constexpr double kSubstep_s = 50e-6;
 constexpr double kLongestStep_s = 0.02;
 // The stiffness is not estimated from smaller forces.
-constexpr double kFeelable_N = 0.1;
+constexpr double kLeastForce_N = 0.1;
 constexpr double kLearning_s = 0.15;
 constexpr double kSoftest_N_per_m = 100.0;
 constexpr double kStiffest_N_per_m = 20e3;
@@ -18,9 +18,9 @@ constexpr double kStiffest_N_per_m = 20e3;
 }  // namespace
 
 void LearningHand::learn(double force_N, double step_s) noexcept {
-  if (!(position_m() > 0.0) || !(force_N > kFeelable_N)) return;
-  const double felt = std::clamp(force_N / position_m(), kSoftest_N_per_m, kStiffest_N_per_m);
-  stiffness_N_per_m_ += std::min(1.0, step_s / kLearning_s) * (felt - stiffness_N_per_m_);
+  if (!(position_m() > 0.0) || !(force_N > kLeastForce_N)) return;
+  const double secant_N_per_m = std::clamp(force_N / position_m(), kSoftest_N_per_m, kStiffest_N_per_m);
+  stiffness_N_per_m_ += std::min(1.0, step_s / kLearning_s) * (secant_N_per_m - stiffness_N_per_m_);
 }
 
 double LearningHand::held_depth_m(double force_N) const noexcept {

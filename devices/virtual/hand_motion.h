@@ -51,7 +51,6 @@ class HandMotion {
   // The depth at which the block holds `force_N` after a short press.
   virtual double held_depth_m(double force_N) const noexcept = 0;
 
- protected:
   const HandSettings& settings() const noexcept { return settings_; }
 
  private:
@@ -94,8 +93,8 @@ class HandMotion {
   RandomStream random_;
   std::array<Segment, kMostSegments> segments_{};
   std::size_t segment_count_ = 0, segment_ = 0;
-  std::array<Gesture, 16> deck_{};
-  std::size_t dealt_ = 0;
+  std::array<Gesture, 16> deck_{};  // in random order; shuffled again when all were used
+  std::size_t dealt_ = 0;           // number of used gestures
   double segment_from_m_ = 0.0, segment_time_s_ = 0.0, planned_m_ = 0.0;
   double aim_m_ = 0.0, aim_velocity_m_per_s_ = 0.0;
   double tremor_dt_s_ = 0.0;

@@ -74,7 +74,7 @@ class ReplayDevice final : public Device, public ReplayControl {
   double now_s_ = 0.0;
   double moved_m_ = 0.0;  // surface offset of the present stream
   std::size_t next_ = 0;
-  int handed_over_ = 0;  // rows in this tick
+  int handed_over_ = 0;  // rows read in this tick
   bool restart_ = true;
   bool started_ = false;
 };

@@ -1,5 +1,4 @@
 // Files that appear under their final name only when they are complete, or grow there by complete pieces.
-//
 // Thread guarantee: slow side only.
 #pragma once
 
@@ -15,9 +14,7 @@ namespace palpate {
 // files without a name (O_TMPFILE). Otherwise a program that is killed leaves a hidden file in the folder of `path`.
 class AtomicFile {
  public:
-  // Errors: `path` exists and `overwrite` is false ("... exists; pass --force
-  // to replace it"), is a folder or a device; the folder is missing or not
-  // writable.
+  // Errors: `path` exists and `overwrite` is false, is a folder or a device; the folder is missing or not writable.
   static Result<AtomicFile> create(const std::string& path, bool overwrite);
 
   AtomicFile(AtomicFile&& other) noexcept;
@@ -29,8 +26,8 @@ class AtomicFile {
   // Whether an input/output error has occurred; `commit` returns it.
   bool failed() const noexcept { return error_number_ != 0; }
 
-  // Gives the file its final name with all that was written. Every further call appends the text since the last one as
-  // a complete piece, even if the program is killed. If a piece cannot be written, the file keeps the earlier ones.
+  // Gives the file its final name with all that was written. Every further call appends the text since the last one,
+  // all of it or nothing, even if the program is killed.
   // Errors: as `commit`.
   Status publish();
 
@@ -56,8 +53,8 @@ class AtomicFile {
   long long whole_bytes_ = 0;  // length that was published
 };
 
-// Flushes the folder of `path`, so that a new name in it survives a power cut. Some file systems cannot do that; it is
-// no error, because the file itself is complete.
+// Flushes the folder of `path`, so that a new name in it survives a power cut; does nothing where the file system
+// cannot.
 void flush_folder_of(const std::string& path);
 
 // Writes `text` to `path` atomically. Errors: those of AtomicFile.

@@ -1,6 +1,4 @@
-// Reads lines of an untrusted text file in bounded memory, and formats error messages about them. The scanner
-// is internal to the recording reader.
-//
+// Reads lines of an untrusted text file in bounded memory, and formats error messages about them.
 // Thread guarantee: slow side only; one thread per object.
 #pragma once
 
@@ -101,8 +99,7 @@ std::string_view trimmed(std::string_view text);
 // `text` with A to Z replaced by a to z.
 std::string lower_ascii(std::string_view text);
 
-// Whether every byte of `text` belongs to a well-formed UTF-8 sequence; if not, `bad_offset` is the first that does
-// not.
+// Whether `text` is well-formed UTF-8; if not, `bad_offset` is the first byte that is not.
 // Source: RFC 3629, section 4.
 bool is_utf8(std::string_view text, std::size_t& bad_offset);
 

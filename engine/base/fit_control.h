@@ -9,7 +9,7 @@ namespace palpate {
 
 struct FitControl {
   // Called from time to time on the fitting thread with the finished fraction, 0 to 1. If it returns false, the fit
-  // ends with interrupted(). May be empty.
+  // ends with the error interrupted(). May be empty.
   std::function<bool(double fraction)> progress;
 
   bool may_continue(double fraction) const { return !progress || progress(fraction); }

@@ -65,7 +65,7 @@ class RandomStream {
   std::uint64_t index(std::uint64_t count) noexcept { return (next() >> 32) * count >> 32; }
 
   // Mean 0, variance 1, approximately normal: the sum of twelve uniform numbers (Irwin-Hall), without logarithm or
-  // cosine. Its tails end at 6 and are 20 % too thin at 3, which is irrelevant for the sensor models.
+  // cosine. At 3 standard deviations its tails are 20 % too thin; they end at 6.
   double normal() noexcept {
     std::uint64_t sum = 0;
     for (int draw = 0; draw < 3; ++draw) {

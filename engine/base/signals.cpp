@@ -68,7 +68,7 @@ void own(std::size_t index) noexcept {
 
 }  // namespace
 
-void own_signals() noexcept {
+void install_signal_handlers() noexcept {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
   for (std::size_t i = 0; i < kSignals.size(); ++i) own(i);
@@ -82,7 +82,7 @@ void stop_forces_by(StopForces function) noexcept { stop_forces.store(function);
 StopListener::StopListener() noexcept {
   requested_by.store(0);
   listening.store(true);
-  own_signals();
+  install_signal_handlers();
 }
 
 StopListener::~StopListener() { listening.store(false); }

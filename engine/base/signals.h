@@ -12,9 +12,9 @@ namespace palpate {
 // Async-signal-safe: no allocation, no lock, no stdio. May run in two threads at once.
 using StopForces = void (*)() noexcept;
 
-// Slow side, any number of times: in main before the first thread, and when a device is opened. A file beyond the
-// process's size limit becomes an error of its write. Errors: none; what the system refuses stays as it was.
-void own_signals() noexcept;
+// Installs the handlers. Slow side, any number of times: in main before the first thread, and when a device is opened.
+// Ignores SIGXFSZ, so that a write beyond the limit of file sizes is an error. What the system refuses stays as it was.
+void install_signal_handlers() noexcept;
 // Makes a write to a closed pipe an error instead of the end of the program.
 void ignore_broken_pipes() noexcept;
 

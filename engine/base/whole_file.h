@@ -14,7 +14,7 @@ namespace palpate {
 // `expected`: "a model file", for messages; `or_else`: further advice if there is no such file, ", or ...". Errors: no
 // such file, a folder, a pipe or a device, no permission.
 Result<int> open_plain_file(const std::string& path, const std::string& expected, const std::string& or_else = "");
-// Larger than any file that such programs write, except models and recordings.
+// The limit for all files except models and recordings.
 inline constexpr std::size_t kSmallFileBytes = std::size_t{64} << 20;
 // Reads all bytes. Errors: as above, those of DescriptorSource, and a file beyond `most_bytes`.
 Result<std::string> read_plain_file(const std::string& path, const std::string& expected,

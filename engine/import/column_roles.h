@@ -21,14 +21,14 @@ inline constexpr std::array<const char*, kRoles> kRoleNames = {"time", "position
 struct ForeignColumn {
   std::string header;  // as in the file
   NameAndUnit parts;
-  bool constant = false;  // in the first rows: cannot be the time
+  bool constant = false;  // in the first rows, so that it cannot be the time
 };
 
 // The user's choice for each role: a name or a number from 1; empty: to be determined.
 using RoleRequest = std::array<std::string, kRoles>;
 
 struct RoleChoice {
-  std::array<std::optional<std::size_t>, kRoles> column;  // time: none with a given rate
+  std::array<std::optional<std::size_t>, kRoles> column;  // empty for the time if a rate is given
   std::array<bool, kRoles> guessed{};
 };
 

@@ -155,9 +155,9 @@ void Importer::mark_constant_columns() {
 Status Importer::find_unit_of(std::size_t role) {
   const Quantity quantity = static_cast<Quantity>(role);
   const auto& column = header_[index_[role]];
-  const Unit* const said = requested_unit(request_, quantity);
+  const Unit* const requested = requested_unit(request_, quantity);
   const auto& unit = column.parts.unit;
-  if (said == nullptr && unit && unit->quantity != quantity) {
+  if (requested == nullptr && unit && unit->quantity != quantity) {
     return fail("found the unit " + std::string(unit->name) + " in the column \"" + printable(column.header) +
                 "\", expected one of a " + (role == 1 ? "length" : "force") + " for the " + kRoleNames[role] +
                 "; choose another with --columns " + kRoleNames[role] + "=NAME; the columns are " +
@@ -173,13 +173,13 @@ Status Importer::find_unit_of(std::size_t role) {
     return fail("found volts in the column \"" + printable(column.header) +
                 "\", expected a force; say how many newtons a volt is: --gain N_PER_V");
   }
-  if (said == nullptr && !unit) {
+  if (requested == nullptr && !unit) {
     const std::string what = quoted_name(role);
     return fail("found no unit of the " + std::string(kRoleNames[role]) + what + "; add --units " +
                 (role == 1 ? "mm (or m, cm, um, inch)" : "N (or mN, kN, g, kg, lbf)") +
                 ", with a comma between two units: --units mm,N");
   }
-  const Unit& chosen = said != nullptr ? *said : *unit;
+  const Unit& chosen = requested != nullptr ? *requested : *unit;
   to_si_[role] = chosen.to_si;
   table_.columns[role].unit = std::string(chosen.name);
   return {};
@@ -211,10 +211,10 @@ Status Importer::find_time_unit() {
     column.unit = "clock";
     return {};
   }
-  const Unit* const said = requested_unit(request_, Quantity::time);
+  const Unit* const requested = requested_unit(request_, Quantity::time);
   const auto& unit = header_[index_[0]].parts.unit;
-  if (said != nullptr || (unit && unit->quantity == Quantity::time)) {
-    const Unit& chosen = said != nullptr ? *said : *unit;
+  if (requested != nullptr || (unit && unit->quantity == Quantity::time)) {
+    const Unit& chosen = requested != nullptr ? *requested : *unit;
     to_si_[0] = chosen.to_si;
     column.unit = std::string(chosen.name);
     return {};

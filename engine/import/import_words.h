@@ -24,10 +24,10 @@ std::vector<std::string> import_origin(const std::string& file, const ImportRequ
 // "1.5", to six digits; "3 rows".
 std::string short_number(double value);
 std::string count_of(std::uint64_t count, const char* what);
-// Error messages for one row, with advice. `quoted_name`: of its column, after a blank, or empty. A time that is not
-// later than the last, in a table of `rows` rows:
+// Error messages for one row, with advice. `quoted_name`: the column's name after a blank, or empty.
+// A time that is not later than that of the row before; `rows`: number of rows so far.
 std::string time_fault_words(const std::string& quoted_name, double time_s, double last_time_s, std::size_t rows);
-// A position (role 1) or a force (2) beyond the limits of recordings.
+// A position (role 1) or a force (role 2) beyond the limits of recordings.
 std::string size_fault_words(const RecordingRow& row, const ImportedColumn& column, std::size_t role,
                              const std::string& quoted_name);
 

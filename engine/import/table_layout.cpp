@@ -309,12 +309,12 @@ void split_table_fields(std::string_view line, Delimiter delimiter, std::vector<
   while (!fields.empty() && fields.back().empty()) fields.pop_back();
 }
 
-Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> said) {
+Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> given_decimal) {
   const std::vector<SampleLine> lines = sample_lines(text);
   Reading best;
   for (const Delimiter delimiter : kDelimiters) {
     for (const char decimal : {'.', ','}) {
-      if (said && *said != decimal) continue;
+      if (given_decimal && *given_decimal != decimal) continue;
       if (delimiter == Delimiter::comma && decimal == ',') continue;
       const Reading reading = read_as(lines, delimiter, decimal);
       if (reading.rows > 0 && (best.rows == 0 || reading.better_than(best))) best = reading;
@@ -327,7 +327,7 @@ Result<TableLayout> find_table_layout(std::string_view text, std::optional<char>
   }
   skip_short_rows(best, lines);
   find_header(best, lines);
-  if (best.layout.decimal == ',' && !said) {
+  if (best.layout.decimal == ',' && !given_decimal) {
     if (const Status status = check_decimal_comma(best, lines); !status) return status.error();
   }
   return best.layout;

@@ -1,9 +1,10 @@
 // Determines the layout of the table in a foreign text: separator of fields, decimal mark, the lines of column names
 // and of units, and the first line of numbers.
 //
-// Every pair of separator and decimal mark is tried on the first lines. Pairs without fields that begin as a number
-// but are none are preferred, then the pair with most numbers. The longest run of rows of numbers is the table, and the
-// nearest line above it with names for all columns is the header; lines further above are a preamble.
+// Every pair of separator and decimal mark is tried on the first lines. Pairs are preferred in which no field begins
+// like a number without being one, and among these the pair with the most numbers. The longest run of rows of numbers
+// is the table, and the nearest line above it with names for all columns is the header; lines further above are a
+// preamble.
 // Thread guarantee: slow side only.
 #pragma once
 
@@ -32,9 +33,9 @@ struct TableLayout {
   std::size_t data_offset = 0;  // in the text
 };
 
-// `said`: the decimal mark if the user has given it. Errors (without the file's name): no rows of numbers; a comma that
-// may be a decimal mark or a thousands mark.
-Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> said);
+// `given_decimal`: the decimal mark if the user has given it. Errors (without the file's name): no rows of numbers; a
+// comma that may be a decimal mark or a thousands mark.
+Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> given_decimal);
 
 // The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
 // line are omitted.

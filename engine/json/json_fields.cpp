@@ -162,19 +162,19 @@ std::optional<Error> JsonFields::error() const {
   return Error{all};
 }
 
-bool JsonFields::told_already(const std::string& pointer) const {
-  return std::any_of(told_.begin(), told_.end(), [&](const std::string& told) {
-    if (pointer == told) return true;
-    return !told.empty() && pointer.size() > told.size() && pointer.compare(0, told.size(), told) == 0 &&
-           pointer[told.size()] == '/';
+bool JsonFields::reported_already(const std::string& pointer) const {
+  return std::any_of(reported_.begin(), reported_.end(), [&](const std::string& reported) {
+    if (pointer == reported) return true;
+    return !reported.empty() && pointer.size() > reported.size() &&
+           pointer.compare(0, reported.size(), reported) == 0 && pointer[reported.size()] == '/';
   });
 }
 
 void JsonFields::complain(const std::string& pointer, const std::string& words, const std::string& advice) {
-  if (told_already(pointer)) return;
+  if (reported_already(pointer)) return;
   ++error_count_;
   if (lines_.size() == kMostLines) return;
-  told_.push_back(pointer);
+  reported_.push_back(pointer);
   const std::string name = field_name(pointer);
   lines_.push_back(position_prefix(path_, position_of_value(text_, pointer)) + (name.empty() ? "" : name + ": ") +
                    words + advice);
@@ -183,7 +183,7 @@ void JsonFields::complain(const std::string& pointer, const std::string& words, 
 JsonNode JsonFields::optional_member(const JsonNode& object, const char* key) {
   const std::string pointer = object.pointer + "/" + key;
   if (object.value == nullptr || !object.value->is_object()) return {nullptr, pointer};
-  std::vector<std::string>& asked = asked_[object.pointer];
+  std::vector<std::string>& asked = requested_[object.pointer];
   if (std::find(asked.begin(), asked.end(), key) == asked.end()) asked.emplace_back(key);
   const auto entry = object.value->find(key);
   return {entry != object.value->end() ? &*entry : nullptr, pointer};
@@ -267,7 +267,7 @@ std::optional<std::size_t> JsonFields::choice(const JsonNode& node, const std::v
 }
 
 void JsonFields::refuse_unknown(const JsonNode& top) {
-  for (const auto& [pointer, keys] : asked_) {
+  for (const auto& [pointer, keys] : requested_) {
     const Json& object = pointer.empty() ? *top.value : top.value->at(Json::json_pointer(pointer));
     std::string known;
     for (const std::string& key : keys) known.append(known.empty() ? "" : ", ").append(key);

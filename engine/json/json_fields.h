@@ -2,7 +2,6 @@
 // found and the value expected:
 //   path:line:column: field[index].field: found X, expected Y; what to do
 // All errors of a file are collected, except those that follow from an earlier one.
-//
 // Thread guarantee: one thread per object; slow side (allocates).
 #pragma once
 
@@ -98,14 +97,14 @@ class JsonFields {
                                     const Good& good);
   double number_in(const JsonNode& object, const char* key, const std::string& expected, double instead,
                    const NumberRange& range);
-  bool told_already(const std::string& pointer) const;
+  bool reported_already(const std::string& pointer) const;
   std::string_view text_;
   const std::string& path_;
   std::string advice_;
   std::vector<std::string> lines_;
-  std::vector<std::string> told_;  // pointers of reported errors
+  std::vector<std::string> reported_;  // pointers of reported errors
   std::size_t error_count_ = 0;
-  std::map<std::string, std::vector<std::string>> asked_;  // requested keys, by the pointer of their object
+  std::map<std::string, std::vector<std::string>> requested_;  // keys, by the pointer of their object
 };
 
 }  // namespace palpate

@@ -20,9 +20,8 @@ std::string position_prefix(const std::string& path, TextPosition position);
 // The position of the byte at `offset`, clamped to the end of the text.
 TextPosition position_of_offset(std::string_view text, std::size_t offset);
 
-// The position of the value at a JSON pointer such as "/features/2/kind" ("": the whole document). `text` is valid
-// JSON.
-// A missing value has the position of the deepest existing value on its path. Keys with escapes, '/' or '~' are not
+// The position of the value at a JSON pointer such as "/features/2/kind" ("": the whole document) in valid JSON. A
+// missing value has the position of the deepest existing value on its path. Keys with escapes, '/' or '~' are not
 // found.
 TextPosition position_of_value(std::string_view text, std::string_view pointer);
 

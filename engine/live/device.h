@@ -1,9 +1,7 @@
 // The interface of a haptic device, a simulated hand or a recording: it returns samples of the tool and takes a force.
-//
-// Thread guarantee: `open` and `close` are slow side, before and after the
-// haptics thread. `read` and `write` belong to the haptics thread: wait-free,
-// they allocate nothing, make no system call and never throw. A device whose
-// transport blocks has its own thread and hands its newest sample over.
+// Thread guarantee: `open` and `close` are slow side, before and after the haptics thread. `read` and `write` belong to
+// the haptics thread: wait-free, they allocate nothing, make no system call and never throw. A device whose transport
+// blocks has its own thread and passes its samples on.
 #pragma once
 
 #include <limits>
@@ -28,8 +26,8 @@ struct DeviceSample {
   bool restart = false;
 };
 
-// The maximum number of samples that a tick reads from a device: those of a recording at 20 kHz, or at 2 kHz played
-// ten times as fast, and half as many again.
+// The maximum number of samples that a tick reads from a device: the 20 of a recording at 20 kHz, or at 2 kHz played
+// ten times as fast, and a margin.
 inline constexpr int kMaxSamplesPerTick = 32;
 
 // A tool that mouse and keys of a window can move. Called by the window's thread only; wait-free. `now_s`: steady
@@ -39,6 +37,7 @@ class ToolInput {
   virtual ~ToolInput() = default;
   // A target that is not finite is ignored.
   virtual void set_target(double position_m, double now_s) noexcept = 0;
+  // Moves the target by `by_m`, positive inwards.
   virtual void nudge(double by_m, double now_s) noexcept = 0;
   // Moves the target at this velocity, positive inwards, until the next call. Inwards it stops when the tool is at
   // `limit_m`, outwards when the target is there. 0 stops it.
@@ -70,7 +69,7 @@ class ReplayControl {
   virtual const Recording& recording() const noexcept = 0;  // unchanged; any thread
 };
 
-// The holder of the tool, on whom the written force acts.
+// The holder of the tool, on which the written force acts; none: a recording is replayed.
 enum class Holder { none, simulated, person };
 
 class Device {
@@ -96,7 +95,7 @@ class Device {
   // The force to render from now on, limited and finite.
   virtual void write(double force_N) noexcept = 0;
   // Haptics thread, wait-free: the state of the device at `now_s`, with its faults. The loop renders no force while
-  // `may_push()` is false.
+  // DeviceHealth::may_push is false.
   virtual DeviceHealth health(double) noexcept { return {}; }
 
   // Any thread, wait-free: declares that the tool is at its marked rest position. The result is in `health`; a device

@@ -1,5 +1,4 @@
 // The state of a device, for the limiter, the panel and the user.
-//
 // Thread guarantee: values; `zeroing_words` is slow side (allocates).
 #pragma once
 
@@ -23,7 +22,7 @@ enum class Zeroing : std::uint8_t {
 struct DeviceHealth {
   std::uint32_t faults = 0;  // current faults, device_fault
   Zeroing zeroing = Zeroing::not_needed;
-  bool grip_held = false;         // by the dead-man switch on the handle
+  bool grip_held = false;         // the dead-man switch on the handle is held
   float zeroing_progress = 0.0F;  // 0 to 1 while hold_still
   // Age of the newest sample. Infinite (default): not known to the device; the tick then uses the time since the last
   // sample that it read. Before the first sample there is no force.
@@ -35,6 +34,7 @@ struct DeviceHealth {
   // device reads and writes in the tick itself.
   double lag_s = std::numeric_limits<double>::quiet_NaN();
 
+  // Whether a force is permitted.
   bool may_push() const noexcept { return faults == 0 && (zeroing == Zeroing::not_needed || zeroing == Zeroing::done); }
 };
 static_assert(std::is_trivially_copyable_v<DeviceHealth>);

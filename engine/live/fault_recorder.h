@@ -1,5 +1,5 @@
-// Keeps the last second of ticks before a fault: the motion of the tool, the forces of the models and the rendered
-// force.
+// Keeps the last second of ticks up to kTicksAfter after the beginning of a fault: the motion of the tool, the forces
+// and the state of the device.
 // Thread guarantee: one slow-side thread, which reads the loop's snapshots.
 #pragma once
 
@@ -15,10 +15,10 @@ namespace palpate {
 class FaultRecorder {
  public:
   static constexpr std::size_t kTicks = 1000;
-  static constexpr std::size_t kTicksAfter = 100;  // number of ticks after the fault
+  static constexpr std::size_t kTicksAfter = 100;
 
-  // Takes every snapshot in order. Returns true when `ticks` contains a fault that stops the force and kTicksAfter
-  // ticks from its beginning, so that the decay of the force is included. A fault in the meantime belongs to it.
+  // Takes every snapshot in order. Returns true kTicksAfter ticks after the beginning of a fault that stops the force,
+  // so that `ticks` includes the decay of the force. A further fault in the meantime belongs to it.
   bool add(const LoopSnapshot& snapshot);
 
   // Oldest first; fewer than kTicks in the first second of the loop.

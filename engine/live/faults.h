@@ -1,5 +1,4 @@
 // The table of all faults of the live loop, from the tick to the panel; all other code uses its rows.
-//
 // Thread guarantee: constants; functions that return strings are slow side (allocate).
 #pragma once
 
@@ -65,22 +64,23 @@ inline constexpr std::array<Fault, 23> kFaults = {{
     {FaultSource::device, device_fault::kUnplugged, "the device is disconnected: connect it again", true, true},
     {FaultSource::device, device_fault::kLate, "reports come late: no force until they are on time again", true, true},
     {FaultSource::device, device_fault::kOutOfOrder,
-     "a report came out of order: no force until they are in order again", true, true},
-    {FaultSource::device, device_fault::kBurst, "old reports came in a burst: no force until they are on time again",
+     "a report came out of order: no force until reports are in order again", true, true},
+    {FaultSource::device, device_fault::kBurst, "old reports came in a burst: no force until reports are on time again",
      true, true},
     {FaultSource::device, device_fault::kCorrupt,
-     "a report was corrupted: no force until they are good again; check the cable", true, true},
+     "a report was corrupted: no force until reports are valid again; check the cable", true, true},
     {FaultSource::device, device_fault::kStuck, "the position is stuck although the motor pushes: check the encoder",
      true, true},
     {FaultSource::device, device_fault::kJump, "the position jumped: check the encoder", true, true},
-    {FaultSource::device, device_fault::kReset, "the firmware started again: check its supply", true, true},
+    {FaultSource::device, device_fault::kReset, "the firmware restarted: check the power supply of the board", true,
+     true},
     {FaultSource::device, device_fault::kWriteStalled, "commands do not reach the device: no force until they do", true,
      true},
     {FaultSource::device, device_fault::kOwn, "the device reports a fault of its own: check its motor and encoder",
      true, true},
     {FaultSource::device, device_fault::kWrongFirmware,
-     "the firmware speaks another version of the protocol: install the one in devices/", true, true},
-    {FaultSource::loop, loop_fault::kBadSample, "the device gave a sample that is not a number: the force was released",
+     "the firmware has another version of the protocol: install the one in devices/firmware", true, true},
+    {FaultSource::loop, loop_fault::kBadSample, "the device gave a sample that is not a number: the force was set to 0",
      true, true},
     {FaultSource::loop, loop_fault::kTimeNotLater,
      "the device gave a sample that is not later than the previous one: it was skipped", false, true},
@@ -92,7 +92,7 @@ inline constexpr std::array<Fault, 23> kFaults = {{
      true},
     // Normal at every ramp and at hard impacts.
     {FaultSource::loop, loop_fault::kForceSlewed, "", false, false},
-    {FaultSource::loop, loop_fault::kStaleSample, "the newest sample of the device is too old: the force was released",
+    {FaultSource::loop, loop_fault::kStaleSample, "the newest sample of the device is too old: the force was set to 0",
      true, true},
     {FaultSource::loop, loop_fault::kForceThermal, "the motor is near its thermal limit: the force was reduced", false,
      true},

@@ -1,13 +1,11 @@
 // Selects the model whose force is rendered, and fades from one to the next.
 //
-// The force is a mixture, F = sum_i w_i F_i with sum_i w_i = 1, that moves
-// towards the selected model s:
-//   w <- w + a (e_s - w),   so that   F <- F + a (F_s - F).
+// The force is a mixture, F = sum_i w_i F_i with sum_i w_i = 1, that moves towards the selected model s:
+//   w <- w + a (e_s - w),   e_s the unit vector of s,   so that   F <- F + a (F_s - F).
 // Each tick takes the largest a <= 1 for which the step |a (F_s - F)| stays below a tenth of one JND per millisecond,
 // with the JND at the smaller of the two forces. Switching thus changes the force by at most one JND in 10 ms, for any
 // difference between the models, and is immediate in air, where all forces are 0. Changes of the models' own forces are
 // not limited.
-//
 // Thread guarantee: one thread at a time; wait-free, allocates nothing.
 #pragma once
 

@@ -1,8 +1,8 @@
 // Scales the stiffness of the active model and adds damping, as the user wants, within the stability limit
 // (StabilityLimit). Passivity controller and limiter come after it and apply to the scaled force.
 //
-//   F' = k F + b v     in contact; v inward; b v never changes the sign of a positive force
-//
+//   F' = k F + b v     in contact; k: stiffness, b: damping_Ns_per_m, v: velocity inward; b v never changes the sign
+//                      of a positive force
 // Thread guarantee: the haptics thread; wait-free.
 #pragma once
 

@@ -53,7 +53,7 @@ class HapticsLoop {
   ~HapticsLoop();
 
   // Slow side, blocks until the scheduling is set. Once. A first set of models should be published before, for the
-  // warm-up. Errors: no thread.
+  // warm-up. Errors: the thread cannot be started.
   Status start();
   // Slow side, blocking: reduces the force to 0, then ends the thread. May be called again.
   void stop();

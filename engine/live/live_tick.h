@@ -4,9 +4,8 @@
 //
 //   take a new set of models -> read the device -> HapticsTick for each sample
 //   -> mix (the active model) -> scale -> passivity -> limit -> write the device -> snapshot
-//
-// Thread guarantee: built on the slow side; `run` and `release` belong to the
-// haptics thread, are wait-free, allocate nothing, lock nothing and never throw.
+// Thread guarantee: constructed on the slow side; `run` and `release` belong to the haptics thread, are wait-free,
+// allocate nothing, lock nothing and never throw.
 #pragma once
 
 #include <array>
@@ -56,7 +55,8 @@ struct LiveModels {
   std::uint32_t id;
   HapticsTick tick;
   std::shared_ptr<ReferenceForce> reference;
-  // Of each model for cycles of 0.1 mm at 25 Hz: the largest over depths up to 10 mm and forces up to 10 N.
+  // The impedance of each model for cycles of 0.1 mm at 25 Hz: the largest over depths up to 10 mm and forces up to
+  // 10 N.
   ForceMixer::Forces stiffness_N_per_m{}, damping_Ns_per_m{};
   std::uint32_t selected = 0;  // until the controls refer to this set
   // The model whose force goes into RecordedSample, for recordings with neither a sensor nor a ReferenceForce; default:

@@ -58,7 +58,7 @@ double PassivityController::arrived_N(const Tool& tool, double lag_s, double wri
 
 double PassivityController::apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N,
                                   double step_s) noexcept {
-  const double felt_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, kHapticTick_s);
+  const double acted_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, kHapticTick_s);
   if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
     begin_at(0.0);
     return reduced(commanded_N, 0.0);
@@ -71,7 +71,7 @@ double PassivityController::apply(double commanded_N, const Tool& tool, const Lo
   const double depth_m = std::clamp(depth_m_, tool.depth_m - half_play_m, tool.depth_m + half_play_m);
   const double change_m = depth_m - depth_m_;
   const double before_J = energy_J_;
-  energy_J_ += felt_N * change_m;
+  energy_J_ += acted_N * change_m;
   if (change_m >= 0.0) {
     if (depth_m > passed_[count_ - 1].depth_m + kSpacing_m) pass_inwards(depth_m, energy_J_ + debt_J_);
   } else {

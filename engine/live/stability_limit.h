@@ -4,10 +4,10 @@
 // A lagging spring K is a spring with the damping -K T (Colgate & Schenkel 1997; with transport: Diolaiti et al. 2006).
 // The limit is K T <= b + c B, where
 //   b  damping of the lightest hand
-//   B  largest rendered damping, m / (2 T): it lags as well, and is unstable on a mass m above pi/2 m / T
-//   c  share of B that the passivity controller provides: below a quarter, because it damps only during unloading, and
-//      K > 0.55 m / T^2, the largest K of m x''(t) + B x'(t - T) + K x(t - T) = 0, is unstable with any damping. It is
-//      smaller with a coarse encoder, in whose play the controller does not act.
+//   B  largest rendered damping, m / (2 T): rendered damping lags, too, and is unstable on a mass m above pi/2 m / T
+//   c  share of B that the passivity controller provides. It is below a quarter, because the controller damps only
+//      during unloading, and m x''(t) + B x'(t - T) + K x(t - T) = 0 is unstable for K > 0.55 m / T^2 with any B. It
+//      decreases with the encoder step, because the controller does not act within a play of one step.
 // B limits the sum of the damping of the model, of the user and of the controller. Verified by
 // tests/accuracy/closed_loop_late_test.cpp.
 //

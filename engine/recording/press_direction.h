@@ -19,7 +19,7 @@ namespace palpate {
 
 struct PressDirection {
   bool known = false;             // whether the signs could be determined
-  bool certain = false;           // no material with the right signs looks like this
+  bool certain = false;           // there is free air, so that no material explains a flipped sign
   bool position_flipped = false;  // position decreases with depth
   bool force_flipped = false;     // force is negative when the material pushes the tool out
   double shallow_force_N = 0.0;   // mean over the shallowest samples

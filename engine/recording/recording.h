@@ -1,13 +1,12 @@
 // The recording file: motion and force of a tool against time, as CSV.
 //
-// Columns: time_s, position_m, force_N required; velocity_m_per_s and
-// acceleration_m_per_s2 optional; names exact, any order; further columns are
-// ignored. Lines that begin with '#' before the header are comments. Time is
-// strictly increasing; the median time step of the first 1,000 rows (all rows
-// of a shorter recording) lies between those of 20 kHz and 10 Hz, 5 % allowed;
-// single steps may be of any length. Position is at most 1 m and force at most 1e6 N either way, because a larger value
-// is in a wrong unit. CRLF, a UTF-8 byte order mark, a missing last newline, blank lines at the end, blanks around
-// numbers and a leading '+' are accepted. All other faults, and lines beyond 64 KiB, are errors,
+// Columns: time_s, position_m, force_N required; velocity_m_per_s and acceleration_m_per_s2 optional; names exact, any
+// order; further columns are ignored. Lines that begin with '#' before the header are comments. Time is strictly
+// increasing; the median time step of the first 1,000 rows (all rows of a shorter recording) is that of 10 Hz to 20
+// kHz, with 5 % tolerance; single steps may be of any length. Position is at most 1 m and force at most 1e6 N in
+// magnitude, because a larger value is in a wrong unit. CRLF, a UTF-8 byte order mark, a missing last newline, blank
+// lines at the end, blanks around numbers and a leading '+' are accepted. All other faults, and lines beyond 64 KiB,
+// are errors,
 //   file:line:column: found X, expected Y; what to do
 // for the first fault in the file, with columns counted in bytes from 1 (after a byte order mark). Numbers use '.' as
 // decimal point in every locale.
@@ -51,10 +50,9 @@ inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
 // Reads a recording into memory, at most its first `most_rows` rows. Errors: those of RecordingReader.
 Result<Recording> read_recording(const std::string& path, std::size_t most_rows = kAllRows);
 
-// Writes `recording` to `path` atomically: to a temporary file in the same folder, flushed to disk, then renamed.
-// Numbers read back as the same doubles. `comments` become '#' lines, one for each line of text. Errors: the file
-// exists and `overwrite` is false; input/output errors; a row or recording that breaks the rules above. Then no file is
-// written.
+// Writes `recording` to `path` atomically (AtomicFile). Numbers read back as the same doubles. `comments` become '#'
+// lines, one for each line of text. Errors: those of AtomicFile; a row or recording that breaks the rules above. Then
+// no file is written.
 Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,
                        bool overwrite);
 

@@ -1,5 +1,4 @@
 // Reads recordings row by row from a file or another source of bytes.
-//
 // Thread guarantee: slow side only; one thread per object.
 #pragma once
 
@@ -24,8 +23,8 @@ struct RecordingHeader {
   bool ends_with_comma = false;  // the last column has no name
 };
 
-// Reads the header row. Errors: not UTF-8, a required column missing, a known
-// column twice, another separator than the comma.
+// Reads the header row. Errors: not UTF-8, a required column missing, a known column twice, another separator than the
+// comma.
 Result<RecordingHeader> parse_recording_header(const LineScanner& scanner, const CsvLine& line);
 
 // Explains why `RecordingReader` could not read a row: one sentence with its position. Slow; called once per file.
@@ -35,8 +34,7 @@ Error explain_recording_row(const LineScanner& scanner, const CsvLine& line, con
 // `end`), or nullptr if there is no finite number.
 const char* parse_recording_number(const char* begin, const char* end, double& value);
 
-// The column (from 1) where field `index` of `text` starts; blanks
-// before a value are skipped.
+// The column (from 1) where field `index` of `text` starts; blanks before a value are skipped.
 std::size_t field_column(std::string_view text, std::size_t index);
 
 // Reads a recording of any length row by row in bounded memory.

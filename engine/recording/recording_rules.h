@@ -1,5 +1,4 @@
 // The rules for the rows of a recording, used by reader and writer. Internal to engine/recording.
-//
 // Thread guarantee: slow side only; one thread per object.
 #pragma once
 

@@ -18,12 +18,12 @@ inline constexpr std::size_t kDriveCoefficients = 4;
 
 struct DriveCurve;
 
-// Four drive curves. An unused lane has g = 0.
+// Four drive curves g (DriveCurve in features.h). An unused lane has g = 0.
 struct alignas(sizeof(V4)) CurveLanes {
   V4 coefficient_N[kDriveCoefficients]{};
   V4 knot_N[kDriveKnots]{};
   V4 reference_depth_m{1.0, 1.0, 1.0, 1.0};
-  double least_reference_m = std::numeric_limits<double>::infinity();
+  double least_reference_m = std::numeric_limits<double>::infinity();  // the smallest of the four
   bool has_knots = false;
 
   void set(std::size_t lane, const DriveCurve& drive) noexcept;
@@ -35,7 +35,7 @@ struct BranchStep {
   double gain = 0.0;
 };
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
-// Groups that suffice for all parts of a filter.
+// Groups that suffice for all branches and bristles of a filter: 8 features of 8 parts in fours.
 inline constexpr std::size_t kMaxLaneGroups = 16;
 
 class BranchLanes {

@@ -1,5 +1,5 @@
-// The feature vector of a force model: one to eight features of the tool's motion with their memory. Recording, fit,
-// replay and live loop all run this code.
+// The feature vector of a force model: one to eight features of the tool's motion, with their memory. Fit, replay and
+// live loop run this code.
 //
 //   depth             d = max(0, estimated position - surface)              [m]
 //   velocity          v = estimated velocity while d > 0, else 0            [m/s]
@@ -11,8 +11,7 @@
 //
 // The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is the same filter after a spring whose
 // stiffness g'(d) depends on depth; g is identified from the recording (models/training/trend_regression.h), and with
-// g = d / tau it is the low-pass. Both are driven by the depth, not by the velocity estimate: in free air the material
-// relaxes and is not loaded.
+// g = d / tau it is the low-pass. Both are driven by the depth: in free air the material relaxes and is not loaded.
 //
 // The tool is in contact beyond the surface, which is at the depth feature's `surface_position_m`: 0, or, for a model
 // of recordings with another surface, on either side of 0.
@@ -24,9 +23,9 @@
 // tau exp(b s / reference depth): a fluid that is squeezed through closing pores has one time scale for all its times,
 // which grows with the strain (Lai & Mow 1980: permeability and strain).
 //
-// A branch is dissipative: with q = g(d) - z, dq/dt = z / tau. The stored energy
-// integral_0^d g ds - q d + integral_0^q g^-1 ds decreases by (d - g^-1(q)) (g(d) - q) / tau >= 0 while g increases,
-// for any current tau > 0.
+// A branch is dissipative: with q = g(d) - z, dq/dt = z / tau. Of the power z dd/dt it dissipates
+// (d - g^-1(q)) (g(d) - q) / tau, which is >= 0 if g increases, for any current tau > 0; the rest changes the stored
+// energy integral_0^d g ds - q d + integral_0^q g^-1 ds.
 //
 // A stop operator of threshold r is the deflection of a bristle that follows the depth, bends by at most r and then
 // slips: s' = clamp(s + d' - d, -r, r), and 0 out of contact. A weighted sum of stops is a Prandtl-Ishlinskii operator:
@@ -41,18 +40,16 @@
 // as in networks of rubber (Bergstrom & Boyce 1998), and in steady motion it rises with the cube root of the speed. It
 // continues to creep in free air.
 //
-// Discretisation is exact for a depth that is linear between samples, with the
-// measured time step h and e = exp(-h / tau):
+// Discretisation is exact for a depth that is linear between samples, with the measured time step h and
+// e = exp(-h / tau):
 //   y' = e y + (1 - e) (d' - d) / h
 //   z' = e z + tau (1 - e) (g(d') - g(d)) / h
 // so recordings of one motion at different rates give the same features. A creeping bristle creeps for half of the
 // step, exactly, q / sqrt(1 + (h / tau) (q / r)^2), before it follows the depth and for half of it after (Strang 1968).
-// Sources: Visintin (1994), "Differential models of hysteresis" (stop and play
-// operators); Dahl (1968) (friction with presliding); Bergstrom & Boyce (1998), "Constitutive
-// modeling of the large strain time-dependent behavior of elastomers".
-//
-// Thread guarantee: value types; `update` is wait-free, allocates nothing and
-// never throws; one thread at a time.
+// Sources: Visintin (1994), "Differential models of hysteresis" (stop and play operators); Dahl (1968) (friction with
+// presliding); Bergstrom & Boyce (1998), "Constitutive modeling of the large strain time-dependent behavior of
+// elastomers".
+// Thread guarantee: value types; `update` is wait-free, allocates nothing and never throws; one thread at a time.
 #pragma once
 
 #include <array>
@@ -74,11 +71,11 @@ inline constexpr std::size_t kMaxFeatureParts = 8;
 enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_spectrum, stops, creep, surface_lag };
 
 struct FeatureKindFacts {
-  std::string_view name;   // in model files and column names
-  std::string_view unit;   // end of the column name
-  bool has_time = false;   // has one time constant
-  bool has_drive = false;  // has a drive curve of its own
-  bool has_parts = false;
+  std::string_view name;    // in model files and column names
+  std::string_view unit;    // end of the column name
+  bool has_time = false;    // has one time constant
+  bool has_drive = false;   // has a drive curve of its own
+  bool has_parts = false;   // is a sum of up to kMaxFeatureParts parts
   bool is_branch = false;   // consists of Maxwell branches
   bool is_bristle = false;  // consists of bristles
 };

@@ -18,8 +18,9 @@ struct ForceEstimate {
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Immutable. Thread guarantee: `evaluate` may run on any thread, also on several at once; it is wait-free, allocates
-// nothing and never throws.
+// Immutable.
+// Thread guarantee: `evaluate` may run on any thread, also on several at once; it is wait-free, allocates nothing and
+// never throws.
 class ForceModel {
  public:
   virtual ~ForceModel() = default;

@@ -1,12 +1,10 @@
-// One tick of haptic rendering as a plain function: takes a tool sample, returns every model's force and a snapshot. It
-// has no clock, thread or device: replay and live loop call the same code, so the same samples give the same bits.
+// One tick of haptic rendering: takes a tool sample, returns every model's force and a snapshot. It has no clock,
+// thread or device: replay and live loop call the same code, so the same samples give the same bits.
 //
-// The order is: motion estimate (once), features (once per distinct feature
-// list among the models), forces (every model). Out of contact every force is 0.
-//
-// Thread guarantee: construction and `set_models` allocate and belong to the
-// slow side, before ticking starts; `step` is wait-free, allocates nothing,
-// locks nothing, does no I/O and never throws; one thread at a time.
+// The order is: motion estimate (once), features (once per distinct feature list among the models), forces (every
+// model). Out of contact every force is 0.
+// Thread guarantee: construction allocates (slow side); `step` is wait-free, allocates nothing, locks nothing, does no
+// I/O and never throws; one thread at a time.
 #pragma once
 
 #include <array>
@@ -33,12 +31,12 @@ enum class TickFault : std::uint8_t {
 
 // The results of a tick, for the graphics thread and for replay.
 struct TickSnapshot {
-  std::uint64_t tick = 0;
+  std::uint64_t tick = 0;  // number of steps so far
   double time_s = 0.0;
-  double position_m = 0.0;
-  double depth_m = 0.0;
-  double velocity_m_per_s = 0.0;
-  bool in_contact = false;
+  double position_m = 0.0;        // of the sample
+  double depth_m = 0.0;           // max(0, position_m)
+  double velocity_m_per_s = 0.0;  // estimated
+  bool in_contact = false;        // beyond the surface of at least one model
   TickFault fault = TickFault::none;
   std::uint32_t model_count = 0;
   std::uint32_t out_of_domain_mask = 0;  // bit i: model i
@@ -57,7 +55,7 @@ struct PastMotion {
 
 class HapticsTick {
  public:
-  // `models`: up to kMaxModels, kept alive by the caller's shared pointers.
+  // `models`: up to kMaxModels.
   HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models);
 
   // Resets the motion estimate and the filters; the next sample starts a new stream.

@@ -7,9 +7,7 @@
 // For the visitor, a sample is in contact beyond the surface, or if the measured force exceeds both the JND at 0 N and
 // five times its noise, because an adhesive material also pulls outside. The surface is the outermost one of the models
 // whose surface is not at 0, else 0.
-//
-// Thread guarantee: slow side (allocates before the first row, calls the
-// visitor); one thread at a time.
+// Thread guarantee: slow side; one thread at a time.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +36,8 @@ struct ReplaySummary {
   std::uint64_t contact_samples = 0;
 };
 
-// The measured force beyond which a sample is in contact, N, from the noise in the first rows of a recording.
+// The measured force beyond which a sample is in contact, N. The noise is that of the first rows of a recording: the
+// white noise or, if larger, the standard deviation before the first contact.
 double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m);
 
 // `surface_offset_m` is subtracted from every position before the tick; the visitor receives the row as recorded.

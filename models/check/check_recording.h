@@ -40,17 +40,16 @@ struct RecordingCheck {
   // The share of contact samples that a perfect model would have within the JND at this force noise: the mean of
   // P(|noise| <= JND(f)).
   double noise_floor_within_jnd = 1.0;
-  bool surface_identified = false;  // whether the surface is identified
-  double surface_offset_m = 0.0;    // to be subtracted from position_m; 0 if not identified
-  double force_zero_N = 0.0;        // to be subtracted from force_N
+  bool surface_identified = false;
+  double surface_offset_m = 0.0;  // to be subtracted from position_m; 0 if not identified
+  double force_zero_N = 0.0;      // to be subtracted from force_N
   RecordingMeasures measures;
 
   // "usable", "care" (at least one warning) or "unusable" (at least one fatal finding).
   const char* verdict() const;
 };
 
-// `prepared`: at least kRecordingMinimumRows rows.
-// `faults`: the rows that were removed from it.
+// `prepared`: at least kRecordingMinimumRows rows. `faults`: the rows that were removed from it.
 RecordingCheck check_recording(const PreparedRecording& prepared, const CheckRequest& request,
                                const RecordingFaults& faults = {});
 

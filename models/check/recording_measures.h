@@ -10,12 +10,13 @@
 
 namespace palpate {
 
-// The edges of the speed bands, relative to the greatest depth: 10 and 50 mm/s where that is 10 mm. The depth is
-// divided into quarters.
+// Cells of depth and speed. The edges of the speed bands are relative to the greatest depth: 10 and 50 mm/s where that
+// is 10 mm. The depth is divided into quarters.
 inline constexpr std::size_t kDepthQuarters = 4;
 inline constexpr std::size_t kSpeedBands = 3;
 inline constexpr std::array<double, kSpeedBands - 1> kSpeedEdges_per_s = {1.0, 5.0};
-inline constexpr double kLeastCell_s = 0.05;  // a cell with less time counts as not visited
+// A cell (depth quarter x speed band) with less time counts as not visited.
+inline constexpr double kLeastCell_s = 0.05;
 
 struct RecordingMeasures {
   double duration_s = 0.0;

@@ -11,8 +11,10 @@
 // trust at this strength. No correction is its simplest candidate, followed by the smallest radius with the most
 // smoothing. The smoothing is the ratio of noise variance to prior variance and does not depend on the number of
 // centres, so one value serves every method, and with more centres each approaches the smoothing spline through all
-// sites. Sources: Wahba (1990) (smoothing splines; regression splines as subsets of the basis); Craven & Wahba (1979);
-// Hastie, Tibshirani & Friedman (2009), 7.10. Thread guarantee: slow side, pure.
+// sites.
+// Sources: Wahba (1990) (smoothing splines; regression splines as subsets of the basis); Craven & Wahba (1979); Hastie,
+// Tibshirani & Friedman (2009), 7.10.
+// Thread guarantee: slow side, pure.
 #pragma once
 
 #include <Eigen/Core>

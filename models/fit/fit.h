@@ -61,7 +61,7 @@ struct PreparedTraining {
   std::vector<PartGain> gains;                  // of each term of the dictionary; empty unless FeatureChoice::automatic
   std::optional<StrengthChoice> strength;       // none in the paper's recipe
   std::optional<CrossValidationRows> left_out;  // rows for cross-validation; none in the paper's recipe
-  int folds = 0;
+  int folds = 0;                                // of the cross-validation
   std::size_t strokes = 0;
   // Feature vectors in contact and their forces, for training_within_jnd; at most 100,000.
   std::vector<std::array<double, kMaxFeatures>> evaluation_features;
@@ -80,8 +80,8 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
 // The JND at the force of each site.
 Eigen::VectorXd site_thresholds(const PreparedTraining& prepared);
 
-// Fits a method. Deterministic. Errors: the method cannot be fitted to these sites (says why); interrupted.
-// `base`: a fit of the same prepared training and kernel by the method's base (methods.h), to save its fit.
+// Fits a method. Deterministic. `base`: a fit of the same prepared training and kernel by the method's base
+// (methods.h), which is then not repeated. Errors: the method cannot be fitted to these sites (says why); interrupted.
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
                              const FitControl& control = {}, const MethodFit* base = nullptr);
 

@@ -1,8 +1,8 @@
 // Direct interpolation: every site is a centre, with the side condition of eq. 3. The smoothing is selected by
 // cross-validation (select_strength.h), otherwise by maximum likelihood (choose_smoothing.h).
 //
-// The projected system (projected_kernel.h) is solved by a Cholesky factorisation. With `as_2009`, the paper's
-// truncated SVD (truncated_svd.h) takes some thirty times longer.
+// The projected system (projected_kernel.h) is solved by a Cholesky factorisation; with Sites::as_2009, by the paper's
+// truncated SVD (truncated_svd.h), which takes some thirty times longer.
 // Source: Hoever & Harders (2009), section 3, eqs. 2-8.
 #pragma once
 
@@ -18,8 +18,7 @@ namespace palpate {
 
 struct DirectOptions {
   KernelKind kernel = KernelKind::cubic;
-  // Default: that of the sites, or else selected (choose_smoothing.h). 0 interpolates, with the smallest smoothing at
-  // which the matrix can be factorised.
+  // Default: as above. 0 interpolates, with the smallest smoothing at which the matrix can be factorised.
   std::optional<double> smoothing = std::nullopt;
 };
 

@@ -12,58 +12,58 @@
 
 namespace palpate {
 
-NestedWeights::NestedWeights(KernelKind kernel, CentreSequence sequence, FoldedRows folded)
-    : kernel_(kernel), sequence_(std::move(sequence)), folded_(std::move(folded)) {
-  const Eigen::MatrixXd& as_folded = folded_.triangle;
+NestedWeights::NestedWeights(KernelKind kernel, CentreSequence sequence, FactorisedRows factorised)
+    : kernel_(kernel), sequence_(std::move(sequence)), factorised_(std::move(factorised)) {
+  const Eigen::MatrixXd& as_factorised = factorised_.triangle;
   const Eigen::Index n = sequence_.pool.cols();
-  const Eigen::Index tail = as_folded.cols() - 1 - n;
-  Eigen::MatrixXd reordered(as_folded.rows(), as_folded.cols());
-  reordered << as_folded.middleCols(n, tail), as_folded.leftCols(n), as_folded.rightCols(1);
+  const Eigen::Index tail = as_factorised.cols() - 1 - n;
+  Eigen::MatrixXd reordered(as_factorised.rows(), as_factorised.cols());
+  reordered << as_factorised.middleCols(n, tail), as_factorised.leftCols(n), as_factorised.rightCols(1);
   qr_in_place(reordered);
-  folded_.triangle = reordered.triangularView<Eigen::Upper>();
+  factorised_.triangle = reordered.triangularView<Eigen::Upper>();
 }
 
-Result<NestedWeights> NestedWeights::fold(const Sites& sites, KernelKind kernel, CentreSequence sequence,
-                                          const FitControl& control) {
+Result<NestedWeights> NestedWeights::factorise(const Sites& sites, KernelKind kernel, CentreSequence sequence,
+                                               const FitControl& control) {
   if (const Status status = validate_centres(sites, sequence.pool); !status) return status.error();
   const BlasThreads one_thread(1);
-  auto folded = fold_rows(sites, kernel, sequence.pool, control);
-  if (!folded) return folded.error();
-  return NestedWeights(kernel, std::move(sequence), std::move(*folded));
+  auto factorised = factorise_rows(sites, kernel, sequence.pool, control);
+  if (!factorised) return factorised.error();
+  return NestedWeights(kernel, std::move(sequence), std::move(*factorised));
 }
 
 // The triangle of these columns, in the order of solve_weights: Phi, G, f.
-FoldedRows NestedWeights::folded_for(const std::vector<Eigen::Index>& columns) const {
-  const Eigen::MatrixXd& all = folded_.triangle;
+FactorisedRows NestedWeights::factorised_for(const std::vector<Eigen::Index>& columns) const {
+  const Eigen::MatrixXd& all = factorised_.triangle;
   const Eigen::Index last = all.cols() - 1;
   const Eigen::Index tail = last - sequence_.pool.cols();
   const auto k = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index newest = k > 0 ? *std::max_element(columns.begin(), columns.end()) + 1 : 0;
   const Eigen::Index rows = tail + newest;
-  FoldedRows folded{Eigen::MatrixXd::Zero(rows + 1, k + tail + 1),
-                    folded_.sites,
-                    folded_.plain_unknowns_limit,
-                    folded_.smoothing,
-                    folded_.strength,
-                    folded_.as_2009};
+  FactorisedRows factorised{Eigen::MatrixXd::Zero(rows + 1, k + tail + 1),
+                            factorised_.sites,
+                            factorised_.plain_unknowns_limit,
+                            factorised_.smoothing,
+                            factorised_.strength,
+                            factorised_.as_2009};
   for (Eigen::Index j = 0; j < k; ++j) {
-    folded.triangle.col(j).head(rows) = all.col(tail + columns[static_cast<std::size_t>(j)]).head(rows);
+    factorised.triangle.col(j).head(rows) = all.col(tail + columns[static_cast<std::size_t>(j)]).head(rows);
   }
-  folded.triangle.block(0, k, rows, tail) = all.topLeftCorner(rows, tail);
-  folded.triangle.col(k + tail).head(rows) = all.col(last).head(rows);
+  factorised.triangle.block(0, k, rows, tail) = all.topLeftCorner(rows, tail);
+  factorised.triangle.col(k + tail).head(rows) = all.col(last).head(rows);
   // The norm of the data outside of the span of these columns.
-  folded.triangle(rows, k + tail) = all.col(last).tail(last + 1 - rows).norm();
-  if (folded.triangle.rows() > folded.triangle.cols()) {
-    qr_in_place(folded.triangle);
-    folded.triangle = folded.triangle.topRows(k + tail + 1).triangularView<Eigen::Upper>().toDenseMatrix();
+  factorised.triangle(rows, k + tail) = all.col(last).tail(last + 1 - rows).norm();
+  if (factorised.triangle.rows() > factorised.triangle.cols()) {
+    qr_in_place(factorised.triangle);
+    factorised.triangle = factorised.triangle.topRows(k + tail + 1).triangularView<Eigen::Upper>().toDenseMatrix();
   }
-  return folded;
+  return factorised;
 }
 
 FittedRbf NestedWeights::solve(Eigen::Index count) const {
   const BlasThreads one_thread(1);
   const std::vector<Eigen::Index> columns = sequence_.columns_of(std::clamp<Eigen::Index>(count, 0, most()));
-  return penalised_weights(folded_for(columns), kernel_, sequence_.pool(Eigen::all, columns));
+  return penalised_weights(factorised_for(columns), kernel_, sequence_.pool(Eigen::all, columns));
 }
 
 Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const MethodRequest& request,
@@ -75,7 +75,7 @@ Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const Method
   const auto sequence =
       request.method->choose({prepared.sites, prepared.common.features, jnd_N, request, nullptr}, control);
   if (!sequence) return sequence.error();
-  auto weights = NestedWeights::fold(prepared.sites, request.kernel, *sequence);
+  auto weights = NestedWeights::factorise(prepared.sites, request.kernel, *sequence);
   if (!weights) return weights.error();
   ModelData common = prepared.common;
   common.method = request.method->name;

@@ -1,12 +1,11 @@
 // Fits with every number of centres up to a maximum, for a slider. Methods with nested selections (Method::choose)
-// select once; a fit of k centres then only solves for weights.
+// select centres once; a fit of k centres then only solves for weights.
 //
-// The rows of all sites are reduced once, with the tail before the kernel columns in the order of selection:
+// The rows of all sites are factorised once, with the tail before the kernel columns in the order of selection:
 //   row_scale * (G Phi f) = Q T,  T upper triangular.
 // The columns of k centres are non-zero only in the rows of T up to the last of these columns, which leaves a system
 // of that size. The weights equal those of a separate fit to rounding, with the same ridge or penalty. Smoothing and
 // strength do not depend on the number of centres (correction_strength.h); the error bound is that of the maximum.
-//
 // Thread guarantee: immutable; `fit` is slow side and may be called by several threads.
 // Source: Golub & Van Loan, Matrix Computations, section 6.5 (QR of fewer columns).
 #pragma once
@@ -24,21 +23,21 @@ namespace palpate {
 
 class NestedWeights {
  public:
-  // Reduces the rows. Errors: those of solve_weights. Takes about as long as solve_weights for all centres.
-  static Result<NestedWeights> fold(const Sites& sites, KernelKind kernel, CentreSequence sequence,
-                                    const FitControl& control = {});
+  // Factorises the rows. Errors: those of solve_weights. Takes about as long as solve_weights for all centres.
+  static Result<NestedWeights> factorise(const Sites& sites, KernelKind kernel, CentreSequence sequence,
+                                         const FitControl& control = {});
 
   Eigen::Index most() const { return sequence_.most; }
   // The result of solve_weights for `count` centres, clamped to 0 to most().
   FittedRbf solve(Eigen::Index count) const;
 
  private:
-  NestedWeights(KernelKind kernel, CentreSequence sequence, FoldedRows folded);
-  FoldedRows folded_for(const std::vector<Eigen::Index>& columns) const;
+  NestedWeights(KernelKind kernel, CentreSequence sequence, FactorisedRows factorised);
+  FactorisedRows factorised_for(const std::vector<Eigen::Index>& columns) const;
 
   KernelKind kernel_;
   CentreSequence sequence_;
-  FoldedRows folded_;  // with columns in the order G, Phi, f
+  FactorisedRows factorised_;  // with columns in the order G, Phi, f
 };
 
 // The same for whole models.

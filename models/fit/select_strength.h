@@ -13,20 +13,20 @@ namespace palpate {
 // all are multiplied by the quantile of error over bound that gives a coverage of 97.5 % of the rows: more than 95 %,
 // because a new recording differs more from the training than its strokes from each other. The floor is at least 10 mN
 // (kForceFloor_N): without this minimum the coverage was 77 to 90 % on skin and 83 % on one trial of silicone, with it
-// 97 to 100 %. The bound grows by at least a quarter of the largest force per unit of
-// normalised distance. None with fewer than 50 predictions. Pure.
+// 97 to 100 %. The bound grows by at least a quarter of the largest force per unit of normalised distance. Empty with
+// fewer than 50 predictions. Pure.
 std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPrediction>& predictions,
                                           double inner_radius, const JndLine& jnd, double largest_force_N);
 
 // Selects the strength for `prepared`, whose normalisation, sites and cover are set, and stores the rows for
-// `cross_validate`. `row_features`: features x rows, SI. `left_out`: the trends without each fold. `strokes`: total of
-// all recordings.
+// `cross_validate`. `row_features`: features x rows, SI. `left_out`: the trends fitted without each fold. `strokes`:
+// number of strokes in all recordings.
 void select_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
                      const CrossValidated& left_out, const TrendProblem& problem, std::size_t strokes);
 
 // The cross-validated errors of a method: it is fitted without each fold, to at most 1500 rows, and corrects the trend
-// without that fold. Without a method, or with strength 0, the errors of the trend. Rows without a row of another fold
-// are left out. Errors: those of the method; interrupted.
+// without that fold. Without a method, or with strength 0, the errors of the trend. Rows are omitted where there is no
+// other fold. Errors: those of the method; interrupted.
 Result<std::vector<CrossValidationPrediction>> cross_validate(const PreparedTraining& prepared,
                                                               const MethodRequest* request, const FitControl& control);
 // The error bound of a model of `prepared`; with fewer than three strokes it is at least 5 % of the force.

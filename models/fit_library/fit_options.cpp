@@ -166,10 +166,10 @@ std::string check_grid(const std::string& text) {
 Status check_fit_options(const FitOptions& options) {
   std::vector<std::string> names;
   for (const Method* method : methods()) names.emplace_back(method->name);
-  const std::string centres = options.centres >= 1 && options.centres <= kMostCentres
+  const std::string centres = options.centres >= 1 && options.centres <= kMostFittedCentres
                                   ? ""
                                   : "found " + std::to_string(options.centres) + ", expected 1 to " +
-                                        std::to_string(kMostCentres) + "; direct uses every site";
+                                        std::to_string(kMostFittedCentres) + "; direct uses every site";
   const std::pair<const char*, std::string> checks[] = {
       {"method", check_one_of(names, options.method)},
       {"centres", centres},

@@ -25,11 +25,11 @@ inline constexpr const char* kFeatureListExample =
 
 // The time to select centres grows with the square of their number, to half a minute at the limit. The method direct,
 // with every site as a centre, has hardly more.
-inline constexpr int kMostCentres = 2000;
+inline constexpr int kMostFittedCentres = 2000;
 
 struct FitOptions {
   std::string method = "greedy";
-  int centres = 100;                   // 1 to kMostCentres
+  int centres = 100;                   // 1 to kMostFittedCentres
   std::string candidates = "100";      // a number, or all
   std::string kernel = "cubic";        // kernel_names()
   std::string weighting = "jnd";       // kWeightingNames

@@ -1,8 +1,7 @@
 // The distance of a query to the nearest of a set of points, and a faster test whether it is within a fixed radius.
 //
 // Points are stored and compared in single precision. The error of the distance is at most
-// 3e-7 (|x| + largest |point|) + 1e-10, and the test is positive only if the exact distance is within the radius. Its
-// margin for that is 1e-5 of the squared distance from the middle of the points.
+// 3e-7 (|x| + largest |point|) + 1e-10, and the test is positive only if the exact distance is within the radius.
 // Thread guarantee: immutable; queries are wait-free and allocate nothing, any thread.
 #pragma once
 

@@ -1,5 +1,5 @@
 // The instruction sets for which Highway does not compile the loops; to be included before its headers. AVX3_DL adds
-// nothing that these loops use; machines with SSSE3 but without SSE4 are older than ten years. SVE vectors have no
+// nothing that these loops use; processors with SSSE3 but without SSE4 are older than ten years. SVE vectors have no
 // size at compile time and cannot be stored in arrays; every arm64 machine has NEON.
 #pragma once
 

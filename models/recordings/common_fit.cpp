@@ -76,7 +76,7 @@ CommonFit::Member CommonFit::member(const std::vector<SurfaceRow>& rows, double 
   made.design.resize(count, kColumns);
   made.force_N.resize(count);
   made.scale.resize(count);
-  made.block = blocks_by_way(rows, kBlocks);
+  made.block = blocks_by_path(rows, kBlocks);
   MotionAt motion_at(rows);
   std::array<double, kBranch> drive{};
   for (std::size_t r = 0; r < rows.size(); ++r) {

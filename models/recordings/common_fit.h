@@ -1,6 +1,6 @@
-// A regression of one material over several recordings, whose residual measures how well their offsets agree:
+// A regression of one force law over several recordings, whose residual measures how well their offsets agree:
 //
-//   F ~ c + E(z) + sum_t b_t + eta(z) v,   z = p(t - lag) - offset
+//   F ~ c + E(z) + sum_t b_t + eta(z) v,   z = p(t - lag) - offset,   p: position, v: velocity, c: force zero
 //
 // E and the spring of each Maxwell branch b_t are rising splines over the positions, and eta is not negative. All are
 // 0 in air, so the position of the surface is not needed. Residuals are divided by the noise plus 3 % of the force,
@@ -24,7 +24,7 @@ class CommonFit {
   // The splines reach from `low_m` to `high_m`. `noise_N`: standard deviation of the forces.
   CommonFit(double low_m, double high_m, double noise_N) : low_m_(low_m), high_m_(high_m), noise_N_(noise_N) {}
 
-  // Adds a recording with its offset and lag to the members of the fit.
+  // Adds a recording with its offset and lag to the recordings of the fit, its members.
   void add(const std::vector<SurfaceRow>& rows, double offset_m, double lag_s = 0.0);
 
   // The cost J of a fit of the members and one more recording, by blocks: first the kBlocks of that recording, then,

@@ -42,7 +42,7 @@ OffsetEstimate find_force_lag(const std::vector<SurfaceRow>& rows, double force_
   none.standard_error = std::numeric_limits<double>::infinity();
   if (some.size() < 100) return none;
   const double step_s = (some.back().sample.time_s - some.front().sample.time_s) / static_cast<double>(some.size() - 1);
-  if (step_s > 10.0 * kToldLag_s) return none;
+  if (step_s > 10.0 * kLagAccuracy_s) return none;
   const auto [low, high] = std::minmax_element(some.begin(), some.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
     return a.motion.position_m < b.motion.position_m;
   });
@@ -50,7 +50,7 @@ OffsetEstimate find_force_lag(const std::vector<SurfaceRow>& rows, double force_
   if (strokes_of(some, 0.5 * (low->motion.position_m + high->motion.position_m)) < kLeastStrokes) return none;
   const CommonFit fit(low->motion.position_m, high->motion.position_m, force_noise_N);
   return estimate_offset([&](double lag_s) { return fit.residual(some, 0.0, lag_s); },
-                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kToldLag_s, true, kToldLag_s});
+                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kLagAccuracy_s, true, kLagAccuracy_s});
 }
 
 std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double lag_s) {

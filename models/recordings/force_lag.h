@@ -12,9 +12,9 @@
 
 namespace palpate {
 
-// The accuracy of a lag, s. A lag with a larger error (two standard errors) is not used; lags that differ by at most
-// this agree. Rows more than ten times as far apart identify no lag.
-inline constexpr double kToldLag_s = 0.002;
+// The required accuracy of a lag, s: a lag with a larger error (two standard errors) is not identified; lags that
+// differ by at most this agree. Rows more than ten times as far apart identify no lag.
+inline constexpr double kLagAccuracy_s = 0.002;
 
 // `rows`: of a recording, in time order. `at` > 0 s: the force is late. Not identified with fewer than 100 rows or
 // three strokes, or with rows too far apart.

@@ -1,9 +1,8 @@
 // Paired comparison of the costs of two candidate offsets (models/recordings/profile_search.h).
 //
-// Both candidates have the same n blocks of samples. Block k gives the relative difference
-// r_k = (a_k - b_k) / (a_k + b_k + m / 10), where m is the mean of the b. Candidate a is significantly worse if
-// mean r > 2 s / sqrt(n), s the standard deviation of r: a paired t-test at two standard errors.
-//
+// Both candidates, a and b, have costs a_k and b_k over the same n blocks of samples. Block k gives the relative
+// difference r_k = (a_k - b_k) / (a_k + b_k + m / 10), where m is the mean of the b_k. Candidate a is significantly
+// worse if mean r > 2 s / sqrt(n), s the standard deviation of r: a paired t-test at two standard errors.
 // Thread guarantee: pure functions.
 #pragma once
 

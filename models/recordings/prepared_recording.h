@@ -1,4 +1,4 @@
-// A recording with what it says by itself. check reports this value, and registration and the fit use it.
+// A recording with all estimates from it alone. palpate check reports them; registration and fit use them.
 // Thread guarantee: an immutable value; prepare_recording is pure, slow side.
 #pragma once
 

@@ -6,10 +6,12 @@
 // at a time (Quenouille 1956; Tukey 1958): sqrt((n - 1)/n sum_b (x_b - mean)^2). The offset is not identified if two
 // standard errors reach an end of the range or exceed `widest`, or if another minimum is not significantly worse
 // (paired_costs.h). Within two standard errors of 0 it is 0, unless 0 is outside the range.
+//
 // An effect of the material that looks like an offset (friction like a shift, viscosity like a lag) is the same in all
-// blocks, and a jackknife does not see it. In such a case the offset is identified only if 0 is significantly worse.
-// If the effect reaches as far as `systematic_effect`, the costs at `systematic_effect` on either side must be
-// significantly worse, too, and 0 must be further away by `systematic_effect`. Thread guarantee: slow side, pure.
+// blocks, so that the jackknife does not show it. With such an effect the offset is identified only if 0 is
+// significantly worse. If its size is given (`systematic_effect`), the costs at this distance on either side must be
+// significantly worse, too, and the offset must exceed this distance plus two standard errors to differ from 0.
+// Thread guarantee: slow side, pure.
 #pragma once
 
 #include <functional>
@@ -23,8 +25,8 @@ struct OffsetEstimate {
   double at = 0.0;              // the offset; 0 if not identified or not significantly different from 0
   bool not_zero = false;        // the minimum differs from 0, identified or not
   double standard_error = 0.0;  // infinite if not identified
-  bool identified = false;      // identified
-  double cost = 0.0;            // J at the minimum, and at 0
+  bool identified = false;
+  double cost = 0.0;  // J at the minimum, and at 0
   double cost_at_zero = 0.0;
   double minimum_at = 0.0;  // the minimum, identified or not, and its blocks
   BlockCosts minimum{};

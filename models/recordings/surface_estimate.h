@@ -1,4 +1,4 @@
-// Estimates the surface and the force zero of one recording by itself.
+// Estimates the surface and the force zero of one recording from it alone.
 //
 // Free air is a range at the outer end of the positions where, during loading, the force does not depend on the
 // position: the medians of slices of it stay within the noise, where the recording's mean stiffness would have changed
@@ -10,8 +10,9 @@
 // the first of the recording and those after kRestBeforeTouch_s of air. (A surface that still recovers from the last
 // touch meets the tool late, by up to a millimetre.) During loading,
 //   J(d0) = sum_i (f_i - zero - x_i^n (a (1 - k x_i) + b k x_i))^2,
-//           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5
-// is minimised over d0 (surface_onset.h). Offsets within two standard errors or 0.02 mm of 0 are 0.
+//           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5,  k = n / ((n + 1) 3 mm)
+// is minimised over d0 (surface_onset.h): a force law that is convex or concave and rises up to 3 mm. Offsets within
+// two standard errors or 0.02 mm of 0 are 0.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -43,7 +44,7 @@ struct SurfaceEstimate {
   double offset_drift_m = 0.0;
   double offset_drift_error_m = 0.0;
 
-  bool identified() const { return std::isfinite(standard_error_m); }  // whether the surface is identified
+  bool identified() const { return std::isfinite(standard_error_m); }
 };
 
 // `rows`: a whole recording in time order. `force_noise_N`: standard deviation. `lag_error_s`: standard error of the

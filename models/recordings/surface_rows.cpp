@@ -43,7 +43,7 @@ std::vector<SurfaceRow> all_rows(const Recording& recording) {
   return thinned_rows(recording, recording.rows.size() + 1);
 }
 
-std::vector<std::size_t> blocks_by_way(const std::vector<SurfaceRow>& rows, std::size_t blocks) {
+std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows, std::size_t blocks) {
   std::vector<double> way_m(rows.size(), 0.0);
   for (std::size_t i = 1; i < rows.size(); ++i) {
     way_m[i] = way_m[i - 1] + std::abs(rows[i].motion.position_m - rows[i - 1].motion.position_m);

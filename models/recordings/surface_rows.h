@@ -46,6 +46,6 @@ std::vector<SurfaceRow> all_rows(const Recording& recording);
 std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
 
 // The block of each row, of `blocks` blocks of equal path length of the tool.
-std::vector<std::size_t> blocks_by_way(const std::vector<SurfaceRow>& rows, std::size_t blocks);
+std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows, std::size_t blocks);
 
 }  // namespace palpate

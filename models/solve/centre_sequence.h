@@ -10,7 +10,7 @@
 namespace palpate {
 
 struct CentreSequence {
-  // The index of a centre, and the numbers of centres whose selection contains it.
+  // The index of a centre within a selection, and the numbers of centres whose selection contains it.
   struct Membership {
     Eigen::Index place = 0;
     Eigen::Index from = 1;

@@ -121,19 +121,19 @@ void multiply_by_basis(MatrixRef matrix, const PenaltySpace& space) {
   multiply(along, false, space.v.bottomRows(free), true, -1.0, 1.0, matrix.leftCols(free));
 }
 
-FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres) {
-  if (folded.as_2009) return truncated_weights(folded, kernel, centres);
+FittedRbf penalised_weights(const FactorisedRows& factorised, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  if (factorised.as_2009) return truncated_weights(factorised, kernel, centres);
   const BlasThreads one_thread(1);
-  const Eigen::MatrixXd& triangle = folded.triangle;
+  const Eigen::MatrixXd& triangle = factorised.triangle;
   const Eigen::Index n = centres.cols();
   const Eigen::Index tail = triangle.cols() - 1 - n;
   PenaltySpace space;
   Root root;
-  const bool plain = n + tail <= folded.plain_unknowns_limit;
+  const bool plain = n + tail <= factorised.plain_unknowns_limit;
   if (!plain && n > 0) {
     space = penalty_space(kernel, centres);
     root = root_of(space.penalty);
-    root.upper *= std::sqrt(folded.smoothing);
+    root.upper *= std::sqrt(factorised.smoothing);
   } else if (n > 0) {
     space = {n, {}, Eigen::MatrixXd(n, 0), Eigen::MatrixXd(n, 0)};
     root.upper = (kRidge * triangle.leftCols(n).colwise().norm()).asDiagonal();
@@ -164,12 +164,12 @@ FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const E
   FitReport& report = fitted.report;
   report.centres_used = n;
   report.condition = solution.condition;
-  report.smoothing = plain ? 0.0 : folded.smoothing;
+  report.smoothing = plain ? 0.0 : factorised.smoothing;
   const Eigen::VectorXd rest = triangle.rightCols(1) - triangle.leftCols(n) * fitted.function.weights -
                                triangle.middleCols(n, tail) * fitted.function.tail;
-  report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(folded.sites));
-  fitted.function.weights *= folded.strength;
-  fitted.function.tail *= folded.strength;
+  report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(factorised.sites));
+  fitted.function.weights *= factorised.strength;
+  fitted.function.tail *= factorised.strength;
   return fitted;
 }
 

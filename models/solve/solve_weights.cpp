@@ -33,29 +33,29 @@ struct HalfOfRows {
 };
 
 // Replaces triangle and data by those of `rows`, which contain the triangle so far as their first rows.
-void factorise(Eigen::MatrixXd& rows, Eigen::VectorXd& data, HalfOfRows& folded) {
+void factorise(Eigen::MatrixXd& rows, Eigen::VectorXd& data, HalfOfRows& half) {
   const Eigen::Index columns = rows.cols();
   const Eigen::MatrixXd factors = qr_in_place(rows);
   apply_transposed_q(rows, factors, data);
-  folded.triangle = rows.topRows(columns).triangularView<Eigen::Upper>();
-  folded.data = data.head(columns);
-  folded.rest_squared += data.tail(data.size() - columns).squaredNorm();
+  half.triangle = rows.topRows(columns).triangularView<Eigen::Upper>();
+  half.data = data.head(columns);
+  half.rest_squared += data.tail(data.size() - columns).squaredNorm();
 }
 
 }  // namespace
 
-Result<FoldedRows> fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                             const FitControl& control) {
-  FoldedRows folded{{}, sites.count(), 0, 0.0, sites.strength, sites.as_2009};
+Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
+                                      const FitControl& control) {
+  FactorisedRows factorised{{}, sites.count(), 0, 0.0, sites.strength, sites.as_2009};
   const PointArrays points(sites.points);
   const Eigen::Index tail = tail_size(tail_degree(kernel), sites.dimension());
   const Eigen::Index columns = centres.cols() + tail;
   if (!is_smoothing_selected(sites, kernel))
-    folded.plain_unknowns_limit = (sites.row_scale.array() > 0.0).count() / kSitesEach;
-  if (columns > folded.plain_unknowns_limit && !sites.as_2009) {
+    factorised.plain_unknowns_limit = (sites.row_scale.array() > 0.0).count() / kSitesEach;
+  if (columns > factorised.plain_unknowns_limit && !sites.as_2009) {
     const auto smoothing = smoothing_of(sites, kernel);
     if (!smoothing) return smoothing.error();
-    folded.smoothing = *smoothing;
+    factorised.smoothing = *smoothing;
   }
   const Eigen::Index block_rows = std::max<Eigen::Index>(1024, (2 * columns + 9) / 8 * 8);
   const Eigen::Index blocks = (sites.count() + block_rows - 1) / block_rows;
@@ -85,12 +85,12 @@ Result<FoldedRows> fold_rows(const Sites& sites, KernelKind kernel, const Eigen:
   HalfOfRows both;
   both.rest_squared = halves[0].rest_squared + halves[1].rest_squared;
   factorise(stack, data, both);
-  Eigen::MatrixXd& triangle = folded.triangle;
+  Eigen::MatrixXd& triangle = factorised.triangle;
   triangle = Eigen::MatrixXd::Zero(columns + 1, columns + 1);
   triangle.topLeftCorner(columns, columns) = both.triangle;
   triangle.col(columns).head(columns) = both.data;
   triangle(columns, columns) = std::sqrt(both.rest_squared);
-  return folded;
+  return factorised;
 }
 
 Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres) {
@@ -105,9 +105,9 @@ Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eig
   if (const Status status = validate_centres(sites, centres); !status) return status.error();
   if (!control.may_continue(0.0)) return interrupted();
   const BlasThreads one_thread(1);
-  const auto folded = fold_rows(sites, kernel, centres, control);
-  if (!folded) return folded.error();
-  FittedRbf fitted = penalised_weights(*folded, kernel, centres);
+  const auto factorised = factorise_rows(sites, kernel, centres, control);
+  if (!factorised) return factorised.error();
+  FittedRbf fitted = penalised_weights(*factorised, kernel, centres);
   if (!control.may_continue(1.0)) return interrupted();
   return fitted;
 }

@@ -4,8 +4,8 @@
 // ill-posed where the sites (clusters, noise) do not determine the unknowns, and the values between the sites then
 // have no bound. With ten sites to an unknown and no selected smoothing, plain least squares is used.
 //
-// The N rows are reduced to a small triangle block by block (QR), to which the penalty is added: the accuracy of a QR
-// factorisation of the whole matrix, with memory O(columns^2 + block) for any N.
+// A QR factorisation reduces the N rows block by block to a small triangle, to which the penalty is added: the accuracy
+// of a QR factorisation of the whole matrix, with memory O(columns^2 + block) for any N.
 // Source: Hoever & Harders (2009), eq. 8 and section 4.2.1.
 #pragma once
 
@@ -16,8 +16,8 @@
 
 namespace palpate {
 
-// The rows of the sites in reduced form, sufficient to compute the weights.
-struct FoldedRows {
+// The rows of the sites after a QR factorisation, sufficient to compute the weights.
+struct FactorisedRows {
   // The R factor of row_scale * (Phi G f), n + tail + 1 columns: the kernel at the n centres, the tail and the data.
   // Square; the last row is 0 except for its last value.
   Eigen::MatrixXd triangle;
@@ -28,9 +28,9 @@ struct FoldedRows {
   bool as_2009 = false;  // weights by truncated singular values
 };
 
-// Reduces the rows. `centres` must have the dimension of the sites. Errors: those of choose_smoothing; interrupted.
-Result<FoldedRows> fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                             const FitControl& control);
+// Factorises the rows. `centres` must have the dimension of the sites. Errors: those of choose_smoothing; interrupted.
+Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
+                                      const FitControl& control);
 // Errors: those of validate_sites; centres of another dimension than the sites, or not finite.
 Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres);
 

@@ -29,9 +29,9 @@ Eigen::VectorXd inverted(const Eigen::VectorXd& values, Eigen::Index size, doubl
 
 }  // namespace
 
-FittedRbf truncated_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres) {
+FittedRbf truncated_weights(const FactorisedRows& factorised, KernelKind kernel, const Eigen::MatrixXd& centres) {
   const BlasThreads one_thread(1);
-  const Eigen::MatrixXd& triangle = folded.triangle;
+  const Eigen::MatrixXd& triangle = factorised.triangle;
   const Eigen::Index columns = triangle.cols() - 1;
   const Eigen::Index n = centres.cols();
   const Eigen::Index tail = columns - n;
@@ -51,7 +51,7 @@ FittedRbf truncated_weights(const FoldedRows& folded, KernelKind kernel, const E
   fitted.function = {kernel, centres, unknowns.head(n), unknowns.tail(tail)};
   fitted.report.centres_used = n;
   fitted.report.residual_rms = (triangle.col(columns) - triangle.leftCols(columns) * unknowns).norm() /
-                               std::sqrt(static_cast<double>(folded.sites));
+                               std::sqrt(static_cast<double>(factorised.sites));
   return fitted;
 }
 

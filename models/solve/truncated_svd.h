@@ -11,9 +11,8 @@
 
 namespace palpate {
 
-// Least squares with the matrix M' (eq. 8) of `centres` and the tail, including the rows of the side condition (eq.
-// 3).
-FittedRbf truncated_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres);
+// Least squares with the matrix M' (eq. 8) of `centres` and the tail, including the rows of the side condition (eq. 3).
+FittedRbf truncated_weights(const FactorisedRows& factorised, KernelKind kernel, const Eigen::MatrixXd& centres);
 
 // Interpolation with all sites as centres: eq. 4, whose matrix is symmetric, so its eigenvalues give the singular
 // values. O(N^3). Errors: no convergence; interrupted, checked only before and after the decomposition.

@@ -42,8 +42,8 @@ double common_lag_s(const std::vector<RecordingOffsets>& recordings) {
   }
   if (lags_s.empty() || 2 * lags_s.size() < recordings.size()) return 0.0;
   const double lag_s = median_of(lags_s);
-  const bool agree =
-      std::all_of(lags_s.begin(), lags_s.end(), [&](double one_s) { return std::abs(one_s - lag_s) <= kToldLag_s; });
+  const bool agree = std::all_of(lags_s.begin(), lags_s.end(),
+                                 [&](double one_s) { return std::abs(one_s - lag_s) <= kLagAccuracy_s; });
   return agree ? lag_s : 0.0;
 }
 

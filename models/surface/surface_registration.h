@@ -1,13 +1,15 @@
 // Estimates the offsets of the training recordings to each other, and their common surface.
 //
 // The recording with the longest range of positions is the reference. Every other one is shifted over all offsets at
-// which the ranges overlap, to the one at which one material explains both best (common_fit.h, profile_search.h). Only
-// differences matter: the common offset belongs to the rig, so the recording with the medoid of the offsets keeps its
-// positions (of two, the later one). A recording whose offset is not identified stays as recorded. The surface of the
-// model is the mean of the onsets of force in these positions, on either side of 0; without free air it is 0. If
-// measured forces reach further out (adhesion, a press that never leaves the material), it is there, so that the model
-// has them. Force zeros are subtracted if every recording has free air, otherwise in none. A lag of the force
-// (force_lag.h) is used if at least half of the recordings identify one and these agree.
+// which the ranges overlap by 30 %, to the one at which one force law explains both best (common_fit.h,
+// profile_search.h). The common offset belongs to the rig, so the recording with the medoid of the offsets keeps its
+// positions (of two, the later one). A recording whose offset is not identified stays as recorded.
+//
+// The surface of the model is the weighted mean of the onsets of force in these positions, on either side of 0; it is 0
+// without free air or if it does not differ from 0 significantly and by 0.25 mm. If measured forces reach further out
+// (adhesion, a press that never leaves the material), the surface is there, so that the model includes them. Force
+// zeros are subtracted if every recording has free air, otherwise in none. A lag of the force (force_lag.h) is used if
+// at least half of the recordings identify one and these agree.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -33,7 +35,8 @@ struct RegisteredSurfaces {
   double lag_s = 0.0;                         // of the force, one for all recordings; 0: none, or not identified
 };
 
-// `source` must have no corrections. Errors: those of the source; interrupted.
+// `source` must have no corrections. `fraction`: passed to `control` as progress. Errors: those of the source;
+// interrupted.
 Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control = {},
                                              double fraction = 0.0);
 

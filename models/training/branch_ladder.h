@@ -1,4 +1,4 @@
-// Maxwell branches for many relaxation times tau_t and drive curves g_k at once: the outputs z_tk of
+// Maxwell branches for all relaxation times tau_t and all drive curves g_k at once: the outputs z_tk of
 //   dz/dt = g_k'(s) ds/dt - z / tau_t
 // with s the depth of the material's surface (engine/tick/features.h), discretised as there. Each curve is evaluated
 // once a sample and each decay once a relaxation time.

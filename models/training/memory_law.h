@@ -1,6 +1,6 @@
-// Selects, by cross-validation and the common rule (models/training/selection.h), the two laws of memory in which the
-// trend is not linear: whether the material's surface lags behind a retreating tool (`surface_lag`,
-// engine/tick/features.h), and how the relaxation times change with depth (`slowing`).
+// Selects, by cross-validation and the common rule (models/training/selection.h), the two properties of the memory in
+// which the trend is not linear in its weights: whether the material's surface lags behind a retreating tool
+// (`surface_lag`, engine/tick/features.h), and how the relaxation times change with depth (`slowing`).
 // Thread guarantee: slow side.
 #pragma once
 

@@ -42,8 +42,8 @@ struct MotionRow {
   bool run_up = false;  // only updates filters, is not a training sample
 };
 
-// Is subtracted from the rows of one recording; velocity and acceleration stay as they are. With a lag, rows at either
-// end for which no force was recorded are dropped.
+// Subtracted from the rows of one recording; velocity and acceleration stay as they are. With a lag, rows at either end
+// for which no force was recorded are dropped.
 struct RowCorrection {
   double offset_m = 0.0;
   double force_zero_N = 0.0;

@@ -1,9 +1,9 @@
 // Identifies one to three relaxation times, for models with few features: `--relaxation auto`, and the recipe of 2009,
 // whose authors fitted theirs to the transients of the recording.
 //
-// The candidates are the times of a ladder; each is a group of columns of one regression (trend_regression.h). Times
-// are added one by one, by the lowest cross-validated error, after which each may move by a rung. A further time is
-// kept if the common rule (selection.h) prefers it.
+// The candidates are evenly spaced in log time; each is a group of columns of one regression (trend_regression.h).
+// Times are added one by one, by the lowest cross-validated error, after which each may move to the next candidate. A
+// further time is kept if the common rule (selection.h) prefers it.
 // Thread guarantee: slow side.
 #pragma once
 

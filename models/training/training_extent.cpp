@@ -97,8 +97,8 @@ Result<double> find_preload_surface(MotionSource& source, const TrainingExtent& 
   const double slope = (n * xy - x * y) / spread;
   const double force_N = (y - slope * x) / n;
   const double variance = std::max(0.0, yy - force_N * y - slope * xy) / (n - 2.0);
-  const double felt_N = std::max(jnd.at(0.0), 2.0 * std::sqrt(variance * xx / spread));
-  const bool identified = force_N > felt_N && slope > 2.0 * std::sqrt(variance * n / spread);
+  const double noticeable_N = std::max(jnd.at(0.0), 2.0 * std::sqrt(variance * xx / spread));
+  const bool identified = force_N > noticeable_N && slope > 2.0 * std::sqrt(variance * n / spread);
   const double out_m = force_N / slope;
   return identified && out_m < extent.depth_m ? -out_m : 0.0;
 }

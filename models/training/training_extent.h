@@ -13,8 +13,8 @@
 namespace palpate {
 
 struct TrainingExtent {
-  double depth_m = 0.0;
-  double force_N = 0.0;
+  double depth_m = 0.0;               // greatest
+  double force_N = 0.0;               // largest
   double lowest_force_N = 0.0;        // < 0 if the material is known to pull (adhesion), else 0
   double rms_velocity_m_per_s = 0.0;  // in contact
   std::size_t contact_samples = 0;

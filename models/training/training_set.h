@@ -1,12 +1,12 @@
 // From recordings to sites: features, normalisation and reduction.
 //
 // Normalisation: u = (x - mean) / sqrt(range x 4 sigma) for each feature, over the samples in contact. With the range
-// alone, one fast poke compresses all slow motion; with sigma alone it is stretched. Their geometric mean had the
-// lowest errors on recordings that were not used for training.
+// alone, one fast poke compresses all slow motion; with sigma alone the poke is stretched. Their geometric mean had
+// the lowest errors on recordings that were not used for training.
 //
 // Reduction, one of
 //   coverage  the feature space is divided into cubes of side `step`; all samples of a cube become one site with their
-//             mean feature vector and mean force (default). This thins dwell, keeps every visited region and averages
+//             mean feature vector and mean force (default). This thins rests, keeps every visited region and averages
 //             noise. The step starts at kCoverageStep and grows by a quarter while there are more than kCoverageSites.
 //   force     the paper's rule (section 2.1): a sample is kept when the force has changed by 50 mN since the last kept
 //             one. The 50 mN grow by a quarter while there are more than kMaximumSites.
@@ -67,7 +67,7 @@ struct TrainingSet {
 
 struct TrainingSetOptions {
   double fraction = 0.0;  // passed to FitControl as progress
-  // Called once with every training sample in contact and its features.
+  // Called for every training sample in contact, with its features.
   std::function<void(const MotionRow&, const FeatureVector&)> also{};
 };
 

@@ -40,6 +40,7 @@ struct FeatureList {
 // `encoder_step_m`: 0 where positions are not quantised.
 FeatureList dictionary(double sample_s, double longest_s, double depth_m, double encoder_step_m);
 
+// The relaxation times of all features, in order.
 std::vector<double> all_times(const FeatureList& list);
 
 // The rows of the regression with the list's terms, at most `most_rows`, with their folds. Samples that follow the

@@ -4,10 +4,11 @@
 //            + lambda S n sum_k (c_k+1 - c_k)^2,       all c_j >= 0,
 //   g_jj = sum_i s_i^2 t_ij^2,  S = sum_i s_i^2,  n = kElasticPieces
 //
-// s_i = 1 / JND(f_i), or as the weighting says, times the weight of a Cauchy likelihood (weighting.h). Contact is
-// one-sided: a sample without measured force counts only while the trend there is positive (active set). Both are
-// iterated within the training rows of each fold, so that the fold itself has no influence on them. Non-negative
-// weights make the elastic response rise and every viscosity, branch and friction dissipate.
+// t_ij: term j at row i (trend_rows.h), f_i: force, k: index of an elastic term. s_i = 1 / JND(f_i), or by the chosen
+// weighting, times the weight of a Cauchy likelihood (weighting.h). Contact is one-sided: a sample without measured
+// force counts only while the trend there is positive (active set). Both are iterated within the training rows of each
+// fold, so that the fold itself has no influence on them. Non-negative weights make the elastic response rise and every
+// viscosity, branch and friction dissipate.
 //
 // The elastic response is a P-spline, whose penalty approximates the integral of its squared second derivative (Eilers
 // & Marx 1996; elastic_spline.h). lambda is selected by cross-validation and the common rule (selection.h).

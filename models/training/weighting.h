@@ -1,4 +1,5 @@
 // The factors of the residuals in a fit.
+// Thread guarantee: pure functions.
 #pragma once
 
 #include <algorithm>

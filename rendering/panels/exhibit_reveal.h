@@ -1,7 +1,7 @@
 // The reveal of a round of the exhibit: the visitor's press with the largest difference, in slow motion. The blocks
 // show its motion and dents. Two arrows beside each other show the forces, in front of a band of one JND about the
-// first. Then the motion goes back to the moment of the largest difference and stands still there. Thread guarantee:
-// the window's thread.
+// first. Then the motion goes back to the moment of the largest difference and stands still there.
+// Thread guarantee: the window's thread.
 #pragma once
 
 #include <imgui.h>

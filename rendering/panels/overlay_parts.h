@@ -28,7 +28,8 @@ inline void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::str
 void draw_plate(ImDrawList& list, const ImVec2& at, const ImVec2& size, const ImVec2& margin, ImU32 colour,
                 std::optional<Rgb> stripe = std::nullopt);
 
-// `lift` below: height of other parts at the lower edge of `area`.
+// `lift` in these functions: height of other parts at the lower edge of `area`.
+
 // Draws the verdict below the title. Returns the y of its lower edge.
 float draw_headline(const WindowView& shown, const UiStyle& style, const SceneArea& area);
 // Draws the names of the blocks.

@@ -19,7 +19,7 @@ namespace {
 void print_hid_protocols() {
   std::printf("\nSUPPORTED BY hid\n");
   for (const DeviceProtocol* protocol : kHidProtocols) {
-    std::printf("  %s: %s; tested %s\n", protocol->name, protocol->description, kTried);
+    std::printf("  %s: %s; tested %s\n", protocol->name, protocol->description, kTestedOn);
   }
 }
 

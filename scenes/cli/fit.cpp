@@ -149,7 +149,7 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   verb->add_flag("--list-methods", arguments->list_methods, "Print the names of the methods, one per line");
   verb->add_option("--centres", arguments->options.centres,
                    "Number of centres, for " + methods_that_take(kTakesCentres) + "; direct uses every site")
-      ->check(CLI::Range(1, kMostCentres))
+      ->check(CLI::Range(1, kMostFittedCentres))
       ->capture_default_str();
   verb->add_option("--candidates", arguments->options.candidates,
                    "Candidate sites per step, a number or all, for " + methods_that_take(kTakesCandidates))

@@ -8,7 +8,7 @@
 
 namespace palpate::cli {
 
-// `sensor`: text that follows the share within the JND in training; `out`: the file that was written.
+// `sensor`: printed after the share of the training within the JND; `out`: the file that was written.
 void print_fit(const RecordingsFit& fitted, const std::string& sensor, const std::string& out);
 
 }  // namespace palpate::cli

@@ -112,7 +112,7 @@ void keep_freed_memory() {
 
 int main(int argc, char** argv) {
   try {
-    palpate::own_signals();
+    palpate::install_signal_handlers();
     palpate::prepare_blas();
     palpate::cli::keep_freed_memory();
     return palpate::cli::run_program(argc, argv);
@@ -121,6 +121,6 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return palpate::cli::fail(std::string("unexpected: ") + error.what(), palpate::cli::kFailed);
   } catch (...) {
-    return palpate::cli::fail("unexpected: something that is no std::exception", palpate::cli::kFailed);
+    return palpate::cli::fail("unexpected: an exception that is not a std::exception", palpate::cli::kFailed);
   }
 }

@@ -70,7 +70,7 @@ std::vector<std::string> RecordGuide::update(double now_s) {
   // The file does not exist before its first 1000 rows.
   const auto file = check_recording_file(path_, request_);
   next_s_ = std::max(next_s_, now_s + kRest * (steady_now_s() - now_s));
-  const auto telling = [&](const std::string& text) { return std::exchange(told_, text) != text; };
+  const auto telling = [&](const std::string& text) { return std::exchange(printed_, text) != text; };
   if (!file || file->check.measures.contact_rows == 0) {
     const std::string touch = "next: touch the block, then press it slowly";
     return telling(touch) ? std::vector<std::string>{touch} : std::vector<std::string>{};

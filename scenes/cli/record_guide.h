@@ -1,5 +1,5 @@
-// Advice on what to press next during a recording, by the measures of `check`: the coverage of cells of depth and
-// speed, the longest hold, and the number of small strokes.
+// Advice on what to press next during a recording, by the measures of `check` (recording_measures.h): the coverage of
+// cells of depth and speed, the longest hold, and the number of small strokes.
 // Thread guarantee: slow side (reads the file that is being written).
 #pragma once
 
@@ -30,7 +30,7 @@ class RecordGuide {
   CheckRequest request_;
   double longest_relaxation_s_ = 0.0;
   double next_s_ = 0.0;
-  std::string told_;  // the last advice and cells
+  std::string printed_;  // the last advice and cells
 };
 
 }  // namespace palpate::cli

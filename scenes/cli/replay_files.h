@@ -55,7 +55,7 @@ class ReplayPlot {
  public:
   explicit ReplayPlot(const std::vector<LoadedModel>& models) : models_(models) {}
 
-  // Call it for every row in time order. Keeps about 50 bytes, and 4 for each model, in memory.
+  // Call it for every row in time order. A row takes about 50 bytes, and 4 for each model.
   void add(const RecordingRow& row, const TickSnapshot& snapshot);
   // `errors`: of the same rows, one per model. Errors: those of draw_plot (scenes/plot/draw.h).
   Status draw(const std::string& path, const std::string& recording, const std::vector<ErrorSummary>& errors,

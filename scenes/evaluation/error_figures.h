@@ -4,7 +4,8 @@
 //   u(F) = integral_0^F dF / JND = log(1 + w F / o) / w,   F / o where w is 0,
 // and bin k holds the forces with k <= u / kBinWidth_jnd < k + 1. With the paper's JND line this gives about
 // 3 bins up to 0.3 N, 15 up to 6 N and 63 up to 3 kN.
-// Thread guarantee: value type; slow side (allocates). Source: figures 4 to 7 of Hoever & Harders (2009).
+// Thread guarantee: value type; slow side (allocates).
+// Source: figures 4 to 7 of Hoever & Harders (2009).
 #pragma once
 
 #include <cstddef>

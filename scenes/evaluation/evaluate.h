@@ -57,7 +57,7 @@ struct ModelEvaluation {
   ModelErrors as_recorded;
   ModelErrors surface_moved;
   BoundCoverage predicted;  // with the surface moved
-  OffsetEstimate surface;   // 0 where no offset is determined
+  OffsetEstimate surface;   // its offset is 0 if not identified
 };
 
 struct RecordingEvaluation {

@@ -18,12 +18,12 @@ namespace palpate {
 
 inline constexpr int kTimingRounds = 6;
 
-// Each round has the mean times of blocks of 64 steps. The first three are those of the rounds' medians over blocks.
+// A round times blocks of 64 steps; it has a median and a 99th percentile of the mean times of its blocks.
 struct Timing {
-  double median_ns = 0.0;
-  double low_ns = 0.0;   // the least median
-  double high_ns = 0.0;  // the greatest median
-  double p99_ns = 0.0;   // 99th percentile of the blocks; its median over the rounds
+  double median_ns = 0.0;  // median of the rounds' medians
+  double low_ns = 0.0;     // the least of these medians
+  double high_ns = 0.0;    // the greatest of these medians
+  double p99_ns = 0.0;     // median of the rounds' 99th percentiles
 };
 
 struct ModelTiming {

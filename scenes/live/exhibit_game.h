@@ -1,13 +1,12 @@
-// The rules of the exhibit's game, without graphics: up to three rounds of rising difficulty, a visitor's answers and
-// the score.
-// Without a force device the visitor guesses whether a hand would notice a difference, then presses two
-// blocks with one stroke for 15 s: one renders the reference, the other a model. Then the result is shown:
+// The rules of the exhibit's game, without graphics: up to three rounds, a visitor's answers and the score.
+// Without a force device the difficulty rises. The visitor guesses whether a hand would notice a difference, then
+// presses two blocks with one stroke for 15 s: one renders the reference, the other a model. Then the result is shown:
 //   attract -> guess -> press -> reveal -> guess ... -> score
 // With a force device (`has_force`) a round is a blind comparison of two models under the keys 1 and 2: are they the
-// same or different? One round is a catch trial with the same model twice:
+// same or different? One round is a catch trial with the same model twice; the order is random:
 //   attract -> press -> reveal -> press ... -> score
-// A difference is noticeable when the mean over 50 ms of difference / JND (HistoryPoint) exceeded 1 anywhere in the
-// visitor's own strokes within the models' training domain. From 0.8 to 1.25 either answer is correct.
+// A difference is noticeable when the magnitude of the mean over 50 ms of difference / JND (HistoryPoint) exceeded 1
+// anywhere in the visitor's own strokes within the models' training domain. From 0.8 to 1.25 either answer is correct.
 // The same seed and the same models give the same rounds.
 // Thread guarantee: one thread; `add` allocates nothing after the first minute.
 #pragma once

@@ -36,7 +36,7 @@ struct HistoryPoint {
   float predicted_error_N = 0.0F;  // 95 %, of the active model; NaN: none
   std::uint8_t reference = 0;      // a ReferenceKind
   bool in_contact = false;
-  bool counts = true;          // in contact, without a fault, and the feature filters have settled
+  bool counts = true;          // in contact, with a valid sample, and the feature filters have settled
   bool out_of_domain = false;  // of the active model
   std::uint8_t active = 0;     // its slot
   TickFaultLevel fault_level = TickFaultLevel::none;

@@ -36,7 +36,7 @@ struct SessionRequest {
   std::vector<std::string> recordings;
   std::string device = "auto";
   std::vector<std::string> models;  // methods or model files; empty: those of `line_up`
-  std::string line_up;              // a name of line_ups(); empty or unknown: the scene's default models
+  std::string line_up;              // a name of line_ups() (slot_plan.h); empty or unknown: the scene's default models
   // Models of an earlier session (SessionModels::plans), in addition. `refits` false: there are no others.
   std::vector<SlotPlan> kept;
   bool refits = true;
@@ -68,7 +68,8 @@ std::vector<DeviceChoice> device_choices();
 class LiveSession {
  public:
   // Reads the scene, recordings and model files, opens the device and starts the loop; models are fitted in the
-  // background. Errors: those of load_scene, read_usable_recording, plan_slots and open_device; no thread.
+  // background. Errors: those of load_scene, read_usable_recording, plan_slots and open_device; a thread cannot be
+  // started.
   static Result<std::unique_ptr<LiveSession>> open(const SessionRequest& request);
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;

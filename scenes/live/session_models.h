@@ -69,8 +69,8 @@ class SessionModels {
   // Interrupts fits.
   ~SessionModels();
 
-  // Makes a slot for each plan. `claimed`: model files are of this material, whatever their provenance.
-  // Errors: no thread.
+  // Makes a slot for each plan. `claimed`: model files are of this material, whatever their provenance. Errors:
+  // a thread cannot be started.
   Status start(const std::vector<SlotPlan>& plans, bool claimed);
   // Interrupts fits; does not wait.
   void cancel() noexcept;

@@ -69,7 +69,7 @@ class SessionRecorder {
   ~SessionRecorder();
 
   // Starts a recording; then set LoopControls::recording to `number()`. Errors: a recording is
-  // running or being saved, the file exists or cannot be created, no thread.
+  // running or being saved, the file exists or cannot be created, the thread cannot be started.
   Status start(const RecorderRequest& request);
   // Number of the recording that is running; 0: none.
   std::uint32_t number() const noexcept { return status().active ? number_ : 0; }

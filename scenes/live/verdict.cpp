@@ -85,11 +85,11 @@ Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& 
   verdict.headline =
       info.name +
       (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +
-      from + "; uses " + tick_share(info.tick_ns()) + " of the time there is";
+      from + "; uses " + tick_share(info.tick_ns()) + " of the 1 ms of a tick";
   if (verdict.noticeable)
-    verdict.detail = "Its error is at most " + formatted("%.1f", chosen.p99_error_over_jnd) +
-                     " times what a hand can feel, 99 % of the time. ";
-  if (!as_good.empty()) verdict.detail += "As good, no faster: " + listed(as_good, models) + ". ";
+    verdict.detail = "99 % of its errors are at most " + formatted("%.1f", chosen.p99_error_over_jnd) +
+                     " times what a hand can feel. ";
+  if (!as_good.empty()) verdict.detail += "Equally good, but not faster: " + listed(as_good, models) + ". ";
   if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
   return verdict;
 }

@@ -36,16 +36,16 @@ std::string unit_words(const UnitErrors& errors) {
 Sentence errors_of(const ModelResult& model) {
   const UnitErrors& errors = model.errors;
   Sentence sentence{number(model, "within_jnd", percent(errors.within_jnd)),
-                    {" of the test is within what a hand can notice ("}};
-  const SentencePart beyond =
-      number(model, "beyond_units", std::to_string(errors.units_above_jnd) + " of " + unit_words(errors) + " beyond");
+                    {" of the test has an error of at most one JND, which a hand cannot notice ("}};
+  const SentencePart beyond = number(
+      model, "beyond_units", std::to_string(errors.units_above_jnd) + " of " + unit_words(errors) + " exceed it");
   if (!errors.has_intervals()) {
     append(sentence, {beyond, {", too few for an interval"}});
   } else if (errors.units_above_jnd == 0) {
     append(sentence, {beyond,
                       {"; 95 %: at most "},
                       number(model, "units_at_most", percent(1.0 - errors.within_at_least())),
-                      {" are"}});
+                      {" do"}});
   } else {
     append(sentence,
            {{"95 %: at least "}, number(model, "within_at_least", percent(errors.within_at_least())), {"; "}, beyond});
@@ -94,7 +94,7 @@ Sentence moved(const ReportData& data, const ModelResult& model) {
   if (surface == nullptr || model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return {};
   return {{"The surface of " + surface->name + " is at " + three_digits(1e3 * surface->offset_m) +
            " mm for these models; with it moved, which uses the forces of the test, " +
-           percent(model.moved.within_jnd) + " is within the JND. "}};
+           percent(model.moved.within_jnd) + " of the test is within the JND. "}};
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ Sentence answer(const ReportData& data) {
                     tick(use)};
   append(sentence, {{", "},
                     number(use, "tick_share", three_digits(100.0 * use.time.tick.median_ns / kBudget_ns)),
-                    {" % of its budget; "}});
+                    {" % of 1 ms; "}});
   append(sentence, errors_of(use));
   append(sentence, moved(data, use));
   if (data.choice.correction_off)

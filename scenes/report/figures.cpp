@@ -118,10 +118,10 @@ Figure speed_figure(const ReportData& data) {
   figure.plot.height = 1.9;
   figure.plot.panels = {std::move(panel)};
   figure.caption =
-      "Down is better, left is faster; below 1 JND a hand notices nothing; noise: of the force sensor. Dots: the "
-      "table; "
-      "hollow: the recipe of 2009. Bars: six rounds of timing, and 95 % of the error where there are units enough; "
-      "models are compared by their paired difference, not by bars. Lines: one method with more and more centres.";
+      "Lower is more accurate, further left is faster; a hand does not notice errors below 1 JND; noise: that of the "
+      "force sensor. Dots: the models of the table; hollow: the recipe of 2009. Bars: six rounds of timing, and the "
+      "95 % interval of the error where there is one; models are compared by their paired differences. Lines: one "
+      "method with increasing numbers of centres.";
   return figure;
 }
 
@@ -178,7 +178,7 @@ Figure worst_figure(const ReportData& data) {
       "The worst " + three_digits(worst.rows.empty() ? 0.0 : worst.rows.back().time_s - worst.rows.front().time_s) +
       " s of " + data.models[data.choice.recommended].plan.name + " (largest mean squared error over the JND): RMS " +
       three_digits(std::sqrt(std::max(0.0, worst.score))) +
-      " JND. Below: model less measurement; grey is what a hand cannot notice.";
+      " JND. Below: model minus measurement; grey: differences that a hand cannot notice.";
   return figure;
 }
 
@@ -197,8 +197,8 @@ Figure force_figure(const ReportData& data) {
   figure.plot.name = "error_by_force";
   figure.plot.columns = 2;
   figure.caption =
-      "Error over the JND against force, in bins two JND wide without those of fewer than 20 samples, 100 centres; "
-      "figures 5 and 7 of Hoever & Harders (2009) have it over the force (palpate paper draws those).";
+      "Error divided by the JND against force, 100 centres, in bins two JND wide with at least 20 samples. Figures 5 "
+      "and 7 of Hoever & Harders (2009) show the error divided by the force (drawn by palpate paper).";
   return figure;
 }
 

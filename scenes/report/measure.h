@@ -31,8 +31,8 @@ struct WorstStretch {
 };
 
 // The stretch of kStretchSeconds in which the first of `models` has the largest mean of (error / JND)^2 over the
-// samples in contact; of a shorter recording all of it. In a stretch that is mostly air the mean is over a quarter of
-// its samples. Up to kMaxModels models. Samples before `from_s` are replayed, but do not count.
+// samples in contact, or the whole of a shorter recording. With few samples in contact the sum is divided by a quarter
+// of all samples. Up to kMaxModels models. Samples before `from_s` are replayed, but do not count.
 WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
                            double from_s = -1e300);
 

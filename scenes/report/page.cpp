@@ -39,7 +39,7 @@ Table headline_table(const ReportData& data) {
     table.add({}, interval.low);
     table.add({}, interval.high);
     table.add({"", "worst [JND]"}, errors.max_error_over_jnd);
-    table.add({"", "99 % error less the smallest [JND]"},
+    table.add({"", "99 % error minus the smallest [JND]"},
               verdict(data.choice, i, paired_difference(errors, data.models[data.choice.best].errors)));
   }
   return table;
@@ -57,8 +57,8 @@ std::string notes_html(const ReportData& data) {
   notes.push_back(
       "Recommended: the fastest of the models whose 99 % error is at most " + three_digits(kMargin_jnd) +
       " JND above the smallest, at 95 % and one-sided (qualified: " + std::to_string(data.choice.qualified.size()) +
-      " of " + std::to_string(data.choice.candidates.size()) + "). Two forces " + three_digits(kMargin_jnd) +
-      " JND apart are told apart in 57 % of choices, where guessing has 50.");
+      " of " + std::to_string(data.choice.candidates.size()) + "). In a choice between two forces " +
+      three_digits(kMargin_jnd) + " JND apart 57 % of the answers are correct; guessing gives 50 %.");
   for (const ModelResult& one : data.models) {
     if (one.same.empty()) continue;
     std::string names;
@@ -72,12 +72,12 @@ std::string notes_html(const ReportData& data) {
                   (data.jnd.offset_N == paper.offset_N && data.jnd.weber_fraction == paper.weber_fraction &&
                            largest_force_N(data) > kStudiedUpTo_N
                        ? " It was measured up to 2.5 N; these forces go up to " + three_digits(largest_force_N(data)) +
-                             " N, where it is a continuation."
+                             " N, where it is extrapolated."
                        : ""));
   notes.push_back("A perfect model would have " + percent(data.floor.within_jnd) +
                   " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
-                  " JND, by the force sensor's noise alone (" + three_digits(1e3 * data.floor.force_noise_N) +
-                  " mN, from second differences in the quietest fifth of each test recording; drift is not in it).");
+                  " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +
+                  " mN, from second differences in the quietest fifth of each test recording, without drift).");
   const bool any = std::any_of(data.recordings.begin(), data.recordings.end(),
                                [](const RecordingFacts& facts) { return facts.accelerometer; });
   notes.push_back(any ? "With the accelerometer of the recordings."
@@ -101,8 +101,8 @@ std::string learnt_html(const ReportData& data) {
   std::string html = "<table class=\"learnt\">" + row("Features", features);
   if (data.correction_strength)
     html += row("Strength of the correction by centres",
-                fixed(100.0 * *data.correction_strength, 0) + " % of what it could be, by cross-validation");
-  if (!times.empty()) html += row("Relaxation times, recipe of 2009", times + " s, fitted to the training");
+                fixed(100.0 * *data.correction_strength, 0) + " % of the fitted correction, by cross-validation");
+  if (!times.empty()) html += row("Relaxation times, recipe of 2009", times + " s, fitted to the training recordings");
   for (const RecordingSurface& surface : data.surfaces) {
     html += row(("Surface of " + escape_html(surface.name)).c_str(),
                 fixed(1e3 * surface.offset_m, 3) + " mm" +

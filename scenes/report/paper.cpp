@@ -81,7 +81,8 @@ Figure jnd_figure(const PaperData& data) {
   Figure figure;
   figure.plot.name = "figure_3";
   figure.plot.columns = 2;
-  figure.caption = "Figure 3: the conservative threshold, absolute and relative; the paper's study is palpate study's.";
+  figure.caption =
+      "Figure 3: the conservative threshold, absolute and relative; palpate study repeats the paper's study.";
   for (const bool relative : {false, true}) {
     Panel panel;
     panel.x.title = "Reference force [N]";

@@ -58,7 +58,7 @@ Result<std::string> fill_page(const std::string& name, std::map<std::string, std
     const std::size_t close = text->find("}}", open);
     const auto value =
         close == std::string::npos ? values.end() : values.find(text->substr(open + 2, close - open - 2));
-    if (value == values.end()) return Error{name + ": found {{ without the name of a part of the page behind it"};
+    if (value == values.end()) return Error{name + ": found {{ without the name of a part of the page after it"};
     page.append(*text, at, open - at).append(value->second);
     at = close + 2;
   }

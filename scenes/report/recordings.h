@@ -47,7 +47,7 @@ struct RecordingSet {
   bool virtual_recordings = false;
 };
 
-// Equal forces in kLeakRows successive rows, with at least kLeakValues different values among them, are no coincidence.
+// Equal forces in kLeakRows successive rows, with at least kLeakValues different values among them, are a leak.
 inline constexpr std::size_t kLeakRows = 50;
 inline constexpr std::size_t kLeakValues = 12;
 
@@ -57,8 +57,8 @@ struct SharedStretch {
   std::size_t rows = 0;         // 0: there is none
 };
 
-// The first stretch that is found of `tested` whose forces occur in `trained`. Stretches of 2 kLeakRows and more are
-// found where every kLeakRows of their rows have kLeakValues different values.
+// The first stretch that is found of `tested` whose forces occur in `trained`. Stretches of at least 2 kLeakRows rows
+// are found where every kLeakRows of their rows have kLeakValues different values.
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 
 // The first `trained` recordings of `all` are training data, the others test data; without others, all pairs are

@@ -81,7 +81,7 @@ Table models_table(const ReportData& data) {
     table.add({"moved_within_jnd", "moved: ≤ JND [%]", kInPercent, 2}, any(one.moved, one.moved.within_jnd));
     table.add({"moved_p99_error_over_jnd", "99 % [JND]"}, any(one.moved, one.moved.p99_error_over_jnd));
     table.add({"moved_rms_error_N", "RMS [mN]", kInMilli}, any(one.moved, one.moved.rms_error_N));
-    table.add({"difference_p99", "less the smallest [JND]", 1.0, kThree, 2}, difference.p99);
+    table.add({"difference_p99", "minus the smallest [JND]", 1.0, kThree, 2}, difference.p99);
     table.add({"difference_p99_low", ""}, difference.interval.low);
     table.add({"difference_p99_high", ""}, difference.interval.high);
   }

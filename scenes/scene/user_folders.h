@@ -9,12 +9,11 @@
 
 namespace palpate {
 
-// $XDG_CONFIG_HOME/palpate, else ~/.config/palpate. Creates the folder.
-// Errors: neither variable nor HOME is set; the folder cannot be created.
+// $XDG_CONFIG_HOME/palpate, else ~/.config/palpate. Creates the folder. Errors: neither the variable nor HOME is set;
+// the folder cannot be created.
 Result<std::string> config_folder();
 
-// $XDG_DATA_HOME/palpate, else ~/.local/share/palpate, for recordings, figures and fault files. Creates the folder.
-// Errors: as config_folder.
+// $XDG_DATA_HOME/palpate, else ~/.local/share/palpate, for recordings, figures and fault files. As config_folder.
 Result<std::string> data_folder();
 
 // The local time now, formatted by strftime with `format`; empty beyond 63 bytes.

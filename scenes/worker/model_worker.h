@@ -56,9 +56,10 @@ class ModelWorker {
   // no material to fit to.
   Result<std::shared_ptr<const FittedModel>> make(const SlotPlan& plan);
 
-  // Starts the thread. Jobs that were added before are sorted by expected time. Errors: no thread.
+  // Errors: the thread cannot be started.
   Status start();
-  // Adds a job. A job of the same id that has not begun is replaced. `at_once`: before all others.
+  // Adds a job in the order of expected times. A job of the same id that has not begun is replaced. `at_once`: before
+  // all others.
   void add_job(std::size_t job_id, const SlotPlan& plan, bool at_once = false);
   // Returns and clears the models that were finished since the last call.
   std::vector<FinishedModel> read_finished();

@@ -1,4 +1,5 @@
-// Plans of a session's models: how each is fitted, or from which file it is read.
+// Plans of a session's models: how each is fitted, or from which file it is read. A session keeps each of its models in
+// a numbered slot (scenes/live/session_models.h).
 // Thread guarantee: slow side (reads files).
 #pragma once
 
@@ -19,7 +20,7 @@ enum class ModelOrigin : std::uint8_t {
   file,
 };
 
-// Largest number of centres that a user can choose with the slider.
+// The largest number of centres of the slider.
 inline constexpr int kMostCentres = 200;
 
 struct SlotPlan {

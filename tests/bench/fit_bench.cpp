@@ -44,7 +44,7 @@ constexpr int kMostCentres = 200;
 void slider_all(benchmark::State& state) {
   for (auto _ : state) {
     const auto chosen = choose_greedy(recorded_sites(), {.centres = kMostCentres});
-    const auto nested = NestedWeights::fold(recorded_sites(), KernelKind::cubic, *chosen);
+    const auto nested = NestedWeights::factorise(recorded_sites(), KernelKind::cubic, *chosen);
     for (Eigen::Index count = 1; count <= nested->most(); ++count) benchmark::DoNotOptimize(nested->solve(count));
   }
 }

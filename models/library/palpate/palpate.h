@@ -91,7 +91,7 @@ typedef struct palpate_sensor {
  * palpate_stream_new_with_sensor. Slow side. */
 PALPATE_API palpate_stream* palpate_stream_new(const palpate_model*, double encoder_step_m, char* error,
                                                size_t error_size);
-/* A stream with exactly this sensor. NULL: a number is negative or not finite. Slow side. */
+/* A stream with exactly this sensor. NULL: a number is out of its range or not finite. Slow side. */
 PALPATE_API palpate_stream* palpate_stream_new_with_sensor(const palpate_model*, const palpate_sensor*, char* error,
                                                            size_t error_size);
 /* The sensor of a recording, as identified by replay from the first 30,000 rows. encoder_step_m is 0 if the positions
@@ -109,7 +109,7 @@ PALPATE_API int palpate_in_contact(size_t n, const double* position_m, const dou
                                    unsigned char* in_contact);
 
 PALPATE_API void palpate_stream_free(palpate_stream*);
-/* Resets the motion estimate and the filters; the next sample begins a new contact. Wait-free. */
+/* Resets the motion estimate and the filters; the next sample may have any time. Wait-free. */
 PALPATE_API void palpate_stream_reset(palpate_stream*);
 
 /* Takes the next sample and returns the force in N: at most 1.2 times the largest training force, and negative only for

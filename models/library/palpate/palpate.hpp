@@ -1,5 +1,4 @@
-// Palpate's models in a C++ program (C++17 or later): the C interface of palpate.h with
-// owners, defaults and exceptions.
+// Palpate's models in a C++ program (C++17 or later): palpate.h with owning classes, defaults and exceptions.
 //
 //   palpate::Model model("block.json");
 //   palpate::Stream stream(model, 30e-6);                  // encoder step in metres
@@ -10,12 +9,12 @@
 //   palpate::import_table("lab.txt", "press.csv");
 //   palpate::fit({"press.csv"}, "block.json");
 //
-// Everything here is inline around functions with C linkage, so that a program may be
-// built by another compiler, or with other options, than the library.
+// All functions are inline and call functions with C linkage, so that a program may use another compiler, or other
+// options, than the library.
 //
-// Errors: constructors throw Failure, whose text says what was found, what was expected
-// and what to do. Functions marked noexcept never fail, and may run in a haptics loop.
-// Thread guarantee: a Model may be shared by threads; all others one thread at a time.
+// Errors: a Failure is thrown; its text has the value found, the value expected and advice. Functions marked noexcept
+// never fail and may run in a haptics loop.
+// Thread guarantee: threads may share a Model; all else belongs to one thread at a time.
 #ifndef PALPATE_PALPATE_HPP
 #define PALPATE_PALPATE_HPP
 
@@ -28,10 +27,10 @@
 #include <vector>
 
 namespace palpate {
-// So that no name here is one of the library's own, whose sources use namespace palpate.
+// Keeps these names apart from those of the library, whose sources use namespace palpate.
 inline namespace api {
 
-// Something from outside was not as it must be.
+// A file, an argument or the library itself is not valid.
 class Failure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -39,7 +38,7 @@ class Failure : public std::runtime_error {
 
 namespace detail {
 
-// Calls `make(error, size)`; throws what it said when it gave nothing.
+// Returns the result of `make(error, size)`; if that is null or false, throws the text in `error`.
 template <typename Make>
 auto checked(Make&& make) {
   char error[1024];
@@ -80,13 +79,13 @@ class Model {
   std::shared_ptr<palpate_model> model_;
 };
 
-// What is known of the sensor behind the positions; fields as in palpate.h, all 0 at first.
+// The sensor of the positions; fields as in palpate.h, initially 0.
 struct Sensor : palpate_sensor {
   Sensor() noexcept : palpate_sensor{} {}
   // Positions in steps of this many metres; 0: exact.
   Sensor(double step_m) noexcept : palpate_sensor{} { encoder_step_m = step_m; }
 
-  // As `palpate replay` finds it from the recording. Throws: not a recording.
+  // The sensor that `palpate replay` identifies. Throws: not a recording.
   static Sensor of_recording(const std::string& path) {
     Sensor sensor;
     detail::checked([&](char* error, std::size_t size) {
@@ -96,33 +95,33 @@ struct Sensor : palpate_sensor {
   }
 };
 
-// One tool in one material. Movable; the model may go out of scope before it.
+// One tool in one material. Movable; may outlive the model.
 class Stream {
  public:
-  // The sensor is that of the recordings which the model was fitted to.
+  // The sensor is that of the training recordings.
   explicit Stream(const Model& model)
       : stream_(detail::checked(
             [&](char* error, std::size_t size) { return palpate_stream_new(model.handle(), 0.0, error, size); })) {}
-  // Throws: a number of the sensor is negative or not finite.
+  // Throws: a number of the sensor is out of its range or not finite.
   Stream(const Model& model, const Sensor& sensor)
       : stream_(detail::checked([&](char* error, std::size_t size) {
           return palpate_stream_new_with_sensor(model.handle(), &sensor, error, size);
         })) {}
 
-  // The force of the next sample in N; 0 when a value is not finite or the time is not
-  // later than the last one. Wait-free.
+  // Takes the next sample and returns the force, N; 0 if a value is not finite or the time is not later than the last
+  // one. Wait-free.
   double force(double time_s, double position_m) noexcept {
     return palpate_stream_force(stream_.get(), time_s, position_m);
   }
-  // With what the sensor measures beside the position.
+  // The same with measured velocity and acceleration.
   double force(double time_s, double position_m, double velocity_m_per_s, double acceleration_m_per_s2) noexcept {
     return palpate_stream_force_with_motion(stream_.get(), time_s, position_m, velocity_m_per_s, acceleration_m_per_s2);
   }
-  // Of the last sample: its motion is unlike the recordings.
+  // Whether the last sample was out of the domain of the recordings.
   bool out_of_domain() const noexcept { return palpate_stream_out_of_domain(stream_.get()) != 0; }
-  // Of the last sample, N: 95 of 100 errors stay below; NaN when the model does not know.
+  // The 95 % bound on the error of the force at the last sample, N; NaN if the model has none.
   double predicted_error_N() const noexcept { return palpate_stream_predicted_error(stream_.get()); }
-  // The next sample begins a new contact. Wait-free.
+  // Resets the motion estimate and the filters. Wait-free.
   void reset() noexcept { palpate_stream_reset(stream_.get()); }
 
  private:
@@ -147,7 +146,7 @@ struct Limits {
   }
 };
 
-// The last word on a force before an actuator gets it.
+// The force limiter, before an actuator.
 class Limiter {
  public:
   // Throws: a limit is out of its range.
@@ -163,7 +162,7 @@ class Limiter {
   double force(double commanded_N, double step_s, double sample_age_s = 0.0) noexcept {
     return palpate_limiter_force(limiter_.get(), commanded_N, step_s, sample_age_s);
   }
-  // The next force goes to 0; once per tick while a fault lasts. Wait-free.
+  // The next force goes towards 0; to be called once per tick while a fault lasts. Wait-free.
   void stop() noexcept { palpate_limiter_stop(limiter_.get()); }
   // PALPATE_LIMIT_... bits of the last force.
   unsigned flags() const noexcept { return palpate_limiter_flags(limiter_.get()); }
@@ -177,7 +176,7 @@ class Limiter {
 // A recording in memory. Copies share it.
 class Recording {
  public:
-  // Throws: not a recording; says file, line and column.
+  // Throws: not a recording; with file, line and column.
   explicit Recording(const std::string& path)
       : recording_(detail::checked([&](char* error, std::size_t size) {
                      return palpate_recording_load(path.c_str(), error, size);
@@ -202,7 +201,7 @@ inline std::vector<double> replay(const Model& model, const Recording& recording
   return forces_N;
 }
 
-// `palpate import`. Throws: what cannot be guessed; the recording exists.
+// `palpate import`. Throws: something cannot be determined; the recording exists.
 inline void import_table(const std::string& table, const std::string& recording, bool overwrite = false) {
   detail::checked([&](char* error, std::size_t size) {
     return palpate_import(table.c_str(), recording.c_str(), overwrite, error, size) == 0;
@@ -226,8 +225,8 @@ struct FitOptions : palpate_fit_options {
   FitOptions() noexcept { palpate_fit_options_default(this); }
 };
 
-// `palpate fit`: one model of all recordings, written to a file. Throws: a recording that is
-// not usable; an option out of its range; the file exists; stopped.
+// `palpate fit`: one model of all recordings, written to a file. Throws: a recording that is not usable; an option out
+// of its range; the file exists; interrupted.
 inline void fit(const std::vector<std::string>& recordings, const std::string& model, const FitOptions& options = {}) {
   std::vector<const char*> paths;
   for (const std::string& path : recordings) paths.push_back(path.c_str());

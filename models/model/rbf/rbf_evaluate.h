@@ -73,8 +73,7 @@ class RbfEvaluator {
 void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<const Eigen::MatrixXd>& centres,
                    Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index first_row = 0);
 
-// Phi v, the product with the kernel matrix of a point set, without storing the matrix. `points`: d x N; `v`: N
-// values.
+// Phi v, the product with the kernel matrix of a point set, without storing the matrix. `points`: d x N; `v`: N values.
 // Uses all cores; the result does not depend on their number.
 Eigen::VectorXd kernel_product(KernelKind kind, const Eigen::MatrixXd& points, const Eigen::VectorXd& v);
 

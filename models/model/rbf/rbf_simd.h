@@ -28,8 +28,7 @@ struct Points {
   int dimension = 0;
 };
 
-// sum_j weights[j] phi(|x - point_j|) + sum_k tail[k] g_k(x), with the tail of the kernel's degree
-// (polynomial_tail.h).
+// sum_j weights[j] phi(|x - point_j|) + sum_k tail[k] g_k(x), with the tail of the kernel's degree (polynomial_tail.h).
 // Coordinates of x below kTiny count as 0.
 using EvaluateFunction = double (*)(const Points& points, const double* weights, const double* tail,
                                     const double* x) noexcept;

@@ -36,7 +36,7 @@ int in_child(const std::function<void()>& body) {
 // `signal_number`.
 int killed_while_writing(const TemporaryFolder& folder, int signal_number) {
   return in_child([&] {
-    own_signals();
+    install_signal_handlers();
     auto file = AtomicFile::create(folder.file("out"), true);
     if (!file) _exit(3);
     file->write(kMegabyte);
@@ -145,7 +145,7 @@ TEST(AtomicFile, ReportsAFullDiskAndKeepsTheOldFile) {
   const TemporaryFolder folder;
   const std::string path = folder.with_file("out", "old");
   const int status = in_child([&] {
-    own_signals();
+    install_signal_handlers();
     const rlimit limit{1000, 1000};  // simulates a disk with 1000 free bytes
     setrlimit(RLIMIT_FSIZE, &limit);
     const Status written = write_file_atomically(path, kMegabyte, true);
@@ -176,7 +176,7 @@ TEST(AtomicFile, AnInterruptedChildLeavesTheParentsFileAlone) {
   auto file = AtomicFile::create(folder.file("out"), false);
   ASSERT_TRUE(file.ok());
   in_child([] {
-    own_signals();
+    install_signal_handlers();
     raise(SIGTERM);
   });
   file->write("whole");

@@ -29,7 +29,7 @@ Ended in_child(const std::function<void()>& body) {
     trace_descriptor = ends[1];
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGABRT}) signal(number, SIG_DFL);
     stop_forces_by([]() noexcept { trace('f'); });
-    own_signals();
+    install_signal_handlers();
     body();
     _exit(0);
   }
@@ -102,8 +102,8 @@ TEST(Signals, ANewListenerForgetsTheRequestBefore) {
 TEST(Signals, AHandlerFromBeforeIsCalledAfterTheForcesStop) {
   const Ended ended = in_child([] {
     signal(SIGTERM, [](int) { trace('h'); });
-    own_signals();
-    own_signals();
+    install_signal_handlers();
+    install_signal_handlers();
     raise(SIGTERM);
   });
   EXPECT_EQ(ended.signal, 0);

@@ -51,7 +51,7 @@ TEST(NestedFit, GivesEveryDirectGreedyFit) {
   for (const Sites& sites : {penalised_sites(), smooth_sites(3, 400, 0.02, 5)}) {
     const auto chosen = choose_greedy(sites, {.centres = 40, .candidates = 30});
     ASSERT_TRUE(chosen.ok());
-    const auto nested = NestedWeights::fold(sites, KernelKind::cubic, *chosen);
+    const auto nested = NestedWeights::factorise(sites, KernelKind::cubic, *chosen);
     ASSERT_TRUE(nested.ok());
     for (const int count : {0, 1, 4, 7, 25, 40}) {
       expect_direct(*nested, count, fit_greedy(sites, {.centres = count, .candidates = 30}), sites);
@@ -64,7 +64,7 @@ TEST(NestedFit, GivesEveryDirectRandomFitForEveryKernel) {
   for (const KernelKind kernel : kKernelKinds) {
     const auto chosen = choose_random(sites, {.centres = 30, .kernel = kernel, .seed = 2});
     ASSERT_TRUE(chosen.ok());
-    const auto nested = NestedWeights::fold(sites, kernel, *chosen);
+    const auto nested = NestedWeights::factorise(sites, kernel, *chosen);
     ASSERT_TRUE(nested.ok());
     for (const int count : {3, 18, 30}) {
       expect_direct(*nested, count, fit_random(sites, {.centres = count, .kernel = kernel, .seed = 2}), sites);
@@ -77,7 +77,7 @@ TEST(NestedFit, GivesEveryDirectKdTreeFit) {
     const Eigen::VectorXd jnd_N = Eigen::VectorXd::Constant(sites.count(), 0.05);
     const auto chosen = choose_kdtree(sites, jnd_N, {.centres = 40});
     ASSERT_TRUE(chosen.ok());
-    const auto nested = NestedWeights::fold(sites, KernelKind::cubic, *chosen);
+    const auto nested = NestedWeights::factorise(sites, KernelKind::cubic, *chosen);
     ASSERT_TRUE(nested.ok());
     for (const int count : {0, 1, 2, 3, 17, 40}) {
       expect_direct(*nested, count, fit_kdtree(sites, jnd_N, {.centres = count}), sites);
@@ -87,7 +87,8 @@ TEST(NestedFit, GivesEveryDirectKdTreeFit) {
 
 TEST(NestedFit, CountsBeyondTheFitAreItsOwn) {
   const Sites sites = penalised_sites();
-  const auto nested = NestedWeights::fold(sites, KernelKind::cubic, CentreSequence::growing(sites.points.leftCols(10)));
+  const auto nested =
+      NestedWeights::factorise(sites, KernelKind::cubic, CentreSequence::growing(sites.points.leftCols(10)));
   ASSERT_TRUE(nested.ok());
   EXPECT_EQ(nested->solve(11).report.centres_used, 10);
   EXPECT_EQ(nested->solve(-1).report.centres_used, 0);
@@ -97,7 +98,7 @@ TEST(NestedFit, DegenerateSitesGiveFiniteFunctions) {
   for (const Sites& sites : test::degenerate_sites()) {
     const auto chosen = choose_random(sites, {.centres = 20});
     ASSERT_TRUE(chosen.ok());
-    const auto nested = NestedWeights::fold(sites, KernelKind::cubic, *chosen);
+    const auto nested = NestedWeights::factorise(sites, KernelKind::cubic, *chosen);
     ASSERT_TRUE(nested.ok());
     for (Eigen::Index count = 0; count <= nested->most(); ++count) {
       const FittedRbf fitted = nested->solve(count);

@@ -42,7 +42,7 @@ TEST(FitOptionsText, TheDefaultsAreGoodAndEachWrongOneIsNamed) {
     return check_fit_options(options).error().message;
   };
   EXPECT_EQ(wrong([](FitOptions& o) { o.method = "nothing"; }).rfind("method: found \"nothing\"", 0), 0U);
-  EXPECT_EQ(wrong([](FitOptions& o) { o.centres = kMostCentres + 1; }).rfind("centres: found 2001", 0), 0U);
+  EXPECT_EQ(wrong([](FitOptions& o) { o.centres = kMostFittedCentres + 1; }).rfind("centres: found 2001", 0), 0U);
   EXPECT_EQ(wrong([](FitOptions& o) { o.candidates = "0"; }).rfind("candidates: ", 0), 0U);
   EXPECT_EQ(wrong([](FitOptions& o) { o.kernel = "gauss"; }).rfind("kernel: ", 0), 0U);
   EXPECT_EQ(wrong([](FitOptions& o) { o.grid = "1x2"; }).rfind("grid: ", 0), 0U);

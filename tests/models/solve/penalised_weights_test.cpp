@@ -42,11 +42,11 @@ double largest_difference(const RbfFunction& a, const RbfFunction& b, const Site
 }
 
 FittedRbf penalised(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
-  auto folded = fold_rows(sites, kernel, centres, {});
-  EXPECT_TRUE(folded.ok());
-  folded->plain_unknowns_limit = 0;
-  folded->smoothing = *sites.smoothing;
-  return penalised_weights(*folded, kernel, centres);
+  auto factorised = factorise_rows(sites, kernel, centres, {});
+  EXPECT_TRUE(factorised.ok());
+  factorised->plain_unknowns_limit = 0;
+  factorised->smoothing = *sites.smoothing;
+  return penalised_weights(*factorised, kernel, centres);
 }
 
 TEST(PenaltySpace, ItsColumnsAreOrthogonalToTheTailAndMultiplyInPlace) {

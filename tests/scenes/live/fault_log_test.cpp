@@ -23,7 +23,7 @@ TEST(FaultLog, CountsWhatFollowsWithinASecond) {
   ASSERT_EQ(log.events().size(), 3u);
   EXPECT_EQ(log.events()[0].loop_time_s, 10.0);
   EXPECT_EQ(log.events()[0].count, 3u);
-  EXPECT_EQ(log.events()[0].text, "the device gave a sample that is not a number: the force was released");
+  EXPECT_EQ(log.events()[0].text, "the device gave a sample that is not a number: the force was set to 0");
   EXPECT_EQ(log.events()[1].count, 1u);
   EXPECT_EQ(log.events()[2].loop_time_s, 13.0);
 }
@@ -76,7 +76,7 @@ TEST(FaultLog, KeepsAlarmsUntilTheyAreAcknowledged) {
   newest.faults_latched = loop_fault::kBadSample | loop_fault::kDeviceFault | loop_fault::kForceSlewed;
   newest.device_faults_latched = device_fault::kUnplugged;
   const std::vector<std::string> expected = {device_fault_words(device_fault::kUnplugged).front(),
-                                             "the device gave a sample that is not a number: the force was released"};
+                                             "the device gave a sample that is not a number: the force was set to 0"};
   EXPECT_EQ(log.alarms(newest), expected) << "the device first; a slewed force is no alarm";
   log.update_age(0.2, 10.0);
   log.update_age(0.0, 10.1);

@@ -15,8 +15,8 @@ A recording is a `palpate.Recording`: a structured numpy array with the fields t
 structured array or table with these columns, or the path of a file.
 
 Units are SI. Positions run along the inward surface normal, 0 at the undisturbed surface; forces are
-positive when the material pushes the tool out. A just noticeable difference (JND) is the error that a hand
-can notice. Whatever is wrong with a file, an array or an option raises `Error`. Arrays may be of any
+positive when the material pushes the tool out. A just noticeable difference (JND) is the smallest
+error that a hand can notice. An invalid file, array or option raises `Error`. Arrays may be of any
 numeric type and need not be contiguous.
 
 `cross_validate` compares any estimator with `fit` and `predict` on the folds that a fit uses;

@@ -1,4 +1,4 @@
-"""The C library behind the package: where it is, its functions, and arrays on their way to it."""
+"""The C library of the package: its location, its functions, and the conversion of arrays for it."""
 import ctypes
 import functools
 import os
@@ -12,9 +12,9 @@ _NAME = "libpalpate_fit.so"
 
 
 class Error(Exception):
-    """Something from outside was not as it must be: a file, an array, an option.
+    """A file, an array or an option is not valid.
 
-    The text says what was found, what was expected and what to do.
+    The text has the value found, the value expected and advice.
     """
 
 
@@ -114,7 +114,7 @@ def library():
 
 
 def call(name, *arguments):
-    """Calls a function that can fail; its last two arguments, for the message, are added here."""
+    """Calls a function that can fail. Adds its last two arguments, which receive the error message."""
     message = ctypes.create_string_buffer(_ERROR_BYTES)
     result = getattr(library(), name)(*arguments, message, _ERROR_BYTES)
     if result is None or result == -1:
@@ -142,5 +142,5 @@ def doubles(name, values, shape=(None,)):
 
 
 def address(array):
-    """For an argument of the library; None stays NULL."""
+    """The address of an array for an argument of the library; NULL for None."""
     return None if array is None else array.ctypes.data

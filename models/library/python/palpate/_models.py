@@ -23,11 +23,11 @@ class Evaluation:
     force_N : ndarray
         ``trend_N + correction_N``, within the model's limits.
     bound_N : ndarray
-        95 of 100 errors stay below it; NaN where the model does not know.
+        The 95 % bound on the error; NaN if the model has none.
     trend_N, correction_N : ndarray
-        The viscoelastic trend, and what was added to it.
+        The viscoelastic trend, and the correction of it.
     outside : ndarray of bool
-        The vector is unlike the recordings.
+        The vector is out of the domain of the recordings.
     """
 
     force_N: NDArray[np.float64]
@@ -67,7 +67,7 @@ class Model:
 
     @property
     def report(self) -> Mapping[str, object]:
-        """What ``palpate fit --json`` prints of a model from `fit`; empty for one from `load`."""
+        """The output of ``palpate fit --json`` for a model from `fit`; empty for one from `load`."""
         return json.loads(library().palpate_model_report(self._handle) or b"{}")
 
     def render(self, time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: Optional[ArrayLike] = None,
@@ -78,9 +78,9 @@ class Model:
         Parameters
         ----------
         time_s, position_m : array_like, shape (n,)
-            Times [s] and positions [m] of the samples, in order, from a new contact on.
+            Times [s] and positions [m] of the samples, in order. The filters begin at rest.
         velocity_m_per_s, acceleration_m_per_s2 : array_like, shape (n,), optional
-            What the sensor measures beside the position.
+            Measured velocity and acceleration.
         sensor : Sensor, optional
             By default identified from the samples (`find_sensor`), as ``palpate replay`` does.
 
@@ -89,7 +89,7 @@ class Model:
         force_N : ndarray, shape (n,)
             0 out of contact, and at a sample that is not finite or not later than the last one.
         bound_N : ndarray, shape (n,)
-            95 of 100 errors stay below it; 0 out of contact, NaN where the model does not know.
+            The 95 % bound on the error; 0 out of contact, NaN if the model has none.
         """
         force_N, bound_N, _ = self._run(time_s, position_m, velocity_m_per_s, acceleration_m_per_s2, sensor, True)
         return force_N, bound_N
@@ -237,27 +237,27 @@ def fit(recordings: object, method: str = "greedy", centres: int = 100, *, candi
     candidates : int or "all", optional
         Of greedy: sites tried per step [100].
     kernel : str, optional
-        ``cubic``, ``linear`` or ``thin-plate`` [cubic].
+        ``cubic``, ``linear``, ``thin-plate`` or ``quintic`` [cubic].
     weighting : str, optional
-        What an error counts: ``jnd``, ``relative`` or ``none`` [jnd].
+        Weight of an error: ``jnd``, ``relative`` or ``none`` [jnd].
     reduction : str, optional
-        Which samples become sites: ``coverage``, ``force`` or ``none`` [coverage].
+        Samples that become sites: ``coverage``, ``force`` or ``none`` [coverage].
     recipe : str, optional
         ``paper-2009``: the recipe of Hoever & Harders (2009).
     features : str or list of str, optional
         ``auto``, ``scene``, or a list such as ``["depth", "velocity", "maxwell:0.17"]`` [auto].
     relaxation : str or list of float, optional
-        Of the scene's features: ``scene``, ``auto``, or times [s].
+        Relaxation times of the scene's features: ``scene``, ``auto``, or times [s].
     surface : str, optional
-        Where each recording's surface is: ``auto`` (found) or ``recorded`` (at 0) [auto].
+        Surface of each recording: ``auto`` (estimated) or ``recorded`` (at 0) [auto].
     grid : str or list of int, optional
         Of voxel: nodes per feature, e.g. ``[25, 11, 11, 11]``.
     scene : str, optional
-        Name, or file, of the scene whose features and JND line count [silicone_block].
+        Name or file of the scene that gives the features and the JND line [silicone_block].
     seed : int
         Of random and greedy.
     progress : callable, optional
-        Called now and then with the fraction done; the fit stops when it returns False.
+        Called from time to time with the finished fraction; if it returns False, the fit ends.
 
     Returns
     -------
@@ -307,15 +307,15 @@ def fit_without(left_out, recordings, method="greedy", centres=100, *, candidate
 
 def within_jnd(force_N: ArrayLike, measured_N: ArrayLike, in_contact: Optional[ArrayLike] = None,
                jnd_N: Optional[ArrayLike] = None) -> float:
-    """The share of the samples in contact whose error a hand cannot notice.
+    """The share of the samples in contact with an error of at most one JND.
 
     Parameters
     ----------
     force_N, measured_N : array_like, shape (n,)
         Forces of a model, and measured forces.
     in_contact : array_like of bool, shape (n,), optional
-        The samples that count: `palpate.in_contact` gives those of ``palpate replay``. By default those
-        where the model gives a force or the measured one is above the JND at 0 N.
+        The samples in contact; `palpate.in_contact` gives those of ``palpate replay``. By default those
+        with a force of the model, or with a measured force above the JND at 0 N.
     jnd_N : array_like, shape (n,), optional
         The JND at each measured force, e.g. `Model.jnd_N` [0.065 N + 0.0633 \\|measured_N\\|].
 
@@ -352,7 +352,7 @@ def jnd_N(force_N: ArrayLike) -> NDArray[np.float64]:
 
 
 def _jnd_N(handle, force_N):
-    # The line is straight, so two of its points give it.
+    # Two points define the line.
     offset_N, at_one_N = (library().palpate_jnd_N(handle, at) for at in (0.0, 1.0))
     return offset_N + (at_one_N - offset_N) * np.abs(np.asarray(force_N, dtype=np.float64))
 
@@ -380,7 +380,7 @@ def _whole(name, value):
 
 
 def _careful(progress, failure):
-    """A callback whose exceptions, Control-C among them, stop the fit and are raised behind it."""
+    """A callback whose exceptions, Control-C among them, stop the fit and are raised after it."""
     def report(fraction, _):
         try:
             return int(progress is None or progress(fraction) is not False)

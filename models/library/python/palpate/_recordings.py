@@ -43,7 +43,7 @@ def make_recording(time_s: ArrayLike, position_m: ArrayLike, force_N: ArrayLike,
     time_s, position_m, force_N : array_like, shape (n,)
         Time [s], strictly increasing; position [m], inward; force [N], outward.
     velocity_m_per_s, acceleration_m_per_s2 : array_like, shape (n,), optional
-        What the sensor measures beside the position.
+        Measured velocity and acceleration.
     name : str
         Kept in models that are fitted to it.
 
@@ -138,7 +138,7 @@ def import_table(table: str, recording: str, overwrite: bool = False) -> None:
     Raises
     ------
     Error
-        What cannot be guessed; the recording exists.
+        Something cannot be determined; the recording exists.
     """
     call("palpate_import", path_bytes(table), path_bytes(recording), int(overwrite))
 
@@ -156,7 +156,7 @@ class Check:
     surface_offset_m, force_zero_N : float
         To be subtracted from the positions and the forces.
     findings : list of str
-        ``severity code: text; advice``, the gravest first.
+        ``severity code: text; advice``, in order of severity.
     """
 
     verdict: str
@@ -167,7 +167,7 @@ class Check:
 
 
 def check(path: str) -> Check:
-    """Is this recording fit to be fitted? ``palpate check``.
+    """Checks whether a recording is suitable for a fit: ``palpate check``.
 
     Parameters
     ----------
@@ -192,14 +192,14 @@ def check(path: str) -> Check:
 
 @dataclasses.dataclass(frozen=True)
 class Sensor:
-    """What is known of the sensor behind the positions.
+    """The sensor of the positions.
 
     Attributes
     ----------
     encoder_step_m : float
         Step of the positions, 0: not quantised.
     position_noise_m : float
-        Standard deviation of the positions beside the quantisation.
+        Standard deviation of the positions in addition to the quantisation.
     velocity_noise_m_per_s, acceleration_noise_m_per_s2 : float
         Standard deviations of the measured channels, > 0 where they are used.
     """
@@ -219,7 +219,7 @@ def motion_columns(time_s, position_m, velocity_m_per_s, acceleration_m_per_s2):
 
 def find_sensor(time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: Optional[ArrayLike] = None,
                 acceleration_m_per_s2: Optional[ArrayLike] = None) -> Sensor:
-    """Identifies the sensor behind samples from the first 30,000 of them, as ``palpate replay`` does.
+    """Identifies the sensor of samples from the first 30,000 of them, as ``palpate replay`` does.
 
     Parameters
     ----------
@@ -238,9 +238,9 @@ def find_sensor(time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: Opti
 
 
 def in_contact(position_m: ArrayLike, force_N: ArrayLike) -> NDArray[np.bool_]:
-    """The samples that error figures are over, as ``palpate replay`` counts them.
+    """Selects the samples that error figures are computed over, as ``palpate replay`` does.
 
-    In contact is a sample with a position above 0, or with a measured force beyond both the JND at 0 N and
+    A sample is in contact if its position is above 0, or its measured force is beyond both the JND at 0 N and
     five times its noise.
 
     Parameters

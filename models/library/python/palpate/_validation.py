@@ -17,7 +17,7 @@ class CrossValidation:
     Attributes
     ----------
     force_N : ndarray, shape (n,)
-        Each sample's force by the estimator that was fitted without the sample's fold.
+        The force at each sample, by the estimator that was fitted without the sample's fold.
     folds : ndarray of int, shape (n,)
     within_jnd : float
         Share of the samples in contact within the JND.
@@ -41,8 +41,8 @@ class Estimator:
 
     Notes
     -----
-    A fit without a fold sees the motion of the fold's samples, for the memory of the others, and where its
-    surface is found the first touch, but learns nothing from their forces. The model renders the whole motion.
+    In a fit without a fold, the motion of the fold's samples still updates the filters, but their forces are not
+    used, except those of the first touch if the surface is estimated. The model renders the whole motion.
     """
 
     def __init__(self, **options: Any):

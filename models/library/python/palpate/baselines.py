@@ -1,7 +1,7 @@
-"""Two trivial estimators that every fit must beat.
+"""Two simple estimators to compare with a fit.
 
-Both know a motion by the columns of `features`; `Bins` and `Ridge` are estimators on these (for
-`palpate.cross_validate`), `bins` and `ridge` go from training recordings to the forces of a test recording.
+`Bins` and `Ridge` are estimators on the columns of `features` (for `palpate.cross_validate`); `bins` and `ridge`
+take training recordings and return the forces of a test recording.
 """
 from typing import Optional
 
@@ -20,7 +20,7 @@ PENALTY = 1e-6  # of a standardised column, over the number of samples
 
 
 def features(recording: object, depth_m: Optional[float] = None) -> NDArray[np.float64]:
-    """What the baselines know of each sample.
+    """The inputs of the estimators at each sample.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def features(recording: object, depth_m: Optional[float] = None) -> NDArray[np.f
 
 
 class Bins:
-    """The median force of 60 depths, each on the way in and on the way out."""
+    """The median force in 60 bins of the depth, separately for loading and unloading."""
 
     def fit(self, columns: ArrayLike, force_N: ArrayLike) -> "Bins":
         columns, force_N = np.asarray(columns), np.asarray(force_N)
@@ -74,7 +74,7 @@ class Bins:
 
 
 class Ridge:
-    """Ridge regression on powers of the depth and on all other columns, each error over its JND."""
+    """Ridge regression on powers of the depth and on all other columns, with errors divided by the JND."""
 
     def fit(self, columns: ArrayLike, force_N: ArrayLike) -> "Ridge":
         columns, force_N = np.asarray(columns), np.asarray(force_N)
