@@ -18,8 +18,6 @@ constexpr double kLongest_s = 100.0;
 constexpr std::size_t kBands = 3;
 constexpr std::size_t kStops = 8;
 static_assert(kStops <= kMaxFeatureParts);
-constexpr double kCreepShortest_s = 1e-3;
-constexpr double kCreepLongest_s = 100.0;
 // The trend limits velocities to this multiple of the greatest recorded one.
 constexpr double kVelocityMargin = 1.5;
 
@@ -99,8 +97,8 @@ FeatureSpec parts_feature(const FeatureColumns& group, const std::vector<double>
 FeatureList dictionary(double sample_s, double longest_s, double depth_m, double encoder_step_m) {
   FeatureList list;
   list.velocity = true;
-  const std::vector<double> times_s =
-      ladder(std::max(kShortest_s, 2.0 * sample_s), std::min(kLongest_s, longest_s / 3.0), kTimesPerDecade);
+  const double longest_time_s = std::min(kLongest_s, longest_s / 3.0);
+  const std::vector<double> times_s = ladder(std::max(kShortest_s, 2.0 * sample_s), longest_time_s, kTimesPerDecade);
   for (std::size_t band = 0; band < kBands; ++band) {
     const auto from = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * band / kBands);
     const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
@@ -110,7 +108,7 @@ FeatureList dictionary(double sample_s, double longest_s, double depth_m, double
        threshold_m *= 0.5) {
     list.stop_thresholds_m.insert(list.stop_thresholds_m.begin(), threshold_m);
   }
-  list.creep_times_s = ladder(kCreepShortest_s, kCreepLongest_s, 1.0);
+  list.creep_times_s = ladder(kShortest_s, longest_time_s, 1.0);
   return list;
 }
 

@@ -7,7 +7,7 @@
 //               recording (at most 100 s), in three bands (fast, middle, slow). The sum of a band is one feature.
 //   stops       a Prandtl-Ishlinskii operator of up to 8 stops, whose thresholds halve from half of the greatest depth
 //               down to the encoder step
-//   creep       bristles that creep by a power law, one time a decade from 1 ms to 100 s
+//   creep       bristles that creep by a power law, one time a decade, from 1 ms to the same limit
 // The non-negative regression sets the weights of terms that do not help to 0.
 // Thread guarantee: value types, pure functions.
 #pragma once
