@@ -14,6 +14,8 @@ uniform float translucent;  // 0..1
 uniform float gloss;        // 0..1
 uniform float pores;        // 0..1
 uniform float grid;         // opacity of its lines, 0..1
+uniform vec3 outline_colour;  // of the dent and the frame
+uniform float outline_width;  // pixels
 uniform vec3 half_size;     // of the block, y its whole height, metres
 uniform float tip;          // depth of the tool's tip below the undisturbed top, metres
 uniform vec3 arrow;         // x, z: its foot relative to the middle; y: its length; metres
@@ -36,7 +38,7 @@ float lines(vec2 at) {
   return max(strong, 0.5 * all);
 }
 
-// Coverage of this pixel by the frame (x), and by the frame with the dark lines beside it (y).
+// Coverage of this pixel by the frame (x), and by the frame with the lines beside it (y).
 vec2 framed(vec2 at) {
   const float kRim = 0.004, kCorner = 0.012;  // as in rendering/picture/mesh.cpp
   vec2 q = abs(at) - (half_size.xz - kRim - kCorner);
@@ -108,7 +110,7 @@ void main() {
   // The dome is a darker piece of rubber.
   base *= 1.0 - 0.35 * (dome > 0.0 ? clamp((dome_radius - r) / fwidth(r) + 0.5, 0.0, 1.0) : 0.0);
 #endif
-  base = mix(base, mark_colour, mark * smoothstep(0.12, 0.42, sunk));
+  base = mix(base, mark_colour, mark * smoothstep(0.14, 0.42, sunk));
   base *= 1.0 - top * grid * lines(material.xz);
 #ifdef PORES
   base *= 1.0 - pores * pits(material);
@@ -141,8 +143,10 @@ void main() {
   float grazing = 1.0 - facing;
   float fresnel = 0.04 + 0.96 * grazing * grazing * grazing * grazing * grazing;
   lit += gloss * open * (0.9 * fresnel * mirrored_room(mirrored) + 0.30 * lamp * mirrored_lamp(mirrored, 28.0));
-  // The dark lines separate the frame from a material of similar brightness.
+  // Lines separate the coloured dent and the frame from a material of similar brightness.
+  float ring = clamp(outline_width + 0.5 - abs(sunk - 0.14) / max(fwidth(sunk), 1e-4), 0.0, 1.0);
+  lit = mix(lit, outline_colour, mark * ring);
   vec2 cover = framed(material.xz) * top;
-  lit = mix(mix(lit, 0.25 * frame_colour, cover.y), frame_colour, cover.x);
+  lit = mix(mix(lit, outline_colour, cover.y), frame_colour, cover.x);
   pixel = vec4(lit, 1.0);
 }

@@ -41,10 +41,12 @@ Surface surface_at(float r) {
   float rest_slope = dome * 4.0 * inside * r / (dome_radius * dome_radius);
   float mirror = min(0.5 * dent, dome);
   float above = rest - mirror;
-  float ridge = sqrt(above * above + 0.01 * dome * dome);  // rounded
+  float ridge = sqrt(above * above + 0.01 * dome * dome * inside);  // rounded, except at the foot of the dome
   float through = smoothstep(0.4 * dome, 1.1 * dome, dent);
-  here.depth = mix(rest + here.depth, mirror + ridge, through);
-  here.slope = mix(rest_slope + here.slope, rest_slope * above / ridge, through);
+  // When all of the dome is inverted, the ball dents the block below.
+  bool below = here.depth > mirror + ridge;
+  here.depth = mix(rest + here.depth, below ? here.depth : mirror + ridge, through);
+  here.slope = mix(rest_slope + here.slope, below ? here.slope : rest_slope * above / max(ridge, 1e-6), through);
   here.given = here.depth - rest;
 #endif
   return here;

@@ -142,7 +142,7 @@ BlockPose DemoApp::reference_pose(BlockPose pose) const {
   const double reference_N = frozen ? static_cast<double>(shown_.models.now.reference_N) : shown_.reference_N;
   if (active != nullptr && !frozen) pose.dent_m = static_cast<float>(active->dent_m);
   pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;
-  pose.arrow = kReferenceColour;
+  pose.arrow = reference_colour(view_.settings.theme);
   pose.chosen = pose.shows_error = false;
   return pose;
 }

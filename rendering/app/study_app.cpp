@@ -208,7 +208,8 @@ void StudyApp::draw_intervals(const StudyView& view) {
   float x = at.x;
   for (int interval = study_->strokes() != nullptr ? 0 : 1; interval <= 2; ++interval, x += 1.3F * side) {
     const bool on = view.interval == interval;
-    list.AddRectFilled({x, at.y}, {x + side, at.y + side}, ink(on ? kReferenceColour : style_.colours().raised), 10.0F);
+    list.AddRectFilled({x, at.y}, {x + side, at.y + side},
+                       ink(on ? reference_colour(style_.theme()) : style_.colours().raised), 10.0F);
     const char text[2] = {"R12"[interval], '\0'};
     const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text);
     list.AddText(font, height_of(font), {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},

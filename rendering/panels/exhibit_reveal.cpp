@@ -104,8 +104,10 @@ void ExhibitReveal::draw_arrows(const UiStyle& style, const SceneArea& area, dou
   const float ground = area.at.y + area.size.y;
   const auto height = [&](double force_N) { return px_per_N * static_cast<float>(std::max(0.0, force_N)); };
   const double jnd_N = jnd_.at(moment.first_N);
-  list.AddRectFilled({area.at.x, ground - height(moment.first_N + jnd_N)},
-                     {area.at.x + area.size.x, ground - height(moment.first_N - jnd_N)}, ink(style.colours().band));
+  const ImVec2 corner(area.at.x, ground - height(moment.first_N + jnd_N));
+  const ImVec2 other(area.at.x + area.size.x, ground - height(moment.first_N - jnd_N));
+  list.AddRectFilled(corner, other, ink(style.colours().band));
+  list.AddRect(corner, other, ink(style.colours().edge));
   const float thick = 3.0F * style.scale();
   const float width = 0.11F * area.size.x;
   const float left = area.at.x + 0.25F * area.size.x, right = area.at.x + 0.75F * area.size.x;

@@ -67,7 +67,7 @@ std::string Exhibit::name_of(bool first, const LiveSession& session) const {
 
 Rgb Exhibit::first_colour(Theme theme) const {
   const auto& first = pair()->first;
-  return first ? exhibit_colour(first->method, first->paper, theme) : kReferenceColour;
+  return first ? exhibit_colour(first->method, first->paper, theme) : reference_colour(theme);
 }
 
 Rgb Exhibit::second_colour(Theme theme) const {
@@ -260,14 +260,14 @@ void Exhibit::draw_growing_number(const Canvas& canvas, const SceneArea& scene) 
                                               one.c_str());
     }
   };
-  centred(big, 1.4F, number(largest), ink(largest > 1.0 ? kAboveJndColour : p.text));
+  centred(big, 1.4F, number(largest), ink(largest > 1.0 ? text_colour(kAboveJndColour, canvas.style.theme()) : p.text));
   ImGui::PushFont(font);  // in_lines measures with it
   centred(font, 1.0F, in_lines(words()("reveal_times"), room), ink(p.text));
   ImGui::PopFont();
 }
 
 void Exhibit::draw_key(const Canvas& canvas, const ExhibitModel& model, const char* block) {
-  ImGui::PushStyleColor(ImGuiCol_Text, paint(canvas.colour_of(model)));
+  ImGui::PushStyleColor(ImGuiCol_Text, paint(text_colour(canvas.colour_of(model), canvas.style.theme())));
   say(words()(block) + ": " + words()("name_" + canvas.kind_of(model), canvas.centres_of(model)));
   ImGui::PopStyleColor();
 }
@@ -301,6 +301,7 @@ void Exhibit::draw_bar(const Canvas& canvas, const ExhibitRound& round) {
   const auto length = static_cast<float>(std::clamp(round.largest_over_jnd, 0.02, kMost_jnd));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, {at.x + jnd, at.y + height}, ink(canvas.style.colours().band));
+  list.AddRect(at, {at.x + jnd, at.y + height}, ink(canvas.style.colours().edge));
   list.AddRectFilled({at.x, at.y + 0.2F * height}, {at.x + length * jnd, at.y + 0.8F * height},
                      ink(canvas.colour_of(round.second)));
   ImGui::Dummy({1.0F, height});
@@ -315,7 +316,6 @@ float Exhibit::begin_plot(const Canvas& canvas, const std::string& title) {
 }
 
 void Exhibit::draw_difference(const Canvas& canvas, const ExhibitTrace& trace, double right_s) {
-  const Palette& p = canvas.style.colours();
   // Outside the plot, where no curve crosses them.
   say_quietly(canvas, words()("axis_difference"));
   const double largest = trace.largest_over_jnd();
@@ -323,8 +323,8 @@ void Exhibit::draw_difference(const Canvas& canvas, const ExhibitTrace& trace, d
   {
     const LivePlot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
                         {{0.0, right_s}, {-kMost_jnd, kMost_jnd}, "s", "", true});
-    plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.y_px(-1.0)}, ink(p.band));
-    plot.level(0.0, ink(kReferenceColour), 4.0F * canvas.style.scale());
+    plot.jnd_band(-1.0, 1.0);
+    plot.level(0.0, ink(reference_colour(canvas.style.theme())), 4.0F * canvas.style.scale());
     std::vector<ImVec2> points;
     const auto flush = [&] {
       plot.line(points, ink(canvas.colour_of(pair()->second)), 4.0F * canvas.style.scale());
@@ -384,7 +384,8 @@ void Exhibit::draw_names(const Canvas& canvas, const BlockView& blocks, const Sc
         i, count, {0.0F, -1.05F * static_cast<float>(block.height_m), 0.5F * static_cast<float>(block.length_m)},
         {scene.size.x, scene.size.y});
     const Theme theme = canvas.style.theme();
-    const Rgb colour = blind ? canvas.style.colours().text : first ? first_colour(theme) : second_colour(theme);
+    const Rgb colour =
+        blind ? canvas.style.colours().text : text_colour(first ? first_colour(theme) : second_colour(theme), theme);
     ImGui::GetBackgroundDrawList()->AddText(
         font, height_of(font),
         {scene.at.x + std::clamp(foot.x - 0.5F * size.x, 4.0F, scene.size.x - size.x - 4.0F),

@@ -83,7 +83,7 @@ void draw_labels(const WindowView& shown, const BlockView& blocks, const UiStyle
     const ImVec2 at = label_place(blocks, i, slots.size(), area, size, lift);
     const bool active = slots[i] == shown.models.selected;
     const bool best = shown.models.verdict.chosen == slots[i];
-    const Rgb colour = reference ? kReferenceColour : slot_colour(shown.models, slots[i], style.theme());
+    const Rgb colour = reference ? reference_colour(style.theme()) : slot_colour(shown.models, slots[i], style.theme());
     const float pad = 0.25F * height_of(font);
     draw_plate(*ImGui::GetBackgroundDrawList(), at, size, {2.0F * pad, 0.5F * pad}, ink(style.colours().panel, 0.88F),
                colour);
@@ -116,7 +116,8 @@ void draw_big_number(const WindowView& shown_view, const UiStyle& style, const S
   ImVec2 size = text_size(big, "0.00");
   size.x = std::max(size.x, text_size(big, shown.number).x);
   const float y = area.at.y + area.size.y - big_number_height(style, lift);
-  text_at(big, {corner.x, y}, ink(shown.error_over_jnd > 1.0 ? kAboveJndColour : p.text), shown.number);
+  text_at(big, {corner.x, y}, ink(shown.error_over_jnd > 1.0 ? text_colour(kAboveJndColour, style.theme()) : p.text),
+          shown.number);
   const float beside = corner.x + size.x + 0.7F * line;
   if (ImGui::IsMouseHoveringRect({corner.x, y}, {area.at.x + area.size.x, corner.y}))
     ImGui::SetTooltip(
@@ -134,6 +135,7 @@ void draw_big_number(const WindowView& shown_view, const UiStyle& style, const S
                                                   {corner.x + (from + 0.025F) * width + 0.5F, top + high},
                                                   ink(error_colour(static_cast<double>(from))));
   }
+  ImGui::GetBackgroundDrawList()->AddRect({corner.x, top}, {corner.x + width, top + high}, ink(p.edge));
   ImGui::GetBackgroundDrawList()->AddRectFilled({corner.x + width + 3.0F, top}, {corner.x + 1.3F * width, top + high},
                                                 ink(kAboveJndColour));
   text_at(body, {corner.x, top + high + 1.0F}, ink(p.quiet), "0");

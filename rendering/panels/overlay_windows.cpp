@@ -57,7 +57,7 @@ void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const S
     const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, wrap, toast.text.c_str());
     const float x = area.at.x + 0.5F * (area.size.x - size.x);
     draw_plate(list, {x, y}, size, {pad, pad}, ink(style.colours().raised),
-               toast.problem ? style.colours().fault : kReferenceColour);
+               toast.problem ? style.colours().fault : reference_colour(style.theme()));
     list.AddText(font, height_of(font), {x, y}, ink(style.colours().text), toast.text.c_str(), nullptr, wrap);
     y += size.y + 2.6F * pad;
   }

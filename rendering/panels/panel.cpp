@@ -64,7 +64,7 @@ void SidePanel::draw(LiveSession& session, const WindowView& shown, ViewState& v
   draw_model_table(session, models, view, style, table);
   if (centres > 0.0F) draw_centres(session, models, view);
   if (bins) {
-    section_title(style, view.verdict ? "ERROR / JND AGAINST TIME OF A TICK" : "ERROR AGAINST FORCE");
+    section_title(style, view.verdict ? "ERROR / JND, TIME OF A TICK" : "ERROR AGAINST FORCE");
     ImGui::SameLine();
     quiet_words(models.counted);
     if (view.verdict) {

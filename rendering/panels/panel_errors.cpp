@@ -50,7 +50,7 @@ Limits limits_of(const ModelsView& models) {
 void draw_slot(const LivePlot& plot, const ModelsView& models, std::size_t index, const UiStyle& style) {
   const bool selected = index == models.selected;
   const ModelView& slot = models.slots[index];
-  const ImU32 colour = ink(slot_colour(models, index, style.theme()), selected ? 1.0F : 0.75F);
+  const ImU32 colour = ink(slot_colour(models, index, style.theme()));
   const float size = style.scale();
   std::vector<ImVec2> spread;
   for (const ForceBin& bin : slot.errors.bins) {
@@ -74,7 +74,7 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
   {
     const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
                         {kTimes, kErrors, "us a tick", "", true, 0.6F, true});
-    plot.list().AddRectFilled({plot.left(), plot.y_px(0.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
+    plot.jnd_band(kErrors.from, 0.0);
     plot.level(0.0, ink(p.text), 1.5F * size);
     const float budget_px = plot.x_px(std::log10(kBudget_us));
     plot.list().AddLine({budget_px, plot.top()}, {budget_px, plot.bottom()}, ink(p.fault), 1.5F * size);
@@ -116,7 +116,7 @@ void draw_error_bins(const ModelsView& models, const UiStyle& style, float heigh
       line.emplace_back(plot.x_px(force_N), plot.y_px(models.jnd.at(force_N)));
       floor.emplace_back(plot.x_px(force_N), plot.bottom());
     }
-    plot.band(line, floor, ink(style.colours().band, 0.45F));
+    plot.band(line, floor, ink(style.colours().band));
     plot.line(line, ink(style.colours().text), 1.5F * style.scale());
     for (std::size_t i = 0; i < models.slots.size(); ++i) {
       if (i != models.selected) draw_slot(plot, models, i, style);

@@ -47,8 +47,6 @@ struct ForceCurves::Drawing {
   void paint_prediction(const CurvePainter& paint_on, Low low, High high) const {
     if (predicts()) paint_on.band(ink(colour(shown.models.selected), kPredictedAlpha), low, high);
   }
-  // Opacity of the other models; it is higher on the dark theme, where they are less visible.
-  float faint() const { return style.theme() == Theme::dark ? 0.95F : 0.75F; }
   // Visits the models in the order of drawing: the active one is the last, on top.
   template <typename Draw>
   void for_each_slot(Draw draw) const {
@@ -61,8 +59,7 @@ struct ForceCurves::Drawing {
   template <typename Low, typename High>
   void paint_slot(const CurvePainter& paint_on, std::size_t slot, Low low, High high) const {
     const bool selected = slot == shown.models.selected;
-    paint_on.curve(ink(colour(slot), selected ? 1.0F : faint()),
-                   (selected ? kSelectedLine_px : kModelLine_px) * style.scale(), low, high);
+    paint_on.curve(ink(colour(slot)), (selected ? kSelectedLine_px : kModelLine_px) * style.scale(), low, high);
   }
   template <typename Value>
   void paint_slot(const CurvePainter& paint_on, std::size_t slot, Value value) const {
@@ -112,14 +109,16 @@ void ForceCurves::draw_titles_of_force(const Drawing& drawing, float width) cons
   const bool reference = !drawing.predicts();
   if (reference) {
     const double now_N = models.any_now ? static_cast<double>(models.now.reference_N) : std::nan("");
-    ImGui::TextColored(paint(kReferenceColour), "%s N", at_most_three_decimals(now_N).c_str());
+    ImGui::TextColored(paint(text_colour(reference_colour(drawing.style.theme()), drawing.style.theme())), "%s N",
+                       at_most_three_decimals(now_N).c_str());
     ImGui::SameLine();
   }
   const std::string words = reference
                                 ? drawing.shown.reference_words
                                 : drawing.shown.reference_words + ", band: where the active model expects it, 95 %";
-  const std::string fits = fitting(words, width - ImGui::GetCursorPosX());
-  ImGui::TextDisabled("%s", fits.c_str());
+  const float room = width - ImGui::GetCursorPosX();
+  const bool brief = models.compared && ImGui::CalcTextSize(words.c_str()).x > room;
+  ImGui::TextDisabled("%s", fitting(brief ? "of " + models.reference_name : words, room).c_str());
   tip((words + "\nForce of every model, and in green what they are compared with.\n"
                "The grey band is one just noticeable difference (JND) to either side.\n"
                "Marks at the top: missed deadlines, and in red faults (L lists them).\n"
@@ -160,12 +159,13 @@ void ForceCurves::finish_plot(const Drawing& drawing, const LivePlot& plot,
   const CurveColumn* last = curves_.last();
   if (under != nullptr && !std::isnan(under->tick.reference_N))
     readings.push_back({"reference  " + at_most_three_decimals(static_cast<double>(under->tick.reference_N)) + " N",
-                        kReferenceColour});
+                        reference_colour(drawing.style.theme())});
   const ModelsView& models = drawing.shown.models;
   for (std::size_t i = 0; i < models.slots.size(); ++i) {
     if (models.slots[i].state != SlotState::ready) continue;
     if (i == drawing.view.pointed && last != nullptr && !std::isnan(value(*last, i)))
-      draw_label(plot, {models.slots[i].name, drawing.colour(i), plot.y_px(static_cast<double>(value(*last, i)))});
+      draw_label(plot, {models.slots[i].name, text_colour(drawing.colour(i), drawing.style.theme()),
+                        plot.y_px(static_cast<double>(value(*last, i)))});
     if (under != nullptr && !std::isnan(value(*under, i)))
       readings.push_back(
           {models.slots[i].name + "  " + at_most_three_decimals(static_cast<double>(value(*under, i))) + unit,
@@ -190,7 +190,7 @@ void ForceCurves::draw_loops(const Drawing& drawing, const ImVec2& size) {
   const std::size_t selected = models.selected;
   std::vector<ImVec2> reference, model;
   const auto flush = [&] {
-    plot.line(reference, ink(kReferenceColour), kReferenceLine_px * drawing.style.scale());
+    plot.line(reference, ink(reference_colour(drawing.style.theme())), kReferenceLine_px * drawing.style.scale());
     if (models.active() != nullptr)
       plot.line(model, ink(drawing.colour(selected)), kModelLine_px * drawing.style.scale());
     reference.clear();
@@ -220,7 +220,7 @@ void ForceCurves::draw_force(const Drawing& drawing, const ImVec2& size) {
   drawing.paint_prediction(
       paint_on, [](const CurveColumn& c) { return c.predicted_low_N; },
       [](const CurveColumn& c) { return c.predicted_high_N; });
-  paint_on.curve(ink(kReferenceColour), kReferenceLine_px * thin,
+  paint_on.curve(ink(reference_colour(drawing.style.theme())), kReferenceLine_px * thin,
                  [](const CurveColumn& c) { return c.tick.reference_N; });
   drawing.for_each_slot([&](std::size_t slot) {
     drawing.paint_slot(paint_on, slot, [slot](const CurveColumn& c) { return c.tick.force_N[slot]; });
@@ -235,12 +235,11 @@ void ForceCurves::draw_difference(const Drawing& drawing, float height) {
   const LivePlot plot(drawing.style, size, drawing.axes({-kDifference_jnd, kDifference_jnd}, "", true));
   const CurvePainter paint_on{plot, curves_.columns(), drawing.view.time.zero_s};
   const float thin = drawing.style.scale();
-  const Palette& p = drawing.style.colours();
-  plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.y_px(-1.0)}, ink(p.band));
+  plot.jnd_band(-1.0, 1.0);
   drawing.paint_prediction(
       paint_on, [](const CurveColumn& c) { return -c.predicted_over_jnd; },
       [](const CurveColumn& c) { return c.predicted_over_jnd; });
-  if (!drawing.predicts()) plot.level(0.0, ink(kReferenceColour), kReferenceLine_px * thin);
+  if (!drawing.predicts()) plot.level(0.0, ink(reference_colour(drawing.style.theme())), kReferenceLine_px * thin);
   drawing.for_each_slot([&](std::size_t slot) {
     drawing.paint_slot(
         paint_on, slot, [slot](const CurveColumn& c) { return c.low_over_jnd[slot]; },
@@ -261,7 +260,7 @@ void ForceCurves::draw_sustained(const Drawing& drawing, float height) {
   const CurvePainter paint_on{plot, curves_.columns(), drawing.view.time.zero_s};
   const float thin = drawing.style.scale();
   const Palette& p = drawing.style.colours();
-  plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
+  plot.jnd_band(0.0, 1.0);
   plot.level(1.0, ink(p.text), 1.5F * thin);
   drawing.paint_prediction(
       paint_on, [](const CurveColumn&) { return 0.0F; }, [](const CurveColumn& c) { return c.predicted_over_jnd; });

@@ -191,9 +191,9 @@ void draw_figures(const ModelsView& models, std::size_t index, const UiStyle& st
     if (!ImGui::TableSetColumnIndex(column)) continue;
     const double value = one.value(models, index);
     const bool above = one.value == p99_over_jnd && value > 1.0;
-    const Rgb& colour = above                      ? kAboveJndColour
-                        : one.value == error_now_N ? style.colours().quiet
-                                                   : style.colours().text;
+    const Rgb colour = above                      ? text_colour(kAboveJndColour, style.theme())
+                       : one.value == error_now_N ? style.colours().quiet
+                                                  : style.colours().text;
     right_aligned(std::isnan(value) ? "–" : one.text(value), colour);
   }
 }

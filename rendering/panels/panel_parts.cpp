@@ -34,7 +34,12 @@ std::string jnd_text(double error_over_jnd) {
 }
 
 void quiet_words(const std::string& text) {
-  const std::string shown = fitting(text, ImGui::GetContentRegionAvail().x);
+  const float room = ImGui::GetContentRegionAvail().x;
+  // Drops whole clauses, the last one first, before words.
+  std::string shown = text;
+  while (ImGui::CalcTextSize(shown.c_str()).x > room && shown.find_last_of(",;") != std::string::npos)
+    shown.resize(shown.find_last_of(",;"));
+  shown = fitting(shown, room);
   ImGui::TextDisabled("%s", shown.c_str());
   if (shown != text) tip(text.c_str());
 }

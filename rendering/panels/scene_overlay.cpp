@@ -36,7 +36,7 @@ void draw_feel(LiveSession& session, const UiStyle& style, const SceneArea& area
 }
 
 // Draws the title of the scene, and any exaggeration of force or picture.
-void draw_title(const LiveSession& session, const ViewState& view, const SceneArea& area) {
+void draw_title(const LiveSession& session, const ViewState& view, const UiStyle& style, const SceneArea& area) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.0F});
   ImGui::Begin("title", nullptr, kFloating);
   ImGui::TextUnformatted(session.scene().title.c_str());
@@ -47,24 +47,26 @@ void draw_title(const LiveSession& session, const ViewState& view, const SceneAr
   }
   if (view.scales_force || view.exaggerated) {
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
-    ImGui::TextColored(paint(kAboveJndColour), "%s",
+    ImGui::TextColored(paint(text_colour(kAboveJndColour, style.theme())), "%s",
                        view.scales_force ? scale_words(session.scale()).c_str() : "arrows: difference x 10");
   }
   ImGui::End();
 }
 
-// Draws the hint how to press, until the user has pressed with half a newton.
-void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area, float top_px) {
+// Draws the hint how to press, until the user has pressed with half a newton. Returns the y below it.
+float draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area,
+                float top_px) {
   constexpr double kPressed_N = 0.5;
-  if (session.tool_input() == nullptr) return;
+  if (session.tool_input() == nullptr) return top_px;
   const bool alone = session.tool_input()->hand_is_exploring();
   if (!alone && session.newest().rendered_N > kPressed_N) view.has_pressed = true;
-  if (!alone && view.has_pressed) return;
+  if (!alone && view.has_pressed) return top_px;
   const std::string hint = alone ? "The hand moves by itself. Move the mouse down over the block to press it."
                                  : "Move the mouse down over the block to press it. No button is needed.";
   const float line = height_of(style.fonts().body);
-  text_at(style.fonts().body, {area.at.x + 0.9F * line, top_px}, ink(style.colours().quiet), hint,
-          area.size.x - 1.8F * line);
+  const float room = area.size.x - 1.8F * line;
+  text_at(style.fonts().body, {area.at.x + 0.9F * line, top_px}, ink(style.colours().quiet), hint, room);
+  return top_px + text_size(style.fonts().body, hint, room).y;
 }
 
 // Draws five buttons, and a menu of all other commands. Returns their height.
@@ -232,11 +234,12 @@ void SceneOverlay::draw(LiveSession& session, const WindowView& shown, const Blo
   if (!view.exhibit.on) {
     draw_labels(shown, blocks, style, area, big_number_height(style, bars));
     if (!shown.models.slots.empty()) draw_big_number(shown, style, area, bars);
-    draw_title(session, view, area);
+    draw_title(session, view, style, area);
     top_px = draw_headline(shown, style, area);
     draw_data_warning(shown.models, style, area, top_px);
     if (view.scales_force) draw_feel(session, style, area);
-    if (!view.scales_force && data_warning(shown.models).empty()) draw_hint(session, view, style, area, top_px);
+    if (!view.scales_force && data_warning(shown.models).empty())
+      top_px = draw_hint(session, view, style, area, top_px);
   }
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);

@@ -21,7 +21,8 @@ constexpr float kLongestArrow = 0.6F;
 constexpr float kUsualSize_m = 0.1F;
 constexpr float kArrowTip_m = 0.0085F, kArrowRadius_m = 0.0038F;
 constexpr float kShortestArrow_N = 0.03F;
-constexpr float kFrameWidth_m = 0.0022F;  // of the frame on the active block
+constexpr float kOutline = 0.0019F, kLeastOutline_px = 0.75F;  // width of outlines, in heights of the picture
+constexpr float kFrameWidth_m = 0.0022F;                       // of the frame on the active block
 // Rise and radius of a dome, in radii of the tool: the rise of the virtual button (scenes/material/button_block.h), and
 // a visible width.
 constexpr float kDomeRise = 0.5F, kDomeRadius = 2.6F;
@@ -145,6 +146,10 @@ void BlockView::show(std::size_t count, bool at_once) {
   }
 }
 
+float BlockView::outline_px() const {
+  return std::max(kLeastOutline_px, kOutline * static_cast<float>(smooth_.height()));
+}
+
 float BlockView::arrow_length_m(const BlockPose& pose) const {
   return std::min(arrow_m_per_N_ * pose.force_N, kLongestArrow * size_m_);
 }
@@ -173,6 +178,7 @@ void BlockView::begin(const Shader& shader) const {
   shader.set("view_projection", view_projection_);
   shader.set("eye", camera_.eye());
   shader.set("light", kLight);
+  shader.set("outline_width", outline_px());
 }
 
 const BlockView::Bodies& BlockView::bodies(std::size_t count, const Viewport& viewport) const {
@@ -265,10 +271,29 @@ void BlockView::draw_all_still(std::size_t count, const Bodies& bodies, Theme th
   draw_table(count, theme);
   glEnable(GL_DEPTH_TEST);
   for (std::size_t i = 0; i < count; ++i) {
-    begin_block({}, place(i, count) - glm::vec3(0.0F, dome_m_, 0.0F));
+    const glm::vec3 at = place(i, count) - glm::vec3(0.0F, dome_m_, 0.0F);
+    begin_block({}, at);
     bodies.sides.draw();
+    draw_outline(at, bodies, theme);
   }
   glDisable(GL_DEPTH_TEST);
+}
+
+// The inner faces of a slightly larger block, which are visible around the block.
+void BlockView::draw_outline(const glm::vec3& at, const Bodies& bodies, Theme theme) const {
+  const float pixel_m = 2.0F * glm::length(camera_.eye() - at) * std::tan(0.5F * Camera::kFieldOfView_rad) /
+                        static_cast<float>(std::min(smooth_.width(), smooth_.height()));
+  begin(solid_shader_);
+  solid_shader_.set("offset", at);
+  solid_shader_.set("stretch", glm::vec3(1.0F));
+  solid_shader_.set("grown", outline_px() * pixel_m);
+  solid_shader_.set("colour", palette(theme).edge);
+  solid_shader_.set("shininess", 0.0F);
+  solid_shader_.set("shaded", 0.0F);
+  solid_shader_.set("outline_width", -1.0F);
+  glCullFace(GL_FRONT);
+  bodies.sides.draw();
+  glCullFace(GL_BACK);
 }
 
 // The table is behind and below everything else, so it needs no depth test.
@@ -305,6 +330,7 @@ void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
   block_shader_.set("gloss", material.gloss);
   block_shader_.set("pores", material.pores);
   block_shader_.set("grid", material.grid);
+  block_shader_.set("outline_colour", outline_on(block_colour_));
   block_shader_.set("mark", 0.0F);
   block_shader_.set("frame", 0.0F);
   block_shader_.set("tip", -1.0F);  // the tip is far above
@@ -329,13 +355,17 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at, const Bodi
   begin(solid_shader_);
   solid_shader_.set("offset", at - glm::vec3(0.0F, pose.tool_m, 0.0F));
   solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
+  solid_shader_.set("grown", 0.0F);
+  solid_shader_.set("outline_colour", outline_on(block_colour_));
+  solid_shader_.set("glow", palette(theme).glow);
+  solid_shader_.set("shaded", 1.0F);
   const auto part = [&](const GpuMesh& mesh, const Rgb& colour, float shininess) {
     solid_shader_.set("colour", colour);
     solid_shader_.set("shininess", shininess);
     mesh.draw();
   };
   part(bodies.ball, tool_colour_, 1.0F);
-  part(bodies.sensor, 0.62F * tool_colour_, 0.6F);
+  part(bodies.sensor, glm::mix(tool_colour_, palette(theme).rubber, 0.5F), 0.6F);
   part(bodies.handle, palette(theme).rubber, 0.25F);
   if (pose.force_N >= kShortestArrow_N) draw_arrow(pose, at, bodies);
 }
@@ -352,6 +382,7 @@ void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at, const Bod
   const float length_m = arrow_length_m(pose);
   solid_shader_.set("colour", pose.arrow);
   solid_shader_.set("shininess", 0.0F);
+  solid_shader_.set("shaded", 0.35F);
   solid_shader_.set("offset", foot);
   solid_shader_.set("stretch", glm::vec3(arrow_width_, length_m, arrow_width_));
   bodies.shaft.draw();

@@ -18,6 +18,8 @@ struct CameraTurn {
 
 class Camera {
  public:
+  static constexpr float kFieldOfView_rad = 0.55F;  // of the smaller side of the picture
+
   // Frames blocks within `radius_m` of the middle, seen from `yaw_rad` to the right of the front. `at_once`: without
   // a transition.
   void frame(float radius_m, float yaw_rad, bool at_once);
@@ -35,7 +37,6 @@ class Camera {
   glm::mat4 view_projection(float aspect) const;
 
  private:
-  static constexpr float kFieldOfView_rad = 0.55F;
   struct Pose {
     float yaw_rad = 0.5F;
     float pitch_rad = 0.42F;

@@ -17,10 +17,12 @@ constexpr Rgb hex(unsigned value) noexcept {
           static_cast<float>(value & 255U) / 255.0F};
 }
 
-const Palette kLight{hex(0xF3F3F2), hex(0xE9E8E6), hex(0xFFFFFF), hex(0xE6E9ED), hex(0x16191D),
-                     hex(0x5C6670), hex(0xDDE1E5), hex(0xC9CFD6), hex(0xC4161C), hex(0x44494F)};
-const Palette kDark{hex(0x131516), hex(0x222426), hex(0x1B1F23), hex(0x2D343B), hex(0xF1F3F5),
-                    hex(0xA3ADB7), hex(0x333A41), hex(0x4A535C), hex(0xFF5A4F), hex(0x7E868E)};
+const Palette kLight{hex(0xF3F3F2), hex(0xE9E8E6), hex(0xFFFFFF), hex(0xECEEF1), hex(0x16191D), hex(0x5C6670),
+                     hex(0xDDE1E5), hex(0x78818A), hex(0xE9ECEF), hex(0xC4161C), hex(0x44494F), 0.34F};
+const Palette kDark{hex(0x131516), hex(0x222426), hex(0x1B1F23), hex(0x2D343B), hex(0xF1F3F5), hex(0xA3ADB7),
+                    hex(0x333A41), hex(0x7C8590), hex(0x2C333A), hex(0xFF5A4F), hex(0x8A929A), 0.70F};
+constexpr Rgb kReference = hex(0x009E73);
+constexpr Rgb kDarkOutline = hex(0x17191C), kLightOutline = hex(0xFFFFFF);
 
 // Equal steps of lightness (CIELAB L* 96, 87, 78, 69, 60), from nearly white to the green of viridis: larger errors are
 // darker.
@@ -33,18 +35,23 @@ double luminance(const Rgb& colour) noexcept {
   return static_cast<double>(0.2126F * linear(colour.r) + 0.7152F * linear(colour.g) + 0.0722F * linear(colour.b));
 }
 
-// Mixes the colour with white on a dark panel, and with dark green on a light one, until the contrast is sufficient.
-// Black would turn orange into vermilion.
-Rgb legible(const Rgb& colour, Theme theme) noexcept {
+// Mixes the colour with `end` until its contrast to all surfaces is at least `least`.
+Rgb mixed_until(const Rgb& colour, const Rgb& end, double least, Theme theme) noexcept {
   constexpr float kStep = 0.02F;
   const Palette& p = palette(theme);
-  const Rgb end = theme == Theme::light ? Rgb(0.0F, 0.32F, 0.2F) : Rgb(1.0F);
   const auto enough = [&](const Rgb& shade) {
-    return std::min(contrast(shade, p.panel), contrast(shade, p.background)) >= kLeastContrast;
+    return std::min({contrast(shade, p.panel), contrast(shade, p.background), contrast(shade, p.raised),
+                     contrast(shade, p.band)}) >= least;
   };
   float share = 0.0F;
   while (!enough(glm::mix(colour, end, share)) && share < 1.0F) share += kStep;
   return glm::mix(colour, end, share);
+}
+
+// With white in the dark theme, and with dark green in the light one: black would turn orange into vermilion.
+Rgb legible(const Rgb& colour, Theme theme) noexcept {
+  const Rgb end = theme == Theme::light ? Rgb(0.0F, 0.32F, 0.2F) : Rgb(1.0F);
+  return mixed_until(colour, end, kLeastContrast, theme);
 }
 
 }  // namespace
@@ -72,6 +79,16 @@ Rgb method_colour(std::string_view method, Theme theme, std::size_t which) {
   const bool turned = colour == Rgb(0.0F) || (theme == Theme::dark && colour != Rgb(1.0F));
   const float shade = kShades[(which - 1) % kShades.size()] * (turned ? -1.0F : 1.0F);
   return legible(glm::mix(colour, Rgb(shade < 0.0F ? 0.0F : 1.0F), std::abs(shade)), theme);
+}
+
+Rgb reference_colour(Theme theme) noexcept { return legible(kReference, theme); }
+
+Rgb text_colour(const Rgb& colour, Theme theme) noexcept {
+  return mixed_until(colour, Rgb(theme == Theme::light ? 0.0F : 1.0F), kLeastTextContrast, theme);
+}
+
+Rgb outline_on(const Rgb& block) noexcept {
+  return contrast(kDarkOutline, block) >= contrast(kLightOutline, block) ? kDarkOutline : kLightOutline;
 }
 
 Rgb error_colour(double error_over_jnd) noexcept {

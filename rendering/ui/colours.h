@@ -22,24 +22,32 @@ struct Palette {
   Rgb text;
   Rgb quiet;  // secondary text, axes
   Rgb grid;
+  Rgb edge;    // outlines of blocks, controls and the band
   Rgb band;    // the JND band
   Rgb fault;   // red, used for faults only
   Rgb rubber;  // the probe's handle
+  float glow;  // brightness of the probe in the shade, as a factor
 };
 const Palette& palette(Theme theme) noexcept;
 
 // Contrast ratio of WCAG 2, 1 to 21.
 double contrast(const Rgb& a, const Rgb& b) noexcept;
-// Smallest contrast of a colour with a meaning to its background (WCAG 2.1, 1.4.11).
+// Smallest contrast of a colour with a meaning (WCAG 2.1, 1.4.11) and of text (1.4.3) to what is behind it.
 inline constexpr double kLeastContrast = 3.0;
+inline constexpr double kLeastTextContrast = 4.5;
 
-// The colour of a method (method_rgb in scenes/scene/scene.h), changed as far as the contrast requires. Methods without
-// a hue and unknown names are black, or white in the dark theme.
+// The colour of a method (method_rgb in scenes/scene/scene.h), changed as far as the contrast to the background, the
+// panel, its controls and the JND band requires. Methods without a hue and unknown names are black, or white in the
+// dark theme.
 Rgb method_colour(std::string_view method, Theme theme);
 // A shade of it for the `which`-th model of the method, from 0.
 Rgb method_colour(std::string_view method, Theme theme, std::size_t which);
-// The measured or true force.
-inline constexpr Rgb kReferenceColour{0.0F, 0.62F, 0.45F};
+// The measured or true force; changed in the same way.
+Rgb reference_colour(Theme theme) noexcept;
+// A shade of any colour in which text can be read.
+Rgb text_colour(const Rgb& colour, Theme theme) noexcept;
+// The outline of arrows, probe and dent on a block of this colour: nearly black, or nearly white on a dark block.
+Rgb outline_on(const Rgb& block) noexcept;
 
 // Error over the JND: a perceptually uniform scale from nearly white (0) to green (1), and magenta above 1, which
 // neither the scale nor any block contains.

@@ -19,7 +19,7 @@ double tick_step(double span, int most) noexcept {
 double round_up(double value) noexcept {
   if (!(value > 0.0)) return 1.0;
   const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
+  for (const double step : {1.0, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
     if (step * decade >= value * (1.0 - 1e-9)) return step * decade;
   }
   return 10.0 * decade;
@@ -110,6 +110,12 @@ void LivePlot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>&
   for (int i = 0; i < quads; ++i) {
     for (const int corner : {0, 1, 2, 2, 1, 3}) list_->PrimWriteIdx(static_cast<ImDrawIdx>(first + 2 * i + corner));
   }
+}
+
+void LivePlot::jnd_band(double from, double to) const {
+  const Palette& p = style_.colours();
+  list_->AddRectFilled({low_.x, y_px(to)}, {high_.x, y_px(from)}, ink(p.band));
+  for (const double edge : {from, to}) level(edge, ink(p.edge), 1.0F);
 }
 
 void LivePlot::level(double y, ImU32 colour, float thickness) const {

@@ -53,6 +53,8 @@ class LivePlot {
   void line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const;
   // Fills the area between two curves with the same x values.
   void band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const;
+  // Fills a range that a hand cannot feel, over the whole width.
+  void jnd_band(double from, double to) const;
   void level(double y, ImU32 colour, float thickness) const;
   // Text inside the frame; `x`, `y`: 0..1 from the upper left corner.
   void caption(const std::string& text, float x, float y, ImU32 colour) const;

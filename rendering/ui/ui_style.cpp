@@ -111,7 +111,7 @@ void UiStyle::set_colours() {
   set(ImGuiCol_WindowBg, p.panel);
   set(ImGuiCol_ChildBg, p.panel, 0.0F);
   set(ImGuiCol_PopupBg, p.panel, 0.98F);
-  set(ImGuiCol_Border, p.grid);
+  set(ImGuiCol_Border, p.edge);
   for (const ImGuiCol what : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed}) set(what, p.raised);
   const Rgb hovered = glm::mix(p.raised, p.text, 0.12F);
   const Rgb pressed = glm::mix(p.raised, p.text, 0.22F);
@@ -129,7 +129,7 @@ void UiStyle::set_colours() {
   set(ImGuiCol_TableBorderStrong, p.grid);
   set(ImGuiCol_TableRowBgAlt, p.text, 0.03F);
   set(ImGuiCol_ScrollbarBg, p.panel, 0.0F);
-  set(ImGuiCol_ScrollbarGrab, p.raised);
+  set(ImGuiCol_ScrollbarGrab, p.edge);
   set(ImGuiCol_Separator, p.grid);
   set(ImGuiCol_NavHighlight, p.quiet);
 }

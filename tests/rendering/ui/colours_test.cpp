@@ -3,20 +3,37 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <string>
+
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
 
+constexpr std::array kMethods{"trend", "direct", "voxel", "random", "kdtree", "greedy", "position"};
+
+// What texts, curves and marks are drawn on.
+std::array<Rgb, 4> surfaces(Theme theme) {
+  const Palette& p = palette(theme);
+  return {p.panel, p.background, p.raised, p.band};
+}
+
 TEST(Colours, TextCanBeReadInBothThemes) {
   for (const Theme theme : {Theme::light, Theme::dark}) {
     const Palette& p = palette(theme);
-    EXPECT_GE(contrast(p.text, p.panel), 7.0);
-    EXPECT_GE(contrast(p.text, p.raised), 7.0);
-    EXPECT_GE(contrast(p.quiet, p.panel), 4.5);
-    EXPECT_GE(contrast(p.quiet, p.background), 4.5);
-    EXPECT_GE(contrast(p.fault, p.panel), 4.5);
+    for (const Rgb& behind : surfaces(theme)) {
+      EXPECT_GE(contrast(p.text, behind), 7.0);
+      EXPECT_GE(contrast(p.quiet, behind), kLeastTextContrast);
+      EXPECT_GE(contrast(p.fault, behind), kLeastContrast) << "lines and marks";
+      EXPECT_GE(contrast(text_colour(kAboveJndColour, theme), behind), kLeastTextContrast);
+      EXPECT_GE(contrast(text_colour(reference_colour(theme), theme), behind), kLeastTextContrast);
+      for (const char* method : kMethods)
+        EXPECT_GE(contrast(text_colour(method_colour(method, theme), theme), behind), kLeastTextContrast) << method;
+    }
+    EXPECT_GE(contrast(p.fault, p.panel), kLeastTextContrast);
   }
 }
 
@@ -31,14 +48,32 @@ TEST(Colours, ContrastIsThatOfWcag) {
 TEST(Colours, WhatCarriesAMeaningIsSeenInBothThemes) {
   for (const Theme theme : {Theme::light, Theme::dark}) {
     const Palette& p = palette(theme);
-    for (const Rgb& behind : {p.panel, p.background}) {
-      for (const char* method : {"trend", "direct", "voxel", "random", "kdtree", "greedy", "position"}) {
+    for (const Rgb& behind : surfaces(theme)) {
+      for (const char* method : kMethods) {
         for (std::size_t which = 0; which < 5; ++which)
           EXPECT_GE(contrast(method_colour(method, theme, which), behind), kLeastContrast) << method << which;
       }
-      EXPECT_GE(contrast(kReferenceColour, behind), kLeastContrast);
+      EXPECT_GE(contrast(reference_colour(theme), behind), kLeastContrast);
       EXPECT_GE(contrast(kAboveJndColour, behind), kLeastContrast);
+      EXPECT_GE(contrast(p.edge, behind), kLeastContrast) << "controls, the band and the scale of errors";
       EXPECT_GE(contrast(p.rubber, behind), kLeastContrast) << "the probe";
+    }
+    EXPECT_GE(contrast(p.edge, p.table), kLeastContrast) << "the outline of a block";
+  }
+}
+
+// Arrow, probe, frame and the coloured dent have an outline where they are in front of a block.
+TEST(Colours, AnOutlineIsSeenOnEveryBlockAndBesideEveryError) {
+  const auto names = scene_names();
+  ASSERT_TRUE(names.ok());
+  for (const std::string& name : *names) {
+    const auto scene = load_scene(name);
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const Rgb block = Rgb(scene->block_colour.red, scene->block_colour.green, scene->block_colour.blue) / 255.0F;
+    EXPECT_GE(contrast(outline_on(block), block), kLeastContrast) << name;
+    for (double error = 0.0; error <= 2.0; error += 0.1) {
+      const Rgb dent = error_colour(error);
+      EXPECT_GE(std::max(contrast(dent, outline_on(block)), contrast(dent, block)), kLeastContrast) << name << error;
     }
   }
 }
@@ -49,11 +84,10 @@ TEST(Colours, AHueThatIsSeenStaysAsItIs) {
 }
 
 TEST(Colours, MethodsDifferFromEachOtherAndFromTheReference) {
-  const char* methods[] = {"trend", "direct", "voxel", "random", "kdtree", "greedy", "position"};
   for (const Theme theme : {Theme::light, Theme::dark}) {
-    for (const char* a : methods) {
-      EXPECT_GT(glm::distance(method_colour(a, theme), kReferenceColour), 0.3F) << a;
-      for (const char* b : methods) {
+    for (const char* a : kMethods) {
+      EXPECT_GT(glm::distance(method_colour(a, theme), reference_colour(theme)), 0.3F) << a;
+      for (const char* b : kMethods) {
         if (a == b) continue;
         EXPECT_GT(glm::distance(method_colour(a, theme), method_colour(b, theme)), 0.25F) << a << ", " << b;
       }

@@ -21,7 +21,8 @@ TEST(Plot, TicksAreRoundAndNotTooMany) {
 
 TEST(Plot, ScalesEndAtRoundNumbers) {
   EXPECT_DOUBLE_EQ(round_up(1.0), 1.0);
-  EXPECT_DOUBLE_EQ(round_up(1.01), 1.5);
+  EXPECT_DOUBLE_EQ(round_up(1.01), 1.2);
+  EXPECT_DOUBLE_EQ(round_up(12.1), 15.0);
   EXPECT_DOUBLE_EQ(round_up(6.3), 8.0);
   EXPECT_DOUBLE_EQ(round_up(0.081), 0.1);
   EXPECT_DOUBLE_EQ(round_up(-3.0), 1.0);
