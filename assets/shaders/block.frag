@@ -110,7 +110,7 @@ void main() {
   // The dome is a darker piece of rubber.
   base *= 1.0 - 0.35 * (dome > 0.0 ? clamp((dome_radius - r) / fwidth(r) + 0.5, 0.0, 1.0) : 0.0);
 #endif
-  base = mix(base, mark_colour, mark * smoothstep(0.14, 0.42, sunk));
+  base = mix(base, mark_colour, mark * smoothstep(0.28, 0.36, sunk));
   base *= 1.0 - top * grid * lines(material.xz);
 #ifdef PORES
   base *= 1.0 - pores * pits(material);
@@ -144,7 +144,7 @@ void main() {
   float fresnel = 0.04 + 0.96 * grazing * grazing * grazing * grazing * grazing;
   lit += gloss * open * (0.9 * fresnel * mirrored_room(mirrored) + 0.30 * lamp * mirrored_lamp(mirrored, 28.0));
   // Lines separate the coloured dent and the frame from a material of similar brightness.
-  float ring = clamp(outline_width + 0.5 - abs(sunk - 0.14) / max(fwidth(sunk), 1e-4), 0.0, 1.0);
+  float ring = clamp(0.6 * outline_width + 0.5 - abs(sunk - 0.30) / max(fwidth(sunk), 1e-4), 0.0, 1.0);
   lit = mix(lit, outline_colour, mark * ring);
   vec2 cover = framed(material.xz) * top;
   lit = mix(mix(lit, outline_colour, cover.y), frame_colour, cover.x);

@@ -2,8 +2,8 @@
 //   r <= a:  u = d - R + sqrt(R^2 - r^2)                                            the ball
 //   r >  a:  u = u_a (2 / pi) ((2 - x^2) asin(1 / x) + sqrt(x^2 - 1)), x = r / a    the half-space beside it
 // The depth decreases to 0 towards the rim, so that the sides do not move.
-// With DOME: a dome of the rise h and the radius b has the depth u_0 = h (1 - (1 - r^2 / b^2)^2). After the snap its
-// middle is mirrored at the depth d / 2; a thin shell can take this shape without stretching (Pogorelov 1988).
+// With DOME: a dome of the rise h and the radius b has the depth u_0 = h r^2 / b^2 up to its foot at b. After the snap
+// its middle is mirrored at the depth d / 2; a thin shell can take this shape without stretching (Pogorelov 1988).
 uniform float dent;         // d, metres
 uniform float contact;      // a, metres, above 0
 uniform float edge;         // u_a, metres
@@ -37,8 +37,8 @@ Surface surface_at(float r) {
 #ifdef DOME
   if (dome <= 0.0) return here;
   float inside = max(1.0 - r * r / (dome_radius * dome_radius), 0.0);
-  float rest = dome * (1.0 - inside * inside);
-  float rest_slope = dome * 4.0 * inside * r / (dome_radius * dome_radius);
+  float rest = dome * (1.0 - inside);
+  float rest_slope = inside > 0.0 ? dome * 2.0 * r / (dome_radius * dome_radius) : 0.0;
   float mirror = min(0.5 * dent, dome);
   float above = rest - mirror;
   float ridge = sqrt(above * above + 0.01 * dome * dome * inside);  // rounded, except at the foot of the dome

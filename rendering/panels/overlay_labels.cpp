@@ -64,7 +64,10 @@ float draw_headline(const WindowView& shown, const UiStyle& style, const SceneAr
               colour, style);
   }
   const Rgb& ink_of = verdict.chosen ? style.colours().text : style.colours().quiet;
-  float y = draw_wrapped(style.fonts().heading, at, verdict.headline, ink(ink_of), room);
+  // No line ends between a number and its unit.
+  std::string headline = verdict.headline;
+  for (std::size_t i = 0; (i = headline.find(" %", i)) != std::string::npos;) headline.replace(i, 1, "\u00A0");
+  float y = draw_wrapped(style.fonts().heading, at, headline, ink(ink_of), room);
   if (!verdict.detail.empty())
     y = draw_wrapped(style.fonts().body, {at.x, y + 0.1F * line}, verdict.detail, ink(style.colours().quiet), room);
   return y + 0.3F * line;

@@ -23,9 +23,9 @@ constexpr float kArrowTip_m = 0.0085F, kArrowRadius_m = 0.0038F;
 constexpr float kShortestArrow_N = 0.03F;
 constexpr float kOutline = 0.0019F, kLeastOutline_px = 0.75F;  // width of outlines, in heights of the picture
 constexpr float kFrameWidth_m = 0.0022F;                       // of the frame on the active block
-// Rise and radius of a dome, in radii of the tool: the rise of the virtual button (scenes/material/button_block.h), and
-// a visible width.
-constexpr float kDomeRise = 0.5F, kDomeRadius = 2.6F;
+// Rise and radius of a dome, in radii of the tool: the rise of the virtual button (scenes/material/button_block.h),
+// exaggerated like a dent, and a visible width.
+constexpr float kDomeRise = 0.5F * kDeeperDents, kDomeRadius = 2.0F;
 // Share of transmitted light, gloss, pores and lines of the grid, in the order of Finish.
 struct Material {
   float translucent, gloss, pores, grid;

@@ -198,6 +198,33 @@ TEST_F(BlockViewTest, ASmallDentIsSeen) {
   }
 }
 
+// A press through the whole dome changes the picture around it, but not the rim of the block.
+TEST_F(BlockViewTest, ADomeSnapsThroughOnABlockThatStays) {
+  const auto scene = load_scene("button");
+  ASSERT_TRUE(scene.ok());
+  scene_ = *scene;
+  const auto one = view(Smoothing::filter);
+  BlockPose rest;
+  rest.tool_m = -1.0F;
+  rest.shows_error = false;
+  BlockPose pressed = rest;
+  pressed.dent_m = 0.012F;
+  const Picture a = draw_whole(*one, {rest}, Theme::light), b = draw_whole(*one, {pressed}, Theme::light);
+  const auto half = 0.5F * static_cast<float>(scene->block.length_m);
+  const auto row = [&](float z) {
+    return static_cast<int>(one->on_screen(0, 1, {0.0F, 0.0F, z}, {kWholeWidth, kWholeHeight}).y);
+  };
+  int at_rim = 0, at_dome = 0;
+  for (int y = 0; y < kWholeHeight; ++y) {
+    for (int x = 0; x < kWholeWidth; ++x) {
+      if (pixel(a, x, y) == pixel(b, x, y)) continue;
+      (y < row(-0.9F * half) ? at_rim : at_dome) += 1;
+    }
+  }
+  EXPECT_EQ(at_rim, 0);
+  EXPECT_GT(at_dome, 500);
+}
+
 TEST(Smoothing, IsAFilterWhereTheRendererIsAProgram) {
   EXPECT_EQ(smoothing_for("llvmpipe (LLVM 15.0.6, 256 bits)"), Smoothing::filter);
   EXPECT_EQ(smoothing_for("softpipe"), Smoothing::filter);
