@@ -31,7 +31,9 @@ Viewport pixels_of(const SceneArea& area) {
 }  // namespace
 
 void DemoApp::draw() {
-  style_.update(window_->ui_size(), view_.exhibit.on ? kExhibitText : view_.settings.text_size, view_.settings.theme);
+  const bool exhibit = view_.exhibit.on;
+  style_.update(window_->ui_size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
+                exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(input_.tapped());
   input_.keep_wheel();
   // With a software renderer, clearing is faster than filling a rectangle.

@@ -85,6 +85,7 @@ class Exhibit {
   // The pair on the screen; null: too few models are ready.
   const ExhibitRound* pair() const noexcept;
   void draw_attract(const Canvas& canvas);
+  void draw_learning(const Canvas& canvas);
   void draw_guess(const Canvas& canvas);
   void draw_press(const Canvas& canvas);
   void draw_reveal(const Canvas& canvas);

@@ -159,10 +159,38 @@ void Exhibit::draw_attract(const Canvas& canvas) {
   space(canvas.style, 0.3F);
   say_quietly(canvas, words()("attract_more"));
   space(canvas.style, 0.6F);
-  if (pair() == nullptr) return say_quietly(canvas, words()("learning"));
+  if (pair() == nullptr) return draw_learning(canvas);
   if (button(canvas, words()("play"), "1", -1.0F)) begin(canvas.session);
   space(canvas.style, 0.6F);
   draw_difference(canvas, trace_, times_.press_s);
+}
+
+// Until the first models are ready: the progress of the fits, and the force of the block that the hand presses.
+void Exhibit::draw_learning(const Canvas& canvas) {
+  say_quietly(canvas, words()("learning"));
+  float done = 0.0F;
+  for (const ModelView& slot : canvas.shown.models.slots)
+    done += slot.state == SlotState::ready ? 1.0F : static_cast<float>(slot.progress);
+  const auto all = static_cast<float>(std::max<std::size_t>(canvas.shown.models.slots.size(), 1));
+  ImGui::ProgressBar(done / all, {-1.0F, 0.8F * height_of(canvas.style.fonts().body)}, "");
+  space(canvas.style, 0.6F);
+  const float height = begin_plot(canvas, words()("axis_force"));
+  {
+    const ForceHistory& history = *canvas.shown.history;
+    const double now_s = canvas.session.newest().loop_time_s;
+    const std::size_t first = history.first_at(now_s - times_.press_s);
+    constexpr std::size_t kMostPoints = 600;
+    const std::size_t step = (history.size() - first) / kMostPoints + 1;
+    std::vector<ImVec2> points;
+    const LivePlot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
+                        {{-times_.press_s, 0.0}, {0.0, 1.6 * canvas.shown.usual_force_N}, "s", "N", true});
+    for (std::size_t i = first - first % step; i < history.size(); i += step) {
+      const auto force_N = static_cast<double>(history[i].reference_N);
+      if (!std::isnan(force_N)) points.emplace_back(plot.x_px(history[i].loop_time_s - now_s), plot.y_px(force_N));
+    }
+    plot.line(points, ink(reference_colour(canvas.style.theme())), 4.0F * canvas.style.scale());
+  }
+  ImGui::PopFont();
 }
 
 void Exhibit::draw_guess(const Canvas& canvas) {

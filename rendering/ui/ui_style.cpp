@@ -11,7 +11,6 @@ namespace palpate {
 namespace {
 
 // Font sizes for a window of 1080 lines.
-constexpr float kBody_px = 18.0F;
 constexpr float kHeading_px = 28.0F;
 constexpr float kBig_px = 54.0F;
 constexpr float kDesignHeight = 1080.0F;
@@ -57,10 +56,11 @@ float ui_scale(const UiSize& size, float larger) noexcept {
   return unit * kScaleStep * std::round(scale / kScaleStep);
 }
 
-void UiStyle::update(const UiSize& size, float larger, Theme theme) {
+void UiStyle::update(const UiSize& size, float larger, Theme theme, float body_px) {
   const float wanted = ui_scale(size, larger);
-  if (wanted != scale_ || size.pixels_per_unit != pixels_per_unit_) {
+  if (wanted != scale_ || size.pixels_per_unit != pixels_per_unit_ || body_px != body_px_) {
     scale_ = wanted;
+    body_px_ = body_px;
     pixels_per_unit_ = size.pixels_per_unit;
     build_fonts(pixels_per_unit_);
     coloured_ = false;
@@ -81,7 +81,7 @@ void UiStyle::build_fonts(float pixels_per_unit) {
     font->Scale = 1.0F / pixels_per_unit;
     return font;
   };
-  fonts_.body = add(kBody_px);
+  fonts_.body = add(body_px_);
   fonts_.heading = add(kHeading_px);
   fonts_.big = add(kBig_px);
   io.FontDefault = fonts_.body;
@@ -125,6 +125,7 @@ void UiStyle::set_colours() {
   set(ImGuiCol_SliderGrab, p.quiet);
   set(ImGuiCol_SliderGrabActive, p.text);
   set(ImGuiCol_CheckMark, p.text);
+  set(ImGuiCol_PlotHistogram, p.quiet);  // progress bars
   set(ImGuiCol_TableBorderLight, p.grid);
   set(ImGuiCol_TableBorderStrong, p.grid);
   set(ImGuiCol_TableRowBgAlt, p.text, 0.03F);

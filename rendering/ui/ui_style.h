@@ -31,6 +31,8 @@ struct UiSize {
 float ui_scale(const UiSize& size, float larger) noexcept;
 // Factor `larger` for exhibits and studies, which are read from a distance.
 inline constexpr float kExhibitText = 1.5F;
+// Size of body text in a window of 1080 lines; in exhibits it is closer to that of headings.
+inline constexpr float kBody_px = 18.0F, kExhibitBody_px = 21.0F;
 
 struct Fonts {
   ImFont* body = nullptr;
@@ -45,7 +47,7 @@ class UiStyle {
  public:
   // Call it before each frame. Rebuilds the fonts when the scale has changed, and sets the colours when the theme has
   // changed.
-  void update(const UiSize& size, float larger, Theme theme);
+  void update(const UiSize& size, float larger, Theme theme, float body_px = kBody_px);
 
   const Fonts& fonts() const noexcept { return fonts_; }
   float scale() const noexcept { return scale_; }  // of ui_scale
@@ -59,6 +61,7 @@ class UiStyle {
   Fonts fonts_;
   float scale_ = 0.0F;
   float pixels_per_unit_ = 1.0F;
+  float body_px_ = kBody_px;
   Theme theme_ = Theme::light;
   bool coloured_ = false;
 };
