@@ -309,12 +309,12 @@ void Exhibit::draw_score(const Canvas& canvas) {
   space(canvas.style, 0.4F);
   for (const ExhibitRound& round : rounds) draw_bar(canvas, round);
   say_quietly(canvas, words()("bars"));
-  space(canvas.style, 0.6F);
+  space(canvas.style, 0.4F);
   // The time of a whole tick, including both blocks and the device.
   const std::string used_us = number(canvas.session.loop().statistics().tick.p50_us);
   say(game_.has_force() ? words()("take_home_felt", used_us)
                         : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
-  space(canvas.style, 0.6F);
+  space(canvas.style, 0.4F);
   if (button(canvas, words()("again"), "Enter", -1.0F)) begin(canvas.session);
 }
 

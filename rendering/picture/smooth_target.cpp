@@ -13,6 +13,36 @@ constexpr int kSamples = 4;
 // Steps of the search along an edge in both directions; the flattest edge that it finds rises by one pixel in 26.
 constexpr int kSteps = 8;
 
+// Appends the parts of `a` outside of `b`: at most four.
+void append_outside(const Viewport& a, const Viewport& b, std::vector<Viewport>& to) {
+  const int left = std::max(a.x, b.x), right = std::min(a.x + a.width, b.x + b.width);
+  const int low = std::max(a.y, b.y), high = std::min(a.y + a.height, b.y + b.height);
+  if (left >= right || low >= high) {
+    to.push_back(a);
+    return;
+  }
+  for (const Viewport& part :
+       {Viewport{a.x, a.y, a.width, low - a.y}, Viewport{a.x, high, a.width, a.y + a.height - high},
+        Viewport{a.x, low, left - a.x, high - low}, Viewport{right, low, a.x + a.width - right, high - low}}) {
+    if (part.width > 0 && part.height > 0) to.push_back(part);
+  }
+}
+
+// The same pixels in parts that do not overlap, so that each pixel is copied and filtered once.
+std::vector<Viewport> disjoint(const std::vector<Viewport>& parts) {
+  std::vector<Viewport> all;
+  for (const Viewport& part : parts) {
+    std::vector<Viewport> rest{part};
+    for (const Viewport& taken : all) {
+      std::vector<Viewport> left;
+      for (const Viewport& one : rest) append_outside(one, taken, left);
+      rest = std::move(left);
+    }
+    all.insert(all.end(), rest.begin(), rest.end());
+  }
+  return all;
+}
+
 Viewport around_both(const Viewport& a, const Viewport& b) {
   const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
   return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
@@ -29,7 +59,7 @@ Smoothing smoothing_for(std::string_view renderer) noexcept {
 }
 
 SmoothTarget::SmoothTarget(std::optional<EdgeFilter> filter)
-    : filter_(std::move(filter)), pixels_(filter_ ? 0 : kSamples), still_(0), smoothed_(0) {
+    : filter_(std::move(filter)), pixels_(filter_ ? 0 : kSamples), still_(0), smoothed_(0), enlarged_(0) {
   glGenVertexArrays(1, &no_vertices_);
 }
 
@@ -43,6 +73,8 @@ void SmoothTarget::begin(const Viewport& viewport, float scale) {
   };
   const int width = drawn(viewport.width), height = drawn(viewport.height);
   refused_ = filters() && !(still_.draw_into(width, height) && smoothed_.draw_into(width, height));
+  if (filters() && (width != viewport.width || height != viewport.height))
+    refused_ = !enlarged_.draw_into(viewport.width, viewport.height) || refused_;
   refused_ = !pixels_.draw_into(width, height) || refused_;
   if (!refused_) return;
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -56,6 +88,7 @@ void SmoothTarget::end_still() {
   filter_edges(still_, {whole});
   still_.copy_to(pixels_, whole);
   drawn_.clear();
+  enlarge({whole});
 }
 
 void SmoothTarget::use_still(std::vector<Viewport> parts) {
@@ -66,6 +99,7 @@ void SmoothTarget::use_still(std::vector<Viewport> parts) {
     parts_.insert(parts_.end(), drawn_.begin(), drawn_.end());
   }
   drawn_ = std::move(parts);
+  parts_ = disjoint(parts_);
   for (const Viewport& part : parts_) still_.copy_to(pixels_, part);
   pixels_.draw_into(width(), height());
 }
@@ -73,16 +107,39 @@ void SmoothTarget::use_still(std::vector<Viewport> parts) {
 void SmoothTarget::end() {
   if (refused_) return;
   if (filters()) filter_edges(pixels_, parts_);
+  enlarge(parts_);
   const Viewport& to = viewport_;
-  const bool enlarged = width() != to.width || height() != to.height;
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, filters() ? smoothed_.framebuffer() : pixels_.framebuffer());
+  const Pixels& picture = !filters() ? pixels_ : is_enlarged() ? enlarged_ : smoothed_;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   // In memory the first row of a window is the upper one. The filtered picture has the same order, so that a software
   // renderer copies it as it is.
-  const int bottom = filters() ? height() : 0, top = height() - bottom;
-  glBlitFramebuffer(0, bottom, width(), top, to.x, to.y, to.x + to.width, to.y + to.height, GL_COLOR_BUFFER_BIT,
-                    enlarged ? GL_LINEAR : GL_NEAREST);
+  const int bottom = filters() ? to.height : 0, top = to.height - bottom;
+  glBlitFramebuffer(0, bottom, to.width, top, to.x, to.y, to.x + to.width, to.y + to.height, GL_COLOR_BUFFER_BIT,
+                    GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+bool SmoothTarget::is_enlarged() const noexcept {
+  return filters() && (width() != viewport_.width || height() != viewport_.height);
+}
+
+// Interpolation is slow with a software renderer, so only the parts that have changed are enlarged.
+void SmoothTarget::enlarge(const std::vector<Viewport>& parts) {
+  if (!is_enlarged()) return;
+  const int wide = viewport_.width, high = viewport_.height;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, smoothed_.framebuffer());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, enlarged_.framebuffer());
+  glEnable(GL_SCISSOR_TEST);
+  for (const Viewport& part : parts) {
+    // With a margin of two pixels, into which the outermost pixels are interpolated.
+    const int left = part.x * wide / width() - 2, right = (part.x + part.width) * wide / width() + 2;
+    const int low = (height() - part.y - part.height) * high / height() - 2;
+    const int top = (height() - part.y) * high / height() + 2;
+    glScissor(left, low, right - left, top - low);
+    glBlitFramebuffer(0, 0, width(), height(), 0, 0, wide, high, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  }
+  glDisable(GL_SCISSOR_TEST);
 }
 
 // The first pass copies the picture and finds its edges; the second redraws the pixels at edges.

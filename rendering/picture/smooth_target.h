@@ -50,12 +50,15 @@ class SmoothTarget {
   void end();
 
  private:
+  bool is_enlarged() const noexcept;
+  void enlarge(const std::vector<Viewport>& parts);
   void filter_edges(const Pixels& picture, const std::vector<Viewport>& parts);
 
   std::optional<EdgeFilter> filter_;
   Viewport viewport_;
   Pixels pixels_, still_;
   Pixels smoothed_;              // the filtered picture, upside down; see `end`
+  Pixels enlarged_;              // `smoothed_` in the size of the window
   std::vector<Viewport> parts_;  // in which this frame, or the one before, differs from the static picture
   std::vector<Viewport> drawn_;  // `parts` of this frame
   bool refused_ = false;

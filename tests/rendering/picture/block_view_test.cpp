@@ -184,6 +184,19 @@ TEST_F(BlockViewTest, WhatCarriesAMeaningIsSeenInBothThemes) {
   }
 }
 
+// Only the parts that change are copied, filtered and enlarged.
+TEST_F(BlockViewTest, AReducedPictureFollowsTheMotion) {
+  constexpr float kScale = 0.67F;
+  const auto used = view(Smoothing::filter);
+  used->show(4, true);
+  for (const float depth_m : {0.002F, 0.009F, -0.03F, 0.0F}) {
+    const std::vector<BlockPose> blocks = poses(4, depth_m);
+    const auto fresh = view(Smoothing::filter);
+    fresh->show(4, true);
+    EXPECT_EQ(draw(*used, blocks, Theme::dark, kScale), draw(*fresh, blocks, Theme::dark, kScale)) << depth_m;
+  }
+}
+
 // Counts the pixels that a small dent changes visibly.
 TEST_F(BlockViewTest, ASmallDentIsSeen) {
   for (const Smoothing smoothing : {Smoothing::samples, Smoothing::filter}) {
