@@ -59,6 +59,16 @@ void CurvePainter::band(ImU32 colour, Low low, High high) const {
 template <typename Low, typename High>
 void CurvePainter::curve(ImU32 colour, float thickness, Low low, High high) const {
   std::vector<ImVec2> points;
+  // A level part needs its two ends only.
+  const auto add = [&points](float x, float y) {
+    constexpr float kLevel_px = 0.2F;
+    const std::size_t n = points.size();
+    if (n > 1 && std::abs(points[n - 1].y - y) < kLevel_px && std::abs(points[n - 2].y - y) < kLevel_px) {
+      points[n - 1].x = x;
+    } else {
+      points.emplace_back(x, y);
+    }
+  };
   for (const CurveColumn& column : columns) {
     if (!column.any) continue;
     const auto bottom = static_cast<double>(low(column));
@@ -73,8 +83,8 @@ void CurvePainter::curve(ImU32 colour, float thickness, Low low, High high) cons
     const float y_high = plot.y_px(top);
     // The nearer end first, because a polyline that reverses its direction has no width there.
     const bool falling = !points.empty() && y_low - points.back().y > points.back().y - y_high;
-    points.emplace_back(x, falling ? y_high : y_low);
-    if (y_low - y_high > 1.5F) points.emplace_back(x, falling ? y_low : y_high);
+    add(x, falling ? y_high : y_low);
+    if (y_low - y_high > 1.5F) add(x, falling ? y_low : y_high);
   }
   plot.line(points, colour, thickness);
 }

@@ -14,8 +14,8 @@ namespace {
 constexpr float kReferenceLine_px = 2.4F;
 constexpr float kModelLine_px = 1.4F;
 constexpr float kSelectedLine_px = 2.0F;
-// Width of a column; a finer one is hardly visible and costs time.
-constexpr float kColumn_px = 2.0F;
+// Width of a column in a window of 1080 lines; a finer one is hardly visible and costs time.
+constexpr float kColumn_px = 2.6F;
 // Range of the difference view on both sides of 0: three times the height of the band.
 constexpr double kDifference_jnd = 3.0;
 constexpr float kPredictedAlpha = 0.28F;
@@ -91,7 +91,8 @@ void ForceCurves::draw(const WindowView& shown, ViewState& view, const UiStyle& 
 ForceCurves::Drawing ForceCurves::begin(const WindowView& shown, ViewState& view, const UiStyle& style) {
   hovered_ = false;
   const Drawing drawing{shown, view, style, view.time.end_s(steady_now_s())};
-  const auto columns = static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / kColumn_px));
+  const auto columns =
+      static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / (kColumn_px * style.scale())));
   curves_.gather(*shown.history, shown.models.jnd, shown.models.slots.size(), drawing.end_s - view.time.shown_s,
                  drawing.end_s, columns);
   const double highest_N = 1.05 * static_cast<double>(curves_.highest_force_N());
@@ -189,6 +190,14 @@ void ForceCurves::draw_loops(const Drawing& drawing, const ImVec2& size) {
   const std::size_t step = std::max<std::size_t>(1, (end - first) / kLoopPoints);
   const std::size_t selected = models.selected;
   std::vector<ImVec2> reference, model;
+  // Points that are closer to the last one than a pixel are not visible.
+  const auto extend = [&plot](std::vector<ImVec2>& points, float depth_m, float force_N) {
+    if (std::isnan(force_N)) return;
+    const ImVec2 at(plot.x_px(1e3 * static_cast<double>(depth_m)), plot.y_px(static_cast<double>(force_N)));
+    const bool close =
+        !points.empty() && std::abs(at.x - points.back().x) < 1.0F && std::abs(at.y - points.back().y) < 1.0F;
+    if (!close) points.push_back(at);
+  };
   const auto flush = [&] {
     plot.line(reference, ink(reference_colour(drawing.style.theme())), kReferenceLine_px * drawing.style.scale());
     if (models.active() != nullptr)
@@ -202,10 +211,8 @@ void ForceCurves::draw_loops(const Drawing& drawing, const ImVec2& size) {
       flush();
       continue;
     }
-    const float x = plot.x_px(1e3 * static_cast<double>(point.depth_m));
-    if (!std::isnan(point.reference_N)) reference.emplace_back(x, plot.y_px(static_cast<double>(point.reference_N)));
-    if (!std::isnan(point.force_N[selected]))
-      model.emplace_back(x, plot.y_px(static_cast<double>(point.force_N[selected])));
+    extend(reference, point.depth_m, point.reference_N);
+    extend(model, point.depth_m, point.force_N[selected]);
   }
   flush();
 }
