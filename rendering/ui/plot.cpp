@@ -80,13 +80,20 @@ void LivePlot::draw_x_axis() const {
   char text[48];
   const int columns = std::max(1, static_cast<int>(width() / (4.0F * line)));
   const double x_step = axes_.decades ? 1.0 : tick_step(x_range.to - x_range.from, columns);
-  for (double x = std::ceil(x_range.from / x_step - 1e-9) * x_step; x <= x_range.to + 1e-9 * x_step; x += x_step) {
+  // From the right, because the last label has the unit. A label without room is left out.
+  const double first = std::ceil(x_range.from / x_step - 1e-9) * x_step;
+  const double steps = std::floor((x_range.to - first) / x_step + 1e-9);
+  float free_px = high_.x + 2.0F * line;
+  for (double i = steps; i >= 0.0; i -= 1.0) {
+    const double x = first + i * x_step;
     list_->AddLine({std::round(x_px(x)), low_.y}, {std::round(x_px(x)), high_.y}, ink(style_.colours().grid));
     if (!axes_.x_numbers) continue;
-    const bool last = x + x_step > x_range.to + 1e-9 * x_step;
+    const bool last = i == steps;
     std::snprintf(text, sizeof text, "%.7g%s%s", shown(x), last ? " " : "", last ? axes_.x_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
     const float at = std::clamp(x_px(x) - 0.5F * size.x, low_.x - 1.5F * line, high_.x + 0.6F * line - size.x);
+    if (at + size.x + 0.4F * line > free_px) continue;
+    free_px = at;
     list_->AddText({at, high_.y + 0.15F * line}, ink(style_.colours().quiet), text);
   }
 }
