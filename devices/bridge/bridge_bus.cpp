@@ -91,20 +91,17 @@ Result<OpenedDevice> BridgeBus::open_and_identify() {
       connection.write(start.bytes[0].data(), start.sizes[0]);
       last_sent_s = steady_now_s();
     }
+    if (size == 0) continue;
     DeviceReading reading;
-    switch (size > 0 ? kBridgeProtocol.decode(bytes, static_cast<std::size_t>(size), reading)
-                     : ReportVerdict::nothing) {
-      case ReportVerdict::position:
-        ++frames;
-        result.measures_force = result.measures_force || reading.measured_N == reading.measured_N;
-        break;
-      case ReportVerdict::wrong_version:
-        return Error{info_.path + ": speaks version " + std::to_string(reading.version) +
-                     " of the bridge protocol, expected " + std::to_string(bridge::kVersion) +
-                     "; update the device's program (devices/README.md#bridge)"};
-      default:
-        break;
+    const ReportVerdict verdict = kBridgeProtocol.decode(bytes, static_cast<std::size_t>(size), reading);
+    if (verdict == ReportVerdict::wrong_version) {
+      return Error{info_.path + ": speaks version " + std::to_string(reading.version) +
+                   " of the bridge protocol, expected " + std::to_string(bridge::kVersion) +
+                   "; update the device's program (devices/README.md#bridge)"};
     }
+    if (verdict != ReportVerdict::position) continue;
+    ++frames;
+    result.measures_force = result.measures_force || reading.measured_N == reading.measured_N;
   }
   if (frames < kFramesToInspect) {
     const std::string said = connection.garbage();

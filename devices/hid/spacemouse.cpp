@@ -78,9 +78,4 @@ DeviceHealth SpaceMouseAxis::health(double now_s) noexcept {
 SpaceMouse::SpaceMouse(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened)
     : axis_(calibration), link_(bus, axis_, std::move(opened)) {}
 
-bool SpaceMouseDevice::read(double now_s, DeviceSample& sample) noexcept {
-  mouse_->axis().drive(tool_, now_s);
-  return tool_.read(now_s, sample);
-}
-
 }  // namespace palpate
