@@ -95,9 +95,7 @@ std::optional<Error> JsonFields::error() const {
 
 bool JsonFields::reported_already(const std::string& pointer) const {
   return std::any_of(reported_.begin(), reported_.end(), [&](const std::string& reported) {
-    if (pointer == reported) return true;
-    return !reported.empty() && pointer.size() > reported.size() &&
-           pointer.compare(0, reported.size(), reported) == 0 && pointer[reported.size()] == '/';
+    return pointer == reported || (!reported.empty() && pointer.starts_with(reported + "/"));
   });
 }
 
