@@ -459,14 +459,10 @@ Result<ImportedTable> Importer::run() {
 
 }  // namespace
 
-Result<ImportedTable> import_table(const ForeignText& text, const std::string& label, const ImportRequest& request) {
-  return Importer(text, label, request).run();
-}
-
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request) {
   const auto text = read_foreign_text(path);
   if (!text) return text.error();
-  return import_table(*text, path, request);
+  return Importer(*text, path, request).run();
 }
 
 }  // namespace palpate
