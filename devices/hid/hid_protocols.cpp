@@ -14,11 +14,10 @@ const DeviceProtocol* hid_protocol_of(const DeviceNode& node) {
 std::vector<HidDiagnosis> diagnose(DeviceBus& bus) {
   std::vector<HidDiagnosis> all;
   for (const DeviceNode& node : bus.list()) {
-    HidDiagnosis diagnosis{node, nullptr, "not supported", ""};
+    HidDiagnosis diagnosis{node, "not supported", ""};
     if (const DeviceProtocol* const protocol = hid_protocol_of(node)) {
       diagnosis.use = protocol->description;
       const Result<std::unique_ptr<DeviceConnection>> connection = bus.open(node);
-      if (connection) diagnosis.protocol = protocol;
       if (!connection) diagnosis.problem = connection.error().message;
     }
     all.push_back(std::move(diagnosis));

@@ -25,9 +25,8 @@ const DeviceProtocol* hid_protocol_of(const DeviceNode& node);
 // For `palpate devices`: whether a node is supported and can be opened.
 struct HidDiagnosis {
   DeviceNode node;
-  const DeviceProtocol* protocol = nullptr;  // null: it is not supported or cannot be opened
-  std::string use;                           // description of the protocol
-  std::string problem;                       // why it cannot be opened and what to do; else empty
+  std::string use;      // description of the protocol, or "not supported"
+  std::string problem;  // why it cannot be opened and what to do; else empty
 };
 std::vector<HidDiagnosis> diagnose(DeviceBus& bus);
 

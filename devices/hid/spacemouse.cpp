@@ -1,17 +1,62 @@
+// 3Dconnexion's SpaceMouse: report 1 begins with three int16 translations. z is used; it is positive when the cap is
+// pushed down. The host writes no reports.
 #include "devices/hid/spacemouse.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
+#include "devices/firmware/wire.h"
+#include "devices/hid/hid_protocols.h"
 #include "engine/live/device_health.h"
 
 namespace palpate {
 namespace {
 
+constexpr std::uint16_t k3Dconnexion = 0x256F, kLogitech = 0x046D;
+// Product ids with Logitech's vendor id; later products have the vendor id of 3Dconnexion.
+constexpr std::array<std::uint16_t, 7> kSpaceMice = {0xC626, 0xC627, 0xC628, 0xC629, 0xC62B, 0xC62E, 0xC62F};
+constexpr std::uint16_t kDesktopPage = 1, kMultiAxis = 8;
+// Larger values are invalid; every deflection is far below.
+constexpr int kSpaceMouseMost = 1000;
+
+bool is_space_mouse(const DeviceNode& info) noexcept {
+  if (info.usage_page != kDesktopPage || info.usage != kMultiAxis) return false;
+  return info.vendor_id == k3Dconnexion ||
+         (info.vendor_id == kLogitech &&
+          std::find(kSpaceMice.begin(), kSpaceMice.end(), info.product_id) != kSpaceMice.end());
+}
+
+ReportVerdict decode_space_mouse(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept {
+  if (size == 0) return ReportVerdict::corrupt;
+  if (bytes[0] != 1) return ReportVerdict::nothing;  // rotation, buttons, battery
+  if (size < 7) return ReportVerdict::corrupt;
+  for (const std::size_t at : {1u, 3u, 5u}) {
+    if (std::abs(static_cast<std::int16_t>(wire::read16(bytes + at))) > kSpaceMouseMost) return ReportVerdict::corrupt;
+  }
+  reading.counts = static_cast<std::int16_t>(wire::read16(bytes + 5));
+  return ReportVerdict::position;
+}
+
+OutReports no_report() noexcept { return {}; }
+OutReports no_command(const DeviceCommand&) noexcept { return {}; }
+
 constexpr double kHold_s = 0.1;  // as in StreamMonitor
 
 }  // namespace
+
+const DeviceProtocol kSpaceMouseProtocol = {
+    .name = "spacemouse",
+    .description = "SpaceMouse, input only: no force",
+    .renders_force = false,
+    .matches = is_space_mouse,
+    .decode = decode_space_mouse,
+    .encode_start = no_report,
+    .encode_command = no_command,
+    .encode_stop = no_report,
+};
 
 void SpaceMouseAxis::connected(double) noexcept {
   deflection_.connected = true;
@@ -77,10 +122,5 @@ DeviceHealth SpaceMouseAxis::health(double now_s) noexcept {
 
 SpaceMouse::SpaceMouse(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened)
     : axis_(calibration), link_(bus, axis_, std::move(opened)) {}
-
-bool SpaceMouseDevice::read(double now_s, DeviceSample& sample) noexcept {
-  mouse_->axis().drive(tool_, now_s);
-  return tool_.read(now_s, sample);
-}
 
 }  // namespace palpate

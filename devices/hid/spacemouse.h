@@ -76,26 +76,23 @@ class SpaceMouse {
   DeviceLink link_;
 };
 
-class SpaceMouseDevice final : public Device {
+class SpaceMouseDevice final : public MouseDevice {
  public:
-  explicit SpaceMouseDevice(std::unique_ptr<SpaceMouse> mouse) : mouse_(std::move(mouse)) {}
+  explicit SpaceMouseDevice(std::unique_ptr<SpaceMouse> mouse) : MouseDevice({}, "hid"), mouse_(std::move(mouse)) {}
   ~SpaceMouseDevice() override { close(); }
 
-  const std::string& name() const noexcept override { return name_; }
-  SensorSpec sensor() const noexcept override { return tool_.sensor(); }
-  Holder holder() const noexcept override { return Holder::simulated; }
-  ForceLimits limits() const noexcept override { return tool_.limits(); }
   Status open() override { return mouse_->start(); }
   void close() noexcept override { mouse_->stop(); }
-  bool read(double now_s, DeviceSample& sample) noexcept override;
-  void write(double force_N) noexcept override { tool_.write(force_N); }
+  bool read(double now_s, DeviceSample& sample) noexcept override {
+    mouse_->axis().drive(*this, now_s);
+    return MouseDevice::read(now_s, sample);
+  }
   DeviceHealth health(double now_s) noexcept override { return mouse_->axis().health(now_s); }
   std::string note() const override { return mouse_->description(); }
+  ToolInput* tool_input() noexcept override { return nullptr; }  // only the SpaceMouse moves the tool
 
  private:
-  std::string name_ = "hid";
   std::unique_ptr<SpaceMouse> mouse_;
-  MouseDevice tool_;
 };
 
 }  // namespace palpate

@@ -4,24 +4,8 @@
 #include <cmath>
 
 namespace palpate {
-namespace {
-
-MonitorSettings monitor_settings(const DeviceCalibration& calibration) noexcept {
-  MonitorSettings settings;
-  settings.absolute = calibration.protocol->absolute;
-  settings.timed = calibration.protocol->timed;
-  settings.counts_per_metre = calibration.counts_per_metre;
-  settings.fastest_m_per_s = calibration.fastest_m_per_s;
-  settings.encoder_step_m = calibration.encoder_step_m;
-  settings.stale_after_s = calibration.limits.stale_after_s;
-  settings.stuck_after_s = calibration.stuck_after_s;
-  return settings;
-}
-
-}  // namespace
-
 DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration) noexcept
-    : calibration_(calibration), monitor_(monitor_settings(calibration)) {}
+    : calibration_(calibration), monitor_(calibration) {}
 
 void DeviceEndpoint::connected(double now_s) noexcept {
   last_written_s_.store(now_s, std::memory_order_relaxed);

@@ -96,7 +96,7 @@ void DeviceLink::stop() noexcept {
 }
 
 void DeviceLink::read_all() noexcept {
-  make_this_thread_realtime({kPriority, false});
+  make_this_thread_realtime(kPriority, false);
   std::array<std::uint8_t, kLargestReport + 1> bytes{};
   while (!stop_.load(std::memory_order_relaxed)) {
     const std::shared_ptr<DeviceConnection> current = connection();
@@ -135,7 +135,7 @@ void DeviceLink::write(DeviceConnection& connection, const OutReports& reports) 
 }
 
 void DeviceLink::write_all() noexcept {
-  make_this_thread_realtime({kPriority, false});
+  make_this_thread_realtime(kPriority, false);
   SteadyPacer pacer;
   Deadlines deadlines(pacer.now_ns(), kWritePeriod_ns);
   while (!stop_.load(std::memory_order_relaxed)) {

@@ -7,16 +7,13 @@
 
 namespace palpate {
 
-LinkedDevice::LinkedDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened)
-    : endpoint_(calibration), link_(bus, endpoint_, std::move(opened)) {}
-
-LinkedDevice::LinkedDevice(std::unique_ptr<DeviceBus> bus, const DeviceCalibration& calibration, OpenedDevice opened,
-                           std::string name)
-    : own_bus_(std::move(bus)),
+LinkedDevice::LinkedDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened, std::string name,
+                           std::unique_ptr<DeviceBus> own_bus)
+    : own_bus_(std::move(own_bus)),
       name_(std::move(name)),
       measures_force_(opened.measures_force),
       endpoint_(calibration),
-      link_(*own_bus_, endpoint_, std::move(opened)) {}
+      link_(bus, endpoint_, std::move(opened)) {}
 
 SensorSpec LinkedDevice::sensor() const noexcept {
   const DeviceCalibration& calibration = endpoint_.calibration();

@@ -17,11 +17,10 @@ namespace palpate {
 
 class LinkedDevice final : public Device {
  public:
-  // `bus` outlives this; `opened` has the calibration's protocol, which renders force.
-  LinkedDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened);
-  // The same with an owned bus; `name`: as in --device.
-  LinkedDevice(std::unique_ptr<DeviceBus> bus, const DeviceCalibration& calibration, OpenedDevice opened,
-               std::string name);
+  // `bus` outlives this, or is `own_bus`; `opened` has the calibration's protocol, which renders force; `name`: as in
+  // --device.
+  LinkedDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened, std::string name = "hid",
+               std::unique_ptr<DeviceBus> own_bus = nullptr);
   ~LinkedDevice() override { close(); }
 
   const std::string& name() const noexcept override { return name_; }
@@ -41,8 +40,8 @@ class LinkedDevice final : public Device {
 
  private:
   std::unique_ptr<DeviceBus> own_bus_;
-  std::string name_ = "hid";
-  bool measures_force_ = false;
+  std::string name_;
+  bool measures_force_;
   DeviceEndpoint endpoint_;
   DeviceLink link_;
 };

@@ -20,9 +20,10 @@ bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::
 
 }  // namespace
 
-StreamMonitor::StreamMonitor(const MonitorSettings& settings) noexcept : settings_(settings) {
-  state_.late_after_s = settings.stale_after_s;
-  if (settings.absolute) state_.zeroing = Zeroing::not_needed;
+StreamMonitor::StreamMonitor(const DeviceCalibration& calibration) noexcept
+    : calibration_(calibration), protocol_(*calibration.protocol) {
+  state_.late_after_s = calibration.limits.stale_after_s;
+  if (protocol_.absolute) state_.zeroing = Zeroing::not_needed;
 }
 
 void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
@@ -32,7 +33,7 @@ void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
 }
 
 void StreamMonitor::lose(std::uint32_t bit, double now_s) noexcept {
-  if (settings_.absolute) {
+  if (protocol_.absolute) {
     fault(bit, now_s);
     if (bit == device_fault::kJump) ++state_.streams;
     return;
@@ -45,7 +46,7 @@ void StreamMonitor::lose(std::uint32_t bit, double now_s) noexcept {
 void StreamMonitor::unplugged() noexcept {
   connected_ = false;
   // A device with an absolute position keeps it; the link reports the loss of the connection.
-  if (!settings_.absolute) lose(device_fault::kUnplugged, 0.0);
+  if (!protocol_.absolute) lose(device_fault::kUnplugged, 0.0);
 }
 
 void StreamMonitor::start_zeroing() noexcept {
@@ -62,7 +63,7 @@ bool StreamMonitor::started_again(const DeviceReading& reading) noexcept {
 }
 
 bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcept {
-  if (!settings_.timed || !connected_) return true;
+  if (!protocol_.timed || !connected_) return true;
   const bool newer = later(reading.sequence, last_.sequence);
   // A repeated report is ignored; the age of the sample grows until it is late.
   const bool again = reading.sequence == last_.sequence;
@@ -79,14 +80,14 @@ bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcep
 // After a pause, or when the device's clock was set back, a new stream begins: neither the fit of the clock nor the
 // motion continues.
 void StreamMonitor::watch_clock(const DeviceReading& reading, double now_s) noexcept {
-  if (!settings_.timed || !connected_) return;
+  if (!protocol_.timed || !connected_) return;
   const bool set_back = static_cast<std::int32_t>(reading.time_us - last_.time_us) <= 0;
   if (set_back) fault(device_fault::kReset, now_s);
   if (set_back || now_s - state_.sample_time_s > kLongestSilence_s) connected_ = false;
 }
 
 bool StreamMonitor::settled(const DeviceReading& reading, double now_s) noexcept {
-  if (!settings_.timed || connected_) return true;
+  if (!protocol_.timed || connected_) return true;
   if (first_s_ < 0.0) {
     clock_.restart();
     first_s_ = now_s;
@@ -100,7 +101,7 @@ bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept 
   const bool together = now_s - arrivals_s_[2] < kTogether_s;
   std::copy_backward(arrivals_s_, arrivals_s_ + 2, arrivals_s_ + 3);
   arrivals_s_[0] = now_s;
-  if (!settings_.timed) {
+  if (!protocol_.timed) {
     read_time_s_ = now_s;
     if (together) fault(device_fault::kBurst, now_s);
     return !together;
@@ -121,9 +122,9 @@ void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
   const std::int64_t step =
       static_cast<std::int32_t>(static_cast<std::uint32_t>(reading.counts) - static_cast<std::uint32_t>(last_.counts));
   const double step_s = std::max(kShortestStep_s, read_time_s_ - state_.sample_time_s);
-  const double quickest = speed_ + settings_.counts_per_metre * kQuickest_m_per_s2 * step_s;
-  const double fastest = std::min(quickest, settings_.counts_per_metre * settings_.fastest_m_per_s);
-  const double noise = kNoiseSteps * std::max(1.0, settings_.encoder_step_m * settings_.counts_per_metre);
+  const double quickest = speed_ + calibration_.counts_per_metre * kQuickest_m_per_s2 * step_s;
+  const double fastest = std::min(quickest, calibration_.counts_per_metre * calibration_.fastest_m_per_s);
+  const double noise = kNoiseSteps * std::max(1.0, calibration_.encoder_step_m * calibration_.counts_per_metre);
   const double way = std::abs(static_cast<double>(step));
   const bool jumped = way > fastest * step_s + noise;
   if (jumped) lose(device_fault::kJump, now_s);
@@ -132,17 +133,17 @@ void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
 }
 
 void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
-  const bool stuck = now_s - still_since_s_ > settings_.stuck_after_s;
+  const bool stuck = now_s - still_since_s_ > calibration_.stuck_after_s;
   // For a device without zeroing, only motion ends the fault: a small force does not.
-  if (!(std::abs(force_N) >= kPushing_N) && !(stuck && settings_.absolute)) still_since_s_ = now_s;
-  if (now_s - still_since_s_ > settings_.stuck_after_s) lose(device_fault::kStuck, now_s);
+  if (!(std::abs(force_N) >= kPushing_N) && !(stuck && protocol_.absolute)) still_since_s_ = now_s;
+  if (now_s - still_since_s_ > calibration_.stuck_after_s) lose(device_fault::kStuck, now_s);
 }
 
 void StreamMonitor::watch_zeroing(double now_s) noexcept {
   if (state_.zeroing != Zeroing::hold_still) return;
   zeroing_from_ = std::min(zeroing_from_, state_.counts);
   zeroing_to_ = std::max(zeroing_to_, state_.counts);
-  const double most = std::max(2.0, kRest_m * settings_.counts_per_metre);
+  const double most = std::max(2.0, kRest_m * calibration_.counts_per_metre);
   if (zeroing_since_s_ < 0.0 || static_cast<double>(zeroing_to_ - zeroing_from_) > most) {
     zeroing_since_s_ = now_s;
     zeroing_from_ = zeroing_to_ = state_.counts;
@@ -167,7 +168,7 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
   if (!settled(reading, now_s) || !recent(reading, now_s)) return;
   const std::int64_t before = state_.counts;
   move(reading, now_s);
-  if (!connected_ && settings_.absolute) ++state_.streams;
+  if (!connected_ && protocol_.absolute) ++state_.streams;
   if (!connected_ || state_.counts != before) still_since_s_ = now_s;
   if (!connected_ || reading.confirmed != last_.confirmed) {
     state_.confirmed = reading.confirmed;
@@ -179,8 +180,9 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
     const double step_s = std::min(state_.sample_time_s - before_s, kHold_s);
     state_.interval_s += (step_s - state_.interval_s) * (state_.interval_s > 0.0 ? kIntervalShare : 1.0);
   }
-  if (settings_.timed) {
-    state_.late_after_s = std::clamp(kLateIntervals * state_.interval_s, settings_.stale_after_s, kLongestSilence_s);
+  if (protocol_.timed) {
+    state_.late_after_s =
+        std::clamp(kLateIntervals * state_.interval_s, calibration_.limits.stale_after_s, kLongestSilence_s);
   }
   state_.measured_N = reading.measured_N;
   state_.grip = reading.grip;

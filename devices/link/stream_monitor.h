@@ -19,20 +19,11 @@
 
 #include <cstdint>
 
+#include "devices/link/device_calibration.h"
 #include "devices/link/device_clock.h"
-#include "devices/link/device_reading.h"
 #include "engine/live/device_health.h"
 
 namespace palpate {
-
-struct MonitorSettings {
-  bool absolute = false, timed = false;  // as DeviceProtocol
-  double counts_per_metre = 1.0;
-  double fastest_m_per_s = 5.0;
-  double encoder_step_m = 0.0;  // a step of the sensor, where it is larger than a count
-  double stale_after_s = 0.01;  // smallest late_after_s
-  double stuck_after_s = 0.5;
-};
 
 // The state after a report. The haptics thread gets a copy of it.
 struct MonitorState {
@@ -76,7 +67,7 @@ class StreamMonitor {
   // back. The readings of its first kSettling_s only fit the clock, because they may have waited in a queue.
   static constexpr double kSettling_s = 0.05;
 
-  explicit StreamMonitor(const MonitorSettings& settings) noexcept;
+  explicit StreamMonitor(const DeviceCalibration& calibration) noexcept;
 
   // Processes a decoded report that arrived at `now_s` (non-decreasing). `force_N`: the commanded force.
   void update(ReportVerdict verdict, const DeviceReading& reading, double now_s, double force_N) noexcept;
@@ -98,7 +89,8 @@ class StreamMonitor {
   void watch_stuck(double now_s, double force_N) noexcept;
   void watch_zeroing(double now_s) noexcept;
 
-  MonitorSettings settings_;
+  DeviceCalibration calibration_;
+  const DeviceProtocol& protocol_;
   MonitorState state_;
   DeviceClock clock_;
   DeviceReading last_;

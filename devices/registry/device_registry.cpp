@@ -16,8 +16,6 @@
 namespace palpate {
 namespace {
 
-using Made = MadeDevice;
-
 DeviceProtocols protocols_that(bool render_force) {
   DeviceProtocols protocols;
   for (const DeviceProtocol* protocol : kHidProtocols) {
@@ -46,22 +44,22 @@ Result<std::unique_ptr<T>> make_hid_device(const DeviceRequest& request, bool re
   return std::make_unique<T>(bus_of(request), *calibration, std::move(*opened));
 }
 
-Made make_hid(const std::string&, const DeviceRequest& request) {
+MadeDevice make_hid(const std::string&, const DeviceRequest& request) {
   bool no_haptic = false;
   auto haptic = make_hid_device<LinkedDevice>(request, true, no_haptic);
-  if (haptic) return Made(std::move(*haptic));
+  if (haptic) return MadeDevice(std::move(*haptic));
   if (!no_haptic) return haptic.error();
   bool no_mouse = false;
   auto mouse = make_hid_device<SpaceMouse>(request, false, no_mouse);
-  if (mouse) return Made(std::make_unique<SpaceMouseDevice>(std::move(*mouse)));
+  if (mouse) return MadeDevice(std::make_unique<SpaceMouseDevice>(std::move(*mouse)));
   if (!no_mouse) return mouse.error();
   return Error{"no haptic device is plugged in; plug one in or use --device auto (palpate devices explains)"};
 }
 
-Made make_auto(const std::string&, const DeviceRequest& request) {
+MadeDevice make_auto(const std::string&, const DeviceRequest& request) {
   bool no_haptic = false;
   auto haptic = make_hid_device<LinkedDevice>(request, true, no_haptic);
-  if (haptic) return Made(std::move(*haptic));
+  if (haptic) return MadeDevice(std::move(*haptic));
   auto device = std::make_unique<AutoDevice>(request.seed, request.hand);
   std::string note = no_haptic ? "no haptic device is plugged in" : haptic.error().message;
   bool no_mouse = false;
@@ -71,23 +69,23 @@ Made make_auto(const std::string&, const DeviceRequest& request) {
           " takes over";
   if (mouse) device->use(std::move(*mouse));
   device->explain(std::move(note));
-  return Made(std::move(device));
+  return MadeDevice(std::move(device));
 }
 
-Made make_hand(const std::string&, const DeviceRequest& request) {
-  return Made(std::make_unique<HandDevice>(request.seed, request.hand));
+MadeDevice make_hand(const std::string&, const DeviceRequest& request) {
+  return MadeDevice(std::make_unique<HandDevice>(request.seed, request.hand));
 }
 
-Made make_mouse(const std::string&, const DeviceRequest&) { return Made(std::make_unique<MouseDevice>()); }
+MadeDevice make_mouse(const std::string&, const DeviceRequest&) { return MadeDevice(std::make_unique<MouseDevice>()); }
 
-Made make_replay(const std::string& path, const DeviceRequest&) {
+MadeDevice make_replay(const std::string& path, const DeviceRequest&) {
   if (path.empty()) return Error{"--device replay: names no recording; write replay:FILE.csv"};
   Result<Recording> recording = read_recording(path);
   if (!recording) return recording.error();
-  return Made(std::make_unique<ReplayDevice>(std::move(*recording)));
+  return MadeDevice(std::make_unique<ReplayDevice>(std::move(*recording)));
 }
 
-Made make_bridge(const std::string& target, const DeviceRequest& request) {
+MadeDevice make_bridge(const std::string& target, const DeviceRequest& request) {
   const Result<BridgeTarget> parsed = parse_bridge_target(target);
   if (!parsed) return parsed.error();
   const Result<DeviceCalibration> calibration = calibration_of(request, kBridgeProtocol);
@@ -95,7 +93,8 @@ Made make_bridge(const std::string& target, const DeviceRequest& request) {
   auto bus = std::make_unique<BridgeBus>(*parsed, target);
   Result<OpenedDevice> opened = bus->open_and_identify();
   if (!opened) return opened.error();
-  return Made(std::make_unique<LinkedDevice>(std::move(bus), *calibration, std::move(*opened), "bridge"));
+  BridgeBus& used = *bus;
+  return MadeDevice(std::make_unique<LinkedDevice>(used, *calibration, std::move(*opened), "bridge", std::move(bus)));
 }
 
 std::string known_names(const std::vector<DeviceEntry>& entries) {
@@ -128,7 +127,7 @@ std::vector<DeviceDescription> list_devices(const DeviceRequest& request) {
   for (const DeviceEntry& entry : device_entries()) {
     list.push_back(entry.description);
     if (entry.make != make_hid) continue;
-    if (const Made hid = make_hid("", request); !hid) list.back().problem = hid.error().message;
+    if (const MadeDevice hid = make_hid("", request); !hid) list.back().problem = hid.error().message;
   }
   return list;
 }
@@ -143,7 +142,7 @@ MadeDevice open_device(const std::string& name, const DeviceRequest& request, co
     if (name.substr(0, colon) != known.substr(0, end) || (colon == std::string::npos) != (end == std::string::npos)) {
       continue;
     }
-    Made device = entry.make(what, request);
+    MadeDevice device = entry.make(what, request);
     if (!device) return device;
     if (const Status status = (*device)->open(); !status) return status.error();
     return device;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace palpate {
 namespace {
@@ -13,7 +14,6 @@ constexpr double kReturn_s = 0.8;
 constexpr double kUsual_m_per_s = 0.05;
 // Ratio of peak speed to mean speed of a minimum-jerk segment.
 constexpr double kPeakOverMean = 1.875;
-constexpr double kPi = 3.14159265358979323846;
 
 }  // namespace
 
@@ -24,8 +24,8 @@ HandMotion::HandMotion(const HandSettings& settings, std::uint64_t seed) : setti
   dealt_ = deck_.size();
   const double slowness = std::min(1.0, settings.fastest_m_per_s / kUsual_m_per_s);
   for (Tremor& tremor : tremor_) {
-    tremor.rate_rad_per_s = 2.0 * kPi * any(8.0, 12.0);
-    const double phase_rad = any(-kPi, kPi);
+    tremor.rate_rad_per_s = 2.0 * std::numbers::pi * any(8.0, 12.0);
+    const double phase_rad = any(-std::numbers::pi, std::numbers::pi);
     const double amplitude_m = slowness * settings.tremor_rms_m * std::sqrt(2.0 / static_cast<double>(tremor_.size()));
     tremor.along = amplitude_m * std::cos(phase_rad);
     tremor.across = amplitude_m * std::sin(phase_rad);

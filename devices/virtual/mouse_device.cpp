@@ -13,8 +13,8 @@ constexpr double kMouseSubstep_s = 250e-6;
 
 }  // namespace
 
-MouseDevice::MouseDevice(const MouseSettings& settings)
-    : SimulatedDevice("mouse"),
+MouseDevice::MouseDevice(const MouseSettings& settings, const char* name)
+    : SimulatedDevice(name),
       settings_(settings),
       target_m_(kMouseStart_m),
       last_input_s_(-std::numeric_limits<double>::infinity()),

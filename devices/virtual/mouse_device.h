@@ -24,9 +24,9 @@ struct MouseSettings {
   double drive_acceleration_m_per_s2 = 0.3;
 };
 
-class MouseDevice final : public SimulatedDevice, public ToolInput {
+class MouseDevice : public SimulatedDevice, public ToolInput {
  public:
-  explicit MouseDevice(const MouseSettings& settings = {});
+  explicit MouseDevice(const MouseSettings& settings = {}, const char* name = "mouse");
 
   ToolInput* tool_input() noexcept override { return this; }
 

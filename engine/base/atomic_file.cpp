@@ -75,6 +75,15 @@ int rename_without_replacing(const char* from, const char* to) {
 // The path of an open file in /proc, the only path of a file without a name.
 std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
 
+// Flushes the folder of `path`, so that a new name in it survives a power cut; does nothing where the file system
+// cannot.
+void flush_folder_of(const std::string& path) {
+  const int descriptor = open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+}
+
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
@@ -94,21 +103,15 @@ Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
   return file;
 }
 
-AtomicFile::AtomicFile(AtomicFile&& other) noexcept { *this = std::move(other); }
-
-AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
-  if (this == &other) return *this;
-  discard();
-  path_ = std::move(other.path_);
-  temporary_path_ = std::move(other.temporary_path_);
-  buffer_ = std::move(other.buffer_);
-  descriptor_ = std::exchange(other.descriptor_, -1);
-  error_number_ = other.error_number_;
-  overwrite_ = other.overwrite_;
-  published_ = other.published_;
-  whole_bytes_ = other.whole_bytes_;
-  return *this;
-}
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      temporary_path_(std::move(other.temporary_path_)),
+      buffer_(std::move(other.buffer_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      error_number_(other.error_number_),
+      overwrite_(other.overwrite_),
+      published_(other.published_),
+      whole_bytes_(other.whole_bytes_) {}
 
 AtomicFile::~AtomicFile() { discard(); }
 
@@ -195,13 +198,6 @@ Status AtomicFile::commit() {
   close_descriptor();
   flush_folder_of(path_);
   return {};
-}
-
-void flush_folder_of(const std::string& path) {
-  const int descriptor = open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fsync(descriptor);
-  close(descriptor);
 }
 
 Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite) {

@@ -18,7 +18,6 @@ class AtomicFile {
   static Result<AtomicFile> create(const std::string& path, bool overwrite);
 
   AtomicFile(AtomicFile&& other) noexcept;
-  AtomicFile& operator=(AtomicFile&& other) noexcept;
   ~AtomicFile();
 
   // Appends; buffered. Errors are stored and returned by `commit`.
@@ -38,13 +37,14 @@ class AtomicFile {
  private:
   AtomicFile() = default;
   void discard() noexcept;
-  std::string path_;
-  std::string temporary_path_;  // empty: the file has no name
   Status take_name();
   Status failure(int error_number) const;
   Status closed() const;
   void flush();
   void close_descriptor() noexcept;
+
+  std::string path_;
+  std::string temporary_path_;  // empty: the file has no name
   std::string buffer_;
   int descriptor_ = -1;
   int error_number_ = 0;
@@ -52,10 +52,6 @@ class AtomicFile {
   bool published_ = false;
   long long whole_bytes_ = 0;  // length that was published
 };
-
-// Flushes the folder of `path`, so that a new name in it survives a power cut; does nothing where the file system
-// cannot.
-void flush_folder_of(const std::string& path);
 
 // Writes `text` to `path` atomically. Errors: those of AtomicFile.
 Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite);

@@ -1,23 +1,18 @@
 #include "engine/base/csv_scanner.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cassert>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <utility>
+
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
 
-std::size_t find_byte(std::string_view text, char byte) {
-  const void* found = text.empty() ? nullptr : std::memchr(text.data(), byte, text.size());
-  if (found == nullptr) return std::string_view::npos;
-  return static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
-}
+// Bytes beyond the longest line that are read: a byte order mark, a carriage return, one byte that shows that the line
+// is too long, and the terminator.
+constexpr std::size_t kBeyondLimit = 6;
 
 // The length of the well-formed UTF-8 sequence at the start of `text`, or 0.
 std::size_t utf8_sequence_bytes(std::string_view text) {
@@ -56,35 +51,8 @@ bool is_control(std::string_view sequence) {
 
 }  // namespace
 
-MemorySource::MemorySource(std::string_view text, std::size_t piece_bytes) : rest_(text), piece_bytes_(piece_bytes) {}
-
-Result<std::size_t> MemorySource::read(char* bytes, std::size_t capacity) {
-  const std::size_t count = std::min({capacity, piece_bytes_, rest_.size()});
-  if (count > 0) std::memcpy(bytes, rest_.data(), count);
-  rest_.remove_prefix(count);
-  return count;
-}
-
-DescriptorSource::~DescriptorSource() { ::close(descriptor_); }
-
-Result<std::size_t> DescriptorSource::read(char* bytes, std::size_t capacity) {
-  for (;;) {
-    const ssize_t count = ::read(descriptor_, bytes, capacity);
-    if (count >= 0) return static_cast<std::size_t>(count);
-    if (errno != EINTR) {
-      return Error{"the file cannot be read (" + std::string(std::strerror(errno)) +
-                   "); check the disk or copy the file elsewhere"};
-    }
-  }
-}
-
-LineScanner::LineScanner(std::unique_ptr<ByteSource> source, std::string label, std::size_t buffer_bytes)
-    : source_(std::move(source)),
-      label_(std::move(label)),
-      capacity_(buffer_bytes),
-      buffer_(std::make_unique_for_overwrite<char[]>(buffer_bytes)) {
-  assert(buffer_bytes >= kMaximumLineBytes + 2);
-}
+LineScanner::LineScanner(std::unique_ptr<std::istream> stream, std::string label)
+    : stream_(std::move(stream)), label_(std::move(label)), buffer_(kMaximumLineBytes + kBeyondLimit, '\0') {}
 
 Error LineScanner::error_at(std::uint64_t line, std::size_t column, const std::string& text) const {
   return Error{label_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + text};
@@ -95,45 +63,15 @@ bool LineScanner::fail(std::size_t column, const std::string& text) {
   return false;
 }
 
-// Moves the rest of the buffer to the front and reads more behind it.
-bool LineScanner::refill() {
-  if (begin_ > 0) {
-    std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
-    end_ -= begin_;
-    begin_ = 0;
-  }
-  const auto count = source_->read(buffer_.get() + end_, capacity_ - end_);
-  if (!count) {
-    error_ = Error{label_ + ": " + count.error().message};
-    return false;
-  }
-  end_ += *count;
-  source_ended_ = *count == 0;
-  return true;
-}
-
-bool LineScanner::skip_byte_order_mark() {
-  started_ = true;
-  while (end_ < 3 && !source_ended_) {
-    if (!refill()) return false;
-  }
-  const std::string_view text(buffer_.get(), end_);
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    return fail(1, "found UTF-16 text, expected UTF-8; save the file as UTF-8 CSV");
-  }
-  if (text.starts_with("\xEF\xBB\xBF")) begin_ = 3;
-  return true;
-}
-
 // The rules for any line, the header and comments included.
 bool LineScanner::check(std::string_view text) {
-  const std::size_t nul = find_byte(text, '\0');
+  const std::size_t nul = text.find('\0');
   if (nul != std::string_view::npos) {
     return fail(nul + 1,
                 "found a NUL byte, expected UTF-8 text; this is a binary or UTF-16 file, "
                 "save it as UTF-8 CSV");
   }
-  const std::size_t carriage_return = find_byte(text, '\r');
+  const std::size_t carriage_return = text.find('\r');
   if (carriage_return != std::string_view::npos && carriage_return + 1 < text.size()) {
     return fail(carriage_return + 1,
                 "found a carriage return inside a line, expected lines that end in LF or CRLF; "
@@ -148,26 +86,24 @@ bool LineScanner::check(std::string_view text) {
 }
 
 bool LineScanner::next(CsvLine& line) {
-  if (error_ || (!started_ && !skip_byte_order_mark())) return false;
-  std::size_t searched = 0;
-  for (;;) {
-    const std::string_view buffered(buffer_.get() + begin_, end_ - begin_);
-    const std::size_t newline = find_byte(buffered.substr(searched), '\n');
-    line.terminated = newline != std::string_view::npos;
-    if (line.terminated) {
-      line.text = buffered.substr(0, searched + newline);
-      break;
-    }
-    searched = buffered.size();
-    // One byte beyond the limit may be the CR of a line end.
-    if (source_ended_ || searched > kMaximumLineBytes + 1) {
-      if (buffered.empty()) return false;
-      line.text = buffered;
-      break;
-    }
-    if (!refill()) return false;
+  if (error_) return false;
+  stream_->getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  if (stream_->bad()) {
+    error_ = unreadable(label_);
+    return false;
   }
-  begin_ += line.text.size() + (line.terminated ? 1 : 0);
+  // The count includes the line feed, which is not stored.
+  const auto count = static_cast<std::size_t>(stream_->gcount());
+  line.terminated = stream_->good();
+  if (count == 0) return false;
+  line.text = std::string_view(buffer_).substr(0, line.terminated ? count - 1 : count);
+  if (lines_ == 0) {
+    if (line.text.starts_with("\xFF\xFE") || line.text.starts_with("\xFE\xFF")) {
+      return fail(1, "found UTF-16 text, expected UTF-8; save the file as UTF-8 CSV");
+    }
+    if (line.text.starts_with("\xEF\xBB\xBF")) line.text.remove_prefix(3);
+    if (line.text.empty() && !line.terminated) return false;
+  }
   if (line.text.ends_with('\r')) line.text.remove_suffix(1);
   if (!check(line.text)) return false;
   line.number = ++lines_;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <istream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,40 +16,6 @@ namespace palpate {
 
 // Limit of the length of a line, bytes; it bounds the memory.
 inline constexpr std::size_t kMaximumLineBytes = 64 * 1024;
-// Size of a read(2) call; a larger one is not faster.
-inline constexpr std::size_t kScannerBufferBytes = 1024 * 1024;
-
-// A source of bytes. `read` fills up to `capacity` bytes and returns their number, 0 at the end. Errors: a sentence
-// without the file's name.
-class ByteSource {
- public:
-  virtual ~ByteSource() = default;
-  virtual Result<std::size_t> read(char* bytes, std::size_t capacity) = 0;
-};
-
-// Reads `text`, which must outlive this, in pieces of at most `piece_bytes`.
-class MemorySource final : public ByteSource {
- public:
-  explicit MemorySource(std::string_view text, std::size_t piece_bytes = kScannerBufferBytes);
-  Result<std::size_t> read(char* bytes, std::size_t capacity) override;
-
- private:
-  std::string_view rest_;
-  std::size_t piece_bytes_;
-};
-
-// Reads a file descriptor and closes it in the destructor.
-class DescriptorSource final : public ByteSource {
- public:
-  explicit DescriptorSource(int descriptor) : descriptor_(descriptor) {}
-  DescriptorSource(const DescriptorSource&) = delete;
-  DescriptorSource& operator=(const DescriptorSource&) = delete;
-  ~DescriptorSource() override;
-  Result<std::size_t> read(char* bytes, std::size_t capacity) override;
-
- private:
-  int descriptor_;
-};
 
 // One line without its line end; `text` is valid until the next call of `next`.
 struct CsvLine {
@@ -57,14 +24,14 @@ struct CsvLine {
   bool terminated = false;   // false: the file ends here without a newline
 };
 
-// Splits a source into lines at LF or CRLF and skips a UTF-8 byte order mark.
+// Splits a stream into lines at LF or CRLF and skips a UTF-8 byte order mark.
 class LineScanner {
  public:
-  // `label`: the file's name in messages. `buffer_bytes`: at least the longest line and two bytes.
-  LineScanner(std::unique_ptr<ByteSource> source, std::string label, std::size_t buffer_bytes = kScannerBufferBytes);
+  // `label`: the file's name in messages.
+  LineScanner(std::unique_ptr<std::istream> stream, std::string label);
 
   // Reads the next line; false at the end and after an error. Errors (no line can be read after one): UTF-16, a NUL
-  // byte, a carriage return inside a line, a line beyond kMaximumLineBytes, an error of the source.
+  // byte, a carriage return inside a line, a line beyond kMaximumLineBytes, a stream that cannot be read.
   bool next(CsvLine& line);
 
   const std::optional<Error>& error() const { return error_; }
@@ -76,20 +43,13 @@ class LineScanner {
   Error error_at(std::uint64_t line, std::size_t column, const std::string& text) const;
 
  private:
-  bool refill();
-  bool skip_byte_order_mark();
   bool check(std::string_view text);
   bool fail(std::size_t column, const std::string& text);
 
-  std::unique_ptr<ByteSource> source_;
+  std::unique_ptr<std::istream> stream_;
   std::string label_;
-  std::size_t capacity_;
-  std::unique_ptr<char[]> buffer_;
-  std::size_t begin_ = 0;
-  std::size_t end_ = 0;
+  std::string buffer_;  // of the present line
   std::uint64_t lines_ = 0;
-  bool started_ = false;
-  bool source_ended_ = false;
   std::optional<Error> error_;
 };
 

@@ -2,6 +2,7 @@
 // a constant rate (x86-64, arm64), else the steady clock. `ns_per_cycle` measures its unit.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #if defined(__x86_64__)
@@ -24,6 +25,18 @@ inline std::uint64_t cycle_count() noexcept {
 }
 
 // Slow side: measures for 2 ms at the first call and stores the result. Accurate to about 0.1 %.
-double ns_per_cycle();
+inline double ns_per_cycle() {
+  static const double measured = [] {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const std::uint64_t first = cycle_count();
+    while (Clock::now() - start < std::chrono::milliseconds(2)) {
+    }
+    const std::uint64_t last = cycle_count();
+    const std::chrono::duration<double, std::nano> elapsed = Clock::now() - start;
+    return elapsed.count() / static_cast<double>(std::max<std::uint64_t>(1, last - first));
+  }();
+  return measured;
+}
 
 }  // namespace palpate

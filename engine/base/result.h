@@ -7,6 +7,7 @@
 
 #include <cassert>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -19,6 +20,8 @@ struct Error {
 template <typename T>
 class [[nodiscard]] Result {
  public:
+  Result() requires std::is_same_v<T, std::monostate>
+  = default;
   Result(T value) : state_(std::move(value)) {}
   Result(Error error) : state_(std::move(error)) {}
 
@@ -48,20 +51,6 @@ class [[nodiscard]] Result {
 };
 
 // Success, or an error.
-class [[nodiscard]] Status {
- public:
-  Status() = default;
-  Status(Error error) : error_(std::move(error)), failed_(true) {}
-  bool ok() const { return !failed_; }
-  explicit operator bool() const { return ok(); }
-  const Error& error() const {
-    assert(failed_);
-    return error_;
-  }
-
- private:
-  Error error_;
-  bool failed_ = false;
-};
+using Status = Result<std::monostate>;
 
 }  // namespace palpate

@@ -48,8 +48,8 @@ std::string decode_utf16(std::string_view bytes, bool big_endian) {
   return out;
 }
 
-Error wrong_kind(const std::string& label, const char* found, const char* advice) {
-  return Error{label + ": found " + found + ", expected a table as text (CSV, TXT); " + advice};
+Error wrong_kind(const std::string& path, const char* found, const char* advice) {
+  return Error{path + ": found " + found + ", expected a table as text (CSV, TXT); " + advice};
 }
 
 }  // namespace
@@ -59,10 +59,13 @@ std::string_view encoding_name(TextEncoding encoding) {
   return kNames[static_cast<std::size_t>(encoding)];
 }
 
-Result<ForeignText> decode_foreign_text(std::string bytes, const std::string& label) {
-  if (bytes.empty()) return wrong_kind(label, "an empty file", "check that the recording was saved");
+Result<ForeignText> read_foreign_text(const std::string& path) {
+  auto file = read_plain_file(path, "a table as text (CSV, TXT)");
+  if (!file) return file.error();
+  std::string& bytes = *file;
+  if (bytes.empty()) return wrong_kind(path, "an empty file", "check that the recording was saved");
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xD0\xCF\x11\xE0")) {
-    return wrong_kind(label, "an Excel workbook or another archive", "save the sheet as CSV");
+    return wrong_kind(path, "an Excel workbook or another archive", "save the sheet as CSV");
   }
   const std::string_view sample = std::string_view(bytes).substr(0, kEncodingSampleBytes);
   const bool big_endian = bytes.starts_with("\xFE\xFF");
@@ -79,15 +82,9 @@ Result<ForeignText> decode_foreign_text(std::string bytes, const std::string& la
     foreign.text = std::move(bytes);
   }
   if (std::string_view(foreign.text).substr(0, kEncodingSampleBytes).find('\0') != std::string_view::npos) {
-    return wrong_kind(label, "a binary file", "export it as CSV from the program that wrote it");
+    return wrong_kind(path, "a binary file", "export it as CSV from the program that wrote it");
   }
   return foreign;
-}
-
-Result<ForeignText> read_foreign_text(const std::string& path) {
-  auto bytes = read_plain_file(path, "a table as text (CSV, TXT)");
-  if (!bytes) return bytes.error();
-  return decode_foreign_text(std::move(*bytes), path);
 }
 
 }  // namespace palpate

@@ -21,7 +21,5 @@ struct ForeignText {
 // Errors: no such file, not a regular file, unreadable, empty, an Excel workbook or another binary file; each with
 // advice.
 Result<ForeignText> read_foreign_text(const std::string& path);
-// The same from memory; `label` replaces the path in messages.
-Result<ForeignText> decode_foreign_text(std::string bytes, const std::string& label);
 
 }  // namespace palpate

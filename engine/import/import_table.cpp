@@ -15,8 +15,8 @@ namespace {
 
 // A larger backward step is a clock that passed midnight.
 constexpr std::int64_t kHalfDay_s = 43200;
-// The first rows, from which the unit of time is determined.
-constexpr std::size_t kTimeUnitRows = 200;
+// The first rows determine which columns are constant, and the unit of time.
+constexpr std::size_t kFirstRows = 200;
 constexpr double kVelocitySlope = 0.2;
 constexpr auto kNoColumn = static_cast<std::size_t>(-1);
 
@@ -52,7 +52,8 @@ class Importer {
   Error explain_row(std::string_view line, std::uint64_t number);
   Result<bool> add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
   void mark_constant_columns();
-  double own_seconds(const TableTime& time) const;
+  void use_unit(std::size_t role, const Unit& unit);
+  double seconds_since_first(const TableTime& time) const;
   void check_rate();
   void check_velocity();
   Status read_rows();
@@ -63,6 +64,7 @@ class Importer {
   ImportRequest request_;
   ImportedTable table_;
   std::vector<ForeignColumn> header_;
+  std::vector<std::vector<std::string_view>> first_rows_;  // their fields
   std::array<std::size_t, kRoles> index_{};
   std::array<double, kRoles> to_si_{1.0, 1.0, 1.0};
   std::vector<std::string_view> row_;
@@ -78,11 +80,12 @@ class Importer {
   std::optional<VelocityColumn> velocity_;
 };
 
-const Unit* requested_unit(const ImportRequest& request, Quantity quantity) {
+// The unit of `quantity`: that of the user, otherwise that of the header.
+std::optional<Unit> unit_of(Quantity quantity, const ImportRequest& request, const ForeignColumn& column) {
   for (const Unit& unit : request.units) {
-    if (unit.quantity == quantity) return &unit;
+    if (unit.quantity == quantity) return unit;
   }
-  return nullptr;
+  return column.parts.unit;
 }
 
 // Text files of LabVIEW have the units of the columns above the table and, if the table has no times, the interval of
@@ -109,8 +112,10 @@ void Importer::read_labview_head() {
 Status Importer::find_columns() {
   const TableLayout& layout = table_.layout;
   std::string_view rest = text_.substr(layout.data_offset);
-  std::vector<std::string_view> first_row;
-  split_table_fields(next_line(rest), layout.delimiter, first_row);
+  while (first_rows_.size() < kFirstRows && !rest.empty()) {
+    split_table_fields(next_line(rest), layout.delimiter, first_rows_.emplace_back());
+  }
+  const auto& first_row = first_rows_.front();
   const bool has_header = !layout.names.empty();
   for (std::size_t i = 0; i < layout.columns; ++i) {
     ForeignColumn column;
@@ -138,26 +143,24 @@ Status Importer::find_columns() {
 }
 
 void Importer::mark_constant_columns() {
-  std::string_view rest = text_.substr(table_.layout.data_offset);
-  std::vector<std::string> first;
-  std::vector<bool> changes(header_.size(), false);
-  std::size_t rows = 0;
-  for (; rows < kTimeUnitRows && !rest.empty(); ++rows) {
-    split_table_fields(next_line(rest), table_.layout.delimiter, row_);
-    if (rows == 0) first.assign(row_.begin(), row_.end());
-    for (std::size_t i = 0; i < std::min({row_.size(), first.size(), header_.size()}); ++i)
-      changes[i] = changes[i] || row_[i] != first[i];
+  const auto& first = first_rows_.front();
+  for (std::size_t i = 0; i < header_.size(); ++i) {
+    const auto changes = [&](const auto& row) { return i < std::min(row.size(), first.size()) && row[i] != first[i]; };
+    header_[i].constant = first_rows_.size() > 1 && std::none_of(first_rows_.begin(), first_rows_.end(), changes);
   }
-  for (std::size_t i = 0; i < header_.size(); ++i) header_[i].constant = rows > 1 && !changes[i];
 }
 
-// The unit of position or force: that of the user, otherwise that of the header.
+void Importer::use_unit(std::size_t role, const Unit& unit) {
+  to_si_[role] = unit.to_si;
+  table_.columns[role].unit = unit.name;
+}
+
+// Finds the unit of position or force.
 Status Importer::find_unit_of(std::size_t role) {
   const Quantity quantity = static_cast<Quantity>(role);
   const auto& column = header_[index_[role]];
-  const Unit* const requested = requested_unit(request_, quantity);
-  const auto& unit = column.parts.unit;
-  if (requested == nullptr && unit && unit->quantity != quantity) {
+  const std::optional<Unit> unit = unit_of(quantity, request_, column);
+  if (unit && unit->quantity != quantity) {
     return fail("found the unit " + std::string(unit->name) + " in the column \"" + printable(column.header) +
                 "\", expected one of a " + (role == 1 ? "length" : "force") + " for the " + kRoleNames[role] +
                 "; choose another with --columns " + kRoleNames[role] + "=NAME; the columns are " +
@@ -173,15 +176,12 @@ Status Importer::find_unit_of(std::size_t role) {
     return fail("found volts in the column \"" + printable(column.header) +
                 "\", expected a force; say how many newtons a volt is: --gain N_PER_V");
   }
-  if (requested == nullptr && !unit) {
-    const std::string what = quoted_name(role);
-    return fail("found no unit of the " + std::string(kRoleNames[role]) + what + "; add --units " +
+  if (!unit) {
+    return fail("found no unit of the " + std::string(kRoleNames[role]) + quoted_name(role) + "; add --units " +
                 (role == 1 ? "mm (or m, cm, um, inch)" : "N (or mN, kN, g, kg, lbf)") +
                 ", with a comma between two units: --units mm,N");
   }
-  const Unit& chosen = requested != nullptr ? *requested : *unit;
-  to_si_[role] = chosen.to_si;
-  table_.columns[role].unit = std::string(chosen.name);
+  use_unit(role, *unit);
   return {};
 }
 
@@ -191,32 +191,27 @@ bool Importer::parse_time(std::string_view field, TableTime& time) const {
 
 // The times are those of a clock, have a unit from the header or the user, or are in the only unit with a valid rate.
 Status Importer::find_time_unit() {
-  std::string_view rest = text_.substr(table_.layout.data_offset);
+  const std::size_t index = index_[0];
   std::vector<double> steps;
   TableTime last;
-  for (std::size_t row = 0; row < kTimeUnitRows && !rest.empty(); ++row) {
-    split(next_line(rest));
+  for (std::size_t row = 0; row < first_rows_.size(); ++row) {
+    const std::string_view field = index < first_rows_[row].size() ? first_rows_[row][index] : std::string_view();
     TableTime time;
     if (row == 0) {
-      clock_ = !parse_number_time(fields_[0], table_.layout.decimal, time) && parse_clock_time(fields_[0], time);
-      has_date_ = clock_ && has_date(fields_[0]);
+      clock_ = !parse_number_time(field, table_.layout.decimal, time) && parse_clock_time(field, time);
+      has_date_ = clock_ && has_date(field);
     }
-    if (!parse_time(fields_[0], time)) break;
+    if (!parse_time(field, time)) break;
     const double step = static_cast<double>(time.whole - last.whole) + (time.fraction - last.fraction);
     if (row > 0 && step > 0.0) steps.push_back(step);
     last = time;
   }
-  ImportedColumn& column = table_.columns[0];
   if (clock_) {
-    column.unit = "clock";
+    table_.columns[0].unit = "clock";
     return {};
   }
-  const Unit* const requested = requested_unit(request_, Quantity::time);
-  const auto& unit = header_[index_[0]].parts.unit;
-  if (requested != nullptr || (unit && unit->quantity == Quantity::time)) {
-    const Unit& chosen = requested != nullptr ? *requested : *unit;
-    to_si_[0] = chosen.to_si;
-    column.unit = std::string(chosen.name);
+  if (const auto unit = unit_of(Quantity::time, request_, header_[index]); unit && unit->quantity == Quantity::time) {
+    use_unit(0, *unit);
     return {};
   }
   double step = 0.0;
@@ -237,9 +232,8 @@ Status Importer::find_time_unit() {
     return fail("found no unit of the time" + quoted_name(0) + " and steps of " + short_number(step) +
                 "; add --units " + choices + ", or --rate HZ if the rows are evenly spaced");
   }
-  to_si_[0] = possible.front().to_si;
-  column.unit = std::string(possible.front().name);
-  note("the header has no unit of time: taken as " + column.unit + ", the only unit in which steps of " +
+  use_unit(0, possible.front());
+  note("the header has no unit of time: taken as " + table_.columns[0].unit + ", the only unit in which steps of " +
        short_number(step) + " are a rate of 10 Hz to 20 kHz");
   return {};
 }
@@ -303,15 +297,10 @@ Result<bool> Importer::add_time(const TableTime& time, std::uint64_t line, Recor
     return true;
   }
   if (!started_) first_ = time;
-  const auto since_first = [&] {
-    return (static_cast<double>(time.whole - first_.whole + midnights_ * 2 * kHalfDay_s) +
-            (time.fraction - first_.fraction)) *
-           to_si_[0];
-  };
-  row.time_s = since_first();
+  row.time_s = seconds_since_first(time);
   if (started_ && clock_ && !has_date_ && last_time_s_ - row.time_s > static_cast<double>(kHalfDay_s)) {
     ++midnights_;
-    row.time_s = since_first();
+    row.time_s = seconds_since_first(time);
     note("the clock passes midnight in line " + std::to_string(line) + ": a day is added from there");
   }
   if (started_ && row.time_s == last_time_s_) {
@@ -326,9 +315,10 @@ Result<bool> Importer::add_time(const TableTime& time, std::uint64_t line, Recor
   return true;
 }
 
-// The seconds from the first time of the file to `time`.
-double Importer::own_seconds(const TableTime& time) const {
-  return (static_cast<double>(time.whole - first_.whole) + (time.fraction - first_.fraction)) * to_si_[0];
+double Importer::seconds_since_first(const TableTime& time) const {
+  return (static_cast<double>(time.whole - first_.whole + midnights_ * 2 * kHalfDay_s) +
+          (time.fraction - first_.fraction)) *
+         to_si_[0];
 }
 
 // Reads every row in one pass. Other lines are allowed at the end only, except for the number of bad rows that the
@@ -385,7 +375,7 @@ Status Importer::read_rows() {
     if (*added) rows.push_back(row);
     if (!own_time_ || !parse_time(fields_[0], time)) continue;
     if (!std::exchange(started_, true)) first_ = time;
-    last_time_s_ = own_seconds(time);
+    last_time_s_ = seconds_since_first(time);
   }
   if (comments > 0) note("left out " + count_of(comments, "comment line") + " between the rows");
   if (repeated_ > 0) note("left out " + count_of(repeated_, "row") + " with the time of the previous row");
@@ -469,14 +459,10 @@ Result<ImportedTable> Importer::run() {
 
 }  // namespace
 
-Result<ImportedTable> import_table(const ForeignText& text, const std::string& label, const ImportRequest& request) {
-  return Importer(text, label, request).run();
-}
-
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request) {
   const auto text = read_foreign_text(path);
   if (!text) return text.error();
-  return import_table(*text, path, request);
+  return Importer(*text, path, request).run();
 }
 
 }  // namespace palpate

@@ -52,7 +52,5 @@ struct ImportedTable {
 
 // Reads `path`. Errors: "path: ..." or "path:line: ...".
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request);
-// The same from memory; `label` replaces the path in messages.
-Result<ImportedTable> import_table(const ForeignText& text, const std::string& label, const ImportRequest& request);
 
 }  // namespace palpate

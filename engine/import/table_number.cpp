@@ -20,14 +20,13 @@ constexpr std::int64_t kSecondsPerDay = 86400;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-bool parse_plain(const char* begin, const char* end, double& value) { return parse_number(begin, end, value) == end; }
-
 bool is_thousands_mark(char c, char decimal) {
   return c == '\'' || c == ' ' || (c == ',' && decimal == '.') || (c == '.' && decimal == ',');
 }
 
-// Writes "1,234.5" without its thousands marks to `buffer`; returns the length, or 0 if the marks are ambiguous.
-std::size_t without_thousands(std::string_view text, char decimal, char* buffer) {
+// Writes a number with a decimal point and without thousands marks to `buffer`; returns the length, or 0 if the marks
+// are ambiguous.
+std::size_t with_decimal_point(std::string_view text, char decimal, char* buffer) {
   std::size_t length = 0;
   std::size_t marks = 0;
   std::size_t digits = 0;  // since the last mark
@@ -47,8 +46,9 @@ std::size_t without_thousands(std::string_view text, char decimal, char* buffer)
     if (!behind_decimal && is_digit(c)) ++digits;
     buffer[length++] = ends_groups ? '.' : c;
   }
+  if (marks == 0) return length;
   if (!behind_decimal && digits != 3) return 0;
-  const bool unmistakable = marks >= 2 || (marks == 1 && (behind_decimal || mark == '\''));
+  const bool unmistakable = marks >= 2 || behind_decimal || mark == '\'';
   return unmistakable ? length : 0;
 }
 
@@ -93,25 +93,13 @@ bool parse_date(std::string_view& text, std::int64_t& days) {
 bool parse_table_number(std::string_view text, char decimal, double& value) {
   text = trimmed(text);
   if (text.empty() || text.size() > kLongestNumber) return false;
-  const char* const begin = text.data();
-  const char* const end = begin + text.size();
-  if (decimal == '.') {
-    if (parse_plain(begin, end, value)) return true;
-  } else {
-    std::array<char, kLongestNumber> buffer;
-    bool has_point = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-      has_point = has_point || text[i] == '.';
-      buffer[i] = text[i] == ',' ? '.' : text[i];
-    }
-    if (!has_point && parse_plain(buffer.data(), buffer.data() + text.size(), value)) return true;
-  }
-  const std::string_view body = text.front() == '-' || text.front() == '+' ? text.substr(1) : text;
-  if (body.empty() || !is_digit(body.front())) return false;
+  const bool negative = text.front() == '-';
+  if (negative || text.front() == '+') text.remove_prefix(1);
+  if (text.empty() || (!is_digit(text.front()) && text.front() != decimal)) return false;
   std::array<char, kLongestNumber> buffer;
-  const std::size_t length = without_thousands(body, decimal, buffer.data());
-  if (length == 0 || !parse_plain(buffer.data(), buffer.data() + length, value)) return false;
-  if (text.front() == '-') value = -value;
+  const char* const end = buffer.data() + with_decimal_point(text, decimal, buffer.data());
+  if (end == buffer.data() || parse_number(buffer.data(), end, value) != end) return false;
+  if (negative) value = -value;
   return true;
 }
 

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "engine/base/csv_scanner.h"
 #include "engine/json/json_position.h"
@@ -15,85 +14,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kMostLines = 20;
-
-// The offset of the first bracket beyond the allowed nesting, if any. It is found before the parser runs, which would
-// need memory for each level.
-std::optional<std::size_t> too_deep_at(std::string_view text, int nesting) {
-  int depth = 0;
-  bool inside_text = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (inside_text) {
-      if (c == '\\') ++i;
-      if (c == '"') inside_text = false;
-      continue;
-    }
-    if (c == '"') inside_text = true;
-    if ((c == '{' || c == '[') && ++depth > nesting) return i;
-    if (c == '}' || c == ']') --depth;
-  }
-  return std::nullopt;
-}
-
-// The offset of the first repeated name in an object, if any. `text` is valid JSON.
-std::optional<std::size_t> repeated_name_at(std::string_view text) {
-  std::vector<std::set<std::string_view>> open;  // names of each object or list
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '{' || text[i] == '[') open.emplace_back();
-    if (text[i] == '}' || text[i] == ']') open.pop_back();
-    if (text[i] != '"') continue;
-    const std::size_t begin = i++;
-    while (text[i] != '"') i += text[i] == '\\' ? 2 : 1;
-    const std::size_t next = text.find_first_not_of(" \t\r\n", i + 1);
-    const bool is_name = next != std::string_view::npos && text[next] == ':';
-    if (is_name && !open.back().insert(text.substr(begin, i - begin)).second) return begin;
-  }
-  return std::nullopt;
-}
-
-// Parses the text once for the position of the first fault, which the parser of documents does not always report
-// (numbers beyond the range of a double).
-class SyntaxCheck final : public nlohmann::json_sax<Json> {
- public:
-  SyntaxCheck(std::string_view text, const std::string& path, const JsonAdvice& advice)
-      : text_(text), path_(path), advice_(advice) {}
-  const std::optional<Error>& error() const { return error_; }
-
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool key(string_t&) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
-
-  bool parse_error(std::size_t position, const std::string& token, const nlohmann::detail::exception& fault) override {
-    constexpr int kNumberOverflow = 406;  // nlohmann's number for it
-    if (fault.id == kNumberOverflow) {
-      const std::size_t start = position - std::min(position, token.size());
-      error_ = Error{position_prefix(path_, position_of_offset(text_, start)) + "found " + printable(token) +
-                     ", expected a finite number" + advice_.field};
-      return false;
-    }
-    std::string what = fault.what();
-    const std::size_t detail = what.find("syntax error");
-    if (detail != std::string::npos) what = what.substr(detail);
-    const std::size_t offset = position > 0 ? position - 1 : 0;
-    error_ = Error{position_prefix(path_, position_of_offset(text_, offset)) + printable(what, 200) + advice_.damaged};
-    return false;
-  }
-
- private:
-  std::string_view text_;
-  const std::string& path_;
-  const JsonAdvice& advice_;
-  std::optional<Error> error_;
-};
 
 // "/centres/3" as "centres[3]", "/domain/points" as "domain.points".
 std::string field_name(std::string_view pointer) {
@@ -116,24 +36,35 @@ std::string field_name(std::string_view pointer) {
 }  // namespace
 
 Result<Json> parse_json(std::string_view text, const std::string& path, int nesting, const JsonAdvice& advice) {
+  const auto wrong = [&](std::size_t offset, const std::string& words, const std::string& what_to_do) {
+    return Error{position_prefix(path, position_of_offset(text, offset)) + words + what_to_do};
+  };
+  // Found before the parser runs, which would need memory for each level.
   if (const auto offset = too_deep_at(text, nesting)) {
-    return Error{position_prefix(path, position_of_offset(text, *offset)) + "found more than " +
-                 std::to_string(nesting) + " lists inside each other, expected fewer" + advice.damaged};
+    return wrong(*offset, "found more than " + std::to_string(nesting) + " lists inside each other, expected fewer",
+                 advice.damaged);
   }
   // The parser treats a NUL as the end of the text.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
-    return Error{position_prefix(path, position_of_offset(text, nul)) + "found a NUL byte, expected text" +
-                 advice.damaged};
+    return wrong(nul, "found a NUL byte, expected text", advice.damaged);
   }
-  SyntaxCheck syntax(text, path, advice);
-  if (!Json::sax_parse(text, &syntax)) {
-    return syntax.error().value_or(Error{path + ": found text that is not JSON" + advice.damaged});
+  Json document;
+  try {
+    document = Json::parse(text);
+  } catch (const Json::out_of_range&) {
+    const std::string_view number = too_large_number(text);
+    return wrong(static_cast<std::size_t>(number.data() - text.data()),
+                 "found " + printable(number) + ", expected a finite number", advice.field);
+  } catch (const Json::parse_error& fault) {
+    std::string what = fault.what();
+    const std::size_t detail = what.find("syntax error");
+    if (detail != std::string::npos) what = what.substr(detail);
+    return wrong(fault.byte > 0 ? fault.byte - 1 : 0, printable(what, 200), advice.damaged);
   }
   if (const auto offset = repeated_name_at(text)) {
-    return Error{position_prefix(path, position_of_offset(text, *offset)) +
-                 "found a name for the second time in one object, expected it once" + advice.damaged};
+    return wrong(*offset, "found a name for the second time in one object, expected it once", advice.damaged);
   }
-  return Json::parse(text);
+  return document;
 }
 
 std::string found(const Json& value) {
@@ -164,9 +95,7 @@ std::optional<Error> JsonFields::error() const {
 
 bool JsonFields::reported_already(const std::string& pointer) const {
   return std::any_of(reported_.begin(), reported_.end(), [&](const std::string& reported) {
-    if (pointer == reported) return true;
-    return !reported.empty() && pointer.size() > reported.size() &&
-           pointer.compare(0, reported.size(), reported) == 0 && pointer[reported.size()] == '/';
+    return pointer == reported || (!reported.empty() && pointer.starts_with(reported + "/"));
   });
 }
 

@@ -1,80 +1,69 @@
 #include "engine/json/json_position.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
 
 namespace palpate {
 namespace {
 
-// Walks through valid JSON; it never reads past the end, even if the text is not valid.
-class Walker {
- public:
-  explicit Walker(std::string_view text) : text_(text) { skip_blanks(); }
+// A bracket, a comma, a colon, a text with its quotes, or another value.
+struct Token {
+  char kind = '\0';  // its first character; 0 at the end
+  std::size_t begin = 0;
+  std::string_view content;
 
-  std::size_t offset() const { return at_; }
-
-  // Moves from the container at the current position to its member or element `step`. If there is none, returns false
-  // and does not move.
-  bool enter(std::string_view step) {
-    const std::size_t start = at_;
-    const bool object = peek() == '{';
-    if (!object && peek() != '[') return false;
-    take();
-    for (std::size_t index = 0; peek() != '}' && peek() != ']' && at_ < text_.size(); ++index) {
-      const std::string_view name = object ? key() : std::string_view();
-      if (object ? name == step : std::to_string(index) == step) return true;
-      skip_value();
-      if (peek() == ',') take();
-    }
-    at_ = start;
-    return false;
-  }
-
- private:
-  char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
-
-  void skip_blanks() {
-    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos) ++at_;
-  }
-
-  void take() {
-    if (at_ < text_.size()) ++at_;
-    skip_blanks();
-  }
-
-  std::string_view string() {
-    const std::size_t first = at_ + 1;
-    std::size_t end = first;
-    while (end < text_.size() && text_[end] != '"') end += text_[end] == '\\' ? 2u : 1u;
-    end = std::min(end, text_.size());
-    at_ = end;
-    take();
-    return text_.substr(std::min(first, end), end - std::min(first, end));
-  }
-
-  std::string_view key() {
-    const std::string_view name = string();
-    take();  // the colon
-    return name;
-  }
-
-  // Counts brackets without recursion, so that deep nesting cannot overflow the stack.
-  void skip_value() {
-    std::size_t open = 0;
-    do {
-      const char next = peek();
-      if (next == '"') {
-        string();
-        continue;
-      }
-      if (next == '{' || next == '[') ++open;
-      if ((next == '}' || next == ']') && open > 0) --open;
-      take();
-    } while (at_ < text_.size() && (open > 0 || std::string_view(",}]").find(peek()) == std::string_view::npos));
-  }
-
-  std::string_view text_;
-  std::size_t at_ = 0;
+  bool opens() const { return kind == '{' || kind == '['; }
+  bool closes() const { return kind == '}' || kind == ']'; }
 };
+
+// The first token from `at` on. The text need not be valid.
+Token token_at(std::string_view text, std::size_t at) {
+  constexpr std::string_view kMarks = "{}[],:";
+  const std::size_t begin = text.find_first_not_of(" \t\r\n", at);
+  if (begin == std::string_view::npos) return {'\0', text.size(), {}};
+  std::size_t end = begin + 1;
+  if (text[begin] == '"') {
+    while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2u : 1u;
+    ++end;
+  } else if (kMarks.find(text[begin]) == std::string_view::npos) {
+    end = text.find_first_of("{}[],:\" \t\r\n", end);
+  }
+  return {text[begin], begin, text.substr(begin, end - begin)};
+}
+
+Token token_after(std::string_view text, const Token& token) {
+  return token_at(text, token.begin + token.content.size());
+}
+
+// The last token of the value that begins with `token`.
+Token last_of_value(std::string_view text, Token token) {
+  std::size_t open = token.opens() ? 1 : 0;
+  while (open > 0 && token.kind != '\0') {
+    token = token_after(text, token);
+    if (token.opens()) ++open;
+    if (token.closes()) --open;
+  }
+  return token;
+}
+
+// The first token of the member or element `step` of the value that begins with `container`.
+std::optional<Token> enter(std::string_view text, const Token& container, std::string_view step) {
+  if (!container.opens()) return std::nullopt;
+  Token token = token_after(text, container);
+  for (std::size_t index = 0; token.kind != '\0' && !token.closes(); ++index) {
+    std::string name = std::to_string(index);
+    if (container.kind == '{') {
+      name = token.content.substr(1, token.content.size() - 2);  // without quotes
+      token = token_after(text, token_after(text, token));       // behind the colon
+    }
+    if (name == step) return token;
+    token = token_after(text, last_of_value(text, token));
+    if (token.kind == ',') token = token_after(text, token);
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -90,14 +79,44 @@ TextPosition position_of_offset(std::string_view text, std::size_t offset) {
 }
 
 TextPosition position_of_value(std::string_view text, std::string_view pointer) {
-  Walker walker(text);
+  Token token = token_at(text, 0);
   while (!pointer.empty()) {
     pointer.remove_prefix(1);
     const std::size_t end = std::min(pointer.find('/'), pointer.size());
-    if (!walker.enter(pointer.substr(0, end))) break;
+    const std::optional<Token> member = enter(text, token, pointer.substr(0, end));
+    if (!member) break;
+    token = *member;
     pointer.remove_prefix(end);
   }
-  return position_of_offset(text, walker.offset());
+  return position_of_offset(text, token.begin);
+}
+
+std::optional<std::size_t> too_deep_at(std::string_view text, int nesting) {
+  int depth = 0;
+  for (Token token = token_at(text, 0); token.kind != '\0'; token = token_after(text, token)) {
+    if (token.opens() && ++depth > nesting) return token.begin;
+    if (token.closes()) --depth;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::size_t> repeated_name_at(std::string_view text) {
+  std::vector<std::set<std::string_view>> open;  // names of each object or list
+  for (Token token = token_at(text, 0); token.kind != '\0'; token = token_after(text, token)) {
+    if (token.opens()) open.emplace_back();
+    if (token.closes()) open.pop_back();
+    const bool is_name = token.kind == '"' && token_after(text, token).kind == ':';
+    if (is_name && !open.back().insert(token.content).second) return token.begin;
+  }
+  return std::nullopt;
+}
+
+std::string_view too_large_number(std::string_view text) {
+  for (Token token = token_at(text, 0); token.kind != '\0'; token = token_after(text, token)) {
+    const bool is_number = token.kind == '-' || (token.kind >= '0' && token.kind <= '9');
+    if (is_number && nlohmann::json::parse(token.content, nullptr, false).is_discarded()) return token.content;
+  }
+  return {};
 }
 
 }  // namespace palpate

@@ -1,8 +1,9 @@
-// The line and column of a value in JSON text, for messages.
+// Positions in JSON text, for messages.
 // Thread guarantee: pure functions, any thread.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,5 +25,12 @@ TextPosition position_of_offset(std::string_view text, std::size_t offset);
 // missing value has the position of the deepest existing value on its path. Keys with escapes, '/' or '~' are not
 // found.
 TextPosition position_of_value(std::string_view text, std::string_view pointer);
+
+// The offset of the first bracket beyond the allowed nesting, if any. The text need not be valid.
+std::optional<std::size_t> too_deep_at(std::string_view text, int nesting);
+// The following are for valid text. The offset of the first name that is repeated in one object, if any.
+std::optional<std::size_t> repeated_name_at(std::string_view text);
+// The first number beyond the range of a double; empty if there is none. The text before it is valid.
+std::string_view too_large_number(std::string_view text);
 
 }  // namespace palpate

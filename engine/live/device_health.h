@@ -2,6 +2,7 @@
 // Thread guarantee: values; `zeroing_words` is slow side (allocates).
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -40,6 +41,18 @@ struct DeviceHealth {
 static_assert(std::is_trivially_copyable_v<DeviceHealth>);
 
 // What the user must do for zeroing; empty if nothing.
-std::string zeroing_words(const DeviceHealth& health);
+inline std::string zeroing_words(const DeviceHealth& health) {
+  switch (health.zeroing) {
+    case Zeroing::needed:
+      return "bring the tool to its marked rest position and start zeroing; no force before";
+    case Zeroing::hold_still:
+      return "zeroing: hold the tool still (" +
+             std::to_string(static_cast<int>(std::lround(100.0F * health.zeroing_progress))) + " %)";
+    case Zeroing::not_needed:
+    case Zeroing::done:
+      break;
+  }
+  return {};
+}
 
 }  // namespace palpate

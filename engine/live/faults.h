@@ -127,7 +127,13 @@ constexpr std::size_t fault_index(FaultSource source, std::uint32_t bit) noexcep
 }
 
 // The sentences of the alarms among `bits`, in the table's order.
-std::vector<std::string> alarm_words(FaultSource source, std::uint32_t bits);
+inline std::vector<std::string> alarm_words(FaultSource source, std::uint32_t bits) {
+  std::vector<std::string> words;
+  for (const Fault& fault : kFaults) {
+    if (fault.alarm && fault.source == source && (bits & fault.bit) != 0) words.emplace_back(fault.sentence);
+  }
+  return words;
+}
 // Of a device: what happened and what to do, a sentence for each alarm among the bits.
 inline std::vector<std::string> device_fault_words(std::uint32_t faults) {
   return alarm_words(FaultSource::device, faults);

@@ -25,11 +25,8 @@ class ForceMixer {
 
   explicit ForceMixer(const JndLine& jnd) noexcept : jnd_(jnd) { weights_[0] = 1.0; }
 
-  // Selects at once, without a fade: for the start, before any force was rendered.
+  // Selects at once, without a fade: for the start, and kOutgoing for the fade to a new set.
   void jump_to(std::size_t selected) noexcept;
-
-  // Begins the fade to a new set: the whole force is that of the previous set.
-  void begin_transition() noexcept { jump_to(kOutgoing); }
 
   // Moves the mixture towards `selected` for `step_s`, clamped to 0 to 10 ms, and returns it.
   double mix(const Forces& forces_N, std::size_t selected, double step_s) noexcept;

@@ -32,10 +32,10 @@ Status HapticsLoop::start() {
     thread_ = std::thread([this, granted = std::move(granted)]() mutable {
       RtStatus status;
       if (settings_.realtime) {
-        status = make_this_thread_realtime({});
+        status = make_this_thread_realtime();
       } else {
         status.scheduling = "normal, as requested";
-        system_rt_calls().set_timer_slack_1ns();
+        set_timer_slack_1ns();
       }
       granted.set_value(std::move(status));
       run(pacer_);

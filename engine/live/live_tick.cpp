@@ -121,7 +121,7 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       outgoing_mixer_(settings.jnd),
       recorded_(settings.recorded),
       ns_per_cycle_(ns_per_cycle()) {
-  mixer_.begin_transition();
+  mixer_.jump_to(ForceMixer::kOutgoing);
 }
 
 LiveTick::~LiveTick() {
@@ -147,7 +147,7 @@ void LiveTick::update_models() noexcept {
     outgoing_ = models_;
     outgoing_mixer_ = mixer_;
   }
-  mixer_.begin_transition();
+  mixer_.jump_to(ForceMixer::kOutgoing);
   models_ = next;
   snapshot_.models_id = models_->id;
   snapshot_.selected = models_->selected;

@@ -38,16 +38,12 @@ bool has_capability(int number) {
 
 // Under a limit, locking future memory would make a later allocation fail anywhere in the program, which is worse than
 // not locking.
-int lock_memory() {
+int lock_all_memory() {
   rlimit limit{};
   const bool unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
   if (!unlimited && !has_capability(kCapIpcLock)) return EPERM;
   return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 ? 0 : errno;
 }
-
-int set_timer_slack_1ns() { return prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL) == 0 ? 0 : errno; }
-
-bool is_root() { return geteuid() == 0; }
 
 std::string user_name() {
   std::array<char, 4096> text;
@@ -63,8 +59,23 @@ std::string program_path() {
   return length > 0 ? std::string(text.data(), static_cast<std::size_t>(length)) : std::string("PROGRAM");
 }
 
-std::string fix_for(const std::string& refused, bool root) {
-  if (root) {
+// Maps the pages of the stack before the first deep call of a tick.
+void touch_stack() {
+  std::array<char, kStackBytes> pages;
+  volatile char* first = pages.data();
+  for (std::size_t i = 0; i < kStackBytes; i += 1024) first[i] = 0;
+}
+
+}  // namespace
+
+std::string realtime_advice(int priority_error, int memory_error, bool is_root) {
+  std::string refused;
+  if (priority_error != 0) refused = std::string("real-time priority (") + std::strerror(priority_error) + ")";
+  if (memory_error != 0) {
+    refused += std::string(refused.empty() ? "" : " and ") + "locked memory (" + std::strerror(memory_error) + ")";
+  }
+  if (refused.empty()) return {};
+  if (is_root) {
     return refused +
            " refused by the container although this is root; start the container with "
            "--cap-add=SYS_NICE --cap-add=IPC_LOCK --ulimit rtprio=99 --ulimit memlock=-1";
@@ -75,30 +86,15 @@ std::string fix_for(const std::string& refused, bool root) {
          program_path();
 }
 
-// Maps the pages of the stack before the first deep call of a tick.
-void touch_stack() {
-  std::array<char, kStackBytes> pages;
-  volatile char* first = pages.data();
-  for (std::size_t i = 0; i < kStackBytes; i += 1024) first[i] = 0;
-}
+void set_timer_slack_1ns() noexcept { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
 
-}  // namespace
-
-RtCalls system_rt_calls() noexcept { return {set_fifo, lock_memory, set_timer_slack_1ns, is_root}; }
-
-RtStatus make_this_thread_realtime(const RtRequest& request, const RtCalls& calls) {
+RtStatus make_this_thread_realtime(int priority, bool lock_memory) {
   RtStatus status;
-  calls.set_timer_slack_1ns();
-  const int fifo_error = calls.set_fifo(request.priority);
-  status.realtime = fifo_error == 0;
-  status.scheduling = status.realtime ? "SCHED_FIFO " + std::to_string(request.priority) : "normal";
-  const int lock_error = request.lock_memory ? calls.lock_memory() : 0;
-  std::string refused;
-  if (fifo_error != 0) refused = std::string("real-time priority (") + std::strerror(fifo_error) + ")";
-  if (lock_error != 0) {
-    refused += std::string(refused.empty() ? "" : " and ") + "locked memory (" + std::strerror(lock_error) + ")";
-  }
-  if (!refused.empty()) status.fix = fix_for(refused, calls.is_root());
+  set_timer_slack_1ns();
+  const int priority_error = set_fifo(priority);
+  status.realtime = priority_error == 0;
+  status.scheduling = status.realtime ? "SCHED_FIFO " + std::to_string(priority) : "normal";
+  status.fix = realtime_advice(priority_error, lock_memory ? lock_all_memory() : 0, geteuid() == 0);
   touch_stack();
   return status;
 }

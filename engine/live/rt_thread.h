@@ -6,29 +6,21 @@
 
 namespace palpate {
 
-struct RtRequest {
-  // SCHED_FIFO priority, 1 to 99: above most threads, below the kernel's own 99.
-  int priority = 80;
-  bool lock_memory = true;
-};
-
 struct RtStatus {
   bool realtime = false;   // SCHED_FIFO obtained
   std::string scheduling;  // for reports: "SCHED_FIFO 80", "normal"
   std::string fix;         // advice; empty if nothing was refused
 };
 
-// The system calls, so that tests can refuse them. Each returns 0 or an errno value.
-struct RtCalls {
-  int (*set_fifo)(int priority);
-  int (*lock_memory)();
-  int (*set_timer_slack_1ns)();
-  bool (*is_root)();
-};
-RtCalls system_rt_calls() noexcept;
+// The advice for refused requests, by their errno values, 0 where one was granted; empty if both were.
+std::string realtime_advice(int priority_error, int memory_error, bool is_root);
 
-// For the calling thread before its first tick: sets timer slack 1 ns (needs no privilege) and SCHED_FIFO, locks memory
-// (of the whole process, pages on first use) and touches 256 KiB of stack. Blocking, allocates.
-RtStatus make_this_thread_realtime(const RtRequest& request, const RtCalls& calls = system_rt_calls());
+// Makes the wake-ups of the calling thread exact; needs no privilege.
+void set_timer_slack_1ns() noexcept;
+
+// For the calling thread before its first tick: sets timer slack 1 ns and SCHED_FIFO with `priority`, 1 to 99 (the
+// default is above most threads and below the kernel's own 99), locks memory (of the whole process, pages on first use)
+// and touches 256 KiB of stack. Blocking, allocates.
+RtStatus make_this_thread_realtime(int priority = 80, bool lock_memory = true);
 
 }  // namespace palpate

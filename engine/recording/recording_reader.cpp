@@ -46,14 +46,13 @@ std::size_t field_column(std::string_view text, std::size_t index) {
 }
 
 Result<RecordingReader> RecordingReader::open(const std::string& path) {
-  const Result<int> descriptor = open_plain_file(path, "a recording (CSV)");
-  if (!descriptor) return descriptor.error();
-  return from(std::make_unique<DescriptorSource>(*descriptor), path);
+  auto file = open_plain_file(path, "a recording (CSV)");
+  if (!file) return file.error();
+  return from(std::move(*file), path);
 }
 
-Result<RecordingReader> RecordingReader::from(std::unique_ptr<ByteSource> source, std::string label,
-                                              std::size_t buffer_bytes) {
-  LineScanner scanner(std::move(source), std::move(label), buffer_bytes);
+Result<RecordingReader> RecordingReader::from(std::unique_ptr<std::istream> stream, std::string label) {
+  LineScanner scanner(std::move(stream), std::move(label));
   CsvLine line;
   while (scanner.next(line)) {
     if (line.text.starts_with('#')) continue;

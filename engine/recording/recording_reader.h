@@ -1,4 +1,4 @@
-// Reads recordings row by row from a file or another source of bytes.
+// Reads recordings row by row from a file or another stream.
 // Thread guarantee: slow side only; one thread per object.
 #pragma once
 
@@ -43,9 +43,8 @@ class RecordingReader {
   // Opens the file and reads its header. Errors: no such file, not readable, a folder, a pipe or a device, not text, no
   // header, a missing or duplicate column.
   static Result<RecordingReader> open(const std::string& path);
-  // The same for any source; `label` replaces the path in messages.
-  static Result<RecordingReader> from(std::unique_ptr<ByteSource> source, std::string label,
-                                      std::size_t buffer_bytes = kScannerBufferBytes);
+  // The same for any stream; `label` replaces the path in messages.
+  static Result<RecordingReader> from(std::unique_ptr<std::istream> stream, std::string label);
 
   // The file name without folder and extension.
   const std::string& name() const { return name_; }

@@ -1,5 +1,6 @@
 #include "engine/recording/recording_writer.h"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,13 +19,13 @@ constexpr std::size_t kPieceBytes = 256 * 1024;
 // The longest comment: '#', a blank and the text fit in one line.
 constexpr std::size_t kMaximumCommentBytes = kMaximumLineBytes - 2;
 
-// Appends one '#' line for each line of `comment`. Control characters become blanks, because the reader would refuse
-// them or take them for line ends.
+// Appends one '#' line for each line of `comment`, up to the longest comment. Control characters become blanks, because
+// the reader would refuse them or take them for line ends.
 void append_comment(std::string& out, std::string_view comment) {
   for (;;) {
     const std::size_t newline = comment.find('\n');
     out += "# ";
-    for (const char c : comment.substr(0, newline)) {
+    for (const char c : comment.substr(0, std::min(newline, kMaximumCommentBytes))) {
       out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
     }
     out += '\n';
@@ -48,15 +49,6 @@ void append_row(std::string& out, RecordingColumns columns, const RecordingRow& 
   out += '\n';
 }
 
-Status check_comments(const std::string& path, const std::vector<std::string>& comments) {
-  for (const std::string& comment : comments) {
-    if (comment.size() <= kMaximumCommentBytes) continue;
-    return Error{path + ": found a comment of " + std::to_string(comment.size()) + " bytes, expected at most " +
-                 std::to_string(kMaximumCommentBytes) + "; shorten it"};
-  }
-  return {};
-}
-
 }  // namespace
 
 RecordingWriter::RecordingWriter(AtomicFile file, RecordingColumns columns)
@@ -66,7 +58,6 @@ RecordingWriter::RecordingWriter(AtomicFile file, RecordingColumns columns)
 
 Result<RecordingWriter> RecordingWriter::create(const std::string& path, RecordingColumns columns,
                                                 const std::vector<std::string>& comments, bool overwrite) {
-  if (Status checked = check_comments(path, comments); !checked) return checked.error();
   auto file = AtomicFile::create(path, overwrite);
   if (!file) return file.error();
   RecordingWriter writer(std::move(*file), columns);

@@ -16,8 +16,7 @@ namespace palpate {
 
 class RecordingWriter {
  public:
-  // `comments` become '#' lines, one for each line of text. Errors: those of AtomicFile::create; a comment that is too
-  // long for a line.
+  // `comments` become '#' lines, one for each line of text. Errors: those of AtomicFile::create.
   static Result<RecordingWriter> create(const std::string& path, RecordingColumns columns,
                                         const std::vector<std::string>& comments, bool overwrite);
 

@@ -4,9 +4,7 @@
 // Thread guarantee: pure functions.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstring>
 
 namespace palpate {
 
@@ -18,9 +16,6 @@ inline constexpr std::size_t kLanes = 4;
 using V4 [[gnu::vector_size(kLanes * sizeof(double))]] = double;
 #define PALPATE_INLINE [[gnu::always_inline]] inline
 
-PALPATE_INLINE void store(std::array<double, kLanes>& to, const V4& from) noexcept {
-  std::memcpy(to.data(), &from, sizeof from);
-}
 inline bool has_wide_lanes() noexcept {
 #ifdef __x86_64__
   __builtin_cpu_init();

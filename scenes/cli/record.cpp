@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "devices/bridge/bridge_target.h"
+#include "devices/bridge/byte_stream.h"
 #include "devices/registry/device_registry.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"

@@ -1,7 +1,6 @@
 #include "scenes/live/convert_recording.h"
 
 #include <filesystem>
-#include <memory>
 #include <string_view>
 
 #include "engine/base/csv_scanner.h"
@@ -15,9 +14,9 @@ namespace {
 
 // Whether the file has the header of a recording, so that its errors are reported as those of a recording.
 bool has_our_columns(const std::string& path) {
-  const auto descriptor = open_plain_file(path, "a recording");
-  if (!descriptor) return false;
-  LineScanner lines(std::make_unique<DescriptorSource>(*descriptor), path);
+  auto file = open_plain_file(path, "a recording");
+  if (!file) return false;
+  LineScanner lines(std::move(*file), path);
   CsvLine line;
   while (lines.next(line)) {
     if (line.text.empty() || line.text.front() != '#') break;

@@ -12,7 +12,7 @@
 #include <memory>
 #include <optional>
 
-#include "devices/bridge/bridge_target.h"
+#include "devices/bridge/byte_stream.h"
 #include "devices/link/linked_device.h"
 #include "tests/support/bridge_session.h"
 #include "tests/support/fake_device_bus.h"

@@ -53,7 +53,7 @@ TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
   EXPECT_EQ(found[0].usage, 1);
   const std::vector<HidDiagnosis> diagnosis = diagnose(bus);
   ASSERT_EQ(diagnosis.size(), 1u);
-  EXPECT_EQ(diagnosis[0].protocol, &kOpenFfBoardProtocol);
+  EXPECT_EQ(diagnosis[0].use, "OpenFFBoard, one axis");
   EXPECT_EQ(diagnosis[0].problem, "");
 }
 

@@ -182,7 +182,7 @@ int main(int argc, char** argv) {
   cell.value = block != nullptr ? 0 : 1 << 4;
   avr_ioctl(bench.avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &cell);
   // Real-time priority, because a board does not wait for other programs.
-  palpate::make_this_thread_realtime({10, false});
+  palpate::make_this_thread_realtime(10, false);
   palpate::SteadyPacer pacer;
   std::int64_t start_ns = pacer.now_ns();
   double position_m = 0.0, force_N = 0.0;

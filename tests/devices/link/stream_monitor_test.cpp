@@ -7,20 +7,24 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "devices/bridge/bridge_bus.h"
+#include "devices/hid/hid_protocols.h"
+
 namespace palpate {
 namespace {
 
-MonitorSettings settings_for(bool absolute_and_timed) {
-  MonitorSettings settings;
-  settings.absolute = settings.timed = absolute_and_timed;
-  settings.counts_per_metre = 50000.0;
-  settings.fastest_m_per_s = 5.0;
-  return settings;
+DeviceCalibration calibration_for(bool absolute_and_timed) {
+  DeviceCalibration calibration;
+  calibration.protocol = absolute_and_timed ? &kBridgeProtocol : &kOpenFfBoardProtocol;
+  calibration.counts_per_metre = 50000.0;
+  calibration.fastest_m_per_s = 5.0;
+  calibration.stuck_after_s = 0.5;
+  return calibration;
 }
 
 // Readings 1 ms apart, optionally of a device with absolute position and sequence numbers.
 struct Stream {
-  explicit Stream(bool absolute_and_timed = false) : monitor(settings_for(absolute_and_timed)) {
+  explicit Stream(bool absolute_and_timed = false) : monitor(calibration_for(absolute_and_timed)) {
     if (absolute_and_timed) steps(60);  // until its clock is identified
   }
   StreamMonitor monitor;
@@ -117,7 +121,7 @@ TEST(StreamMonitor, AStepFromRestThatNoHandCanMakeIsAJump) {
 }
 
 TEST(StreamMonitor, TheCounterMayWrap) {
-  StreamMonitor monitor(settings_for(false));
+  StreamMonitor monitor(calibration_for(false));
   constexpr std::uint32_t kFirst = 0x7FFF'FF00u;
   double now_s = 1.0;
   for (std::uint32_t i = 0; i < 1000; ++i) {

@@ -2,31 +2,47 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+
 namespace palpate {
 namespace {
 
-TEST(LineScanner, GivesTheSameLinesWhateverThePieces) {
-  const std::string text = "one\ntwo\r\n\nlast";
-  for (const std::size_t piece_bytes : {1u, 2u, 5u, 100u}) {
-    LineScanner scanner(std::make_unique<MemorySource>(text, piece_bytes), "x");
+TEST(LineScanner, EndsLinesAtLfAndCrlf) {
+  LineScanner scanner(std::make_unique<std::istringstream>("\xEF\xBB\xBFone\ntwo\r\n\nlast"), "x");
+  CsvLine line;
+  for (const char* expected : {"one", "two", "", "last"}) {
+    ASSERT_TRUE(scanner.next(line));
+    EXPECT_EQ(line.text, expected);
+    EXPECT_EQ(line.terminated, line.text != "last");
+  }
+  EXPECT_EQ(line.number, 4u);
+  EXPECT_FALSE(scanner.next(line));
+  EXPECT_FALSE(scanner.error().has_value());
+}
+
+TEST(LineScanner, HasALimitOfTheLengthOfALine) {
+  const std::string longest(kMaximumLineBytes, 'a');
+  for (const std::string start : {"", "\xEF\xBB\xBF"}) {
+    LineScanner good(std::make_unique<std::istringstream>(start + longest + "\r\nb"), "x");
     CsvLine line;
-    for (const char* expected : {"one", "two", "", "last"}) {
-      ASSERT_TRUE(scanner.next(line));
-      EXPECT_EQ(line.text, expected);
-      EXPECT_EQ(line.terminated, line.text != "last");
-    }
-    EXPECT_EQ(line.number, 4u);
-    EXPECT_FALSE(scanner.next(line));
-    EXPECT_FALSE(scanner.error().has_value());
+    ASSERT_TRUE(good.next(line));
+    EXPECT_EQ(line.text, longest);
+    ASSERT_TRUE(good.next(line));
+    EXPECT_EQ(line.text, "b");
+    LineScanner bad(std::make_unique<std::istringstream>(start + longest + "a\nb"), "x");
+    EXPECT_FALSE(bad.next(line));
+    EXPECT_TRUE(bad.error().has_value());
   }
 }
 
-TEST(LineScanner, ReportsASourceThatFails) {
-  LineScanner scanner(std::make_unique<DescriptorSource>(-1), "x.csv");
+TEST(LineScanner, ReportsAStreamThatFails) {
+  // A folder can be opened as a file, but not be read.
+  LineScanner scanner(std::make_unique<std::ifstream>("/"), "x.csv");
   CsvLine line;
   EXPECT_FALSE(scanner.next(line));
   ASSERT_TRUE(scanner.error().has_value());
-  EXPECT_EQ(scanner.error()->message.substr(0, 36), "x.csv: the file cannot be read (Bad ");
+  EXPECT_EQ(scanner.error()->message.substr(0, 36), "x.csv: the file cannot be read (Is a");
 }
 
 TEST(IsUtf8, FollowsRfc3629) {

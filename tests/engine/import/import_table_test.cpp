@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tests/support/message_parts.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -95,10 +96,15 @@ std::string rows_of(const std::string& separator, int count = 12) {
   return text;
 }
 
+Result<ImportedTable> import_bytes(const std::string& bytes, const ImportRequest& request = {}) {
+  const test::TemporaryFolder folder;
+  auto table = import_table(folder.with_file("rig.txt", bytes), request);
+  if (!table) return Error{test::replaced(table.error().message, folder.path() + "/", "")};
+  return table;
+}
+
 std::string message(const std::string& bytes, const ImportRequest& request = {}) {
-  const auto text = decode_foreign_text(bytes, "rig.txt");
-  if (!text) return text.error().message;
-  const auto table = import_table(*text, "rig.txt", request);
+  const auto table = import_bytes(bytes, request);
   return table ? "accepted" : table.error().message;
 }
 
@@ -139,8 +145,7 @@ TEST(ImportTable, SaysWhatIsBrokenAndWhere) {
 }
 
 TEST(ImportTable, ShiftsTheTimeAndSaysSo) {
-  const auto text = decode_foreign_text("t [s],pos [mm],F [N]\n" + rows_of(","), "rig.txt");
-  const auto table = import_table(*text, "rig.txt", {});
+  const auto table = import_bytes("t [s],pos [mm],F [N]\n" + rows_of(","));
   ASSERT_TRUE(table.ok());
   EXPECT_EQ(table->recording.rows.front().time_s, 0.0);
   ASSERT_FALSE(table->notes.empty());
@@ -148,7 +153,7 @@ TEST(ImportTable, ShiftsTheTimeAndSaysSo) {
 }
 
 ImportedTable imported(const std::string& bytes, const ImportRequest& request = {}) {
-  const auto table = import_table(*decode_foreign_text(bytes, "rig.txt"), "rig.txt", request);
+  const auto table = import_bytes(bytes, request);
   EXPECT_TRUE(table.ok()) << table.error().message;
   return table.ok() ? *table : ImportedTable{};
 }

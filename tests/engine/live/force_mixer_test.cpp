@@ -81,7 +81,7 @@ TEST(ForceMixer, AStallIsNoLicenceAndNoTimeIsNoStep) {
 
 TEST(ForceMixer, AfterAHandOverStartsFromWhatWasFelt) {
   ForceMixer mixer({});
-  mixer.begin_transition();
+  mixer.jump_to(ForceMixer::kOutgoing);
   ForceMixer::Forces forces_N{};
   forces_N[0] = 6.0;
   forces_N[ForceMixer::kOutgoing] = 2.0;

