@@ -21,7 +21,6 @@
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/scene/scene.h"
-#include "scenes/scene/training.h"
 
 namespace palpate::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "models/fit/recipe_2009.h"
 #include "scenes/evaluation/ranking.h"
-#include "scenes/scene/training.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

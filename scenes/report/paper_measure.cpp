@@ -14,7 +14,7 @@
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/material/rig.h"
 #include "scenes/report/paper.h"
-#include "scenes/scene/training.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "engine/base/whole_file.h"
-#include "models/fit/methods.h"
+#include "models/fit/fit.h"
 #include "scenes/scene/assets.h"
 
 namespace palpate {
@@ -66,6 +66,15 @@ Result<Scene> load_scene(const std::string& name, const std::string& in_folder) 
   const Result<std::string> text = read_plain_file(path, "a scene");
   if (!text) return text.error();
   return parse_scene(*text, path);
+}
+
+TrainingRequest training_request(const Scene& scene) {
+  TrainingRequest request;
+  request.scene = scene.name;
+  request.features = scene.features;
+  request.jnd = scene.jnd;
+  request.choice = FeatureChoice::automatic;
+  return request;
 }
 
 std::uint32_t method_rgb(std::string_view method) {
