@@ -72,16 +72,8 @@ void ModelErrors::append(const ModelErrors& other) {
 }
 
 ErrorSummary ModelErrors::summary() const {
-  ErrorSummary summary;
-  summary.samples = figures_.samples();
-  if (summary.samples == 0) return summary;
-  summary.rms_error_N = figures_.rms_error_N();
-  summary.max_error_N = figures_.max_error_N();
-  summary.within_jnd = figures_.within_jnd();
-  summary.p99_error_over_jnd = percentile_99(ratios_.begin(), ratios_.end());
-  summary.max_error_over_jnd = figures_.max_error_over_jnd();
-  summary.out_of_domain_samples = figures_.out_of_domain_samples();
-  summary.bins = figures_.bins(jnd_);
+  ErrorSummary summary = figures_.summary(jnd_);
+  if (summary.samples > 0) summary.p99_error_over_jnd = percentile_99(ratios_.begin(), ratios_.end());
   return summary;
 }
 

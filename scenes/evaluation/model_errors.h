@@ -27,18 +27,6 @@ namespace palpate {
 // A shorter loss of contact does not end a stroke: noise at the surface causes it.
 inline constexpr double kStrokePause_s = 0.05;
 
-// Without samples every figure is 0 and `bins` is empty; check `samples` first.
-struct ErrorSummary {
-  std::uint64_t samples = 0;
-  double rms_error_N = 0.0;
-  double max_error_N = 0.0;
-  double within_jnd = 0.0;
-  double p99_error_over_jnd = 0.0;
-  double max_error_over_jnd = 0.0;
-  std::uint64_t out_of_domain_samples = 0;
-  std::vector<ForceBin> bins;  // from 0 to the largest measured force
-};
-
 // The figures of merit over all samples and of each unit.
 struct UnitErrors : ErrorSummary {
   bool units_are_recordings = false;  // false: units are strokes

@@ -35,22 +35,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-struct Moments {
-  std::vector<double> values;
-  double mean() const {
-    double sum = 0.0;
-    for (const double value : values) sum += value;
-    return sum / static_cast<double>(values.size());
-  }
-  double deviation() const {
-    const double middle = mean();
-    double sum = 0.0;
-    for (const double value : values) sum += (value - middle) * (value - middle);
-    return std::sqrt(sum / static_cast<double>(values.size()));
-  }
-  double largest() const { return *std::max_element(values.begin(), values.end()); }
-};
-
 struct Sample {
   double force_N;
   double error_N;
@@ -65,15 +49,14 @@ std::vector<PaperBin> binned(const std::vector<Sample>& samples, const JndLine& 
     const double force_N = std::abs(one.force_N);
     if (force_N == 0.0) continue;  // the relative error is undefined
     Bin& bin = bins[force_bin(force_N, jnd)];
-    bin.force.values.push_back(force_N);
-    bin.error.values.push_back(one.error_N);
-    bin.relative.values.push_back(one.error_N / force_N);
+    bin.force.add(force_N);
+    bin.error.add(one.error_N);
+    bin.relative.add(one.error_N / force_N);
   }
   std::vector<PaperBin> result;
   for (const auto& [index, bin] : bins) {
-    const std::uint64_t count = bin.force.values.size();
-    if (count < kReducedSamples) continue;
-    result.push_back({bin.force.mean(), count, bin.error.mean(), bin.error.deviation(), bin.error.largest(),
+    if (bin.force.count() < kReducedSamples) continue;
+    result.push_back({bin.force.mean(), bin.force.count(), bin.error.mean(), bin.error.deviation(), bin.error.largest(),
                       bin.relative.mean(), bin.relative.deviation(), bin.relative.largest()});
   }
   return result;
