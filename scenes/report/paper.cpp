@@ -3,10 +3,8 @@
 #include <algorithm>
 
 #include "engine/base/text.h"
-#include "scenes/plot/draw.h"
 #include "scenes/plot/inline_svg.h"
 #include "scenes/report/publish.h"
-#include "scenes/report/table.h"
 
 namespace palpate {
 namespace {
@@ -227,14 +225,9 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
   const std::vector<Claim> claims = paper_claims(*data);
   const std::vector<Table> tables{claims_table(*data, claims), models_table(*data), bins_table(*data)};
   std::vector<Figure> figures = paper_figures(*data);
-  if (const Status drawn = draw_figures(*folder, figures); !drawn)
-    return control.may_continue(0.99) ? drawn.error() : interrupted();
+  if (const Status status = write_parts(*folder, tables, figures, control); !status) return status.error();
   std::string drawings;
   for (const Figure& figure : figures) drawings += figure_html(figure);
-  for (const Table& table : tables) {
-    if (const Status status = folder->write("tables/" + table.name + ".csv", table_csv(table)); !status)
-      return status.error();
-  }
   const std::string answer = summary(*data, claims);
   const auto page = fill_page("paper.html", {{"answer", escape_html(answer)},
                                              {"claims", table_html(tables[0])},
@@ -243,13 +236,9 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
                                              {"figures", drawings},
                                              {"origin", escape_html(request.origin)}});
   if (!page) return page.error();
-  if (const Status status = folder->write("index.html", *page); !status) return status.error();
-  // report.json marks the folder as a report, which may be replaced.
   nlohmann::ordered_json report{{"format", "palpate-paper"}, {"version", 1}, {"answer", answer}};
   for (const Table& table : tables) report["tables"][table.name] = table_json(table);
-  if (const Status status = folder->write("report.json", report.dump(1) + "\n"); !status) return status.error();
-  if (!control.may_continue(1.0)) return interrupted();
-  if (const Status status = folder->commit(); !status) return status.error();
+  if (const Status status = publish(*folder, *page, report, control); !status) return status.error();
   return answer;
 }
 

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "scenes/plot/draw.h"
 #include "scenes/report/page.h"
-#include "scenes/report/report_folder.h"
 
 namespace palpate {
 namespace {
@@ -94,34 +91,18 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
   const auto data = measure(*recordings, request.scene, request.quick, measuring);
   if (!data) return data.error();
   const Sentence words = answer(*data);
-
   const std::vector<Table> tables = make_tables(*data);
-  for (const Table& table : tables) {
-    if (const Status status = folder->write("tables/" + table.name + ".csv", table_csv(table)); !status) {
-      return status.error();
-    }
-  }
   std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), force_figure(*data)};
-  const Status drawn = draw_figures(*folder, figures);
-  // Ctrl-C at a terminal ends gnuplot as well; the report is then interrupted, not wrong.
-  if (!control.may_continue(0.99)) return interrupted();
-  if (!drawn) return drawn.error();
-
+  if (const Status status = write_parts(*folder, tables, figures, control); !status) return status.error();
   const std::string machine =
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  // Names of recordings may be invalid UTF-8; such bytes are replaced.
-  const std::string json = report_json(*data, request, words, tables, figures, machine, seconds)
-                               .dump(1, ' ', false, OrderedJson::error_handler_t::replace) +
-                           "\n";
-  if (const Status status = folder->write("report.json", json); !status) return status.error();
   const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
                              " · " + three_digits(seconds) + " s";
   const auto page = make_page(*data, words, origin, tables, figures);
   if (!page) return page.error();
-  if (const Status status = folder->write("index.html", *page); !status) return status.error();
-  if (!control.may_continue(1.0)) return interrupted();
-  if (const Status status = folder->commit(); !status) return status.error();
+  const OrderedJson json = report_json(*data, request, words, tables, figures, machine, seconds);
+  if (const Status status = publish(*folder, *page, json, control); !status) return status.error();
   return plain_text_of(words);
 }
 
