@@ -37,9 +37,9 @@ Figure bins_figure(const PaperData& data, int number, const std::string& title, 
     for (const PaperModel& model : run.models) {
       Series series{model.name, model.colour, Mark::curve, {}};
       for (const PaperBin& bin : model.bins) {
-        series.rows.push_back({bin.force_N, value(bin)});
-        from_N = std::min(from_N, bin.force_N);
-        to_N = std::max(to_N, bin.force_N);
+        series.rows.push_back({bin.force_N.mean(), value(bin)});
+        from_N = std::min(from_N, bin.force_N.mean());
+        to_N = std::max(to_N, bin.force_N.mean());
       }
       panel.series.push_back(std::move(series));
     }
@@ -113,15 +113,16 @@ Figure sites_figure(const PaperData& data) {
 }
 
 std::vector<Figure> paper_figures(const PaperData& data) {
-  return {dimension_figure(data),
-          jnd_figure(data),
-          bins_figure(data, 4, "mean plus standard deviation of the absolute error", false,
-                      [](const PaperBin& bin) { return bin.mean_N + bin.std_N; }),
-          bins_figure(data, 5, "mean plus standard deviation of the relative error", true,
-                      [](const PaperBin& bin) { return bin.mean_relative + bin.std_relative; }),
-          bins_figure(data, 6, "maximum absolute error", false, [](const PaperBin& bin) { return bin.max_N; }),
-          bins_figure(data, 7, "maximum relative error", true, [](const PaperBin& bin) { return bin.max_relative; }),
-          sites_figure(data)};
+  return {
+      dimension_figure(data),
+      jnd_figure(data),
+      bins_figure(data, 4, "mean plus standard deviation of the absolute error", false,
+                  [](const PaperBin& bin) { return bin.error_N.mean() + bin.error_N.deviation(); }),
+      bins_figure(data, 5, "mean plus standard deviation of the relative error", true,
+                  [](const PaperBin& bin) { return bin.relative.mean() + bin.relative.deviation(); }),
+      bins_figure(data, 6, "maximum absolute error", false, [](const PaperBin& bin) { return bin.error_N.largest(); }),
+      bins_figure(data, 7, "maximum relative error", true, [](const PaperBin& bin) { return bin.relative.largest(); }),
+      sites_figure(data)};
 }
 
 Table claims_table(const PaperData& data, const std::vector<Claim>& claims) {
@@ -132,9 +133,9 @@ Table claims_table(const PaperData& data, const std::vector<Claim>& claims) {
     table.add({"there", "there"}, claim.there);
     for (std::size_t i = 0; i < data.runs.size(); ++i) {
       const std::string name = run_name(data.runs[i]);
-      const bool said = !claim.here[i].empty();
-      table.add({name, name}, claim.here[i]);
-      table.add({name + " reproduced", "reproduced"}, std::string(!said ? "" : claim.reproduced[i] ? "yes" : "no"));
+      const auto& [text, reproduced] = claim.here[i];
+      table.add({name, name}, text);
+      table.add({name + " reproduced", "reproduced"}, std::string(text.empty() ? "" : reproduced ? "yes" : "no"));
     }
     table.add({"remark", "remark"}, claim.why);
   }
@@ -165,15 +166,15 @@ Table bins_table(const PaperData& data) {
         table.begin_row();
         table.add({"run", ""}, run_name(run));
         table.add({"model", ""}, model.name);
-        table.add({"force_N", ""}, bin.force_N);
-        table.add({"count", ""}, bin.count);
-        table.add({"mean_error_N", ""}, bin.mean_N);
-        table.add({"std_error_N", ""}, bin.std_N);
-        table.add({"max_error_N", ""}, bin.max_N);
-        table.add({"mean_relative_error", ""}, bin.mean_relative);
-        table.add({"std_relative_error", ""}, bin.std_relative);
-        table.add({"max_relative_error", ""}, bin.max_relative);
-        table.add({"jnd_N", ""}, data.jnd.at(bin.force_N));
+        table.add({"force_N", ""}, bin.force_N.mean());
+        table.add({"count", ""}, bin.force_N.count());
+        table.add({"mean_error_N", ""}, bin.error_N.mean());
+        table.add({"std_error_N", ""}, bin.error_N.deviation());
+        table.add({"max_error_N", ""}, bin.error_N.largest());
+        table.add({"mean_relative_error", ""}, bin.relative.mean());
+        table.add({"std_relative_error", ""}, bin.relative.deviation());
+        table.add({"max_relative_error", ""}, bin.relative.largest());
+        table.add({"jnd_N", ""}, data.jnd.at(bin.force_N.mean()));
       }
     }
   }
@@ -204,9 +205,9 @@ std::string summary(const PaperData& data, const std::vector<Claim>& claims) {
     std::size_t said = 0;
     std::size_t yes = 0;
     for (const Claim& claim : claims) {
-      if (claim.here[i].empty()) continue;
+      if (claim.here[i].text.empty()) continue;
       ++said;
-      yes += claim.reproduced[i] ? 1 : 0;
+      yes += claim.here[i].reproduced ? 1 : 0;
     }
     text += (i == 0 ? "" : "; ") + std::to_string(yes) + " of " + std::to_string(said) + " claims on " +
             run_name(data.runs[i]);

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <tuple>
 #include <utility>
@@ -10,7 +9,6 @@
 #include "engine/tick/sensor_identification.h"
 #include "models/fit/fit.h"
 #include "models/fit/recipe_2009.h"
-#include "scenes/evaluation/error_figures.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/material/rig.h"
 #include "scenes/report/paper.h"
@@ -41,25 +39,18 @@ struct Sample {
 };
 
 std::vector<PaperBin> binned(const std::vector<Sample>& samples, const JndLine& jnd) {
-  struct Bin {
-    Moments force, error, relative;
-  };
-  std::map<std::size_t, Bin> bins;
+  std::vector<PaperBin> bins;
   for (const Sample& one : samples) {
     const double force_N = std::abs(one.force_N);
     if (force_N == 0.0) continue;  // the relative error is undefined
-    Bin& bin = bins[force_bin(force_N, jnd)];
-    bin.force.add(force_N);
-    bin.error.add(one.error_N);
-    bin.relative.add(one.error_N / force_N);
+    const std::size_t index = force_bin(force_N, jnd);
+    if (bins.size() <= index) bins.resize(index + 1);
+    bins[index].force_N.add(force_N);
+    bins[index].error_N.add(one.error_N);
+    bins[index].relative.add(one.error_N / force_N);
   }
-  std::vector<PaperBin> result;
-  for (const auto& [index, bin] : bins) {
-    if (bin.force.count() < kReducedSamples) continue;
-    result.push_back({bin.force.mean(), bin.force.count(), bin.error.mean(), bin.error.deviation(), bin.error.largest(),
-                      bin.relative.mean(), bin.relative.deviation(), bin.relative.largest()});
-  }
-  return result;
+  std::erase_if(bins, [](const PaperBin& bin) { return bin.force_N.count() < kReducedSamples; });
+  return bins;
 }
 
 MethodRequest request_of(std::size_t which) {
