@@ -14,10 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<std::string> scenes_folder() {
-  Result<std::string> assets = find_assets();
-  if (!assets) return assets.error();
-  return *assets + "/scenes";
+// `folder`, or if it is empty that of the assets.
+Result<std::string> scenes_folder(const std::string& folder) {
+  if (!folder.empty()) return folder;
+  const Result<std::string> assets = find_assets();
+  return assets ? *assets + "/scenes" : assets;
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -42,7 +43,7 @@ std::string describe_features(const Scene& scene) {
 }
 
 Result<std::vector<std::string>> scene_names(const std::string& in_folder) {
-  const Result<std::string> folder = in_folder.empty() ? scenes_folder() : in_folder;
+  const Result<std::string> folder = scenes_folder(in_folder);
   if (!folder) return folder.error();
   std::error_code error;
   std::vector<std::string> names;
@@ -55,7 +56,7 @@ Result<std::vector<std::string>> scene_names(const std::string& in_folder) {
 }
 
 Result<Scene> load_scene(const std::string& name, const std::string& in_folder) {
-  const Result<std::string> folder = in_folder.empty() ? scenes_folder() : in_folder;
+  const Result<std::string> folder = scenes_folder(in_folder);
   if (!folder) return folder.error();
   const Result<std::vector<std::string>> names = scene_names(*folder);
   if (!names) return names.error();
