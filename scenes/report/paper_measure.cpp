@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
-#include <tuple>
 #include <utility>
 
 #include "engine/tick/replay.h"
@@ -10,16 +8,14 @@
 #include "models/fit/fit.h"
 #include "models/fit/recipe_2009.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/material/rig.h"
 #include "scenes/report/paper.h"
+#include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kPaperTrain_s = 41.499;
-constexpr double kPaperTest_s = 45.272;
-constexpr double kQuickShare = 0.2;  // of both durations
+constexpr double kQuickShare = 0.2;  // of the recordings
 constexpr double kStep_N = 0.05;
 constexpr int kCentres = 100;
 const std::vector<int> kGrid{25, 11, 11, 11};
@@ -95,7 +91,6 @@ class PaperMeasurement {
         [this, parts](double fraction) { return control_.may_continue(std::min(0.99, (done_ + fraction) / parts)); }};
   }
 
-  Status record(const std::string& material);
   Status run_material(const std::string& material);
   Result<PreparedTraining> prepare(TrainingRequest request);
   Status measure_run(PaperRun run, const PreparedTraining& prepared);
@@ -107,26 +102,11 @@ class PaperMeasurement {
   double done_ = 0.0;
   Scene scene_;
   PaperData data_;
-  std::shared_ptr<const Recording> train_;
-  std::shared_ptr<const Recording> test_;
+  std::vector<SharedRecording> recordings_;  // to train and to test
 };
 
-Status PaperMeasurement::record(const std::string& material) {
-  for (const auto& [recording, seed, seconds] :
-       {std::tuple{&train_, std::uint64_t{1}, kPaperTrain_s}, {&test_, std::uint64_t{2}, kPaperTest_s}}) {
-    RigSettings settings;
-    settings.material = material;
-    settings.seed = seed;
-    settings.seconds = quick_ ? kQuickShare * seconds : seconds;
-    auto made = record_sensors(settings);
-    if (!made) return made.error();
-    *recording = std::make_shared<const Recording>(std::move(*made));
-  }
-  return {};
-}
-
 Result<PreparedTraining> PaperMeasurement::prepare(TrainingRequest request) {
-  MotionSource source({{"", prepare_recording(*train_)}});
+  MotionSource source({{"", prepare_recording(*recordings_[0])}});
   auto prepared = prepare_training(source, request, part());
   if (!prepared) return prepared.error();
   if (prepared->set.reduction_force_N != kStep_N)
@@ -136,7 +116,9 @@ Result<PreparedTraining> PaperMeasurement::prepare(TrainingRequest request) {
 }
 
 Status PaperMeasurement::run_material(const std::string& material) {
-  if (const Status status = record(material); !status) return status;
+  auto made = virtual_recordings(material, quick_ ? kQuickShare : 1.0);
+  if (!made) return made.error();
+  recordings_ = std::move(*made);
   for (const bool fitted : {false, true}) {
     if (fitted && quick_) continue;
     TrainingRequest request = recipe_2009_request(training_request(scene_));
@@ -146,8 +128,8 @@ Status PaperMeasurement::run_material(const std::string& material) {
     PaperRun run{material,
                  fitted,
                  {},
-                 train_->rows.size(),
-                 test_->rows.size(),
+                 recordings_[0]->rows.size(),
+                 recordings_[1]->rows.size(),
                  static_cast<std::uint64_t>(prepared->sites.count()),
                  {}};
     for (const RelaxationTime& one : prepared->common.provenance.relaxation_times) run.times_s.push_back(one.time_s);
@@ -175,7 +157,7 @@ Status PaperMeasurement::measure_run(PaperRun run, const PreparedTraining& prepa
     for (std::size_t i = 0; i < models.size(); ++i)
       samples[i].push_back({row.force_N, std::abs(snapshot.force_N[i] - row.force_N)});
   };
-  const auto replayed = replay(*test_, models, visitor);
+  const auto replayed = replay(*recordings_[1], models, visitor);
   if (!replayed) return replayed.error();
   timing.sensor = replayed->sensor;
   const std::vector<ModelTiming> times = time_models(models, {timing});
@@ -209,7 +191,9 @@ Status PaperMeasurement::time_sites(const PreparedTraining& prepared) {
 }
 
 Status PaperMeasurement::time_dimensions() {
-  if (const Status status = record("silicone"); !status) return status;
+  auto made = virtual_recordings("silicone", quick_ ? kQuickShare : 1.0);
+  if (!made) return made.error();
+  recordings_ = std::move(*made);
   std::vector<FeatureSpec> features = scene_.features;
   for (const double time_s : kMoreTimes_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
   for (std::size_t d = 1; d <= (quick_ ? std::size_t{4} : features.size()); ++d) {
