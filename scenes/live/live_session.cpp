@@ -318,7 +318,7 @@ Verdict LiveSession::verdict() const {
     evaluated = background_evaluation_.evaluated();
   }
   for (EvaluatedSlot& one : evaluated) one.p99_error_over_jnd = figures(one.slot).errors.p99_error_over_jnd;
-  if (evaluated.empty()) return {{}, {}, false, why_no_verdict(), {}};
+  if (evaluated.empty()) return {{}, false, why_no_verdict(), {}};
   const bool of_model = comparison_.reference() == ReferenceKind::direct;
   Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");
   if (of_model && verdict.detail.empty())

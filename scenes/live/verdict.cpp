@@ -75,7 +75,6 @@ Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& 
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const bool tied = std::find(ranking.qualified.begin(), ranking.qualified.end(), i) != ranking.qualified.end();
     const EvaluatedSlot& one = evaluated[i];
-    if (tied) verdict.tied.push_back(one.slot);
     if (i == best || are_one_trend(one, chosen, models)) continue;
     if (tied) as_good.push_back(one.slot);
     if (!tied && one.p99_error_over_jnd > 1.0) noticed.push_back(one.slot);
