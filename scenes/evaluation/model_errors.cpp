@@ -34,13 +34,12 @@ double UnitErrors::within_at_least() const {
   return std::max(0.0, bound_95(within_jnd, -error, units()));
 }
 
-PairedDifference paired_difference(double one_p99, const std::vector<double>& one_units, double other_p99,
-                                   const std::vector<double>& other_units) {
+PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
   std::vector<double> differences;
-  for (std::size_t i = 0; i < std::min(one_units.size(), other_units.size()); ++i)
-    differences.push_back(one_units[i] - other_units[i]);
+  for (std::size_t i = 0; i < std::min(one.unit_p99.size(), other.unit_p99.size()); ++i)
+    differences.push_back(one.unit_p99[i] - other.unit_p99[i]);
   const double error = standard_error(differences);
-  const double difference = one_p99 - other_p99;
+  const double difference = one.p99_error_over_jnd - other.p99_error_over_jnd;
   return {difference, interval_95(difference, error, differences.size()),
           bound_95(difference, error, differences.size())};
 }

@@ -50,11 +50,7 @@ struct PairedDifference {
   Interval interval;          // 95 %, two-sided; NaN with fewer than kLeastUnits units
   double at_most = kUnknown;  // one-sided 95 % bound; NaN with fewer than kLeastUnits units
 };
-PairedDifference paired_difference(double one_p99, const std::vector<double>& one_units, double other_p99,
-                                   const std::vector<double>& other_units);
-inline PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
-  return paired_difference(one.p99_error_over_jnd, one.unit_p99, other.p99_error_over_jnd, other.unit_p99);
-}
+PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other);
 
 // Detects the beginnings of strokes in one recording.
 class StrokeCounter {

@@ -63,8 +63,7 @@ std::string tick_share(double tick_ns) {
 Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
               const std::string& reference_name) {
   std::vector<Candidate> candidates;
-  for (const EvaluatedSlot& one : evaluated)
-    candidates.push_back({one.unit_errors.p99_error_over_jnd, one.unit_errors.unit_p99, one.tick});
+  for (const EvaluatedSlot& one : evaluated) candidates.push_back({one.unit_errors, one.tick});
   const Ranking ranking = rank(candidates);
   Verdict verdict;
   const std::size_t best = recommended(evaluated, models, ranking.recommended);
@@ -73,11 +72,13 @@ Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& 
   verdict.noticeable = chosen.p99_error_over_jnd > 1.0;
   std::vector<std::size_t> as_good, noticed;
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
-    const bool tied = std::find(ranking.qualified.begin(), ranking.qualified.end(), i) != ranking.qualified.end();
     const EvaluatedSlot& one = evaluated[i];
     if (i == best || are_one_trend(one, chosen, models)) continue;
-    if (tied) as_good.push_back(one.slot);
-    if (!tied && one.p99_error_over_jnd > 1.0) noticed.push_back(one.slot);
+    if (ranking.qualified[i]) {
+      as_good.push_back(one.slot);
+    } else if (one.p99_error_over_jnd > 1.0) {
+      noticed.push_back(one.slot);
+    }
   }
   const ModelInfo& info = models.info(chosen.slot);
   const std::string from = reference_name.empty() ? "" : " from " + reference_name;
