@@ -95,7 +95,12 @@ std::size_t SessionModels::add_slot(const SlotPlan& plan) {
 void SessionModels::cancel() noexcept { worker_->cancel(); }
 
 std::vector<std::size_t> SessionModels::update() {
-  show_progress();
+  const ModelWorker::Progress progress = worker_->progress();
+  if (const auto index = progress.working ? slot_of_job(progress.job_id) : std::nullopt) {
+    ModelInfo& info = slots_[*index]->info;
+    if (info.state == SlotState::waiting) info.state = SlotState::fitting;
+    if (info.state == SlotState::fitting) info.progress = progress.share;
+  }
   std::vector<std::size_t> ready = std::exchange(loaded_, {});
   for (FinishedModel& finished : worker_->read_finished()) {
     const std::optional<std::size_t> index = slot_of_job(finished.job_id);
@@ -114,15 +119,6 @@ std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noe
     if (slots_[i]->job == job && !slots_[i]->removed) return i;
   }
   return std::nullopt;
-}
-
-void SessionModels::show_progress() {
-  const ModelWorker::Progress progress = worker_->progress();
-  const auto index = progress.working ? slot_of_job(progress.job_id) : std::nullopt;
-  if (!index) return;
-  ModelInfo& info = slots_[*index]->info;
-  if (info.state == SlotState::waiting) info.state = SlotState::fitting;
-  if (info.state == SlotState::fitting) info.progress = progress.share;
 }
 
 // A model file of another material is not wrong where it differs from the true force of this one. Recordings that the

@@ -134,7 +134,6 @@ class SessionModels {
  private:
   struct Slot;
 
-  void show_progress();
   std::size_t add_slot(const SlotPlan& plan);
   bool is_of_other_material(const Slot& slot) const;
   bool join(std::size_t index, FinishedModel& finished);

@@ -2,10 +2,11 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <utility>
+
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -153,10 +154,8 @@ Notice SessionRecorder::finish() {
                 std::to_string(writer_->published_rows()) + " rows; make room, and record the rest into another file",
             true};
   }
-  char length[64];
-  std::snprintf(length, sizeof length, " (%.1f s)", time_.last_s() - time_.gaps_s());
-  return {"recorded " + std::to_string(writer_->rows()) + " rows" + length + " into " + request_.path +
-              counted(dropped, "were lost because the disk was too slow") +
+  return {"recorded " + std::to_string(writer_->rows()) + " rows (" + fixed(time_.last_s() - time_.gaps_s(), 1) +
+              " s) into " + request_.path + counted(dropped, "were lost because the disk was too slow") +
               counted(counts_.unusable, "that the loop could not use were left out") +
               counted(counts_.without_force, "without a force were left out"),
           dropped > 0};

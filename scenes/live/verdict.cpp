@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <system_error>
 #include <utility>
 
+#include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/session_models.h"
@@ -18,12 +18,6 @@ constexpr double kTick_ns = 1e6;
 // The interval between two evaluations, and its share of the contact so far: a few more samples change little.
 constexpr double kInterval_s = 2.0;
 constexpr double kMoreContact = 0.1;
-
-std::string formatted(const char* pattern, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
 
 // A model without centres is the trend alone, by whatever method it was fitted. A name that somebody gave stays.
 bool is_trend(const ModelInfo& info) {
@@ -57,7 +51,7 @@ std::size_t recommended(const std::vector<EvaluatedSlot>& evaluated, const Sessi
 
 std::string tick_share(double tick_ns) {
   const double percent = 100.0 * tick_ns / kTick_ns;
-  return formatted(percent < 1.0 ? "%.1g %%" : "%.2g %%", percent);
+  return general(percent, percent < 1.0 ? 1 : 2) + " %";
 }
 
 Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
@@ -87,8 +81,8 @@ Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& 
       (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +
       from + "; uses " + tick_share(info.tick_ns()) + " of the 1 ms of a tick";
   if (verdict.noticeable)
-    verdict.detail = "99 % of its errors are at most " + formatted("%.1f", chosen.p99_error_over_jnd) +
-                     " times what a hand can feel. ";
+    verdict.detail =
+        "99 % of its errors are at most " + fixed(chosen.p99_error_over_jnd, 1) + " times what a hand can feel. ";
   if (!as_good.empty()) verdict.detail += "Equally good, but not faster: " + listed(as_good, models) + ". ";
   if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
   return verdict;

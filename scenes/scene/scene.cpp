@@ -1,10 +1,10 @@
 #include "scenes/scene/scene.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "models/fit/fit.h"
 #include "scenes/scene/assets.h"
@@ -33,11 +33,10 @@ std::string joined(const std::vector<std::string>& words) {
 std::string describe_features(const Scene& scene) {
   std::vector<std::string> words;
   for (const FeatureSpec& feature : scene.features) {
-    char low_pass[48];
-    std::snprintf(low_pass, sizeof low_pass, "relaxation %g s", feature.relaxation_time_s);
-    words.emplace_back(feature.kind == FeatureKind::depth      ? "depth"
-                       : feature.kind == FeatureKind::velocity ? "velocity"
-                                                               : low_pass);
+    words.push_back(feature.kind == FeatureKind::depth ? "depth"
+                    : feature.kind == FeatureKind::velocity
+                        ? "velocity"
+                        : "relaxation " + general(feature.relaxation_time_s, 6) + " s");
   }
   return joined(words);
 }
