@@ -89,24 +89,20 @@ void SessionRecorder::wait() {
 }
 
 void SessionRecorder::work() {
+  int rounds = 0;
   for (bool last = false; !last && !writer_->failed();) {
     {
       std::unique_lock lock(mutex_);
       last = wake_.wait_for(lock, kPause, [this] { return stop_; });
     }
     drain();
-    publish();
+    // A write error is persistent: this loop ends, and `finish` reports it.
+    if (++rounds % kRoundsToDisk == 0) static_cast<void>(writer_->publish());
   }
   Notice outcome = finish();
   writer_.reset();
   const std::lock_guard lock(mutex_);
   outcome_ = std::move(outcome);
-}
-
-void SessionRecorder::publish() {
-  if (++rounds_ % kRoundsToDisk != 0) return;
-  // A write error is persistent: `work` and `finish` report it.
-  [[maybe_unused]] const Status status = writer_->publish();
 }
 
 void SessionRecorder::drain() {
