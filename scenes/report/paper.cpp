@@ -49,18 +49,21 @@ Figure bins_figure(const PaperData& data, int number, const std::string& title, 
   return figure;
 }
 
-Figure dimension_figure(const PaperData& data) {
+// Computation times over `x`, in one panel. `about`: what follows the number in the caption.
+Figure time_figure(int number, const std::string& about, const Axis& x, std::vector<Series> series) {
   Figure figure;
-  figure.plot.name = "figure_2";
+  figure.plot.name = "figure_" + std::to_string(number);
   figure.plot.width = 0.6;
-  figure.caption =
-      "Figure 2: computation time over the dimension of the domain, interpolation of all sites and a grid of 10 nodes "
-      "a "
-      "dimension.";
-  Panel panel;
-  panel.x.title = "Dimensions";
+  figure.caption = "Figure " + std::to_string(number) + ": computation time over the " + about;
+  Panel& panel = figure.plot.panels.emplace_back();
+  panel.x = x;
   panel.y = {"Time", "s", true};
   panel.names_at_ends = true;
+  panel.series = std::move(series);
+  return figure;
+}
+
+Figure dimension_figure(const PaperData& data) {
   Series solve{"solve", kInkColour, Mark::curve, {}};
   Series grid{"grid", kVoxelMethod.colour, Mark::curve, {}};
   Series both{"both", kMutedColour, Mark::curve, {}};
@@ -70,9 +73,8 @@ Figure dimension_figure(const PaperData& data) {
     grid.rows.push_back({d, one.grid_s});
     both.rows.push_back({d, one.solve_s + one.grid_s});
   }
-  panel.series = {std::move(both), std::move(solve), std::move(grid)};
-  figure.plot.panels = {std::move(panel)};
-  return figure;
+  return time_figure(2, "dimension of the domain, interpolation of all sites and a grid of 10 nodes a dimension.",
+                     {"Dimensions", ""}, {both, solve, grid});
 }
 
 Figure jnd_figure(const PaperData& data) {
@@ -93,23 +95,14 @@ Figure jnd_figure(const PaperData& data) {
 }
 
 Figure sites_figure(const PaperData& data) {
-  Figure figure;
-  figure.plot.name = "figure_8";
-  figure.plot.width = 0.6;
-  figure.caption =
-      "Figure 8: computation time over the number of data points; the interpolation with its 25x11x11x11 grid.";
-  Panel panel;
-  panel.x = {"Data points", "", true};
-  panel.y = {"Time", "s", true};
-  panel.names_at_ends = true;
+  std::vector<Series> curves;
   for (std::size_t i = 0; i < data.runs.front().models.size(); ++i) {
     const PaperModel& model = data.runs.front().models[i];
-    Series series{model.name, model.colour, Mark::curve, {}};
-    for (const FitTimes& one : data.by_sites) series.rows.push_back({static_cast<double>(one.sites), one.seconds[i]});
-    panel.series.push_back(std::move(series));
+    Series& curve = curves.emplace_back(Series{model.name, model.colour, Mark::curve, {}});
+    for (const FitTimes& one : data.by_sites) curve.rows.push_back({static_cast<double>(one.sites), one.seconds[i]});
   }
-  figure.plot.panels = {std::move(panel)};
-  return figure;
+  return time_figure(8, "number of data points; the interpolation with its 25x11x11x11 grid.",
+                     {"Data points", "", true}, std::move(curves));
 }
 
 std::vector<Figure> paper_figures(const PaperData& data) {
