@@ -34,19 +34,15 @@ ProgressLine::~ProgressLine() {
 }
 
 bool ProgressLine::update(double fraction) {
-  if (terminal_) {
-    const Clock::time_point now = Clock::now();
-    if (now - last_drawn_ >= kDrawInterval) draw(fraction, now);
+  const Clock::time_point now = Clock::now();
+  if (terminal_ && now - last_drawn_ >= kDrawInterval) {
+    const double elapsed_s = std::chrono::duration<double>(now - start_).count();
+    std::fprintf(stderr, "\r\033[K%s", progress_text(label_, fraction, elapsed_s).c_str());
+    std::fflush(stderr);
+    last_drawn_ = now;
+    drawn_ = true;
   }
   return stop_requested() == 0;
-}
-
-void ProgressLine::draw(double fraction, Clock::time_point now) {
-  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-  std::fprintf(stderr, "\r\033[K%s", progress_text(label_, fraction, elapsed_s).c_str());
-  std::fflush(stderr);
-  last_drawn_ = now;
-  drawn_ = true;
 }
 
 }  // namespace palpate::cli

@@ -23,7 +23,6 @@ class ProgressLine {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void draw(double fraction, Clock::time_point now);
 
   StopListener listener_;
   std::string label_;

@@ -62,13 +62,6 @@ constexpr Figure kFigures[] = {{"rms_error_N", &ErrorSummary::rms_error_N, 1e3, 
                                {"p99_error_over_jnd", &ErrorSummary::p99_error_over_jnd, 1.0, 2},
                                {"max_error_over_jnd", &ErrorSummary::max_error_over_jnd, 1.0, 2}};
 
-// Refuses an output that would replace an input, even with --force.
-Status check_output(const Options& options, const std::string& option, const std::string& out) {
-  std::vector<std::string> inputs = options.models;
-  inputs.insert(inputs.end(), options.recordings.begin(), options.recordings.end());
-  return refuse_input_as_output(out, inputs, option);
-}
-
 // The output file of each recording: `path` for one, NAME_RECORDING.csv for several; empty if `path` is empty.
 std::vector<std::string> outputs(const std::string& path, const std::vector<std::string>& recordings) {
   if (path.empty() || recordings.size() == 1) return std::vector<std::string>(recordings.size(), path);
@@ -102,22 +95,21 @@ void add_figures(OrderedJson& object, const ErrorSummary& errors) {
   for (const Figure& figure : kFigures) object[figure.key] = number_or_null(errors.samples > 0, errors.*figure.value);
 }
 
-OrderedJson time_json(const Timing& time, bool measured) {
-  return {{"median", number_or_null(measured, time.median_ns)}, {"p99", number_or_null(measured, time.p99_ns)}};
-}
-
 OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
   OrderedJson object = {{"name", one.name}, {"method", one.model->method()}, {"centres", one.model->centre_count()}};
   add_figures(object, replayed.as_recorded);
   object["out_of_domain_samples"] = replayed.as_recorded.out_of_domain_samples;
-  object["evaluation_ns"] = time_json(replayed.time.evaluation, replayed.time.measured);
-  object["tick_ns"] = time_json(replayed.time.tick, replayed.time.measured);
+  for (const auto& [key, time] :
+       {std::pair{"evaluation_ns", replayed.time.evaluation}, {"tick_ns", replayed.time.tick}}) {
+    object[key] = {{"median", number_or_null(replayed.time.measured, time.median_ns)},
+                   {"p99", number_or_null(replayed.time.measured, time.p99_ns)}};
+  }
   add_figures(object["surface_moved"], replayed.surface_moved);
   object["surface_offset_m"] = replayed.surface.at;
   object["surface_identified"] = replayed.surface.identified;
-  const BoundCoverage& predicted = replayed.predicted;
-  object["predicted_error"] = {{"bound_95_held", number_or_null(!std::isnan(predicted.coverage), predicted.coverage)},
-                               {"median_bound_N", number_or_null(!std::isnan(predicted.median_N), predicted.median_N)}};
+  // JSON has null for NaN.
+  object["predicted_error"] = {{"bound_95_held", replayed.predicted.coverage},
+                               {"median_bound_N", replayed.predicted.median_N}};
   object["bins"] = bins_json(replayed.as_recorded.bins);
   return object;
 }
@@ -130,12 +122,6 @@ OrderedJson recording_json(const ReplayedRecording& replayed, const std::vector<
           {"contact_samples", replayed.contact_samples},
           {"surface_offset_m", replayed.models.front().surface.at},
           {"models", list}};
-}
-
-void print_all_json(const std::vector<ReplayedRecording>& all, const std::vector<LoadedModel>& models) {
-  OrderedJson list = OrderedJson::array();
-  for (const ReplayedRecording& replayed : all) list.push_back(recording_json(replayed, models));
-  print_json(all.size() == 1 ? list.front() : list);
 }
 
 std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& model) {
@@ -211,33 +197,25 @@ void print_recording(const ReplayedRecording& replayed, const std::vector<Loaded
     std::printf("note: %s\n", remark.c_str());
 }
 
-RowSource rows_of_checked(const CheckedFile& file) {
-  return file.whole ? rows_of(file.recording()) : rows_of_file(file.path);
-}
-
-// Output files of one recording; empty: not requested. `forces`: features and forces. `plot`: a figure.
-struct Outputs {
-  std::string forces;
-  std::string plot;
-};
-
+// `forces_path`: features and forces; `plot_path`: a figure. Empty: not requested.
 Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vector<LoadedModel>& models,
-                                     const Outputs& outputs, bool overwrite) {
+                                     const std::string& forces_path, const std::string& plot_path, bool overwrite) {
   std::vector<EvaluatedModel> evaluated;
   for (const LoadedModel& one : models) evaluated.push_back({one.model, one.model->data().jnd});
   std::optional<ForcesFile> forces;
   ReplayPlot plot(models);
-  if (!outputs.forces.empty()) {
-    Result<ForcesFile> file = ForcesFile::create(outputs.forces, overwrite, models);
+  if (!forces_path.empty()) {
+    Result<ForcesFile> file = ForcesFile::create(forces_path, overwrite, models);
     if (!file) return file.error();
     forces.emplace(std::move(*file));
   }
   EvaluationRequest request;
   request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
     if (forces) forces->add(row, snapshot, tick);
-    if (!outputs.plot.empty()) plot.add(row, snapshot);
+    if (!plot_path.empty()) plot.add(row, snapshot);
   };
-  const auto evaluation = evaluate(rows_of_checked(checked), evaluated, request);
+  const RowSource rows = checked.whole ? rows_of(checked.recording()) : rows_of_file(checked.path);
+  const auto evaluation = evaluate(rows, evaluated, request);
   if (!evaluation) return evaluation.error();
   if (forces) {
     if (const Status status = forces->commit(); !status) return status.error();
@@ -252,18 +230,20 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vect
     errors.push_back(one.as_recorded.summary());
     replayed.models.push_back({errors.back(), one.surface_moved.summary(), one.predicted, one.surface, times[i]});
   }
-  if (outputs.plot.empty()) return replayed;
-  const Status drawn = plot.draw(outputs.plot, fs::path(checked.path).filename().string(), errors, overwrite);
+  if (plot_path.empty()) return replayed;
+  const Status drawn = plot.draw(plot_path, fs::path(checked.path).filename().string(), errors, overwrite);
   return drawn ? Result<ReplayedRecording>(std::move(replayed)) : drawn.error();
 }
 
 Status run(const Options& options) {
+  std::vector<std::string> inputs = options.models;
+  inputs.insert(inputs.end(), options.recordings.begin(), options.recordings.end());
   const std::vector<std::string> forces = outputs(options.out, options.recordings);
   const std::vector<std::string> plots = outputs(options.plot, options.recordings);
   for (std::size_t i = 0; i < options.recordings.size(); ++i) {
     for (const auto& [option, path] : {std::pair{"--out", forces[i]}, {"--plot", plots[i]}}) {
       if (path.empty()) continue;
-      if (const Status status = check_output(options, option, path); !status) return status;
+      if (const Status status = refuse_input_as_output(path, inputs, option); !status) return status;
     }
     if (plots[i].empty()) continue;
     if (const Status status = check_plot_path(plots[i], options.force); !status) return status;
@@ -276,12 +256,14 @@ Status run(const Options& options) {
   if (!checked) return checked.error();
   std::vector<ReplayedRecording> all;
   for (std::size_t i = 0; i < checked->size(); ++i) {
-    auto replayed = replay_one((*checked)[i], *models, {forces[i], plots[i]}, options.force);
+    auto replayed = replay_one((*checked)[i], *models, forces[i], plots[i], options.force);
     if (!replayed) return replayed.error();
     all.push_back(std::move(*replayed));
   }
   if (options.json) {
-    print_all_json(all, *models);
+    OrderedJson list = OrderedJson::array();
+    for (const ReplayedRecording& replayed : all) list.push_back(recording_json(replayed, *models));
+    print_json(list.size() == 1 ? list.front() : list);
   } else {
     for (const ReplayedRecording& replayed : all) print_recording(replayed, *models);
   }

@@ -1,7 +1,9 @@
-// palpate report: compares all methods on the user's recordings, as a page.
+// palpate report: compares all methods on the user's recordings, as a page. palpate paper: runs the protocol of Hoever
+// & Harders (2009) on virtual material.
 #include "scenes/report/report.h"
 
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "scenes/cli/check_recordings.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
+#include "scenes/report/paper.h"
 
 namespace palpate::cli {
 namespace {
@@ -37,7 +40,19 @@ std::string command_line(const Arguments& arguments) {
   return text;
 }
 
-Status run(const Arguments& arguments) {
+// Makes the folder `out` by `make`, with the progress on stderr, and prints its answer.
+Status write_folder(const char* label, const std::string& out,
+                    const std::function<Result<std::string>(const FitControl&)>& make) {
+  const Result<std::string> answer = [&] {
+    ProgressLine line(label);
+    return make({[&](double fraction) { return line.update(fraction); }});
+  }();
+  if (!answer) return answer.error();
+  std::printf("%s\nwritten  %s/index.html, with its tables and figures\n", answer->c_str(), out.c_str());
+  return {};
+}
+
+Status run_report(const Arguments& arguments) {
   if (arguments.train.empty() && !arguments.test.empty()) {
     return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
   }
@@ -59,16 +74,15 @@ Status run(const Arguments& arguments) {
     const PreparedRecordingPointer& prepared = (*checked)[i].prepared;
     (i < arguments.train.size() ? request.train : request.test).emplace_back(prepared, &prepared->recording);
   }
-  const Result<std::string> answer = [&] {
-    ProgressLine line("reporting");
-    FitControl control;
-    control.progress = [&](double fraction) { return line.update(fraction); };
-    return make_report(request, control);
-  }();
-  if (!answer) return answer.error();
-  std::printf("%s\n", answer->c_str());
-  std::printf("written  %s/index.html, with its tables and figures\n", request.out.c_str());
-  return {};
+  return write_folder("reporting", request.out,
+                      [&](const FitControl& control) { return make_report(request, control); });
+}
+
+Status run_paper(PaperRequest request) {
+  request.origin =
+      "palpate paper --out " + request.out + (request.quick ? " --quick" : "") + " · palpate " PALPATE_VERSION;
+  return write_folder("measuring", request.out,
+                      [&](const FitControl& control) { return make_paper(request, control); });
 }
 
 }  // namespace
@@ -86,7 +100,16 @@ void add_report(CLI::App& app, Verbs& verbs) {
   verb->add_option("--out", arguments->out, "Folder to create")->required()->type_name("DIR");
   verb->add_flag("--quick", arguments->quick, "Fit fewer models: about 10 s instead of a minute");
   verb->add_flag("--force", arguments->force, "Replace an earlier report");
-  verbs.emplace_back(verb, [arguments] { return run(*arguments); });
+  verbs.emplace_back(verb, [arguments] { return run_report(*arguments); });
+}
+
+void add_paper(CLI::App& app, Verbs& verbs) {
+  CLI::App* verb = app.add_subcommand("paper", "Repeat the protocol, figures and claims of Hoever & Harders (2009)");
+  const auto request = std::make_shared<PaperRequest>();
+  verb->add_option("--out", request->out, "Folder to create")->required()->type_name("DIR");
+  verb->add_flag("--quick", request->quick, "Use a fifth of the recordings and fewer fits");
+  verb->add_flag("--force", request->force, "Replace an earlier result");
+  verbs.emplace_back(verb, [request] { return run_paper(*request); });
 }
 
 }  // namespace palpate::cli

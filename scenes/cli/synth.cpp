@@ -20,7 +20,6 @@ struct SynthOptions {
   std::string out;
   bool list = false;
   bool force = false;
-  CLI::Option* seconds = nullptr;
 };
 
 // Checks for a whole number, because CLI11 reads -1 as 2^64 - 1.
@@ -33,11 +32,11 @@ std::string whole_number(const std::string& text) {
 }
 
 // Checks the command line before any work.
-void check_usage(const SynthOptions& options) {
+void check_usage(const CLI::App& verb, const SynthOptions& options) {
   if (options.list) return;
   if (options.rig.material.empty()) throw CLI::RequiredError("--material");
   if (options.out.empty()) throw CLI::RequiredError("--out");
-  if (options.seconds->count() > 0 && !(options.rig.seconds > 0.0)) {
+  if (verb.count("--seconds") > 0 && !(options.rig.seconds > 0.0)) {
     throw CLI::ValidationError("--seconds", "must be a number above 0");
   }
   const Result<Rig> trial = Rig::create(options.rig);
@@ -72,12 +71,12 @@ void add_synth(CLI::App& app, Verbs& verbs) {
   verb->add_option("--seed", options->rig.seed, "Seed of the hand motion and the sensor noise")
       ->check(whole_number)
       ->capture_default_str();
-  options->seconds = verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]");
+  verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]");
   verb->add_option("--rate", options->rig.rate_Hz, "Rows per second (Hz), 10 to 20000")->capture_default_str();
   verb->add_option("--out", options->out, "Recording to write (CSV)");
   verb->add_flag("--force", options->force, "Replace an existing file");
   verb->add_flag("--list", options->list, "Print the materials and their relaxation times");
-  verb->parse_complete_callback([options] { check_usage(*options); });
+  verb->parse_complete_callback([verb, options] { check_usage(*verb, *options); });
   verbs.emplace_back(verb, [options] { return run_synth(*options); });
 }
 

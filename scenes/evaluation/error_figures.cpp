@@ -17,19 +17,27 @@ double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept {
   return jnd.offset_N * (jnd.weber_fraction > 0.0 ? std::expm1(jnd.weber_fraction * jnds) / jnd.weber_fraction : jnds);
 }
 
-void ErrorFigures::Moments::add(double value, double count) {
-  const double change = value - mean;
-  mean += change / count;
-  squares += change * (value - mean);
-  largest = std::max(largest, value);
+void Moments::add(double value) {
+  const double change = value - mean_;
+  mean_ += change / static_cast<double>(++count_);
+  squares_ += change * (value - mean_);
+  largest_ = std::max(largest_, value);
 }
 
-void ErrorFigures::Moments::add(const Moments& other, double count, double other_count) {
-  const double change = other.mean - mean;
+void Moments::add(const Moments& other) {
+  if (other.count_ == 0) return;
+  const double change = other.mean_ - mean_;
+  const auto count = static_cast<double>(count_);
+  const auto other_count = static_cast<double>(other.count_);
   const double all = count + other_count;
-  mean += change * other_count / all;
-  squares += other.squares + change * change * count * other_count / all;
-  largest = std::max(largest, other.largest);
+  count_ += other.count_;
+  mean_ += change * other_count / all;
+  squares_ += other.squares_ + change * change * count * other_count / all;
+  largest_ = std::max(largest_, other.largest_);
+}
+
+double Moments::deviation() const noexcept {
+  return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0.0;
 }
 
 void ErrorFigures::add(double model_N, double reference_N, bool out_of_domain, const JndLine& jnd) {
@@ -46,10 +54,9 @@ void ErrorFigures::add(double model_N, double reference_N, bool out_of_domain, c
   const std::size_t index = force_bin(reference_N, jnd);
   if (bins_.size() <= index) bins_.resize(index + 1);
   Bin& bin = bins_[index];
-  const auto count = static_cast<double>(++bin.count);
-  bin.force_N += (reference_N - bin.force_N) / count;
-  bin.error_N.add(error_N, count);
-  bin.ratio.add(ratio, count);
+  bin.force_N.add(reference_N);
+  bin.error_N.add(error_N);
+  bin.ratio.add(ratio);
 }
 
 void ErrorFigures::add(const ErrorFigures& other) {
@@ -62,15 +69,9 @@ void ErrorFigures::add(const ErrorFigures& other) {
   max_ratio_ = std::max(max_ratio_, other.max_ratio_);
   if (bins_.size() < other.bins_.size()) bins_.resize(other.bins_.size());
   for (std::size_t i = 0; i < other.bins_.size(); ++i) {
-    Bin& bin = bins_[i];
-    const Bin& more = other.bins_[i];
-    if (more.count == 0) continue;
-    const auto count = static_cast<double>(bin.count);
-    const auto more_count = static_cast<double>(more.count);
-    bin.force_N += (more.force_N - bin.force_N) * more_count / (count + more_count);
-    bin.error_N.add(more.error_N, count, more_count);
-    bin.ratio.add(more.ratio, count, more_count);
-    bin.count += more.count;
+    bins_[i].force_N.add(other.bins_[i].force_N);
+    bins_[i].error_N.add(other.bins_[i].error_N);
+    bins_[i].ratio.add(other.bins_[i].ratio);
   }
 }
 
@@ -82,31 +83,32 @@ double ErrorFigures::mean_error_over_jnd() const noexcept {
   return samples_ > 0 ? ratios_ / static_cast<double>(samples_) : 0.0;
 }
 
-double ErrorFigures::rms_error_N() const noexcept {
-  return samples_ > 0 ? std::sqrt(squares_N2_ / static_cast<double>(samples_)) : 0.0;
-}
-
-std::vector<ForceBin> ErrorFigures::bins(const JndLine& jnd) const {
-  std::vector<ForceBin> bins;
+ErrorSummary ErrorFigures::summary(const JndLine& jnd) const {
+  ErrorSummary summary;
+  if (samples_ == 0) return summary;
+  summary.samples = samples_;
+  summary.rms_error_N = std::sqrt(squares_N2_ / static_cast<double>(samples_));
+  summary.max_error_N = max_error_N_;
+  summary.within_jnd = within_jnd();
+  summary.max_error_over_jnd = max_ratio_;
+  summary.out_of_domain_samples = out_of_domain_;
   for (std::size_t i = 0; i < bins_.size(); ++i) {
     const Bin& held = bins_[i];
     ForceBin bin;
     bin.force_from_N = force_bin_begin_N(i, jnd);
     bin.force_to_N = force_bin_begin_N(i + 1, jnd);
     bin.jnd_N = jnd.at(0.5 * (bin.force_from_N + bin.force_to_N));
-    bin.count = held.count;
-    bin.mean_force_N = held.force_N;
-    bin.mean_abs_error_N = held.error_N.mean;
-    bin.max_abs_error_N = held.error_N.largest;
-    bin.mean_error_over_jnd = held.ratio.mean;
-    bin.max_error_over_jnd = held.ratio.largest;
-    if (held.count > 0) {
-      bin.std_abs_error_N = std::sqrt(held.error_N.squares / static_cast<double>(held.count));
-      bin.std_error_over_jnd = std::sqrt(held.ratio.squares / static_cast<double>(held.count));
-    }
-    bins.push_back(bin);
+    bin.count = held.force_N.count();
+    bin.mean_force_N = held.force_N.mean();
+    bin.mean_abs_error_N = held.error_N.mean();
+    bin.std_abs_error_N = held.error_N.deviation();
+    bin.max_abs_error_N = held.error_N.largest();
+    bin.mean_error_over_jnd = held.ratio.mean();
+    bin.std_error_over_jnd = held.ratio.deviation();
+    bin.max_error_over_jnd = held.ratio.largest();
+    summary.bins.push_back(bin);
   }
-  return bins;
+  return summary;
 }
 
 }  // namespace palpate

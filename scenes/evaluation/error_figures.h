@@ -41,6 +41,38 @@ std::size_t force_bin(double force_N, const JndLine& jnd) noexcept;
 // Where bin `index` begins, N.
 double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept;
 
+// Mean, population standard deviation and largest value of non-negative values, updated without cancellation. All are 0
+// without values.
+// Source: Welford (1962); Chan, Golub & LeVeque (1983) for merging two of them.
+class Moments {
+ public:
+  void add(double value);
+  void add(const Moments& other);
+
+  std::uint64_t count() const noexcept { return count_; }
+  double mean() const noexcept { return mean_; }
+  double deviation() const noexcept;
+  double largest() const noexcept { return largest_; }
+
+ private:
+  std::uint64_t count_ = 0;
+  double mean_ = 0.0;
+  double squares_ = 0.0;  // sum of squared deviations from the mean
+  double largest_ = 0.0;
+};
+
+// The figures of merit. Without samples every figure is 0 and `bins` is empty; check `samples` first.
+struct ErrorSummary {
+  std::uint64_t samples = 0;
+  double rms_error_N = 0.0;
+  double max_error_N = 0.0;
+  double within_jnd = 0.0;  // share of the samples with an error up to one JND
+  double p99_error_over_jnd = 0.0;
+  double max_error_over_jnd = 0.0;
+  std::uint64_t out_of_domain_samples = 0;
+  std::vector<ForceBin> bins;  // from 0 to the largest measured force
+};
+
 class ErrorFigures {
  public:
   // Adds one sample in contact. Both forces are finite, and `jnd` is the same in every call.
@@ -51,29 +83,14 @@ class ErrorFigures {
   std::uint64_t samples() const noexcept { return samples_; }
   // Without samples the following figures are 0.
   double within_jnd() const noexcept;  // share of the samples with an error up to one JND
-  double rms_error_N() const noexcept;
-  double max_error_N() const noexcept { return max_error_N_; }
   double mean_error_over_jnd() const noexcept;
   double max_error_over_jnd() const noexcept { return max_ratio_; }
-  std::uint64_t out_of_domain_samples() const noexcept { return out_of_domain_; }
-  // All bins from 0 to the largest reference force.
-  std::vector<ForceBin> bins(const JndLine& jnd) const;
+  // All but the 99 % error, which needs every sample.
+  ErrorSummary summary(const JndLine& jnd) const;
 
  private:
-  // Mean and sum of squared deviations, updated without cancellation.
-  // Source: Welford (1962); Chan, Golub & LeVeque (1983) for merging two of them.
-  struct Moments {
-    double mean = 0.0;
-    double squares = 0.0;
-    double largest = 0.0;
-    void add(double value, double count);
-    void add(const Moments& other, double count, double other_count);
-  };
   struct Bin {
-    std::uint64_t count = 0;
-    double force_N = 0.0;  // mean
-    Moments error_N;
-    Moments ratio;
+    Moments force_N, error_N, ratio;
   };
 
   std::uint64_t samples_ = 0;

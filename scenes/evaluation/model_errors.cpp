@@ -34,13 +34,12 @@ double UnitErrors::within_at_least() const {
   return std::max(0.0, bound_95(within_jnd, -error, units()));
 }
 
-PairedDifference paired_difference(double one_p99, const std::vector<double>& one_units, double other_p99,
-                                   const std::vector<double>& other_units) {
+PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
   std::vector<double> differences;
-  for (std::size_t i = 0; i < std::min(one_units.size(), other_units.size()); ++i)
-    differences.push_back(one_units[i] - other_units[i]);
+  for (std::size_t i = 0; i < std::min(one.unit_p99.size(), other.unit_p99.size()); ++i)
+    differences.push_back(one.unit_p99[i] - other.unit_p99[i]);
   const double error = standard_error(differences);
-  const double difference = one_p99 - other_p99;
+  const double difference = one.p99_error_over_jnd - other.p99_error_over_jnd;
   return {difference, interval_95(difference, error, differences.size()),
           bound_95(difference, error, differences.size())};
 }
@@ -72,16 +71,8 @@ void ModelErrors::append(const ModelErrors& other) {
 }
 
 ErrorSummary ModelErrors::summary() const {
-  ErrorSummary summary;
-  summary.samples = figures_.samples();
-  if (summary.samples == 0) return summary;
-  summary.rms_error_N = figures_.rms_error_N();
-  summary.max_error_N = figures_.max_error_N();
-  summary.within_jnd = figures_.within_jnd();
-  summary.p99_error_over_jnd = percentile_99(ratios_.begin(), ratios_.end());
-  summary.max_error_over_jnd = figures_.max_error_over_jnd();
-  summary.out_of_domain_samples = figures_.out_of_domain_samples();
-  summary.bins = figures_.bins(jnd_);
+  ErrorSummary summary = figures_.summary(jnd_);
+  if (summary.samples > 0) summary.p99_error_over_jnd = percentile_99(ratios_.begin(), ratios_.end());
   return summary;
 }
 

@@ -27,18 +27,6 @@ namespace palpate {
 // A shorter loss of contact does not end a stroke: noise at the surface causes it.
 inline constexpr double kStrokePause_s = 0.05;
 
-// Without samples every figure is 0 and `bins` is empty; check `samples` first.
-struct ErrorSummary {
-  std::uint64_t samples = 0;
-  double rms_error_N = 0.0;
-  double max_error_N = 0.0;
-  double within_jnd = 0.0;
-  double p99_error_over_jnd = 0.0;
-  double max_error_over_jnd = 0.0;
-  std::uint64_t out_of_domain_samples = 0;
-  std::vector<ForceBin> bins;  // from 0 to the largest measured force
-};
-
 // The figures of merit over all samples and of each unit.
 struct UnitErrors : ErrorSummary {
   bool units_are_recordings = false;  // false: units are strokes
@@ -62,11 +50,7 @@ struct PairedDifference {
   Interval interval;          // 95 %, two-sided; NaN with fewer than kLeastUnits units
   double at_most = kUnknown;  // one-sided 95 % bound; NaN with fewer than kLeastUnits units
 };
-PairedDifference paired_difference(double one_p99, const std::vector<double>& one_units, double other_p99,
-                                   const std::vector<double>& other_units);
-inline PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
-  return paired_difference(one.p99_error_over_jnd, one.unit_p99, other.p99_error_over_jnd, other.unit_p99);
-}
+PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other);
 
 // Detects the beginnings of strokes in one recording.
 class StrokeCounter {

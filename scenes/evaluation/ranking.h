@@ -22,19 +22,17 @@ namespace palpate {
 inline constexpr double kMargin_jnd = 0.25;
 
 struct Candidate {
-  double error_over_jnd = 0.0;               // 99 % error over all samples
-  std::vector<double> unit_errors_over_jnd;  // 99 % error of each unit; every candidate has the same units
+  UnitErrors errors;  // every candidate has the same units
   Timing tick;
 };
-Candidate candidate(const UnitErrors& errors, const ModelTiming& time);
 
 struct Ranking {
   std::size_t best = 0;
   std::size_t recommended = 0;
-  std::vector<std::size_t> qualified;  // ascending; includes `best` and `recommended`
+  std::vector<bool> qualified;  // for each candidate; true for `best` and `recommended`
 };
 
-// `candidates`: at least one, each with samples. The result contains indices of `candidates`.
+// `candidates`: at least one, each with samples. `best` and `recommended` are indices of `candidates`.
 Ranking rank(const std::vector<Candidate>& candidates);
 
 // Whether `one` has the smaller error and a time whose whole interval is below that of `other`.

@@ -15,7 +15,6 @@ struct Interval {
   double low = 0.0;
   double high = 0.0;
 
-  bool holds(double value) const { return low <= value && value <= high; }
   bool known() const { return std::isfinite(low) && std::isfinite(high); }
 };
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();

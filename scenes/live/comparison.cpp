@@ -56,13 +56,8 @@ std::size_t Comparison::mostly_outside() const noexcept {
 ModelFigures Comparison::figures(std::size_t slot) const {
   const Slot& one = slots_[slot];
   ModelFigures figures = one.newest;
-  figures.errors.samples = one.errors.samples();
-  figures.errors.rms_error_N = one.errors.rms_error_N();
-  figures.errors.max_error_N = one.errors.max_error_N();
-  figures.errors.within_jnd = one.errors.within_jnd();
+  figures.errors = one.errors.summary(jnd_);
   figures.errors.p99_error_over_jnd = one.quantile.p99();
-  figures.errors.max_error_over_jnd = one.errors.max_error_over_jnd();
-  figures.errors.bins = one.errors.bins(jnd_);
   figures.dent_m = one.dent.depth_m();
   figures.recent_error_over_jnd = one.dent.error_over_jnd();
   return figures;

@@ -19,12 +19,16 @@ TickFaultLevel FaultLog::update(const LoopSnapshot& snapshot) {
   TickFaultLevel fault_level = TickFaultLevel::none;
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
     const Fault& fault = kFaults[i];
-    if (fault.source != FaultSource::loop || !fault.alarm || (snapshot.faults & fault.bit) == 0) continue;
-    note(i, 1, snapshot.loop_time_s);
-    fault_level = TickFaultLevel::alarm;
+    if (fault.source == FaultSource::loop && fault.alarm && (snapshot.faults & fault.bit) != 0) {
+      note(i, 1, snapshot.loop_time_s);
+      fault_level = TickFaultLevel::alarm;
+    }
+    // Each device fault is logged once, when it begins.
+    const bool begins = (snapshot.device.faults & ~device_faults_ & fault.bit) != 0;
+    if (fault.source == FaultSource::device && begins) note(i, 1, snapshot.loop_time_s);
   }
-  update_device(snapshot.device.faults, snapshot.loop_time_s);
-  if (snapshot.device.faults != 0) fault_level = TickFaultLevel::alarm;
+  device_faults_ = snapshot.device.faults;
+  if (device_faults_ != 0) fault_level = TickFaultLevel::alarm;
   const auto missed = static_cast<double>(snapshot.missed_deadlines - missed_);
   missed_of_late_ += std::min(1.0, (missed + 1.0) / kRememberedDeadlines) * (missed / (missed + 1.0) - missed_of_late_);
   if (snapshot.missed_deadlines > missed_) {
@@ -33,15 +37,6 @@ TickFaultLevel FaultLog::update(const LoopSnapshot& snapshot) {
     if (fault_level == TickFaultLevel::none) fault_level = TickFaultLevel::late;
   }
   return fault_level;
-}
-
-// Logs each device fault once, when it begins.
-void FaultLog::update_device(std::uint32_t faults, double at_s) {
-  for (std::size_t i = 0; i < kFaults.size(); ++i) {
-    const bool begins = (faults & ~device_faults_ & kFaults[i].bit) != 0;
-    if (kFaults[i].source == FaultSource::device && begins) note(i, 1, at_s);
-  }
-  device_faults_ = faults;
 }
 
 void FaultLog::update_dropped(std::uint64_t dropped, double now_s) {

@@ -52,7 +52,6 @@ class FaultLog {
   void acknowledge() noexcept { stall_unseen_ = false; }
 
  private:
-  void update_device(std::uint32_t faults, double at_s);
   void note(std::size_t kind, std::uint64_t count, double at_s);
 
   std::vector<FaultEvent> events_;

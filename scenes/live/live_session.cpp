@@ -188,7 +188,9 @@ void LiveSession::update() {
   newest_ = loop_->newest();
   comparison_.show(newest_);
   background_evaluation_.update(models_, comparison_, newest_.loop_time_s);
-  check_faults();
+  const double now_s = steady_now_s();
+  faults_.update_dropped(loop_->dropped_snapshots(), now_s);
+  faults_.update_age(loop_->age_s(), now_s);
   if (std::optional<Notice> outcome = recorder_->read_outcome()) {
     send_controls();  // a write error may have ended the recording
     notices_.push_back({std::move(outcome->text), outcome->problem});
@@ -249,12 +251,6 @@ void LiveSession::read_snapshots() {
     }
     if (count < buffer_.size()) break;
   }
-}
-
-void LiveSession::check_faults() {
-  const double at_s = steady_now_s();
-  faults_.update_dropped(loop_->dropped_snapshots(), at_s);
-  faults_.update_age(loop_->age_s(), at_s);
 }
 
 // Writes the last second before a fault to a file.
@@ -318,7 +314,7 @@ Verdict LiveSession::verdict() const {
     evaluated = background_evaluation_.evaluated();
   }
   for (EvaluatedSlot& one : evaluated) one.p99_error_over_jnd = figures(one.slot).errors.p99_error_over_jnd;
-  if (evaluated.empty()) return {{}, {}, false, why_no_verdict(), {}};
+  if (evaluated.empty()) return {{}, false, why_no_verdict(), {}};
   const bool of_model = comparison_.reference() == ReferenceKind::direct;
   Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");
   if (of_model && verdict.detail.empty())
@@ -397,15 +393,6 @@ void LiveSession::hold() {
   send_controls();
 }
 
-std::vector<std::string> LiveSession::recording_comments() const {
-  return {"recorded live; scene " + scene_.name + ", device " + device_->name(),
-          "force_N: " + reference_words() + ", not what the device rendered",
-          "when the stream restarts (end of a replay, seek), time_s continues 30 s later",
-          "position_m: " + (test_.offset_m() == 0.0
-                                ? std::string("as the device gave it")
-                                : "moved to the models' surface by " + fixed(-1e3 * test_.offset_m(), 3) + " mm")};
-}
-
 Status LiveSession::start_recording(const std::string& path) {
   if (!has_reference(comparison_.reference())) {
     return Error{"there is no force to record yet: no reference is ready; wait for one or choose another"};
@@ -415,7 +402,12 @@ Status LiveSession::start_recording(const std::string& path) {
   request.force = comparison_.reference();
   const SensorSpec sensor = device_->sensor();
   request.columns = {sensor.has_velocity, sensor.has_acceleration};
-  request.comments = recording_comments();
+  request.comments = {"recorded live; scene " + scene_.name + ", device " + device_->name(),
+                      "force_N: " + reference_words() + ", not what the device rendered",
+                      "when the stream restarts (end of a replay, seek), time_s continues 30 s later",
+                      "position_m: " + (test_.offset_m() == 0.0 ? std::string("as the device gave it")
+                                                                : "moved to the models' surface by " +
+                                                                      fixed(-1e3 * test_.offset_m(), 3) + " mm")};
   if (Status status = recorder_->start(request); !status) return status;
   send_controls();
   return {};

@@ -150,11 +150,9 @@ class LiveSession {
   void forget_errors(std::string why);
   void publish(std::string why);
   void read_snapshots();
-  void check_faults();
   void save_fault_ticks();
   std::string why_no_verdict() const;
   void send_controls();
-  std::vector<std::string> recording_comments() const;
 
   SessionRequest request_;
   Scene scene_;

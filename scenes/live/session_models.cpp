@@ -53,26 +53,34 @@ SessionModels::~SessionModels() = default;
 
 Status SessionModels::start(const std::vector<SlotPlan>& plans, bool claimed) {
   for (const SlotPlan& plan : plans) {
-    Slot& slot = add_slot(plan);
+    Slot& slot = *slots_[add_slot(plan)];
     slot.claimed = claimed;
     worker_->add_job(slot.job, plan, slots_.size() == 1);
   }
   return worker_->start();
 }
 
-// Reuses the slot of a removed model; if all kMaxModels slots exist, that of a hidden model; else appends a slot.
-SessionModels::Slot& SessionModels::add_slot(const SlotPlan& plan) {
-  const auto usable = [&](bool removed) {
-    return std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) {
-      return (removed ? slot->removed : slot->hidden()) && &slot != (direct_ ? &slots_[*direct_] : nullptr);
-    });
-  };
-  auto place = usable(true);
-  if (place == slots_.end() && slots_.size() == kMaxModels) place = usable(false);
-  if (place == slots_.end()) place = slots_.insert(place, std::unique_ptr<Slot>());
-  if (*place != nullptr && !(*place)->removed) free(static_cast<std::size_t>(place - slots_.begin()));
-  *place = std::make_unique<Slot>();
-  Slot& slot = **place;
+// The slot of a removed model; without one a new slot; if all kMaxModels slots exist, that of a hidden model. The
+// reference keeps its slot.
+std::optional<std::size_t> SessionModels::room() const noexcept {
+  for (const bool removed : {true, false}) {
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      if (direct_ != i && (removed ? slots_[i]->removed : slots_[i]->hidden())) return i;
+    }
+    if (slots_.size() < kMaxModels) return slots_.size();
+  }
+  return std::nullopt;
+}
+
+std::size_t SessionModels::add_slot(const SlotPlan& plan) {
+  const std::size_t index = *room();
+  if (index == slots_.size()) {
+    slots_.emplace_back();
+  } else if (!slots_[index]->removed) {
+    free(index);
+  }
+  slots_[index] = std::make_unique<Slot>();
+  Slot& slot = *slots_[index];
   slot.job = next_job_++;
   slot.info.name = distinct_name(plan_name(plan), &slot);
   slot.info.method = plan_method(plan);
@@ -81,13 +89,18 @@ SessionModels::Slot& SessionModels::add_slot(const SlotPlan& plan) {
   slot.info.paper = plan.paper;
   slot.plan = plan;
   slot.asked_centres = plan.centres;
-  return slot;
+  return index;
 }
 
 void SessionModels::cancel() noexcept { worker_->cancel(); }
 
 std::vector<std::size_t> SessionModels::update() {
-  show_progress();
+  const ModelWorker::Progress progress = worker_->progress();
+  if (const auto index = progress.working ? slot_of_job(progress.job_id) : std::nullopt) {
+    ModelInfo& info = slots_[*index]->info;
+    if (info.state == SlotState::waiting) info.state = SlotState::fitting;
+    if (info.state == SlotState::fitting) info.progress = progress.share;
+  }
   std::vector<std::size_t> ready = std::exchange(loaded_, {});
   for (FinishedModel& finished : worker_->read_finished()) {
     const std::optional<std::size_t> index = slot_of_job(finished.job_id);
@@ -106,15 +119,6 @@ std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noe
     if (slots_[i]->job == job && !slots_[i]->removed) return i;
   }
   return std::nullopt;
-}
-
-void SessionModels::show_progress() {
-  const ModelWorker::Progress progress = worker_->progress();
-  const auto index = progress.working ? slot_of_job(progress.job_id) : std::nullopt;
-  if (!index) return;
-  ModelInfo& info = slots_[*index]->info;
-  if (info.state == SlotState::waiting) info.state = SlotState::fitting;
-  if (info.state == SlotState::fitting) info.progress = progress.share;
 }
 
 // A model file of another material is not wrong where it differs from the true force of this one. Recordings that the
@@ -196,9 +200,8 @@ void SessionModels::use_plans(const std::vector<SlotPlan>& plans) {
     auto index = static_cast<std::size_t>(same - slots_.begin());
     if (same == slots_.end()) {
       if (!has_room("show " + plan_name(plan))) continue;
-      const Slot& slot = add_slot(plan);
-      index = *slot_of_job(slot.job);
-      worker_->add_job(slot.job, plan, !first);
+      index = add_slot(plan);
+      worker_->add_job(slots_[index]->job, plan, !first);
     }
     slots_[index]->show();
     if (!first) first = index;
@@ -271,10 +274,7 @@ double SessionModels::longest_memory_s() const noexcept {
 }
 
 bool SessionModels::has_room(const std::string& what) {
-  if (slots_.size() < kMaxModels) return true;
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (slots_[i]->hidden() && direct_ != i) return true;
-  }
+  if (room()) return true;
   notices_.push_back({"cannot " + what + ": there are " + std::to_string(kMaxModels) +
                           " models already; remove one (right button on its row)",
                       true});
@@ -352,10 +352,11 @@ bool SessionModels::load_file(const std::string& path) {
   plan.origin = ModelOrigin::file;
   plan.path = path;
   plan.loaded = std::move(*model);
-  const Slot& slot = add_slot(plan);
-  loaded_.push_back(*slot_of_job(slot.job));
+  const std::size_t index = add_slot(plan);
+  const Slot& slot = *slots_[index];
+  loaded_.push_back(index);
   FinishedModel finished = finished_model(slot.job, plan, plan.loaded);
-  join(loaded_.back(), finished);
+  join(index, finished);
   notices_.push_back(
       {"loaded " + slot.info.name + " from " + path +
            (slot.info.other_material ? ": of " + recordings_of(*slot.model) + ", without a reference force here" : ""),

@@ -134,10 +134,10 @@ class SessionModels {
  private:
   struct Slot;
 
-  void show_progress();
-  Slot& add_slot(const SlotPlan& plan);
+  std::size_t add_slot(const SlotPlan& plan);
   bool is_of_other_material(const Slot& slot) const;
   bool join(std::size_t index, FinishedModel& finished);
+  std::optional<std::size_t> room() const noexcept;
   bool has_room(const std::string& what);
   void select_what_is_there();
   std::optional<std::size_t> slot_of_job(std::size_t job) const noexcept;

@@ -2,10 +2,11 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <utility>
+
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -88,24 +89,20 @@ void SessionRecorder::wait() {
 }
 
 void SessionRecorder::work() {
+  int rounds = 0;
   for (bool last = false; !last && !writer_->failed();) {
     {
       std::unique_lock lock(mutex_);
       last = wake_.wait_for(lock, kPause, [this] { return stop_; });
     }
     drain();
-    publish();
+    // A write error is persistent: this loop ends, and `finish` reports it.
+    if (++rounds % kRoundsToDisk == 0) static_cast<void>(writer_->publish());
   }
   Notice outcome = finish();
   writer_.reset();
   const std::lock_guard lock(mutex_);
   outcome_ = std::move(outcome);
-}
-
-void SessionRecorder::publish() {
-  if (++rounds_ % kRoundsToDisk != 0) return;
-  // A write error is persistent: `work` and `finish` report it.
-  [[maybe_unused]] const Status status = writer_->publish();
 }
 
 void SessionRecorder::drain() {
@@ -153,10 +150,8 @@ Notice SessionRecorder::finish() {
                 std::to_string(writer_->published_rows()) + " rows; make room, and record the rest into another file",
             true};
   }
-  char length[64];
-  std::snprintf(length, sizeof length, " (%.1f s)", time_.last_s() - time_.gaps_s());
-  return {"recorded " + std::to_string(writer_->rows()) + " rows" + length + " into " + request_.path +
-              counted(dropped, "were lost because the disk was too slow") +
+  return {"recorded " + std::to_string(writer_->rows()) + " rows (" + fixed(time_.last_s() - time_.gaps_s(), 1) +
+              " s) into " + request_.path + counted(dropped, "were lost because the disk was too slow") +
               counted(counts_.unusable, "that the loop could not use were left out") +
               counted(counts_.without_force, "without a force were left out"),
           dropped > 0};

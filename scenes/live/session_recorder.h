@@ -91,7 +91,6 @@ class SessionRecorder {
   void work();
   void drain();
   void write(const RecordedSample& sample);
-  void publish();
   Notice finish();
 
   HapticsLoop& loop_;
@@ -101,7 +100,6 @@ class SessionRecorder {
   RecordingTime time_;
   Counts counts_;
   bool restart_pending_ = false;
-  int rounds_ = 0;
   std::uint64_t dropped_before_ = 0;
   std::vector<RecordedSample> buffer_;
   std::thread thread_;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <system_error>
 #include <utility>
 
+#include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/session_models.h"
@@ -18,12 +18,6 @@ constexpr double kTick_ns = 1e6;
 // The interval between two evaluations, and its share of the contact so far: a few more samples change little.
 constexpr double kInterval_s = 2.0;
 constexpr double kMoreContact = 0.1;
-
-std::string formatted(const char* pattern, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
 
 // A model without centres is the trend alone, by whatever method it was fitted. A name that somebody gave stays.
 bool is_trend(const ModelInfo& info) {
@@ -57,14 +51,13 @@ std::size_t recommended(const std::vector<EvaluatedSlot>& evaluated, const Sessi
 
 std::string tick_share(double tick_ns) {
   const double percent = 100.0 * tick_ns / kTick_ns;
-  return formatted(percent < 1.0 ? "%.1g %%" : "%.2g %%", percent);
+  return general(percent, percent < 1.0 ? 1 : 2) + " %";
 }
 
 Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
               const std::string& reference_name) {
   std::vector<Candidate> candidates;
-  for (const EvaluatedSlot& one : evaluated)
-    candidates.push_back({one.unit_errors.p99_error_over_jnd, one.unit_errors.unit_p99, one.tick});
+  for (const EvaluatedSlot& one : evaluated) candidates.push_back({one.unit_errors, one.tick});
   const Ranking ranking = rank(candidates);
   Verdict verdict;
   const std::size_t best = recommended(evaluated, models, ranking.recommended);
@@ -73,12 +66,13 @@ Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& 
   verdict.noticeable = chosen.p99_error_over_jnd > 1.0;
   std::vector<std::size_t> as_good, noticed;
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
-    const bool tied = std::find(ranking.qualified.begin(), ranking.qualified.end(), i) != ranking.qualified.end();
     const EvaluatedSlot& one = evaluated[i];
-    if (tied) verdict.tied.push_back(one.slot);
     if (i == best || are_one_trend(one, chosen, models)) continue;
-    if (tied) as_good.push_back(one.slot);
-    if (!tied && one.p99_error_over_jnd > 1.0) noticed.push_back(one.slot);
+    if (ranking.qualified[i]) {
+      as_good.push_back(one.slot);
+    } else if (one.p99_error_over_jnd > 1.0) {
+      noticed.push_back(one.slot);
+    }
   }
   const ModelInfo& info = models.info(chosen.slot);
   const std::string from = reference_name.empty() ? "" : " from " + reference_name;
@@ -87,8 +81,8 @@ Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& 
       (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +
       from + "; uses " + tick_share(info.tick_ns()) + " of the 1 ms of a tick";
   if (verdict.noticeable)
-    verdict.detail = "99 % of its errors are at most " + formatted("%.1f", chosen.p99_error_over_jnd) +
-                     " times what a hand can feel. ";
+    verdict.detail =
+        "99 % of its errors are at most " + fixed(chosen.p99_error_over_jnd, 1) + " times what a hand can feel. ";
   if (!as_good.empty()) verdict.detail += "Equally good, but not faster: " + listed(as_good, models) + ". ";
   if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
   return verdict;

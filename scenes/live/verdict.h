@@ -28,7 +28,6 @@ struct EvaluatedSlot {
 
 struct Verdict {
   std::optional<std::size_t> chosen;  // slot of the recommended model; empty: `headline` says why there is none yet
-  std::vector<std::size_t> tied;      // slots of all non-inferior models, including `chosen`
   bool noticeable = false;            // the 99 % error of the chosen model exceeds one JND
   std::string headline;               // one line
   std::string detail;                 // a second line; may be empty

@@ -69,7 +69,6 @@ class Rig {
   static Result<Rig> create(const RigSettings& settings);
 
   std::size_t row_count() const noexcept { return row_count_; }
-  const Material& material() const noexcept { return material_; }
 
   // Gives the next row and its truth. Returns false after the last row.
   bool next(RecordingRow& row, RigTruth& truth) noexcept;

@@ -27,58 +27,45 @@ SentencePart tick(const ModelResult& model) {
   return number(model, "tick_ns", with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns");
 }
 
-void append(Sentence& sentence, const Sentence& more) { sentence.insert(sentence.end(), more.begin(), more.end()); }
-
 std::string unit_words(const UnitErrors& errors) {
   return std::to_string(errors.units()) + " " + unit_name(errors) + (errors.units() == 1 ? "" : "s");
 }
 
-Sentence errors_of(const ModelResult& model) {
+void add_errors(Sentence& sentence, const ModelResult& model) {
   const UnitErrors& errors = model.errors;
-  Sentence sentence{number(model, "within_jnd", percent(errors.within_jnd)),
-                    {" of the test has an error of at most one JND, which a hand cannot notice ("}};
   const SentencePart beyond = number(
       model, "beyond_units", std::to_string(errors.units_above_jnd) + " of " + unit_words(errors) + " exceed it");
+  sentence << number(model, "within_jnd", percent(errors.within_jnd))
+           << " of the test has an error of at most one JND, which a hand cannot notice (";
   if (!errors.has_intervals()) {
-    append(sentence, {beyond, {", too few for an interval"}});
+    sentence << beyond << ", too few for an interval";
   } else if (errors.units_above_jnd == 0) {
-    append(sentence, {beyond,
-                      {"; 95 %: at most "},
-                      number(model, "units_at_most", percent(1.0 - errors.within_at_least())),
-                      {" do"}});
+    sentence << beyond << "; 95 %: at most " << number(model, "units_at_most", percent(1.0 - errors.within_at_least()))
+             << " do";
   } else {
-    append(sentence,
-           {{"95 %: at least "}, number(model, "within_at_least", percent(errors.within_at_least())), {"; "}, beyond});
+    sentence << "95 %: at least " << number(model, "within_at_least", percent(errors.within_at_least())) << "; "
+             << beyond;
   }
-  append(sentence, {{"), and 99 % of the errors are below "},
-                    number(model, "p99_error_over_jnd", three_digits(errors.p99_error_over_jnd)),
-                    {" JND"}});
+  sentence << "), and 99 % of the errors are below "
+           << number(model, "p99_error_over_jnd", three_digits(errors.p99_error_over_jnd)) << " JND";
   if (errors.has_intervals())
-    append(sentence, {{" (95 %: "}, number(model, "p99_at_most", three_digits(errors.p99_at_most())), {")"}});
-  append(sentence, {{". "}});
-  return sentence;
+    sentence << " (95 %: " << number(model, "p99_at_most", three_digits(errors.p99_at_most())) << ")";
+  sentence << ". ";
 }
 
 std::string changed(double jnd) { return three_digits(std::abs(jnd)) + (jnd < 0.0 ? " smaller" : " larger"); }
 
 // Compares time and error of `other` with the recommended model.
-Sentence compared(const ModelResult& other, const ModelResult& recommended) {
+void add_comparison(Sentence& sentence, const ModelResult& other, const ModelResult& recommended) {
   const PairedDifference difference = paired_difference(other.errors, recommended.errors);
-  Sentence sentence{
-      name(other),
-      {" takes "},
-      number(other, "time_ratio", three_digits(other.time.tick.median_ns / recommended.time.tick.median_ns)),
-      {" times the time ("},
-      tick(other),
-      {"), and its 99 % error is "},
-      number(other, "difference", three_digits(std::abs(difference.p99))),
-      {difference.p99 < 0.0 ? " JND smaller" : " JND larger"}};
-  if (difference.interval.known()) {
-    append(sentence,
-           {{" (95 %: " + changed(difference.interval.low) + " to " + changed(difference.interval.high) + ")"}});
-  }
-  append(sentence, {{". "}});
-  return sentence;
+  const double time_ratio = other.time.tick.median_ns / recommended.time.tick.median_ns;
+  sentence << name(other) << " takes " << number(other, "time_ratio", three_digits(time_ratio)) << " times the time ("
+           << tick(other) << "), and its 99 % error is "
+           << number(other, "difference", three_digits(std::abs(difference.p99)))
+           << (difference.p99 < 0.0 ? " JND smaller" : " JND larger");
+  if (difference.interval.known())
+    sentence << " (95 %: " + changed(difference.interval.low) + " to " + changed(difference.interval.high) + ")";
+  sentence << ". ";
 }
 
 // The test recording whose surface is farthest from the models'.
@@ -89,12 +76,12 @@ const MovedSurface* farthest(const ReportData& data) {
   return at == data.tested.end() || at->offset_m == 0.0 ? nullptr : &*at;
 }
 
-Sentence moved(const ReportData& data, const ModelResult& model) {
+void add_surface(Sentence& sentence, const ReportData& data, const ModelResult& model) {
   const MovedSurface* surface = farthest(data);
-  if (surface == nullptr || model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return {};
-  return {{"The surface of " + surface->name + " is at " + three_digits(1e3 * surface->offset_m) +
-           " mm for these models; with it moved, which uses the forces of the test, " +
-           percent(model.moved.within_jnd) + " of the test is within the JND. "}};
+  if (surface == nullptr || model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return;
+  sentence << "The surface of " + surface->name + " is at " + three_digits(1e3 * surface->offset_m) +
+                  " mm for these models; with it moved, which uses the forces of the test, " +
+                  percent(model.moved.within_jnd) + " of the test is within the JND. ";
 }
 
 }  // namespace
@@ -104,17 +91,14 @@ std::string percent(double share) { return share >= 1.0 ? "100 %" : fixed(std::f
 Sentence answer(const ReportData& data) {
   const ModelResult& use = data.models[data.choice.recommended];
   const bool good = use.errors.within_jnd >= kGoodShare;
-  Sentence sentence{{good ? "Use " : "No model is good enough as recorded. The best choice is "},
-                    name(use),
-                    {": a whole tick takes "},
-                    tick(use)};
-  append(sentence, {{", "},
-                    number(use, "tick_share", three_digits(100.0 * use.time.tick.median_ns / kBudget_ns)),
-                    {" % of 1 ms; "}});
-  append(sentence, errors_of(use));
-  append(sentence, moved(data, use));
+  Sentence sentence;
+  sentence << (good ? "Use " : "No model is good enough as recorded. The best choice is ") << name(use)
+           << ": a whole tick takes " << tick(use) << ", "
+           << number(use, "tick_share", three_digits(100.0 * use.time.tick.median_ns / kBudget_ns)) << " % of 1 ms; ";
+  add_errors(sentence, use);
+  add_surface(sentence, data, use);
   if (data.choice.correction_off)
-    append(sentence, {{"The RBF correction is off on this material: all methods equal the trend. "}});
+    sentence << "The RBF correction is off on this material: all methods equal the trend. ";
   const ModelResult* best = &use;
   const ModelResult* paper = nullptr;
   for (const std::size_t i : data.choice.candidates) {
@@ -122,19 +106,19 @@ Sentence answer(const ReportData& data) {
     if (one.errors.p99_error_over_jnd < best->errors.p99_error_over_jnd) best = &one;
     if (one.plan.recipe == Recipe::paper && one.plan.request.method == &kGreedyMethod) paper = &one;
   }
-  if (best != &use) append(sentence, compared(*best, use));
+  if (best != &use) add_comparison(sentence, *best, use);
   if (data.choice.dominating) {
-    append(sentence, {{"Another size was faster and had a smaller 99 % error in this test: "}});
-    append(sentence, compared(data.models[*data.choice.dominating], use));
-    append(sentence, {{"A size that is chosen by a test has to be tested on another recording. "}});
+    sentence << "Another size was faster and had a smaller 99 % error in this test: ";
+    add_comparison(sentence, data.models[*data.choice.dominating], use);
+    sentence << "A size that is chosen by a test has to be tested on another recording. ";
   }
-  if (paper != nullptr && paper != &use && paper != best) append(sentence, compared(*paper, use));
+  if (paper != nullptr && paper != &use && paper != best) add_comparison(sentence, *paper, use);
   return sentence;
 }
 
-std::string html_of(const Sentence& sentence) {
+std::string Sentence::html() const {
   std::string html;
-  for (const SentencePart& words : sentence) {
+  for (const SentencePart& words : parts_) {
     const std::string text = escape_html(words.text);
     const std::string model = "<span data-model=\"" + escape_html(words.model) + "\" data-figure=\"";
     html += words.model.empty()    ? text
@@ -144,9 +128,9 @@ std::string html_of(const Sentence& sentence) {
   return html;
 }
 
-std::string plain_text_of(const Sentence& sentence) {
+std::string Sentence::plain_text() const {
   std::string text;
-  for (const SentencePart& words : sentence) text += words.text;
+  for (const SentencePart& words : parts_) text += words.text;
   return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 

@@ -16,11 +16,22 @@ struct SentencePart {
   std::string model{};   // name of the model; empty for text
   std::string figure{};  // figure of merit of a number, e.g. "within_jnd"; else empty
 };
-using Sentence = std::vector<SentencePart>;
+
+class Sentence {
+ public:
+  Sentence& operator<<(const std::string& text) { return *this << SentencePart{text}; }
+  Sentence& operator<<(const SentencePart& part) {
+    parts_.push_back(part);
+    return *this;
+  }
+  std::string html() const;
+  std::string plain_text() const;
+
+ private:
+  std::vector<SentencePart> parts_;
+};
 
 Sentence answer(const ReportData& data);
-std::string html_of(const Sentence& sentence);
-std::string plain_text_of(const Sentence& sentence);
 
 // Two decimals, rounded down: 99.996 % is "99.99 %".
 std::string percent(double share);

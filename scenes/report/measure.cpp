@@ -8,7 +8,7 @@
 
 #include "models/fit/recipe_2009.h"
 #include "scenes/evaluation/ranking.h"
-#include "scenes/scene/training.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
@@ -320,19 +320,21 @@ Choice choose(const std::vector<ModelResult>& models) {
     corrected = corrected || (one.model && one.plan.recipe == Recipe::palpate);
     if (!one.model || !one.plan.main) continue;
     choice.candidates.push_back(i);
-    candidates.push_back(candidate(one.errors, one.time));
+    candidates.push_back({one.errors, one.time.tick});
   }
   const Ranking ranking = rank(candidates);
   choice.correction_off = !corrected;
   choice.best = choice.candidates[ranking.best];
   choice.recommended = choice.candidates[ranking.recommended];
-  for (const std::size_t i : ranking.qualified) choice.qualified.push_back(choice.candidates[i]);
-  const Candidate recommended = candidates[ranking.recommended];
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (ranking.qualified[i]) choice.qualified.push_back(choice.candidates[i]);
+  }
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (!models[i].model || models[i].plan.main) continue;
-    const Candidate one = candidate(models[i].errors, models[i].time);
-    if (!dominates(one, recommended)) continue;
-    if (choice.dominating && one.error_over_jnd >= models[*choice.dominating].errors.p99_error_over_jnd) continue;
+    const UnitErrors& errors = models[i].errors;
+    if (!dominates({errors, models[i].time.tick}, candidates[ranking.recommended])) continue;
+    if (choice.dominating && errors.p99_error_over_jnd >= models[*choice.dominating].errors.p99_error_over_jnd)
+      continue;
     choice.dominating = i;
   }
   return choice;

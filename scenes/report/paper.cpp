@@ -3,10 +3,8 @@
 #include <algorithm>
 
 #include "engine/base/text.h"
-#include "scenes/plot/draw.h"
 #include "scenes/plot/inline_svg.h"
 #include "scenes/report/publish.h"
-#include "scenes/report/table.h"
 
 namespace palpate {
 namespace {
@@ -39,9 +37,9 @@ Figure bins_figure(const PaperData& data, int number, const std::string& title, 
     for (const PaperModel& model : run.models) {
       Series series{model.name, model.colour, Mark::curve, {}};
       for (const PaperBin& bin : model.bins) {
-        series.rows.push_back({bin.force_N, value(bin)});
-        from_N = std::min(from_N, bin.force_N);
-        to_N = std::max(to_N, bin.force_N);
+        series.rows.push_back({bin.force_N.mean(), value(bin)});
+        from_N = std::min(from_N, bin.force_N.mean());
+        to_N = std::max(to_N, bin.force_N.mean());
       }
       panel.series.push_back(std::move(series));
     }
@@ -51,18 +49,21 @@ Figure bins_figure(const PaperData& data, int number, const std::string& title, 
   return figure;
 }
 
-Figure dimension_figure(const PaperData& data) {
+// Computation times over `x`, in one panel. `about`: what follows the number in the caption.
+Figure time_figure(int number, const std::string& about, const Axis& x, std::vector<Series> series) {
   Figure figure;
-  figure.plot.name = "figure_2";
+  figure.plot.name = "figure_" + std::to_string(number);
   figure.plot.width = 0.6;
-  figure.caption =
-      "Figure 2: computation time over the dimension of the domain, interpolation of all sites and a grid of 10 nodes "
-      "a "
-      "dimension.";
-  Panel panel;
-  panel.x.title = "Dimensions";
+  figure.caption = "Figure " + std::to_string(number) + ": computation time over the " + about;
+  Panel& panel = figure.plot.panels.emplace_back();
+  panel.x = x;
   panel.y = {"Time", "s", true};
   panel.names_at_ends = true;
+  panel.series = std::move(series);
+  return figure;
+}
+
+Figure dimension_figure(const PaperData& data) {
   Series solve{"solve", kInkColour, Mark::curve, {}};
   Series grid{"grid", kVoxelMethod.colour, Mark::curve, {}};
   Series both{"both", kMutedColour, Mark::curve, {}};
@@ -72,9 +73,8 @@ Figure dimension_figure(const PaperData& data) {
     grid.rows.push_back({d, one.grid_s});
     both.rows.push_back({d, one.solve_s + one.grid_s});
   }
-  panel.series = {std::move(both), std::move(solve), std::move(grid)};
-  figure.plot.panels = {std::move(panel)};
-  return figure;
+  return time_figure(2, "dimension of the domain, interpolation of all sites and a grid of 10 nodes a dimension.",
+                     {"Dimensions", ""}, {both, solve, grid});
 }
 
 Figure jnd_figure(const PaperData& data) {
@@ -95,35 +95,27 @@ Figure jnd_figure(const PaperData& data) {
 }
 
 Figure sites_figure(const PaperData& data) {
-  Figure figure;
-  figure.plot.name = "figure_8";
-  figure.plot.width = 0.6;
-  figure.caption =
-      "Figure 8: computation time over the number of data points; the interpolation with its 25x11x11x11 grid.";
-  Panel panel;
-  panel.x = {"Data points", "", true};
-  panel.y = {"Time", "s", true};
-  panel.names_at_ends = true;
+  std::vector<Series> curves;
   for (std::size_t i = 0; i < data.runs.front().models.size(); ++i) {
     const PaperModel& model = data.runs.front().models[i];
-    Series series{model.name, model.colour, Mark::curve, {}};
-    for (const FitTimes& one : data.by_sites) series.rows.push_back({static_cast<double>(one.sites), one.seconds[i]});
-    panel.series.push_back(std::move(series));
+    Series& curve = curves.emplace_back(Series{model.name, model.colour, Mark::curve, {}});
+    for (const FitTimes& one : data.by_sites) curve.rows.push_back({static_cast<double>(one.sites), one.seconds[i]});
   }
-  figure.plot.panels = {std::move(panel)};
-  return figure;
+  return time_figure(8, "number of data points; the interpolation with its 25x11x11x11 grid.",
+                     {"Data points", "", true}, std::move(curves));
 }
 
 std::vector<Figure> paper_figures(const PaperData& data) {
-  return {dimension_figure(data),
-          jnd_figure(data),
-          bins_figure(data, 4, "mean plus standard deviation of the absolute error", false,
-                      [](const PaperBin& bin) { return bin.mean_N + bin.std_N; }),
-          bins_figure(data, 5, "mean plus standard deviation of the relative error", true,
-                      [](const PaperBin& bin) { return bin.mean_relative + bin.std_relative; }),
-          bins_figure(data, 6, "maximum absolute error", false, [](const PaperBin& bin) { return bin.max_N; }),
-          bins_figure(data, 7, "maximum relative error", true, [](const PaperBin& bin) { return bin.max_relative; }),
-          sites_figure(data)};
+  return {
+      dimension_figure(data),
+      jnd_figure(data),
+      bins_figure(data, 4, "mean plus standard deviation of the absolute error", false,
+                  [](const PaperBin& bin) { return bin.error_N.mean() + bin.error_N.deviation(); }),
+      bins_figure(data, 5, "mean plus standard deviation of the relative error", true,
+                  [](const PaperBin& bin) { return bin.relative.mean() + bin.relative.deviation(); }),
+      bins_figure(data, 6, "maximum absolute error", false, [](const PaperBin& bin) { return bin.error_N.largest(); }),
+      bins_figure(data, 7, "maximum relative error", true, [](const PaperBin& bin) { return bin.relative.largest(); }),
+      sites_figure(data)};
 }
 
 Table claims_table(const PaperData& data, const std::vector<Claim>& claims) {
@@ -134,9 +126,9 @@ Table claims_table(const PaperData& data, const std::vector<Claim>& claims) {
     table.add({"there", "there"}, claim.there);
     for (std::size_t i = 0; i < data.runs.size(); ++i) {
       const std::string name = run_name(data.runs[i]);
-      const bool said = !claim.here[i].empty();
-      table.add({name, name}, claim.here[i]);
-      table.add({name + " reproduced", "reproduced"}, std::string(!said ? "" : claim.reproduced[i] ? "yes" : "no"));
+      const auto& [text, reproduced] = claim.here[i];
+      table.add({name, name}, text);
+      table.add({name + " reproduced", "reproduced"}, std::string(text.empty() ? "" : reproduced ? "yes" : "no"));
     }
     table.add({"remark", "remark"}, claim.why);
   }
@@ -167,15 +159,15 @@ Table bins_table(const PaperData& data) {
         table.begin_row();
         table.add({"run", ""}, run_name(run));
         table.add({"model", ""}, model.name);
-        table.add({"force_N", ""}, bin.force_N);
-        table.add({"count", ""}, bin.count);
-        table.add({"mean_error_N", ""}, bin.mean_N);
-        table.add({"std_error_N", ""}, bin.std_N);
-        table.add({"max_error_N", ""}, bin.max_N);
-        table.add({"mean_relative_error", ""}, bin.mean_relative);
-        table.add({"std_relative_error", ""}, bin.std_relative);
-        table.add({"max_relative_error", ""}, bin.max_relative);
-        table.add({"jnd_N", ""}, data.jnd.at(bin.force_N));
+        table.add({"force_N", ""}, bin.force_N.mean());
+        table.add({"count", ""}, bin.force_N.count());
+        table.add({"mean_error_N", ""}, bin.error_N.mean());
+        table.add({"std_error_N", ""}, bin.error_N.deviation());
+        table.add({"max_error_N", ""}, bin.error_N.largest());
+        table.add({"mean_relative_error", ""}, bin.relative.mean());
+        table.add({"std_relative_error", ""}, bin.relative.deviation());
+        table.add({"max_relative_error", ""}, bin.relative.largest());
+        table.add({"jnd_N", ""}, data.jnd.at(bin.force_N.mean()));
       }
     }
   }
@@ -206,9 +198,9 @@ std::string summary(const PaperData& data, const std::vector<Claim>& claims) {
     std::size_t said = 0;
     std::size_t yes = 0;
     for (const Claim& claim : claims) {
-      if (claim.here[i].empty()) continue;
+      if (claim.here[i].text.empty()) continue;
       ++said;
-      yes += claim.reproduced[i] ? 1 : 0;
+      yes += claim.here[i].reproduced ? 1 : 0;
     }
     text += (i == 0 ? "" : "; ") + std::to_string(yes) + " of " + std::to_string(said) + " claims on " +
             run_name(data.runs[i]);
@@ -227,14 +219,9 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
   const std::vector<Claim> claims = paper_claims(*data);
   const std::vector<Table> tables{claims_table(*data, claims), models_table(*data), bins_table(*data)};
   std::vector<Figure> figures = paper_figures(*data);
-  if (const Status drawn = draw_figures(*folder, figures); !drawn)
-    return control.may_continue(0.99) ? drawn.error() : interrupted();
+  if (const Status status = write_parts(*folder, tables, figures, control); !status) return status.error();
   std::string drawings;
   for (const Figure& figure : figures) drawings += figure_html(figure);
-  for (const Table& table : tables) {
-    if (const Status status = folder->write("tables/" + table.name + ".csv", table_csv(table)); !status)
-      return status.error();
-  }
   const std::string answer = summary(*data, claims);
   const auto page = fill_page("paper.html", {{"answer", escape_html(answer)},
                                              {"claims", table_html(tables[0])},
@@ -243,13 +230,9 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
                                              {"figures", drawings},
                                              {"origin", escape_html(request.origin)}});
   if (!page) return page.error();
-  if (const Status status = folder->write("index.html", *page); !status) return status.error();
-  // report.json marks the folder as a report, which may be replaced.
   nlohmann::ordered_json report{{"format", "palpate-paper"}, {"version", 1}, {"answer", answer}};
   for (const Table& table : tables) report["tables"][table.name] = table_json(table);
-  if (const Status status = folder->write("report.json", report.dump(1) + "\n"); !status) return status.error();
-  if (!control.may_continue(1.0)) return interrupted();
-  if (const Status status = folder->commit(); !status) return status.error();
+  if (const Status status = publish(*folder, *page, report, control); !status) return status.error();
   return answer;
 }
 

@@ -16,20 +16,16 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
+#include "scenes/evaluation/error_figures.h"
 #include "scenes/evaluation/model_timing.h"
 
 namespace palpate {
 
-// Errors of the samples in a bin of the force (scenes/evaluation/error_figures.h).
+// The samples in a bin of the force (scenes/evaluation/error_figures.h).
 struct PaperBin {
-  double force_N = 0.0;  // mean
-  std::uint64_t count = 0;
-  double mean_N = 0.0;  // of the absolute error
-  double std_N = 0.0;
-  double max_N = 0.0;
-  double mean_relative = 0.0;  // of the absolute error / force
-  double std_relative = 0.0;
-  double max_relative = 0.0;
+  Moments force_N;   // absolute value
+  Moments error_N;   // absolute value
+  Moments relative;  // absolute error / force
 };
 
 struct PaperModel {
@@ -78,11 +74,14 @@ Result<PaperData> measure_paper(bool quick, const FitControl& control);
 
 // A claim of the paper, compared with the results.
 struct Claim {
+  struct Result {
+    std::string text;  // empty: not measured in that run
+    bool reproduced = false;
+  };
   std::string claim;
-  std::string there;              // the result in the paper
-  std::vector<std::string> here;  // the result of each run; empty: not measured in that run
-  std::vector<bool> reproduced;   // for each run
-  std::string why;                // remark on a difference
+  std::string there;           // the result in the paper
+  std::string why{};           // remark on a difference
+  std::vector<Result> here{};  // of each run
 };
 std::vector<Claim> paper_claims(const PaperData& data);
 // "silicone", "silicone, fitted times".

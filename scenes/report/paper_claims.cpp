@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "engine/base/text.h"
 #include "scenes/report/paper.h"
@@ -13,27 +12,29 @@ constexpr double kTickBudget_ns = 60e3;
 constexpr double kAlmost = 1.1;
 constexpr double kConsiderably = 0.8;
 constexpr double kLargeForce_N = 2.5;  // the largest force of the paper's study
-constexpr double kLinear = 1.3;        // the largest exponent that counts as linear
+constexpr double kSmallForce_N = 0.5;
+constexpr double kLinear = 1.3;  // the largest exponent that counts as linear
+
+double spread(const PaperBin& bin) { return bin.error_N.mean() + bin.error_N.deviation(); }
+double largest(const PaperBin& bin) { return bin.error_N.largest(); }
 
 std::size_t bins_above(const PaperData& data, const PaperModel& model, double (*figure)(const PaperBin&)) {
   return static_cast<std::size_t>(std::count_if(model.bins.begin(), model.bins.end(), [&](const PaperBin& bin) {
-    return figure(bin) > data.jnd.at(bin.force_N);
+    return figure(bin) > data.jnd.at(bin.force_N.mean());
   }));
 }
 
-double spread(const PaperBin& bin) { return bin.mean_N + bin.std_N; }
-double largest(const PaperBin& bin) { return bin.max_N; }
-
-// Mean of `figure` over the bins for whose force `counts` is true.
-double mean_of(const PaperModel& model, double (*figure)(const PaperBin&), const std::function<bool(double)>& counts) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const PaperBin& bin : model.bins) {
-    if (!counts(bin.force_N)) continue;
-    sum += figure(bin);
-    ++count;
+// The ratio of two methods' means of `figure` over the bins with forces between two values.
+double ratio(const PaperRun& run, PaperMethod one, PaperMethod other, double (*figure)(const PaperBin&),
+             double from_N = 0.0, double to_N = 1e300) {
+  double sums[2] = {};
+  for (const PaperMethod which : {one, other}) {
+    for (const PaperBin& bin : run.models[which].bins) {
+      const double force_N = bin.force_N.mean();
+      if (force_N > from_N && force_N < to_N) sums[which == one ? 0 : 1] += figure(bin);
+    }
   }
-  return count > 0.0 ? sum / count : 0.0;
+  return sums[0] / sums[1];
 }
 
 std::string of_bins(std::size_t above, const PaperModel& model) {
@@ -47,107 +48,109 @@ double exponent(const std::vector<double>& x, const std::vector<double>& y) {
   return std::log(y[n - 1] / y[n - 2]) / std::log(x[n - 1] / x[n - 2]);
 }
 
-// Adds a claim that is checked in each run.
-using Answer = std::pair<std::string, bool>;
-void add(std::vector<Claim>& claims, const PaperData& data, Claim claim,
-         const std::function<Answer(const PaperRun&)>& answer) {
-  for (const PaperRun& run : data.runs) {
-    const auto [text, reproduced] = answer(run);
-    claim.here.push_back(text);
-    claim.reproduced.push_back(reproduced);
+class Claims {
+ public:
+  explicit Claims(const PaperData& data) : data_(data) {}
+
+  std::vector<Claim> all() {
+    add_accuracy();
+    remark("not known: the paper's recordings are not public");
+    add_times();
+    remark("another program on another processor");
+    return std::move(claims_);
   }
-  claims.push_back(std::move(claim));
-}
 
-// Adds a claim about times, which are measured once for all runs.
-void add_once(std::vector<Claim>& claims, const PaperData& data, Claim claim, const std::string& text,
-              bool reproduced) {
-  claim.here.assign(data.runs.size(), "");
-  claim.here.front() = text;
-  claim.reproduced.assign(data.runs.size(), reproduced);
-  claims.push_back(std::move(claim));
-}
+ private:
+  // Adds a claim that is checked in each run by `result`, a function of the run.
+  template <typename Check>
+  void add(Claim claim, const Check& result) {
+    for (const PaperRun& run : data_.runs) claim.here.push_back(result(run));
+    claims_.push_back(std::move(claim));
+  }
+  // Adds a claim about times, which are measured once for all runs.
+  void add_once(Claim claim, const std::string& text, bool reproduced) {
+    claim.here.assign(data_.runs.size(), {"", reproduced});
+    claim.here.front().text = text;
+    claims_.push_back(std::move(claim));
+  }
+  // Gives the claims that are not reproduced and have no remark this one.
+  void remark(const char* why) {
+    for (Claim& claim : claims_) {
+      const bool all =
+          std::all_of(claim.here.begin(), claim.here.end(), [](const Claim::Result& one) { return one.reproduced; });
+      if (!all && claim.why.empty()) claim.why = why;
+    }
+  }
+  void add_accuracy();
+  void add_times();
 
-void add_accuracy(std::vector<Claim>& claims, const PaperData& data) {
-  const auto always = [](double) { return true; };
-  add(claims, data, {"random: at every force some samples err above the JND", "every force", {}, {}, ""},
-      [&](const PaperRun& run) -> Answer {
-        const PaperModel& model = run.models[kRandomCentres];
-        const std::size_t above = bins_above(data, model, largest);
-        return {of_bins(above, model), above == model.bins.size()};
-      });
+  const PaperData& data_;
+  std::vector<Claim> claims_;
+};
+
+void Claims::add_accuracy() {
+  add({"random: at every force some samples err above the JND", "every force"}, [&](const PaperRun& run) {
+    const PaperModel& model = run.models[kRandomCentres];
+    const std::size_t above = bins_above(data_, model, largest);
+    return Claim::Result{of_bins(above, model), above == model.bins.size()};
+  });
   for (const auto& [which, name] :
        {std::pair{kTreeCentres, "kD-tree"}, {kGreedy20, "greedy-20"}, {kGreedy100, "greedy-100"}}) {
-    add(claims, data, {std::string(name) + ": mean plus deviation always below the JND", "0 bins above", {}, {}, ""},
-        [&, which = which](const PaperRun& run) -> Answer {
-          const std::size_t above = bins_above(data, run.models[which], spread);
-          return {of_bins(above, run.models[which]), above == 0};
+    add({std::string(name) + ": mean plus deviation always below the JND", "0 bins above"},
+        [&, which = which](const PaperRun& run) {
+          const std::size_t above = bins_above(data_, run.models[which], spread);
+          return Claim::Result{of_bins(above, run.models[which]), above == 0};
         });
   }
-  add(claims, data, {"kD-tree is better than random, above all at large forces", "yes", {}, {}, ""},
-      [&](const PaperRun& run) -> Answer {
-        const auto large = [](double force_N) { return force_N > kLargeForce_N; };
-        const double ratio =
-            mean_of(run.models[kTreeCentres], spread, large) / mean_of(run.models[kRandomCentres], spread, large);
-        return {three_digits(ratio) + " times the error above 2.5 N", ratio < 1.0};
-      });
-  add(claims, data, {"greedy-100 is almost as accurate as the interpolant", "almost identical", {}, {}, ""},
-      [&](const PaperRun& run) -> Answer {
-        const double ratio =
-            mean_of(run.models[kGreedy100], spread, always) / mean_of(run.models[kGridOfAll], spread, always);
-        return {three_digits(ratio) + " times mean plus deviation", ratio < kAlmost};
-      });
-  add(claims, data, {"20 and 100 candidates: mean plus deviation almost identical", "almost identical", {}, {}, ""},
-      [&](const PaperRun& run) -> Answer {
-        const double ratio =
-            mean_of(run.models[kGreedy20], spread, always) / mean_of(run.models[kGreedy100], spread, always);
-        return {three_digits(ratio) + " times", ratio < kAlmost && ratio > 1.0 / kAlmost};
-      });
-  add(claims, data, {"100 candidates: maxima at small forces considerably lower", "considerably lower", {}, {}, ""},
-      [&](const PaperRun& run) -> Answer {
-        const auto small = [](double force_N) { return force_N < 0.5; };
-        const double ratio =
-            mean_of(run.models[kGreedy100], largest, small) / mean_of(run.models[kGreedy20], largest, small);
-        return {three_digits(ratio) + " times the maxima below 0.5 N", ratio < kConsiderably};
-      });
-  add(claims, data, {"the maxima exceed the JND for every method", "all", {}, {}, ""},
-      [&](const PaperRun& run) -> Answer {
-        std::size_t methods = 0;
-        for (const PaperModel& model : run.models) methods += bins_above(data, model, largest) > 0 ? 1 : 0;
-        return {std::to_string(methods) + " of " + std::to_string(run.models.size()) + " methods",
-                methods == run.models.size()};
-      });
+  add({"kD-tree is better than random, above all at large forces", "yes"}, [](const PaperRun& run) {
+    const double share = ratio(run, kTreeCentres, kRandomCentres, spread, kLargeForce_N);
+    return Claim::Result{three_digits(share) + " times the error above 2.5 N", share < 1.0};
+  });
+  add({"greedy-100 is almost as accurate as the interpolant", "almost identical"}, [](const PaperRun& run) {
+    const double share = ratio(run, kGreedy100, kGridOfAll, spread);
+    return Claim::Result{three_digits(share) + " times mean plus deviation", share < kAlmost};
+  });
+  add({"20 and 100 candidates: mean plus deviation almost identical", "almost identical"}, [](const PaperRun& run) {
+    const double share = ratio(run, kGreedy20, kGreedy100, spread);
+    return Claim::Result{three_digits(share) + " times", share < kAlmost && share > 1.0 / kAlmost};
+  });
+  add({"100 candidates: maxima at small forces considerably lower", "considerably lower"}, [](const PaperRun& run) {
+    const double share = ratio(run, kGreedy100, kGreedy20, largest, 0.0, kSmallForce_N);
+    return Claim::Result{three_digits(share) + " times the maxima below 0.5 N", share < kConsiderably};
+  });
+  add({"the maxima exceed the JND for every method", "all"}, [&](const PaperRun& run) {
+    std::size_t methods = 0;
+    for (const PaperModel& model : run.models) methods += bins_above(data_, model, largest) > 0 ? 1 : 0;
+    return Claim::Result{std::to_string(methods) + " of " + std::to_string(run.models.size()) + " methods",
+                         methods == run.models.size()};
+  });
 }
 
-void add_times(std::vector<Claim>& claims, const PaperData& data) {
-  add(claims, data, {"samples after the reduction to 50 mN steps", "6,850", {}, {}, "another material and hand"},
-      [](const PaperRun& run) -> Answer {
-        return {with_thousands(std::to_string(run.sites)), true};
-      });
-  add(claims, data, {"one evaluation with 100 centres", "60 us", {}, {}, "a processor of today"},
-      [](const PaperRun& run) -> Answer {
-        const double time_ns = run.models[kGreedy100].time.evaluation.median_ns;
-        return {three_digits(time_ns) + " ns; whole tick " + three_digits(run.models[kGreedy100].time.tick.median_ns) +
-                    " ns",
-                time_ns < kTickBudget_ns};
-      });
-  add(claims, data,
-      {"time of a fit: random, kD-tree, greedy-20, greedy-100, grid", "4 s, 5 min, 9 min, 41 min, 50 min", {}, {}, ""},
-      [](const PaperRun& run) -> Answer {
-        std::string text;
-        bool ordered = true;
+void Claims::add_times() {
+  add({"samples after the reduction to 50 mN steps", "6,850", "another material and hand"}, [](const PaperRun& run) {
+    return Claim::Result{with_thousands(std::to_string(run.sites)), true};
+  });
+  add({"one evaluation with 100 centres", "60 us", "a processor of today"}, [](const PaperRun& run) {
+    const ModelTiming& time = run.models[kGreedy100].time;
+    return Claim::Result{
+        three_digits(time.evaluation.median_ns) + " ns; whole tick " + three_digits(time.tick.median_ns) + " ns",
+        time.evaluation.median_ns < kTickBudget_ns};
+  });
+  add({"time of a fit: random, kD-tree, greedy-20, greedy-100, grid", "4 s, 5 min, 9 min, 41 min, 50 min"},
+      [](const PaperRun& run) {
+        Claim::Result result{"", true};
         double before = 0.0;
         for (const PaperMethod which : {kRandomCentres, kTreeCentres, kGreedy20, kGreedy100, kGridOfAll}) {
           const double seconds = run.models[which].fit_seconds;
-          text += (text.empty() ? "" : ", ") + three_digits(seconds) + " s";
-          ordered = ordered && seconds > before;
+          result.text += (result.text.empty() ? "" : ", ") + three_digits(seconds) + " s";
+          result.reproduced = result.reproduced && seconds > before;
           before = seconds;
         }
-        return {text, ordered};
+        return result;
       });
   std::vector<double> sites;
   std::vector<std::vector<double>> seconds(kPaperMethods);
-  for (const FitTimes& one : data.by_sites) {
+  for (const FitTimes& one : data_.by_sites) {
     sites.push_back(static_cast<double>(one.sites));
     for (std::size_t i = 0; i < kPaperMethods; ++i) seconds[i].push_back(one.seconds[i]);
   }
@@ -158,39 +161,23 @@ void add_times(std::vector<Claim>& claims, const PaperData& data) {
     steepest = std::max(steepest, slope);
     linear += (linear.empty() ? "exponents " : ", ") + fixed(slope, 2);
   }
-  add_once(claims, data, {"cost of random, kD-tree and greedy is linear in the samples", "linear", {}, {}, ""}, linear,
-           steepest < kLinear);
+  add_once({"cost of random, kD-tree and greedy is linear in the samples", "linear"}, linear, steepest < kLinear);
   const double cubic = exponent(sites, seconds[kGridOfAll]);
-  add_once(claims, data,
-           {"that of the interpolant grows with their third power", "3", {}, {}, "the grid's cost is in it"},
+  add_once({"that of the interpolant grows with their third power", "3", "the grid's cost is in it"},
            "exponent " + fixed(cubic, 2), cubic > 2.0);
-  const DimensionTimes& last = data.by_dimension.back();
-  const DimensionTimes& before = data.by_dimension[data.by_dimension.size() - 2];
-  add_once(
-      claims, data,
-      {"the grid's cost grows tenfold with each dimension of 10 nodes", "308 min in 6-D, solve 50 min", {}, {}, ""},
-      three_digits(last.grid_s / before.grid_s) + " times from " + std::to_string(before.dimensions) + "-D to " +
-          std::to_string(last.dimensions) + "-D: " + three_digits(last.grid_s) + " s, solve " +
-          three_digits(last.solve_s) + " s",
-      last.grid_s > 5.0 * before.grid_s);
+  const DimensionTimes& last = data_.by_dimension.back();
+  const DimensionTimes& before = data_.by_dimension[data_.by_dimension.size() - 2];
+  add_once({"the grid's cost grows tenfold with each dimension of 10 nodes", "308 min in 6-D, solve 50 min"},
+           three_digits(last.grid_s / before.grid_s) + " times from " + std::to_string(before.dimensions) + "-D to " +
+               std::to_string(last.dimensions) + "-D: " + three_digits(last.grid_s) + " s, solve " +
+               three_digits(last.solve_s) + " s",
+           last.grid_s > 5.0 * before.grid_s);
 }
 
 }  // namespace
 
 std::string run_name(const PaperRun& run) { return run.material + (run.fitted_times ? ", fitted times" : ""); }
 
-std::vector<Claim> paper_claims(const PaperData& data) {
-  std::vector<Claim> claims;
-  add_accuracy(claims, data);
-  const std::size_t of_accuracy = claims.size();
-  add_times(claims, data);
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    const std::vector<bool>& runs = claims[i].reproduced;
-    if (!claims[i].why.empty() || std::find(runs.begin(), runs.end(), false) == runs.end()) continue;
-    claims[i].why =
-        i < of_accuracy ? "not known: the paper's recordings are not public" : "another program on another processor";
-  }
-  return claims;
-}
+std::vector<Claim> paper_claims(const PaperData& data) { return Claims(data).all(); }
 
 }  // namespace palpate

@@ -1,27 +1,21 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
-#include <memory>
-#include <tuple>
 #include <utility>
 
 #include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/fit/fit.h"
 #include "models/fit/recipe_2009.h"
-#include "scenes/evaluation/error_figures.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/material/rig.h"
 #include "scenes/report/paper.h"
-#include "scenes/scene/training.h"
+#include "scenes/report/recordings.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kPaperTrain_s = 41.499;
-constexpr double kPaperTest_s = 45.272;
-constexpr double kQuickShare = 0.2;  // of both durations
+constexpr double kQuickShare = 0.2;  // of the recordings
 constexpr double kStep_N = 0.05;
 constexpr int kCentres = 100;
 const std::vector<int> kGrid{25, 11, 11, 11};
@@ -35,48 +29,24 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-struct Moments {
-  std::vector<double> values;
-  double mean() const {
-    double sum = 0.0;
-    for (const double value : values) sum += value;
-    return sum / static_cast<double>(values.size());
-  }
-  double deviation() const {
-    const double middle = mean();
-    double sum = 0.0;
-    for (const double value : values) sum += (value - middle) * (value - middle);
-    return std::sqrt(sum / static_cast<double>(values.size()));
-  }
-  double largest() const { return *std::max_element(values.begin(), values.end()); }
-};
-
 struct Sample {
   double force_N;
   double error_N;
 };
 
 std::vector<PaperBin> binned(const std::vector<Sample>& samples, const JndLine& jnd) {
-  struct Bin {
-    Moments force, error, relative;
-  };
-  std::map<std::size_t, Bin> bins;
+  std::vector<PaperBin> bins;
   for (const Sample& one : samples) {
     const double force_N = std::abs(one.force_N);
     if (force_N == 0.0) continue;  // the relative error is undefined
-    Bin& bin = bins[force_bin(force_N, jnd)];
-    bin.force.values.push_back(force_N);
-    bin.error.values.push_back(one.error_N);
-    bin.relative.values.push_back(one.error_N / force_N);
+    const std::size_t index = force_bin(force_N, jnd);
+    if (bins.size() <= index) bins.resize(index + 1);
+    bins[index].force_N.add(force_N);
+    bins[index].error_N.add(one.error_N);
+    bins[index].relative.add(one.error_N / force_N);
   }
-  std::vector<PaperBin> result;
-  for (const auto& [index, bin] : bins) {
-    const std::uint64_t count = bin.force.values.size();
-    if (count < kReducedSamples) continue;
-    result.push_back({bin.force.mean(), count, bin.error.mean(), bin.error.deviation(), bin.error.largest(),
-                      bin.relative.mean(), bin.relative.deviation(), bin.relative.largest()});
-  }
-  return result;
+  std::erase_if(bins, [](const PaperBin& bin) { return bin.force_N.count() < kReducedSamples; });
+  return bins;
 }
 
 MethodRequest request_of(std::size_t which) {
@@ -121,7 +91,6 @@ class PaperMeasurement {
         [this, parts](double fraction) { return control_.may_continue(std::min(0.99, (done_ + fraction) / parts)); }};
   }
 
-  Status record(const std::string& material);
   Status run_material(const std::string& material);
   Result<PreparedTraining> prepare(TrainingRequest request);
   Status measure_run(PaperRun run, const PreparedTraining& prepared);
@@ -133,26 +102,11 @@ class PaperMeasurement {
   double done_ = 0.0;
   Scene scene_;
   PaperData data_;
-  std::shared_ptr<const Recording> train_;
-  std::shared_ptr<const Recording> test_;
+  std::vector<SharedRecording> recordings_;  // to train and to test
 };
 
-Status PaperMeasurement::record(const std::string& material) {
-  for (const auto& [recording, seed, seconds] :
-       {std::tuple{&train_, std::uint64_t{1}, kPaperTrain_s}, {&test_, std::uint64_t{2}, kPaperTest_s}}) {
-    RigSettings settings;
-    settings.material = material;
-    settings.seed = seed;
-    settings.seconds = quick_ ? kQuickShare * seconds : seconds;
-    auto made = record_sensors(settings);
-    if (!made) return made.error();
-    *recording = std::make_shared<const Recording>(std::move(*made));
-  }
-  return {};
-}
-
 Result<PreparedTraining> PaperMeasurement::prepare(TrainingRequest request) {
-  MotionSource source({{"", prepare_recording(*train_)}});
+  MotionSource source({{"", prepare_recording(*recordings_[0])}});
   auto prepared = prepare_training(source, request, part());
   if (!prepared) return prepared.error();
   if (prepared->set.reduction_force_N != kStep_N)
@@ -162,7 +116,9 @@ Result<PreparedTraining> PaperMeasurement::prepare(TrainingRequest request) {
 }
 
 Status PaperMeasurement::run_material(const std::string& material) {
-  if (const Status status = record(material); !status) return status;
+  auto made = virtual_recordings(material, quick_ ? kQuickShare : 1.0);
+  if (!made) return made.error();
+  recordings_ = std::move(*made);
   for (const bool fitted : {false, true}) {
     if (fitted && quick_) continue;
     TrainingRequest request = recipe_2009_request(training_request(scene_));
@@ -172,8 +128,8 @@ Status PaperMeasurement::run_material(const std::string& material) {
     PaperRun run{material,
                  fitted,
                  {},
-                 train_->rows.size(),
-                 test_->rows.size(),
+                 recordings_[0]->rows.size(),
+                 recordings_[1]->rows.size(),
                  static_cast<std::uint64_t>(prepared->sites.count()),
                  {}};
     for (const RelaxationTime& one : prepared->common.provenance.relaxation_times) run.times_s.push_back(one.time_s);
@@ -201,7 +157,7 @@ Status PaperMeasurement::measure_run(PaperRun run, const PreparedTraining& prepa
     for (std::size_t i = 0; i < models.size(); ++i)
       samples[i].push_back({row.force_N, std::abs(snapshot.force_N[i] - row.force_N)});
   };
-  const auto replayed = replay(*test_, models, visitor);
+  const auto replayed = replay(*recordings_[1], models, visitor);
   if (!replayed) return replayed.error();
   timing.sensor = replayed->sensor;
   const std::vector<ModelTiming> times = time_models(models, {timing});
@@ -235,7 +191,9 @@ Status PaperMeasurement::time_sites(const PreparedTraining& prepared) {
 }
 
 Status PaperMeasurement::time_dimensions() {
-  if (const Status status = record("silicone"); !status) return status;
+  auto made = virtual_recordings("silicone", quick_ ? kQuickShare : 1.0);
+  if (!made) return made.error();
+  recordings_ = std::move(*made);
   std::vector<FeatureSpec> features = scene_.features;
   for (const double time_s : kMoreTimes_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
   for (std::size_t d = 1; d <= (quick_ ? std::size_t{4} : features.size()); ++d) {

@@ -1,15 +1,19 @@
 #include "scenes/report/publish.h"
 
+#include <cerrno>
 #include <filesystem>
+#include <system_error>
 
+#include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
-#include "scenes/plot/draw.h"
 #include "scenes/plot/inline_svg.h"
 #include "scenes/scene/assets.h"
 
 namespace palpate {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double kPageWidth_rem = 52.0;
 
@@ -22,15 +26,96 @@ Result<std::string> read_template(const std::string& name) {
   return std::move(*text);
 }
 
+Status check_target(const fs::path& path, bool overwrite) {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(path, error);
+  if (!fs::exists(status)) return {};
+  if (!fs::is_directory(status)) {
+    return Error{"cannot write " + path.string() + ": it is not a folder; name a new one for --out"};
+  }
+  if (!overwrite) return Error{path.string() + " exists; pass --force to replace it"};
+  if (!fs::is_empty(path, error) && !fs::exists(path / "report.json", error)) {
+    return Error{path.string() +
+                 " holds files but no report.json, expected an earlier report to replace; name "
+                 "another folder"};
+  }
+  return {};
+}
+
+// Removes the slash at the end of "a/b/".
+fs::path without_slash(const std::string& path) {
+  fs::path clean = fs::path(path).lexically_normal();
+  if (!clean.has_filename()) clean = clean.parent_path();
+  return clean;
+}
+
 }  // namespace
 
-Status draw_figures(const ReportFolder& folder, std::vector<Figure>& figures) {
+Result<ReportFolder> ReportFolder::create(const std::string& path, bool overwrite) {
+  const fs::path clean = without_slash(path);
+  if (path.empty() || path == "-" || clean.filename() == "." || clean.filename() == "..") {
+    return Error{"cannot write a report to \"" + path + "\": it is no name of a new folder; name one for --out"};
+  }
+  if (const Status target = check_target(clean, overwrite); !target) return target.error();
+  const fs::path parent = clean.has_parent_path() ? clean.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::is_directory(parent, error)) {
+    return Error{"cannot write " + clean.string() + ": the folder " + parent.string() +
+                 " does not exist; create it first"};
+  }
+  ReportFolder folder;
+  folder.path_ = clean.string();
+  folder.temporary_ = std::make_unique<ScratchFolder>(parent.string(), ".palpate-report-");
+  if (folder.temporary_->path().empty()) {
+    return Error{"cannot write " + clean.string() + ": the folder " + parent.string() + " is not writable (" +
+                 std::generic_category().message(errno) + ")"};
+  }
+  // Only the owner can read a new scratch folder.
+  fs::permissions(folder.temporary_->path(), static_cast<fs::perms>(0755), error);
+  return folder;
+}
+
+Status ReportFolder::write(const std::string& name, std::string_view text) const {
+  std::error_code ignored;
+  fs::create_directories(fs::path(path_of(name)).parent_path(), ignored);
+  return write_file_atomically(path_of(name), text, true);
+}
+
+Status ReportFolder::commit() {
+  std::error_code error;
+  // A rename cannot replace a folder with files: the earlier report is moved aside first, and moved back when the
+  // rename fails.
+  const std::string made = temporary_->path();
+  const std::string aside = made + ".old";
+  const bool replaces = fs::exists(path_, error);
+  if (replaces) {
+    fs::rename(path_, aside, error);
+    if (error) return Error{"cannot replace " + path_ + ": " + error.message()};
+  }
+  fs::rename(made, path_, error);
+  if (error) {
+    std::error_code ignored;
+    if (replaces) fs::rename(aside, path_, ignored);
+    return Error{"cannot write " + path_ + ": " + error.message()};
+  }
+  if (replaces) fs::remove_all(aside, error);
+  return {};
+}
+
+Status write_parts(const ReportFolder& folder, const std::vector<Table>& tables, std::vector<Figure>& figures,
+                   const FitControl& control) {
+  for (const Table& table : tables) {
+    if (const Status status = folder.write("tables/" + table.name + ".csv", table_csv(table)); !status) return status;
+  }
   const std::string place = folder.path_of("figures");
+  std::error_code ignored;
+  fs::create_directories(place, ignored);
   std::vector<Plot> plots;
   for (const Figure& figure : figures) plots.push_back(figure.plot);
-  std::error_code ignored;
-  std::filesystem::create_directories(place, ignored);
-  if (const Status status = draw_plots(place, plots); !status) return status;
+  const Status drawn = draw_plots(place, plots);
+  // Ctrl-C at a terminal ends gnuplot as well; the report is then interrupted, not wrong.
+  if (!control.may_continue(0.99)) return interrupted();
+  if (!drawn) return drawn;
   for (Figure& figure : figures) {
     auto svg = read_drawn(place, figure.plot.name + ".svg");
     if (!svg) return svg.error();
@@ -63,6 +148,16 @@ Result<std::string> fill_page(const std::string& name, std::map<std::string, std
     at = close + 2;
   }
   return page.append(*text, at);
+}
+
+Status publish(ReportFolder& folder, const std::string& page, const nlohmann::ordered_json& report,
+               const FitControl& control) {
+  // Names of recordings may be invalid UTF-8; such bytes are replaced.
+  const std::string json = report.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  if (const Status status = folder.write("report.json", json); !status) return status;
+  if (const Status status = folder.write("index.html", page); !status) return status;
+  if (!control.may_continue(1.0)) return interrupted();
+  return folder.commit();
 }
 
 }  // namespace palpate

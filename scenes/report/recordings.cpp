@@ -15,8 +15,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kTrainSeconds = 41.499;
-constexpr double kTestSeconds = 45.272;
 constexpr std::size_t kSmallestRecording = 1000;  // rows; a shorter recording is not divided
 constexpr double kKeptShare = 0.6;                // of a single recording
 
@@ -61,18 +59,6 @@ void sort_recordings(std::vector<SharedRecording>& recordings) {
   for (std::size_t i = 0; i < keyed.size(); ++i) recordings[i] = keyed[i].second;
 }
 
-Status add_virtual_silicone(std::vector<SharedRecording>& all) {
-  RigSettings settings;
-  for (const double seconds : {kTrainSeconds, kTestSeconds}) {
-    settings.seconds = seconds;
-    settings.seed = all.size() + 1;
-    auto recording = record_sensors(settings);
-    if (!recording) return recording.error();
-    all.push_back(std::make_shared<const Recording>(std::move(*recording)));
-  }
-  return {};
-}
-
 using Forces = std::vector<double>;
 
 Forces forces_of(const Recording& recording) {
@@ -113,6 +99,20 @@ std::string seconds(const Recording& recording, std::size_t row) {
 }
 
 }  // namespace
+
+Result<std::vector<SharedRecording>> virtual_recordings(const std::string& material, double share) {
+  std::vector<SharedRecording> made;
+  for (const double seconds : {41.499, 45.272}) {
+    RigSettings settings;
+    settings.material = material;
+    settings.seconds = share * seconds;
+    settings.seed = made.size() + 1;
+    auto recording = record_sensors(settings);
+    if (!recording) return recording.error();
+    made.push_back(std::make_shared<const Recording>(std::move(*recording)));
+  }
+  return made;
+}
 
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested) {
   const Forces known = forces_of(trained);
@@ -170,7 +170,9 @@ Result<RecordingSet> split_recordings(std::vector<SharedRecording> train, std::v
   sort_recordings(test);
   std::vector<SharedRecording> all = std::move(train);
   if (set.virtual_recordings) {
-    if (const Status added = add_virtual_silicone(all); !added) return added.error();
+    auto made = virtual_recordings("silicone");
+    if (!made) return made.error();
+    all = std::move(*made);
   }
   const std::size_t trained = set.virtual_recordings ? 1 : all.size();
   all.insert(all.end(), test.begin(), test.end());

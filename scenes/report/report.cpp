@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <thread>
 
-#include "scenes/plot/draw.h"
-#include "scenes/report/page.h"
-#include "scenes/report/report_folder.h"
+#include "scenes/evaluation/ranking.h"
+#include "scenes/plot/inline_svg.h"
+#include "scenes/report/answer.h"
+#include "scenes/report/figures.h"
 
 namespace palpate {
 namespace {
@@ -70,13 +72,131 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
           {"timings",
            {{"machine", machine},
             {"seconds", seconds},
-            {"answer", plain_text_of(answer)},
+            {"answer", answer.plain_text()},
             {"recommended", data.models[data.choice.recommended].plan.name},
             {"candidates", named(data.choice.candidates)},
             {"qualified", named(data.choice.qualified)},
             {"tables", times}}},
           {"program", {{"version", request.version}, {"compiler", kCompiler}}},
           {"command_line", request.command_line}};
+}
+
+constexpr double kStudiedUpTo_N = 2.5;  // Hoever & Harders (2009), section 4.1
+
+std::string verdict(const Choice& choice, std::size_t model, const PairedDifference& difference) {
+  if (model == choice.recommended) return "recommended";
+  const bool qualified = std::find(choice.qualified.begin(), choice.qualified.end(), model) != choice.qualified.end();
+  return (difference.p99 >= 0.0 ? "+" : "−") + three_digits(std::abs(difference.p99)) +
+         (qualified ? ", qualified" : "");
+}
+
+Table headline_table(const ReportData& data) {
+  Table table{"headline"};
+  for (const std::size_t i : headline_models(data)) {
+    const ModelResult& one = data.models[i];
+    const UnitErrors& errors = one.errors;
+    const Interval interval = errors.p99_interval();
+    const auto time = [&](double time_ns) { return one.time.measured ? time_ns : kNoNumber; };
+    table.begin_row();
+    table.add({"", "model"}, one.plan.name);
+    table.add({"", "tick [ns]", 1.0, 0, 2}, time(one.time.tick.median_ns));
+    table.add({}, time(one.time.tick.low_ns));
+    table.add({}, time(one.time.tick.high_ns));
+    table.add({"", std::string("≤ JND [%], ") + unit_name(errors) + "s beyond", kInPercent, 2, 1},
+              std::floor(1e4 * errors.within_jnd) / 1e4);
+    table.add({}, std::to_string(errors.units_above_jnd) + " of " + std::to_string(errors.units()));
+    table.add({"", "99 % error [JND], 95 %", 1.0, TableColumn::kThreeDigits, 2}, errors.p99_error_over_jnd);
+    table.add({}, interval.low);
+    table.add({}, interval.high);
+    table.add({"", "worst [JND]"}, errors.max_error_over_jnd);
+    table.add({"", "99 % error minus the smallest [JND]"},
+              verdict(data.choice, i, paired_difference(errors, data.models[data.choice.best].errors)));
+  }
+  return table;
+}
+
+double largest_force_N(const ReportData& data) {
+  double largest = 0.0;
+  for (const RecordingFacts& facts : data.recordings) largest = std::max(largest, facts.largest_force_N);
+  return largest;
+}
+
+// Notes on how the numbers of the first screen were obtained.
+std::string notes_html(const ReportData& data) {
+  std::vector<std::string> notes;
+  notes.push_back(
+      "Recommended: the fastest of the models whose 99 % error is at most " + three_digits(kMargin_jnd) +
+      " JND above the smallest, at 95 % and one-sided (qualified: " + std::to_string(data.choice.qualified.size()) +
+      " of " + std::to_string(data.choice.candidates.size()) + "). In a choice between two forces " +
+      three_digits(kMargin_jnd) + " JND apart 57 % of the answers are correct; guessing gives 50 %.");
+  for (const ModelResult& one : data.models) {
+    if (one.same.empty()) continue;
+    std::string names;
+    for (const std::string& name : one.same) names += (names.empty() ? "" : ", ") + name;
+    notes.push_back("The same forces as " + one.plan.name + ": " + names + ".");
+  }
+  if (!data.tested_on.empty()) notes.push_back("No test recording: " + data.tested_on + ".");
+  const JndLine paper;
+  notes.push_back("JND: " + three_digits(1e3 * data.jnd.offset_N) + " mN + " +
+                  three_digits(100.0 * data.jnd.weber_fraction) + " % of the force." +
+                  (data.jnd.offset_N == paper.offset_N && data.jnd.weber_fraction == paper.weber_fraction &&
+                           largest_force_N(data) > kStudiedUpTo_N
+                       ? " It was measured up to 2.5 N; these forces go up to " + three_digits(largest_force_N(data)) +
+                             " N, where it is extrapolated."
+                       : ""));
+  notes.push_back("A perfect model would have " + percent(data.floor.within_jnd) +
+                  " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
+                  " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +
+                  " mN, from second differences in the quietest fifth of each test recording, without drift).");
+  const bool any = std::any_of(data.recordings.begin(), data.recordings.end(),
+                               [](const RecordingFacts& facts) { return facts.accelerometer; });
+  notes.push_back(any ? "With the accelerometer of the recordings."
+                      : "From positions alone, without an accelerometer.");
+  std::string html = "<ul class=\"notes\">";
+  for (const std::string& note : notes) html += "<li>" + escape_html(note) + "</li>";
+  return html + "</ul>\n";
+}
+
+std::string learnt_html(const ReportData& data) {
+  const ModelResult& chosen = data.models[data.choice.recommended];
+  std::string features;
+  for (const FeatureSpec& spec : chosen.model->features())
+    features += (features.empty() ? "" : ", ") + feature_name(spec).substr(std::string("feature_").size());
+  std::string times;
+  for (const double time_s : data.times_2009_s) times += (times.empty() ? "" : " and ") + three_digits(time_s);
+  const auto row = [](const char* name, const std::string& value) {
+    return "<tr><td class=\"text\">" + std::string(name) + "</td><td class=\"text\">" + escape_html(value) +
+           "</td></tr>\n";
+  };
+  std::string html = "<table class=\"learnt\">" + row("Features", features);
+  if (data.correction_strength)
+    html += row("Strength of the correction by centres",
+                fixed(100.0 * *data.correction_strength, 0) + " % of the fitted correction, by cross-validation");
+  if (!times.empty()) html += row("Relaxation times, recipe of 2009", times + " s, fitted to the training recordings");
+  for (const RecordingSurface& surface : data.surfaces) {
+    html += row(("Surface of " + escape_html(surface.name)).c_str(),
+                fixed(1e3 * surface.offset_m, 3) + " mm" +
+                    (std::isfinite(surface.standard_error_m) ? " ± " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
+                                                             : ", not identified") +
+                    ", force zero " + fixed(1e3 * surface.force_zero_N, 1) + " mN");
+  }
+  return html + "</table>\n";
+}
+
+// `origin`: command line, version and machine; `tables`: those of make_tables; `figures`: drawn already. Errors: those
+// of fill_page.
+Result<std::string> make_page(const ReportData& data, const Sentence& answer, const std::string& origin,
+                              const std::vector<Table>& tables, const std::vector<Figure>& figures) {
+  std::string tests;
+  for (const RecordingFacts& facts : data.recordings) {
+    if (facts.role != "train") tests += (tests.empty() ? "" : ", ") + facts.name;
+  }
+  std::map<std::string, std::string> values{
+      {"title", escape_html(tests)}, {"answer", answer.html()},     {"headline", table_html(headline_table(data))},
+      {"notes", notes_html(data)},   {"learnt", learnt_html(data)}, {"origin", escape_html(origin)}};
+  for (const Table& one : tables) values[one.name] = one.rows.empty() ? "" : table_html(one);
+  for (const Figure& one : figures) values[one.plot.name] = figure_html(one);
+  return fill_page("page.html", std::move(values));
 }
 
 }  // namespace
@@ -94,35 +214,19 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
   const auto data = measure(*recordings, request.scene, request.quick, measuring);
   if (!data) return data.error();
   const Sentence words = answer(*data);
-
   const std::vector<Table> tables = make_tables(*data);
-  for (const Table& table : tables) {
-    if (const Status status = folder->write("tables/" + table.name + ".csv", table_csv(table)); !status) {
-      return status.error();
-    }
-  }
   std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), force_figure(*data)};
-  const Status drawn = draw_figures(*folder, figures);
-  // Ctrl-C at a terminal ends gnuplot as well; the report is then interrupted, not wrong.
-  if (!control.may_continue(0.99)) return interrupted();
-  if (!drawn) return drawn.error();
-
+  if (const Status status = write_parts(*folder, tables, figures, control); !status) return status.error();
   const std::string machine =
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  // Names of recordings may be invalid UTF-8; such bytes are replaced.
-  const std::string json = report_json(*data, request, words, tables, figures, machine, seconds)
-                               .dump(1, ' ', false, OrderedJson::error_handler_t::replace) +
-                           "\n";
-  if (const Status status = folder->write("report.json", json); !status) return status.error();
   const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
                              " · " + three_digits(seconds) + " s";
   const auto page = make_page(*data, words, origin, tables, figures);
   if (!page) return page.error();
-  if (const Status status = folder->write("index.html", *page); !status) return status.error();
-  if (!control.may_continue(1.0)) return interrupted();
-  if (const Status status = folder->commit(); !status) return status.error();
-  return plain_text_of(words);
+  const OrderedJson json = report_json(*data, request, words, tables, figures, machine, seconds);
+  if (const Status status = publish(*folder, *page, json, control); !status) return status.error();
+  return words.plain_text();
 }
 
 }  // namespace palpate

@@ -1,12 +1,12 @@
 #include "scenes/scene/scene.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
-#include "models/fit/methods.h"
+#include "models/fit/fit.h"
 #include "scenes/scene/assets.h"
 
 namespace palpate {
@@ -14,10 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<std::string> scenes_folder() {
-  Result<std::string> assets = find_assets();
-  if (!assets) return assets.error();
-  return *assets + "/scenes";
+// `folder`, or if it is empty that of the assets.
+Result<std::string> scenes_folder(const std::string& folder) {
+  if (!folder.empty()) return folder;
+  const Result<std::string> assets = find_assets();
+  return assets ? *assets + "/scenes" : assets;
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -32,17 +33,16 @@ std::string joined(const std::vector<std::string>& words) {
 std::string describe_features(const Scene& scene) {
   std::vector<std::string> words;
   for (const FeatureSpec& feature : scene.features) {
-    char low_pass[48];
-    std::snprintf(low_pass, sizeof low_pass, "relaxation %g s", feature.relaxation_time_s);
-    words.emplace_back(feature.kind == FeatureKind::depth      ? "depth"
-                       : feature.kind == FeatureKind::velocity ? "velocity"
-                                                               : low_pass);
+    words.push_back(feature.kind == FeatureKind::depth ? "depth"
+                    : feature.kind == FeatureKind::velocity
+                        ? "velocity"
+                        : "relaxation " + general(feature.relaxation_time_s, 6) + " s");
   }
   return joined(words);
 }
 
 Result<std::vector<std::string>> scene_names(const std::string& in_folder) {
-  const Result<std::string> folder = in_folder.empty() ? scenes_folder() : in_folder;
+  const Result<std::string> folder = scenes_folder(in_folder);
   if (!folder) return folder.error();
   std::error_code error;
   std::vector<std::string> names;
@@ -55,7 +55,7 @@ Result<std::vector<std::string>> scene_names(const std::string& in_folder) {
 }
 
 Result<Scene> load_scene(const std::string& name, const std::string& in_folder) {
-  const Result<std::string> folder = in_folder.empty() ? scenes_folder() : in_folder;
+  const Result<std::string> folder = scenes_folder(in_folder);
   if (!folder) return folder.error();
   const Result<std::vector<std::string>> names = scene_names(*folder);
   if (!names) return names.error();
@@ -66,6 +66,15 @@ Result<Scene> load_scene(const std::string& name, const std::string& in_folder) 
   const Result<std::string> text = read_plain_file(path, "a scene");
   if (!text) return text.error();
   return parse_scene(*text, path);
+}
+
+TrainingRequest training_request(const Scene& scene) {
+  TrainingRequest request;
+  request.scene = scene.name;
+  request.features = scene.features;
+  request.jnd = scene.jnd;
+  request.choice = FeatureChoice::automatic;
+  return request;
 }
 
 std::uint32_t method_rgb(std::string_view method) {

@@ -14,6 +14,8 @@
 
 namespace palpate {
 
+struct TrainingRequest;
+
 struct Colour {
   std::uint8_t red = 0;
   std::uint8_t green = 0;
@@ -64,6 +66,10 @@ Result<std::vector<std::string>> scene_names(const std::string& folder = {});
 
 // Errors: unknown scene (lists the known ones); those of parse_scene; the file is not readable.
 Result<Scene> load_scene(const std::string& name, const std::string& folder = {});
+
+// The request to fit a model (models/fit/fit.h) with the scene's features and JND line. Everything else is the default
+// of `palpate fit`.
+TrainingRequest training_request(const Scene& scene);
 
 // The colour 0xRRGGBB of a method (models/fit/methods.h), or of "position", the model of depth alone. 0, the ink
 // colour of the page, for methods without a hue and unknown names.

@@ -14,7 +14,7 @@
 #include "models/recordings/recording_faults.h"
 #include "scenes/evaluation/model_timing.h"
 #include "scenes/material/rig.h"
-#include "scenes/scene/training.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
@@ -192,12 +192,13 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   const bool position = plan.origin == ModelOrigin::position;
   std::optional<PreparedTraining>& prepared = position ? of_position : plan.paper ? prepared_as_paper_ : prepared_;
   const bool prepared_before = prepared.has_value();
-  if (const Status status = prepare(prepared, position     ? position_request(scene_)
-                                              : plan.paper ? recipe_2009_request(training_request(scene_))
-                                                           : training_request(scene_));
-      !status) {
-    return status.error();
+  TrainingRequest training = training_request(scene_);
+  if (plan.paper) training = recipe_2009_request(training);
+  if (position) {
+    training.features = {FeatureSpec{}};
+    training.choice = FeatureChoice::scene;
   }
+  if (const Status status = prepare(prepared, training); !status) return status.error();
   MethodRequest request;
   request.method = plan.method;
   request.seed = seed_;

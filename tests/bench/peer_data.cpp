@@ -95,7 +95,7 @@ PeerError error_of(const PeerData& data, const std::function<double(Eigen::Index
     if (!(force > 0.0)) force = 0.0;
     figures.add(std::min(force, kForceMargin * common.largest_force_N), data.test_force_N[i], false, common.jnd);
   }
-  return {figures.rms_error_N(), figures.within_jnd()};
+  return {figures.summary(common.jnd).rms_error_N, figures.within_jnd()};
 }
 
 // Those sites of `all` for which `wanted` holds.

@@ -5,7 +5,6 @@
 
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/scene/scene.h"
-#include "scenes/scene/training.h"
 
 namespace palpate::test {
 namespace {

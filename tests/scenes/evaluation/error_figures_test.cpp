@@ -35,9 +35,9 @@ TEST(ErrorFigures, NothingGivesZeros) {
   const ErrorFigures figures;
   EXPECT_EQ(figures.samples(), 0u);
   EXPECT_EQ(figures.within_jnd(), 0.0);
-  EXPECT_EQ(figures.rms_error_N(), 0.0);
   EXPECT_EQ(figures.mean_error_over_jnd(), 0.0);
-  EXPECT_TRUE(figures.bins({}).empty());
+  EXPECT_EQ(figures.summary({}).rms_error_N, 0.0);
+  EXPECT_TRUE(figures.summary({}).bins.empty());
 }
 
 TEST(ErrorFigures, AddUp) {
@@ -46,12 +46,13 @@ TEST(ErrorFigures, AddUp) {
   for (int i = 1; i <= 1000; ++i) figures.add(1.2 + 1e-3 * i, 1.2, i <= 10, jnd);
   EXPECT_EQ(figures.samples(), 1000u);
   EXPECT_NEAR(figures.within_jnd(), 0.5, 1e-3) << "an error of exactly one JND may round either way";
-  EXPECT_NEAR(figures.rms_error_N(), std::sqrt(1001.0 * 2001.0 / 6.0) * 1e-3, 1e-9);
-  EXPECT_NEAR(figures.max_error_N(), 1.0, kRounding);
-  EXPECT_NEAR(figures.max_error_over_jnd(), 2.0, kRounding);
+  const ErrorSummary summary = figures.summary(jnd);
+  EXPECT_NEAR(summary.rms_error_N, std::sqrt(1001.0 * 2001.0 / 6.0) * 1e-3, 1e-9);
+  EXPECT_NEAR(summary.max_error_N, 1.0, kRounding);
+  EXPECT_NEAR(summary.max_error_over_jnd, 2.0, kRounding);
   EXPECT_NEAR(figures.mean_error_over_jnd(), 1.001, 1e-9);
-  EXPECT_EQ(figures.out_of_domain_samples(), 10u);
-  const std::vector<ForceBin> bins = figures.bins(jnd);  // 1 N each
+  EXPECT_EQ(summary.out_of_domain_samples, 10u);
+  const std::vector<ForceBin>& bins = summary.bins;  // 1 N each
   ASSERT_EQ(bins.size(), 2u);
   EXPECT_EQ(bins[0].count, 0u);
   EXPECT_EQ(bins[1].count, 1000u);
@@ -72,12 +73,14 @@ TEST(ErrorFigures, OfTwoPartsAreThoseOfTheWhole) {
     (i < 200 ? first : second).add(model_N, measured_N, i % 7 == 0, jnd);
   }
   first.add(second);
-  EXPECT_EQ(first.samples(), whole.samples());
-  EXPECT_EQ(first.within_jnd(), whole.within_jnd());
-  EXPECT_EQ(first.out_of_domain_samples(), whole.out_of_domain_samples());
-  EXPECT_NEAR(first.rms_error_N(), whole.rms_error_N(), kRounding);
-  const auto bins = first.bins(jnd);
-  const auto expected = whole.bins(jnd);
+  const ErrorSummary merged = first.summary(jnd);
+  const ErrorSummary at_once = whole.summary(jnd);
+  EXPECT_EQ(merged.samples, at_once.samples);
+  EXPECT_EQ(merged.within_jnd, at_once.within_jnd);
+  EXPECT_EQ(merged.out_of_domain_samples, at_once.out_of_domain_samples);
+  EXPECT_NEAR(merged.rms_error_N, at_once.rms_error_N, kRounding);
+  const std::vector<ForceBin>& bins = merged.bins;
+  const std::vector<ForceBin>& expected = at_once.bins;
   ASSERT_EQ(bins.size(), expected.size());
   for (std::size_t i = 0; i < bins.size(); ++i) {
     EXPECT_EQ(bins[i].count, expected[i].count);
@@ -90,7 +93,7 @@ TEST(ErrorFigures, OfTwoPartsAreThoseOfTheWhole) {
 TEST(ErrorFigures, HaveNoMoreBinsThanTheMost) {
   ErrorFigures figures;
   figures.add(0.0, 1e9, false, {0.01, 0.0});
-  EXPECT_EQ(figures.bins({0.01, 0.0}).size(), kMaximumForceBins);
+  EXPECT_EQ(figures.summary({0.01, 0.0}).bins.size(), kMaximumForceBins);
 }
 
 }  // namespace

@@ -11,11 +11,11 @@ Timing around(double median_ns) { return {median_ns, 0.98 * median_ns, 1.02 * me
 
 // Errors of ten units: `error`, plus a scatter common to all candidates, plus an independent one of size `own`.
 Candidate model(double error, double tick_ns, double own = 0.0, std::uint64_t seed = 1) {
-  Candidate one{error, {}, around(tick_ns)};
+  Candidate one{{}, around(tick_ns)};
+  one.errors.p99_error_over_jnd = error;
   RandomStream shared(7, 0);
   RandomStream random(seed, 1);
-  for (int i = 0; i < 10; ++i)
-    one.unit_errors_over_jnd.push_back(error + 0.3 * shared.normal() + own * random.normal());
+  for (int i = 0; i < 10; ++i) one.errors.unit_p99.push_back(error + 0.3 * shared.normal() + own * random.normal());
   return one;
 }
 
@@ -23,13 +23,13 @@ TEST(Rank, TakesTheFastestOfTheQualified) {
   const Ranking ranking = rank({model(3.0, 100.0), model(0.5, 1000.0), model(0.6, 200.0)});
   EXPECT_EQ(ranking.best, 1u);
   EXPECT_EQ(ranking.recommended, 2u) << "0.1 JND more is within the margin";
-  EXPECT_EQ(ranking.qualified, (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(ranking.qualified, (std::vector<bool>{false, true, true}));
 }
 
 TEST(Rank, SpeedDoesNotOutweighAnErrorBeyondTheMargin) {
   const Ranking ranking = rank({model(0.9, 100.0), model(0.5, 1000.0)});
   EXPECT_EQ(ranking.recommended, 1u);
-  EXPECT_EQ(ranking.qualified, (std::vector<std::size_t>{1}));
+  EXPECT_EQ(ranking.qualified, (std::vector<bool>{false, true}));
 }
 
 TEST(Rank, AnUncertainDifferenceDoesNotQualify) {
@@ -40,8 +40,8 @@ TEST(Rank, AnUncertainDifferenceDoesNotQualify) {
 TEST(Rank, WithTooFewUnitsTheDifferenceItselfCounts) {
   Candidate one = model(0.6, 100.0);
   Candidate other = model(0.5, 1000.0);
-  one.unit_errors_over_jnd.resize(2);
-  other.unit_errors_over_jnd.resize(2);
+  one.errors.unit_p99.resize(2);
+  other.errors.unit_p99.resize(2);
   EXPECT_EQ(rank({one, other}).recommended, 0u);
 }
 

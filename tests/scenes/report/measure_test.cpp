@@ -101,7 +101,7 @@ TEST(Choose, OnEveryRecordedSetNoMethodDominatesTheRecommendedOne) {
       const auto data = measure(*split, *load_scene("silicone_block"), true, {});
       ASSERT_TRUE(data.ok()) << set.path() << data.error().message;
       ++sets;
-      const auto entry = [&](std::size_t i) { return candidate(data->models[i].errors, data->models[i].time); };
+      const auto entry = [&](std::size_t i) { return Candidate{data->models[i].errors, data->models[i].time.tick}; };
       for (std::size_t i = 1; i < data->models.size(); ++i) {
         if (!data->models[i].plan.main && dominates(entry(i), entry(data->choice.recommended))) {
           EXPECT_TRUE(data->choice.dominating.has_value()) << set.path() << ": the answer names no other size";

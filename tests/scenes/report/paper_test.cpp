@@ -7,7 +7,15 @@
 namespace palpate {
 namespace {
 
-// Every method has a mean plus deviation of 0.8 JND and a maximum of 1.5 JND, and times in the paper's order.
+// Twelve errors with a mean plus deviation of 0.8 and a maximum of 1.5.
+Moments errors(double scale) {
+  Moments moments;
+  for (int i = 0; i < 11; ++i) moments.add(0.409 * scale);
+  moments.add(1.5 * scale);
+  return moments;
+}
+
+// Every method has errors of that many JND, and times in the paper's order.
 PaperData example() {
   PaperData data;
   PaperRun run{"silicone", false, {0.17, 1.27}, 41499, 45272, 6850, {}};
@@ -16,8 +24,9 @@ PaperData example() {
   for (std::size_t i = 0; i < kPaperMethods; ++i) {
     PaperModel model{names[i], 0, fit_s[i], {}, 0.01, {}};
     for (const double force_N : {0.2, 1.0, 4.0}) {
-      const double jnd_N = data.jnd.at(force_N);
-      model.bins.push_back({force_N, 100, 0.5 * jnd_N, 0.3 * jnd_N, 1.5 * jnd_N, 0.0, 0.0, 0.0});
+      PaperBin& bin = model.bins.emplace_back();
+      bin.force_N.add(force_N);
+      bin.error_N = errors(data.jnd.at(force_N));
     }
     run.models.push_back(model);
   }
@@ -29,7 +38,7 @@ PaperData example() {
 
 bool reproduced(const PaperData& data, const std::string& claim) {
   for (const Claim& one : paper_claims(data)) {
-    if (one.claim.find(claim) != std::string::npos) return one.reproduced.front();
+    if (one.claim.find(claim) != std::string::npos) return one.here.front().reproduced;
   }
   ADD_FAILURE() << claim;
   return false;
@@ -48,12 +57,12 @@ TEST(PaperClaims, WhatIsAsThePaperHasItIsReproduced) {
 TEST(PaperClaims, WhatIsNotReproducedHasARemark) {
   PaperData data = example();
   data.by_sites[1].seconds[kGreedy100] = 4.0;
-  for (const Claim& one : paper_claims(data)) EXPECT_TRUE(one.reproduced.front() || !one.why.empty()) << one.claim;
+  for (const Claim& one : paper_claims(data)) EXPECT_TRUE(one.here.front().reproduced || !one.why.empty()) << one.claim;
 }
 
 TEST(PaperClaims, OneBinAboveTheJndIsEnoughToRefuteAlways) {
   PaperData data = example();
-  data.runs[0].models[kTreeCentres].bins[1].std_N *= 2.0;
+  data.runs[0].models[kTreeCentres].bins[1].error_N.add(3.0 * data.jnd.at(1.0));
   EXPECT_FALSE(reproduced(data, "kD-tree: mean plus deviation"));
   EXPECT_TRUE(reproduced(data, "greedy-100: mean"));
   data.by_sites[1].seconds[kGreedy100] = 4.0;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/fit/fit.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -63,6 +64,15 @@ TEST(Scene, LoadsFromAnyFolder) {
   folder.with_file("note.txt", "no scene");
   EXPECT_EQ(*scene_names(folder.path()), std::vector<std::string>{"broken"});
   EXPECT_FALSE(load_scene("broken", folder.path()).ok());
+}
+
+TEST(Scene, GivesAFitItsFeaturesAndJnd) {
+  Scene scene = load_scene("silicone_block").value();
+  scene.jnd.offset_N = 0.25;
+  const TrainingRequest request = training_request(scene);
+  EXPECT_EQ(request.scene, "silicone_block");
+  EXPECT_EQ(request.features, scene.features);
+  EXPECT_EQ(request.jnd.offset_N, 0.25);
 }
 
 }  // namespace

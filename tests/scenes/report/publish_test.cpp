@@ -1,4 +1,4 @@
-#include "scenes/report/report_folder.h"
+#include "scenes/report/publish.h"
 
 #include <gtest/gtest.h>
 
