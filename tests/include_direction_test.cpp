@@ -52,7 +52,7 @@ const std::map<std::string, Names> kRooms = {
     {"scenes/worker", {"scenes/scene", "scenes/evaluation"}},
     {"scenes/live", {"scenes/worker", "scenes/evaluation", "scenes/plot", "devices/registry", "engine/import"}},
     {"scenes/report", {"scenes/plot", "scenes/evaluation"}},
-    {"scenes/study", {"scenes/worker", "scenes/evaluation", "scenes/plot", "devices/registry"}},
+    {"scenes/study", {"scenes/worker", "scenes/evaluation", "devices/registry"}},
     {"scenes/cli", {"models/fit_library", "scenes/report", "scenes/study", "scenes/live"}},
     {"rendering/ui", {"scenes/live"}},
     {"rendering/picture", {"rendering/ui"}},

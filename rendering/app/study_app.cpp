@@ -5,12 +5,12 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cctype>
 #include <utility>
 
 #include "scenes/scene/user_folders.h"
-#include "scenes/study/discrimination.h"
-#include "scenes/study/prepare_strokes.h"
+#include "scenes/study/study_analysis.h"
 
 namespace palpate {
 namespace {
@@ -21,22 +21,6 @@ constexpr Theme kTheme = Theme::dark;     // avoids glare in a dim room
 
 constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                         ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav;
-
-// A choice of the subject in a state of the session: a button and its key.
-struct Choice {
-  StudyState state;
-  int key;
-  const char* label;
-  void (*run)(StudySession& session);
-};
-void go_on(StudySession& session) { session.proceed(); }
-constexpr Choice kChoices[] = {
-    {StudyState::consent, GLFW_KEY_Y, "I have read this and agree (Y)",
-     [](StudySession& session) { session.accept_consent(local_time_text("%Y-%m-%d %H:%M")); }},
-    {StudyState::ready, GLFW_KEY_ENTER, "Go on (Enter)", go_on},
-    {StudyState::rest, GLFW_KEY_ENTER, "Go on (Enter)", go_on},
-    {StudyState::answering, GLFW_KEY_1, "The first (1)", [](StudySession& session) { session.answer(false); }},
-    {StudyState::answering, GLFW_KEY_2, "The second (2)", [](StudySession& session) { session.answer(true); }}};
 
 // Replaces a key of the keypad by the usual key.
 int usual_key(int key) {
@@ -76,13 +60,6 @@ bool StudyApp::closing() const noexcept { return glfwWindowShouldClose(window_->
 void StudyApp::frame() {
   glfwPollEvents();
   study_->update();
-  for (const Typed& typed : std::exchange(typed_, {})) {
-    if (session() == nullptr) {
-      handle_entry(usual_key(typed.key), typed.letter);
-    } else {
-      handle_key(usual_key(typed.key));
-    }
-  }
   draw();
   window_->show_frame();
 }
@@ -92,22 +69,14 @@ Status StudyApp::screenshot(const std::string& path, bool overwrite) {
   return window_->save_frame(path, overwrite);
 }
 
-void StudyApp::handle_entry(int key, char letter) {
-  const auto typed = static_cast<unsigned char>(letter);
-  if (std::isalnum(typed) != 0 && code_.size() < kLongestCode) code_ += static_cast<char>(std::toupper(typed));
+void StudyApp::press_key(int key) {
   if (key == GLFW_KEY_BACKSPACE && !code_.empty()) code_.pop_back();
-  if (key != GLFW_KEY_ENTER) return;
-  const Status begun = study_->begin(code_);
-  problem_ = begun ? "" : begun.error().message;
+  pressed_.push_back(usual_key(key));
 }
 
-void StudyApp::handle_key(int key) {
-  if (key == GLFW_KEY_ESCAPE) session()->abort();
-  if (key == GLFW_KEY_Z) study_->start_zeroing();
-  const StudyState state = session()->state();
-  for (const Choice& choice : kChoices) {
-    if (choice.state == state && choice.key == key) choice.run(*session());
-  }
+void StudyApp::type(char letter) {
+  const auto typed = static_cast<unsigned char>(letter);
+  if (std::isalnum(typed) != 0 && code_.size() < kLongestCode) code_ += static_cast<char>(std::toupper(typed));
 }
 
 void StudyApp::draw() {
@@ -122,62 +91,49 @@ void StudyApp::draw() {
   ImGui::SetNextWindowPos({0.5F * (1.0F - kColumnShare) * all.x, 0.15F * all.y});
   ImGui::SetNextWindowSize({kColumnShare * all.x, 0.82F * all.y});
   ImGui::Begin("study", nullptr, kFixed);
+  ImGui::PushTextWrapPos();
   session() == nullptr ? draw_entry() : draw_session();
   gap();
-  if (const std::string words = study_->device_words(); !words.empty()) ImGui::TextWrapped("%s", words.c_str());
-  if (study_->needs_zeroing()) button("Zero here (Z)", GLFW_KEY_Z);
+  if (const std::string words = study_->device_words(); !words.empty()) ImGui::Text("%s", words.c_str());
+  if (study_->needs_zeroing() && button("Zero here (Z)", GLFW_KEY_Z)) study_->start_zeroing();
+  const ImVec4 warning = paint(style_.colours().fault);
+  if (session() == nullptr && !problem_.empty()) ImGui::TextColored(warning, "%s", problem_.c_str());
   if (!study_->device_pushes()) {
-    draw_warning(
-        "This device renders no force. This is a rehearsal; its answers are marked and excluded from the analysis.");
+    ImGui::TextColored(warning,
+                       "This device renders no force. This is a rehearsal; its answers are marked and excluded "
+                       "from the analysis.");
   }
+  ImGui::PopTextWrapPos();
   ImGui::End();
   ui_->end_frame();
+  pressed_.clear();
 }
 
-// A button with the same effect as its key.
-void StudyApp::button(const char* label, int key) {
-  if (ImGui::Button(label)) press_key(key);
-}
-
-void StudyApp::draw_warning(const std::string& words) const {
-  ImGui::PushStyleColor(ImGuiCol_Text, paint(style_.colours().fault));
-  ImGui::TextWrapped("%s", words.c_str());
-  ImGui::PopStyleColor();
+// Whether the button or its key was pressed.
+bool StudyApp::button(const char* label, int key, ImVec2 size) {
+  return ImGui::Button(label, size) || std::find(pressed_.begin(), pressed_.end(), key) != pressed_.end();
 }
 
 void StudyApp::draw_entry() {
-  const StrokePair* strokes = study_->strokes();
+  const bool strokes = study_->strokes() != nullptr;
   ImGui::PushFont(style_.fonts().heading);
-  ImGui::TextWrapped("%s", strokes == nullptr                     ? "How small a difference can a hand feel?"
-                           : strokes->reference == kRecordedForce ? "Can a hand tell the model from the block?"
-                                                                  : "Can a hand tell one model from the other?");
+  ImGui::Text("%s",
+              strokes ? "Can a hand feel the difference of two strokes?" : "How small a difference can a hand feel?");
   ImGui::PopFont();
   ImGui::Spacing();
-  ImGui::TextWrapped("%s The code stands for the person; no name is kept.",
-                     strokes != nullptr
-                         ? "Three pushes, one after the other: which of the last two was like the first? 100 trials."
-                         : "Two pushes, one after the other: which was larger? 320 trials.");
+  ImGui::Text("%s The code stands for the person; no name is kept.",
+              strokes ? "Three pushes, one after the other: which of the last two was like the first? 100 trials."
+                      : "Two pushes, one after the other: which was larger? 320 trials.");
   gap();
   ImGui::PushFont(style_.fonts().heading);
-  draw_code();
+  ImGui::Text("Subject code, such as S01: %s|", code_.c_str());
   gap();
-  button("Begin (Enter)", GLFW_KEY_ENTER);
+  if (button("Begin (Enter)", GLFW_KEY_ENTER)) {
+    const Status begun = study_->begin(code_);
+    problem_ = begun ? "" : begun.error().message;
+  }
   ImGui::PopFont();
   ImGui::TextDisabled("A code that has begun goes on after its last answer.");
-  if (!problem_.empty()) draw_warning(problem_);
-}
-
-void StudyApp::draw_code() {
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 padding = ImGui::GetStyle().FramePadding;
-  const float width = 8.0F * ImGui::GetFontSize(), height = ImGui::GetFrameHeight();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(at, {at.x + width, at.y + height}, ink(style_.colours().raised), ImGui::GetStyle().FrameRounding);
-  list.AddText({at.x + padding.x, at.y + padding.y}, ink(style_.colours().text), (code_ + "|").c_str());
-  ImGui::Dummy({width, height});
-  ImGui::SameLine();
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted("subject code, such as S01");
 }
 
 void StudyApp::draw_session() {
@@ -189,65 +145,53 @@ void StudyApp::draw_session() {
   }
   ImGui::Spacing();
   ImGui::PushFont(style_.fonts().heading);
-  ImGui::TextWrapped("%s", view.message.c_str());
+  ImGui::Text("%s", view.message.c_str());
   if (view.was_correct && view.training && view.state == StudyState::presenting && view.interval < 0)
     ImGui::TextDisabled(*view.was_correct ? "The last answer was right." : "The last answer was wrong.");
   gap();
   if (view.state == StudyState::presenting || view.state == StudyState::answering) draw_intervals(view);
   draw_choices(view);
-  if (view.state == StudyState::done) draw_result();
+  if (view.state == StudyState::done && study_->strokes() != nullptr) {
+    const StudyFile& file = session()->file();
+    const StrokePair& strokes = *study_->strokes();
+    const Discrimination result = discrimination_of(file.header().subject, file.records(), strokes);
+    ImGui::Text("%s against %s, %s", strokes.comparison.c_str(), strokes.reference.c_str(), strokes.recording.c_str());
+    ImGui::Text("%s", discrimination_verdict(result, strokes).c_str());
+  }
   ImGui::PopFont();
 }
 
-// Draws a box for each push, the reference included if there is one, and highlights the current one.
+// A box for each push, the reference included if there is one. The current one is highlighted; the answer is a box.
 void StudyApp::draw_intervals(const StudyView& view) {
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  ImFont* font = style_.fonts().big;
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float side = 2.4F * height_of(font);
-  float x = at.x;
-  for (int interval = study_->strokes() != nullptr ? 0 : 1; interval <= 2; ++interval, x += 1.3F * side) {
-    const bool on = view.interval == interval;
-    list.AddRectFilled({x, at.y}, {x + side, at.y + side},
-                       ink(on ? reference_colour(style_.theme()) : style_.colours().raised), 10.0F);
-    const char text[2] = {"R12"[interval], '\0'};
-    const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text);
-    list.AddText(font, height_of(font), {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
-                 ink(style_.colours().text), text);
+  const float side = 2.4F * height_of(style_.fonts().big);
+  ImGui::PushFont(style_.fonts().big);
+  for (int interval = study_->strokes() != nullptr ? 0 : 1; interval <= 2; ++interval) {
+    const Rgb colour = view.interval == interval ? reference_colour(style_.theme()) : style_.colours().raised;
+    ImGui::PushStyleColor(ImGuiCol_Button, paint(colour));
+    const char label[2] = {"R12"[interval], '\0'};
+    if (button(label, GLFW_KEY_0 + interval, {side, side}) && interval > 0) session()->answer(interval == 2);
+    ImGui::PopStyleColor();
+    ImGui::SameLine(0.0F, 0.3F * side);
   }
-  ImGui::Dummy({x - at.x, side});
+  ImGui::PopFont();
+  ImGui::NewLine();
   gap();
 }
 
 void StudyApp::draw_choices(const StudyView& view) {
+  StudySession& shown = *session();
   if (view.rest_ticks_left > 0) {
     ImGui::TextDisabled("%llu s left", static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
-  } else {
-    for (const Choice& choice : kChoices) {
-      if (choice.state != view.state) continue;
-      button(choice.label, choice.key);
-      ImGui::SameLine();
-    }
-    ImGui::NewLine();
+  } else if (view.state == StudyState::consent) {
+    if (button("I have read this and agree (Y)", GLFW_KEY_Y)) shown.accept_consent(local_time_text("%Y-%m-%d %H:%M"));
+  } else if (view.state == StudyState::ready || view.state == StudyState::rest) {
+    if (button("Go on (Enter)", GLFW_KEY_ENTER)) shown.proceed();
   }
   if (view.state == StudyState::done || view.state == StudyState::aborted) return;
   gap();
   ImGui::PushFont(style_.fonts().body);
-  button("End the session (Esc)", GLFW_KEY_ESCAPE);
+  if (button("End the session (Esc)", GLFW_KEY_ESCAPE)) shown.abort();
   ImGui::PopFont();
-}
-
-// Draws the result of a discrimination of strokes beside the prediction.
-void StudyApp::draw_result() {
-  const StrokePair* strokes = study_->strokes();
-  if (strokes == nullptr) return;
-  const StudyFile& file = session()->file();
-  ImGui::Spacing();
-  ImGui::TextWrapped("%s against %s, %s", strokes->comparison.c_str(), strokes->reference.c_str(),
-                     strokes->recording.c_str());
-  ImGui::TextWrapped(
-      "%s",
-      discrimination_verdict(discrimination_of(file.header().subject, file.records(), *strokes), *strokes).c_str());
 }
 
 }  // namespace palpate

@@ -12,7 +12,7 @@
 #include "rendering/app/window.h"
 #include "rendering/ui/ui_context.h"
 #include "rendering/ui/ui_style.h"
-#include "scenes/study/live_study.h"
+#include "scenes/study/study_session.h"
 
 namespace palpate {
 
@@ -34,8 +34,9 @@ class StudyApp {
   bool closing() const noexcept;
   Status screenshot(const std::string& path, bool overwrite);
 
-  void press_key(int key) { typed_.push_back({key, '\0'}); }
-  void type(char letter) { typed_.push_back({0, letter}); }
+  // The effect of a key or a letter; keys of GLFW. A key counts once, in the next frame.
+  void press_key(int key);
+  void type(char letter);
   // Null before a valid code was entered; until then the screen shows `problem`.
   StudySession* session() noexcept { return study_->session(); }
   const std::string& problem() const noexcept { return problem_; }
@@ -44,27 +45,17 @@ class StudyApp {
   StudyApp() = default;
   void draw();
   void draw_entry();
-  void draw_code();
   void draw_session();
   void draw_intervals(const StudyView& view);
   void draw_choices(const StudyView& view);
-  void draw_result();
-  void draw_warning(const std::string& words) const;
-  void handle_entry(int key, char letter);
-  void handle_key(int key);
-  void button(const char* label, int key);
+  bool button(const char* label, int key, ImVec2 size = {});
 
   std::unique_ptr<Window> window_;
   std::unique_ptr<LiveStudy> study_;
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
-  // Keys and letters since the last frame, in order. (A text field of Dear ImGui sometimes loses the Enter after the
-  // code when frames are slow.)
-  struct Typed {
-    int key = 0;
-    char letter = '\0';
-  };
-  std::vector<Typed> typed_;
+  std::vector<int> pressed_;  // since the last frame
+  // A text field of Dear ImGui sometimes loses the Enter after the code when frames are slow.
   std::string code_;
   std::string problem_;
 };

@@ -8,12 +8,10 @@
 #include "engine/base/atomic_file.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/plot/draw.h"
 #include "scenes/scene/scene.h"
-#include "scenes/study/discrimination.h"
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/study/simulated_subject.h"
-#include "scenes/study/study_figure.h"
+#include "scenes/study/study_analysis.h"
 
 namespace palpate::cli {
 namespace {
@@ -30,20 +28,27 @@ struct StudyOptions {
   std::string recording;  // for --discriminate; empty: a virtual recording
   std::string strokes_scene = "silicone_block";
   std::vector<std::string> models;
-
-  std::string path_of(const std::string& name) const { return out + "/" + name; }
 };
 
 constexpr std::uint64_t kPopulationStream = 51;
 
-void print_left_out(const std::string& who, std::size_t unusable) {
+// Writes a file into the folder for the results, which it creates.
+Status write_result(const std::string& name, const std::string& text, const StudyOptions& options) {
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) return Error{"cannot make the folder " + options.out + ": " + error.message()};
+  return write_file_atomically(options.out + "/" + name, text, options.force);
+}
+
+void print_left_out(const std::string& subject, std::size_t unusable) {
   if (unusable > 0)
-    std::printf("%s: %zu trials were left out because their forces were not rendered\n", who.c_str(), unusable);
+    std::printf("%s: %zu trials were left out because their forces were not rendered\n", subject.c_str(), unusable);
 }
 
 void print_analysis(const StudyAnalysis& analysis) {
   std::printf("%-13s %8s %12s\n", "reference [N]", "subjects", "mean JND [%]");
-  for (const ReferenceJnd& mean : analysis.means) {
+  for (const ReferenceJnd& mean : analysis.mean.references) {
+    if (mean.rendered_N == 0.0) continue;
     const double percent = 100.0 / mean.rendered_N;
     std::printf("%-13.4g %8zu %7.1f ±%4.1f\n", mean.reference_N, mean.count, percent * mean.jnd_N,
                 percent * mean.standard_error_N);
@@ -57,19 +62,14 @@ void print_analysis(const StudyAnalysis& analysis) {
   print_line("conservative", analysis.lines->conservative);
 }
 
-// Writes the table, the JND file and the figures.
+// Writes the table and the JND file.
 Status analyse_jnd(const std::vector<StudyData>& files, const StudyOptions& options) {
   const auto analysis = analyse_study(files, options.with_published);
   if (!analysis) return analysis.error();
   print_analysis(*analysis);
-  Status status = write_file_atomically(options.path_of("results.csv"), analysis_table(*analysis), options.force);
-  if (status && analysis->lines.ok())
-    status = write_file_atomically(options.path_of("jnd.json"), jnd_file_text(*analysis), options.force);
-  if (status)
-    status = draw_plot(study_plot(*analysis), {options.path_of("figure3.svg"), options.path_of("figure3.png")},
-                       options.force);
-  if (status && !analysis->lines.ok()) return Error{"no JND file: " + analysis->lines.error().message};
-  return status;
+  if (Status written = write_result("results.csv", analysis_table(*analysis), options); !written) return written;
+  if (!analysis->lines.ok()) return Error{"no JND file: " + analysis->lines.error().message};
+  return write_result("jnd.json", jnd_file_text(*analysis), options);
 }
 
 Status analyse_strokes(const std::vector<StudyData>& files, const StudyOptions& options) {
@@ -83,21 +83,13 @@ Status analyse_strokes(const std::vector<StudyData>& files, const StudyOptions& 
               strokes.max_over_jnd, strokes.jnd.offset_N, 100.0 * strokes.jnd.weber_fraction);
   print_left_out(all.subject, all.unusable);
   std::printf("%s\n", discrimination_verdict(all, strokes).c_str());
-  return write_file_atomically(options.path_of("results.csv"), discrimination_table(*results, strokes), options.force);
-}
-
-// Creates the folder for the results.
-Status make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  return error ? Status{Error{"cannot make the folder " + folder + ": " + error.message()}} : Status{};
+  return write_result("results.csv", discrimination_table(*results, strokes), options);
 }
 
 // Analyses all files by the procedure of the first one.
 Status analyse(const std::vector<StudyData>& files, const StudyOptions& options) {
-  if (const Status made = make_folder(options.out); !made) return made;
-  const bool strokes = !files.empty() && files.front().header.strokes != nullptr;
-  return strokes ? analyse_strokes(files, options) : analyse_jnd(files, options);
+  if (const Status checked = check_study_files(files); !checked) return checked;
+  return files.front().header.strokes != nullptr ? analyse_strokes(files, options) : analyse_jnd(files, options);
 }
 
 Status run_analyse(const StudyOptions& options) {
@@ -110,23 +102,7 @@ Status run_analyse(const StudyOptions& options) {
   return analyse(files, options);
 }
 
-// Writes the file of each subject.
-Result<std::vector<StudyData>> simulate(StudyHeader header, const StudyOptions& options) {
-  ProgressLine line("simulating");
-  std::vector<StudyData> files;
-  for (int i = 1; i <= options.subjects; ++i) {
-    if (!line.update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
-    RandomStream random(options.seed, kPopulationStream + static_cast<std::uint64_t>(i));
-    header.subject = (i < 10 ? "S0" : "S") + std::to_string(i);
-    files.push_back({header, simulated_answers(header, options.traits, random.next())});
-    std::string text = study_header_text(header, "simulated");
-    for (const StudyRecord& record : files.back().records) text += study_row(record, header);
-    const Status written = write_file_atomically(options.path_of(header.subject + ".csv"), text, options.force);
-    if (!written) return written.error();
-  }
-  return files;
-}
-
+// Writes and analyses the file of each subject.
 Status run_simulate(const StudyOptions& options) {
   StudyHeader header;
   if (options.discriminates) {
@@ -136,16 +112,24 @@ Status run_simulate(const StudyOptions& options) {
     if (!strokes) return strokes.error();
     header.strokes = std::move(*strokes);
   }
-  if (const Status made = make_folder(options.out); !made) return made;
-  const auto files = simulate(header, options);
-  return files ? analyse(*files, options) : Status{files.error()};
+  ProgressLine line("simulating");
+  std::vector<StudyData> files;
+  for (int i = 1; i <= options.subjects; ++i) {
+    if (!line.update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
+    RandomStream random(options.seed, kPopulationStream + static_cast<std::uint64_t>(i));
+    header.subject = (i < 10 ? "S0" : "S") + std::to_string(i);
+    files.push_back({header, simulated_answers(header, options.traits, random.next())});
+    std::string text = study_header_text(header, "simulated");
+    for (const StudyRecord& record : files.back().records) text += study_row(record, header.strokes != nullptr);
+    if (Status written = write_result(header.subject + ".csv", text, options); !written) return written;
+  }
+  return analyse(files, options);
 }
 
 void add_output_options(CLI::App* verb, StudyOptions& options) {
   verb->add_flag("--pang", options.with_published,
                  "Fit the line to the point of Pang, Tan & Durlach (1991) as well: 9 % at 2.5 N");
-  verb->add_option("--out", options.out, "Folder for results.csv and, for a JND, jnd.json and figure 3 (a) and (b)")
-      ->required();
+  verb->add_option("--out", options.out, "Folder for results.csv and, for a JND, jnd.json")->required();
   verb->add_flag("--force", options.force, "Replace files that exist");
 }
 
@@ -192,11 +176,11 @@ void add_study(CLI::App& app, Verbs& verbs) {
   study->require_subcommand(1);
   const auto options = std::make_shared<StudyOptions>();
   CLI::App* analyses = study->add_subcommand(
-      "analyse", "Files of subjects to the JND line, its file and figure, or to the share of correct discriminations");
+      "analyse", "Files of subjects to the JND line, its file, or to the share of correct discriminations");
   analyses->add_option("files", options->files, "Study files, one per subject (CSV)")->required();
   add_output_options(analyses, *options);
   CLI::App* simulates =
-      study->add_subcommand("simulate", "A whole study with simulated subjects, from the first trial to the figure");
+      study->add_subcommand("simulate", "A whole study with simulated subjects, from the first trial to the JND");
   add_simulate_options(simulates, *options);
   add_output_options(simulates, *options);
   verbs.emplace_back(study, [=] { return analyses->parsed() ? run_analyse(*options) : run_simulate(*options); });

@@ -1,10 +1,9 @@
 #include "scenes/study/prepare_strokes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <numeric>
 #include <utility>
 
 #include "engine/base/csv_scanner.h"
@@ -32,12 +31,13 @@ constexpr double kLongestRecording_s = 3600.0;  // bounds the memory: one value 
 using Model = std::shared_ptr<const ForceModel>;
 
 // Forces over time: after the tick of each row, or with one value per ms.
-struct Traces {
-  std::vector<double> time_s;
-  std::vector<double> reference_N;
-  std::vector<double> comparison_N;
-  std::vector<bool> contact;
+struct Trace {
+  double time_s = 0.0;
+  double reference_N = 0.0;
+  double comparison_N = 0.0;
+  bool contact = false;
 };
+using Traces = std::vector<Trace>;
 
 Result<Traces> forces_of(const Recording& recording, const Model& reference, const Model& comparison) {
   ForceModels models{comparison};
@@ -45,55 +45,50 @@ Result<Traces> forces_of(const Recording& recording, const Model& reference, con
   Traces rows;
   const auto summary =
       replay(recording, models, [&](const RecordingRow& row, const TickSnapshot& tick, const HapticsTick&) {
-        rows.time_s.push_back(row.time_s);
-        rows.reference_N.push_back(reference != nullptr ? tick.force_N[1] : row.force_N);
-        rows.comparison_N.push_back(tick.force_N[0]);
-        rows.contact.push_back(tick.in_contact);
+        rows.push_back(
+            {row.time_s, reference != nullptr ? tick.force_N[1] : row.force_N, tick.force_N[0], tick.in_contact});
       });
   if (!summary) return summary.error();
   return rows;
 }
 
-std::vector<double> smoothed(const std::vector<double>& values) {
-  constexpr std::size_t kWidth = 2 * kSmoothing_ticks + 1;
-  std::array<double, kWidth> window{};  // the weights of a Hann window sum to (kWidth + 1) / 2
-  for (std::size_t k = 0; k < kWidth; ++k)
-    window[k] = (1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(k + 1) / (kWidth + 1))) / (kWidth + 1);
-  std::vector<double> result(values.size(), 0.0);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    for (std::size_t k = 0; k < kWidth; ++k)
-      result[i] += window[k] *
-                   values[std::clamp(i + k, kSmoothing_ticks, values.size() - 1 + kSmoothing_ticks) - kSmoothing_ticks];
-  }
-  return result;
-}
-
-// One value per ms, interpolated linearly between the rows; smooths the forces.
+// One value per ms, interpolated linearly between the rows.
 Traces resampled(const Traces& rows) {
   Traces traces;
-  const double from_s = rows.time_s.front();
-  const double seconds = std::min(rows.time_s.back() - from_s, kLongestRecording_s);
-  const auto ticks = static_cast<std::size_t>(seconds / kStudyTick_s) + 1;
+  const double from_s = rows.front().time_s;
+  const double seconds = std::min(rows.back().time_s - from_s, kLongestRecording_s);
   std::size_t row = 0;
-  for (std::size_t i = 0; i < ticks; ++i) {
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(seconds / kStudyTick_s); ++i) {
     const double time_s = from_s + kStudyTick_s * static_cast<double>(i);
-    while (row + 2 < rows.time_s.size() && rows.time_s[row + 1] <= time_s) ++row;
-    const double share = std::clamp((time_s - rows.time_s[row]) / (rows.time_s[row + 1] - rows.time_s[row]), 0.0, 1.0);
-    traces.time_s.push_back(time_s);
-    traces.reference_N.push_back(std::lerp(rows.reference_N[row], rows.reference_N[row + 1], share));
-    traces.comparison_N.push_back(std::lerp(rows.comparison_N[row], rows.comparison_N[row + 1], share));
-    traces.contact.push_back(rows.contact[row]);
+    while (row + 2 < rows.size() && rows[row + 1].time_s <= time_s) ++row;
+    const Trace &a = rows[row], &b = rows[row + 1];
+    const double share = std::clamp((time_s - a.time_s) / (b.time_s - a.time_s), 0.0, 1.0);
+    traces.push_back({time_s, std::lerp(a.reference_N, b.reference_N, share),
+                      std::lerp(a.comparison_N, b.comparison_N, share), a.contact});
   }
-  traces.reference_N = smoothed(traces.reference_N);
-  traces.comparison_N = smoothed(traces.comparison_N);
   return traces;
 }
 
+// The force weighted by a Hann window; the first and the last value continue beyond the ends.
+void smooth(Traces& traces, double Trace::*force_N) {
+  constexpr std::size_t kWidth = 2 * kSmoothing_ticks + 1;
+  const Traces raw = traces;
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    double sum_N = 0.0;
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(k + 1) / (kWidth + 1);
+      const std::size_t at = std::clamp(i + k, kSmoothing_ticks, raw.size() - 1 + kSmoothing_ticks) - kSmoothing_ticks;
+      sum_N += (1.0 - std::cos(angle)) / (kWidth + 1) * raw[at].*force_N;
+    }
+    traces[i].*force_N = sum_N;
+  }
+}
+
 // Whether the limits allow the presentation of the interval that begins at tick `from`.
-bool can_be_presented(const std::vector<double>& force_N, std::size_t from) {
+bool can_be_presented(const Traces& traces, std::size_t from, double Trace::*force_N) {
   double before_N = 0.0, squares_N2 = 0.0;
   for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
-    const double now_N = force_N[from + i] * interval_share(i);
+    const double now_N = traces[from + i].*force_N * interval_share(i);
     if (std::abs(now_N) > kLargestStroke_N || std::abs(now_N - before_N) > kFastestStroke_N_per_s * kStudyTick_s)
       return false;
     before_N = now_N;
@@ -102,28 +97,28 @@ bool can_be_presented(const std::vector<double>& force_N, std::size_t from) {
   return squares_N2 <= kStrongestStroke_N * kStrongestStroke_N * kInterval_ticks;
 }
 
-// The errors as they are presented, with the ramps at both ends.
-ErrorFigures errors_from(const Traces& traces, std::size_t from, const JndLine& jnd) {
+// A piece of the length of an interval, and its errors as they are presented, with the ramps at both ends.
+struct Piece {
+  std::size_t from = 0;
   ErrorFigures errors;
-  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
-    if (!traces.contact[from + i]) continue;
-    const double share = interval_share(i);
-    errors.add(share * traces.comparison_N[from + i], share * traces.reference_N[from + i], false, jnd);
-  }
-  return errors;
-}
 
-// First tick of the piece with the largest difference; empty if no piece can be presented.
-std::optional<std::size_t> hardest_piece(const Traces& traces, const JndLine& jnd) {
-  std::optional<std::size_t> hardest;
-  double most = -1.0;
-  for (std::size_t from = 0; from + kInterval_ticks <= traces.contact.size(); from += kBetweenPieces_ticks) {
-    const ErrorFigures errors = errors_from(traces, from, jnd);
-    const double all_over_jnd = static_cast<double>(errors.samples()) * errors.mean_error_over_jnd();
-    if (errors.samples() == 0 || all_over_jnd <= most) continue;
-    if (!can_be_presented(traces.reference_N, from) || !can_be_presented(traces.comparison_N, from)) continue;
-    hardest = from;
-    most = all_over_jnd;
+  double sum_over_jnd() const { return static_cast<double>(errors.samples()) * errors.mean_error_over_jnd(); }
+};
+
+// The piece with the largest difference; without samples if no piece in contact can be presented.
+Piece hardest_piece(const Traces& traces, const JndLine& jnd) {
+  Piece hardest;
+  for (std::size_t from = 0; from + kInterval_ticks <= traces.size(); from += kBetweenPieces_ticks) {
+    Piece piece{from, {}};
+    for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
+      const Trace& at = traces[from + i];
+      const double share = interval_share(i);
+      if (at.contact) piece.errors.add(share * at.comparison_N, share * at.reference_N, false, jnd);
+    }
+    const bool harder = hardest.errors.samples() == 0 || piece.sum_over_jnd() > hardest.sum_over_jnd();
+    if (piece.errors.samples() > 0 && harder && can_be_presented(traces, from, &Trace::reference_N) &&
+        can_be_presented(traces, from, &Trace::comparison_N))
+      hardest = piece;
   }
   return hardest;
 }
@@ -131,14 +126,10 @@ std::optional<std::size_t> hardest_piece(const Traces& traces, const JndLine& jn
 // Rounds to the resolution of the file, so that the file has what was presented: 0.1 mN, 1 ms, ratios to 1e-4.
 double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
-// Cuts out an interval and returns its mean between the ramps.
-double cut(const std::vector<double>& force_N, std::size_t from, std::vector<double>& stroke_N) {
-  double mean_N = 0.0;
-  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
-    stroke_N.push_back(rounded(force_N[from + i], 1e4));
-    if (is_held(i)) mean_N += stroke_N.back() / kHold_ticks;
-  }
-  return rounded(mean_N, 1e4);
+// Mean between the ramps.
+double mean_of(const std::vector<double>& stroke_N) {
+  const auto begin = stroke_N.begin() + kRamp_ticks;
+  return rounded(std::accumulate(begin, begin + kHold_ticks, 0.0) / kHold_ticks, 1e4);
 }
 
 Result<Recording> test_recording(const StrokeRequest& request) {
@@ -179,9 +170,11 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
                                                      const Model& comparison, const JndLine& jnd) {
   const Result<Traces> rows = forces_of(recording, reference, comparison);
   if (!rows) return rows.error();
-  const Traces traces = resampled(*rows);
-  const std::optional<std::size_t> from = hardest_piece(traces, jnd);
-  if (!from) {
+  Traces traces = resampled(*rows);
+  smooth(traces, &Trace::reference_N);
+  smooth(traces, &Trace::comparison_N);
+  const auto [from, errors] = hardest_piece(traces, jnd);
+  if (errors.samples() == 0) {
     return Error{"found no piece of a stroke of 1.1 s, up to 3.8 N (2.5 N root mean square) and 90 N/s, in " +
                  recording.name + ", expected one that can be rendered to a still hand; name another recording"};
   }
@@ -189,20 +182,22 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
   strokes->reference = printable(reference != nullptr ? reference->name() : kRecordedForce, kLongestName);
   strokes->comparison = printable(comparison->name(), kLongestName);
   strokes->recording = printable(recording.name, kLongestName);
-  strokes->from_s = rounded(traces.time_s[*from], 1e3);
+  strokes->from_s = rounded(traces[from].time_s, 1e3);
   strokes->jnd = jnd;
-  const ErrorFigures errors = errors_from(traces, *from, jnd);
   strokes->mean_over_jnd = rounded(errors.mean_error_over_jnd(), 1e4);
   strokes->max_over_jnd = rounded(errors.max_error_over_jnd(), 1e4);
-  strokes->reference_mean_N = cut(traces.reference_N, *from, strokes->reference_N);
-  strokes->comparison_mean_N = cut(traces.comparison_N, *from, strokes->comparison_N);
   ContentHash hash;
   for (std::size_t i = 0; i < kInterval_ticks; ++i) {
+    const Trace& at = traces[from + i];
+    strokes->reference_N.push_back(rounded(at.reference_N, 1e4));
+    strokes->comparison_N.push_back(rounded(at.comparison_N, 1e4));
     RecordingRow row;
-    row.position_m = strokes->comparison_N[i];  // the hash is of numbers, whatever their meaning
-    row.force_N = strokes->reference_N[i];
+    row.position_m = strokes->comparison_N.back();  // the hash is of numbers, whatever their meaning
+    row.force_N = strokes->reference_N.back();
     hash.add(row);
   }
+  strokes->reference_mean_N = mean_of(strokes->reference_N);
+  strokes->comparison_mean_N = mean_of(strokes->comparison_N);
   strokes->checksum = hash.value();
   return std::shared_ptr<const StrokePair>(std::move(strokes));
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace palpate {
 namespace {
@@ -25,20 +24,13 @@ using Cells = std::vector<AnswerCell>;
 // 1e-7.
 template <typename Function>
 double maximum_between(double low, double high, const Function& function) {
-  const double inner = 1.0 / std::numbers::phi;
-  double left = high - inner * (high - low), right = low + inner * (high - low);
-  double at_left = function(left), at_right = function(right);
+  double best = high - (high - low) / std::numbers::phi, at_best = function(best);
   while (high - low > 1e-7) {
-    if (at_left < at_right) {
-      low = std::exchange(left, right);
-      at_left = at_right;
-      right = low + inner * (high - low);
-      at_right = function(right);
-    } else {
-      high = std::exchange(right, left);
-      at_right = at_left;
-      left = high - inner * (high - low);
-      at_left = function(left);
+    const double other = low + high - best, at_other = function(other);
+    ((other < best) == (at_other > at_best) ? high : low) = at_other > at_best ? best : other;
+    if (at_other > at_best) {
+      best = other;
+      at_best = at_other;
     }
   }
   return 0.5 * (low + high);
@@ -63,13 +55,12 @@ PsychometricFunction with_best_slope(const Cells& cells, PsychometricFunction fu
   return function;
 }
 
-bool bounds_slope(const Cells& cells, PsychometricFunction function) {
-  const double at_fit = log_likelihood(cells, function);
-  const auto is_worse_at = [&](double slope) {
-    function.slope = slope;
-    return log_likelihood(cells, function) + kNoticeablyWorse < at_fit;
-  };
-  return is_worse_at(kFlattestSlope) && is_worse_at(kSteepestSlope);
+bool bounds_slope(const Cells& cells, const PsychometricFunction& fitted) {
+  const double limit = log_likelihood(cells, fitted) - kNoticeablyWorse;
+  PsychometricFunction flattest = fitted, steepest = fitted;
+  flattest.slope = kFlattestSlope;
+  steepest.slope = kSteepestSlope;
+  return log_likelihood(cells, flattest) < limit && log_likelihood(cells, steepest) < limit;
 }
 
 }  // namespace

@@ -12,19 +12,17 @@ constexpr std::uint64_t kStream = 31;
 
 // Whether the answer is "second": the larger of two forces, or the stroke that equals the reminder.
 bool answers_second(const SubjectTraits& traits, const Stimuli& stimuli, RandomStream& random) {
-  if (!stimuli.has_reminder()) return second_feels_larger(traits, stimuli.first.size, stimuli.second.size, random);
-  double most = -1.0, reminder_N = 0.0, first_N = 0.0, second_N = 0.0;
-  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
-    const double reminded_N = stimuli.reminder.force_N(i);
-    const double one_N = stimuli.first.force_N(i), other_N = stimuli.second.force_N(i);
-    const double difference = std::abs(one_N - other_N) / traits.jnd.at(reminded_N);
-    if (difference <= most) continue;
-    most = difference;
-    reminder_N = reminded_N;
-    first_N = one_N;
-    second_N = other_N;
+  const auto& [reminder, first, second] = stimuli;
+  if (!has_reminder(stimuli)) return second_feels_larger(traits, first.size, second.size, random);
+  const auto difference = [&](std::uint32_t tick) {
+    return std::abs(first.force_N(tick) - second.force_N(tick)) / traits.jnd.at(reminder.force_N(tick));
+  };
+  std::uint32_t most = 0;
+  for (std::uint32_t tick = 1; tick < kInterval_ticks; ++tick) {
+    if (difference(tick) > difference(most)) most = tick;
   }
-  return second_feels_larger(traits, first_N, second_N, random) == (2.0 * reminder_N > first_N + second_N);
+  const double first_N = first.force_N(most), second_N = second.force_N(most);
+  return second_feels_larger(traits, first_N, second_N, random) == (2.0 * reminder.force_N(most) > first_N + second_N);
 }
 
 }  // namespace
@@ -46,7 +44,7 @@ std::vector<StudyRecord> simulated_answers(const StudyHeader& header, const Subj
   RandomStream random(seed, kStream);
   std::vector<StudyRecord> records;
   for (const StudyTrial& trial : plan.trials) {
-    StudyRecord record{trial, plan.number(records.size()), trial.first_N(), trial.second_N()};
+    StudyRecord record{trial, trial.first_N(), trial.second_N()};
     if (header.strokes != nullptr) record.reminder_rendered_N = trial.reference_N;
     record.answered_second = answers_second(traits, plan.stimuli(trial), random);
     record.device = "simulated";

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "scenes/study/psychometrics.h"
 
@@ -24,80 +21,57 @@ bool is_usable(const StudyRecord& record) {
          !deviates(record.trial.second_N(), record.second_rendered_N);
 }
 
-// An index of kReferenceForces_N; kReferences for another force.
-std::size_t index_of(double reference_N) {
-  return static_cast<std::size_t>(std::find(kReferenceForces_N.begin(), kReferenceForces_N.end(), reference_N) -
-                                  kReferenceForces_N.begin());
-}
-
 Result<SubjectJnd> jnds_of(const StudyData& data) {
   SubjectJnd result{data.header.subject, 0, {}};
-  // Trials with equal stimuli, by reference force, order and difference, form one cell. 1e-4 is the resolution of a
-  // recorded force, 0.1 mN, over the smallest reference.
-  std::map<std::tuple<std::size_t, bool, long>, AnswerCell> cells;
-  std::array<ReferenceJnd, kReferences> references;
+  std::vector<AnswerCell> answers;
   for (const StudyRecord& record : data.records) {
     const StudyTrial& trial = record.trial;
-    const std::size_t r = index_of(trial.reference_N);
-    if (r == kReferences) {
-      return Error{"found a reference force of " + shortest(trial.reference_N) + " N in the file of subject " +
-                   result.subject + ", expected 0.3, 0.5, 1 or 2.5 N"};
-    }
     if (trial.training) continue;
     if (!is_usable(record)) {
       ++result.unusable;
       continue;
     }
-    ++references[r].count;
-    references[r].rendered_N += record.reference_rendered_N();
-    const double difference = record.rendered_difference();
-    AnswerCell& cell = cells[{r, trial.comparison_first, std::lround(1e4 * difference)}];
-    cell = {r, difference, trial.comparison_first, cell.judged_larger + (record.comparison_judged_larger() ? 1.0 : 0.0),
-            cell.trials + 1.0};
+    const auto r =
+        static_cast<std::size_t>(std::find(kReferenceForces_N.begin(), kReferenceForces_N.end(), trial.reference_N) -
+                                 kReferenceForces_N.begin());
+    ReferenceJnd& one = result.references.at(r);
+    ++one.count;
+    one.rendered_N += (record.reference_rendered_N() - one.rendered_N) / static_cast<double>(one.count);
+    answers.push_back(
+        {r, record.rendered_difference(), trial.comparison_first, record.comparison_judged_larger() ? 1.0 : 0.0, 1.0});
   }
-  if (cells.empty()) return Error{"found no usable answer of subject " + result.subject + "; leave the file out"};
-  std::vector<AnswerCell> answers;
-  for (const auto& [stimuli, cell] : cells) answers.push_back(cell);
+  if (answers.empty()) return Error{"found no usable answer of subject " + result.subject + "; leave the file out"};
   const PsychometricFit fit = fit_psychometric(answers, kReferences);
   for (std::size_t r = 0; r < kReferences; ++r) {
-    ReferenceJnd& one = references[r];
-    if (one.count == 0) continue;
+    ReferenceJnd& one = result.references[r];
     one.reference_N = kReferenceForces_N[r];
-    one.rendered_N /= static_cast<double>(one.count);
     one.jnd_N = one.rendered_N * fit.functions[r].jnd();
     one.determined = fit.determined[r];
-    result.references.push_back(one);
   }
   return result;
 }
 
-// Mean and standard error of the subjects' JNDs at one reference force. Its rendered force is 0 if no subject has
-// answers there.
-ReferenceJnd mean_of(const std::vector<SubjectJnd>& subjects, double reference_N) {
-  ReferenceJnd mean{reference_N};
-  double sum_N = 0.0, sum_N2 = 0.0, rendered_N = 0.0, all = 0.0;
+// Mean and standard error of the subjects' JNDs at reference force `r`.
+ReferenceJnd mean_of(const std::vector<SubjectJnd>& subjects, std::size_t r) {
+  ReferenceJnd mean{kReferenceForces_N[r]};
+  double answered = 0.0, count = 0.0, squares_N2 = 0.0;
   for (const SubjectJnd& subject : subjects) {
-    for (const ReferenceJnd& one : subject.references) {
-      if (one.reference_N != reference_N) continue;
-      rendered_N += one.rendered_N;
-      all += 1.0;
-      if (!one.determined) continue;
-      ++mean.count;
-      sum_N += one.jnd_N;
-      sum_N2 += one.jnd_N * one.jnd_N;
-    }
+    const ReferenceJnd& one = subject.references[r];
+    if (one.count == 0) continue;
+    mean.rendered_N += (one.rendered_N - mean.rendered_N) / ++answered;
+    if (!one.determined) continue;
+    const double before_N = mean.jnd_N;
+    mean.jnd_N += (one.jnd_N - before_N) / ++count;
+    squares_N2 += (one.jnd_N - before_N) * (one.jnd_N - mean.jnd_N);  // Welford (1962)
+    ++mean.count;
   }
-  if (all == 0.0) return mean;
-  mean.rendered_N = rendered_N / all;
   mean.determined = mean.count > 0;
-  const double count = static_cast<double>(mean.count);
-  if (mean.determined) mean.jnd_N = sum_N / count;
-  if (mean.count > 1)
-    mean.standard_error_N = std::sqrt(std::max(0.0, sum_N2 / count - mean.jnd_N * mean.jnd_N) / (count - 1.0));
+  if (mean.count > 1) mean.standard_error_N = std::sqrt(squares_N2 / (count * (count - 1.0)));
   return mean;
 }
 
 std::string row(const std::string& subject, const ReferenceJnd& one) {
+  if (one.rendered_N == 0.0) return "";
   char text[256];
   std::snprintf(text, sizeof text, "%s,%.4g,%.5g,%zu,%.5f,%.5f,%.2f,%s\n", subject.c_str(), one.reference_N,
                 one.rendered_N, one.count, one.jnd_N, one.standard_error_N, 100.0 * one.jnd_N / one.rendered_N,
@@ -108,15 +82,13 @@ std::string row(const std::string& subject, const ReferenceJnd& one) {
 }  // namespace
 
 Result<JndLines> fit_jnd_lines(const std::vector<JndPoint>& points) {
-  const double count = static_cast<double>(points.size());
-  double mean_force = 0.0, mean_jnd = 0.0, squares = 0.0, products = 0.0;
-  for (const JndPoint& point : points) {
-    mean_force += point.reference_N / count;
-    mean_jnd += point.jnd_N / count;
-  }
-  for (const JndPoint& point : points) {
-    squares += (point.reference_N - mean_force) * (point.reference_N - mean_force);
-    products += (point.reference_N - mean_force) * (point.jnd_N - mean_jnd);
+  double count = 0.0, mean_force = 0.0, mean_jnd = 0.0, squares = 0.0, products = 0.0;
+  for (const JndPoint& point : points) {  // Welford (1962)
+    const double force = point.reference_N - mean_force;
+    mean_force += force / ++count;
+    mean_jnd += (point.jnd_N - mean_jnd) / count;
+    squares += force * (point.reference_N - mean_force);
+    products += force * (point.jnd_N - mean_jnd);
   }
   if (!(squares > 1e-6)) return Error{"found JNDs at fewer than two reference forces, expected two or more for a line"};
   JndLines lines;
@@ -132,18 +104,15 @@ Result<JndLines> fit_jnd_lines(const std::vector<JndPoint>& points) {
 }
 
 Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, bool with_published) {
-  if (const Status checked = check_study_files(files); !checked) return checked.error();
-  if (files.front().header.strokes != nullptr)
-    return Error{"found the procedure discriminate, expected constant stimuli for a JND"};
   StudyAnalysis analysis;
   for (const StudyData& file : files) {
     auto subject = jnds_of(file);
     if (!subject) return subject.error();
     analysis.subjects.push_back(std::move(*subject));
   }
-  for (const double reference_N : kReferenceForces_N) {
-    const ReferenceJnd mean = mean_of(analysis.subjects, reference_N);
-    if (mean.rendered_N > 0.0) analysis.means.push_back(mean);
+  analysis.mean.subject = "mean";
+  for (std::size_t r = 0; r < kReferences; ++r) {
+    const ReferenceJnd& mean = analysis.mean.references[r] = mean_of(analysis.subjects, r);
     if (mean.determined) analysis.points.push_back({mean.rendered_N, mean.jnd_N, mean.standard_error_N, "study"});
   }
   if (with_published) analysis.points.push_back(kPangTanDurlach);
@@ -156,7 +125,7 @@ std::string analysis_table(const StudyAnalysis& analysis) {
   for (const SubjectJnd& subject : analysis.subjects) {
     for (const ReferenceJnd& one : subject.references) text += row(subject.subject, one);
   }
-  for (const ReferenceJnd& mean : analysis.means) text += row("mean", mean);
+  for (const ReferenceJnd& mean : analysis.mean.references) text += row(analysis.mean.subject, mean);
   return text;
 }
 
@@ -181,6 +150,75 @@ std::string jnd_file_text(const StudyAnalysis& analysis) {
       {"fitted", {{"offset_N", lines.fitted.offset_N}, {"weber_fraction", lines.fitted.weber_fraction}}},
       {"points", points}};
   return document.dump(2) + "\n";
+}
+
+CorrectShare correct_share(const Discrimination& result) noexcept {
+  if (result.trials == 0) return {};
+  const double n = static_cast<double>(result.trials), share = static_cast<double>(result.correct) / n;
+  const double z = normal_quantile(0.975), z2 = z * z / n;
+  const double middle = (share + 0.5 * z2) / (1.0 + z2);
+  const double half = std::sqrt(share * (1.0 - share) * z2 + 0.25 * z2 * z2) / (1.0 + z2);
+  return {share, std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+Discrimination discrimination_of(const std::string& subject, const std::vector<StudyRecord>& records,
+                                 const StrokePair& strokes) {
+  Discrimination result{subject};
+  for (const StudyRecord& record : records) {
+    if (record.trial.training) continue;
+    const bool usable = record.rendered && record.worst_N <= 0.5 * strokes.jnd.at(0.0);
+    ++(usable ? result.trials : result.unusable);
+    if (usable && record.found_reference()) ++result.correct;
+  }
+  return result;
+}
+
+std::string discrimination_verdict(const Discrimination& result, const StrokePair& strokes) {
+  const std::string most = fixed(strokes.max_over_jnd, 2), mean = fixed(strokes.mean_over_jnd, 2);
+  const bool below = strokes.max_over_jnd <= 1.0, above = strokes.mean_over_jnd > 1.0;
+  const std::string prediction =
+      below   ? "Predicted below the JND (at most " + most + " of it). "
+      : above ? "Predicted above the JND (" + mean + " of it on average). "
+              : "Above the JND for a moment only (at most " + most + " of it, on average " + mean + "). ";
+  if (result.trials == 0) return prediction + "No usable answers yet.";
+  const auto [share, low, high] = correct_share(result);
+  const bool found_below = high < kJndCriterion;
+  const std::string agreement = !found_below && low <= kJndCriterion
+                                    ? "too few answers to decide, the interval contains 75 %."
+                                : below || above ? (found_below == below ? "consistent." : "not consistent.")
+                                : found_below    ? "less noticeable than one JND."
+                                                 : "more noticeable than one JND.";
+  return prediction + fixed(100.0 * share, 0) + " % right [" + fixed(100.0 * low, 0) + " to " + fixed(100.0 * high, 0) +
+         "], " + (low > 0.5 ? "more than by guessing" : "as by guessing") + "; 75 % would be one JND: " + agreement;
+}
+
+Result<std::vector<Discrimination>> analyse_discrimination(const std::vector<StudyData>& files) {
+  std::vector<Discrimination> results;
+  Discrimination all{"all"};
+  for (const StudyData& file : files) {
+    const Discrimination one = discrimination_of(file.header.subject, file.records, *file.header.strokes);
+    if (one.trials == 0) return Error{"found no usable answer of subject " + one.subject + "; leave the file out"};
+    all.trials += one.trials;
+    all.correct += one.correct;
+    all.unusable += one.unusable;
+    results.push_back(one);
+  }
+  results.push_back(all);
+  return results;
+}
+
+std::string discrimination_table(const std::vector<Discrimination>& results, const StrokePair& strokes) {
+  std::string table =
+      "subject,trials,correct,unusable,share_correct,share_low,share_high,predicted_mean_over_jnd,"
+      "predicted_max_over_jnd\n";
+  for (const Discrimination& one : results) {
+    const auto [share, low, high] = correct_share(one);
+    char text[320];
+    std::snprintf(text, sizeof text, "%s,%zu,%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f\n", one.subject.c_str(), one.trials,
+                  one.correct, one.unusable, share, low, high, strokes.mean_over_jnd, strokes.max_over_jnd);
+    table += text;
+  }
+  return table;
 }
 
 }  // namespace palpate

@@ -1,13 +1,20 @@
-// Computes the JND line from the answers of all subjects.
+// Computes results from the answers of all subjects: the JND line, or the discrimination of two strokes.
+//
 // JNDs are estimated per subject and reference force by maximum likelihood (psychometrics.h), then averaged over the
-// subjects. As in Hoever & Harders (2009), section 4.1 and figure 3, a line is fitted to the means over the reference
-// force by least squares with equal weights, and then shifted down until no point is below it. A model error below that
-// conservative line is below every measured threshold.
-// Differences and references are the rendered ones, not the planned ones. Excluded are training, rehearsals, and trials
-// in which the mean of a force deviated from the plan by more than half its JND.
-// Deterministic. Thread guarantee: pure functions; slow side.
+// subjects. As in Hoever & Harders (2009), section 4.1 and figure 3, a line is fitted to the means by least squares
+// with equal weights, and then shifted down until no point is below it: the conservative line. Differences and
+// references are the rendered ones, not the planned ones. Excluded are training, rehearsals, and trials in which the
+// mean of a force deviated from the plan by more than half its JND.
+//
+// Discrimination of strokes: chance is 50 %, one JND is kJndCriterion, 75 % correct. The strokes differ by less than
+// the JND when the 95 % interval of the share correct (E. B. Wilson 1927, Journal of the American Statistical
+// Association 22, 209-212) is below 75 %, by more when it is above. The prediction is "below" when the error nowhere
+// exceeds one JND, "above" when its mean does, else none. Excluded are training, rehearsals, and trials in which the
+// rendered force deviated at any tick from the stroke by more than half the JND at 0 N. Thread guarantee: pure
+// functions; slow side.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -38,10 +45,10 @@ Result<JndLines> fit_jnd_lines(const std::vector<JndPoint>& points);
 // Hoever & Harders. (The abstract of Pang et al. summarises 2.5 to 10 N as "roughly 7 %".)
 inline const JndPoint kPangTanDurlach{2.5, 0.09 * 2.5, 0.0, "Pang, Tan & Durlach (1991)"};
 
-// The JND of a subject, or the mean over the subjects, at one reference force.
+// The JND at one reference force.
 struct ReferenceJnd {
   double reference_N = 0.0;  // as planned
-  double rendered_N = 0.0;   // mean over the trials
+  double rendered_N = 0.0;   // mean over the trials; 0 without usable answers
   std::size_t count = 0;     // trials; of a mean, subjects whose JND is determined
   double jnd_N = 0.0;
   double standard_error_N = 0.0;  // of a mean
@@ -49,21 +56,21 @@ struct ReferenceJnd {
 };
 
 struct SubjectJnd {
-  std::string subject;
+  std::string subject;       // "mean": over the subjects
   std::size_t unusable = 0;  // excluded trials
-  std::vector<ReferenceJnd> references;
+  std::array<ReferenceJnd, kReferenceForces_N.size()> references;
 };
 
 struct StudyAnalysis {
   std::vector<SubjectJnd> subjects;
-  std::vector<ReferenceJnd> means;
+  SubjectJnd mean;
   std::vector<JndPoint> points;
   // The lines, or the reason why there are none.
   Result<JndLines> lines = Error{"not analysed"};
 };
 
-// `with_published`: adds kPangTanDurlach. Errors: those of check_study_files; a subject without usable answers; a file
-// of the discrimination study; an unknown reference force.
+// `files`: of constant stimuli, see check_study_files. `with_published`: adds kPangTanDurlach. Errors: a subject
+// without usable answers.
 Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, bool with_published);
 
 // One row per subject and reference force, then the means: CSV with a header row.
@@ -72,5 +79,35 @@ std::string analysis_table(const StudyAnalysis& analysis);
 // The text of the file that scenes/scene/jnd_file.h reads: the conservative line of `analysis`, which has one, and, for
 // information, criterion, subjects, the fitted line, and the points with their sources. Numbers are in full precision.
 std::string jnd_file_text(const StudyAnalysis& analysis);
+
+struct Discrimination {
+  std::string subject;  // "all": all subjects together
+  std::size_t trials = 0;
+  std::size_t correct = 0;
+  std::size_t unusable = 0;  // excluded trials
+};
+
+// The share of correct answers with its 95 % interval; without trials 0 in 0 to 1.
+struct CorrectShare {
+  double share = 0.0;
+  double low = 0.0;
+  double high = 1.0;
+};
+CorrectShare correct_share(const Discrimination& result) noexcept;
+
+Discrimination discrimination_of(const std::string& subject, const std::vector<StudyRecord>& records,
+                                 const StrokePair& strokes);
+
+// Prediction, result and their agreement in words, e.g.
+// "Predicted below the JND (at most 0.71 of it). 52 % right [42 to 62], as by guessing;
+// 75 % would be one JND: consistent."
+std::string discrimination_verdict(const Discrimination& result, const StrokePair& strokes);
+
+// The result of each subject, then of all answers together. `files`: of the same strokes, see check_study_files.
+// Errors: a subject without usable answers.
+Result<std::vector<Discrimination>> analyse_discrimination(const std::vector<StudyData>& files);
+
+// One row per result: CSV with a header row.
+std::string discrimination_table(const std::vector<Discrimination>& results, const StrokePair& strokes);
 
 }  // namespace palpate

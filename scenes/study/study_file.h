@@ -10,18 +10,16 @@
 //
 // The procedure discriminate has a line `# strokes {...}` after the timing, a StrokePair without its forces as JSON.
 // Its rows have two more columns before the device, reminder_rendered_N and worst_N; their forces are the means of the
-// strokes.
+// strokes. The first five columns are those of the subject's plan.
 //
-// No file exists before the consent. A row is appended and synced to the disk before its answer counts; a row that
-// fails is removed. A last row without its line end, left by a power failure, was never confirmed: it is ignored and
-// removed. While a StudyFile has a file open, a second StudyFile is refused (flock).
+// No file exists before the consent. Each answer replaces the file atomically, and counts when the file is on the disk.
+// A last row without its line end is ignored.
 // Thread guarantee: one thread; slow side (does I/O).
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -41,7 +39,6 @@ struct StudyHeader {
 
 struct StudyRecord {
   StudyTrial trial;
-  std::size_t number = 1;         // StudyPlan::number
   double first_rendered_N = 0.0;  // mean between the ramps; forces are rounded to 0.1 mN
   double second_rendered_N = 0.0;
   bool limited = false;
@@ -64,50 +61,46 @@ struct StudyRecord {
 struct StudyData {
   StudyHeader header;
   std::vector<StudyRecord> records;
-  std::size_t whole_bytes = 0;  // up to the end of the last complete row
 };
 
-// Errors: the first deviation from this format, as "path:line:column: found ..., expected ...".
+// Errors: the first place where the text is not in this format, or not of the subject's plan, as "path:line:column:
+// found ..., expected ...".
 Result<StudyData> parse_study(const std::string& text, const std::string& path);
 // Errors: the file is not readable; those of parse_study.
 Result<StudyData> read_study(const std::string& path);
 // The lines above the rows; one row with its line end.
 std::string study_header_text(const StudyHeader& header, const std::string& consent);
-std::string study_row(const StudyRecord& record, const StudyHeader& header);
+std::string study_row(const StudyRecord& record, bool strokes);
 
-// Errors: no file; two files of one subject; files of different procedures or strokes.
+// Whether the files can be analysed together. Errors: two files of one subject; files of different procedures or
+// strokes.
 Status check_study_files(const std::vector<StudyData>& files);
 
 class StudyFile {
  public:
-  // Resumes `path` if it exists; else `consent` creates it. Errors: another session has it open; it is not a study
+  // Resumes `path` if it exists; else `consent` creates it. Errors: an invalid subject code; the file is not a study
   // file, or of another subject, procedure or strokes; it is not readable.
-  static Result<std::unique_ptr<StudyFile>> open(const std::string& path, const StudyHeader& header);
-  StudyFile(const StudyFile&) = delete;
-  StudyFile& operator=(const StudyFile&) = delete;
-  ~StudyFile();
+  static Result<StudyFile> open(const std::string& path, const StudyHeader& header);
 
   const StudyHeader& header() const noexcept { return header_; }
   // Whether the subject has consented, now or in an earlier session.
-  bool consented() const noexcept { return consented_; }
+  bool consented() const noexcept { return !text_.empty(); }
   // Answers of earlier sessions and of this one, in order.
   const std::vector<StudyRecord>& records() const noexcept { return records_; }
 
-  // Creates the file. `when`: any text without a line break. Errors: it could not be written.
+  // Creates the file. `when`: any text without a line break. Errors: it could not be written; another session has
+  // changed it.
   Status consent(const std::string& when);
-  // Stores an answer durably, with the device of the header. Errors: it could not be written; the call may be repeated.
+  // Stores an answer durably, with the device of the header. Errors: as above; the call may be repeated.
   Status append(StudyRecord record);
 
  private:
   StudyFile(const std::string& path, const StudyHeader& header) : path_(path), header_(header) {}
-  Status take_up();
-  Error failure(int error_number) const;
+  Status replace(const std::string& text);
 
   std::string path_;
   StudyHeader header_;
-  int descriptor_ = -1;
-  std::size_t size_ = 0;  // bytes of confirmed rows
-  bool consented_ = false;
+  std::string text_;  // of the file; empty: there is none
   std::vector<StudyRecord> records_;
 };
 

@@ -9,8 +9,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint64_t kStudySeed = 0x70a1fa7e5eed0001u;  // fixed, so that the plan depends on the subject code only
-constexpr std::size_t kDiscriminationTraining = 4;
+constexpr std::uint64_t kStudySeed = 0x70a1fa7e5eed0001u;  // fixed, so that the plan depends on the subject code
+                                                           // only
 constexpr double kEasyShare = 0.5;
 
 // Random numbers of this subject; each use has its own `stream`.
@@ -26,47 +26,51 @@ void shuffle(std::vector<T>& values, RandomStream& random) {
   for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.index(i)]);
 }
 
-// `count` flags (even), half of them set, shuffled.
-std::vector<bool> balanced_flags(std::size_t count, RandomStream& random) {
-  std::vector<std::uint8_t> flags(count, 0);
-  for (std::size_t i = 0; i < count / 2; ++i) flags[i] = 1;
-  shuffle(flags, random);
-  return {flags.begin(), flags.end()};
-}
-
-// Each reference against 60 % and 140 %.
-std::vector<StudyTrial> constant_training(RandomStream random) {
-  const std::vector<bool> first = balanced_flags(2 * kReferenceForces_N.size(), random);
-  std::vector<StudyTrial> trials;
-  for (const double reference_N : kReferenceForces_N) {
-    for (const int percent : {kComparisonPercent.front(), kComparisonPercent.back()})
-      trials.push_back({reference_N, percent_of(reference_N, percent), first[trials.size()], true});
-  }
+// The trial `count` times (even), the comparison first in half of them,
+// shuffled.
+std::vector<StudyTrial> balanced(StudyTrial trial, std::size_t count, RandomStream& random) {
+  std::vector<StudyTrial> trials(count, trial);
+  for (std::size_t i = 0; i < count / 2; ++i) trials[i].comparison_first = true;
   shuffle(trials, random);
   return trials;
 }
 
-// Appends the 320 trials.
-void add_constant_trials(std::vector<StudyTrial>& trials, RandomStream random) {
+void append(std::vector<StudyTrial>& trials, const std::vector<StudyTrial>& more) {
+  trials.insert(trials.end(), more.begin(), more.end());
+}
+
+// Each reference against 60 % and 140 %, then the study.
+void add_constant_trials(StudyPlan& plan, const std::string& code) {
+  RandomStream random = subject_random(code, 2);
+  plan.trials = balanced({0.0, 0.0, false, true}, 2 * kReferenceForces_N.size(), random);
+  for (std::size_t i = 0; i < plan.trials.size(); ++i) {
+    const int percent = i % 2 == 0 ? kComparisonPercent.front() : kComparisonPercent.back();
+    plan.trials[i].reference_N = kReferenceForces_N[i / 2];
+    plan.trials[i].comparison_N = percent_of(kReferenceForces_N[i / 2], percent);
+  }
+  shuffle(plan.trials, random);
+  random = subject_random(code, 1);
   std::vector<std::vector<StudyTrial>> rounds(kRepetitions);
   for (const double reference_N : kReferenceForces_N) {
     for (const int percent : kComparisonPercent) {
-      const std::vector<bool> first = balanced_flags(kRepetitions, random);
-      for (std::size_t i = 0; i < rounds.size(); ++i)
-        rounds[i].push_back({reference_N, percent_of(reference_N, percent), first[i]});
+      const auto trials = balanced({reference_N, percent_of(reference_N, percent)}, kRepetitions, random);
+      for (std::size_t i = 0; i < rounds.size(); ++i) rounds[i].push_back(trials[i]);
     }
   }
   for (std::vector<StudyTrial>& round : rounds) {
     shuffle(round, random);
-    trials.insert(trials.end(), round.begin(), round.end());
+    append(plan.trials, round);
   }
 }
 
-// Appends a block of trials of these two; the comparison comes first in half of them.
-void add_stroke_block(std::vector<StudyTrial>& trials, RandomStream& random, const StudyTrial& trial,
-                      std::size_t count) {
-  for (const bool first : balanced_flags(count, random))
-    trials.push_back({trial.reference_N, trial.comparison_N, first, trial.training});
+void add_stroke_trials(StudyPlan& plan, const std::string& code) {
+  const double reference_N = plan.strokes->reference_mean_N;
+  RandomStream random = subject_random(code, 5);
+  plan.trials = balanced({reference_N, percent_of(reference_N, 100.0 * kEasyShare), false, true}, 4, random);
+  plan.block = kDiscriminationBlock;
+  random = subject_random(code, 4);
+  for (std::size_t i = 0; i < kDiscriminationTrials; i += plan.block)
+    append(plan.trials, balanced({reference_N, plan.strokes->comparison_mean_N}, plan.block, random));
 }
 
 }  // namespace
@@ -79,37 +83,25 @@ Status check_subject_code(const std::string& code) {
   static const std::regex kCode("[A-Z]{1,3}[0-9]{1,4}");
   if (std::regex_match(code, kCode)) return {};
   return Error{"found the subject \"" + code +
-               "\", expected a code of one to three capital letters and one to four digits, such as S01; "
+               "\", expected a code of one to three capital letters and one to "
+               "four digits, such as S01; "
                "names are not stored"};
 }
 
 StudyPlan plan_study(const std::string& code, const StrokePair* strokes) {
   StudyPlan plan{strokes, {}};
-  if (strokes == nullptr) {
-    plan.trials = constant_training(subject_random(code, 2));
-    plan.training = plan.trials.size();
-    add_constant_trials(plan.trials, subject_random(code, 1));
-    return plan;
-  }
-  const double reference_N = strokes->reference_mean_N;
-  RandomStream random = subject_random(code, 5);
-  add_stroke_block(plan.trials, random, {reference_N, percent_of(reference_N, 100.0 * kEasyShare), false, true},
-                   kDiscriminationTraining);
-  plan.training = kDiscriminationTraining;
-  plan.block = kDiscriminationBlock;
-  random = subject_random(code, 4);
-  while (plan.trials.size() < plan.training + kDiscriminationTrials)
-    add_stroke_block(plan.trials, random, {reference_N, strokes->comparison_mean_N}, kDiscriminationBlock);
+  strokes == nullptr ? add_constant_trials(plan, code) : add_stroke_trials(plan, code);
+  std::size_t study = 0;
+  for (StudyTrial& trial : plan.trials) trial.number = trial.training ? ++plan.training : ++study;
   return plan;
 }
 
 Stimuli StudyPlan::stimuli(const StudyTrial& trial) const {
-  if (strokes == nullptr) return {{trial.first_N()}, {trial.second_N()}, {}};
+  if (strokes == nullptr) return {Stimulus{}, Stimulus{trial.first_N()}, Stimulus{trial.second_N()}};
   const Stimulus reference{1.0, &strokes->reference_N};
   const Stimulus comparison =
       trial.training ? Stimulus{kEasyShare, &strokes->reference_N} : Stimulus{1.0, &strokes->comparison_N};
-  if (trial.comparison_first) return {comparison, reference, reference};
-  return {reference, comparison, reference};
+  return {reference, trial.comparison_first ? comparison : reference, trial.comparison_first ? reference : comparison};
 }
 
 }  // namespace palpate

@@ -33,19 +33,18 @@ void StudyPresenter::record(double rendered_N) noexcept {
 // Sets the interval and returns the force of this tick of the presentation.
 double StudyPresenter::next_command_N() noexcept {
   state_.interval = -1;
-  if (stopped_.load(std::memory_order_acquire) || state_.presentation == 0 || state_.finished) return 0.0;
+  if (stopped_.load(std::memory_order_acquire) || state_.presentation == 0 || state_.finished_at > 0) return 0.0;
   const std::uint32_t now = played_++;
   if (now < kLeadIn_ticks) return 0.0;
   const Stimuli& stimuli = orders_.value().stimuli;
   const std::uint32_t since = now - kLeadIn_ticks, period = kInterval_ticks + kPause_ticks;
-  const std::uint32_t interval = since / period + (stimuli.has_reminder() ? 0 : 1);
+  const std::uint32_t interval = since / period + (has_reminder(stimuli) ? 0 : 1);
   in_interval_ = since % period;
   if (in_interval_ < kInterval_ticks) {
     state_.interval = static_cast<int>(interval);
-    return (interval == 0 ? stimuli.reminder : interval == 1 ? stimuli.first : stimuli.second).force_N(in_interval_);
+    return stimuli[interval].force_N(in_interval_);
   }
-  state_.finished = interval == 2;
-  if (state_.finished) state_.finished_at = state_.tick;
+  if (interval == 2) state_.finished_at = state_.tick;
   return 0.0;
 }
 
@@ -56,12 +55,12 @@ double StudyPresenter::tick(double rendered_N) noexcept {
     played_ = 0;
   }
   commanded_N_ = next_command_N();
-  state_.force_N = limiter_.limit(commanded_N_, kStudyTick_s);
+  const double force_N = limiter_.limit(commanded_N_, kStudyTick_s);
   const auto changed = force_limit::kClamped | force_limit::kSlewed | force_limit::kNotFinite;
   if ((limiter_.flags() & changed) != 0) state_.limited = true;
   ++state_.tick;
   states_.write(state_);
-  return state_.force_N;
+  return force_N;
 }
 
 }  // namespace palpate

@@ -41,21 +41,15 @@ struct Stimulus {
 
   double force_N(std::uint32_t tick) const noexcept;  // with the ramps
 };
-struct Stimuli {
-  Stimulus first;
-  Stimulus second;
-  Stimulus reminder;  // without a stroke there is no reminder
-
-  bool has_reminder() const noexcept { return reminder.stroke_N != nullptr; }
-};
+using Stimuli = std::array<Stimulus, 3>;  // the reminder, the first and the second
+// Constant stimuli have none: the first element has no stroke.
+inline bool has_reminder(const Stimuli& stimuli) noexcept { return stimuli[0].stroke_N != nullptr; }
 
 struct PresentationState {
-  std::uint64_t presentation = 0;  // number of the presentation; 0: none yet
-  std::uint64_t tick = 0;          // since the presenter was made
-  std::uint64_t finished_at = 0;   // tick after the end of the second interval
-  bool finished = false;
-  int interval = -1;                   // that is presented now: 0 the reminder, 1 or 2; -1 none
-  double force_N = 0.0;                // returned by the last tick
+  std::uint64_t presentation = 0;      // number of the presentation; 0: none yet
+  std::uint64_t tick = 0;              // since the presenter was made
+  std::uint64_t finished_at = 0;       // tick after the end of the second interval; 0: not finished
+  int interval = -1;                   // that is presented now, an index of Stimuli; -1 none
   bool limited = false;                // the limiter changed a force of this presentation
   double worst_N = 0.0;                // largest |rendered - commanded force| in the intervals
   std::array<double, 3> rendered_N{};  // means between the ramps, by interval

@@ -1,9 +1,13 @@
 #include "scenes/study/study_session.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "devices/registry/device_registry.h"
+#include "scenes/scene/assets.h"
 
 namespace palpate {
 namespace {
@@ -13,6 +17,11 @@ namespace {
 const double kMostAway_N = 0.5 * JndLine{}.at(0.0);
 
 double to_tenth_mN(double force_N) noexcept { return std::round(force_N * 1e4) / 1e4; }
+
+// What the subject is asked.
+const char* question(bool strokes) {
+  return strokes ? "Which of the two pushes was like the reference?" : "Which push was larger?";
+}
 
 std::string consent_text(bool strokes) {
   return std::string(
@@ -30,39 +39,16 @@ std::string consent_text(bool strokes) {
 
 }  // namespace
 
-Result<std::unique_ptr<StudySession>> StudySession::create(std::unique_ptr<StudyFile> file, std::uint64_t rest_ticks) {
-  const StudyHeader& header = file->header();
-  if (const Status code = check_subject_code(header.subject); !code) return code.error();
-  if (header.strokes != nullptr &&
-      (header.strokes->reference_N.size() != kInterval_ticks || header.strokes->comparison_N.size() != kInterval_ticks))
-    return Error{"found strokes of another length, expected two of " + std::to_string(kInterval_ticks) + " ms"};
-  std::unique_ptr<StudySession> session(new StudySession(std::move(file), rest_ticks));
-  if (const Status stored = session->check_stored(); !stored) return stored.error();
-  return session;
-}
-
-StudySession::StudySession(std::unique_ptr<StudyFile> file, std::uint64_t rest_ticks)
+StudySession::StudySession(StudyFile file, std::uint64_t rest_ticks)
     : file_(std::move(file)),
       rest_ticks_(rest_ticks),
-      plan_(plan_study(file_->header().subject, file_->header().strokes.get())) {
-  if (file_->consented()) state_ = answered() < plan_.trials.size() ? StudyState::ready : StudyState::done;
-}
-
-// Each stored answer must belong to the next trial of the plan.
-Status StudySession::check_stored() const {
-  for (std::size_t i = 0; i < answered(); ++i) {
-    const StudyRecord& record = file_->records()[i];
-    if (i < plan_.trials.size() && record.trial == plan_.trials[i] && record.number == plan_.number(i)) continue;
-    return Error{"the stored answer " + std::to_string(i + 1) +
-                 " is to a trial that this subject's plan does not have there; was the file made by another version, "
-                 "or changed? Start a new file"};
-  }
-  return {};
+      plan_(plan_study(file_.header().subject, file_.header().strokes.get())) {
+  if (file_.consented()) state_ = answered() < plan_.trials.size() ? StudyState::ready : StudyState::done;
 }
 
 void StudySession::accept_consent(const std::string& when) {
   if (state_ != StudyState::consent) return;
-  const Status written = file_->consent(when);
+  const Status written = file_.consent(when);
   problem_ = written ? "" : written.error().message;
   if (written) state_ = StudyState::ready;
 }
@@ -79,15 +65,15 @@ void StudySession::present_next() {
 
 void StudySession::update() {
   const PresentationState& seen = presenter_.newest();
-  if (state_ != StudyState::presenting || seen.presentation != presentation_ || !seen.finished) return;
-  dropped_out_ = file_->header().rendered && seen.worst_N > kMostAway_N;
+  if (state_ != StudyState::presenting || seen.presentation != presentation_ || seen.finished_at == 0) return;
+  dropped_out_ = file_.header().rendered && seen.worst_N > kMostAway_N;
   state_ = dropped_out_ ? StudyState::ready : StudyState::answering;
 }
 
 void StudySession::answer(bool second) {
   if (state_ != StudyState::answering) return;
   const PresentationState& seen = presenter_.newest();
-  StudyRecord record{trial(), plan_.number(answered())};
+  StudyRecord record{trial()};
   record.first_rendered_N = to_tenth_mN(seen.rendered_N[1]);
   record.second_rendered_N = to_tenth_mN(seen.rendered_N[2]);
   if (has_reminder()) {
@@ -98,7 +84,7 @@ void StudySession::answer(bool second) {
   record.answered_second = second;
   record.response_ms = static_cast<std::uint32_t>(
       std::min<std::uint64_t>(seen.tick - seen.finished_at, std::numeric_limits<std::uint32_t>::max()));
-  const Status written = file_->append(record);
+  const Status written = file_.append(record);
   problem_ = written ? "" : written.error().message;
   if (!written) return;
   const std::size_t done = answered() - std::min(answered(), plan_.training);
@@ -126,8 +112,8 @@ StudyView StudySession::view() {
   view.training = training();
   view.answered = answered() - (training() ? 0 : plan_.training);
   view.trials = training() ? plan_.training : plan_.trials.size() - plan_.training;
-  if (answered() > 0 && file_->records().back().trial.training) {
-    const StudyRecord& last = file_->records().back();
+  if (answered() > 0 && file_.records().back().trial.training) {
+    const StudyRecord& last = file_.records().back();
     view.was_correct = has_reminder() ? last.found_reference() : last.found_larger();
   }
   if (state_ == StudyState::presenting && seen.presentation == presentation_) view.interval = seen.interval;
@@ -144,19 +130,14 @@ std::string StudySession::message(const StudyView& view) const {
       if (dropped_out_)
         return "The device was not ready for a moment. The same pushes come again; go on when you are ready.";
       if (!view.training) return "Now the study itself. Go on when you are ready.";
-      return std::string("First a few trials to learn the task. ") +
-             (has_reminder() ? "Which of the two pushes was like the reference?" : "Which push was larger?") +
+      return std::string("First a few trials to learn the task. ") + question(has_reminder()) +
              " Go on when you are ready.";
     case StudyState::presenting:
-      return view.interval < 0    ? "Hold still"
-             : view.interval == 0 ? "The reference"
-             : view.interval == 1 ? "First push"
-                                  : "Second push";
+      return std::array{"Hold still", "The reference", "First push", "Second push"}.at(
+          static_cast<std::size_t>(view.interval + 1));
     case StudyState::answering:
-      if (!problem_.empty())
-        return "Your answer could not be stored: " + problem_ + ". Call the experimenter, then answer again.";
-      return has_reminder() ? "Which was like the reference, 1 or 2?"
-                            : "Which push was larger, the first or the second?";
+      if (problem_.empty()) return std::string(question(has_reminder())) + " Press 1 or 2.";
+      return "Your answer could not be stored: " + problem_ + ". Call the experimenter, then answer again.";
     case StudyState::rest:
       return "A break. Relax your hand; go on when you are ready.";
     case StudyState::done:
@@ -166,6 +147,55 @@ std::string StudySession::message(const StudyView& view) const {
                               : "The session was ended; the last answer could not be stored: " + problem_;
   }
   return {};
+}
+
+Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const std::string& device, bool realtime,
+                                                   std::shared_ptr<const StrokePair> strokes) {
+  DeviceRequest request;
+  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
+  auto opened = open_device(device, request);
+  if (!opened) return opened.error();
+  std::unique_ptr<LiveStudy> study(new LiveStudy);
+  study->realtime_ = realtime;
+  study->device_ = std::move(*opened);
+  study->header_ = {"", std::move(strokes), study->device_->name(), study->device_->holder() == Holder::person};
+  return study;
+}
+
+LiveStudy::~LiveStudy() {
+  loop_.reset();
+  device_->close();
+}
+
+Status LiveStudy::begin(const std::string& code) {
+  header_.subject = code;
+  auto file = StudyFile::open((strokes() != nullptr ? "discriminate-" : "study-") + code + ".csv", header_);
+  if (!file) return file.error();
+  session_ = std::make_unique<StudySession>(std::move(*file));
+  LoopSettings settings;
+  settings.realtime = realtime_;
+  settings.source = session_.get();
+  auto loop = std::make_unique<HapticsLoop>(*device_, settings);
+  if (const Status started = loop->start(); !started) return started;
+  loop_ = std::move(loop);
+  return {};
+}
+
+void LiveStudy::update() {
+  if (loop_ == nullptr) return;
+  newest_ = loop_->newest();
+  // The presenter records the forces; the snapshots are discarded, so that the ring does not fill up.
+  std::array<LoopSnapshot, 64> passed;
+  while (loop_->read_snapshots(passed.data(), passed.size()) == passed.size()) {
+  }
+  session_->update();
+}
+
+std::string LiveStudy::device_words() const {
+  const auto faults = device_fault_words(newest_.device.faults);
+  if (!faults.empty()) return faults.front();
+  const std::string zeroing = zeroing_words(newest_.device);
+  return zeroing.empty() ? device_->note() : zeroing;
 }
 
 }  // namespace palpate

@@ -1,15 +1,12 @@
 // One subject's session: consent, training, trials, breaks, the end. A state machine without window and clock; time is
-// counted in ticks of 1 ms.
+// counted in ticks of 1 ms. LiveStudy runs it with a device.
 //
 //   consent -> ready -> presenting -> answering -> presenting ... -> rest -> ... -> done
 //   presenting -> ready (the device did not render the planned force; the trial is repeated)
 //   any of them -> aborted
 //
-// The haptics thread calls `next_force_N` once per ms and renders the result. The slow thread calls `update` in every
-// frame, draws `view`, and forwards the subject's input. The state is `ready` before the training, before the study
-// and when a session is resumed. A break lasts at least `rest_ticks`. `answer` stores the answer before it returns; if
-// that fails, the session still waits for the answer, and the view says why.
-// Thread guarantee: `next_force_N` on the haptics thread, wait-free, no allocation; the rest on one slow thread.
+// The state is `ready` before the training, before the study and when a session is resumed. `answer` stores the answer
+// before it returns; if that fails, the session still waits for the answer, and the view says why.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +15,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/live/live_tick.h"
+#include "engine/live/haptics_loop.h"
 #include "scenes/study/study_file.h"
 
 namespace palpate {
@@ -37,41 +34,37 @@ struct StudyView {
   std::string message;              // one or two sentences for the subject
 };
 
+// Thread guarantee: `next_force_N` on the haptics thread, wait-free, no allocation; the rest on one slow thread.
 class StudySession final : public ForceSource {
  public:
   static constexpr std::uint64_t kRest_ticks = 30000;
 
-  // Resumes after the last answer in `file`. Errors: an invalid subject code, strokes that do not fill an interval,
-  // stored answers that do not match the plan.
-  static Result<std::unique_ptr<StudySession>> create(std::unique_ptr<StudyFile> file,
-                                                      std::uint64_t rest_ticks = kRest_ticks);
+  // Resumes after the last answer in `file`. A break lasts at least `rest_ticks`.
+  explicit StudySession(StudyFile file, std::uint64_t rest_ticks = kRest_ticks);
 
-  // Slow thread. Calls that do not fit the state have no effect.
+  // Calls that do not fit the state have no effect.
   void accept_consent(const std::string& when);
   void proceed();            // leaves `ready`, and `rest` after `rest_ticks`
-  void update();             // processes the ticks since the last call
+  void update();             // processes the ticks since the last call; in every frame
   void answer(bool second);  // whether the second was the larger, or like the reminder
   void abort();              // from any state except `done`
 
   StudyView view();
   StudyState state() const noexcept { return state_; }
-  const StudyFile& file() const noexcept { return *file_; }
-  // The current trial.
-  const StudyTrial& trial() const { return plan_.trials.at(answered()); }
+  const StudyFile& file() const noexcept { return file_; }
+  const StudyTrial& trial() const { return plan_.trials.at(answered()); }  // the current one
 
-  // Haptics thread; see StudyPresenter.
+  // Once per ms; see StudyPresenter.
   double next_force_N(double rendered_N) noexcept override { return presenter_.tick(rendered_N); }
 
  private:
-  StudySession(std::unique_ptr<StudyFile> file, std::uint64_t rest_ticks);
-  Status check_stored() const;
-  std::size_t answered() const noexcept { return file_->records().size(); }
+  std::size_t answered() const noexcept { return file_.records().size(); }
   bool training() const noexcept { return answered() < plan_.training; }
   bool has_reminder() const noexcept { return plan_.strokes != nullptr; }
   std::string message(const StudyView& view) const;
   void present_next();
 
-  std::unique_ptr<StudyFile> file_;
+  StudyFile file_;
   std::uint64_t rest_ticks_;
   StudyPlan plan_;
   StudyPresenter presenter_;
@@ -81,6 +74,44 @@ class StudySession final : public ForceSource {
   std::uint64_t rest_until_ = 0;
   bool dropped_out_ = false;  // the device did not render the last presentation as planned
   std::string problem_;       // error message of the file
+};
+
+// A device, and the haptics loop that renders the forces of a session. One thread (the window's).
+class LiveStudy {
+ public:
+  // `strokes`: null for constant stimuli. Errors: the device cannot be opened.
+  static Result<std::unique_ptr<LiveStudy>> open(const std::string& device, bool realtime,
+                                                 std::shared_ptr<const StrokePair> strokes);
+  LiveStudy(const LiveStudy&) = delete;
+  LiveStudy& operator=(const LiveStudy&) = delete;
+  // Ramps the force to zero.
+  ~LiveStudy();
+
+  // Creates or resumes study-CODE.csv, or with strokes discriminate-CODE.csv, in the working directory. Once; again
+  // after an error. Errors: those of StudyFile::open; no thread.
+  Status begin(const std::string& code);
+  // Call it once a frame.
+  void update();
+
+  // Null before `begin` succeeded.
+  StudySession* session() noexcept { return loop_ != nullptr ? session_.get() : nullptr; }
+  const StrokePair* strokes() const noexcept { return header_.strokes.get(); }
+  // Whether the device renders force to a person; else this is a rehearsal.
+  bool device_pushes() const noexcept { return header_.rendered; }
+  // A fault of the device, else the next step of its zeroing, else its note; may be empty.
+  std::string device_words() const;
+  bool needs_zeroing() const noexcept { return newest_.device.zeroing == Zeroing::needed; }
+  void start_zeroing() { device_->start_zeroing(); }
+
+ private:
+  LiveStudy() = default;
+
+  bool realtime_ = true;
+  StudyHeader header_;
+  std::unique_ptr<Device> device_;
+  std::unique_ptr<StudySession> session_;
+  std::unique_ptr<HapticsLoop> loop_;
+  LoopSnapshot newest_;
 };
 
 }  // namespace palpate

@@ -20,7 +20,7 @@ inline Result<std::unique_ptr<StudySession>> session_at(const std::string& path,
                                                         std::uint64_t rest_ticks = 0) {
   auto file = StudyFile::open(path, header);
   if (!file) return file.error();
-  return StudySession::create(std::move(*file), rest_ticks);
+  return std::make_unique<StudySession>(std::move(*file), rest_ticks);
 }
 
 // While this exists, no file of this process can grow beyond `bytes`, as on a full disk.

@@ -118,8 +118,8 @@ TEST_F(StudyAppTest, ShowsTheResultAtTheEnd) {
   const StudyHeader header{"S01", test::example_strokes(0.8)};
   {
     auto file = StudyFile::open("discriminate-S01.csv", header);
-    ASSERT_TRUE(file.ok() && (*file)->consent("").ok());
-    for (const StudyRecord& record : simulated_answers(header, {}, 1)) ASSERT_TRUE((*file)->append(record).ok());
+    ASSERT_TRUE(file.ok() && file->consent("").ok());
+    for (const StudyRecord& record : simulated_answers(header, {}, 1)) ASSERT_TRUE(file->append(record).ok());
   }
   start(header.strokes);
   begin("S01");

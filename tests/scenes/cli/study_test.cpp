@@ -14,7 +14,7 @@ namespace {
 
 using test::run_palpate;
 
-TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
+TEST(Study, MeasuresTheJndOfAScene) {
   const test::TemporaryFolder folder;
   const std::string out = folder.file("study");
   const std::vector<std::string> simulate = {"study", "simulate", "--subjects", "3", "--seed", "2", "--out", out};
@@ -22,7 +22,7 @@ TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
   EXPECT_NE(run.out.find("conservative "), std::string::npos) << run.out;
-  for (const char* name : {"S01.csv", "S03.csv", "results.csv", "jnd.json", "figure3.svg", "figure3.png"}) {
+  for (const char* name : {"S01.csv", "S03.csv", "results.csv", "jnd.json"}) {
     EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
   }
   EXPECT_EQ(read_study(out + "/S02.csv")->records.size(), 328u);
@@ -48,17 +48,7 @@ TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
   EXPECT_NE(judged->jnd.weber_fraction, scene->jnd.weber_fraction);
 }
 
-TEST(Study, SaysWhatToDoWithoutGnuplot) {
-  const test::TemporaryFolder folder;
-  const std::string out = folder.file("study");
-  const auto run = run_palpate({"study", "simulate", "--subjects", "3", "--out", out}, {"PATH=" + folder.path()});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.err.find("apt-get install gnuplot-nox"), std::string::npos) << run.err;
-  EXPECT_TRUE(std::filesystem::exists(out + "/results.csv"));
-  EXPECT_TRUE(std::filesystem::exists(out + "/jnd.json"));
-}
-
-TEST(Study, StrokesAreToldApartByASimulatedHand) {
+TEST(Study, SimulatedSubjectsDiscriminateStrokes) {
   const test::TemporaryFolder folder;
   const std::string foam = folder.file("foam.csv"), out = folder.file("out");
   ASSERT_EQ(run_palpate({"synth", "--material", "foam", "--seed", "2", "--seconds", "20", "--out", foam}).exit_code, 0);
@@ -81,7 +71,7 @@ TEST(Study, StrokesAreToldApartByASimulatedHand) {
   EXPECT_EQ(test::read_text(folder.file("again/results.csv")), test::read_text(out + "/results.csv"));
 }
 
-TEST(Study, StrokesOfTheSceneNeedNoFile) {
+TEST(Study, RecordsTheSceneWithoutAFile) {
   const test::TemporaryFolder folder;
   const auto run = run_palpate({"study", "simulate", "--discriminate", "--subjects", "1", "--out", folder.file("out")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -100,7 +90,7 @@ TEST(Study, RefusesWrongUsage) {
       << "needs --discriminate";
   const auto missing = run_palpate({"study", "analyse", "/none/S01.csv", "--out", "/none/out"});
   EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_NE(missing.err.find("/none/S01.csv: found no such file"), std::string::npos) << missing.err;
+  EXPECT_NE(missing.err.find("/none/S01.csv"), std::string::npos) << missing.err;
 }
 
 }  // namespace

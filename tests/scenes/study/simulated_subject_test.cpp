@@ -41,8 +41,8 @@ TEST(SimulatedSubject, GivesAllAnswersOfAPlanAndRepeatsThem) {
   const test::TemporaryFolder folder;
   {
     auto file = StudyFile::open(folder.file("S01.csv"), {"S01"});
-    ASSERT_TRUE(file.ok() && (*file)->consent("").ok());
-    for (const StudyRecord& record : one) ASSERT_TRUE((*file)->append(record).ok());
+    ASSERT_TRUE(file.ok() && file->consent("").ok());
+    for (const StudyRecord& record : one) ASSERT_TRUE(file->append(record).ok());
   }
   const auto session = test::session_at(folder.file("S01.csv"));
   ASSERT_TRUE(session.ok()) << session.error().message;

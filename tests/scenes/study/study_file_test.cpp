@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/replaced.h"
 #include "tests/support/study_driving.h"
 #include "tests/support/temporary_folder.h"
@@ -13,13 +14,15 @@
 namespace palpate {
 namespace {
 
+using test::has_parts;
 using test::read_text;
 
 const StudyHeader kHeader{"S01"};
 constexpr const char* kRow = "training,1,0.3,0.18,1,0.18,0.2999,0,second,731,unknown,true\n";
 
-StudyRecord example() {
-  StudyRecord record{{0.3, 0.18, true, true}};
+// An answer to a trial of the plan of S01.
+StudyRecord answer_to(std::size_t trial) {
+  StudyRecord record{plan_study("S01", nullptr).trials[trial]};
   record.first_rendered_N = 0.18;
   record.second_rendered_N = 0.2999;
   record.answered_second = true;
@@ -29,10 +32,10 @@ StudyRecord example() {
 
 class StudyFileTest : public ::testing::Test {
  protected:
-  std::unique_ptr<StudyFile> opened(const std::string& path) {
-    auto file = StudyFile::open(path, kHeader);
+  StudyFile opened() {
+    auto file = StudyFile::open(path_, kHeader);
     EXPECT_TRUE(file.ok()) << file.error().message;
-    return file.ok() ? std::move(*file) : nullptr;
+    return std::move(*file);
   }
   std::string complaint(const std::string& path, const StudyHeader& header = kHeader) {
     const auto file = StudyFile::open(path, header);
@@ -44,11 +47,11 @@ class StudyFileTest : public ::testing::Test {
 };
 
 TEST_F(StudyFileTest, WritesNothingBeforeTheConsentThenRowByRow) {
-  const auto file = opened(path_);
-  EXPECT_FALSE(file->append(example()).ok());
+  StudyFile file = opened();
+  EXPECT_FALSE(file.append(answer_to(0)).ok());
   EXPECT_TRUE(folder_.entries().empty());
-  ASSERT_TRUE(file->consent("2024-05-06 10:20").ok());
-  ASSERT_TRUE(file->append(example()).ok());
+  ASSERT_TRUE(file.consent("2024-05-06 10:20").ok());
+  ASSERT_TRUE(file.append(answer_to(0)).ok());
   EXPECT_EQ(read_text(path_),
             "# palpate-study 1\n# subject S01\n# procedure constant\n"
             "# timing_ms lead_in 400 ramp 100 hold 900 pause 500\n# consent accepted, 2024-05-06 10:20\n"
@@ -59,56 +62,53 @@ TEST_F(StudyFileTest, WritesNothingBeforeTheConsentThenRowByRow) {
 
 TEST_F(StudyFileTest, IsResumedAfterTheLastCompleteRow) {
   {
-    const auto file = opened(path_);
-    ASSERT_TRUE(file->consent("").ok());
-    ASSERT_TRUE(file->append(example()).ok());
+    StudyFile file = opened();
+    ASSERT_TRUE(file.consent("").ok() && file.append(answer_to(0)).ok());
   }
   const std::string whole = read_text(path_);
-  // The next row is truncated, as by a power failure.
   folder_.with_file("S01.csv", whole + "training,2,0.5,0.3");
-  const auto file = opened(path_);
-  EXPECT_TRUE(file->consented());
-  EXPECT_EQ(file->records(), std::vector<StudyRecord>{example()});
-  EXPECT_EQ(read_text(path_), whole);
-  ASSERT_TRUE(file->append(example()).ok());
-  EXPECT_EQ(read_text(path_), whole + kRow);
+  StudyFile file = opened();
+  EXPECT_TRUE(file.consented());
+  EXPECT_EQ(file.records(), std::vector<StudyRecord>{answer_to(0)});
+  ASSERT_TRUE(file.append(answer_to(1)).ok());
+  EXPECT_EQ(read_text(path_), whole + study_row(answer_to(1), false));
 }
 
-TEST_F(StudyFileTest, ASecondSessionIsRefused) {
-  auto first = opened(path_);
-  const auto waiting = opened(path_);  // both have no consent yet
-  ASSERT_TRUE(first->consent("").ok());
-  EXPECT_NE(waiting->consent("").error().message.find("start again to resume it"), std::string::npos);
-  EXPECT_NE(complaint(path_).find(path_ + " is in use by another session"), std::string::npos) << complaint(path_);
-  first.reset();
-  EXPECT_EQ(complaint(path_), "accepted");
+TEST_F(StudyFileTest, ChangesOfAnotherSessionAreKept) {
+  StudyFile first = opened(), second = opened();  // both have no consent yet
+  ASSERT_TRUE(first.consent("").ok());
+  EXPECT_TRUE(has_parts(second.consent("").error().message, {path_, "another session", "start again"}));
+  StudyFile third = opened();
+  ASSERT_TRUE(third.append(answer_to(0)).ok());
+  const std::string text = read_text(path_);
+  EXPECT_TRUE(has_parts(first.append(answer_to(0)).error().message, {path_, "another session", "start again"}));
+  EXPECT_EQ(read_text(path_), text);
 }
 
 TEST_F(StudyFileTest, OtherStudiesAndOtherFilesAreRefusedAndKept) {
-  ASSERT_TRUE(opened(path_)->consent("").ok());
-  const std::string other = complaint(path_, {"S02"});
-  EXPECT_NE(other.find("subject S01, constant stimuli, expected subject S02, constant stimuli"), std::string::npos)
-      << other;
-  EXPECT_NE(complaint(path_, test::discrimination_header(0.8)).find("expected subject S01, strokes of"),
-            std::string::npos);
+  ASSERT_TRUE(opened().consent("").ok());
+  EXPECT_TRUE(has_parts(complaint(folder_.with_file("S02.csv", read_text(path_)), {"S02"}),
+                        {"S02.csv", "S01", "S02", "another folder"}));
+  EXPECT_TRUE(has_parts(complaint(path_, test::discrimination_header(0.8)), {path_, "same forces", "another folder"}));
+  EXPECT_TRUE(has_parts(complaint(path_, {"Anna"}), {"Anna", "such as S01"}));
   const std::string notes = folder_.with_file("notes.csv", "time_s,position_m\n");
-  EXPECT_EQ(complaint(notes).rfind(notes + ":1:1: found \"time_s,position_m\"", 0), 0u) << complaint(notes);
+  EXPECT_TRUE(has_parts(complaint(notes), {notes + ":1:1:", "time_s,position_m", "# palpate-study 1"}));
   EXPECT_EQ(read_text(notes), "time_s,position_m\n");
 }
 
 TEST_F(StudyFileTest, AFullDiskLosesNothingThatWasAnswered) {
-  const auto file = opened(path_);
-  ASSERT_TRUE(file->consent("").ok() && file->append(example()).ok());
-  const auto size = std::filesystem::file_size(path_);
+  StudyFile file = opened();
+  ASSERT_TRUE(file.consent("").ok() && file.append(answer_to(0)).ok());
+  const std::string text = read_text(path_);
   {
-    const test::FullDisk full(size + 20);  // room for half a row
-    const Status refused = file->append(example());
+    const test::FullDisk full(text.size() + 20);  // room for half a row
+    const Status refused = file.append(answer_to(1));
     ASSERT_FALSE(refused.ok());
-    EXPECT_EQ(refused.error().message, "cannot write " + path_ + ": File too large");
+    EXPECT_TRUE(has_parts(refused.error().message, {path_, "File too large"}));
   }
-  EXPECT_EQ(std::filesystem::file_size(path_), size);
-  EXPECT_EQ(file->records().size(), 1u);
-  EXPECT_TRUE(file->append(example()).ok());
+  EXPECT_EQ(read_text(path_), text);
+  EXPECT_EQ(file.records().size(), 1u);
+  EXPECT_TRUE(file.append(answer_to(1)).ok());
   EXPECT_EQ(read_study(path_)->records.size(), 2u);
 }
 
@@ -130,7 +130,7 @@ TEST_F(StudyFileTest, AKilledSessionIsResumed) {
   ASSERT_TRUE(session.ok()) << session.error().message;
   EXPECT_EQ((*session)->view().answered, 12u);
   test::answer_trials(**session, 1, test::truly_larger);
-  EXPECT_EQ(read_study(path_)->records.back().number, 13u);
+  EXPECT_EQ(read_study(path_)->records.back().trial.number, 13u);
 }
 
 TEST_F(StudyFileTest, StrokesAreNamedAndResumed) {
@@ -144,9 +144,8 @@ TEST_F(StudyFileTest, StrokesAreNamedAndResumed) {
     answered = (*session)->file().records();
   }
   const std::string whole = read_text(path_);
-  EXPECT_NE(whole.find("# procedure discriminate\n"), std::string::npos);
-  EXPECT_NE(whole.find("\"from_s\":12.3,"), std::string::npos);
-  folder_.with_file("S01.csv", whole + "study,8,1.69");  // a power failure
+  EXPECT_TRUE(has_parts(whole, {"# procedure discriminate\n", "\"from_s\":12.3,"}));
+  folder_.with_file("S01.csv", whole + "study,8,1.69");  // an incomplete copy
   {
     const auto session = test::session_at(path_, header);
     ASSERT_TRUE(session.ok()) << session.error().message;
@@ -158,15 +157,14 @@ TEST_F(StudyFileTest, StrokesAreNamedAndResumed) {
   ASSERT_TRUE(data.ok()) << data.error().message;
   EXPECT_EQ(data->records.size(), 4 + kDiscriminationTrials);
   EXPECT_EQ(data->header.strokes->max_over_jnd, header.strokes->max_over_jnd);
-  const std::string other = complaint(path_, test::discrimination_header(0.9));
-  EXPECT_NE(other.find("with the same forces"), std::string::npos) << other;
+  EXPECT_TRUE(has_parts(complaint(path_, test::discrimination_header(0.9)), {path_, "same forces"}));
 }
 
 const std::string kGood = study_header_text(kHeader, "2024-05-06") +
                           "training,1,0.3,0.18,1,0.18,0.3,0,second,731,paddle,true\n"
-                          "study,1,2.5,3.5,0,2.4,3.5,1,first,20,mouse,false\n";
+                          "training,2,2.5,3.5,0,2.4,3.5,1,first,20,mouse,false\n";
 const std::string kGoodStrokes = study_header_text(test::discrimination_header(0.8), "2024-05-06") +
-                                 "study,1,1.7,1.36,0,1.7,1.36,0,first,20,1.7,0.001,paddle,true\n";
+                                 "training,1,1.5495,0.7748,1,0.7,1.5,0,first,20,1.7,0.001,paddle,true\n";
 
 std::string complaint_of(const std::string& text) {
   const auto data = parse_study(text, "S01.csv");
@@ -182,7 +180,7 @@ TEST(StudyReader, ReadsEveryField) {
   EXPECT_TRUE(data->records[0].trial.training);
   EXPECT_TRUE(data->records[0].rendered);
   const StudyRecord& record = data->records[1];
-  EXPECT_EQ(record.trial, (StudyTrial{2.5, 3.5, false}));
+  EXPECT_EQ(record.trial, (StudyTrial{2.5, 3.5, false, true, 2}));
   EXPECT_EQ(record.first_rendered_N, 2.4);
   EXPECT_TRUE(record.limited);
   EXPECT_FALSE(record.rendered);
@@ -190,50 +188,80 @@ TEST(StudyReader, ReadsEveryField) {
   EXPECT_FALSE(record.comparison_judged_larger());
   EXPECT_FALSE(record.found_larger());
   EXPECT_DOUBLE_EQ(record.rendered_difference(), 1.1 / 2.4);
-  EXPECT_EQ(kGood.find(study_row(record, data->header)), kGood.rfind("study,1"));
+  EXPECT_EQ(kGood.find(study_row(record, false)), kGood.rfind("training,2"));
   const auto strokes = parse_study(kGoodStrokes, "S01.csv");
   ASSERT_TRUE(strokes.ok()) << strokes.error().message;
   EXPECT_EQ(strokes->records.front().worst_N, 0.001);
   EXPECT_EQ(strokes->header.strokes->recording, "silicone 2");
-  EXPECT_EQ(kGoodStrokes.find(study_row(strokes->records.front(), strokes->header)), kGoodStrokes.rfind("study,1"));
+  EXPECT_EQ(kGoodStrokes.find(study_row(strokes->records.front(), true)), kGoodStrokes.rfind("training,1"));
 }
 
+// Every message has the place, the text found there and what was expected.
 TEST(StudyReader, RefusesWithPlaceFoundAndExpected) {
-  const auto expect = [](const std::string& text, const std::string& place, const std::string& found,
-                         const std::string& expected) {
-    const std::string message = complaint_of(text);
-    EXPECT_EQ(message.rfind("S01.csv:" + place + ": found \"" + found, 0), 0u) << message;
-    EXPECT_NE(message.find("\", expected " + expected), std::string::npos) << message;
+  struct Case {
+    const char *from, *to, *place, *found, *expected;
   };
-  const auto changed = [](const char* from, const char* to) { return test::replaced(kGood, from, to); };
-  expect(changed("study 1", "study 2"), "1:1", "# palpate-study 2", "the first line");
-  expect(changed("S01", "Anna"), "2:1", "# subject Anna", "\"# subject \" and a code");
-  expect(changed("constant", "other"), "3:1", "# procedure other", "\"# procedure \"");
-  expect(changed("ramp 100", "ramp 60"), "4:1", "# timing_ms", "\"# timing_ms");
-  expect(changed("accepted", "refused"), "5:1", "# consent refused", "\"# consent accepted");
-  expect(changed(",response_ms", ""), "6:1", "part,trial", "the columns part,trial");
-  expect(changed("training,1", "practice,1"), "7:1", "practice", "training or study");
-  expect(changed("study,1,", "study,0,"), "8:7", "0", "a whole number above 0");
-  expect(changed("3.5,0", "nan,0"), "8:13", "nan", "a force above 0 and up to 10 N");
-  expect(changed(",2.4,", ",-2.4,"), "8:19", "-2.4", "a force from 0 to 10 N");
-  expect(changed("first,20", "both,20"), "8:29", "both", "first or second");
-  expect(changed("first,20", "first,-1"), "8:35", "-1", "a whole number of ms");
-  expect(changed(",first,20", ",first"), "8:1", "study,1,2.5", "a row of 12 fields");
-  expect(changed("first,20", "first,20,1"), "8:1", "study,1,2.5", "a row of 12 fields");
-  const auto strokes = [](const char* from, const char* to) { return test::replaced(kGoodStrokes, from, to); };
-  expect(strokes("# strokes ", "# "), "5:1", "# {\"checksum", "\"# strokes \"");
-  expect(strokes(",1.7,0.001,paddle,true", ""), "8:1", "study,1,1.7", "a row of 14 fields");
-  expect(strokes(",0.001,", ",-1,"), "8:44", "-1", "a force from 0 to 10 N");
+  const auto check = [](const std::string& good, const std::vector<Case>& cases) {
+    for (const auto& [from, to, place, found, expected] : cases) {
+      const std::string message = complaint_of(test::replaced(good, from, to));
+      EXPECT_EQ(message.rfind(std::string("S01.csv:") + place + ": ", 0), 0u) << message;
+      EXPECT_TRUE(has_parts(message, {std::string("\"") + found, expected}));
+    }
+  };
+  check(kGood, {{"study 1", "study 2", "1:1", "# palpate-study 2", "# palpate-study 1"},
+                {"constant", "other", "3:1", "# procedure other", "# procedure constant"},
+                {"ramp 100", "ramp 60", "4:1", "# timing_ms", "ramp 100"},
+                {"accepted", "refused", "5:1", "# consent refused", "# consent accepted"},
+                {",response_ms", "", "6:104", "device", "response_ms"},
+                {"training,1", "practice,1", "7:1", "practice", "training"},
+                {"training,2", "study,1", "8:1", "study", "training"},
+                {"3.5,0", "3.4,0", "8:16", "3.4", "3.5"},
+                {",2.4,", ",-2.4,", "8:22", "-2.4", "0"},
+                {",2.4,", ",nan,", "8:22", "nan", "0"},
+                {",2.4,", ",11,", "8:22", "11", "0"},
+                {"first,20", "both,20", "8:32", "both", "first"},
+                {"first,20", "first,-1", "8:38", "-1", "0"},
+                {",first,20", ",first", "8:38", "mouse", "0"},
+                {"20,mouse", "20,", "8:41", "", "unknown"},
+                {"mouse,false", "mouse,no", "8:47", "no", "false"},
+                {"first,20", "first,20,1", "8:43", "mouse", "false"}});
+  check(kGoodStrokes,
+        {{"# procedure discriminate", "# procedure constant", "3:1", "# procedure constant", "discriminate"},
+         {"# strokes ", "# ", "3:1", "# procedure discriminate", "constant"},
+         {",1.7,0.001,paddle,true", "", "8:44", "20", "20,0"},
+         {",0.001,", ",-1,", "8:51", "-1", "0"}});
   for (const char* broken : {"{", "\"checksum\"", "\"offset_N\"", "\"silicone 2\"", "12.3,"})
-    EXPECT_NE(complaint_of(strokes(broken, "?")), "accepted") << broken;
-  EXPECT_EQ(read_study("/none/S01.csv").error().message.rfind("/none/S01.csv: found no such file", 0), 0u);
+    EXPECT_TRUE(has_parts(complaint_of(test::replaced(kGoodStrokes, broken, "?")), {"S01.csv:5:1: ", "JSON"}));
+  EXPECT_TRUE(has_parts(complaint_of(test::replaced(kGood, "S01", "Anna")), {"S01.csv:2:1: ", "Anna", "such as S01"}));
+  EXPECT_TRUE(has_parts(read_study("/none/S01.csv").error().message, {"/none/S01.csv", "no such file"}));
 }
 
-TEST(StudyReader, EveryTruncationIsReadOrRefused) {
+TEST(StudyFiles, AreOfDifferentSubjectsAndTheSameForces) {
+  const auto complaint = [](const StudyHeader& one, const StudyHeader& other) {
+    const Status checked = check_study_files({{one, {}}, {other, {}}});
+    return checked ? "accepted" : checked.error().message;
+  };
+  const StudyHeader strokes = test::discrimination_header(0.9);
+  EXPECT_EQ(complaint({"S01"}, {"S02"}), "accepted");
+  EXPECT_EQ(complaint(strokes, {"S02", strokes.strokes}), "accepted");
+  EXPECT_TRUE(has_parts(complaint(strokes, strokes), {"two files of subject S01", "leave"}));
+  EXPECT_TRUE(has_parts(complaint(strokes, {"S02"}), {"S02", "S01", "separate commands"}));
+  EXPECT_TRUE(has_parts(complaint(strokes, {"S02", test::example_strokes(0.8)}), {"S02", "S01", "separate commands"}));
+}
+
+TEST(StudyReader, RefusesRowsAfterTheLastTrial) {
+  std::string text = study_header_text(kHeader, "");
+  const StudyPlan plan = plan_study("S01", nullptr);
+  for (const StudyTrial& trial : plan.trials) text += study_row({trial}, false);
+  EXPECT_EQ(complaint_of(text), "accepted");
+  EXPECT_TRUE(has_parts(complaint_of(text + kRow), {"S01.csv:335:1: ", "training", "expected \"\""}));
+}
+
+TEST(StudyReader, ReadsOrRefusesEveryTruncation) {
   for (const std::string& good : {kGood, kGoodStrokes}) {
     for (std::size_t length = 0; length < good.size(); ++length) {
-      const auto data = parse_study(good.substr(0, length), "S01.csv");
-      EXPECT_TRUE(!data.ok() || data->whole_bytes <= length) << length;
+      const std::string message = complaint_of(good.substr(0, length));
+      EXPECT_TRUE(message == "accepted" || has_parts(message, {"S01.csv:", "found", "expected"})) << length;
     }
   }
 }

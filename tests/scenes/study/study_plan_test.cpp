@@ -78,8 +78,8 @@ TEST(StudyPlan, DiscriminationsAreBalancedInEveryBlock) {
   const StudyPlan plan = plan_study("S01", &strokes);
   ASSERT_EQ(plan.training, 4u);
   EXPECT_EQ(plan.trials[3].comparison_N, 0.6);
-  EXPECT_EQ(plan.number(3), 4u);
-  EXPECT_EQ(plan.number(4), 1u);
+  EXPECT_EQ(plan.trials[3].number, 4u);
+  EXPECT_EQ(plan.trials[4].number, 1u);
 }
 
 }  // namespace
