@@ -22,7 +22,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrokePair, reference, comparison, recording,
 
 namespace {
 
-constexpr double kLargestRendered_N = 10.0;
+constexpr double kLargestRendered_N = 10.0;  // more than any device renders in a study
+
 // The header line with the timing of a presentation.
 std::string timing_line() {
   return "# timing_ms lead_in " + std::to_string(kLeadIn_ticks) + " ramp " + std::to_string(kRamp_ticks) + " hold " +

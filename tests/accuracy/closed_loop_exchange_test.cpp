@@ -82,7 +82,7 @@ double largest_change_jnd(const std::vector<ForcePtr>& models, const Grip& grip,
   return largest;
 }
 
-TEST(ClosedLoop, AHundredExchangesASecondAreNotFelt) {
+TEST(ClosedLoop, AtAHundredExchangesASecondTheErrorIsBelowTheJnd) {
   const std::vector<ForcePtr> methods(silicone_models().begin(), silicone_models().end());
   std::vector<ForcePtr> with_broken = methods;
   with_broken.push_back(with_huge_weights(silicone_models().back()));

@@ -171,7 +171,7 @@ TEST(SyntheticAccuracy, StiffAndElasticBlocksWithTheFeaturesTheyNeed) {
 }
 
 // Reduction by force steps and rows weighted by 1/f, as in Hoever & Harders (2009).
-TEST(SyntheticAccuracy, ThePapersRecipeFindsWhatThePaperFound) {
+TEST(SyntheticAccuracy, ThePapersRecipeReproducesThePaper) {
   TrainingRequest request = scene_request("silicone_block");
   request.recipe = FitRecipe::paper_2009;
   request.reduction = Reduction::force;

@@ -6,6 +6,7 @@
 #include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -57,7 +58,7 @@ TEST(Formats, TheExampleRecordingIsOneAndSaysThatItIsNoRealMaterial) {
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   const std::string text = test::read_text(path);
   EXPECT_LT(text.size(), 200000U);
-  EXPECT_NE(text.substr(0, text.find("time_s")).find("palpate synth"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(text.substr(0, text.find("time_s")), {"palpate synth"}));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Recordings that the reader must refuse, each with the complete message.
+// Recordings that the reader must refuse, with the place and the parts of each message.
 #pragma once
 
 #include <string>
@@ -7,9 +7,10 @@
 namespace palpate::test {
 
 struct BrokenRecording {
-  const char* name;     // for the test's output
-  std::string text;     // the file
-  std::string message;  // with "rec.csv" for the file's name
+  const char* name;                // for the test's output
+  std::string text;                // the file
+  std::string place;               // line:column
+  std::vector<std::string> parts;  // of the message, in this order: what was found, what was expected, advice
 };
 
 const std::vector<BrokenRecording>& broken_recordings();

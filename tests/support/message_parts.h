@@ -3,13 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <initializer_list>
 #include <string>
+#include <vector>
+
+#include "tests/support/replaced.h"
 
 namespace palpate::test {
 
 // Success if `message` contains `parts` in this order.
-inline testing::AssertionResult has_parts(const std::string& message, std::initializer_list<std::string> parts) {
+inline testing::AssertionResult has_parts(const std::string& message, const std::vector<std::string>& parts) {
   std::size_t at = 0;
   for (const std::string& part : parts) {
     const std::size_t found = message.find(part, at);
@@ -17,6 +19,20 @@ inline testing::AssertionResult has_parts(const std::string& message, std::initi
     at = found + part.size();
   }
   return testing::AssertionSuccess();
+}
+
+// A change of a valid text, and the parts of the message about it.
+struct BrokenText {
+  std::string from;
+  std::string to;
+  std::vector<std::string> parts;
+};
+
+// Expects that `message_of` has the parts for each of these changes of `good`.
+template <typename Message>
+void expect_messages(const std::string& good, const Message& message_of, const std::vector<BrokenText>& broken) {
+  for (const auto& [from, to, parts] : broken)
+    EXPECT_TRUE(has_parts(message_of(replaced(good, from, to)), parts)) << from << " replaced by " << to;
 }
 
 }  // namespace palpate::test

@@ -107,7 +107,7 @@ TEST_F(RtGuardTest, IgnoresFreeOfNothing) {
   EXPECT_EQ(offences_of([] { free(nullptr); }).total(), 0);
 }
 
-TEST_F(RtGuardTest, IgnoresOtherThreadsAndWhatComesAfterStop) {
+TEST_F(RtGuardTest, CountsThisThreadUntilStop) {
   std::thread other;
   RtGuard guard;
   const RtOffences first = guard.stop();

@@ -18,7 +18,7 @@ TEST(RunProgram, SurvivesMoreThanAPipeHolds) {
   EXPECT_EQ(run.err.size(), 300000u);
 }
 
-TEST(RunProgram, ReportsSignalsAndWhatCannotStart) {
+TEST(RunProgram, ReportsSignalsAndMissingPrograms) {
   EXPECT_EQ(run_program({"/bin/sh", "-c", "kill -9 $$"}).exit_code, 128 + 9);
   EXPECT_EQ(run_program({"/none/such"}).exit_code, 127);
 }

@@ -3,11 +3,24 @@
 
 #include <chrono>
 #include <functional>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "scenes/live/live_session.h"
 
 namespace palpate::test {
+
+// Without real-time priority, which tests do not need.
+inline SessionRequest session_request(const std::string& scene, const std::string& device,
+                                      const std::vector<std::string>& models) {
+  SessionRequest request;
+  request.scene = scene;
+  request.device = device;
+  request.models = models;
+  request.realtime = false;
+  return request;
+}
 
 // Runs frames until `done` and calls `each` after every frame. False after a long timeout.
 inline bool frames_until(LiveSession& session, const std::function<bool()>& done,

@@ -1,9 +1,6 @@
 // Drives a study session through its states, as a subject does.
 #pragma once
 
-#include <signal.h>
-#include <sys/resource.h>
-
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -22,23 +19,6 @@ inline Result<std::unique_ptr<StudySession>> session_at(const std::string& path,
   if (!file) return file.error();
   return std::make_unique<StudySession>(std::move(*file), rest_ticks);
 }
-
-// While this exists, no file of this process can grow beyond `bytes`, as on a full disk.
-class FullDisk {
- public:
-  explicit FullDisk(std::uintmax_t bytes) {
-    signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit full{static_cast<rlim_t>(bytes), before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &full);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
 
 // An interval of a force that grows from 1 N by 1 mN per tick, and of `share` times that force.
 inline std::shared_ptr<const StrokePair> example_strokes(double share) {

@@ -68,7 +68,7 @@ TEST(BridgeProtocol, IsThatOfThePageByteForByte) {
   EXPECT_EQ(command, kFromHost);
 }
 
-TEST(BridgeProtocol, TheHostReadsWhatTheDeviceMeans) {
+TEST(BridgeProtocol, ReadsTheFramesOfTheDevice) {
   DeviceReading reading;
   ASSERT_EQ(verdict_of(kFromDevice, &reading), ReportVerdict::position);
   EXPECT_EQ(reading.sequence, 0x01020304u);
@@ -108,7 +108,7 @@ TEST(BridgeProtocol, RefusesEveryFrameWithOneBitWrong) {
   }
 }
 
-TEST(BridgeProtocol, RefusesWhatNoDeviceCanMean) {
+TEST(BridgeProtocol, RefusesInvalidFrames) {
   Bytes frame(bridge::kDeviceBytes);
   for (const bridge::FromDevice& in : {bridge::FromDevice{1, 1, INT32_MIN, 0, 0, 0},      // the integer of a NaN
                                        bridge::FromDevice{1, 1, 1'000'000'001, 0, 0, 0},  // beyond a metre
@@ -136,7 +136,7 @@ TEST(FrameFinder, LosesNoFrameToAFalseBeginning) {
             (std::vector<std::uint32_t>{8, 9}));
 }
 
-TEST(FrameFinder, TellsAnotherVersion) {
+TEST(FrameFinder, ReportsAnotherVersion) {
   Bytes other = frame_of(1);
   other[2] = 2;
   wire::write32(other.data() + 24, wire::crc32(other.data(), 24));

@@ -12,6 +12,7 @@
 #include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/bridge_session.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -64,7 +65,7 @@ TEST(Hapkit, ShowsThatItsWatchdogWorks) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   std::printf("%s", run.out.c_str());
   for (const char* words : {"N measured", "yes, it got a force of 0", "after the last frame", "after it stood still"}) {
-    EXPECT_NE(run.out.find(words), std::string::npos) << words << run.out;
+    EXPECT_TRUE(test::has_parts(run.out, {words})) << words << run.out;
   }
 }
 
@@ -74,7 +75,7 @@ TEST(Hapkit, RecordsASimulatedMaterial) {
   const auto run = run_palpate(
       {"record", "--device", "bridge:" + board.port(), "--seconds", "5", "--out", folder.file("press.csv")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("press.csv: usable"), std::string::npos) << run.out;
+  EXPECT_TRUE(test::has_parts(run.out, {"press.csv: usable"}));
   const auto recording = read_recording(folder.file("press.csv"));
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   double deepest_m = 0.0, largest_N = 0.0;
@@ -143,7 +144,7 @@ bool record_without_gaps(const std::string& seed, const std::string& path) {
 
 // The whole way from a recording to rendering: the press of another simulated hand is within
 // the JND, and the model is rendered until the host is killed.
-TEST(Hapkit, WhatWasRecordedThroughItIsFittedReplayedAndRendered) {
+TEST(Hapkit, ItsRecordingIsFittedReplayedAndRendered) {
   const test::TemporaryFolder folder;
   for (const std::string seed : {"1", "2"}) {
     ASSERT_TRUE(record_without_gaps(seed, folder.file(seed + ".csv")));

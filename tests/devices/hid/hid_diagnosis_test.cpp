@@ -21,7 +21,7 @@ TEST(DeviceBus, KnowsDevicesByTheirIds) {
   EXPECT_EQ(hid_protocol_of({"/dev/hidraw0", "Mouse", 0x046D, 0xC077, 1, 2}), nullptr);
 }
 
-TEST(DeviceBus, SaysWhatAPluggedInDeviceIsAndWhyItCannotBeUsed) {
+TEST(DeviceBus, NamesDevicesAndWhyTheyCannotBeUsed) {
   FakeDeviceBus bus;
   HidDiagnosis diagnosis = diagnose(bus).at(0);
   EXPECT_EQ(diagnosis.use, "OpenFFBoard, one axis");

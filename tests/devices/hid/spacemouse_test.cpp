@@ -8,6 +8,7 @@
 
 #include "devices/registry/auto_device.h"
 #include "tests/support/fake_device_bus.h"
+#include "tests/support/message_parts.h"
 
 namespace palpate {
 namespace {
@@ -63,7 +64,7 @@ TEST(SpaceMouse, RestsWhereItWasLeftAndNearZeroAtZero) {
   EXPECT_NEAR(axis.target_m(61.02), -0.006, 1e-12) << "not touched";
 }
 
-TEST(SpaceMouse, SaysWhenItIsUnplugged) {
+TEST(SpaceMouse, ReportsThatItIsUnplugged) {
   SpaceMouseAxis axis(calibration());
   axis.connected(0.0);
   report(axis, 200, 1.0);
@@ -104,9 +105,7 @@ TEST(SpaceMouse, IsADeviceWithoutForce) {
   SpaceMouseDevice device(
       std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol}))));
   EXPECT_EQ(device.holder(), Holder::simulated);
-  EXPECT_EQ(device.note(),
-            "SpaceMouse, input only: no force: SpaceNavigator, /dev/hidraw8; tested on real hardware: no; on an "
-            "emulated device: yes");
+  EXPECT_TRUE(test::has_parts(device.note(), {"SpaceNavigator", "/dev/hidraw8"}));
   ASSERT_TRUE(device.open().ok());
   DeviceSample sample;
   for (int i = 0; i < 5000 && sample.tool.position_m < 5e-3; ++i) {

@@ -209,7 +209,7 @@ TEST(DeviceEndpoint, EveryFaultTakesTheForceAway) {
   }
 }
 
-TEST(DeviceEndpoint, WhatLosesThePositionAsksForZeroing) {
+TEST(DeviceEndpoint, FaultsThatLoseThePositionNeedZeroing) {
   for (const Injection& injection : injections()) {
     if ((injection.fault & device_fault::kLosesPosition) == 0) continue;
     SimulatedDevice simulated(kProtocol);
@@ -228,7 +228,7 @@ TEST(DeviceEndpoint, WhatLosesThePositionAsksForZeroing) {
   }
 }
 
-TEST(DeviceEndpoint, WhatKeepsThePositionComesBackByItself) {
+TEST(DeviceEndpoint, FaultsThatKeepThePositionEndByThemselves) {
   for (const Injection& injection : injections()) {
     if ((injection.fault & (device_fault::kLosesPosition | device_fault::kOwn)) != 0) continue;
     SimulatedDevice simulated(kProtocol);
@@ -288,7 +288,7 @@ TEST(DeviceEndpoint, AHostThatDiesPushesNoLonger) {
   }
 }
 
-TEST(DeviceEndpoint, AForceThatIsSaidAgainOnlyNowAndThenGoesOn) {
+TEST(DeviceEndpoint, AForceLastsUntilItsNextReport) {
   const DeviceProtocol& protocol = kOpenFfBoardProtocol;
   test::OpenFfBoardModel board;
   const auto hear = [&](const OutReports& reports) {

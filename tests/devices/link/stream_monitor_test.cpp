@@ -51,7 +51,7 @@ struct Stream {
   }
 };
 
-TEST(StreamMonitor, CountsAndTimesWhatItAccepts) {
+TEST(StreamMonitor, CountsAndTimesAcceptedFrames) {
   Stream stream;
   for (int i = 0; i < 50; ++i) stream.step(i);
   const MonitorState& state = stream.monitor.state();

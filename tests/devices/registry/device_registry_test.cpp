@@ -5,6 +5,7 @@
 
 #include "tests/support/example_model.h"
 #include "tests/support/fake_device_bus.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -50,43 +51,38 @@ TEST(DeviceRegistry, AutoPrefersAHapticDevice) {
   auto device = open_device("auto", request_with(bus));
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->name(), "hid");
-  EXPECT_EQ((*device)->note(),
-            "OpenFFBoard, one axis: FFBoard, /dev/hidraw7; tested on real hardware: no; on an emulated device: yes");
+  EXPECT_TRUE(test::has_parts((*device)->note(), {"OpenFFBoard", "FFBoard", "/dev/hidraw7"}));
   EXPECT_EQ((*device)->limits().largest_N, 5.0);
   EXPECT_FALSE((*device)->health(0.0).may_push()) << "not zeroed";
   for (const DeviceDescription& description : list_devices(request_with(bus))) EXPECT_EQ(description.problem, "");
 }
 
-TEST(DeviceRegistry, AutoSaysWhatItFellBackToAndWhy) {
+TEST(DeviceRegistry, AutoNotesTheFallbackAndItsReason) {
   auto device = open_device("auto", request_with(nothing_plugged_in()));
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->name(), "auto");
-  EXPECT_EQ((*device)->note(), "no haptic device is plugged in: a simulated hand moves until the mouse takes over");
+  EXPECT_TRUE(test::has_parts((*device)->note(), {"simulated hand", "mouse"}));
   test::FakeDeviceBus refused;
   refused.refusals = 1000;
   device = open_device("auto", request_with(refused));
   ASSERT_TRUE(device.ok());
-  EXPECT_EQ((*device)->note(), "/dev/hidraw7: no permission: a simulated hand moves until the mouse takes over");
+  EXPECT_TRUE(test::has_parts((*device)->note(), {"/dev/hidraw7", "permission", "simulated hand"}));
   test::FakeDeviceBus mouse(test::found_space_mouse());
   mouse.silent = true;
   device = open_device("auto", request_with(mouse));
   ASSERT_TRUE(device.ok());
-  EXPECT_EQ(
-      (*device)->note(),
-      "no haptic device is plugged in: a simulated hand moves until the mouse or the SpaceMouse (no force) takes over");
+  EXPECT_TRUE(test::has_parts((*device)->note(), {"simulated hand", "mouse", "SpaceMouse"}));
   test::FakeDeviceBus board;
   DeviceRequest request;
   request.bus = &board;
   device = open_device("auto", request);
   ASSERT_TRUE(device.ok());
-  EXPECT_EQ((*device)->note(),
-            "found no calibrations of HID devices; set PALPATE_ASSETS to the assets folder: "
-            "a simulated hand moves until the mouse takes over");
+  EXPECT_TRUE(test::has_parts((*device)->note(), {"PALPATE_ASSETS", "simulated hand"}));
 }
 
 TEST(DeviceRegistry, HidIsNeverAnythingElse) {
-  EXPECT_EQ(open_device("hid", request_with(nothing_plugged_in())).error().message,
-            "no haptic device is plugged in; plug one in or use --device auto (palpate devices explains)");
+  EXPECT_TRUE(test::has_parts(open_device("hid", request_with(nothing_plugged_in())).error().message,
+                              {"--device", "palpate devices"}));
   test::FakeDeviceBus refused;
   refused.refusals = 1000;
   EXPECT_EQ(open_device("hid", request_with(refused)).error().message, "/dev/hidraw7: no permission");
@@ -97,11 +93,10 @@ TEST(DeviceRegistry, HidIsNeverAnythingElse) {
   EXPECT_EQ((*device)->holder(), Holder::simulated);
 }
 
-TEST(DeviceRegistry, ExplainsWhatItCannotOpen) {
-  EXPECT_EQ(open_device("joystick").error().message,
-            "unknown device \"joystick\", expected one of: auto, hand, mouse, hid, replay:FILE, bridge:TARGET (palpate "
-            "devices explains)");
-  EXPECT_EQ(open_device("replay:").error().message, "--device replay: names no recording; write replay:FILE.csv");
+TEST(DeviceRegistry, ErrorsHaveAdvice) {
+  EXPECT_TRUE(
+      test::has_parts(open_device("joystick").error().message, {"\"joystick\"", "FILE", "TARGET", "palpate devices"}));
+  EXPECT_TRUE(test::has_parts(open_device("replay:").error().message, {"--device", "FILE.csv"}));
   EXPECT_EQ(open_device("replay:/nowhere.csv").error().message.rfind("/nowhere.csv", 0), 0u);
 }
 
@@ -110,13 +105,12 @@ TEST(DeviceRegistry, TheProgramListsThem) {
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_EQ(run.err, "");
   for (const DeviceDescription& description : list_devices()) {
-    EXPECT_NE(run.out.find(description.name), std::string::npos) << run.out;
+    EXPECT_TRUE(test::has_parts(run.out, {description.name}));
   }
   for (const DeviceProtocol* protocol : kHidProtocols) {
-    EXPECT_NE(run.out.find(std::string(protocol->description) + "; tested on real hardware: no"), std::string::npos)
-        << run.out;
+    EXPECT_TRUE(test::has_parts(run.out, {std::string(protocol->description) + "; tested on real hardware: no"}));
   }
-  EXPECT_NE(run.out.find("PLUGGED IN"), std::string::npos) << run.out;
+  EXPECT_TRUE(test::has_parts(run.out, {"PLUGGED IN"}));
 }
 
 }  // namespace

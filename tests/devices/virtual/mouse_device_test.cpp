@@ -59,7 +59,7 @@ TEST(MouseDevice, KeepsTargetsInReachAndFinite) {
   EXPECT_EQ(device.target_m(), 0.03 - 1e-3);
 }
 
-TEST(MouseDevice, IsDrivenWithARampAndStopsWhereItIsTold) {
+TEST(MouseDevice, MovesWithARampAndStopsAtTheLimit) {
   MouseDevice device;
   advance(device, 0.0, 100);
   device.drive(0.018, 0.004, 0.1);
@@ -83,7 +83,7 @@ TEST(MouseDevice, IsDrivenWithARampAndStopsWhereItIsTold) {
   EXPECT_NEAR(advance(device, 9.33, 1000).tool.position_m, rest_m, 1e-9);
 }
 
-TEST(MouseDevice, SaysWhenItIsIdle) {
+TEST(MouseDevice, ReportsThatItIsIdle) {
   MouseDevice device;
   EXPECT_TRUE(device.idle(0.0)) << "never touched";
   device.nudge(1e-3, 100.0);

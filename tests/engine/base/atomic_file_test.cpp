@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "engine/base/signals.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -89,7 +90,7 @@ TEST(AtomicFile, RefusesAnExistingFile) {
   const std::string path = folder.with_file("out", "old");
   const Status status = write_file_atomically(path, "new", false);
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().message, path + " exists; pass --force to replace it");
+  EXPECT_TRUE(test::has_parts(status.error().message, {path, "--force"}));
   EXPECT_EQ(read_text(path), "old");
   EXPECT_EQ(folder.entries().size(), 1u);
 }
@@ -109,35 +110,35 @@ TEST(AtomicFile, RefusesAFileThatAppearedWhileItWasWriting) {
   folder.with_file("out", "theirs");
   const Status status = file->commit();
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().message, folder.file("out") + " exists; pass --force to replace it");
+  EXPECT_TRUE(test::has_parts(status.error().message, {folder.file("out"), "--force"}));
   EXPECT_EQ(read_text(folder.file("out")), "theirs");
   EXPECT_EQ(folder.entries().size(), 1u);
 }
 
 TEST(AtomicFile, RefusesAFolderADeviceAndAnEmptyName) {
   const TemporaryFolder folder;
-  EXPECT_EQ(write_file_atomically(folder.path(), "x", true).error().message,
-            "cannot write " + folder.path() + ": it is a folder; name a file");
-  EXPECT_EQ(write_file_atomically("/dev/null", "x", true).error().message,
-            "cannot write /dev/null: it is not a regular file; name one");
-  EXPECT_EQ(write_file_atomically("", "x", true).error().message, "the name of the output file is empty");
+  EXPECT_TRUE(test::has_parts(write_file_atomically(folder.path(), "x", true).error().message,
+                              {folder.path(), "folder", "; "}));
+  EXPECT_TRUE(test::has_parts(write_file_atomically("/dev/null", "x", true).error().message,
+                              {"/dev/null", "regular file", "; "}));
+  EXPECT_TRUE(test::has_parts(write_file_atomically("", "x", true).error().message, {"empty"}));
 }
 
 TEST(AtomicFile, NamesAMissingFolder) {
   const TemporaryFolder folder;
   const std::string path = folder.file("none/out");
-  EXPECT_EQ(write_file_atomically(path, "x", false).error().message,
-            "cannot write " + path + ": the folder " + folder.file("none") + " does not exist; create it first");
+  EXPECT_TRUE(test::has_parts(write_file_atomically(path, "x", false).error().message,
+                              {path, "folder", folder.file("none"), "; "}));
   const std::string under_a_file = folder.with_file("file", "") + "/out";
-  EXPECT_EQ(write_file_atomically(under_a_file, "x", false).error().message,
-            "cannot write " + under_a_file + ": " + folder.file("file") + " is not a folder");
+  EXPECT_TRUE(test::has_parts(write_file_atomically(under_a_file, "x", false).error().message,
+                              {under_a_file, folder.file("file"), "folder"}));
 }
 
 TEST(AtomicFile, NamesAFolderThatIsNotWritable) {
   // /proc refuses new files even to root.
   const Status status = write_file_atomically("/proc/palpate-out", "x", false);
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().message.rfind("cannot write /proc/palpate-out: the folder /proc ", 0), 0u)
+  EXPECT_TRUE(test::has_parts(status.error().message, {"/proc/palpate-out", "folder", "/proc"}))
       << status.error().message;
 }
 

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/support/message_parts.h"
+
 namespace palpate {
 namespace {
 
@@ -42,7 +44,7 @@ TEST(LineScanner, ReportsAStreamThatFails) {
   CsvLine line;
   EXPECT_FALSE(scanner.next(line));
   ASSERT_TRUE(scanner.error().has_value());
-  EXPECT_EQ(scanner.error()->message.substr(0, 36), "x.csv: the file cannot be read (Is a");
+  EXPECT_TRUE(test::has_parts(scanner.error()->message, {"x.csv: ", "Is a"}));
 }
 
 TEST(IsUtf8, FollowsRfc3629) {

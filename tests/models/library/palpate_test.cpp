@@ -16,6 +16,7 @@
 #include "engine/tick/replay.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -207,7 +208,7 @@ TEST_F(LibraryC, TheLimiterIsTheProgramsOwn) {
   }
   limits.fastest_N_per_s = -1.0;
   EXPECT_EQ(palpate_limiter_new(&limits, error_, sizeof error_), nullptr);
-  EXPECT_STREQ(error_, "fastest_N_per_s: found -1.000000, expected more than 0");
+  EXPECT_TRUE(test::has_parts(error_, {"fastest_N_per_s", "-1.000000", "0"}));
 }
 
 TEST_F(LibraryC, AnErrorIsCutBetweenCharacters) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -25,51 +26,41 @@ std::string message_after(void (*spoil)(ModelData&), const char* method = "greed
 TEST(FittedModel, EveryFaultIsNamed) {
   struct Case {
     void (*spoil)(ModelData&);
-    const char* message;
+    std::vector<std::string> parts;
   };
   const Case cases[] = {
-      {[](ModelData& d) { d.features.clear(); }, "features: found 0 features, expected 1 to 8"},
-      {[](ModelData& d) { d.features.assign(9, {}); }, "features: found 9 features, expected 1 to 8"},
+      {[](ModelData& d) { d.features.clear(); }, {"features", "0", "1", "8"}},
+      {[](ModelData& d) { d.features.assign(9, {}); }, {"features", "9", "1", "8"}},
       {[](ModelData& d) { d.features[2].parts[0].relaxation_time_s = 0.0; },
-       "features.parts.relaxation_time_s: found 0.000000, expected a positive number"},
+       {"features.parts.relaxation_time_s", "0.000000"}},
       {[](ModelData& d) { d.features[2].drive.reference_depth_m = -1.0; },
-       "features.drive.reference_depth_m: found -1.000000, expected a positive number"},
-      {[](ModelData& d) { d.features[3].drive.coefficient_N[1] = kNan; },
-       "features.drive: found a number beyond any force, expected at most 1e9 N"},
-      {[](ModelData& d) { d.features[2].drive.coefficient_N[1] = 1e300; },
-       "features.drive: found a number beyond any force, expected at most 1e9 N"},
-      {[](ModelData& d) { d.offset.resize(3); }, "normalisation.offset: found 3 values, expected 4, one per feature"},
-      {[](ModelData& d) { d.scale(1) = 0.0; }, "normalisation.scale: found 0 or less, expected positive numbers"},
-      {[](ModelData& d) { d.lower(0) = kInfinity; },
-       "domain.lower: found a non-finite number, expected finite numbers"},
-      {[](ModelData& d) { d.trend.reference_depth_m = 0.0; },
-       "trend.reference_depth_m: found 0.000000, expected a positive number"},
-      {[](ModelData& d) { d.trend.elastic.pieces_N[5] = kNan; },
-       "trend: found a non-finite number, expected finite numbers"},
-      {[](ModelData& d) { d.trend.thinning_velocity_m_per_s = 0.0; },
-       "trend.thinning_velocity_m_per_s: found 0.000000, expected a positive number"},
-      {[](ModelData& d) { d.trend.velocity_limit_m_per_s = -1.0; },
-       "trend.velocity_limit_m_per_s: found -1.000000, expected 0 or more"},
-      {[](ModelData& d) { d.cover.points.resize(4, 0); },
-       "domain.points: found 0 points of 4 values, expected at least one point of 4 values"},
-      {[](ModelData& d) { d.cover.points(0, 0) = kNan; },
-       "domain.points: found a non-finite number, expected finite numbers"},
+       {"features.drive.reference_depth_m", "-1.000000"}},
+      {[](ModelData& d) { d.features[3].drive.coefficient_N[1] = kNan; }, {"features.drive", "1e9 N"}},
+      {[](ModelData& d) { d.features[2].drive.coefficient_N[1] = 1e300; }, {"features.drive", "1e9 N"}},
+      {[](ModelData& d) { d.offset.resize(3); }, {"normalisation.offset", "3", "4"}},
+      {[](ModelData& d) { d.scale(1) = 0.0; }, {"normalisation.scale", "0"}},
+      {[](ModelData& d) { d.lower(0) = kInfinity; }, {"domain.lower", "finite", "finite"}},
+      {[](ModelData& d) { d.trend.reference_depth_m = 0.0; }, {"trend.reference_depth_m", "0.000000"}},
+      {[](ModelData& d) { d.trend.elastic.pieces_N[5] = kNan; }, {"trend", "finite", "finite"}},
+      {[](ModelData& d) { d.trend.thinning_velocity_m_per_s = 0.0; }, {"trend.thinning_velocity_m_per_s", "0.000000"}},
+      {[](ModelData& d) { d.trend.velocity_limit_m_per_s = -1.0; }, {"trend.velocity_limit_m_per_s", "-1.000000", "0"}},
+      {[](ModelData& d) { d.cover.points.resize(4, 0); }, {"domain.points", "0", "4", "4"}},
+      {[](ModelData& d) { d.cover.points(0, 0) = kNan; }, {"domain.points", "finite", "finite"}},
       {[](ModelData& d) { d.cover.outer_radius = d.cover.inner_radius = 0.5; },
-       "domain radii: found 0.500000 and 0.500000, expected 0 <= inner < outer"},
-      {[](ModelData& d) { d.correction_limit_N = -0.5; }, "correction_limit_N: found -0.500000, expected 0 or more"},
-      {[](ModelData& d) { d.largest_force_N = kInfinity; }, "largest_force_N: found inf, expected 0 or more"},
-      {[](ModelData& d) { d.jnd.offset_N = -1.0; }, "jnd.offset_N: found -1.000000, expected 0 or more"},
-      {[](ModelData& d) { d.correction.reset(); },
-       "model: found no correction, expected centres, a grid, or the trend alone"},
+       {"domain radii", "0.500000", "0.500000", "0"}},
+      {[](ModelData& d) { d.correction_limit_N = -0.5; }, {"correction_limit_N", "-0.500000", "0"}},
+      {[](ModelData& d) { d.largest_force_N = kInfinity; }, {"largest_force_N", "0"}},
+      {[](ModelData& d) { d.jnd.offset_N = -1.0; }, {"jnd.offset_N", "-1.000000", "0"}},
+      {[](ModelData& d) { d.correction.reset(); }, {"model"}},
       {[](ModelData& d) {
          test::change_rbf(d, [](RbfFunction& f) { f.centres.conservativeResize(3, Eigen::NoChange); });
        },
-       "centres: found 3 values each, expected 4"},
+       {"centres", "3", "4"}},
   };
-  for (const Case& one : cases) EXPECT_EQ(message_after(one.spoil), one.message);
-  EXPECT_EQ(
+  for (const Case& one : cases) EXPECT_TRUE(test::has_parts(message_after(one.spoil), one.parts));
+  EXPECT_TRUE(test::has_parts(
       message_after([](ModelData& d) { test::change_grid(d, [](VoxelGrid& g) { g.values_N.pop_back(); }); }, "voxel"),
-      "grid.values_N: found 359 values, expected 360");
+      {"grid.values_N", "359", "360"}));
 }
 
 // With such a number, the force would jump between zero and its limit.
@@ -88,11 +79,11 @@ TEST(FittedModel, ANumberFarBeyondTheLimitsOfTheFileIsRefused) {
     const std::string message = message_after(spoil);
     EXPECT_NE(message.find("largest_force_N"), std::string::npos) << message;
   }
-  EXPECT_EQ(message_after([](ModelData& d) {
-              d.trend.elastic = spline_from_powers({1e5, 0.0, 0.0}, {});
-            }),
-            "trend: found 7.03e+04 N at domain.points[0], expected at most 306.5 N, a hundred times the sum of "
-            "largest_force_N, correction_limit_N and the JND");
+  EXPECT_TRUE(
+      test::has_parts(message_after([](ModelData& d) {
+                        d.trend.elastic = spline_from_powers({1e5, 0.0, 0.0}, {});
+                      }),
+                      {"7.03e+04 N", "domain.points", "0", "306.5 N", "largest_force_N", "correction_limit_N"}));
 }
 
 // Compares the force with the equation of the header, term by term.

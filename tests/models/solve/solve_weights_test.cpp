@@ -7,6 +7,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -143,11 +144,10 @@ TEST(SolveWeights, RefusesWrongSitesWithAnExplanation) {
   sites.target_N[7] = std::nan("");
   const Result<FittedRbf> bad = solve_weights(sites, KernelKind::cubic, sites.points);
   ASSERT_FALSE(bad.ok());
-  EXPECT_EQ(bad.error().message,
-            "sites: site 7 is not finite or has a negative row_scale; expected finite points, forces and factors");
+  EXPECT_TRUE(test::has_parts(bad.error().message, {"7", "finite", "row_scale", "finite"}));
   sites.target_N.resize(3);
-  EXPECT_EQ(solve_weights(sites, KernelKind::cubic, sites.points).error().message,
-            "sites: target_N has 3 entries, expected 20, one per point");
+  EXPECT_TRUE(
+      test::has_parts(solve_weights(sites, KernelKind::cubic, sites.points).error().message, {"target_N", "3", "20"}));
   EXPECT_FALSE(solve_weights({}, KernelKind::cubic, sites.points).ok());
 }
 

@@ -9,6 +9,7 @@
 
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
+#include "tests/support/session_frames.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -20,12 +21,7 @@ TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
   setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
   const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
   ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
-  SessionRequest request;
-  request.scene = "skin";
-  request.device = "hand";
-  request.models = {folder.file("m.json")};
-  request.realtime = false;
-  auto session = LiveSession::open(request);
+  auto session = LiveSession::open(test::session_request("skin", "hand", {folder.file("m.json")}));
   ASSERT_TRUE(session.ok()) << session.error().message;
 
   std::promise<void> gate;

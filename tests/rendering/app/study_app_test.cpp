@@ -13,6 +13,7 @@
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_file.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/study_driving.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
@@ -67,7 +68,7 @@ class StudyAppTest : public ::testing::Test {
   std::unique_ptr<StudyApp> app_;
 };
 
-TEST_F(StudyAppTest, GoesFromTheConsentToAStoredAnswer) {
+TEST_F(StudyAppTest, StoresAnAnswer) {
   begin("S01");
   ASSERT_NE(app_->session(), nullptr) << app_->problem();
   EXPECT_EQ(app_->session()->state(), StudyState::consent);
@@ -91,7 +92,7 @@ TEST_F(StudyAppTest, GoesFromTheConsentToAStoredAnswer) {
   EXPECT_NEAR(record.second_rendered_N, record.trial.second_N(), 1e-3);
 }
 
-TEST_F(StudyAppTest, AsksForTheStrokeThatWasLikeTheReference) {
+TEST_F(StudyAppTest, StoresTheAnswerToThreeStrokes) {
   start(test::example_strokes(0.8));
   begin("S01");
   ASSERT_NE(app_->session(), nullptr) << app_->problem();
@@ -137,10 +138,10 @@ TEST_F(StudyAppTest, TakesTheCodeInTheOrderItIsTyped) {
   EXPECT_EQ(app_->session()->file().header().subject, "S01");
 }
 
-TEST_F(StudyAppTest, SaysWhatIsWrongWithACode) {
+TEST_F(StudyAppTest, RefusesAnInvalidCode) {
   begin("Anna");
   EXPECT_EQ(app_->session(), nullptr);
-  EXPECT_NE(app_->problem().find("ANNA"), std::string::npos) << app_->problem();
+  EXPECT_TRUE(test::has_parts(app_->problem(), {"ANNA"}));
   app_->frame();
   EXPECT_FALSE(app_->closing());
 }

@@ -23,11 +23,7 @@ TEST(PanelHealth, KeepsTheWordsOfAnAlarmUntilTheyWereSeen) {
   const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
   ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
   test::FakeDeviceBus bus;
-  SessionRequest request;
-  request.scene = "skin";
-  request.device = "hid";
-  request.models = {folder.file("m.json")};
-  request.realtime = false;
+  SessionRequest request = test::session_request("skin", "hid", {folder.file("m.json")});
   request.bus = &bus;
   auto opened = LiveSession::open(request);
   ASSERT_TRUE(opened.ok()) << opened.error().message;

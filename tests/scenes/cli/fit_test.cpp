@@ -1,17 +1,9 @@
 // The program palpate fit: exit codes, messages, files.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "models/fit/methods.h"
 #include "models/model/file/model_io.h"
@@ -54,12 +46,12 @@ class FitVerb : public ::testing::Test {
   }
 
   // Expects that the run ended with one error line and left no file.
-  void expect_refused(const ProgramRun& run, int exit_code, const std::string& words) const {
+  void expect_refused(const ProgramRun& run, int exit_code, const Arguments& parts) const {
     EXPECT_EQ(run.exit_code, exit_code);
     EXPECT_EQ(run.out, "");
     EXPECT_EQ(run.err.rfind("error: ", 0), 0u) << run.err;
     EXPECT_EQ(run.err.find('\n'), run.err.size() - 1) << run.err;
-    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+    EXPECT_TRUE(has_parts(run.err, parts));
     EXPECT_EQ(folder_.entries(), Arguments{"press.csv"});
   }
 
@@ -117,12 +109,9 @@ TEST_F(FitVerb, TheTrendAloneHasNoCentres) {
 
 // The option must not be ignored silently.
 TEST_F(FitVerb, RefusesAnOptionThatTheMethodHasNoUseFor) {
-  expect_refused(fit({"--grid", "4x3x3x3"}, "greedy"), 2,
-                 "--grid: method greedy does not take this option, only voxel");
-  expect_refused(fit({"--candidates", "20"}, "random"), 2,
-                 "--candidates: method random does not take this option, only greedy");
-  expect_refused(fit({"--centres", "20"}, "trend"), 2,
-                 "--centres: method trend does not take this option, only random, kdtree, greedy");
+  expect_refused(fit({"--grid", "4x3x3x3"}, "greedy"), 2, {"--grid", "greedy", "voxel"});
+  expect_refused(fit({"--candidates", "20"}, "random"), 2, {"--candidates", "random", "greedy"});
+  expect_refused(fit({"--centres", "20"}, "trend"), 2, {"--centres", "trend", "random", "kdtree", "greedy"});
 }
 
 TEST_F(FitVerb, EveryOptionHasAUse) {
@@ -155,7 +144,7 @@ TEST_F(FitVerb, ThePapersRecipeHasTwoSpellings) {
   expect_model(fit({"--reduction", "force", "--weighting", "relative", "--force"}));
   EXPECT_EQ(read_text(out()), model);
   std::filesystem::remove(out());
-  expect_refused(fit({"--recipe", "paper-2009", "--surface", "auto"}), 2, "--surface");
+  expect_refused(fit({"--recipe", "paper-2009", "--surface", "auto"}), 2, {"--surface"});
 }
 
 TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
@@ -169,107 +158,71 @@ TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
   EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 5000);
 }
 
-TEST_F(FitVerb, TheSameRecordingTwiceIsTold) {
+TEST_F(FitVerb, WarnsOfTheSameRecordingTwice) {
   const ProgramRun run =
       run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out", out(), "--json"});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_TRUE(test::has_parts(run.err, {"warning: " + recording() + ": repeated: ", recording(), "; "}));
 }
 
-TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
-  expect_refused(fit({}, "guess"), 2, "direct,voxel,random,kdtree,greedy");
-  expect_refused(fit({"--kernel", "gauss"}), 2, "cubic,linear,thin-plate,quintic");
-  expect_refused(fit({"--weighting", "x"}), 2, "jnd,relative,none");
-  expect_refused(fit({"--reduction", "x"}), 2, "coverage,force,none");
-  expect_refused(fit({"--centres", "0"}), 2, "2000");
-  expect_refused(fit({"--centres", "100000"}), 2, "2000");
+TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
+  expect_refused(fit({}, "guess"), 2, {"direct,voxel,random,kdtree,greedy"});
+  expect_refused(fit({"--kernel", "gauss"}), 2, {"cubic,linear,thin-plate,quintic"});
+  expect_refused(fit({"--weighting", "x"}), 2, {"jnd,relative,none"});
+  expect_refused(fit({"--reduction", "x"}), 2, {"coverage,force,none"});
+  expect_refused(fit({"--centres", "0"}), 2, {"2000"});
+  expect_refused(fit({"--centres", "100000"}), 2, {"2000"});
   for (const char* features : {"auto", "depth"}) {
-    expect_refused(fit({"--features", features, "--relaxation", "0.1,1"}), 2,
-                   std::string("found --features \"") + features + "\", expected the scene's features");
+    expect_refused(fit({"--features", features, "--relaxation", "0.1,1"}), 2, {"--features", features});
   }
-  expect_refused(fit({"--candidates", "some"}), 2, "expected a whole number of at least 1, or all");
+  expect_refused(fit({"--candidates", "some"}), 2, {"--candidates", "1", "all"});
   for (const char* times : {"0.1,", "0", "nan", "soon", "1,2,3,4,5,6,7"}) {
-    expect_refused(fit({"--relaxation", times}), 2, "expected scene, auto, or one to six times");
+    expect_refused(fit({"--relaxation", times}), 2, {"--relaxation", "scene", "auto"});
   }
   for (const char* grid : {"25x", "1x2x3x4", "axb", "9999999999x2"}) {
-    expect_refused(fit({"--grid", grid}, "voxel"), 2, "expected sizes such as 25x11x11x11");
+    expect_refused(fit({"--grid", grid}, "voxel"), 2, {"--grid", "25x11x11x11"});
   }
-  expect_refused(run_palpate({"fit", "--method", "greedy", "--out", out()}), 2, "--recording");
+  expect_refused(run_palpate({"fit", "--method", "greedy", "--out", out()}), 2, {"--recording"});
 }
 
-TEST_F(FitVerb, WhatCannotBeDoneIsToldInOneLine) {
-  expect_refused(fit({"--scene", "marble"}), 1, "known scenes: ");
-  expect_refused(fit({"--grid", "25", "--recipe", "paper-2009"}, "voxel"), 1,
-                 "the grid has 1 sizes, the scene has 4 features");
-  expect_refused(fit({"--grid", "1000x1000x1000x1000", "--recipe", "paper-2009"}, "voxel"), 1, "at most 1e7");
-  expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, "has no relaxation features");
-  expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, "none.csv");
+TEST_F(FitVerb, FailuresAreOneErrorLine) {
+  expect_refused(fit({"--scene", "marble"}), 1, {"marble", "silicone_block"});
+  expect_refused(fit({"--grid", "25", "--recipe", "paper-2009"}, "voxel"), 1, {"1", "4"});
+  expect_refused(fit({"--grid", "1000x1000x1000x1000", "--recipe", "paper-2009"}, "voxel"), 1, {"at most 1e7"});
+  expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, {"--relaxation"});
+  expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, {"none.csv"});
 }
 
 TEST_F(FitVerb, AnExistingModelSurvivesWithoutForce) {
   folder_.with_file("model.json", "mine");
   const ProgramRun run = fit({});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_EQ(run.err, "error: " + out() + " exists; pass --force to replace it\n");
+  EXPECT_TRUE(test::has_parts(run.err, {"error: ", out(), "--force"}));
   EXPECT_EQ(read_text(out()), "mine");
   expect_model(fit({"--force"}));
 }
 
-TEST_F(FitVerb, AnOutThatCannotBeWrittenIsToldBeforeTheFit) {
-  expect_refused(fit({"--out", folder_.file("no/such/model.json")}), 1, "does not exist; create it first");
-  expect_refused(fit({"--out", folder_.path()}), 1, "it is a folder; name a file");
-  expect_refused(fit({"--out", recording() + "/model.json"}), 1, "is not a folder");
+TEST_F(FitVerb, ChecksTheOutputBeforeTheFit) {
+  expect_refused(fit({"--out", folder_.file("no/such/model.json")}), 1, {"no/such", "; "});
+  expect_refused(fit({"--out", folder_.path()}), 1, {"folder", "; "});
+  expect_refused(fit({"--out", recording() + "/model.json"}), 1, {"press.csv", "folder"});
 }
 
-TEST_F(FitVerb, NoContactIsToldInOneLine) {
+TEST_F(FitVerb, NoContactIsOneErrorLine) {
   Recording air = example_recording(100, 1000.0);
   for (RecordingRow& row : air.rows) row.position_m = -1e-3;
   ASSERT_TRUE(write_recording(recording(), air, {}, true).ok());
-  expect_refused(fit({}), 1, "no_force: ");
+  expect_refused(fit({}), 1, {"no_force: "});
 }
 
-// Starts `palpate fit` and waits until it reads its recording; its SIGINT handler is
-// installed before. Returns -1 if it never does.
-pid_t start_fit(const Arguments& arguments, const std::string& recording, const std::string& err) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
-  std::vector<char*> words;
-  std::string program = PALPATE_BINARY;
-  words.push_back(program.data());
-  Arguments copies = arguments;
-  for (std::string& copy : copies) words.push_back(copy.data());
-  words.push_back(nullptr);
-  pid_t child = -1;
-  const int failed = posix_spawn(&child, PALPATE_BINARY, &actions, nullptr, words.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) return -1;
-  const std::filesystem::path open_files = "/proc/" + std::to_string(child) + "/fd";
-  while (waitpid(child, nullptr, WNOHANG) == 0) {
-    std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(open_files, ignored)) {
-      if (std::filesystem::read_symlink(entry.path(), ignored) == recording) return child;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return -1;
-}
-
-// Reading takes longer than the delivery of the signal, and the direct fit takes
-// seconds.
-TEST_F(FitVerb, InterruptedItLeavesNoFile) {
+// The direct fit takes seconds.
+TEST_F(FitVerb, AnInterruptedRunLeavesNoFile) {
   ASSERT_TRUE(write_recording(recording(), example_recording(400000, 1000.0, 30e-6), {}, true).ok());
-  const TemporaryFolder elsewhere;
-  const std::string real = std::filesystem::canonical(recording());
-  const pid_t child =
-      start_fit({"fit", "--recording", recording(), "--method", "direct", "--out", out()}, real, elsewhere.file("err"));
-  ASSERT_GT(child, 0);
-  ASSERT_EQ(kill(child, SIGINT), 0);
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_EQ(read_text(elsewhere.file("err")), "error: interrupted\n");
+  // --foreground: otherwise `timeout` also signals its process group.
+  const ProgramRun run = run_program({"timeout", "--foreground", "--preserve-status", "-s", "INT", "1", PALPATE_BINARY,
+                                      "fit", "--recording", recording(), "--method", "direct", "--out", out()});
+  EXPECT_EQ(run.exit_code, 130);
+  EXPECT_EQ(run.err, "error: interrupted\n");
   EXPECT_EQ(folder_.entries(), Arguments{"press.csv"});
 }
 

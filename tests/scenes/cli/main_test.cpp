@@ -1,6 +1,7 @@
 // The whole program: exit codes and output.
 #include <gtest/gtest.h>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 
 namespace palpate {
@@ -41,7 +42,7 @@ TEST(Main, WrongUsageIsOneLineThatNamesTheVerbs) {
 TEST(Main, UnknownOptionPointsToTheVerbsHelp) {
   const auto run = run_palpate({"scenes", "--dance"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_EQ(run.err, "error: The following argument was not expected: --dance (palpate scenes --help explains)\n");
+  EXPECT_TRUE(test::has_parts(run.err, {"error: ", "--dance", "palpate scenes", "--help"}));
 }
 
 TEST(Main, ScenesListsEveryScene) {
@@ -60,7 +61,7 @@ TEST(Main, ScenesReadsTheSameInEveryLocale) {
 TEST(Main, ResultsThatCannotBePrintedAreAFailure) {
   const auto run = run_program({"/bin/sh", "-c", "\"$0\" scenes > /dev/full", PALPATE_BINARY});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_EQ(run.err, "error: cannot write the results to standard output\n");
+  EXPECT_TRUE(test::has_parts(run.err, {"error: ", "standard output\n"}));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace palpate::cli {
 namespace {
 
-TEST(Progress, SaysHowFarAndHowLong) {
+TEST(Progress, HasShareAndRemainingTime) {
   EXPECT_EQ(progress_text("fitting", 0.25, 10.0), "fitting   25 %  30 s left");
   EXPECT_EQ(progress_text("fitting", 1.0, 10.0), "fitting  100 %  0 s left");
 }

@@ -33,7 +33,7 @@ TEST(Record, WritesMotionAndForceOfADeviceAndChecksThem) {
   const auto run = run_palpate({"record", "--device", kBridge, "--seconds", "3", "--out", path});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out.rfind("recorded ", 0), 0u) << run.out;
-  EXPECT_NE(run.out.find("% of the contact samples within the JND"), std::string::npos) << run.out;
+  EXPECT_TRUE(test::has_parts(run.out, {"% of the contact samples within the JND"}));
   const auto recording = read_recording(path);
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_GT(recording->rows.size(), 500u);
@@ -42,7 +42,7 @@ TEST(Record, WritesMotionAndForceOfADeviceAndChecksThem) {
   }
   const auto again = run_palpate({"record", "--device", kBridge, "--seconds", "1", "--out", path});
   EXPECT_EQ(again.exit_code, 1);
-  EXPECT_NE(again.err.find("exists"), std::string::npos) << again.err;
+  EXPECT_TRUE(test::has_parts(again.err, {"exists"}));
 }
 
 TEST(Record, KeepsMotionAloneOfADeviceThatMeasuresNoForce) {
@@ -50,14 +50,14 @@ TEST(Record, KeepsMotionAloneOfADeviceThatMeasuresNoForce) {
   const std::string path = folder.file("motion.csv");
   const auto run = run_palpate({"record", "--device", "hand", "--seconds", "1.5", "--out", path});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("has no force"), std::string::npos) << run.out;
-  EXPECT_NE(test::read_text(path).find("\ntime_s,position_m,velocity_m_per_s"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(run.out, {"has no force"}));
+  EXPECT_TRUE(test::has_parts(test::read_text(path), {"\ntime_s,position_m,velocity_m_per_s"}));
   const auto guided = run_palpate({"record", "--device", "hand", "--guide", "--out", folder.file("guided.csv")});
   EXPECT_EQ(guided.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(guided.err, {"error: --guide: hand measures no force", "; "})) << guided.err;
+  EXPECT_TRUE(test::has_parts(guided.err, {"error: --guide", "hand", "; "})) << guided.err;
 }
 
-TEST(Record, CtrlCEndsItWell) {
+TEST(Record, CtrlCCompletesTheFile) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("press.csv");
   test::ChildProcess program({PALPATE_BINARY, "record", "--device", replayed(folder), "--out", path});
@@ -66,7 +66,7 @@ TEST(Record, CtrlCEndsItWell) {
   EXPECT_TRUE(read_recording(path).ok());
 }
 
-TEST(Record, KilledItLeavesWholeRows) {
+TEST(Record, AKilledRunLeavesWholeRows) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("press.csv");
   test::ChildProcess program({PALPATE_BINARY, "record", "--device", replayed(folder), "--out", path});
@@ -77,11 +77,11 @@ TEST(Record, KilledItLeavesWholeRows) {
   EXPECT_GE(recording->rows.size(), 1000u);
 }
 
-TEST(Record, SaysWhatIsWrongWithADevice) {
+TEST(Record, RefusesDevicesWithAReason) {
   const test::TemporaryFolder folder;
   const auto run = run_palpate({"record", "--device", "bridge:exec:false", "--out", folder.file("a.csv")});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_EQ(run.err, "error: bridge:exec:false: the program ended with exit code 1; run it by itself to see why\n");
+  EXPECT_TRUE(test::has_parts(run.err, {"error: ", "exit code", "1", "; "}));
   EXPECT_EQ(run_palpate({"record", "--device", "hand"}).exit_code, 2) << "no --out";
   EXPECT_EQ(run_palpate({"record", "--device", "hand", "--seconds", "0", "--out", "a.csv"}).exit_code, 2);
 }
@@ -89,12 +89,11 @@ TEST(Record, SaysWhatIsWrongWithADevice) {
 TEST(DevicesTest, ADeviceShowsThatItsWatchdogStopsIt) {
   const auto run = run_palpate({"devices", "--test", kBridge});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("watchdog    stopped"), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("heartbeat   stopped"), std::string::npos) << run.out;
+  EXPECT_TRUE(test::has_parts(run.out, {"watchdog    stopped", "heartbeat   stopped"}));
   EXPECT_EQ(run_palpate({"devices", "--test", "hand"}).exit_code, 2);
 }
 
-TEST(DevicesTest, RefusesADeviceThatNeverSaysThatItStopped) {
+TEST(DevicesTest, RefusesADeviceThatDoesNotReportItsWatchdog) {
   const test::TemporaryFolder folder;
   const std::string peer = std::string(PALPATE_SOURCE_DIR) + "/tests/devices/bridge/peer.py";
   // A device reports by the flag 2 that its watchdog stopped it. This one does not.
@@ -103,9 +102,7 @@ TEST(DevicesTest, RefusesADeviceThatNeverSaysThatItStopped) {
   const auto run = run_palpate(
       {"devices", "--test", "bridge:exec:python3 " + folder.file("mute.py") + " none 1 " + folder.file("log")});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.err.find("did not report within 100 ms that its watchdog stopped it after the last frame"),
-            std::string::npos)
-      << run.err;
+  EXPECT_TRUE(test::has_parts(run.err, {"100 ms", "watchdog"}));
 }
 
 // A complete exploration.
@@ -118,13 +115,13 @@ RecordingMeasures explored() {
   return measures;
 }
 
-TEST(RecordGuide, AsksForWhatIsMissingFromTheSlowToTheFast) {
+TEST(RecordGuide, AsksForTheSlowestMissingMotion) {
   EXPECT_EQ(cli::guide_advice(explored(), 1.27), "");
   RecordingMeasures measures = explored();
   measures.small_strokes = 3;
   EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("make small strokes", 0), 0u);
   measures.longest_hold_s = 0.5;
-  EXPECT_EQ(cli::guide_advice(measures, 1.27), "press, and hold still for 2.5 s");
+  EXPECT_TRUE(test::has_parts(cli::guide_advice(measures, 1.27), {"hold", "2.5 s"}));
   measures.seconds[3][2] = 0.0;
   EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("press fast", 0), 0u);
   measures.seconds[2][0] = 0.01;
@@ -140,7 +137,7 @@ TEST(RecordGuide, MarksTheCellsThatCheckCounts) {
   EXPECT_EQ(lines[4].rfind("  3.00 to 4.00   1.0 s", 0), 0u);
 }
 
-TEST(RecordGuide, SaysWhatIsNewAndNothingTwice) {
+TEST(RecordGuide, GivesEachAdviceOnce) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("press.csv");
   cli::RecordGuide guide(path, {});

@@ -10,6 +10,7 @@
 #include "models/model/file/model_io.h"
 #include "scenes/cli/replay_files.h"
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -92,7 +93,7 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
   EXPECT_EQ(object["models"][1]["centres"], 3 * 4 * 5 * 6) << "nodes of the grid";
 }
 
-TEST_F(ReplayVerb, ForcesFileHoldsWhatTheFiguresComeFrom) {
+TEST_F(ReplayVerb, FiguresFollowFromTheForcesFile) {
   const std::string out = folder_.file("forces.csv");
   const auto ran = run({models_[0], models_[3], models_[5]}, {"--json", "--out", out});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
@@ -149,9 +150,9 @@ TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
   std::vector<std::string> rows;
   for (std::string line; std::getline(lines, line);) rows.push_back(line);
   ASSERT_GE(rows.size(), 4u) << ran.out;  // a note about the surface may follow
-  EXPECT_NE(rows[0].find("3000 samples"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(rows[0], {"3000 samples"}));
   for (const char* title : {"MODEL", "RMS mN", "WITHIN JND %", "TICK ns"}) {
-    EXPECT_NE(rows[1].find(title), std::string::npos) << title;
+    EXPECT_TRUE(test::has_parts(rows[1], {title})) << title;
   }
   EXPECT_EQ(rows[1].size(), rows[2].size());
   EXPECT_EQ(rows[1].size(), rows[3].size());
@@ -198,7 +199,7 @@ TEST_F(ReplayVerb, SeveralRecordingsHaveAForcesFileEach) {
   std::filesystem::remove(other);
 }
 
-TEST_F(ReplayVerb, ModelsOfOneNameAreToldApart) {
+TEST_F(ReplayVerb, ModelsOfOneNameGetDistinctNames) {
   const std::string out = folder_.file("forces.csv");
   const auto ran = run({models_[5], models_[5], models_[5]}, {"--json", "--out", out});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
@@ -222,26 +223,23 @@ TEST_F(ReplayVerb, ARecordingWithoutContactIsRefused) {
   EXPECT_EQ(ran.err.rfind("error: " + recording_ + ": no_", 0), 0u) << ran.err;
 }
 
-TEST_F(ReplayVerb, SaysWhatCannotBeDone) {
+TEST_F(ReplayVerb, FailuresAreOneErrorLine) {
   const std::string none = folder_.file("none.json");
   auto ran = run({none});
   EXPECT_EQ(ran.exit_code, 1);
   EXPECT_EQ(ran.out, "");
-  EXPECT_EQ(ran.err, "error: " + none +
-                         ": found no such file, expected a model file; check the path, or make one with palpate fit\n");
+  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", none, "no such file", "palpate fit"}));
   ran = run({recording_});
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err,
-            "error: " + recording_ +
-                " is a recording, expected a model file (JSON, made by palpate fit); give it with --recording\n");
+  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", recording_, "JSON", "palpate fit", "--recording"}));
   EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1);
   ran = run(std::vector<std::string>(17, models_[0]));
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err, "error: found 17 models, expected at most 16; replay them in several runs\n");
+  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", "17", "16", "; "}));
   recording_ = folder_.file("none.csv");
   ran = run({models_[0]});
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err.rfind("error: " + recording_ + ": found no such file", 0), 0u) << ran.err;
+  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", recording_, "no such file"})) << ran.err;
 }
 
 TEST_F(ReplayVerb, WrongUsageIsTwo) {
@@ -254,7 +252,7 @@ TEST_F(ReplayVerb, NothingIsLostWithoutForceOrAfterAnError) {
   const std::string out = folder_.with_file("forces.csv", "mine");
   auto ran = run({models_[0]}, {"--out", out});
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err, "error: " + out + " exists; pass --force to replace it\n");
+  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", out, "--force"}));
   EXPECT_EQ(ran.out, "");
   EXPECT_EQ(test::read_text(out), "mine");
 
@@ -271,12 +269,11 @@ TEST_F(ReplayVerb, NothingIsLostWithoutForceOrAfterAnError) {
   EXPECT_NE(test::read_text(out), "mine");
 }
 
-TEST_F(ReplayVerb, NeverWritesOverWhatItReads) {
+TEST_F(ReplayVerb, RefusesItsInputAsOutput) {
   const std::string before = test::read_text(recording_);
   const auto ran = run({models_[0]}, {"--out", recording_, "--force"});
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err,
-            "error: " + recording_ + " is the file to read from, expected another one for --out; name a new file\n");
+  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", recording_, "--out", "; "}));
   EXPECT_EQ(test::read_text(recording_), before);
 }
 

@@ -7,6 +7,7 @@
 #include <regex>
 #include <set>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -47,7 +48,7 @@ test::ProgramRun ReportVerb::report_;
 
 TEST_F(ReportVerb, WritesTheWholeFolderAndNothingBesideIt) {
   EXPECT_EQ(report_.err, "");
-  EXPECT_NE(report_.out.find("a whole tick takes"), std::string::npos) << report_.out;
+  EXPECT_TRUE(test::has_parts(report_.out, {"a whole tick takes"}));
   EXPECT_EQ(folder_->entries(), (std::vector<std::string>{"r1.csv", "r2.csv", "report"}));
   const Json report = Json::parse(test::read_text(out() + "/report.json"));
   EXPECT_EQ(report["format"], "palpate-report");
@@ -68,8 +69,7 @@ TEST_F(ReportVerb, WritesTheWholeFolderAndNothingBesideIt) {
 TEST_F(ReportVerb, PageNeedsNothingElse) {
   const std::string page = test::read_text(out() + "/index.html");
   EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
-  EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos);
-  EXPECT_NE(page.find("<svg viewBox"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(page, {"prefers-color-scheme: dark", "<svg viewBox"}));
   for (const char* outside : {"http:", "https:", "<script", "<link", "<img", "@import", "src="}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
@@ -131,12 +131,12 @@ TEST_F(ReportVerb, EveryFigureCanBeDrawnAgainFromItsFolder) {
   }
 }
 
-TEST_F(ReportVerb, WhatWasTrainedOnIsRefusedAsATest) {
+TEST_F(ReportVerb, RefusesTrainingRecordingsAsTest) {
   const std::string copy = folder_->with_file("copy.csv", test::read_text(folder_->file("r1.csv")));
   const auto ran = run_palpate(
       {"report", "--quick", "--train", folder_->file("r1.csv"), "--test", copy, "--out", folder_->file("leak")});
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_NE(ran.err.find("rows from 0 s on are those of r1 from 0 s on"), std::string::npos) << ran.err;
+  EXPECT_TRUE(test::has_parts(ran.err, {"0 s", "r1", "0 s"}));
   EXPECT_FALSE(fs::exists(folder_->file("leak")));
   fs::remove(copy);
 }
@@ -145,11 +145,11 @@ TEST_F(ReportVerb, NothingIsWrittenOverWithoutForce) {
   const std::string before = test::read_text(out() + "/report.json");
   const auto again = run_palpate({"report", "--quick", "--out", out()});
   EXPECT_EQ(again.exit_code, 1);
-  EXPECT_EQ(again.err, "error: " + out() + " exists; pass --force to replace it\n");
+  EXPECT_TRUE(test::has_parts(again.err, {"error: ", out(), "--force"}));
   EXPECT_EQ(test::read_text(out() + "/report.json"), before);
 }
 
-TEST_F(ReportVerb, SaysWhatIsWrongAndLeavesNothing) {
+TEST_F(ReportVerb, FailuresLeaveNoFiles) {
   const std::string bad = folder_->with_file("bad.csv", "time_s,position_m\n0,0\n");
   const auto before = folder_->entries();
   auto ran = run_palpate({"report", "--train", bad, "--out", folder_->file("other")});
@@ -157,9 +157,7 @@ TEST_F(ReportVerb, SaysWhatIsWrongAndLeavesNothing) {
   EXPECT_EQ(ran.err.rfind("error: " + bad + ":1:", 0), 0u) << ran.err;
   ran = run_palpate({"report", "--test", bad, "--out", folder_->file("other")});
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err,
-            "error: found --test without --train, expected recordings to train on as well; give them with "
-            "--train\n");
+  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", "--test", "--train", "--train"}));
   EXPECT_EQ(run_palpate({"report"}).exit_code, 2);
   EXPECT_EQ(folder_->entries(), before);
   fs::remove(bad);
@@ -178,14 +176,14 @@ TEST_F(ReportVerb, TheSameRecordingsGiveTheSameFiguresButForTimes) {
   fs::remove_all(other);
 }
 
-TEST_F(ReportVerb, WithoutATestItCrossValidatesAndSaysSo) {
+TEST_F(ReportVerb, CrossValidatesWithoutATest) {
   const std::string other = folder_->file("folds");
   const auto ran =
       run_palpate({"report", "--quick", "--train", folder_->file("r1.csv"), folder_->file("r2.csv"), "--out", other});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   const Json report = Json::parse(test::read_text(other + "/report.json"));
   EXPECT_EQ(report["folds"], 2);
-  EXPECT_NE(test::read_text(other + "/index.html").find("2-fold cross-validation"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(test::read_text(other + "/index.html"), {"2-fold cross-validation"}));
   // Both recordings were tested, so that the pooled samples include both.
   std::uint64_t contact = 0;
   for (const Json& recording : report["tables"]["recordings"])
@@ -195,7 +193,7 @@ TEST_F(ReportVerb, WithoutATestItCrossValidatesAndSaysSo) {
 }
 
 // Interrupted at once or during a fit, it leaves no folder, not even a hidden one.
-TEST_F(ReportVerb, InterruptedItLeavesNothing) {
+TEST_F(ReportVerb, AnInterruptedRunLeavesNothing) {
   const test::TemporaryFolder empty;
   for (const char* after_s : {"0.1", "2"}) {
     // --foreground: otherwise `timeout` also signals its process group, and a second signal

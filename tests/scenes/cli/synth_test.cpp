@@ -3,6 +3,7 @@
 
 #include "engine/recording/recording.h"
 #include "scenes/material/rig.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -15,10 +16,8 @@ TEST(Synth, ListsTheMaterialsWithTheirRelaxationTimes) {
   const auto run = run_palpate({"synth", "--list"});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_EQ(run.err, "");
-  for (const Material& material : materials()) {
-    EXPECT_NE(run.out.find(std::string(material.name)), std::string::npos) << material.name;
-    EXPECT_NE(run.out.find(material.relaxation_times), std::string::npos) << material.name;
-  }
+  for (const Material& material : materials())
+    EXPECT_TRUE(test::has_parts(run.out, {std::string(material.name), std::string(material.relaxation_times)}));
 }
 
 TEST(Synth, WritesTheRecordingOfTheLibrary) {
@@ -66,7 +65,7 @@ TEST(Synth, WritesOverNothingWithoutForce) {
   const std::vector<std::string> command = {"synth", "--material", "stiff", "--seconds", "1", "--out", path};
   const auto refused = run_palpate(command);
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
+  EXPECT_TRUE(test::has_parts(refused.err, {"--force"}));
   EXPECT_EQ(test::read_text(path), "mine\n");
   std::vector<std::string> forced = command;
   forced.push_back("--force");
@@ -102,11 +101,6 @@ TEST(Synth, WrongUsageEndsWithTwoAndLeavesNoFile) {
     EXPECT_EQ(run.err.rfind("error: ", 0), 0u) << run.err;
   }
   EXPECT_TRUE(folder.entries().empty());
-  const auto unknown = run_palpate({"synth", "--material", "jelly", "--out", out});
-  EXPECT_NE(
-      unknown.err.find(
-          "known: silicone, tissue, softening, layered, friction, sponge, button, maxwell, foam, elastic, stiff, gel"),
-      std::string::npos);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRounding = 1e-12;  // a few roundings of doubles
 
-TEST(ForceBins, AreTwoJndWideWhateverTheForce) {
+TEST(ForceBins, AreTwoJndWideAtEveryForce) {
   for (const JndLine jnd : {JndLine{}, JndLine{0.5, 0.0}, JndLine{1e-3, 0.2}}) {
     for (const double force_N : {0.01, 0.3, 6.0, 30.0, 3000.0}) {
       const std::size_t bin = force_bin(force_N, jnd);

@@ -39,7 +39,7 @@ TEST(Evaluate, TakesMoreModelsThanOneTick) {
             result->models[0].surface.at == 0.0);
 }
 
-TEST(Evaluate, AFileGivesWhatTheRecordingGives) {
+TEST(Evaluate, AFileAndItsRecordingGiveTheSame) {
   const Recording recording = test::example_recording(800, 1000.0);
   const test::TemporaryFolder folder;
   ASSERT_TRUE(write_recording(folder.file("r.csv"), recording, {}, false).ok());
@@ -51,7 +51,7 @@ TEST(Evaluate, AFileGivesWhatTheRecordingGives) {
   EXPECT_FALSE(evaluate(rows_of_file(folder.file("none.csv")), example_list()).ok());
 }
 
-TEST(Evaluate, WhatIsNotCountedIsReplayedAllTheSame) {
+TEST(Evaluate, SamplesThatAreNotCountedAreReplayed) {
   const Recording recording = test::example_recording(800, 1000.0);
   const double middle_s = recording.rows[400].time_s;
   EvaluationRequest late;

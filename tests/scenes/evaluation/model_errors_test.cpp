@@ -101,7 +101,7 @@ TEST(ModelErrors, WhereNothingGoesBeyondTheBoundIsExact) {
 
 // One model has an error larger by 0.03 JND in every stroke, and strokes differ by thirty
 // times that. The intervals overlap, but the interval of the paired difference excludes 0.
-TEST(PairedDifference, SeparatesWhatOverlaps) {
+TEST(PairedDifference, SeparatesOverlappingSamples) {
   const JndLine jnd{0.1, 0.0};
   ModelErrors good(jnd), bad(jnd);
   RandomStream random(4, 0);

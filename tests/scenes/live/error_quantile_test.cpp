@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-TEST(ErrorQuantile, IsWhat99PercentDoNotExceed) {
+TEST(ErrorQuantile, IsTheNinetyNinthPercentile) {
   ErrorQuantile errors;
   EXPECT_EQ(errors.p99(), 0.0);
   for (int i = 1; i <= 1000; ++i) errors.add(2e-3 * i);
@@ -13,7 +13,7 @@ TEST(ErrorQuantile, IsWhat99PercentDoNotExceed) {
 }
 
 // An error of exactly 1 JND counts as within, as in the share within the JND.
-TEST(ErrorQuantile, TellsTheSidesOfOneExactly) {
+TEST(ErrorQuantile, IsExactBesideOneJnd) {
   ErrorQuantile errors;
   for (int i = 0; i < 99; ++i) errors.add(1.0);
   errors.add(1.0001);

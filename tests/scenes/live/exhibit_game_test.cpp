@@ -62,7 +62,7 @@ TEST(ExhibitGame, IsPlayedFromGuessToScore) {
   EXPECT_EQ(game.state(), State::attract);
 }
 
-TEST(ExhibitGame, FeltRoundsAreBlindAndOneIsACatchTrial) {
+TEST(ExhibitGame, RoundsOnADeviceAreBlindWithOneCatchTrial) {
   std::set<std::size_t> caught_at;
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
     ExhibitGame game(seed);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/scene/assets.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -17,15 +18,15 @@ TEST(ExhibitWords, AllLanguagesSayTheSameThings) {
   for (const ExhibitWords& words : *languages) EXPECT_EQ(words.keys(), languages->front().keys());
 }
 
-TEST(ExhibitWords, FillInNumbersAndShowWhatIsMissing) {
+TEST(ExhibitWords, FillInNumbersAndShowMissingKeys) {
   const auto words = ExhibitWords::parse("# a comment\n\nwas = Block %1: %2\r\n", "x.txt");
   ASSERT_TRUE(words.ok());
   EXPECT_EQ((*words)("was", "1", "soft"), "Block 1: soft");
   EXPECT_EQ((*words)("nothing"), "nothing");
-  EXPECT_EQ(ExhibitWords::parse("a = b\nno sign\n", "x.txt").error().message,
-            "x.txt:2: found \"no sign\", expected key = text");
-  EXPECT_EQ(ExhibitWords::parse("a = b\na = c", "x.txt").error().message,
-            "x.txt:2: found \"a\" a second time, expected each key once");
+  EXPECT_TRUE(
+      test::has_parts(ExhibitWords::parse("a = b\nno sign\n", "x.txt").error().message, {"x.txt:2:", "\"no sign\""}));
+  EXPECT_TRUE(test::has_parts(ExhibitWords::parse("a = b\na = c", "x.txt").error().message,
+                              {"x.txt:2:", "\"a\"", "second time"}));
 }
 
 TEST(ExhibitTally, OutlivesARestart) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/message_parts.h"
+
 namespace palpate {
 namespace {
 
@@ -13,7 +15,7 @@ LoopSnapshot snapshot(double loop_time_s, std::uint32_t faults, std::uint64_t mi
   return result;
 }
 
-TEST(FaultLog, CountsWhatFollowsWithinASecond) {
+TEST(FaultLog, CountsFaultsWithinASecond) {
   FaultLog log;
   EXPECT_EQ(log.update(snapshot(10.0, loop_fault::kBadSample)), TickFaultLevel::alarm);
   EXPECT_EQ(log.update(snapshot(10.001, 0)), TickFaultLevel::none);
@@ -23,7 +25,7 @@ TEST(FaultLog, CountsWhatFollowsWithinASecond) {
   ASSERT_EQ(log.events().size(), 3u);
   EXPECT_EQ(log.events()[0].loop_time_s, 10.0);
   EXPECT_EQ(log.events()[0].count, 3u);
-  EXPECT_EQ(log.events()[0].text, "the device gave a sample that is not a number: the force was set to 0");
+  EXPECT_TRUE(test::has_parts(log.events()[0].text, {"not a number", "force"}));
   EXPECT_EQ(log.events()[1].count, 1u);
   EXPECT_EQ(log.events()[2].loop_time_s, 13.0);
 }

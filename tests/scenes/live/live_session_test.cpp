@@ -12,6 +12,7 @@
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/session_frames.h"
 #include "tests/support/temporary_folder.h"
 
@@ -20,6 +21,7 @@ namespace {
 
 using test::frames_until;
 using test::must;
+using test::session_request;
 using test::TemporaryFolder;
 
 using Session = std::unique_ptr<LiveSession>;
@@ -37,12 +39,7 @@ struct Files {
     EXPECT_TRUE(write_recording(folder.file("played.csv"), recording, {}, false).ok());
   }
   SessionRequest request(const std::string& device) const {
-    SessionRequest result;
-    result.scene = "skin";
-    result.device = device;
-    result.models = {folder.file("a.json"), folder.file("b.json")};
-    result.realtime = false;
-    return result;
+    return session_request("skin", device, {folder.file("a.json"), folder.file("b.json")});
   }
   // Positions as recorded, because these example models have no registered surface.
   Session replaying() const {
@@ -67,23 +64,12 @@ std::string error_of(const SessionRequest& request) {
   return session ? "opened" : session.error().message;
 }
 
-TEST(LiveSession, RefusesWhatCannotBeOpened) {
-  SessionRequest request;
-  request.scene = "sponge";
-  EXPECT_EQ(error_of(request).rfind("unknown scene \"sponge\"; known scenes: ", 0), 0u);
-  request = {};
-  request.models = {"nothing.json"};
-  EXPECT_EQ(error_of(request).rfind("found no model \"nothing.json\"", 0), 0u);
-  request = {};
-  request.device = "brush";
-  EXPECT_EQ(error_of(request).rfind("unknown device \"brush\"", 0), 0u);
-  request = {};
-  request.scene = "skin";
-  request.models = {"greedy"};
-  EXPECT_EQ(error_of(request).rfind("the scene \"skin\" has no virtual material", 0), 0u);
-  request.models.clear();
-  request.device = "hand";
-  EXPECT_EQ(error_of(request), "opened") << "a session that waits for a file";
+TEST(LiveSession, RefusesUnknownNames) {
+  EXPECT_TRUE(test::has_parts(error_of(session_request("sponge", "hand", {})), {"\"sponge\"", "silicone_block"}));
+  EXPECT_TRUE(test::has_parts(error_of(session_request("", "hand", {"nothing.json"})), {"\"nothing.json\""}));
+  EXPECT_TRUE(test::has_parts(error_of(session_request("", "brush", {})), {"\"brush\""}));
+  EXPECT_TRUE(test::has_parts(error_of(session_request("skin", "hand", {"greedy"})), {"\"skin\""}));
+  EXPECT_EQ(error_of(session_request("skin", "hand", {})), "opened") << "a session that waits for a file";
 }
 
 // The loop and replay give bit-identical forces for the same samples. The models
@@ -123,7 +109,7 @@ TEST(LiveSession, ComparesWithTheForceInTheRecording) {
   const Files files;
   const Session session = files.replaying();
   EXPECT_EQ(session->comparison().reference(), ReferenceKind::measured);
-  EXPECT_EQ(session->reference_words(), "as recorded in played");
+  EXPECT_TRUE(test::has_parts(session->reference_words(), {"played"}));
   EXPECT_FALSE(session->has_reference(ReferenceKind::truth));
   EXPECT_FALSE(session->has_reference(ReferenceKind::direct)) << "not read yet";
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
@@ -143,7 +129,7 @@ TEST(LiveSession, ComparesWithTheForceInTheRecording) {
       *session, [&] { return session->newest().restarted || session->comparison().history().size() > 300; }));
 }
 
-TEST(LiveSession, ReplaysAsTold) {
+TEST(LiveSession, PausesSeeksAndChangesTheSpeed) {
   const Files files;
   const Session session = files.replaying();
   EXPECT_EQ(session->tool_input(), nullptr);
@@ -205,13 +191,13 @@ TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
   ASSERT_EQ(notices.size(), 3u);
   EXPECT_FALSE(notices[0].problem);
   EXPECT_TRUE(notices[2].problem);
-  EXPECT_NE(notices[2].text.find("bad.json"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(notices[2].text, {"bad.json"}));
   EXPECT_TRUE(session->read_notices().empty());
   session->select(2);
   session->select(9);
   EXPECT_EQ(session->models().selected(), 2u);
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().selected == 2 && !session->newest().fading; }));
-  EXPECT_EQ(session->reference_words(), "no truth to compare with: difference from second") << "there is one now";
+  EXPECT_TRUE(test::has_parts(session->reference_words(), {"second"})) << "there is one now";
   // The first points have no force of models that were added later.
   EXPECT_TRUE(std::isnan(session->comparison().history()[0].force_N[2]));
   EXPECT_FALSE(std::isnan(session->comparison().history()[session->comparison().history().size() - 1].force_N[2]));
@@ -228,7 +214,7 @@ TEST(LiveSession, RefusesMoreModelsThanTheLoopTakes) {
   EXPECT_TRUE(notices[0].problem);
 }
 
-TEST(LiveSession, ARemovedModelGivesItsPlaceBackAndTheLastOneStays) {
+TEST(LiveSession, ARemovedModelFreesItsSlotButTheLastOneStays) {
   const Files files;
   SessionRequest request = files.request("hand");
   request.models.assign(kMaxModels, files.folder.file("a.json"));
@@ -249,7 +235,7 @@ TEST(LiveSession, ARemovedModelGivesItsPlaceBackAndTheLastOneStays) {
 }
 
 // The simulated hand stays in the recorded range of depth and speed, so that its samples count.
-TEST(LiveSession, TheHandPressesNeitherDeeperNorFasterThanWasRecorded) {
+TEST(LiveSession, TheHandStaysInTheRecordedRange) {
   const test::TemporaryFolder folder;
   Recording slow = *test::rig_recording(test::train_settings("elastic"));
   for (RecordingRow& row : slow.rows) {
@@ -260,12 +246,8 @@ TEST(LiveSession, TheHandPressesNeitherDeeperNorFasterThanWasRecorded) {
   const PressRange range = press_range({slow});
   const std::string path = folder.file("slow.csv");
   ASSERT_TRUE(write_recording(path, slow, {}, false).ok());
-  SessionRequest request;
-  request.scene = "elastic_block";
+  SessionRequest request = session_request("elastic_block", "hand", {"trend"});
   request.recordings = {path};
-  request.device = "hand";
-  request.models = {"trend"};
-  request.realtime = false;
   const Session session = must(LiveSession::open(request));
   ASSERT_TRUE(frames_until(*session, [&] { return session->comparison().contact_s() > 3.0; }));
   EXPECT_LT(session->comparison().outside_s(), 0.1 * session->comparison().contact_s());
@@ -288,7 +270,7 @@ TEST(LiveSession, TakesTheMouse) {
   ASSERT_TRUE(frames_until(*session, [&] { return std::abs(session->newest().tick.position_m + 9e-3) < 1e-4; }));
 }
 
-TEST(LiveSession, ClosedWhileRecordingLeavesTheFileWhole) {
+TEST(LiveSession, ClosingCompletesTheRecording) {
   const Files files;
   {
     const Session session = files.replaying();
@@ -305,17 +287,13 @@ TEST(LiveSession, ClosedWhileRecordingLeavesTheFileWhole) {
 
 // A session with fits: error figures relative to the material's true force, then a
 // recording of the session that a fit accepts.
-TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
+TEST(LiveSession, ItsRecordingCanBeFitted) {
   const TemporaryFolder folder;
-  SessionRequest request;
-  request.scene = "elastic_block";
-  request.device = "hand";
-  request.models = {"greedy", "random"};
-  request.realtime = false;
+  SessionRequest request = session_request("elastic_block", "hand", {"greedy", "random"});
   const Session session = must(LiveSession::open(request));
   ASSERT_EQ(session->models().size(), 3u);
   EXPECT_EQ(session->models().info(2).name, "direct") << "the reference, always";
-  EXPECT_EQ(session->reference_words(), "true force of the virtual material, elastic");
+  EXPECT_TRUE(test::has_parts(session->reference_words(), {"true force", "elastic"}));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().info(0).state == SlotState::ready; }));
   EXPECT_EQ(session->models().selected(), 0u) << "the first asked for";
   EXPECT_EQ(session->models().info(0).name, "greedy-100");
@@ -338,11 +316,7 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
 
 // Several requests in sequence, as when a slider is dragged: the last one counts.
 TEST(LiveSession, ModelsAreFittedAnewWithOtherCentres) {
-  SessionRequest request;
-  request.scene = "elastic_block";
-  request.device = "hand";
-  request.models = {"random-10"};
-  request.realtime = false;
+  SessionRequest request = session_request("elastic_block", "hand", {"random-10"});
   const Session session = must(LiveSession::open(request));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_EQ(session->models().info(0).centres, 10);
@@ -358,18 +332,14 @@ TEST(LiveSession, ARecordingIsTheMaterialThatIsFittedAndPressed) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("mine.csv");
   ASSERT_TRUE(write_recording(path, *test::rig_recording(test::train_settings("elastic")), {}, false).ok());
-  SessionRequest request;
-  request.scene = "silicone_block";
+  SessionRequest request = session_request("silicone_block", "hand", {"greedy", "trend"});
   request.recordings = {path};
-  request.device = "hand";
-  request.models = {"greedy", "trend"};
-  request.realtime = false;
   const Session session = must(LiveSession::open(request));
   EXPECT_EQ(session->scene().title, "mine");
   EXPECT_FALSE(session->has_reference(ReferenceKind::truth)) << "silicone is none of it";
   EXPECT_EQ(session->reference_words(), "no truth to compare with");
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
-  EXPECT_EQ(session->reference_words(), "best model of the recording, direct");
+  EXPECT_TRUE(test::has_parts(session->reference_words(), {"direct"}));
   EXPECT_EQ(session->models().selected(), 0u) << "the winner";
   ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).errors.samples > 1000; }));
   EXPECT_LT(session->figures(0).errors.p99_error_over_jnd, 1.0);
@@ -378,7 +348,7 @@ TEST(LiveSession, ARecordingIsTheMaterialThatIsFittedAndPressed) {
   request.device = "replay:" + path;
   const Session replayed = must(LiveSession::open(request));
   EXPECT_EQ(replayed->scene().title, "mine");
-  EXPECT_EQ(replayed->reference_words(), "as recorded in mine, fitted to it");
+  EXPECT_TRUE(test::has_parts(replayed->reference_words(), {"mine"}));
   ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->models().all_settled(); }));
   ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->figures(0).errors.samples > 1000; }));
   EXPECT_LT(replayed->figures(0).errors.p99_error_over_jnd, 1.0);
@@ -393,7 +363,7 @@ TEST(LiveSession, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   EXPECT_FALSE(alone->has_reference(ReferenceKind::truth));
   EXPECT_EQ(alone->models().size(), 2u) << "nothing is fitted beside";
   ASSERT_TRUE(frames_until(*alone, [&] { return alone->models().all_settled(); }));
-  EXPECT_EQ(alone->reference_words(), "no truth to compare with: difference from second");
+  EXPECT_TRUE(test::has_parts(alone->reference_words(), {"second"}));
 
   request.scene = "elastic_block";
   request.models = {"trend"};
@@ -416,7 +386,7 @@ TEST(LiveSession, AModelOfSomethingElseIsNotComparedWithTheTruth) {
 }
 
 // A paused replay adds no samples, and single steps count like a running replay.
-TEST(LiveSession, APausedReplayCountsNothingAndASteppedOneAsItRan) {
+TEST(LiveSession, APausedReplayCountsNothingAndAStepOneSample) {
   const Files files;
   const Session session = files.replaying();
   ASSERT_TRUE(frames_until(*session, [&] { return session->comparison().figures(0).errors.samples > 300; }));
@@ -434,11 +404,8 @@ TEST(LiveSession, APausedReplayCountsNothingAndASteppedOneAsItRan) {
 }
 
 TEST(LiveSession, LineUpsShareTheModelsThatBothHave) {
-  SessionRequest request;
-  request.scene = "elastic_block";
-  request.device = "hand";
+  SessionRequest request = session_request("elastic_block", "hand", {});
   request.line_up = "Palpate";
-  request.realtime = false;
   const Session session = must(LiveSession::open(request));
   EXPECT_EQ(session->line_up(), "Palpate");
   const std::size_t before = session->models().size();

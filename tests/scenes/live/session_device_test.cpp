@@ -48,11 +48,7 @@ class SessionDevice : public ::testing::Test {
     // A direct model, which is the reference for a recording.
     ModelData data = test::example_model("direct", KernelKind::cubic, test::paper_features(), 1);
     ASSERT_TRUE(save_model(folder_.file("model.json"), data, false).ok());
-    SessionRequest request;
-    request.scene = "skin";
-    request.device = "hid";
-    request.models = {folder_.file("model.json")};
-    request.realtime = false;
+    SessionRequest request = test::session_request("skin", "hid", {folder_.file("model.json")});
     request.bus = &bus_;
     auto session = LiveSession::open(request);
     ASSERT_TRUE(session.ok()) << session.error().message;
@@ -110,7 +106,7 @@ TEST_F(SessionDevice, GivesNoForceBeforeItKnowsWhereTheToolIs) {
   }));
 }
 
-TEST_F(SessionDevice, UnpluggedInMidPressItLetsGoSaysSoAndKeepsTheRecording) {
+TEST_F(SessionDevice, UnpluggingReleasesTheForceAndKeepsTheRecording) {
   session_->start_zeroing();
   ASSERT_TRUE(frames_until([&] { return zeroed(); }));
   session_->reset_figures();  // clears alarms due to a slow start

@@ -18,7 +18,7 @@ TEST(SustainedError, IsTheMeanOfTheLast50Milliseconds) {
   EXPECT_NEAR(last, 0.0, 1e-12);
 }
 
-TEST(SustainedError, WhatChangesItsSignDoesNotLast) {
+TEST(SustainedError, ErrorsOfChangingSignDoNotLast) {
   SustainedError error;
   double last = 1.0;
   for (int i = 0; i < 100; ++i) last = error.add(1e-3 * i, i % 2 == 0 ? 3.0 : -3.0);

@@ -94,7 +94,7 @@ TEST(Block, SameMotionGivesTheSameForceAtEveryRate) {
 
 // From rest on, the net work put in is never negative at any time, so that the material
 // is passive.
-TEST(Block, NeverGivesMoreEnergyThanItGot) {
+TEST(Block, IsPassive) {
   for (const Material& material : materials()) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       const BlockPtr block = material.make_block();
@@ -128,7 +128,7 @@ TEST(Block, ClosedCycleLosesEnergyUnlessElastic) {
   }
 }
 
-TEST(Block, NeverPullsAndIsSilentInTheAir) {
+TEST(Block, NeverPullsAndHasNoForceInTheAir) {
   for (const Material& material : materials()) {
     const BlockPtr block = material.make_block();
     const Wandering motion(11, 1.5 * depth_of_5_N(*block));
@@ -146,7 +146,7 @@ TEST(Block, NeverPullsAndIsSilentInTheAir) {
 }
 
 // After a quarter of an hour in the air only the slowest part of a power law has not relaxed.
-TEST(Block, ForgetsInFreeAir) {
+TEST(Block, RecoversInFreeAir) {
   for (const Material& material : materials()) {
     const BlockPtr block = material.make_block(), fresh = material.make_block();
     const double deep_m = depth_of_5_N(*block);
@@ -158,7 +158,7 @@ TEST(Block, ForgetsInFreeAir) {
   }
 }
 
-TEST(Block, ResistsMoreGoingInThanComingOut) {
+TEST(Block, LoadsAboveAndUnloadsBelowTheRelaxedForce) {
   for (const Material& material : materials()) {
     if (material.name == "elastic") continue;
     const BlockPtr in = material.make_block(), still = material.make_block(), out = material.make_block();
@@ -173,7 +173,7 @@ TEST(Block, ResistsMoreGoingInThanComingOut) {
   }
 }
 
-TEST(Block, NonsenseChangesNothing) {
+TEST(Block, InvalidInputChangesNothing) {
   for (const Material& material : materials()) {
     const BlockPtr block = material.make_block();
     const double force_N = block->step(0.004, 0.02, 1e-3);
@@ -188,7 +188,7 @@ TEST(Block, NonsenseChangesNothing) {
   }
 }
 
-TEST(Block, ResetForgetsAll) {
+TEST(Block, ResetClearsTheState) {
   for (const Material& material : materials()) {
     const BlockPtr used = material.make_block(), fresh = material.make_block();
     for (int i = 0; i < 100; ++i) used->step(0.008, 0.1, 1e-3);

@@ -54,7 +54,7 @@ TEST(ButtonBlock, ComesBackAnotherWay) {
 
 // The truss in equilibrium: when the dome is flat, the forces of the legs cancel and only that
 // of the skirt is left.
-TEST(ButtonBlock, OnTheFlatOnlyTheSkirtIsFelt) {
+TEST(ButtonBlock, OnlyTheSkirtResistsAfterTheSnap) {
   const Stroke slow = stroke(0.0005);
   const auto flat = static_cast<std::size_t>(std::lround(ButtonBlock::kRise_m / 1e-5)) - 1;
   EXPECT_NEAR(slow.in_N[flat],

@@ -16,7 +16,7 @@ TEST(LayeredBlock, KnowsNothingOfTheInclusionAboveIt) {
 }
 
 // After a long hold it equals two springs in series: k_i (s - g - y)^1.5 = k_s y.
-TEST(LayeredBlock, HeldLongIsAContactOnASpring) {
+TEST(LayeredBlock, RelaxedIsAContactOnASpring) {
   LayeredBlock block;
   for (int i = 1; i <= 800; ++i) block.step(1e-5 * i, 1e-2, 1e-3);
   for (int i = 0; i < 100000; ++i) block.step(8e-3, 0.0, 1e-3);

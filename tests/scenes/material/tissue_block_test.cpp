@@ -24,7 +24,7 @@ TEST(TissueBlock, StepRelaxesAsThePowerLaw) {
   }
 }
 
-TEST(TissueBlock, SlowPressHoldsWhatNeverRelaxes) {
+TEST(TissueBlock, SlowPressKeepsTheElasticForce) {
   TissueBlock block;
   for (int i = 1; i <= 3000; ++i) block.step(2e-6 * i, 2e-9, 1000.0);
   EXPECT_NEAR(block.force_N() / block.relaxed_force_N(6e-3), 1.0, 1e-3);

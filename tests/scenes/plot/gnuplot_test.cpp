@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -20,21 +21,19 @@ TEST(Gnuplot, RunsScriptsInTheirFolder) {
   EXPECT_EQ(test::read_text(folder.file("a.txt")), "1.5\n");
 }
 
-TEST(Gnuplot, SaysWhatItDidNotUnderstand) {
+TEST(Gnuplot, ErrorsHaveItsFirstLine) {
   const test::TemporaryFolder folder;
   folder.with_file("a.gp", "dance\n");
   const Status status = run_gnuplot(folder.path(), "a.gp");
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().message.rfind("gnuplot could not draw a.gp: ", 0), 0u) << status.error().message;
+  EXPECT_TRUE(test::has_parts(status.error().message, {"a.gp"})) << status.error().message;
 }
 
-TEST(Gnuplot, MissingIsToldBeforeAnyWork) {
+TEST(Gnuplot, IsCheckedBeforeAnyWork) {
   const test::TemporaryFolder folder;
   const auto ran = test::run_palpate({"report", "--quick", "--out", folder.file("report")}, {"PATH=" + folder.path()});
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err,
-            "error: found no gnuplot in PATH, which draws the figures; install it (Debian: apt-get install "
-            "gnuplot-nox)\n");
+  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", "PATH", "apt-get install gnuplot-nox"}));
   EXPECT_TRUE(folder.entries().empty());
 }
 

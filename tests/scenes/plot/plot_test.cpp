@@ -6,6 +6,7 @@
 #include "scenes/plot/draw.h"
 #include "scenes/plot/inline_svg.h"
 #include "scenes/plot/layout.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -49,10 +50,10 @@ TEST(Plot, HoldsFromThreeTenthsOfANewtonToThreeKilonewtons) {
     ASSERT_TRUE(drawn.ok()) << drawn.error().message;
     const std::string svg = *read_whole_file(folder.file("errors.svg"));
     for (const char* text : {"greedy", "random", "Measured force [N]", "Error", "Error [JND]", "1 JND"}) {
-      EXPECT_NE(svg.find(text), std::string::npos) << text << " at " << largest_N;
+      EXPECT_TRUE(test::has_parts(svg, {text})) << text << " at " << largest_N;
     }
     EXPECT_EQ(count_of(svg, "greedy"), 1u) << "once for all panels";
-    EXPECT_NE(svg.find(tic), std::string::npos) << largest_N;
+    EXPECT_TRUE(test::has_parts(svg, {tic})) << largest_N;
     EXPECT_EQ(svg.find("00000"), std::string::npos) << largest_N;
     EXPECT_TRUE(read_whole_file(folder.file("errors.png")).has_value());
   }
@@ -68,7 +69,7 @@ TEST(Plot, TicsOfManyOrHardlyAnyDecadesAreReadable) {
   ASSERT_TRUE(draw_plots(folder.path(), {plot}).ok());
   const std::string svg = *read_whole_file(folder.file("errors.svg"));
   for (const char* tic : {">100<", ">10k<", ">1M<", ">0.8<", ">1.5<"}) {
-    EXPECT_NE(svg.find(tic), std::string::npos) << tic;
+    EXPECT_TRUE(test::has_parts(svg, {tic})) << tic;
   }
 }
 
@@ -110,7 +111,7 @@ TEST(Layout, ANameBesideAPointStandsBesideItsBar) {
   EXPECT_DOUBLE_EQ(tags[1].x, 0.75);
 }
 
-TEST(Layout, WhatLeavesTheAxisIsMarkedAtItsEdgeOnceAPeak) {
+TEST(Layout, MarksEachPeakBeyondTheAxisOnce) {
   Panel panel;
   panel.y = {"", "", false, -1.0, 1.0};
   panel.series = {{"model", 0xD55E00, Mark::line, {{0.0, 0.0}, {1.0, 3.0}, {2.0, 5.0}, {3.0, 0.0}, {4.0, -2.0}}}};
@@ -156,8 +157,8 @@ TEST(Plot, AGapBreaksTheLine) {
 TEST(DrawPlot, WritesOneFileWholeOrNothing) {
   if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
   const test::TemporaryFolder folder;
-  EXPECT_EQ(draw_plot(errors_up_to(3.0), {folder.file("a.jpg")}, false).error().message,
-            "found --plot " + folder.file("a.jpg") + ", expected a file that ends in .svg or .png");
+  EXPECT_TRUE(test::has_parts(draw_plot(errors_up_to(3.0), {folder.file("a.jpg")}, false).error().message,
+                              {"--plot", folder.file("a.jpg")}));
   ASSERT_TRUE(draw_plot(errors_up_to(3.0), {folder.file("a.svg")}, false).ok());
   EXPECT_EQ(folder.entries(), (std::vector<std::string>{"a.svg"}));
   EXPECT_FALSE(draw_plot(errors_up_to(3.0), {folder.file("a.svg")}, false).ok()) << "it exists";

@@ -5,6 +5,7 @@
 #include "engine/base/random_stream.h"
 #include "engine/recording/content_hash.h"
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 
 namespace palpate {
 namespace {
@@ -38,14 +39,12 @@ TEST(Leakage, ACopyUnderAnotherNameIsRefusedByName) {
   Recording copy = train;
   copy.name = "copy";
   for (RecordingRow& row : copy.rows) row.time_s += 100.0;
-  const std::string found =
-      "copy: the forces of 2000 rows from 0 s on are those of train from 0 s on, expected a test that was not trained "
-      "on; leave that stretch out of one of them";
+  const std::vector<std::string> parts = {"copy", "2000 rows", "0 s", "train", "0 s", "; "};
   const Status status = refuse({train, copy});
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().message, found);
+  EXPECT_TRUE(test::has_parts(status.error().message, parts));
   const auto both = {std::make_shared<const Recording>(train), std::make_shared<const Recording>(copy)};
-  EXPECT_EQ(refuse_leakage(both, 2).error().message, found) << "without a test they test each other";
+  EXPECT_TRUE(test::has_parts(refuse_leakage(both, 2).error().message, parts)) << "without a test they test each other";
 }
 
 TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
@@ -59,10 +58,7 @@ TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
   EXPECT_EQ(stretch.trained_row, 331u);
   const Status status = refuse({train, test});
   ASSERT_FALSE(status);
-  EXPECT_EQ(
-      status.error().message.rfind("test: the forces of 100 rows from 0.777 s on are those of train from 0.331 s", 0),
-      0u)
-      << status.error().message;
+  EXPECT_TRUE(test::has_parts(status.error().message, {"100", "0.777 s", "0.331 s"})) << status.error().message;
 }
 
 TEST(Leakage, AShiftOfThePositionsHidesNothing) {

@@ -11,6 +11,7 @@
 #include "scenes/report/plan.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
+#include "tests/support/message_parts.h"
 
 namespace palpate {
 namespace {
@@ -27,7 +28,7 @@ TEST(LeaveOut, OfOneRecordingABlockAtItsEnd) {
   ASSERT_EQ(part.tested.size(), 1u);
   EXPECT_EQ(part.tested[0]->rows.size(), 5000u) << "what came before is replayed too";
   EXPECT_EQ(part.counted_from_s, part.train[0]->rows.back().time_s + 1e-3);
-  EXPECT_EQ(part.words.rfind("a block at the end of the training recording, ", 0), 0u);
+  EXPECT_TRUE(test::has_parts(part.words, {"block at the end"}));
 }
 
 TEST(LeaveOut, OfAShortOneNothing) { EXPECT_TRUE(leave_out(example("a", 500)).tested.empty()); }

@@ -44,7 +44,7 @@ bool reproduced(const PaperData& data, const std::string& claim) {
   return false;
 }
 
-TEST(PaperClaims, WhatIsAsThePaperHasItIsReproduced) {
+TEST(PaperClaims, EqualClaimsAreReproduced) {
   const PaperData data = example();
   for (const char* claim : {"random: at every force", "kD-tree: mean plus deviation", "greedy-20: mean",
                             "greedy-100: mean", "greedy-100 is almost as accurate", "the maxima exceed",
@@ -54,7 +54,7 @@ TEST(PaperClaims, WhatIsAsThePaperHasItIsReproduced) {
   EXPECT_FALSE(reproduced(data, "maxima at small forces considerably lower")) << "they are equal here";
 }
 
-TEST(PaperClaims, WhatIsNotReproducedHasARemark) {
+TEST(PaperClaims, OtherClaimsHaveARemark) {
   PaperData data = example();
   data.by_sites[1].seconds[kGreedy100] = 4.0;
   for (const Claim& one : paper_claims(data)) EXPECT_TRUE(one.here.front().reproduced || !one.why.empty()) << one.claim;

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -40,7 +41,7 @@ TEST(ReportFolder, ReplacesAnEarlierReportOnlyWhenForced) {
   folder.with_file("report/old.csv", "old");
   const auto refused = ReportFolder::create(out, false);
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().message, out + " exists; pass --force to replace it");
+  EXPECT_TRUE(test::has_parts(refused.error().message, {out, "--force"}));
   {
     auto dropped = ReportFolder::create(out, true);
     ASSERT_TRUE(dropped.ok());
@@ -65,13 +66,11 @@ TEST(ReportFolder, NeverTakesTheWayOfSomethingElse) {
     const auto refused = ReportFolder::create(path, true);
     return refused.ok() ? "" : refused.error().message;
   };
-  EXPECT_EQ(message(home), home +
-                               " holds files but no report.json, expected an earlier report to replace; name "
-                               "another folder");
+  EXPECT_TRUE(test::has_parts(message(home), {home, "report.json", "folder"}));
   const std::string file = folder.with_file("file", "mine");
-  EXPECT_EQ(message(file), "cannot write " + file + ": it is not a folder; name a new one for --out");
-  EXPECT_EQ(message(folder.file("none/report")), "cannot write " + folder.file("none/report") + ": the folder " +
-                                                     folder.file("none") + " does not exist; create it first");
+  EXPECT_TRUE(test::has_parts(message(file), {file, "folder", "--out"}));
+  EXPECT_TRUE(test::has_parts(message(folder.file("none/report")),
+                              {folder.file("none/report"), "folder", folder.file("none"), "; "}));
   EXPECT_NE(message(""), "");
   EXPECT_NE(message(".."), "");
   EXPECT_EQ(test::read_text(folder.file("home/thesis.txt")), "mine");

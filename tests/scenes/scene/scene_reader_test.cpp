@@ -5,7 +5,7 @@
 
 #include "scenes/material/material.h"
 #include "scenes/scene/scene.h"
-#include "tests/support/replaced.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -28,9 +28,8 @@ const char* const kGood = R"({
   "default_models": ["greedy"]
 })";
 
-// The reader's message about the valid text with `from` replaced by `to`.
-std::string complaint_after(const std::string& from, const std::string& to) {
-  const auto scene = parse_scene(test::replaced(kGood, from, to), "x.json");
+std::string complaint(const std::string& text) {
+  const auto scene = parse_scene(text, "x.json");
   return scene.ok() ? "accepted" : scene.error().message;
 }
 
@@ -57,8 +56,6 @@ TEST(SceneReader, TakesAStrongestPress) {
   const auto scene = parse_scene(text, "x.json");
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_EQ(scene->strongest_press_N, 0.9);
-  EXPECT_EQ(complaint_after("\"material\": null,", "\"material\": null, \"strongest_press_N\": 0,"),
-            "x.json:5:42: strongest_press_N: found 0, expected a number above 0 up to 20");
 }
 
 TEST(SceneReader, TakesItsJndFromAFile) {
@@ -71,54 +68,29 @@ TEST(SceneReader, TakesItsJndFromAFile) {
   EXPECT_EQ(scene->jnd.weber_fraction, 0.12);
 }
 
-TEST(SceneReader, RefusesAJndFileThatIsNone) {
-  EXPECT_EQ(complaint_after("\"jnd\":", "\"jnd_file\": \"none.json\", \"jnd\":"),
-            "x.json:10:35: jnd: found a \"jnd\" and a \"jnd_file\", expected one of them\n"
-            "x.json:10:15: jnd_file: none.json: found no such file, expected a JND file; check the path, or make one "
-            "with palpate study analyse");
-  EXPECT_EQ(complaint_after("\"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0}", "\"jnd_file\": 3"),
-            "x.json:10:15: jnd_file: found 3, expected a text that is not empty");
-  EXPECT_EQ(
-      complaint_after("  \"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0},\n", ""),
-      "x.json:1:1: jnd: found no such field, expected an object with offset_N and weber_fraction, or a \"jnd_file\"");
-}
-
 TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
-  EXPECT_EQ(complaint_after("\"name\": \"x\"", "\"name\": \"y\""),
-            "x.json:2:11: name: found \"y\", expected \"x\", the name of the file");
-  EXPECT_EQ(complaint_after("\"title\": \"X\"", "\"title\": 3"),
-            "x.json:3:12: title: found 3, expected a text that is not empty");
-  EXPECT_EQ(complaint_after("  \"material\": null,\n", ""),
-            "x.json:1:1: material: found no such field, expected the name of a virtual material, or null");
-  std::string known;
-  for (const Material& material : materials()) known.append(known.empty() ? "" : ", ").append(material.name);
-  EXPECT_EQ(complaint_after("\"material\": null", "\"material\": \"silicon\""),
-            "x.json:5:15: material: found \"silicon\", expected one of " + known);
-  EXPECT_EQ(
-      complaint_after("\"depth\"", "\"dept\""),
-      "x.json:7:14: features[0].kind: found \"dept\", expected one of depth, velocity, lowpass_velocity\n"
-      "x.json:6:15: features: found no feature of kind \"depth\", expected one: every force depends on the depth");
-  EXPECT_EQ(complaint_after("0.5", "-1"),
-            "x.json:8:55: features[1].relaxation_time_s: found -1, expected a number above 0 up to 100");
-  EXPECT_EQ(complaint_after(", \"relaxation_time_s\": 0.5", ""),
-            "x.json:8:5: features[1].relaxation_time_s: found no such field, expected a number above 0 up to 100");
-  EXPECT_EQ(
-      complaint_after("{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"relaxation_time_s\": 1}"),
-      "x.json:7:44: features[0].relaxation_time_s: found a relaxation time, expected none for the kind \"depth\"");
-  EXPECT_EQ(complaint_after("{\"kind\": \"depth\"},", "{\"kind\": \"depth\"}, {\"kind\": \"depth\"},"),
-            "x.json:7:24: features[1]: found the same feature twice, expected each once");
-  EXPECT_EQ(complaint_after("\"offset_N\": 0.1", "\"offset_mN\": 100"),
-            "x.json:10:10: jnd.offset_N: found no such field, expected a number above 0 up to 100\n"
-            "x.json:10:24: jnd.offset_mN: found an unknown field, expected one of offset_N, weber_fraction");
-  EXPECT_EQ(complaint_after("\"weber_fraction\": 0", "\"weber_fraction\": 7"),
-            "x.json:10:46: jnd.weber_fraction: found 7, expected a number from 0 up to 1");
-  EXPECT_EQ(complaint_after("#56B4E9", "red"),
-            "x.json:12:24: colours.block: found \"red\", expected a colour such as \"#56B4E9\"");
-  EXPECT_EQ(complaint_after("\"default_models\"", "\"finish\": \"wood\", \"default_models\""),
-            "x.json:13:13: finish: found \"wood\", expected one of silicone, foam, gel, rubber, skin, dome");
-  EXPECT_EQ(
-      complaint_after("\"greedy\"", "\"best\""),
-      "x.json:13:22: default_models[0]: found \"best\", expected one of trend, direct, voxel, random, kdtree, greedy");
+  test::expect_messages(
+      kGood, complaint,
+      {{R"("name": "x")", R"("name": "y")", {"x.json:2:11:", "name", "\"y\"", "\"x\""}},
+       {R"("title": "X")", R"("title": 3)", {"x.json:3:12:", "title", "3"}},
+       {"  \"material\": null,\n", "", {"x.json:1:1:", "material"}},
+       {"null", R"("silicon")", {"x.json:5:15:", "material", "\"silicon\"", std::string(materials()[0].name)}},
+       {"null,", R"(null, "strongest_press_N": 0,)", {"x.json:5:42:", "strongest_press_N", "0", "20"}},
+       {R"("depth")", R"("dept")", {"x.json:7:14:", "features[0].kind", "dept", "depth", "x.json:6:15:", "depth"}},
+       {"0.5", "-1", {"x.json:8:55:", "features[1].relaxation_time_s", "-1", "0", "100"}},
+       {R"(, "relaxation_time_s": 0.5)", "", {"x.json:8:5:", "features[1].relaxation_time_s", "0", "100"}},
+       {R"("depth"})", R"("depth", "relaxation_time_s": 1})", {"x.json:7:44:", "features[0]", "depth"}},
+       {R"({"kind": "depth"})", R"({"kind": "depth"}, {"kind": "depth"})", {"x.json:7:24:", "features[1]", "twice"}},
+       {"offset_N", "offset_mN", {"x.json:10:10:", "jnd.offset_N", "x.json:10:24:", "jnd.offset_mN", "offset_N"}},
+       {R"("weber_fraction": 0)", R"("weber_fraction": 7)", {"x.json:10:46:", "jnd.weber_fraction", "7", "0", "1"}},
+       {R"("jnd":)", R"("jnd_file": "none.json", "jnd":)", {"x.json:10:35:", "jnd_file", "x.json:10:15:", "none.json"}},
+       {R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})", R"("jnd_file": 3)", {"x.json:10:15:", "jnd_file", "3"}},
+       {"  \"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0},\n", "", {"x.json:1:1:", "jnd", "offset_N", "jnd_file"}},
+       {"#56B4E9", "red", {"x.json:12:24:", "colours.block", "\"red\"", "#56B4E9"}},
+       {R"("default_models")",
+        R"("finish": "wood", "default_models")",
+        {"x.json:13:13:", "finish", "wood", "silicone"}},
+       {R"("greedy")", R"("best")", {"x.json:13:22:", "default_models[0]", "best", "trend"}}});
 }
 
 TEST(SceneReader, LimitsTheNumberOfFeatures) {
@@ -130,12 +102,12 @@ TEST(SceneReader, LimitsTheNumberOfFeatures) {
   document["features"].push_back({{"kind", "velocity"}});
   const auto nine = parse_scene(document.dump(), "x.json");
   ASSERT_FALSE(nine.ok());
-  EXPECT_NE(nine.error().message.find("found a list of 9, expected a list of 1 to 8 features"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(nine.error().message, {"9", "1 to 8"}));
   document["features"] = Json::array();
   EXPECT_FALSE(parse_scene(document.dump(), "x.json").ok());
 }
 
-TEST(SceneReader, RefusesWhatIsNotJson) {
+TEST(SceneReader, RefusesOtherTextThanJson) {
   const auto cut = parse_scene(std::string(kGood).substr(0, 40), "x.json");
   ASSERT_FALSE(cut.ok());
   EXPECT_EQ(cut.error().message.rfind("x.json:4:", 0), 0u) << cut.error().message;

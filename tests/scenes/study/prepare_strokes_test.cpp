@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/support/live_doubles.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/study_driving.h"
 #include "tests/support/temporary_folder.h"
 
@@ -61,7 +62,7 @@ TEST(PrepareStrokes, TwoModelsDifferByTheirStiffness) {
   EXPECT_NE((*same)->checksum, (*strokes)->checksum);
 }
 
-TEST(PrepareStrokes, IsTheSameAtEveryRate) {
+TEST(PrepareStrokes, DoesNotDependOnTheRate) {
   const JndLine jnd;
   const auto slow = strokes_of(presses({0.01}, 0.0, 200.0), spring(100.0), spring(80.0), jnd);
   const auto fast = strokes_of(presses({0.01}, 0.0, 4000.0), spring(100.0), spring(80.0), jnd);
@@ -70,7 +71,7 @@ TEST(PrepareStrokes, IsTheSameAtEveryRate) {
   EXPECT_NEAR((*slow)->reference_mean_N, (*fast)->reference_mean_N, 0.02);
 }
 
-TEST(PrepareStrokes, LeavesOutWhatAStudyMayNotPresent) {
+TEST(PrepareStrokes, ExcludesStrokesBeyondTheLimits) {
   const JndLine jnd;
   const auto weak = strokes_of(presses({0.06, 0.01}, 0.0), spring(100.0), spring(80.0), jnd);
   ASSERT_TRUE(weak.ok());
@@ -79,9 +80,7 @@ TEST(PrepareStrokes, LeavesOutWhatAStudyMayNotPresent) {
   }
   const auto none = strokes_of(presses({-0.01}, 0.0), spring(100.0), spring(80.0), jnd);
   ASSERT_FALSE(none.ok());
-  EXPECT_NE(none.error().message.find("1.1 s, up to 3.8 N (2.5 N root mean square) and 90 N/s, in spring"),
-            std::string::npos)
-      << none.error().message;
+  EXPECT_TRUE(test::has_parts(none.error().message, {"1.1 s", "3.8 N", "2.5 N", "90 N/s", "spring", "; "}));
 }
 
 TEST(PrepareStrokes, CanBePresentedAsTheyAre) {
@@ -98,15 +97,14 @@ TEST(PrepareStrokes, CanBePresentedAsTheyAre) {
   }
 }
 
-TEST(PrepareStrokes, RefusesWhatCannotBeCompared) {
+TEST(PrepareStrokes, RefusesOtherNumbersOfModels) {
   const auto silicone = load_scene("silicone_block");
   const auto study = load_scene("jnd_study");
   ASSERT_TRUE(silicone.ok() && study.ok());
-  EXPECT_NE(prepare_strokes({*silicone, {"greedy", "random", "direct"}, ""}).error().message.find("found 3 models"),
-            std::string::npos);
-  EXPECT_NE(prepare_strokes({*silicone, {"best"}, ""}).error().message.find("found no model \"best\""),
-            std::string::npos);
-  EXPECT_NE(prepare_strokes({*study, {}, ""}).error().message.find("has no virtual material"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(prepare_strokes({*silicone, {"greedy", "random", "direct"}, ""}).error().message,
+                              {"found 3 models"}));
+  EXPECT_TRUE(test::has_parts(prepare_strokes({*silicone, {"best"}, ""}).error().message, {"found no model \"best\""}));
+  EXPECT_TRUE(test::has_parts(prepare_strokes({*study, {}, ""}).error().message, {"has no virtual material"}));
   EXPECT_FALSE(prepare_strokes({*silicone, {}, "/none/rec.csv"}).ok());
 }
 

@@ -18,7 +18,7 @@ double share_of_second(const SubjectTraits& traits, double first_N, double secon
 }
 
 // Three standard deviations of 20,000 draws are 0.011 at most.
-TEST(SimulatedSubject, TellsForcesApartAsItsJndSays) {
+TEST(SimulatedSubject, DiscriminatesForcesByItsJnd) {
   const SubjectTraits traits{{0.065, 0.0633}, 0.0, 0.0};
   for (const double reference_N : {0.3, 2.5}) {
     EXPECT_NEAR(share_of_second(traits, reference_N, reference_N), 0.5, 0.011);

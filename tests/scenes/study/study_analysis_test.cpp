@@ -46,7 +46,7 @@ StudyData average_subject(const std::string& code, const std::vector<double>& re
 // 0.065 N. Their other points are not published; these give the same result: with
 // F - mean F = -1.06, -0.86, -0.36, 1.14, 1.14 N (sum of squares 4.592) the JNDs 0.14,
 // 0.1748, 0.1283, 0.3325 and 0.225 N give 0.0633, and the point at 1.0 N is the lowest.
-TEST(StudyAnalysis, ReproducesThePapersOutcome) {
+TEST(StudyAnalysis, ReproducesTheLineOfThePaper) {
   const std::vector<double> relative = {0.14 / 0.3, 0.17477 / 0.5, 0.1283, 0.133};
   const auto analysis = analyse_study({average_subject("S01", relative, 1000)}, true);
   ASSERT_TRUE(analysis.ok()) << analysis.error().message;
@@ -81,7 +81,7 @@ TEST(StudyAnalysis, AveragesOverTheSubjects) {
   EXPECT_EQ(table.substr(table.find('\n') + 1, 17), "S01,0.3,0.3,3200,");
 }
 
-TEST(StudyAnalysis, JudgesByWhatWasRendered) {
+TEST(StudyAnalysis, UsesTheRenderedForces) {
   StudyData data = average_subject("S01", {0.3, 0.2, 0.15, 0.13}, 100);
   for (StudyRecord& record : data.records) {
     record.first_rendered_N *= 0.98;
@@ -122,14 +122,15 @@ TEST(StudyAnalysis, FindsTheJndsOfKnownSubjects) {
   }
 }
 
-TEST(StudyAnalysis, TakesFilesThatEndEarly) {
+TEST(StudyAnalysis, AcceptsFilesThatEndEarly) {
   const StudyHeader header{"S01"};
   const std::vector<StudyRecord> records = simulated_answers(header, {}, 1);
   for (const std::size_t kept : {9u, 12u, 60u}) {
     const StudyData cut{header, {records.begin(), records.begin() + static_cast<std::ptrdiff_t>(kept)}};
     const auto analysis = analyse_study({cut}, false);
     ASSERT_TRUE(analysis.ok()) << analysis.error().message;
-    EXPECT_GE(analysis->points.size(), kept > 12 ? 1u : 0u);
+    EXPECT_TRUE(std::any_of(analysis->mean.references.begin(), analysis->mean.references.end(),
+                            [](const ReferenceJnd& one) { return one.rendered_N > 0.0; }));
   }
 }
 
@@ -142,13 +143,13 @@ TEST(JndLineFit, FitsByLeastSquaresAndShiftsBelowAllPoints) {
   EXPECT_NEAR(lines->conservative.offset_N, 0.1, 1e-12);
 }
 
-TEST(JndLineFit, RefusesLinesThatNothingCanBeJudgedBy) {
+TEST(JndLineFit, RefusesDecreasingAndNegativeLines) {
   EXPECT_FALSE(fit_jnd_lines({}).ok());
   EXPECT_FALSE(fit_jnd_lines({{1.0, 0.1, 0.0, "study"}, {1.0, 0.2, 0.0, "study"}}).ok());
   const auto falling = fit_jnd_lines({{1.0, 0.3, 0.0, "study"}, {2.0, 0.2, 0.0, "study"}});
-  EXPECT_NE(falling.error().message.find("0.4000 N + -10.00 %"), std::string::npos) << falling.error().message;
+  EXPECT_TRUE(test::has_parts(falling.error().message, {"0.4000 N + -10.00 %"}));
   const auto negative = fit_jnd_lines({{1.0, 0.1, 0.0, "study"}, {2.0, 0.3, 0.0, "study"}});
-  EXPECT_NE(negative.error().message.find("-0.1000 N + 20.00 %"), std::string::npos) << negative.error().message;
+  EXPECT_TRUE(test::has_parts(negative.error().message, {"-0.1000 N + 20.00 %"}));
 }
 
 std::vector<StudyRecord> answers(std::size_t correct, std::size_t trials) {
@@ -173,7 +174,7 @@ TEST(Discrimination, HasTheIntervalOfWilson) {
   EXPECT_EQ(correct_share({"S01", 0, 0, 0}).high, 1.0);
 }
 
-TEST(Discrimination, CountsWhatWasRendered) {
+TEST(Discrimination, ExcludesTrialsThatWereNotRendered) {
   std::vector<StudyRecord> records = answers(60, 100);
   records[0].trial.training = true;
   records[1].worst_N = 0.033;  // half a JND at 0 N is 32.5 mN
@@ -184,7 +185,7 @@ TEST(Discrimination, CountsWhatWasRendered) {
   EXPECT_EQ(result.unusable, 1u);
 }
 
-TEST(Discrimination, SaysWhetherThePredictionHeld) {
+TEST(Discrimination, ComparesThePredictionWithTheAnswers) {
   StrokePair strokes;
   strokes.mean_over_jnd = 0.2;
   strokes.max_over_jnd = 0.71;
@@ -194,8 +195,8 @@ TEST(Discrimination, SaysWhetherThePredictionHeld) {
     EXPECT_EQ(words.rfind(prediction, 0), 0u) << words;
     EXPECT_EQ(words.substr(words.rfind(": ") + 2), agreement) << words;
   };
-  EXPECT_NE(verdict(52).find("52 % right [42 to 62], as by guessing"), std::string::npos) << verdict(52);
-  EXPECT_NE(verdict(70).find("70 % right [60 to 78], more than by guessing"), std::string::npos) << verdict(70);
+  EXPECT_TRUE(test::has_parts(verdict(52), {"52 % right [42 to 62], as by guessing"}));
+  EXPECT_TRUE(test::has_parts(verdict(70), {"70 % right [60 to 78], more than by guessing"}));
   const std::string few = "too few answers to decide, the interval contains 75 %.";
   const std::string below = "Predicted below the JND (at most 0.71 of it).";
   expect(52, below, "consistent.");
@@ -223,7 +224,7 @@ TEST(Discrimination, AnalysesEachSubjectAndAllTogether) {
   EXPECT_EQ(results->back().correct, 140u);
   EXPECT_EQ(results->back().trials, 200u);
   const std::string table = discrimination_table(*results, *one.header.strokes);
-  EXPECT_NE(table.find("\nS02,100,80,0,0.8000,0.7112,0.8666,"), std::string::npos) << table;
+  EXPECT_TRUE(test::has_parts(table, {"\nS02,100,80,0,0.8000,0.7112,0.8666,"}));
   one.records.clear();
   EXPECT_TRUE(test::has_parts(analyse_discrimination({one}).error().message, {"S01", "leave the file out"}));
 }
@@ -241,7 +242,7 @@ double simulated_share(double stroke_share, const JndLine& jnd, int sessions) {
 }
 
 // Three standard deviations of 4,000 answers are 0.024 at most.
-TEST(Discrimination, SimulatedSubjectsAnswerAsTheirJndSays) {
+TEST(Discrimination, SimulatedSubjectsHaveTheirShareCorrect) {
   const JndLine jnd{0.1, 0.0};
   EXPECT_NEAR(simulated_share(1.0, jnd, 40), 0.5, 0.024) << "the same stroke twice";
   // The largest unlimited force is 2 N, and the noise does not depend on force.

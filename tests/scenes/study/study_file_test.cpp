@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "tests/support/full_disk.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/replaced.h"
 #include "tests/support/study_driving.h"

@@ -28,59 +28,72 @@ std::vector<double> run(StudyPresenter& presenter, std::size_t ticks, double gai
   return forces;
 }
 
-TEST(StudyPresenter, PresentsBothForcesExactToTheTick) {
-  StudyPresenter presenter;
-  for (const double force_N : run(presenter, 100)) ASSERT_EQ(force_N, 0.0) << "idle";
-  EXPECT_EQ(presenter.present(stimuli(1.0, 2.5)), 1u);
-  const std::vector<double> forces = run(presenter, kPresentation_ticks + 100);
-  for (std::size_t i = 0; i < forces.size(); ++i) {
-    SCOPED_TRACE(i);
-    const std::size_t second = kLeadIn_ticks + kInterval_ticks + kPause_ticks;
-    const auto held = [&](std::size_t begin) {
-      return i >= begin + kRamp_ticks && i < begin + kRamp_ticks + kHold_ticks;
-    };
-    const bool first_held = held(kLeadIn_ticks), second_held = held(second);
-    const bool silent =
-        i <= kLeadIn_ticks || (i + 1 >= kLeadIn_ticks + kInterval_ticks && i <= second) || i + 1 >= kPresentation_ticks;
-    if (first_held || second_held || silent) {
-      ASSERT_EQ(forces[i], first_held ? 1.0 : second_held ? 2.5 : 0.0);
-    } else {
-      ASSERT_TRUE(forces[i] > 0.0 && forces[i] < 2.5);
+// Constant forces, and strokes with a reminder.
+TEST(StudyPresenter, PresentsTheStimuliExactToTheTick) {
+  const auto strokes = test::example_strokes(0.9);
+  const Stimulus half{0.5, &strokes->reference_N}, reference{1.0, &strokes->reference_N};
+  for (const Stimuli& shown : {stimuli(1.0, 2.5), Stimuli{half, Stimulus{1.0, &strokes->comparison_N}, reference}}) {
+    StudyPresenter presenter;
+    for (const double force_N : run(presenter, 100)) ASSERT_EQ(force_N, 0.0) << "idle";
+    EXPECT_EQ(presenter.present(shown), 1u);
+    const std::size_t first = has_reminder(shown) ? 0 : 1, period = kInterval_ticks + kPause_ticks;
+    const std::size_t end = kLeadIn_ticks + (3 - first) * period - kPause_ticks;
+    const std::vector<double> forces = run(presenter, end + 100);
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      double expected_N = 0.0;
+      for (std::size_t k = first; k < 3; ++k) {
+        const std::size_t at = i - kLeadIn_ticks - (k - first) * period;  // wraps before the interval
+        if (at >= kInterval_ticks) continue;
+        const std::size_t edge = std::min<std::size_t>(at, kInterval_ticks - 1 - at);
+        const double half_cosine = 0.5 - 0.5 * std::cos(std::acos(-1.0) * static_cast<double>(edge) / kRamp_ticks);
+        expected_N = (edge >= kRamp_ticks ? 1.0 : half_cosine) * shown[k].size *
+                     (has_reminder(shown) ? (*shown[k].stroke_N)[at] : 1.0);
+      }
+      ASSERT_NEAR(forces[i], expected_N, 1e-12) << i;
     }
+    const PresentationState& state = presenter.newest();
+    EXPECT_EQ(state.presentation, 1u);
+    EXPECT_EQ(state.finished_at, 100u + end);
+    EXPECT_EQ(state.tick, 200u + end);
+    EXPECT_NEAR(state.rendered_N[0], has_reminder(shown) ? 0.5 * strokes->reference_mean_N : 0.0, 1e-4);
+    EXPECT_NEAR(state.rendered_N[1], has_reminder(shown) ? strokes->comparison_mean_N : 1.0, 1e-4);
+    EXPECT_NEAR(state.rendered_N[2], has_reminder(shown) ? strokes->reference_mean_N : 2.5, 1e-4);
+    EXPECT_NEAR(state.worst_N, 0.0, 1e-12);
+    EXPECT_FALSE(state.limited) << "the ramps stay below the limiter's slew";
   }
-  const PresentationState& state = presenter.newest();
-  EXPECT_EQ(state.presentation, 1u);
-  EXPECT_EQ(state.finished_at, 100u + kPresentation_ticks);
-  EXPECT_EQ(state.tick, 100u + kPresentation_ticks + 100u);
-  EXPECT_FALSE(state.limited) << "the ramps stay below the limiter's slew";
 }
 
-TEST(StudyPresenter, RecordsWhatWasRenderedNotWhatWasWanted) {
+TEST(StudyPresenter, RecordsTheRenderedForces) {
   StudyPresenter presenter;
   presenter.present(stimuli(1.0, 2.0));
   run(presenter, kPresentation_ticks + 2, 0.9);
   EXPECT_NEAR(presenter.newest().rendered_N[1], 0.9, 1e-12);
   EXPECT_NEAR(presenter.newest().rendered_N[2], 1.8, 1e-12);
+  EXPECT_NEAR(presenter.newest().worst_N, 0.2, 1e-12);
 }
 
-TEST(StudyPresenter, LimitsAForceThatIsTooLarge) {
-  StudyPresenter presenter;
-  presenter.present(stimuli(50.0, std::nan("")));
-  const std::vector<double> forces = run(presenter, kPresentation_ticks + 2);
-  EXPECT_EQ(*std::max_element(forces.begin(), forces.end()), kLargestStudyForce_N);
-  for (std::size_t i = 1; i < forces.size(); ++i) ASSERT_LE(std::abs(forces[i] - forces[i - 1]), 0.1 + 1e-9);
-  EXPECT_TRUE(presenter.newest().limited);
-  EXPECT_EQ(presenter.newest().rendered_N[2], 0.0);
+TEST(StudyPresenter, LimitsForcesThatAreTooLarge) {
+  const std::vector<double> strong(700, 50.0);  // shorter than an interval
+  const Stimulus stroke{1.0, &strong};
+  for (const Stimuli& shown : {stimuli(50.0, std::nan("")), Stimuli{stroke, stroke, stroke}}) {
+    StudyPresenter presenter;
+    presenter.present(shown);
+    const std::vector<double> forces = run(presenter, 6000);
+    EXPECT_EQ(*std::max_element(forces.begin(), forces.end()), kLargestStudyForce_N);
+    for (std::size_t i = 1; i < forces.size(); ++i) ASSERT_LE(std::abs(forces[i] - forces[i - 1]), 0.1 + 1e-9);
+    for (std::size_t i = 5000; i < forces.size(); ++i) ASSERT_EQ(forces[i], 0.0);
+    EXPECT_TRUE(presenter.newest().limited);
+  }
 }
 
-TEST(StudyPresenter, NoForceOutlastsItsIntervalWhenNobodyComesBack) {
+TEST(StudyPresenter, NoForceOutlastsItsInterval) {
   StudyPresenter presenter;
   presenter.present(stimuli(1.0, 2.0));
   run(presenter, kPresentation_ticks);
   for (const double force_N : run(presenter, 20000)) ASSERT_EQ(force_N, 0.0);
 }
 
-TEST(StudyPresenter, StopsAtOnceAndForGood) {
+TEST(StudyPresenter, StopIsImmediateAndPermanent) {
   StudyPresenter presenter;
   presenter.present(stimuli(3.0, 2.0));
   const std::vector<double> before = run(presenter, kLeadIn_ticks + kRamp_ticks + 10);
@@ -95,63 +108,6 @@ TEST(StudyPresenter, StopsAtOnceAndForGood) {
   }
   presenter.present(stimuli(1.0, 1.0));
   for (const double force_N : run(presenter, 2000)) ASSERT_EQ(force_N, 0.0);
-}
-
-TEST(StudyPresenter, PlaysStrokesBehindAReminderExactToTheTick) {
-  const auto strokes = test::example_strokes(0.9);
-  StudyPresenter presenter;
-  const Stimulus reference{1.0, &strokes->reference_N}, comparison{1.0, &strokes->comparison_N};
-  presenter.present({Stimulus{0.5, &strokes->reference_N}, comparison, reference});
-  const std::size_t interval = kInterval_ticks, pause = kPause_ticks, lead_in = kLeadIn_ticks;
-  const std::vector<double> forces = run(presenter, lead_in + 3 * interval + 2 * pause + 50);
-  const auto share = [&](std::size_t i) {  // half a cosine at either end
-    const std::size_t edge = std::min(i, interval - 1 - i);
-    return edge >= kRamp_ticks ? 1.0 : 0.5 - 0.5 * std::cos(std::acos(-1.0) * static_cast<double>(edge) / kRamp_ticks);
-  };
-  for (std::size_t i = 0; i < forces.size(); ++i) {
-    SCOPED_TRACE(i);
-    double expected_N = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t begin = lead_in + k * (interval + pause);
-      if (i < begin || i >= begin + interval) continue;
-      const std::size_t at = i - begin;
-      expected_N = share(at) * (k == 0   ? 0.5 * strokes->reference_N[at]
-                                : k == 1 ? strokes->comparison_N[at]
-                                         : strokes->reference_N[at]);
-    }
-    ASSERT_NEAR(forces[i], expected_N, 1e-12);
-  }
-  const PresentationState& state = presenter.newest();
-  EXPECT_EQ(state.finished_at, lead_in + 3 * interval + 2 * pause);
-  EXPECT_NEAR(state.rendered_N[0], 0.5 * strokes->reference_mean_N, 1e-4);
-  EXPECT_NEAR(state.rendered_N[1], strokes->comparison_mean_N, 1e-4);
-  EXPECT_NEAR(state.rendered_N[2], strokes->reference_mean_N, 1e-4);
-  EXPECT_NEAR(state.worst_N, 0.0, 1e-12);
-  EXPECT_FALSE(state.limited);
-}
-
-TEST(StudyPresenter, TellsHowFarWhatWasRenderedWasFromTheStroke) {
-  const auto strokes = test::example_strokes(1.0);
-  const Stimulus reference{1.0, &strokes->reference_N};
-  StudyPresenter presenter;
-  presenter.present({reference, reference, reference});
-  run(presenter, 6000, 0.9);
-  double largest_N = 0.0;
-  for (std::uint32_t i = 0; i < kInterval_ticks; ++i)
-    largest_N = std::max(largest_N, interval_share(i) * strokes->reference_N[i]);
-  EXPECT_NEAR(presenter.newest().worst_N, 0.1 * largest_N, 1e-9);
-}
-
-TEST(StudyPresenter, LimitsStrokesAndEndsThem) {
-  const std::vector<double> strong(700, 50.0);  // shorter than an interval
-  const Stimulus stimulus{1.0, &strong};
-  StudyPresenter presenter;
-  presenter.present({stimulus, stimulus, stimulus});
-  const std::vector<double> forces = run(presenter, 6000);
-  EXPECT_EQ(*std::max_element(forces.begin(), forces.end()), kLargestStudyForce_N);
-  for (std::size_t i = 1; i < forces.size(); ++i) ASSERT_LE(std::abs(forces[i] - forces[i - 1]), 0.1 + 1e-9);
-  for (std::size_t i = 5000; i < forces.size(); ++i) ASSERT_EQ(forces[i], 0.0);
-  EXPECT_TRUE(presenter.newest().limited);
 }
 
 TEST(StudyPresenter, ATickAllocatesAndLocksNothing) {

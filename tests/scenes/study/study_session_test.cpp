@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "tests/support/full_disk.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/study_driving.h"
 #include "tests/support/temporary_folder.h"
 
@@ -33,7 +35,7 @@ const std::vector<StudyRecord>& records_of(const std::unique_ptr<StudySession>& 
 }
 
 // The device drops out for 30 ms in the first push.
-TEST_F(StudySessionTest, ATrialInWhichTheDeviceDropsOutComesAgain) {
+TEST_F(StudySessionTest, RepeatsATrialInWhichTheDeviceDropsOut) {
   const auto session = begun();
   session->proceed();
   const StudyTrial trial = session->trial();
@@ -55,7 +57,7 @@ TEST_F(StudySessionTest, NothingIsPresentedBeforeTheConsent) {
   const auto session = test::session_at(path_);
   ASSERT_TRUE(session.ok());
   EXPECT_EQ((*session)->state(), StudyState::consent);
-  EXPECT_NE((*session)->view().message.find("Do you agree to take part?"), std::string::npos);
+  EXPECT_TRUE(test::has_parts((*session)->view().message, {"Do you agree to take part?"}));
   (*session)->proceed();
   (*session)->answer(true);
   for (int i = 0; i < 1000; ++i) ASSERT_EQ((*session)->next_force_N(0.0), 0.0);
@@ -80,7 +82,7 @@ TEST_F(StudySessionTest, RunsFromConsentToTheEnd) {
   EXPECT_EQ(session->state(), StudyState::done);
 }
 
-TEST_F(StudySessionTest, TheTrainingTellsRightFromWrong) {
+TEST_F(StudySessionTest, OnlyTheTrainingHasFeedback) {
   const auto session = begun();
   EXPECT_FALSE(session->view().was_correct.has_value());
   answer_trials(*session, 1, truly_larger);
@@ -134,18 +136,18 @@ TEST_F(StudySessionTest, AsksAgainForAnAnswerThatCouldNotBeStored) {
     EXPECT_EQ(answer_trials(*session, 1, truly_larger), 0u);
   }
   EXPECT_EQ(session->state(), StudyState::answering);
-  EXPECT_NE(session->view().message.find("could not be stored: "), std::string::npos);
+  EXPECT_TRUE(test::has_parts(session->view().message, {"could not be stored: "}));
   session->answer(true);
   EXPECT_EQ(session->state(), StudyState::presenting);
   EXPECT_EQ(records_of(session).size(), 4u);
 }
 
-TEST_F(StudySessionTest, ConsentThatIsNotStoredIsNone) {
+TEST_F(StudySessionTest, ConsentCountsOnceItIsStored) {
   const auto session = test::session_at(folder_.file("none/S01.csv"));
   ASSERT_TRUE(session.ok());
   (*session)->accept_consent("");
   EXPECT_EQ((*session)->state(), StudyState::consent);
-  EXPECT_NE((*session)->view().message.find("does not exist"), std::string::npos);
+  EXPECT_TRUE(test::has_parts((*session)->view().message, {"does not exist"}));
 }
 
 TEST_F(StudySessionTest, AbortWorksInEveryState) {
@@ -186,7 +188,7 @@ TEST_F(StudySessionTest, ResumesAfterTheLastAnswer) {
 
 TEST_F(StudySessionTest, StrokesGoFromConsentToTheEnd) {
   const auto session = begun(test::discrimination_header(0.8));
-  EXPECT_NE(session->view().message.find("like the reference"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(session->view().message, {"like the reference"}));
   answer_trials(*session, 1, [](const StudyTrial& trial) { return !truly_like(trial); });
   EXPECT_EQ(session->view().was_correct, false);
   EXPECT_EQ(answer_trials(*session, 1000, truly_like), 3 + kDiscriminationTrials);

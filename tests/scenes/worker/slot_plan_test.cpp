@@ -4,6 +4,7 @@
 
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -41,12 +42,11 @@ TEST(SlotPlan, FilesNeedNoMaterial) {
   EXPECT_EQ(names(plan_slots(scene("skin"), {broken}, false)).rfind("error: " + broken, 0), 0u);
 }
 
-TEST(SlotPlan, RefusesWhatItDoesNotKnow) {
-  EXPECT_EQ(names(plan_slots(scene("silicone_block"), {"gredy"}, false)),
-            "error: found no model \"gredy\", expected a method (trend, direct, voxel, random, kdtree, greedy) or a "
-            "model file that exists");
-  EXPECT_EQ(names(plan_slots(scene("silicone_block"), std::vector<std::string>(16, "random"), false)),
-            "error: found 17 models, the direct reference included, expected at most 16; leave some out");
+TEST(SlotPlan, RefusesUnknownModels) {
+  EXPECT_TRUE(
+      test::has_parts(names(plan_slots(scene("silicone_block"), {"gredy"}, false)), {"\"gredy\"", "trend", "greedy"}));
+  EXPECT_TRUE(test::has_parts(names(plan_slots(scene("silicone_block"), std::vector<std::string>(16, "random"), false)),
+                              {"17", "16", "; "}));
 }
 
 TEST(SlotPlan, CentresAndThePapersRecipeCanBeAskedFor) {

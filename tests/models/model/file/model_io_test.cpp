@@ -11,6 +11,7 @@
 
 #include "models/model/file/model_json.h"
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
 #include "tests/support/temporary_folder.h"
 
@@ -205,19 +206,18 @@ TEST(ModelIo, WhatCannotBeReadIsNotWritten) {
     const Status status = save_model("m.json", data, false);
     return status ? "" : status.error().message;
   };
-  EXPECT_EQ(message([](ModelData& data) { data.name = "a,b"; }),
-            "cannot write m.json: name: found a control character, comma or quote, expected 1 to 100 bytes without "
-            "control characters, commas and quotes");
-  EXPECT_EQ(message([](ModelData& data) { data.method = ""; }),
-            "cannot write m.json: method: found an empty text, expected 1 to 100 bytes without control characters, "
-            "commas and quotes");
-  EXPECT_EQ(message([](ModelData& data) {
-              test::change_rbf(data, [](RbfFunction& f) { f.weights(3) = std::numeric_limits<double>::quiet_NaN(); });
-            }),
-            "cannot write m.json: centres, weights and tail must be finite numbers");
-  EXPECT_EQ(message([](ModelData& data) { data.provenance.training_within_jnd = -1.0; }),
-            "cannot write m.json: provenance: found a number that is negative or not finite, expected finite numbers "
-            "of 0 or more");
+  EXPECT_TRUE(test::has_parts(message([](ModelData& data) { data.name = "a,b"; }),
+                              {"m.json", "control character", "1", "100 bytes"}));
+  EXPECT_TRUE(
+      test::has_parts(message([](ModelData& data) { data.method = ""; }), {"m.json", "empty", "1", "100 bytes"}));
+  EXPECT_TRUE(test::has_parts(message([](ModelData& data) {
+                                test::change_rbf(data, [](RbfFunction& f) {
+                                  f.weights(3) = std::numeric_limits<double>::quiet_NaN();
+                                });
+                              }),
+                              {"m.json", "finite"}));
+  EXPECT_TRUE(test::has_parts(message([](ModelData& data) { data.provenance.training_within_jnd = -1.0; }),
+                              {"m.json", "finite", "finite", "0"}));
 }
 
 TEST(ModelIo, AnExistingFileSurvivesUnlessToldOtherwise) {
@@ -226,7 +226,7 @@ TEST(ModelIo, AnExistingFileSurvivesUnlessToldOtherwise) {
   const ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
   const Status refused = save_model(path, data, false);
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().message, path + " exists; pass --force to replace it");
+  EXPECT_TRUE(test::has_parts(refused.error().message, {path, "--force"}));
   EXPECT_EQ(test::read_text(path), "mine");
   ASSERT_TRUE(save_model(path, data, true).ok());
   EXPECT_EQ(test::read_text(path), text_of(data));

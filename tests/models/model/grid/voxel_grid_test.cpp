@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -118,7 +119,7 @@ TEST(FillGrid, CanBeInterruptedAndRefusesHugeGrids) {
   const BatchFunction zero = [](const Eigen::MatrixXd&, Eigen::VectorXd& out) { out.setZero(); };
   EXPECT_EQ(fill_grid(grid, zero, {[](double done) { return done < 0.3; }}).error().message, "interrupted");
   VoxelGrid huge = even_grid(0.0, 1.0, std::vector<int>(8, 40));
-  EXPECT_EQ(fill_grid(huge, zero).error().message, "the grid has more than 100000000 nodes; use a coarser one");
+  EXPECT_TRUE(test::has_parts(fill_grid(huge, zero).error().message, {"100000000", "; "}));
 }
 
 }  // namespace
