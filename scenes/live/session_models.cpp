@@ -267,8 +267,11 @@ double SessionModels::trained_depth_m() const noexcept {
 double SessionModels::longest_memory_s() const noexcept {
   double memory_s = 0.0;
   for (const std::size_t slot : ready_slots()) {
-    for (const FeatureSpec& feature : slots_[slot]->model->features())
+    for (const FeatureSpec& feature : slots_[slot]->model->features()) {
       memory_s = std::max(memory_s, feature.relaxation_time_s);
+      for (std::size_t p = 0; is_branch(feature.kind) && p < feature.part_count; ++p)
+        memory_s = std::max(memory_s, feature.parts[p].relaxation_time_s);
+    }
   }
   return memory_s;
 }

@@ -223,7 +223,7 @@ TEST(Fit, GivenTimesReplaceTheScenes) {
   const auto prepared = prepare({test::example_recording(1000, 250.0)}, request);
   ASSERT_TRUE(prepared.ok());
   ASSERT_EQ(prepared->common.features.size(), 5u);
-  EXPECT_EQ(prepared->common.features[4].relaxation_time_s, 2.0);
+  EXPECT_EQ(prepared->common.features[4].parts[0].relaxation_time_s, 2.0);
   EXPECT_EQ(prepared->common.provenance.relaxation_times.size(), 3u);
 }
 
