@@ -7,13 +7,6 @@
 namespace palpate {
 namespace {
 
-std::vector<const Method*>& method_table() {
-#define PALPATE_LIST_METHOD(row) &row,
-  static std::vector<const Method*> table = {PALPATE_METHODS(PALPATE_LIST_METHOD)};
-#undef PALPATE_LIST_METHOD
-  return table;
-}
-
 template <typename Wanted>
 std::string joined_names(Wanted wanted) {
   std::string names;
@@ -25,17 +18,18 @@ std::string joined_names(Wanted wanted) {
 
 }  // namespace
 
-const std::vector<const Method*>& methods() { return method_table(); }
+const std::vector<const Method*>& methods() {
+#define PALPATE_LIST_METHOD(row) &row,
+  static const std::vector<const Method*> table = {PALPATE_METHODS(PALPATE_LIST_METHOD)};
+#undef PALPATE_LIST_METHOD
+  return table;
+}
 
 const Method* find_method(std::string_view name) {
   const auto& all = methods();
   const auto at = std::find_if(all.begin(), all.end(), [&](const Method* method) { return method->name == name; });
   return at == all.end() ? nullptr : *at;
 }
-
-void add_method(const Method& method) { method_table().push_back(&method); }
-
-void remove_method(const Method& method) { std::erase(method_table(), &method); }
 
 std::string method_names() {
   return joined_names([](const Method&) { return true; });

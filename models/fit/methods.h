@@ -96,10 +96,6 @@ struct Method {
 const std::vector<const Method*>& methods();
 // Null for an unknown name.
 const Method* find_method(std::string_view name);
-// Adds a row for a method of another program; it must outlive every use, and its name must be new. Not thread-safe:
-// to be called before other threads use the table. `remove_method` removes it.
-void add_method(const Method& method);
-void remove_method(const Method& method);
 
 // "trend, direct, voxel ...".
 std::string method_names();

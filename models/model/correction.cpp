@@ -1,7 +1,5 @@
 #include "models/model/correction.h"
 
-#include <string_view>
-
 #include "engine/json/json_fields.h"
 
 namespace palpate {
@@ -18,19 +16,12 @@ CorrectionPtr read_none(JsonFields& fields, const JsonNode& top, int) {
   return nullptr;
 }
 
-std::vector<CorrectionKind>& kind_table() {
-  static std::vector<CorrectionKind> table = {kRbfCorrectionKind, kGridCorrectionKind, {"trend_alone", read_none}};
-  return table;
-}
-
 }  // namespace
 
-const std::vector<CorrectionKind>& correction_kinds() { return kind_table(); }
-
-void add_correction_kind(const CorrectionKind& kind) { kind_table().push_back(kind); }
-
-void remove_correction_kind(const char* key) {
-  std::erase_if(kind_table(), [&](const CorrectionKind& kind) { return std::string_view(kind.key) == key; });
+const std::vector<CorrectionKind>& correction_kinds() {
+  static const std::vector<CorrectionKind> table = {
+      kRbfCorrectionKind, kGridCorrectionKind, {"trend_alone", read_none}};
+  return table;
 }
 
 }  // namespace palpate

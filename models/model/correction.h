@@ -62,9 +62,4 @@ struct CorrectionKind {
 // All kinds, in the order of the table in correction.cpp.
 const std::vector<CorrectionKind>& correction_kinds();
 
-// Adds a kind for a method of another program; `kind.key` must be new. Not thread-safe: to be called before other
-// threads use models. `remove_correction_kind` removes it.
-void add_correction_kind(const CorrectionKind& kind);
-void remove_correction_kind(const char* key);
-
 }  // namespace palpate

@@ -95,7 +95,6 @@ class CoverageReduction {
   }
 
   std::vector<TrainingSite> take() { return std::move(sites_); }
-  double step() const { return step_; }
 
  private:
   CellKey key(const TrainingSite& site) const {
@@ -255,7 +254,6 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   if (!status) return status.error();
   switch (reduction) {
     case Reduction::coverage:
-      set.coverage_step = coverage.step();
       set.sites = coverage.take();
       break;
     case Reduction::force:

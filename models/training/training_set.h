@@ -61,8 +61,7 @@ struct TrainingSet {
   Normalisation normalisation;
   std::vector<TrainingSite> sites;
   std::uint64_t contact_samples = 0;
-  double coverage_step = 0.0;      // final value
-  double reduction_force_N = 0.0;  // final value
+  double reduction_force_N = 0.0;  // final step of Reduction::force
 };
 
 struct TrainingSetOptions {
