@@ -73,10 +73,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
          "one and as recorded")
       ->type_name("[REC.csv]")
       ->expected(0, 1);
-  app.add_option("--seconds", arguments.seconds, "End by itself after so long")->check(CLI::Range(0.1, 1e6));
+  app.add_option("--seconds", arguments.seconds, "Exit after this many seconds")->check(CLI::Range(0.1, 1e6));
   app.add_option("--screenshot", arguments.screenshot, "Save the window as it is at the end [after 12 s], then end")
       ->type_name("PNG");
-  app.add_option("--stats", arguments.stats, "Write how the loop, the picture and the models did, at the end")
+  app.add_option("--stats", arguments.stats,
+                 "At the end write the timing of loop and picture, the errors of the models and the faults")
       ->type_name("JSON");
   app.add_flag("--fullscreen", arguments.demo.window.fullscreen, "Fill the screen");
   app.add_flag("--kiosk", arguments.demo.exhibit,
@@ -161,7 +162,8 @@ Status run_demo(Arguments& arguments) {
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App app("Palpate: feel a recorded block, and see which model a hand could tell from it", "palpate-demo");
+  CLI::App app("Palpate: press a recorded block, and see which model differs from it by more than a hand can notice",
+               "palpate-demo");
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
   Arguments arguments;
   add_options(app, arguments);

@@ -25,7 +25,8 @@ Result<Settings> read_settings(const std::string& path) {
   const auto text = read_whole_file(path);
   if (!text) return settings;
   const Json json = Json::parse(*text, nullptr, false);
-  if (!json.is_object()) return Error{path + ": found no JSON object, expected the window's settings; they begin anew"};
+  if (!json.is_object())
+    return Error{path + ": found no JSON object, expected the window's settings; the defaults are used"};
   if (json.value("theme", Json()) == "dark") settings.theme = Theme::dark;
   const auto blocks = field<std::size_t>(json, "blocks", settings.block_count, 1, 4);
   settings.block_count = blocks == 3 ? 4 : blocks;

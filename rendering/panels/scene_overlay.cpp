@@ -153,7 +153,7 @@ std::string scale_words(const ForceScale& scale) {
 
 std::string data_warning(const ModelsView& models) {
   if (!models.out_of_domain()) return {};
-  return "Nothing like this was recorded: here " + models.active()->name + " only follows the trend";
+  return "No such motion was recorded: here " + models.active()->name + " renders only its trend";
 }
 
 std::string recording_words(const RecordingStatus& recording) {
@@ -173,7 +173,7 @@ BigNumber big_number(const ModelsView& models, bool has_truth) {
                                       [](const ModelView& slot) { return slot.state == SlotState::fitting; });
     if (fitting == models.slots.end()) return {};
     return {fixed(100.0 * fitting->progress, 0) + " %", "of the first model, " + fitting->name,
-            has_truth ? "until then the true material answers alone" : "until then nothing answers", 0.0};
+            has_truth ? "until then only the true material has a force" : "until then there is no force", 0.0};
   }
   BigNumber big;
   const std::string& name = active->name;
