@@ -12,7 +12,7 @@ constexpr std::uint64_t kStream = 31;
 
 // Whether the answer is "second": the larger of two forces, or the stroke that equals the reminder.
 bool answers_second(const SubjectTraits& traits, const Stimuli& stimuli, RandomStream& random) {
-  const auto& [reminder, first, second] = stimuli;
+  const Stimulus &reminder = stimuli[0], &first = stimuli[1], &second = stimuli[2];
   if (!has_reminder(stimuli)) return second_feels_larger(traits, first.size, second.size, random);
   const auto difference = [&](std::uint32_t tick) {
     return std::abs(first.force_N(tick) - second.force_N(tick)) / traits.jnd.at(reminder.force_N(tick));
