@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string>
+#include <string_view>
 
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
@@ -24,6 +26,28 @@ namespace {
 
 using test::EmulatedBoard;
 using test::tick_until;
+
+// The first argument of the program when it is the child process below.
+constexpr const char* kPushUntilEnded = "--push-until-ended";
+
+// The child process: renders a force until a signal ends it, and writes a byte to `ready` when it starts.
+[[noreturn]] void push_until_ended(int ready) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
+  const StopListener listener;
+  HidapiBus bus{-1};
+  Result<OpenedDevice> opened = open_first(bus, {&kOpenFfBoardProtocol});
+  if (!opened) _exit(3);
+  LinkedDevice device(bus, test::patient(test::example_calibration(&kOpenFfBoardProtocol)), std::move(*opened));
+  if (!device.open()) _exit(4);
+  device.start_zeroing();
+  tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); });
+  int ticks = 0;
+  tick_until(device, 2.0, [&](const DeviceHealth&) {
+    if (++ticks == 50 && write(ready, "1", 1) != 1) _exit(5);
+    return false;
+  });
+  _exit(6);
+}
 
 class HidEmulated : public ::testing::Test {
  protected:
@@ -108,33 +132,19 @@ TEST_F(HidEmulated, RendersReleasesAndReportsALoss) {
   EXPECT_GT(board.writes, 10);
 }
 
-// In a child process: renders a force until a signal ends it, and writes a byte to `ready`
-// when it starts.
-[[noreturn]] void push_until_ended(DeviceBus& bus, int ready) {
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
-  const StopListener listener;
-  Result<OpenedDevice> opened = open_first(bus, {&kOpenFfBoardProtocol});
-  if (!opened) _exit(3);
-  LinkedDevice device(bus, test::patient(test::example_calibration(&kOpenFfBoardProtocol)), std::move(*opened));
-  if (!device.open()) _exit(4);
-  device.start_zeroing();
-  tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); });
-  int ticks = 0;
-  tick_until(device, 2.0, [&](const DeviceHealth&) {
-    if (++ticks == 50 && write(ready, "1", 1) != 1) _exit(5);
-    return false;
-  });
-  _exit(6);
-}
-
 TEST_F(HidEmulated, ZeroForceIsTheLastReportInAnyOrderOfTwoSignals) {
   for (const int first : {SIGINT, SIGTERM, SIGHUP}) {
     for (const int second : {SIGINT, SIGTERM, SIGHUP}) {
       EmulatedBoard board;
       int ready[2];
       ASSERT_EQ(pipe(ready), 0);
+      const std::string descriptor = std::to_string(ready[1]);
       const pid_t child = fork();
-      if (child == 0) push_until_ended(bus, ready[1]);
+      if (child == 0) {
+        // A new program, because a fork inherits locks that other threads (umockdev's) hold.
+        execl("/proc/self/exe", "palpate_hid_tests", kPushUntilEnded, descriptor.c_str(), nullptr);
+        _exit(2);
+      }
       close(ready[1]);
       char byte = 0;
       EXPECT_EQ(read(ready[0], &byte, 1), 1);
@@ -155,3 +165,10 @@ TEST_F(HidEmulated, ZeroForceIsTheLastReportInAnyOrderOfTwoSignals) {
 
 }  // namespace
 }  // namespace palpate
+
+int main(int argc, char** argv) {
+  using namespace palpate;
+  if (argc == 3 && std::string_view(argv[1]) == kPushUntilEnded) push_until_ended(std::atoi(argv[2]));
+  ::testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
