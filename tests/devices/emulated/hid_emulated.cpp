@@ -132,33 +132,61 @@ TEST_F(HidEmulated, RendersReleasesAndReportsALoss) {
   EXPECT_GT(board.writes, 10);
 }
 
+// Whether the board is told to push, within ten seconds: on a busy machine the threads of the child may be late, and
+// its force is 0 until they are on time again.
+bool is_pushed(const EmulatedBoard& board) {
+  for (int i = 0; i < 10'000 && board.told_units != -6667; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return board.told_units == -6667;
+}
+
+struct LastForce {
+  int units = -1;
+  std::chrono::steady_clock::duration took{};  // from the second signal to the end of the child
+};
+
+void end_by_two_signals(int first, int second, LastForce& last) {
+  EmulatedBoard board;
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const std::string descriptor = std::to_string(ready[1]);
+  const pid_t child = fork();
+  if (child == 0) {
+    // A new program, because a fork inherits locks that other threads (umockdev's) hold.
+    execl("/proc/self/exe", "palpate_hid_tests", kPushUntilEnded, descriptor.c_str(), nullptr);
+    _exit(2);
+  }
+  close(ready[1]);
+  char byte = 0;
+  EXPECT_EQ(read(ready[0], &byte, 1), 1);
+  close(ready[0]);
+  EXPECT_TRUE(is_pushed(board));
+  kill(child, first);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "the first only asks";
+  EXPECT_TRUE(is_pushed(board)) << "this program does not answer";
+  const auto asked = std::chrono::steady_clock::now();
+  kill(child, second);
+  int status = 0;
+  waitpid(child, &status, 0);
+  last.took = std::chrono::steady_clock::now() - asked;
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == second) << status;
+  last.units = board.told_units;
+}
+
 TEST_F(HidEmulated, ZeroForceIsTheLastReportInAnyOrderOfTwoSignals) {
+  // A write that takes longer than this is no longer waited for (devices/link/device_stop.cpp). On a USB port it takes
+  // a few milliseconds; here another thread answers it, which a busy machine may hold up. Then it is tried again.
+  constexpr auto kLongestWrite = std::chrono::milliseconds(20);
+  constexpr int kTries = 10;
   for (const int first : {SIGINT, SIGTERM, SIGHUP}) {
     for (const int second : {SIGINT, SIGTERM, SIGHUP}) {
-      EmulatedBoard board;
-      int ready[2];
-      ASSERT_EQ(pipe(ready), 0);
-      const std::string descriptor = std::to_string(ready[1]);
-      const pid_t child = fork();
-      if (child == 0) {
-        // A new program, because a fork inherits locks that other threads (umockdev's) hold.
-        execl("/proc/self/exe", "palpate_hid_tests", kPushUntilEnded, descriptor.c_str(), nullptr);
-        _exit(2);
+      LastForce last;
+      for (int i = 0; i < kTries && (i == 0 || (last.units != 0 && last.took >= kLongestWrite)); ++i) {
+        end_by_two_signals(first, second, last);
       }
-      close(ready[1]);
-      char byte = 0;
-      EXPECT_EQ(read(ready[0], &byte, 1), 1);
-      close(ready[0]);
-      EXPECT_EQ(board.told_units, -6667);
-      kill(child, first);
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "the first only asks";
-      EXPECT_EQ(board.told_units, -6667) << "this program does not answer";
-      kill(child, second);
-      int status = 0;
-      waitpid(child, &status, 0);
-      EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == second) << status;
-      EXPECT_EQ(board.told_units, 0) << first << " then " << second;
+      EXPECT_EQ(last.units, 0) << first << " then " << second;
     }
   }
 }
