@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "engine/base/parallel.h"
 #include "models/fit/select_strength.h"
@@ -38,6 +39,17 @@ std::optional<double> share_within_jnd(const PreparedTraining& prepared, const M
   return static_cast<double>(within) / static_cast<double>(count);
 }
 
+// The correction without a fold; none if no other fold has rows.
+Result<CorrectionPtr> fit_without(const PreparedTraining& prepared, int fold, const MethodRequest& request,
+                                  const FitControl& control) {
+  const Sites sites = sites_without(prepared, fold);
+  if (sites.count() == 0) return CorrectionPtr{};
+  const Eigen::VectorXd jnd_N = sites.row_scale.cwiseInverse();
+  auto fitted = fit_correction({sites, prepared.common.features, jnd_N, request, nullptr}, control);
+  if (!fitted) return fitted.error();
+  return std::move(fitted->correction);
+}
+
 }  // namespace
 
 Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
@@ -52,7 +64,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
                              const MethodFit* base) {
   const Eigen::VectorXd jnd_N = site_thresholds(prepared);
   const Method& method = *request.method;
-  const bool corrects = !prepared.strength || prepared.strength->strength > 0.0;
+  const bool corrects = prepared.corrects();
   std::optional<FittedCorrection> from;
   if (base != nullptr && method.base != nullptr) from = FittedCorrection{base->data.correction, base->report, ""};
   // If cross-validation rejected the correction, every method returns the trend, a model without centres.
@@ -72,9 +84,13 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   fit.data.provenance.seed = request.seed;
   fit.data.correction = std::move(fitted->correction);
   if (prepared.left_out) {
-    const auto errors = cross_validate(prepared, fit.data.correction->is_none() ? nullptr : &request, control);
-    if (!errors) return errors.error();
-    fit.data.error_bound = bound_of(prepared, *errors);
+    std::vector<CorrectionPtr> of_folds;
+    for (int fold = 0; fold < prepared.folds && !fit.data.correction->is_none(); ++fold) {
+      auto of_fold = fit_without(prepared, fold, request, control);
+      if (!of_fold) return of_fold.error();
+      of_folds.push_back(std::move(*of_fold));
+    }
+    fit.data.error_bound = bound_of(prepared, cross_validate(prepared, of_folds));
   }
   fit.data.name = method.name;
   if (!fitted->size.empty()) fit.data.name.append("-").append(fitted->size);

@@ -66,6 +66,9 @@ struct PreparedTraining {
   // Feature vectors in contact and their forces, for training_within_jnd; at most 100,000.
   std::vector<std::array<double, kMaxFeatures>> evaluation_features;
   std::vector<double> evaluation_force_N;
+
+  // False if cross-validation rejected the correction; every method then returns the trend.
+  bool corrects() const { return !strength || strength->strength > 0.0; }
 };
 
 struct MethodFit {

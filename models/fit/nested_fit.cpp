@@ -71,27 +71,38 @@ Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const Method
   if (request.method->choose == nullptr) {
     return Error{std::string("the method \"") + request.method->name + "\" cannot continue from fewer centres"};
   }
-  const Eigen::VectorXd jnd_N = site_thresholds(prepared);
-  const auto sequence =
-      request.method->choose({prepared.sites, prepared.common.features, jnd_N, request, nullptr}, control);
-  if (!sequence) return sequence.error();
-  auto weights = NestedWeights::factorise(prepared.sites, request.kernel, *sequence);
+  const auto factorised = [&](const Sites& sites, const Eigen::VectorXd& jnd_N) -> Result<NestedWeights> {
+    auto sequence = request.method->choose({sites, prepared.common.features, jnd_N, request, nullptr}, control);
+    if (!sequence) return sequence.error();
+    return NestedWeights::factorise(sites, request.kernel, std::move(*sequence));
+  };
+  auto weights = factorised(prepared.sites, site_thresholds(prepared));
   if (!weights) return weights.error();
-  ModelData common = prepared.common;
-  common.method = request.method->name;
-  common.provenance.seed = request.seed;
-  if (prepared.left_out) {
-    const auto errors = cross_validate(prepared, &request, control);
-    if (!errors) return errors.error();
-    common.error_bound = bound_of(prepared, *errors);
+  NestedFit made(prepared, request, std::move(*weights));
+  for (int fold = 0; prepared.left_out && fold < prepared.folds; ++fold) {
+    const Sites sites = sites_without(prepared, fold);
+    made.without_fold_.emplace_back();
+    if (sites.count() == 0) continue;
+    auto without = factorised(sites, sites.row_scale.cwiseInverse());
+    if (!without) return without.error();
+    made.without_fold_.back().emplace(std::move(*without));
   }
-  return NestedFit(std::move(common), std::move(*weights));
+  return made;
 }
 
 Result<MethodFit> NestedFit::fit(Eigen::Index count) const {
   FittedRbf fitted = weights_.solve(count);
-  MethodFit fit{common_, std::move(fitted.report)};
+  MethodFit fit{prepared_->common, std::move(fitted.report)};
+  fit.data.method = request_.method->name;
+  fit.data.provenance.seed = request_.seed;
   fit.data.correction = std::make_shared<const RbfCorrection>(std::move(fitted.function));
+  if (prepared_->left_out) {
+    std::vector<CorrectionPtr> of_folds;
+    for (const std::optional<NestedWeights>& one : without_fold_) {
+      of_folds.push_back(one ? std::make_shared<const RbfCorrection>(one->solve(count).function) : nullptr);
+    }
+    fit.data.error_bound = bound_of(*prepared_, cross_validate(*prepared_, of_folds));
+  }
   fit.data.name = fit.data.method + "-" + std::to_string(fit.report.centres_used);
   if (const Status valid = validate_model(fit.data); !valid) return valid.error();
   return fit;

@@ -5,13 +5,16 @@
 //   row_scale * (G Phi f) = Q T,  T upper triangular.
 // The columns of k centres are non-zero only in the rows of T up to the last of these columns, which leaves a system
 // of that size. The weights equal those of a separate fit to rounding, with the same ridge or penalty. Smoothing and
-// strength do not depend on the number of centres (correction_strength.h); the error bound is that of the maximum.
+// strength do not depend on the number of centres (correction_strength.h). Every number has its own error bound: the
+// rows without each fold are factorised, too.
 // Thread guarantee: immutable; `fit` is slow side and may be called by several threads.
 // Source: Golub & Van Loan, Matrix Computations, section 6.5 (QR of fewer columns).
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
@@ -43,7 +46,8 @@ class NestedWeights {
 // The same for whole models.
 class NestedFit {
  public:
-  // Selects request.centres centres. Errors: the method has no `choose`; those of fit_method.
+  // Selects request.centres centres. `prepared` must outlive the fit, and must correct the trend
+  // (PreparedTraining::corrects). Errors: the method has no `choose`; those of fit_method.
   static Result<NestedFit> make(const PreparedTraining& prepared, const MethodRequest& request,
                                 const FitControl& control = {});
 
@@ -53,10 +57,13 @@ class NestedFit {
   Result<MethodFit> fit(Eigen::Index count) const;
 
  private:
-  NestedFit(ModelData common, NestedWeights weights) : common_(std::move(common)), weights_(std::move(weights)) {}
+  NestedFit(const PreparedTraining& prepared, const MethodRequest& request, NestedWeights weights)
+      : prepared_(&prepared), request_(request), weights_(std::move(weights)) {}
 
-  ModelData common_;
+  const PreparedTraining* prepared_;
+  MethodRequest request_;
   NestedWeights weights_;
+  std::vector<std::optional<NestedWeights>> without_fold_;  // none if no other fold has rows
 };
 
 }  // namespace palpate

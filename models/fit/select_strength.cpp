@@ -59,26 +59,6 @@ StrengthInput strength_input(const PreparedTraining& prepared) {
   return input;
 }
 
-// The sites of a correction without a fold. The targets are the residuals of the trend without that fold.
-Sites sites_without(const PreparedTraining& prepared, int fold) {
-  const CrossValidationRows& rows = *prepared.left_out;
-  std::vector<Eigen::Index> others;
-  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
-    if (rows.fold[i] != fold) others.push_back(static_cast<Eigen::Index>(i));
-  }
-  Sites sites;
-  sites.points = rows.points(Eigen::all, others);
-  sites.target_N = rows.force_N(others) - rows.trend_N(others, fold);
-  sites.row_scale = rows.row_scale(others);
-  for (Eigen::Index i = 0; i < sites.count(); ++i) {
-    const bool no_force = rows.no_force[static_cast<std::size_t>(others[static_cast<std::size_t>(i)])] != 0;
-    if (no_force) sites.target_N(i) = std::min(0.0, sites.target_N(i));
-  }
-  sites.smoothing = prepared.sites.smoothing;
-  sites.strength = prepared.sites.strength;
-  return even_subset(sites, kLeftOutSites);
-}
-
 }  // namespace
 
 std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPrediction>& predictions,
@@ -128,31 +108,41 @@ void select_strength(PreparedTraining& prepared, const TrendRows& rows, const Ei
   common.cover.outer_radius = input.outer_to_inner * prepared.strength->inner_radius;
 }
 
-Result<std::vector<CrossValidationPrediction>> cross_validate(const PreparedTraining& prepared,
-                                                              const MethodRequest* request, const FitControl& control) {
+Sites sites_without(const PreparedTraining& prepared, int fold) {
+  const CrossValidationRows& rows = *prepared.left_out;
+  std::vector<Eigen::Index> others;
+  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
+    if (rows.fold[i] != fold) others.push_back(static_cast<Eigen::Index>(i));
+  }
+  Sites sites;
+  sites.points = rows.points(Eigen::all, others);
+  sites.target_N = rows.force_N(others) - rows.trend_N(others, fold);
+  sites.row_scale = rows.row_scale(others);
+  for (Eigen::Index i = 0; i < sites.count(); ++i) {
+    const bool no_force = rows.no_force[static_cast<std::size_t>(others[static_cast<std::size_t>(i)])] != 0;
+    if (no_force) sites.target_N(i) = std::min(0.0, sites.target_N(i));
+  }
+  sites.smoothing = prepared.sites.smoothing;
+  sites.strength = prepared.sites.strength;
+  return even_subset(sites, kLeftOutSites);
+}
+
+std::vector<CrossValidationPrediction> cross_validate(const PreparedTraining& prepared,
+                                                      const std::vector<CorrectionPtr>& corrections) {
   const CrossValidationRows& rows = *prepared.left_out;
   const StrengthInput input = strength_input(prepared);
-  Eigen::VectorXd correction_N = Eigen::VectorXd::Zero(rows.force_N.size());
-  const bool corrects = request != nullptr && prepared.sites.strength > 0.0;
-  for (int fold = 0; corrects && fold < prepared.folds; ++fold) {
-    const Sites sites = sites_without(prepared, fold);
-    if (sites.count() == 0) continue;
-    const Eigen::VectorXd jnd_N = sites.row_scale.cwiseInverse();
-    const auto fitted = fit_correction({sites, prepared.common.features, jnd_N, *request, nullptr}, control);
-    if (!fitted) return fitted.error();
-    for (Eigen::Index i = 0; i < correction_N.size(); ++i) {
-      if (rows.fold[static_cast<std::size_t>(i)] != fold) continue;
-      const Eigen::VectorXd point = rows.points.col(i);
-      correction_N(i) = fitted->correction->evaluate(point.data());
-    }
-  }
   const DomainCover& cover = prepared.common.cover;
   std::vector<CrossValidationPrediction> predictions;
   for (std::size_t i = 0; i < rows.fold.size(); ++i) {
     if (!std::isfinite(rows.distance[i])) continue;
     const auto row = static_cast<Eigen::Index>(i);
+    double correction_N = 0.0;
+    if (!corrections.empty()) {
+      const Eigen::VectorXd point = rows.points.col(row);
+      correction_N = corrections[static_cast<std::size_t>(rows.fold[i])]->evaluate(point.data());
+    }
     const double trust = trust_at_distance(rows.distance[i], cover.inner_radius, cover.outer_radius);
-    const double force_N = cross_validated_force_N(input, i, trust, correction_N(row));
+    const double force_N = cross_validated_force_N(input, i, trust, correction_N);
     predictions.push_back({std::abs(force_N - rows.force_N(row)), rows.force_N(row), force_N, rows.distance[i]});
   }
   return predictions;

@@ -3,6 +3,10 @@
 // Thread guarantee: slow side.
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <vector>
+
 #include "models/fit/fit.h"
 
 namespace palpate {
@@ -24,11 +28,13 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPredi
 void select_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
                      const CrossValidated& left_out, const TrendProblem& problem, std::size_t strokes);
 
-// The cross-validated errors of a method: it is fitted without each fold, to at most 1500 rows, and corrects the trend
-// without that fold. Without a method, or with strength 0, the errors of the trend. Rows are omitted where there is no
-// other fold. Errors: those of the method; interrupted.
-Result<std::vector<CrossValidationPrediction>> cross_validate(const PreparedTraining& prepared,
-                                                              const MethodRequest* request, const FitControl& control);
+// The sites of a correction without a fold, at most 1500. The targets are the residuals of the trend without that fold.
+Sites sites_without(const PreparedTraining& prepared, int fold);
+
+// The cross-validated errors of a model. `corrections`: fitted to `sites_without` each fold; empty: none, the errors
+// are those of the trend. Rows are omitted where there is no other fold.
+std::vector<CrossValidationPrediction> cross_validate(const PreparedTraining& prepared,
+                                                      const std::vector<CorrectionPtr>& corrections);
 // The error bound of a model of `prepared`; with fewer than three strokes it is at least 5 % of the force.
 std::optional<ErrorBound> bound_of(const PreparedTraining& prepared,
                                    const std::vector<CrossValidationPrediction>& errors);

@@ -206,8 +206,8 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   const bool own = position || plan.paper;  // its preparation differs from that of the bases
   const auto base = own ? bases_.end() : bases_.find(plan.method->base);
   const FitControl rest = control(prepared_before ? 0.0 : kPrepared, 1.0);
-  const bool nested = !position && plan.method->choose != nullptr && request.centres <= kMostCentres &&
-                      !nested_.try_emplace({plan.method, plan.paper}).second;
+  const bool nested = !position && prepared->corrects() && plan.method->choose != nullptr &&
+                      request.centres <= kMostCentres && !nested_.try_emplace({plan.method, plan.paper}).second;
   Result<MethodFit> fitted = nested
                                  ? fit_nested(*prepared, request, plan.paper, rest)
                                  : fit_method(*prepared, request, rest, base == bases_.end() ? nullptr : &base->second);

@@ -132,6 +132,8 @@ TEST(NestedFit, GivesTheModelOfTheDirectFit) {
       const ForceEstimate a = one.evaluate(features.data());
       const ForceEstimate b = other.evaluate(features.data());
       EXPECT_NEAR(a.force_N, b.force_N, kRounding_N);
+      // The bound is proportional to errors that agree to rounding.
+      EXPECT_NEAR(a.predicted_error_N, b.predicted_error_N, 1e-6);
     }
   }
 }
