@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -129,21 +128,13 @@ bool unmoved(const Member& member, double shift_m) {
          std::max(kLeastOffset_m, kSignificantErrors * member.place.standard_error);
 }
 
-// The identified offset with the smallest sum of distances to the others; of nearly equal ones that of the latest
-// recording, with whose state the next recording begins.
+// The median of the identified offsets.
 double common_shift_m(const std::vector<Member>& members) {
-  double best_m = 0.0;
-  double least_m = std::numeric_limits<double>::infinity();
-  for (const Member& candidate : members) {
-    if (!candidate.place.identified) continue;
-    double away_m = 0.0;
-    for (const Member& one : members)
-      away_m += one.place.identified ? std::abs(one.place.at - candidate.place.at) : 0.0;
-    if (away_m > least_m + kLeastOffset_m) continue;
-    least_m = std::min(least_m, away_m);
-    best_m = candidate.place.at;
+  std::vector<double> offsets_m;
+  for (const Member& one : members) {
+    if (one.place.identified) offsets_m.push_back(one.place.at);
   }
-  return best_m;
+  return median_of(offsets_m);
 }
 
 // The weighted mean of the onsets of the recordings after their offsets; 0 if no onset is identified, or if the mean
