@@ -125,6 +125,9 @@ void print_gains(const std::vector<PartGain>& gains) {
     std::printf("%-32s %-5s %12.3f %12.3f\n", one.name.c_str(), one.taken ? "yes" : "no", one.error_with,
                 one.error_without);
   }
+  std::printf(
+      "A feature is taken if the non-negative regression gives it a weight; surface lag and depth-dependent\n"
+      "relaxation if they lower the error by more than two standard errors over the folds.\n");
   std::fflush(stdout);
 }
 
