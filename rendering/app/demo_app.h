@@ -108,7 +108,7 @@ class DemoApp {
   std::unique_ptr<BlockView> blocks_;
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
-  SidePanel panel_;
+  ForceCurves curves_;
   SceneOverlay overlay_;
   Exhibit exhibit_{1};
   ViewState view_;

@@ -114,7 +114,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       {.keys = {GLFW_KEY_S},
        .label = "Save curves",
        .help = "save what the curves show, as a figure and as data",
-       .run = [this](std::size_t) { files_.save_curves(*session_, shown_, panel_.columns()); }},
+       .run = [this](std::size_t) { files_.save_curves(*session_, shown_, curves_.columns()); }},
       {.keys = {GLFW_KEY_K},
        .label = "Save model",
        .help = "save the active model to a file",

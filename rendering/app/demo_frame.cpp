@@ -56,7 +56,7 @@ void DemoApp::draw() {
   if (view_.exhibit.on) {
     exhibit_.draw(*session_, shown_, *blocks_, style_, layout);
   } else {
-    panel_.draw(*session_, shown_, view_, style_, frames_, layout.panel);
+    draw_panel(curves_, *session_, shown_, view_, style_, frames_, layout.panel);
   }
   ui_->end_frame();
   if (!blocks_->filters_edges()) return;
