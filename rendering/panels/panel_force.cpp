@@ -80,8 +80,8 @@ struct Drawing {
     if (predicts()) {
       words += ", band: where the active model expects it, 95 %";
     } else {
-      const double now_N = models().any_now ? static_cast<double>(models().now.reference_N) : std::nan("");
-      ImGui::TextColored(paint(text_colour(reference(), style.theme())), "%s N", at_most_three_decimals(now_N).c_str());
+      ImGui::TextColored(paint(text_colour(reference(), style.theme())), "%s N",
+                         at_most_three_decimals(static_cast<double>(models().now.reference_N)).c_str());
       ImGui::SameLine();
     }
     const float room = width - ImGui::GetCursorPosX();
