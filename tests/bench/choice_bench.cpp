@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/bench_data.h"
 #include "tests/support/fitting.h"
 
 namespace palpate::bench {
@@ -165,12 +166,7 @@ const std::vector<Choice>& choices() {
       {"weights_relative", [](TrainingRequest& t, MethodRequest&) { t.weighting = Weighting::relative; }},
       {"weights_none", [](TrainingRequest& t, MethodRequest&) { t.weighting = Weighting::none; }},
       {"every_50_mN", [](TrainingRequest& t, MethodRequest&) { t.reduction = Reduction::force; }},
-      {"papers_recipe",
-       [](TrainingRequest& t, MethodRequest&) {
-         t.recipe = FitRecipe::paper_2009;
-         t.reduction = Reduction::force;
-         t.weighting = Weighting::relative;
-       }},
+      {"papers_recipe", [](TrainingRequest& t, MethodRequest&) { use_papers_recipe(t); }},
       {"candidates_all", [](TrainingRequest&, MethodRequest& m) { m.candidates = 0; }},
       {"direct", [](TrainingRequest&, MethodRequest& m) { m.method = &kDirectMethod; }},
   };
@@ -192,9 +188,7 @@ const int registered = [] {
                               if (name == "gel") t.relaxation = Relaxation::automatic;
                             }});
       add("centres_papers_recipe", name, {std::to_string(centres), [centres](TrainingRequest& t, MethodRequest& m) {
-                                            t.recipe = FitRecipe::paper_2009;
-                                            t.reduction = Reduction::force;
-                                            t.weighting = Weighting::relative;
+                                            use_papers_recipe(t);
                                             m.centres = centres;
                                           }});
     }
