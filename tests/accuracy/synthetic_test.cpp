@@ -10,37 +10,27 @@
 
 #include "tests/support/fitting.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
-using test::default_request;
-using test::fit;
-using test::judge;
-using test::ModelPtr;
-using test::prepare;
-using test::RecordingPtr;
-using test::rig_recording;
-using test::scene_request;
-using test::worst_bin_over_jnd;
-
 const RecordingPtr& silicone_train() {
-  static const RecordingPtr recording = rig_recording(test::train_settings("silicone"));
+  static const RecordingPtr recording = rig_recording(train_settings("silicone"));
   return recording;
 }
 
 const RecordingPtr& silicone_test() {
-  static const RecordingPtr recording = rig_recording(test::test_settings("silicone"));
+  static const RecordingPtr recording = rig_recording(test_settings("silicone"));
   return recording;
 }
 
 // Springs and dashpots with known relaxation times, 0.17 s and 1.27 s.
 const RecordingPtr& maxwell_train() {
-  static const RecordingPtr recording = rig_recording(test::train_settings("maxwell"));
+  static const RecordingPtr recording = rig_recording(train_settings("maxwell"));
   return recording;
 }
 
 const RecordingPtr& maxwell_test() {
-  static const RecordingPtr recording = rig_recording(test::test_settings("maxwell"));
+  static const RecordingPtr recording = rig_recording(test_settings("maxwell"));
   return recording;
 }
 
@@ -48,7 +38,7 @@ ErrorSummary judged(const PreparedTraining& prepared, const Method* method, cons
                     std::uint64_t seed = 1) {
   const ModelPtr model = fit(prepared, method, seed);
   const ErrorSummary summary = judge(*recording, model);
-  std::cout << test::figures(model->name(), summary) << "\n";
+  std::cout << figures(model->name(), summary) << "\n";
   return summary;
 }
 
@@ -67,8 +57,8 @@ TEST(SyntheticAccuracy, SiliconeWithAccelerometer) {
 }
 
 TEST(SyntheticAccuracy, SiliconeWithTheEncoderAlone) {
-  const PreparedTraining prepared = prepare({test::encoder_only(silicone_train())}, default_request("silicone_block"));
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test::encoder_only(silicone_test()));
+  const PreparedTraining prepared = prepare({encoder_only(silicone_train())}, default_request("silicone_block"));
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, encoder_only(silicone_test()));
   EXPECT_GE(greedy.within_jnd, 0.999);
   EXPECT_LT(worst_bin_over_jnd(greedy), 1.0);
 }
@@ -98,9 +88,9 @@ TEST(SyntheticAccuracy, ForeignPhysicsByDefault) {
                            {"sponge", 0.92, 12.0}};
   for (const Law& law : kLaws) {
     SCOPED_TRACE(law.material);
-    const RecordingPtr recording = rig_recording(test::test_settings(law.material));
+    const RecordingPtr recording = rig_recording(test_settings(law.material));
     const PreparedTraining prepared =
-        prepare({rig_recording(test::train_settings(law.material))}, default_request("silicone_block"));
+        prepare({rig_recording(train_settings(law.material))}, default_request("silicone_block"));
     const ErrorSummary trend = judged(prepared, &kTrendMethod, recording);
     const ErrorSummary greedy = judged(prepared, &kGreedyMethod, recording);
     EXPECT_GE(greedy.within_jnd, law.within_jnd);
@@ -130,9 +120,9 @@ void expect_times(const PreparedTraining& prepared, const std::vector<double>& t
 TEST(SyntheticAccuracy, FoamWithIdentifiedRelaxation) {
   TrainingRequest request = scene_request("foam_block");
   request.relaxation = Relaxation::automatic;
-  const PreparedTraining prepared = prepare({rig_recording(test::train_settings("foam"))}, request);
+  const PreparedTraining prepared = prepare({rig_recording(train_settings("foam"))}, request);
   expect_times(prepared, {0.08, 0.9}, {0.2, 0.2});
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, rig_recording(test::test_settings("foam")));
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, rig_recording(test_settings("foam")));
   EXPECT_GE(greedy.within_jnd, 0.985);
   EXPECT_LT(greedy.max_error_over_jnd, 4.0);
 }
@@ -149,8 +139,8 @@ TEST(SyntheticAccuracy, MaxwellWithIdentifiedRelaxation) {
 TEST(SyntheticAccuracy, GelWithThreeRelaxations) {
   TrainingRequest request = scene_request("silicone_block");
   request.relaxation = Relaxation::automatic;
-  const PreparedTraining prepared = prepare({rig_recording(test::train_settings("gel"))}, request);
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, rig_recording(test::test_settings("gel")));
+  const PreparedTraining prepared = prepare({rig_recording(train_settings("gel"))}, request);
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, rig_recording(test_settings("gel")));
   // Reached: 99.86 %, 2.5 JND. The limits are those of foam.
   EXPECT_GE(greedy.within_jnd, 0.985);
   EXPECT_LT(greedy.max_error_over_jnd, 4.0);
@@ -159,8 +149,8 @@ TEST(SyntheticAccuracy, GelWithThreeRelaxations) {
 TEST(SyntheticAccuracy, StiffAndElasticBlocksWithTheFeaturesTheyNeed) {
   for (const std::string material : {"stiff", "elastic"}) {
     const PreparedTraining prepared =
-        prepare({rig_recording(test::train_settings(material))}, default_request(material + "_block"));
-    const RecordingPtr recording = rig_recording(test::test_settings(material));
+        prepare({rig_recording(train_settings(material))}, default_request(material + "_block"));
+    const RecordingPtr recording = rig_recording(test_settings(material));
     for (const Method* method : {&kGreedyMethod, &kKdTreeMethod, &kRandomMethod}) {
       const ErrorSummary summary = judged(prepared, method, recording);
       // Reached: all within, worst 0.61 JND.
@@ -197,4 +187,4 @@ TEST(SyntheticAccuracy, ThePapersRecipeReproducesThePaper) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test
