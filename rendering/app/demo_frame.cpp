@@ -32,7 +32,7 @@ Viewport pixels_of(const SceneArea& area) {
 
 void DemoApp::draw() {
   const bool exhibit = view_.exhibit.on;
-  style_.update(window_->ui_size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
+  style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
                 exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(input_.tapped());
   input_.keep_wheel();

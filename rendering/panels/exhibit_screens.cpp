@@ -16,9 +16,6 @@ using overlay::text_at;
 using overlay::text_size;
 using State = ExhibitGame::State;
 
-constexpr auto kVisitorWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                                ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
 constexpr double kMost_jnd = 4.0;  // fixed range of the axis, so that rounds are comparable
 
 bool pointer_moved() {
@@ -379,9 +376,7 @@ void Exhibit::draw(const LiveSession& session, const WindowView& shown, const Bl
   buttons_.clear();
   said_.clear();
   Screens screens{*this, game_, session, shown, blocks, style, layout};
-  ImGui::SetNextWindowPos(layout.panel.at);
-  ImGui::SetNextWindowSize(layout.panel.size);
-  ImGui::Begin("visitor", nullptr, kVisitorWindow);
+  begin_panel("visitor", layout.panel);
   ImGui::PushFont(style.fonts().heading);
   screens.space(0.5F);
   using Draw = void (Screens::*)();

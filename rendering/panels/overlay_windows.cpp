@@ -167,6 +167,11 @@ std::optional<std::size_t> choose(const char* title, const Names& names, std::si
   return chosen;
 }
 
+// Draws a choice of two.
+void choose(const char* title, const char* yes, const char* no, bool& value) {
+  if (const auto to = choose(title, std::array{yes, no}, value ? 0 : 1)) value = *to == 0;
+}
+
 }  // namespace
 
 void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions& actions) {
@@ -195,11 +200,8 @@ void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions&
                                                               : "a model: all sites");
   }
   if (const auto to = choose("Compare with (F)", reference_names, reference)) session.use_reference(kinds[*to]);
-  if (const auto to =
-          choose("Curves (V)", std::array{"difference", "mean over 50 ms"}, view.settings.difference ? 0 : 1))
-    view.settings.difference = *to == 0;
-  if (const auto to = choose("Plot (E)", std::array{"error against time", "error against force"}, view.verdict ? 0 : 1))
-    view.verdict = *to == 0;
+  choose("Curves (V)", "difference", "mean over 50 ms", view.settings.difference);
+  choose("Plot (E)", "error against time", "error against force", view.verdict);
   if (const auto to = choose("Theme (T)", std::array{"light", "dark"}, view.settings.theme == Theme::light ? 0 : 1))
     view.settings.theme = *to == 0 ? Theme::light : Theme::dark;
   if (session.renders_force()) {

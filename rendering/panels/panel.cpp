@@ -12,10 +12,6 @@
 namespace palpate {
 namespace {
 
-constexpr auto kPanelWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                              ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                              ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
-
 // Draws the slider of the number of centres, for the active model or for all that have centres.
 void draw_centres(LiveSession& session, const ModelsView& models, ViewState& view) {
   ImGui::AlignTextToFramePadding();
@@ -44,9 +40,7 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
 
 void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& shown, ViewState& view,
                 const UiStyle& style, const FrameFigures& frames, const SceneArea& area) {
-  ImGui::SetNextWindowPos(area.at);
-  ImGui::SetNextWindowSize(area.size);
-  ImGui::Begin("panel", nullptr, kPanelWindow);
+  begin_panel("panel", area);
   const ModelsView& models = shown.models;
   const float line = ImGui::GetTextLineHeightWithSpacing();
   // The plots share the height that the parts of fixed size leave.

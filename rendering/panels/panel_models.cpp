@@ -69,18 +69,17 @@ constexpr Column kTable[kColumns] = {
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2, centres, whole}};
 
 // Sorts by magnitude; missing values come first.
-double sort_value(const ModelsView& models, Slot slot, int column) {
-  const double value = kTable[column].value(models, slot);
-  return std::isnan(value) ? -1.0 : std::abs(value);
-}
-
 std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableState& sort) {
   std::vector<std::size_t> order = models.listed();
   if (sort.column < 0) return order;
+  const auto magnitude = [&](Slot slot) {
+    const double value = kTable[sort.column].value(models, slot);
+    return std::isnan(value) ? -1.0 : std::abs(value);
+  };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     if (!sort.rising) std::swap(a, b);
     if (sort.column == kName) return models.slots[a].name < models.slots[b].name;
-    return sort_value(models, a, sort.column) < sort_value(models, b, sort.column);
+    return magnitude(a) < magnitude(b);
   });
   return order;
 }

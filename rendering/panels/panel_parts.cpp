@@ -49,6 +49,14 @@ void quiet_words(const std::string& text) {
   if (shown != text) tip(text.c_str());
 }
 
+void begin_panel(const char* name, const SceneArea& area) {
+  ImGui::SetNextWindowPos(area.at);
+  ImGui::SetNextWindowSize(area.size);
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground);
+}
+
 void section_title(const UiStyle& style, const char* title) {
   ImGui::TextColored(paint(style.colours().text), "%s", title);
 }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "rendering/panels/layout.h"
 #include "rendering/panels/window_view.h"
 #include "rendering/ui/ui_style.h"
 
@@ -21,6 +22,8 @@ std::string in_lines(const std::string& text, float width);
 std::string jnd_text(double error_over_jnd);
 // Draws secondary text on the rest of the line. Where it does not fit it is cut, and a tooltip has all of it.
 void quiet_words(const std::string& text);
+// Begins an ImGui window that fills `area`. Call ImGui::End afterwards.
+void begin_panel(const char* name, const SceneArea& area);
 void section_title(const UiStyle& style, const char* title);
 // A tooltip for the last item, below or above it.
 void tip(const char* text);

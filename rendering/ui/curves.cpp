@@ -85,16 +85,13 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
     column.jnd_N = static_cast<float>(jnd.at(static_cast<double>(point.reference_N)));
   }
   column.any = true;
-  for (std::size_t i = 0; i < slots_; ++i) add_model(point, i, jnd, column);
-}
-
-void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, const JndLine& jnd, CurveColumn& column) {
-  const double difference = point.difference_over_jnd(slot, jnd);
-  if (std::isnan(difference)) return;
-  const float sustained = std::abs(point.sustained_over_jnd[slot]);
-  column.low_over_jnd[slot] = smaller(column.low_over_jnd[slot], static_cast<float>(difference));
-  column.high_over_jnd[slot] = larger(column.high_over_jnd[slot], static_cast<float>(difference));
-  column.sustained_over_jnd[slot] = larger(column.sustained_over_jnd[slot], sustained);
+  for (std::size_t i = 0; i < slots_; ++i) {
+    const auto difference = static_cast<float>(point.difference_over_jnd(i, jnd));
+    if (std::isnan(difference)) continue;
+    column.low_over_jnd[i] = smaller(column.low_over_jnd[i], difference);
+    column.high_over_jnd[i] = larger(column.high_over_jnd[i], difference);
+    column.sustained_over_jnd[i] = larger(column.sustained_over_jnd[i], std::abs(point.sustained_over_jnd[i]));
+  }
 }
 
 void CurveColumns::find_highest() {

@@ -50,7 +50,6 @@ class CurveColumns {
  private:
   bool scroll(double width_s, double first, std::size_t slots, std::size_t count);
   void add(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
-  void add_model(const HistoryPoint& point, std::size_t slot, const JndLine& jnd, CurveColumn& column);
   void find_highest();
 
   std::vector<CurveColumn> columns_;
