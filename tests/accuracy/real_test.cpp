@@ -18,21 +18,13 @@ class RealAccuracy : public testing::Test {
   }
 };
 
-std::vector<RecordingPtr> skin(const std::string& kind, const std::vector<std::string>& forces_mN) {
-  std::vector<RecordingPtr> recordings;
-  for (const std::string& force : forces_mN) {
-    recordings.push_back(real_recording("aurora_skin/" + kind + "_" + force + "mN.csv"));
-  }
-  return recordings;
-}
-
 TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
-  const PreparedTraining prepared = prepare(skin("train", {"250", "600", "1000"}), default_request("skin"));
+  const PreparedTraining prepared = prepare(skin_recordings("train", {"250", "600", "1000"}), default_request("skin"));
   const ModelPtr greedy = fit(prepared, &kGreedyMethod);
   double squares = 0.0;
   double within = 0.0;
   double samples = 0.0;
-  for (const RecordingPtr& recording : skin("test", {"400", "800", "900"})) {
+  for (const RecordingPtr& recording : skin_recordings("test", {"400", "800", "900"})) {
     const ErrorSummary summary = evaluate_moved(*recording, {greedy}).front();
     std::cout << figures(recording->name, summary) << "\n";
     const auto n = static_cast<double>(summary.samples);

@@ -33,16 +33,10 @@ const PreparedTraining& recorded() {
   return prepared;
 }
 
-void use_papers_recipe(TrainingRequest& request) {
-  request.recipe = FitRecipe::paper_2009;
-  request.reduction = Reduction::force;
-  request.weighting = Weighting::relative;
-}
-
 const PreparedTraining& recorded_as_paper() {
   static const PreparedTraining prepared = [] {
     TrainingRequest request = test::scene_request("silicone_block");
-    use_papers_recipe(request);
+    test::use_papers_recipe(request);
     return prepare(request);
   }();
   return prepared;

@@ -17,8 +17,6 @@ inline constexpr Eigen::Index kPaperSites = 6850;
 
 // The prepared recording: about 7,000 sites, four features.
 const PreparedTraining& recorded();
-// Changes a request to the recipe of the paper (2009).
-void use_papers_recipe(TrainingRequest& request);
 // The same recording, prepared by the paper's recipe.
 const PreparedTraining& recorded_as_paper();
 // kPaperSites of its sites, evenly spread in time, and their thresholds.
