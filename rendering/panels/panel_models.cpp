@@ -40,7 +40,10 @@ double centres(const ModelsView& models, Slot slot) { return models.slots[slot].
 
 std::string whole(double value) { return with_thousands(fixed(value, 0)); }
 std::string two_decimals(double value) { return fixed(value, 2); }
-std::string signed_mN(double value_N) { return (std::signbit(value_N) ? "" : "+") + fixed(1e3 * value_N, 0); }
+std::string signed_mN(double value_N) {
+  const std::string text = fixed(1e3 * value_N, 0);
+  return text.front() == '-' ? text : "+" + text;
+}
 
 struct Column {
   const char* heading;
