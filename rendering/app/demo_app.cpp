@@ -267,7 +267,7 @@ void DemoApp::reopen(const SessionRequest& request) {
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(view_.settings.camera);
   blocks_framed_ = 0;
-  panel_ = SidePanel{};  // without curves of the old session
+  curves_ = {};  // without those of the old session
   view_.time = CurveTime{};
   view_.scales_force = false;
   view_.time.zero_s = steady_now_s();

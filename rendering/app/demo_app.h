@@ -76,7 +76,6 @@ class DemoApp {
   void handle_exhibit_key(const KeyPress& press);
   void close_windows();
   void select_listed(std::size_t number);
-  void pause_or_run();
   void next_block_count();
   void scroll_curves(double by_s);
   void seek_replay(double by_s);
@@ -108,8 +107,7 @@ class DemoApp {
   std::unique_ptr<BlockView> blocks_;
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
-  SidePanel panel_;
-  SceneOverlay overlay_;
+  ForceCurves curves_;
   Exhibit exhibit_{1};
   ViewState view_;
   WindowView shown_;

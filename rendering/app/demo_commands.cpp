@@ -20,15 +20,21 @@ constexpr double kSeekStep_s = 2.0;
 constexpr double kSpeedStep = 1.25;
 constexpr float kTextStep = 0.1F;
 
-void turn(bool& what) { what = !what; }
+// An input without a command, for the list of keys.
+WindowCommand hint(const char* shown, const char* help) { return {.shown = shown, .help = help}; }
 
-// A command that shows or hides a part of the view; `shown` lives as long as the commands.
-WindowCommand toggle(std::vector<int> keys, const char* label, const char* help, bool& shown) {
-  return {.keys = std::move(keys),
+// A command of one key; with a label it has a menu item.
+WindowCommand command(int key, const char* label, const char* help, std::function<void()> run) {
+  return {.keys = {key}, .label = label, .help = help, .run = [run = std::move(run)](std::size_t) { run(); }};
+}
+
+// A command that switches a setting, which lives as long as the commands; with a label its item shows the state.
+WindowCommand toggle(int key, const char* label, const char* help, bool& setting) {
+  return {.keys = {key},
           .label = label,
           .help = help,
-          .run = [&shown](std::size_t) { turn(shown); },
-          .on = [&shown] { return shown; }};
+          .run = [&setting](std::size_t) { setting = !setting; },
+          .on = [&setting] { return setting; }};
 }
 
 WindowCommand in_bar(WindowCommand command) {
@@ -40,10 +46,12 @@ WindowCommand in_bar(WindowCommand command) {
 
 std::vector<WindowCommand> DemoApp::make_commands() {
   using When = WindowCommand::When;
+  Settings& settings = view_.settings;
+  Dialogs& dialogs = view_.dialogs;
   return {
-      {.shown = "mouse", .help = "moves the probe, over the block; down is deeper"},
-      {.shown = "wheel", .help = "moves the probe step by step; with Ctrl: zooms the view"},
-      {.shown = "right button", .help = "turns the view"},
+      hint("mouse", "moves the probe, over the block; down is deeper"),
+      hint("wheel", "moves the probe step by step; with Ctrl: zooms the view"),
+      hint("right button", "turns the view"),
       {.keys = {GLFW_KEY_DOWN, GLFW_KEY_UP},
        .help = "press deeper; lift the probe to just above the surface",
        .run = [this](std::size_t key) { key_velocity_m_per_s_ += (key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s; },
@@ -53,19 +61,18 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .shown = "1 ... 9",
        .help = "make a model the active one; a click on its block or row too",
        .run = [this](std::size_t key) { select_listed(key); }},
-      in_bar(
-          toggle({GLFW_KEY_M}, "Open", "open recordings, other programs' tables or models", view_.dialogs.file_list)),
-      in_bar(toggle({GLFW_KEY_O}, "Scene", "choose another material", view_.dialogs.scene_list)),
+      in_bar(toggle(GLFW_KEY_M, "Open", "open recordings, other programs' tables or models", dialogs.file_list)),
+      in_bar(toggle(GLFW_KEY_O, "Scene", "choose another material", dialogs.scene_list)),
       {.keys = {GLFW_KEY_U},
        .label = "Device",
        .help = "choose what holds the tool",
        .run =
            [this](std::size_t) {
-             turn(view_.dialogs.device_list);
+             view_.dialogs.device_list = !view_.dialogs.device_list;
              if (view_.dialogs.device_list) files_.look_for_devices();
            },
        .bar = true,
-       .on = [this] { return view_.dialogs.device_list; }},
+       .on = [&dialogs] { return dialogs.device_list; }},
       {.keys = {GLFW_KEY_R},
        .label = "Record",
        .help = "record this session to a file that `palpate fit` reads",
@@ -73,54 +80,39 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .bar = true,
        .on = [this] { return session_->recording().active; },
        .label_on = "Stop recording"},
-      in_bar(toggle({GLFW_KEY_W}, "View", "choose what is shown, and what is compared with what",
-                    view_.dialogs.view_list)),
-      toggle({GLFW_KEY_H, GLFW_KEY_SLASH}, "Help", "what the picture shows, and all keys", view_.dialogs.help),
+      in_bar(toggle(GLFW_KEY_W, "View", "choose what is shown, and what is compared with what", dialogs.view_list)),
+      {.keys = {GLFW_KEY_H, GLFW_KEY_SLASH},
+       .label = "Help",
+       .help = "what the picture shows, and all keys",
+       .run = [&dialogs](std::size_t) { dialogs.help = !dialogs.help; },
+       .on = [&dialogs] { return dialogs.help; }},
       {.keys = {GLFW_KEY_SPACE},
        .label = "Freeze",
        .help = "freeze curves and picture to look back; continue",
-       .run = [this](std::size_t) { pause_or_run(); },
+       .run = [this](std::size_t) { view_.time.paused ? view_.time.run() : view_.time.pause(steady_now_s()); },
        .on = [this] { return view_.time.paused; },
        .label_on = "Go on"},
-      {.keys = {GLFW_KEY_C},
-       .label = "Clear",
-       .help = "clear the errors so far and the alarms",
-       .run = [this](std::size_t) { session_->reset_figures(); }},
-      {.keys = {GLFW_KEY_N},
-       .help = "the next set of models: Ladder, 2009, Palpate",
-       .run = [this](std::size_t) { next_line_up(); }},
-      toggle({GLFW_KEY_X}, "Arrows x 10", "arrows that show ten times the difference, and back", view_.exaggerated),
+      command(GLFW_KEY_C, "Clear", "clear the errors so far and the alarms", [this] { session_->reset_figures(); }),
+      command(GLFW_KEY_N, "", "the next set of models: Ladder, 2009, Palpate", [this] { next_line_up(); }),
+      toggle(GLFW_KEY_X, "Arrows x 10", "arrows that show ten times the difference, and back", view_.exaggerated),
       {.keys = {GLFW_KEY_J},
        .label = "Feel",
        .help = "scale the stiffness and damping of the rendered force; back to the model",
        .run =
            [this](std::size_t) {
-             turn(view_.scales_force);
+             view_.scales_force = !view_.scales_force;
              session_->use_scale({});
            },
        .on = [this] { return view_.scales_force; }},
-      {.keys = {GLFW_KEY_B},
-       .help = "one, two or four blocks side by side",
-       .run = [this](std::size_t) { next_block_count(); }},
-      {.keys = {GLFW_KEY_V},
-       .help = "the difference in its band, or its mean over 50 ms",
-       .run = [this](std::size_t) { turn(view_.settings.difference); }},
-      {.keys = {GLFW_KEY_E},
-       .help = "the error against the time that a model takes, or against the force",
-       .run = [this](std::size_t) { turn(view_.verdict); }},
-      {.keys = {GLFW_KEY_F},
-       .help = "choose what the models are compared with",
-       .run = [this](std::size_t) { next_reference(); }},
-      {.keys = {GLFW_KEY_S},
-       .label = "Save curves",
-       .help = "save what the curves show, as a figure and as data",
-       .run = [this](std::size_t) { files_.save_curves(*session_, shown_, panel_.columns()); }},
-      {.keys = {GLFW_KEY_K},
-       .label = "Save model",
-       .help = "save the active model to a file",
-       .run = [this](std::size_t) { files_.save_model(*session_); }},
-      {.shown = "a row, right button", .help = "renames a model, takes it out"},
-      {.shown = "on the curves", .help = "drag: zoom; wheel: scroll back; double click: continue"},
+      command(GLFW_KEY_B, "", "one, two or four blocks side by side", [this] { next_block_count(); }),
+      toggle(GLFW_KEY_V, "", "the difference in its band, or its mean over 50 ms", settings.difference),
+      toggle(GLFW_KEY_E, "", "the error against the time that a model takes, or against the force", view_.verdict),
+      command(GLFW_KEY_F, "", "choose what the models are compared with", [this] { next_reference(); }),
+      command(GLFW_KEY_S, "Save curves", "save what the curves show, as a figure and as data",
+              [this] { files_.save_curves(*session_, shown_, curves_.columns()); }),
+      command(GLFW_KEY_K, "Save model", "save the active model to a file", [this] { files_.save_model(*session_); }),
+      hint("a row, right button", "renames a model, takes it out"),
+      hint("on the curves", "drag: zoom; wheel: scroll back; double click: continue"),
       {.keys = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT},
        .help = "scroll back and forth while the curves stand still",
        .run = [this](std::size_t key) { scroll_curves((key == 0 ? 1.0 : -1.0) * kScrollSpeed * frame_s_); },
@@ -160,19 +152,13 @@ std::vector<WindowCommand> DemoApp::make_commands() {
              session_->replay()->set_speed(session_->replay()->speed() * (key == 0 ? 1.0 / kSpeedStep : kSpeedStep));
            },
        .replay = true},
-      {.keys = {GLFW_KEY_T},
-       .help = "light or dark",
-       .run =
-           [this](std::size_t) {
-             view_.settings.theme = view_.settings.theme == Theme::light ? Theme::dark : Theme::light;
-           }},
-      toggle({GLFW_KEY_L}, "Loop", "all figures of the loop, and its faults", view_.details),
-      {.keys = {GLFW_KEY_Z},
-       .help = "the device's tool is at its rest position: zero it there",
-       .run = [this](std::size_t) { session_->start_zeroing(); }},
-      {.keys = {GLFW_KEY_D},
-       .help = "the device pushes only while G is held, only while its grip is held, or always",
-       .run = [this](std::size_t) { next_dead_man(); }},
+      command(GLFW_KEY_T, "", "light or dark",
+              [&settings] { settings.theme = settings.theme == Theme::light ? Theme::dark : Theme::light; }),
+      toggle(GLFW_KEY_L, "Loop", "all figures of the loop, and its faults", view_.details),
+      command(GLFW_KEY_Z, "", "the device's tool is at its rest position: zero it there",
+              [this] { session_->start_zeroing(); }),
+      command(GLFW_KEY_D, "", "the device pushes only while G is held, only while its grip is held, or always",
+              [this] { next_dead_man(); }),
       {.keys = {GLFW_KEY_G},
        .help = "hold it to let the device push, if D requires it",
        .run =
@@ -180,27 +166,19 @@ std::vector<WindowCommand> DemoApp::make_commands() {
              if (session_->dead_man() == DeadMan::key) session_->hold();
            },
        .when = When::held},
-      {.keys = {GLFW_KEY_HOME},
-       .help = "the view as it was at the beginning",
-       .run = [this](std::size_t) { blocks_->camera().go_home(); }},
+      command(GLFW_KEY_HOME, "", "the view as it was at the beginning", [this] { blocks_->camera().go_home(); }),
       {.keys = {GLFW_KEY_EQUAL, GLFW_KEY_KP_ADD},
        .shown = "+",
        .help = "larger text",
        .run =
-           [this](std::size_t) {
-             view_.settings.text_size = std::min(kLargestText, view_.settings.text_size + kTextStep);
-           }},
+           [&settings](std::size_t) { settings.text_size = std::min(kLargestText, settings.text_size + kTextStep); }},
       {.keys = {GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT},
        .shown = "-",
        .help = "smaller text",
        .run =
-           [this](std::size_t) {
-             view_.settings.text_size = std::max(kSmallestText, view_.settings.text_size - kTextStep);
-           }},
-      {.keys = {GLFW_KEY_ESCAPE},
-       .help = "closes lists, questions and this",
-       .run = [this](std::size_t) { close_windows(); }},
-      {.shown = "drop a file", .help = "loads a model; recordings and other programs' tables: trains or tests on them"},
+           [&settings](std::size_t) { settings.text_size = std::max(kSmallestText, settings.text_size - kTextStep); }},
+      command(GLFW_KEY_ESCAPE, "", "closes lists, questions and this", [this] { close_windows(); }),
+      hint("drop a file", "loads a model; recordings and other programs' tables: trains or tests on them"),
       {.keys = {GLFW_KEY_Q}, .help = "ends the program", .run = [this](std::size_t) { close(); }, .control = true}};
 }
 
@@ -209,27 +187,17 @@ void DemoApp::select_listed(std::size_t number) {
   if (number < listed.size()) session_->select(listed[number]);
 }
 
-void DemoApp::pause_or_run() {
-  if (view_.time.paused) {
-    view_.time.run();
-  } else {
-    view_.time.pause(steady_now_s());
-  }
-}
-
 void DemoApp::next_block_count() {
-  view_.settings.block_count = view_.settings.block_count == 4 ? 1 : 2 * view_.settings.block_count;
+  std::size_t& wanted = view_.settings.block_count;
+  wanted = wanted == 4 ? 1 : 2 * wanted;
   // Says why there are fewer blocks than the user selected.
   const std::vector<ModelView>& slots = shown_.models.slots;
   const auto ready =
       std::count_if(slots.begin(), slots.end(), [](const ModelView& slot) { return slot.state == SlotState::ready; });
-  const bool reference = !shown_.models.reference_name.empty() && shown_.models.compared &&
-                         shown_.models.reference == kReferenceBlock && view_.settings.block_count > 1;
+  const bool reference = shown_.models.compared && shown_.models.reference == kReferenceBlock && wanted > 1;
   const std::size_t shown = static_cast<std::size_t>(ready) + (reference ? 1 : 0);
-  if (shown >= view_.settings.block_count) return;
-  notify(
-      std::to_string(shown) + " of " + std::to_string(view_.settings.block_count) + " blocks: no more models are ready",
-      false);
+  if (shown < wanted)
+    notify(std::to_string(shown) + " of " + std::to_string(wanted) + " blocks: no more models are ready", false);
 }
 
 void DemoApp::scroll_curves(double by_s) {
@@ -237,10 +205,7 @@ void DemoApp::scroll_curves(double by_s) {
   if (history.size() > 0) view_.time.scroll_back(by_s, history[0].loop_time_s);
 }
 
-void DemoApp::seek_replay(double by_s) {
-  ReplayControl& replay = *session_->replay();
-  replay.seek(std::clamp(replay.playhead_s() + by_s, 0.0, replay.duration_s()));
-}
+void DemoApp::seek_replay(double by_s) { session_->replay()->seek(session_->replay()->playhead_s() + by_s); }
 
 void DemoApp::close_windows() {
   const std::vector<DeviceChoice> devices = view_.dialogs.devices;

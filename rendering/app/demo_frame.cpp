@@ -32,7 +32,7 @@ Viewport pixels_of(const SceneArea& area) {
 
 void DemoApp::draw() {
   const bool exhibit = view_.exhibit.on;
-  style_.update(window_->ui_size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
+  style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
                 exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(input_.tapped());
   input_.keep_wheel();
@@ -52,11 +52,11 @@ void DemoApp::draw() {
                                },
                                [this](const std::string& name) { use_line_up(*find_line_up(name)); },
                                [this] { use_recording_roles(); }};
-  overlay_.draw(*session_, shown_, *blocks_, view_, style_, area, toasts_, actions);
+  draw_overlay(*session_, shown_, *blocks_, view_, style_, area, toasts_, actions);
   if (view_.exhibit.on) {
     exhibit_.draw(*session_, shown_, *blocks_, style_, layout);
   } else {
-    panel_.draw(*session_, shown_, view_, style_, frames_, layout.panel);
+    draw_panel(curves_, *session_, shown_, view_, style_, frames_, layout.panel);
   }
   ui_->end_frame();
   if (!blocks_->filters_edges()) return;
@@ -95,10 +95,9 @@ std::vector<BlockPose> DemoApp::block_poses() const {
 
 // While the curves are paused, the poses are those at their right edge.
 std::vector<BlockPose> DemoApp::true_poses() const {
-  const HistoryPoint& now = shown_.models.now;
-  const bool frozen = view_.time.paused && shown_.models.any_now;
   BlockPose pose;
-  pose.tool_m = frozen ? now.position_m : static_cast<float>(session_->newest().tick.position_m);
+  pose.tool_m =
+      view_.time.paused ? shown_.models.now.position_m : static_cast<float>(session_->newest().tick.position_m);
   pose.dent_m = std::max(0.0F, pose.tool_m);
   std::vector<BlockPose> poses;
   for (const std::size_t slot : shown_.blocks)
@@ -114,10 +113,9 @@ std::vector<BlockPose> DemoApp::true_poses() const {
 BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
   const ModelsView& models = shown_.models;
   const ModelView& model = models.slots[slot];
-  const bool frozen = view_.time.paused && models.any_now;
   double force_N = model.force_N;
   double reference_N = shown_.reference_N;
-  if (frozen) {
+  if (view_.time.paused) {
     force_N = static_cast<double>(models.now.force_N[slot]);
     reference_N = static_cast<double>(models.now.reference_N);
     pose.error_over_jnd = std::abs(models.now.sustained_over_jnd[slot]);
@@ -140,7 +138,7 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
 // The pose of the reference block; it has the dent of the active model.
 BlockPose DemoApp::reference_pose(BlockPose pose) const {
   const ModelView* active = shown_.models.active();
-  const bool frozen = view_.time.paused && shown_.models.any_now;
+  const bool frozen = view_.time.paused;
   const double reference_N = frozen ? static_cast<double>(shown_.models.now.reference_N) : shown_.reference_N;
   if (active != nullptr && !frozen) pose.dent_m = static_cast<float>(active->dent_m);
   pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;

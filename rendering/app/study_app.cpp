@@ -80,11 +80,11 @@ void StudyApp::type(char letter) {
 }
 
 void StudyApp::draw() {
-  const Framebuffer picture = window_->framebuffer();
-  style_.update(window_->ui_size(), kExhibitText, kTheme);
+  const UiSize size = window_->size();
+  style_.update(size, kExhibitText, kTheme);
   ui_->begin_frame();
   const Rgb& background = style_.colours().background;
-  glViewport(0, 0, picture.width, picture.height);
+  glViewport(0, 0, size.width_px, size.height_px);
   glClearColor(background.r, background.g, background.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT);
   const ImVec2 all = ImGui::GetIO().DisplaySize;

@@ -39,18 +39,15 @@ bool set(const char* name) {
 
 constexpr std::size_t kChannels = 3;
 
-Result<std::string> png_of(const std::vector<unsigned char>& pixels, const Framebuffer& picture) {
+Result<std::string> png_of(const std::vector<unsigned char>& pixels, const UiSize& picture) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(picture.width);
-  image.height = static_cast<png_uint_32>(picture.height);
+  image.width = static_cast<png_uint_32>(picture.width_px);
+  image.height = static_cast<png_uint_32>(picture.height_px);
   image.format = PNG_FORMAT_RGB;
   // OpenGL's first row is the lowest; a negative stride flips the picture.
   const auto stride = -static_cast<png_int_32>(kChannels * image.width);
-  png_alloc_size_t size = 0;
-  if (png_image_write_to_memory(&image, nullptr, &size, 0, pixels.data(), stride, nullptr) == 0) {
-    return Error{std::string("the picture cannot be made a PNG: ") + image.message};
-  }
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::string file(size, '\0');
   if (png_image_write_to_memory(&image, file.data(), &size, 0, pixels.data(), stride, nullptr) == 0) {
     return Error{std::string("the picture cannot be made a PNG: ") + image.message};
@@ -166,28 +163,26 @@ bool Window::display_sets_pace(const Rgb& empty) {
   return steady_now_ns() - start_ns > kTrialFrames * kWaited_ns;
 }
 
-Framebuffer Window::framebuffer() const noexcept {
-  Framebuffer result;
-  glfwGetFramebufferSize(window_, &result.width, &result.height);
-  glfwGetWindowSize(window_, &result.window_width, &result.window_height);
-  glfwGetWindowContentScale(window_, &result.content_scale, nullptr);
-  return result;
-}
-
-UiSize Window::ui_size() const noexcept {
-  const Framebuffer picture = framebuffer();
-  if (picture.width == 0 || picture.window_width == 0) return {};  // minimised
-  return {static_cast<float>(picture.window_width), static_cast<float>(picture.window_height), picture.content_scale,
-          static_cast<float>(picture.width) / static_cast<float>(picture.window_width)};
+UiSize Window::size() const noexcept {
+  UiSize size;
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window_, &size.width_px, &size.height_px);
+  glfwGetWindowSize(window_, &width, &height);
+  if (size.width_px == 0 || width == 0) return {};
+  size.width = static_cast<float>(width);
+  size.height = static_cast<float>(height);
+  size.pixels_per_unit = static_cast<float>(size.width_px) / size.width;
+  glfwGetWindowContentScale(window_, &size.content_scale, nullptr);
+  return size;
 }
 
 Status Window::save_frame(const std::string& path, bool overwrite) {
-  const Framebuffer picture = framebuffer();
-  std::vector<unsigned char> pixels(kChannels * static_cast<std::size_t>(picture.width) *
-                                    static_cast<std::size_t>(picture.height));
+  const UiSize picture = size();
+  std::vector<unsigned char> pixels(kChannels * static_cast<std::size_t>(picture.width_px) *
+                                    static_cast<std::size_t>(picture.height_px));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadBuffer(GL_BACK);
-  glReadPixels(0, 0, picture.width, picture.height, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
+  glReadPixels(0, 0, picture.width_px, picture.height_px, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
   const Result<std::string> png = png_of(pixels, picture);
   show_frame();
   if (!png) return png.error();

@@ -20,15 +20,6 @@ struct WindowRequest {
   Rgb empty{0.08F, 0.09F, 0.10F};  // colour until the first frame
 };
 
-// Sizes of the framebuffer.
-struct Framebuffer {
-  int width = 0;  // pixels
-  int height = 0;
-  float content_scale = 1.0F;  // scale factor of the display for its contents
-  int window_width = 0;        // window units
-  int window_height = 0;
-};
-
 class Window {
  public:
   // Checks for a display; fast. Call it first. Errors: there is none.
@@ -40,8 +31,7 @@ class Window {
   ~Window();
 
   GLFWwindow* handle() const noexcept { return window_; }
-  Framebuffer framebuffer() const noexcept;
-  UiSize ui_size() const noexcept;
+  UiSize size() const noexcept;
   // Shows the frame and waits for the next one: for the display where the driver does so, else at 60 Hz.
   void show_frame();
   // Saves the frame as a PNG file and shows it. Errors: the file exists and `overwrite` is false; it cannot be written.

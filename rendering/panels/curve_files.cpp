@@ -1,7 +1,6 @@
 #include "rendering/panels/curve_files.h"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -13,11 +12,7 @@ constexpr double kFigure_jnd = 3.0;
 // Names of ReferenceKind, for the reference of each row; key F changes it.
 constexpr const char* kReferenceNames[] = {"measured", "truth", "model"};
 
-std::string number(float value) {
-  char text[32] = "";
-  if (!std::isnan(value)) std::snprintf(text, sizeof text, "%.6g", static_cast<double>(value));
-  return text;
-}
+std::string number(float value) { return std::isnan(value) ? "" : general(static_cast<double>(value), 6); }
 
 }  // namespace
 

@@ -157,6 +157,15 @@ void Exhibit::note_result() {
   if (!path.empty()) (void)write_tally(path, tally_);
 }
 
+Rgb Exhibit::first_colour(Theme theme) const {
+  const auto& first = pair()->first;
+  return first ? exhibit_colour(first->method, first->paper, theme) : reference_colour(theme);
+}
+
+Rgb Exhibit::second_colour(Theme theme) const {
+  return exhibit_colour(pair()->second.method, pair()->second.paper, theme);
+}
+
 std::vector<BlockPose> Exhibit::reveal_poses(const LiveSession& session, Theme theme) const {
   if (game_.state() != State::reveal || !revealed_) return {};
   const ExhibitReveal::Moment moment = reveal_.at(session.newest().loop_time_s);
@@ -209,7 +218,7 @@ void Exhibit::press_key(int key, const LiveSession& session) {
         game_.answer(key == words()("key_differ").front());
       break;
     case State::reveal:
-      if ((first || on) && reveal_is_done(session)) leave_reveal();
+      if ((first || on) && reveal_is_done(session)) game_.go_on();
       break;
   }
 }

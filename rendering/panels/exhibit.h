@@ -72,7 +72,7 @@ class Exhibit {
   const std::vector<std::string>& said() const noexcept { return said_; }
 
  private:
-  struct Canvas;  // common data of all screens of a frame
+  struct Screens;
   void forget(LiveSession& session, ViewState& view);
   void read_ticks(const LiveSession& session);
   void note_device(const LiveSession& session);
@@ -80,31 +80,9 @@ class Exhibit {
   void note_result();
   bool reveal_is_done(const LiveSession& session) const;
   std::string tally_path() const;  // today's file; empty: no tally is stored
-  void leave_reveal() { game_.go_on(); }
   void begin(const LiveSession& session);
   // The pair on the screen; null: too few models are ready.
   const ExhibitRound* pair() const noexcept;
-  void draw_attract(const Canvas& canvas);
-  void draw_learning(const Canvas& canvas);
-  void draw_guess(const Canvas& canvas);
-  void draw_press(const Canvas& canvas);
-  void draw_reveal(const Canvas& canvas);
-  void draw_score(const Canvas& canvas);
-  void draw_foot(const Canvas& canvas);
-  void draw_host(const Canvas& canvas);
-  void draw_names(const Canvas& canvas, const BlockView& blocks, const SceneArea& scene) const;
-  void draw_difference(const Canvas& canvas, const ExhibitTrace& trace, double right_s);
-  void draw_slow_motion(const Canvas& canvas);
-  void draw_growing_number(const Canvas& canvas, const SceneArea& scene);
-  float begin_plot(const Canvas& canvas, const std::string& title);
-  bool button(const Canvas& canvas, const std::string& text, const std::string& key, float width, bool down = false);
-  void say(const std::string& text);
-  void say_quietly(const Canvas& canvas, const std::string& text);
-  void draw_bar(const Canvas& canvas, const ExhibitRound& round);
-  void draw_key(const Canvas& canvas, const ExhibitModel& model, const char* block);
-  std::string verdict() const;
-  std::string number(double value) const;
-  std::string name_of(bool first, const LiveSession& session) const;
   Rgb first_colour(Theme theme) const;
   Rgb second_colour(Theme theme) const;
   // Whether the first of the pair has the left block. A reference is the right one.

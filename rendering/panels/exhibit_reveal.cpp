@@ -6,20 +6,14 @@
 namespace palpate {
 namespace {
 
-using PressColumn = ExhibitTrace::Column;
-
-// The longest parts of the press before and after the largest difference that are shown, and the approach before it.
+// In columns: the longest parts of the press before and after the largest difference that are shown, and the approach
+// before it.
 constexpr std::size_t kBefore = static_cast<std::size_t>(1.0 / ExhibitTrace::kColumn_s);
 constexpr std::size_t kAfter = static_cast<std::size_t>(0.6 / ExhibitTrace::kColumn_s);
 constexpr std::size_t kApproach = static_cast<std::size_t>(0.15 / ExhibitTrace::kColumn_s);
-constexpr double kBack_s = 0.25;  // duration of the motion back to the largest difference, times the slowness
+constexpr double kBack = 0.25 / ExhibitTrace::kColumn_s;  // duration of the motion back to the largest difference
 
-bool is_pressed(const PressColumn& column) { return column.ticks > 0 && column.position_m > 0.0; }
-
-ExhibitReveal::Moment between(const ExhibitReveal::Moment& a, const ExhibitReveal::Moment& b, double share) {
-  return {std::lerp(a.position_m, b.position_m, share), std::lerp(a.first_N, b.first_N, share),
-          std::lerp(a.over_jnd, b.over_jnd, share)};
-}
+bool is_pressed(const ExhibitTrace::Column& column) { return column.ticks > 0 && column.position_m > 0.0; }
 
 void draw_force_arrow(ImDrawList& list, const ImVec2& foot, float length, float width, ImU32 colour) {
   const float head = std::min(1.1F * width, length);
@@ -36,7 +30,7 @@ void ExhibitReveal::start(const ExhibitTrace& trace, const JndLine& jnd, double 
   began_s_ = now_s;
   moments_.assign(1, {});
   largest_at_ = 0;
-  const std::vector<PressColumn>& columns = trace.columns();
+  const std::vector<Moment>& columns = trace.columns();
   if (columns.empty()) return;
   std::size_t first = trace.largest_at();
   std::size_t last = first;
@@ -44,39 +38,42 @@ void ExhibitReveal::start(const ExhibitTrace& trace, const JndLine& jnd, double 
   while (first > 0 && largest - first < kBefore && is_pressed(columns[first - 1])) --first;
   while (last + 1 < columns.size() && last - largest < kAfter && is_pressed(columns[last + 1])) ++last;
   for (std::size_t i = 0; i < kApproach && first > 0 && columns[first - 1].ticks > 0; ++i) --first;
-  moments_.clear();
-  for (std::size_t i = first; i <= last; ++i)
-    moments_.push_back({columns[i].position_m, columns[i].first_N, columns[i].over_jnd});
+  moments_.assign(columns.begin() + static_cast<std::ptrdiff_t>(first),
+                  columns.begin() + static_cast<std::ptrdiff_t>(last + 1));
   largest_at_ = largest - first;
 }
 
+double ExhibitReveal::columns_since_start(double now_s) const noexcept {
+  return (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s;
+}
+
 double ExhibitReveal::way_back(double now_s) const noexcept {
-  const double press_s = static_cast<double>(moments_.size() - 1) * ExhibitTrace::kColumn_s;
-  const double share = std::clamp(((now_s - began_s_) / slowness_ - press_s) / kBack_s, 0.0, 1.0);
+  const double share = std::clamp((columns_since_start(now_s) - end()) / kBack, 0.0, 1.0);
   return share * share * (3.0 - 2.0 * share);
 }
 
 double ExhibitReveal::playhead(double now_s) const noexcept {
-  const double end = static_cast<double>(moments_.size() - 1);
-  const double pressed = (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s;
-  if (pressed < end) return std::max(0.0, pressed);
-  return std::lerp(end, static_cast<double>(largest_at_), way_back(now_s));
+  const double pressed = columns_since_start(now_s);
+  if (pressed < end()) return std::max(0.0, pressed);
+  return std::lerp(end(), static_cast<double>(largest_at_), way_back(now_s));
 }
 
-bool ExhibitReveal::done(double now_s) const noexcept {
-  const double press_s = static_cast<double>(moments_.size() - 1) * ExhibitTrace::kColumn_s;
-  return now_s - began_s_ >= slowness_ * (press_s + kBack_s);
-}
+bool ExhibitReveal::done(double now_s) const noexcept { return columns_since_start(now_s) >= end() + kBack; }
 
 ExhibitReveal::Moment ExhibitReveal::at(double now_s) const noexcept {
   const double at = playhead(now_s);
   const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, moments_.size() - 1);
-  return between(moments_[below], moments_[above], at - static_cast<double>(below));
+  const Moment& above = moments_[std::min(below + 1, moments_.size() - 1)];
+  const double share = at - static_cast<double>(below);
+  Moment moment = moments_[below];
+  moment.position_m = std::lerp(moment.position_m, above.position_m, share);
+  moment.first_N = std::lerp(moment.first_N, above.first_N, share);
+  moment.over_jnd = std::lerp(moment.over_jnd, above.over_jnd, share);
+  return moment;
 }
 
 double ExhibitReveal::largest_over_jnd(double now_s) const noexcept {
-  const double shown = std::max(0.0, (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s);
+  const double shown = std::max(0.0, columns_since_start(now_s));
   double largest = 0.0;
   for (std::size_t i = 0; i < moments_.size() && static_cast<double>(i) <= shown; ++i)
     largest = std::max(largest, std::abs(moments_[i].over_jnd));

@@ -17,11 +17,8 @@ namespace palpate {
 
 class ExhibitReveal {
  public:
-  struct Moment {
-    double position_m = 0.0;
-    double first_N = 0.0;
-    double over_jnd = 0.0;  // difference / JND, signed, as the verdict of the round counts it
-  };
+  // The second force is that of the signed difference `over_jnd`, which the verdict of the round counts: see second_N.
+  using Moment = ExhibitTrace::Column;
 
   // `slowness`: duration of the reveal / duration of the press. `now_s`: any clock, also below.
   void start(const ExhibitTrace& trace, const JndLine& jnd, double slowness, double now_s);
@@ -38,6 +35,8 @@ class ExhibitReveal {
                    bool first_is_left) const;
 
  private:
+  double end() const noexcept { return static_cast<double>(moments_.size() - 1); }  // the last index into moments_
+  double columns_since_start(double now_s) const noexcept;
   // Share of the way back from the end of the press to the largest difference, 0 to 1, with a smooth start and end.
   double way_back(double now_s) const noexcept;
   double playhead(double now_s) const noexcept;  // index into moments_, with a fraction

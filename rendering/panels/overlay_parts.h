@@ -43,10 +43,8 @@ void draw_big_number(const WindowView& shown, const UiStyle& style, const SceneA
 // The entries of a folder that can be opened: its folders ("name/"), then its files.
 std::vector<std::string> pickable_files(const std::string& folder);
 
-inline constexpr auto kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
-                                ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove;
-// Places the next ImGui window in the middle and limits its size.
-void begin_in_the_middle();
+// Begins a dialog in the middle of the window, if it is open. Call ImGui::End if this returns true.
+bool begin_dialog(const char* title, bool& open);
 // Whether Enter was pressed in this frame.
 bool enter_pressed();
 // An entry of a list. Returns whether it was chosen with the mouse, the space bar or Enter.

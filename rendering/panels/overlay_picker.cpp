@@ -53,17 +53,12 @@ std::vector<std::string> pickable_files(const std::string& folder) {
 
 void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   FilePicker& picker = view.dialogs.picker;
-  if (!view.dialogs.file_list) {
-    picker.folder.clear();
-    return;
-  }
+  if (!begin_dialog("Open a file", view.dialogs.file_list)) return picker.folder.clear();
   std::error_code error;
   if (picker.folder.empty()) go_to(picker, fs::current_path(error));
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const float width = std::min(0.85F * all.x, 44.0F * ImGui::GetFontSize());
-  begin_in_the_middle();
-  ImGui::Begin("Open a file", &view.dialogs.file_list, kDialog);
   bool done = false;
   ImGui::TextDisabled("A recording, another program's table, or a model (.json). A path, then Enter:");
   ImGui::SetNextItemWidth(width);
@@ -91,9 +86,7 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
 
 // Draws the list of devices, with the reason if one cannot be used.
 void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions) {
-  if (!view.dialogs.device_list) return;
-  begin_in_the_middle();
-  ImGui::Begin("Device", &view.dialogs.device_list, kDialog);
+  if (!begin_dialog("Device", view.dialogs.device_list)) return;
   if (view.dialogs.devices.empty()) ImGui::TextDisabled("looking for devices ...");
   for (const DeviceChoice& device : view.dialogs.devices) {
     const bool own = device.name == in_use;

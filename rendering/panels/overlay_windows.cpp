@@ -32,11 +32,17 @@ void draw_plate(ImDrawList& list, const ImVec2& at, const ImVec2& size, const Im
   if (stripe) list.AddRectFilled(low, {at.x - 0.55F * margin.x, high.y}, ink(*stripe), 3.0F);
 }
 
-void begin_in_the_middle() {
+bool begin_dialog(const char* title, bool& open) {
+  if (!open) return false;
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const float margin = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({0.5F * all.x, 0.5F * all.y}, ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, {all.x - margin, all.y - margin});
+  ImGui::Begin(title, &open,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoMove);
+  if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+  return true;
 }
 
 bool enter_pressed() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false); }
@@ -92,16 +98,13 @@ void draw_device_words(LiveSession& session, const UiStyle& style, const SceneAr
 }
 
 void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands) {
-  if (!view.dialogs.help) return;
+  if (!begin_dialog("Help", view.dialogs.help)) return;
   float keys = 0.0F;
   float text = 0.0F;
   for (const WindowCommand& command : commands) {
     keys = std::max(keys, ImGui::CalcTextSize(shown_keys(command).c_str()).x);
     text = std::max(text, ImGui::CalcTextSize(command.help.c_str()).x);
   }
-  begin_in_the_middle();
-  ImGui::Begin("Help", &view.dialogs.help, kDialog);
-  if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
   ImGui::PushTextWrapPos(0.9F * ImGui::GetIO().DisplaySize.x);
   for (const char* sentence : kPictureHelp) ImGui::TextWrapped("%s", sentence);
   ImGui::PopTextWrapPos();
@@ -132,9 +135,7 @@ void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCo
 }
 
 void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions) {
-  if (!view.dialogs.scene_list) return;
-  begin_in_the_middle();
-  ImGui::Begin("Scenes", &view.dialogs.scene_list, kDialog);
+  if (!begin_dialog("Scenes", view.dialogs.scene_list)) return;
   const auto names = scene_names();
   for (const std::string& name : names ? *names : std::vector<std::string>{}) {
     const auto scene = load_scene(name);
@@ -166,13 +167,15 @@ std::optional<std::size_t> choose(const char* title, const Names& names, std::si
   return chosen;
 }
 
+// Draws a choice of two.
+void choose(const char* title, const char* yes, const char* no, bool& value) {
+  if (const auto to = choose(title, std::array{yes, no}, value ? 0 : 1)) value = *to == 0;
+}
+
 }  // namespace
 
 void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions& actions) {
-  if (!view.dialogs.view_list) return;
-  begin_in_the_middle();
-  ImGui::Begin("View", &view.dialogs.view_list, kDialog);
-  if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+  if (!begin_dialog("View", view.dialogs.view_list)) return;
   const std::size_t blocks = view.settings.block_count;
   if (const auto to = choose("Blocks (B)", std::array{"1", "2", "4"}, blocks == 4 ? 2 : blocks - 1))
     view.settings.block_count = std::size_t{1} << *to;
@@ -197,11 +200,8 @@ void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions&
                                                               : "a model: all sites");
   }
   if (const auto to = choose("Compare with (F)", reference_names, reference)) session.use_reference(kinds[*to]);
-  if (const auto to =
-          choose("Curves (V)", std::array{"difference", "mean over 50 ms"}, view.settings.difference ? 0 : 1))
-    view.settings.difference = *to == 0;
-  if (const auto to = choose("Plot (E)", std::array{"error against time", "error against force"}, view.verdict ? 0 : 1))
-    view.verdict = *to == 0;
+  choose("Curves (V)", "difference", "mean over 50 ms", view.settings.difference);
+  choose("Plot (E)", "error against time", "error against force", view.verdict);
   if (const auto to = choose("Theme (T)", std::array{"light", "dark"}, view.settings.theme == Theme::light ? 0 : 1))
     view.settings.theme = *to == 0 ? Theme::light : Theme::dark;
   if (session.renders_force()) {
@@ -252,10 +252,8 @@ std::string recording_roles_words(const RecordingRoles& roles) {
 
 void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
   RecordingRoles& roles = view.dialogs.recording_roles;
-  if (!roles.any()) return;
-  bool open = true;
-  begin_in_the_middle();
-  ImGui::Begin(roles.problem.empty() ? "Recordings" : "Not a recording", &open, kDialog);
+  bool open = roles.any();
+  if (!begin_dialog(roles.problem.empty() ? "Recordings" : "Not a recording", open)) return;
   ImGui::PushTextWrapPos(std::min(0.8F * ImGui::GetIO().DisplaySize.x, 42.0F * ImGui::GetFontSize()));
   if (!roles.problem.empty()) {
     ImGui::TextUnformatted(roles.problem.c_str());

@@ -12,10 +12,6 @@
 namespace palpate {
 namespace {
 
-constexpr auto kPanelWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                              ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                              ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
-
 // Draws the slider of the number of centres, for the active model or for all that have centres.
 void draw_centres(LiveSession& session, const ModelsView& models, ViewState& view) {
   ImGui::AlignTextToFramePadding();
@@ -42,11 +38,9 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
 
 }  // namespace
 
-void SidePanel::draw(LiveSession& session, const WindowView& shown, ViewState& view, const UiStyle& style,
-                     const FrameFigures& frames, const SceneArea& area) {
-  ImGui::SetNextWindowPos(area.at);
-  ImGui::SetNextWindowSize(area.size);
-  ImGui::Begin("panel", nullptr, kPanelWindow);
+void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& shown, ViewState& view,
+                const UiStyle& style, const FrameFigures& frames, const SceneArea& area) {
+  begin_panel("panel", area);
   const ModelsView& models = shown.models;
   const float line = ImGui::GetTextLineHeightWithSpacing();
   // The plots share the height that the parts of fixed size leave.
@@ -60,7 +54,7 @@ void SidePanel::draw(LiveSession& session, const WindowView& shown, ViewState& v
   const float centres = has_centres ? ImGui::GetFrameHeightWithSpacing() : 0.0F;
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_room - table - centres - titles);
   const bool bins = !view.details || rest > 14.0F * line;
-  curves_.draw(shown, view, style, rest * (bins ? 0.36F : 0.52F), rest * (bins ? 0.30F : 0.48F));
+  curves.draw(shown, view, style, rest * (bins ? 0.36F : 0.52F), rest * (bins ? 0.30F : 0.48F));
   draw_model_table(session, models, view, style, table);
   if (centres > 0.0F) draw_centres(session, models, view);
   if (bins) {

@@ -11,15 +11,8 @@
 
 namespace palpate {
 
-class SidePanel {
- public:
-  // Draws an ImGui window at `area`.
-  void draw(LiveSession& session, const WindowView& shown, ViewState& view, const UiStyle& style,
-            const FrameFigures& frames, const SceneArea& area);
-  const CurveColumns& columns() const noexcept { return curves_.columns(); }
-
- private:
-  ForceCurves curves_;
-};
+// Draws an ImGui window at `area`.
+void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& shown, ViewState& view,
+                const UiStyle& style, const FrameFigures& frames, const SceneArea& area);
 
 }  // namespace palpate

@@ -88,7 +88,7 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
       const ImVec2 at(plot.x_px(std::log10(std::max(1e-3 * view.tick_ns(), 0.1))), plot.y_px(error));
       const ImU32 colour = ink(slot_colour(models, slot, style.theme()));
       // The present error, at the right edge of the curves.
-      const double now = models.any_now ? std::abs(models.now.difference_over_jnd(slot, models.jnd)) : 0.0;
+      const double now = std::abs(models.now.difference_over_jnd(slot, models.jnd));
       if (now > 0.0) {
         const float y = plot.y_px(std::clamp(std::log10(now), kErrors.from, kErrors.to));
         plot.list().AddLine(at, {at.x, y}, ink(slot_colour(models, slot, style.theme()), 0.5F), 1.2F * size);

@@ -53,10 +53,10 @@ void draw_faults(const HealthView& health, const UiStyle& style) {
     ImGui::TextDisabled("no fault so far");
     return;
   }
-  const double now_s = health.now_s;
   const std::size_t first = faults.size() > kFaultsShown ? faults.size() - kFaultsShown : 0;
   for (std::size_t i = faults.size(); i-- > first;) {
-    ImGui::TextColored(paint(style.colours().fault), "%.0f s ago", std::max(0.0, now_s - faults[i].loop_time_s));
+    ImGui::TextColored(paint(style.colours().fault), "%.0f s ago",
+                       std::max(0.0, health.newest.loop_time_s - faults[i].loop_time_s));
     ImGui::SameLine();
     ImGui::TextWrapped("%s%s", faults[i].text.c_str(),
                        faults[i].count > 1 ? (" (" + std::to_string(faults[i].count) + " times)").c_str() : "");
@@ -66,18 +66,19 @@ void draw_faults(const HealthView& health, const UiStyle& style) {
 }  // namespace
 
 std::string device_line(const HealthView& health) {
-  const DeviceHealth& device = health.device;
+  const DeviceHealth& device = health.newest.device;
+  const auto stiffness_share = static_cast<double>(health.newest.stiffness_share);
   const bool real = device.zeroing != Zeroing::not_needed || device.interval_s > 0.0;
-  const bool softened = health.stiffness_share < 0.995;
+  const bool softened = stiffness_share < 0.995;
   if (!real && device.faults == 0 && !softened) return {};
   std::string line = health.device_name + text_of(": sample %.1f ms old", 1e3 * device.sample_age_s);
   if (device.interval_s > 0.0) line += text_of(", %.0f samples a second", 1.0 / device.interval_s);
   if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
   if (softened) {
     line += text_of(", force %.1f ms late: rendered at %.0f %% of the stiffness, because more would oscillate",
-                    health.lag_ms, 100.0 * health.stiffness_share);
+                    static_cast<double>(health.newest.lag_ms), 100.0 * stiffness_share);
   }
-  line += text_of(", motor heat %.0f %%", 100.0 * health.heat_share);
+  line += text_of(", motor heat %.0f %%", 100.0 * static_cast<double>(health.newest.heat_share));
   return line;
 }
 
@@ -100,7 +101,7 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
   if (statistics.ticks > 0 && statistics.age_s > kStall_s) {
     return {text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s), true};
   }
-  if (const auto words = device_fault_words(health.device.faults); !words.empty()) {
+  if (const auto words = device_fault_words(health.newest.device.faults); !words.empty()) {
     return {"Device: " + words.front(), true};
   }
   if (const std::vector<std::string>& words = health.alarms; !words.empty()) {

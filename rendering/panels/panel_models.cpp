@@ -1,9 +1,10 @@
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
@@ -14,13 +15,10 @@ namespace {
 using Slot = std::size_t;
 
 // Force in the last tick of the curves; NaN: none.
-double force_now_N(const ModelsView& models, Slot slot) {
-  return models.any_now ? static_cast<double>(models.now.force_N[slot]) : std::nan("");
-}
+double force_now_N(const ModelsView& models, Slot slot) { return static_cast<double>(models.now.force_N[slot]); }
 
 double error_now_N(const ModelsView& models, Slot slot) {
-  const bool any = models.any_now && !std::isnan(models.now.difference_over_jnd(slot, models.jnd));
-  if (!any) return std::nan("");
+  if (std::isnan(models.now.difference_over_jnd(slot, models.jnd))) return std::nan("");
   return models.now.in_contact ? force_now_N(models, slot) - static_cast<double>(models.now.reference_N) : 0.0;
 }
 
@@ -40,15 +38,12 @@ double tick_ns(const ModelsView& models, Slot slot) {
 
 double centres(const ModelsView& models, Slot slot) { return models.slots[slot].centres; }
 
-std::string format(const char* pattern, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
+std::string whole(double value) { return with_thousands(fixed(value, 0)); }
+std::string two_decimals(double value) { return fixed(value, 2); }
+std::string signed_mN(double value_N) {
+  const std::string text = fixed(1e3 * value_N, 0);
+  return text.front() == '-' ? text : "+" + text;
 }
-
-std::string whole(double value) { return grouped(static_cast<std::uint64_t>(value)); }
-std::string two_decimals(double value) { return format("%.2f", value); }
-std::string signed_mN(double value_N) { return format("%+.0f", 1e3 * value_N); }
 
 struct Column {
   const char* heading;
@@ -77,18 +72,17 @@ constexpr Column kTable[kColumns] = {
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2, centres, whole}};
 
 // Sorts by magnitude; missing values come first.
-double sort_value(const ModelsView& models, Slot slot, int column) {
-  const double value = kTable[column].value(models, slot);
-  return std::isnan(value) ? -1.0 : std::abs(value);
-}
-
 std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableState& sort) {
   std::vector<std::size_t> order = models.listed();
   if (sort.column < 0) return order;
+  const auto magnitude = [&](Slot slot) {
+    const double value = kTable[sort.column].value(models, slot);
+    return std::isnan(value) ? -1.0 : std::abs(value);
+  };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     if (!sort.rising) std::swap(a, b);
     if (sort.column == kName) return models.slots[a].name < models.slots[b].name;
-    return sort_value(models, a, sort.column) < sort_value(models, b, sort.column);
+    return magnitude(a) < magnitude(b);
   });
   return order;
 }
@@ -207,7 +201,7 @@ float column_width(int column) {
 
 std::string waiting_words(const ModelInfo& slot) {
   if (slot.state == SlotState::waiting) return "waits";
-  return slot.state == SlotState::fitting ? format("fits %.0f %%", 100.0 * slot.progress) : "failed";
+  return slot.state == SlotState::fitting ? "fits " + fixed(100.0 * slot.progress, 0) + " %" : "failed";
 }
 
 std::string name_tip(const ModelsView& models, std::size_t slot) {

@@ -3,7 +3,9 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <sstream>
+
+#include "engine/base/text.h"
 
 namespace palpate {
 
@@ -19,18 +21,21 @@ std::string fitting(const std::string& text, float room) {
   return {};
 }
 
-std::string grouped(std::uint64_t count) {
-  std::string digits = std::to_string(count);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
-  return digits;
+std::string in_lines(const std::string& text, float width) {
+  std::string lines, line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = line.empty() ? word : line + " " + word;
+    const bool fits = line.empty() || ImGui::CalcTextSize(longer.c_str()).x <= width;
+    if (!fits) lines += line + "\n";
+    line = fits ? longer : word;
+  }
+  return lines + line;
 }
 
 std::string jnd_text(double error_over_jnd) {
-  char text[32];
   // Two digits, which is the precision of the quantile of a stream (error_quantile.h).
-  const char* format = error_over_jnd < 0.995 ? "%.2f" : error_over_jnd < 9.95 ? "%.1f" : "%.0f";
-  std::snprintf(text, sizeof text, format, error_over_jnd);
-  return text;
+  return fixed(error_over_jnd, error_over_jnd < 0.995 ? 2 : error_over_jnd < 9.95 ? 1 : 0);
 }
 
 void quiet_words(const std::string& text) {
@@ -42,6 +47,14 @@ void quiet_words(const std::string& text) {
   shown = fitting(shown, room);
   ImGui::TextDisabled("%s", shown.c_str());
   if (shown != text) tip(text.c_str());
+}
+
+void begin_panel(const char* name, const SceneArea& area) {
+  ImGui::SetNextWindowPos(area.at);
+  ImGui::SetNextWindowSize(area.size);
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground);
 }
 
 void section_title(const UiStyle& style, const char* title) {

@@ -1,9 +1,9 @@
 // Small parts of several panels. They draw at the cursor of the current ImGui window.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
+#include "rendering/panels/layout.h"
 #include "rendering/panels/window_view.h"
 #include "rendering/ui/ui_style.h"
 
@@ -16,12 +16,14 @@ void draw_mark(ImDrawList& list, const ImVec2& middle, float radius, bool paper,
 
 // `text`, cut at a blank and with "..." at its end where it is wider than `room` pixels.
 std::string fitting(const std::string& text, float room);
-// With thousands separators: "33,275".
-std::string grouped(std::uint64_t count);
+// Breaks lines of `width` at blanks only; Dear ImGui would also break after the decimal point of a number.
+std::string in_lines(const std::string& text, float width);
 // An error over the JND with two or three digits.
 std::string jnd_text(double error_over_jnd);
 // Draws secondary text on the rest of the line. Where it does not fit it is cut, and a tooltip has all of it.
 void quiet_words(const std::string& text);
+// Begins an ImGui window that fills `area`. Call ImGui::End afterwards.
+void begin_panel(const char* name, const SceneArea& area);
 void section_title(const UiStyle& style, const char* title);
 // A tooltip for the last item, below or above it.
 void tip(const char* text);

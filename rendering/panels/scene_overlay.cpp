@@ -69,8 +69,11 @@ float draw_hint(const LiveSession& session, ViewState& view, const UiStyle& styl
   return top_px + text_size(style.fonts().body, hint, room).y;
 }
 
-// Draws five buttons, and a menu of all other commands. Returns their height.
-float draw_buttons(const SceneArea& area, const std::vector<WindowCommand>& commands) {
+// Height of draw_buttons.
+float buttons_height() { return ImGui::GetFrameHeight() + 2.0F * ImGui::GetStyle().WindowPadding.y; }
+
+// Draws five buttons, and a menu of all other commands.
+void draw_buttons(const SceneArea& area, const std::vector<WindowCommand>& commands) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - 2.0F}, ImGuiCond_Always, {0.0F, 1.0F});
   ImGui::Begin("buttons", nullptr, kFloating);
   for (const WindowCommand& command : commands) {
@@ -89,9 +92,7 @@ float draw_buttons(const SceneArea& area, const std::vector<WindowCommand>& comm
     }
     ImGui::EndPopup();
   }
-  const float height = ImGui::GetWindowSize().y;
   ImGui::End();
-  return height;
 }
 
 void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift,
@@ -160,10 +161,8 @@ std::string recording_words(const RecordingStatus& recording) {
   if (!recording.active && !recording.saving) return {};
   const std::string name = std::filesystem::path(recording.path).filename().string();
   if (recording.saving) return "saving " + name;
-  char length[64];
-  std::snprintf(length, sizeof length, ": %.1f s, %llu samples", recording.seconds,
-                static_cast<unsigned long long>(recording.rows));
-  return "recording " + name + length;
+  return "recording " + name + ": " + fixed(recording.seconds, 1) + " s, " + std::to_string(recording.rows) +
+         " samples";
 }
 
 BigNumber big_number(const ModelsView& models, bool has_truth) {
@@ -222,11 +221,11 @@ std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& bl
   return found;
 }
 
-void SceneOverlay::draw(LiveSession& session, const WindowView& shown, const BlockView& blocks, ViewState& view,
-                        const UiStyle& style, const SceneArea& area, const std::vector<Toast>& toasts,
-                        const OverlayActions& actions) {
+void draw_overlay(LiveSession& session, const WindowView& shown, const BlockView& blocks, ViewState& view,
+                  const UiStyle& style, const SceneArea& area, const std::vector<Toast>& toasts,
+                  const OverlayActions& actions) {
   const float line = height_of(style.fonts().body);
-  const float buttons = view.exhibit.on ? 0.0F : std::max(buttons_height_, 2.4F * line);
+  const float buttons = view.exhibit.on ? 0.0F : std::max(buttons_height(), 2.4F * line);
   const float surface = session.replay_test().found_m() != 0.0 ? 1.7F * line : 0.0F;
   const float bars = buttons + (session.replay() != nullptr ? 2.4F * line + surface : 0.0F);
   float top_px = area.at.y + 2.0F * line;
@@ -243,7 +242,7 @@ void SceneOverlay::draw(LiveSession& session, const WindowView& shown, const Blo
   }
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
-  if (!view.exhibit.on) buttons_height_ = draw_buttons(area, *actions.commands);
+  if (!view.exhibit.on) draw_buttons(area, *actions.commands);
   if (!view.dialogs.recording_roles.any()) draw_device_words(session, style, area);
   draw_toasts(toasts, style, area, top_px + 0.5F * line);
   draw_file_picker(view, actions);

@@ -44,15 +44,9 @@ BigNumber big_number(const ModelsView& models, bool has_truth);
 // The instructions for a scene without models and material; else empty.
 std::string empty_scene_words(const LiveSession& session);
 
-class SceneOverlay {
- public:
-  void draw(LiveSession& session, const WindowView& shown, const BlockView& blocks, ViewState& view,
-            const UiStyle& style, const SceneArea& area, const std::vector<Toast>& toasts,
-            const OverlayActions& actions);
-
- private:
-  float buttons_height_ = 0.0F;  // in the last frame
-};
+void draw_overlay(LiveSession& session, const WindowView& shown, const BlockView& blocks, ViewState& view,
+                  const UiStyle& style, const SceneArea& area, const std::vector<Toast>& toasts,
+                  const OverlayActions& actions);
 
 // Index in WindowView::blocks of the block nearest to `point`. `aimed`: empty unless the point is on or near it.
 std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& blocks, const SceneArea& area,

@@ -12,14 +12,10 @@ void RecordingRoles::add(OpenedRecording recording) {
 }
 
 void RecordingRoles::make_test(std::size_t index) {
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    OpenedRecording::Role& role = recordings[i].role;
-    if (i == index) {
-      role = OpenedRecording::Role::test;
-    } else if (role == OpenedRecording::Role::test) {
-      role = OpenedRecording::Role::train;
-    }
+  for (OpenedRecording& one : recordings) {
+    if (one.role == OpenedRecording::Role::test) one.role = OpenedRecording::Role::train;
   }
+  recordings[index].role = OpenedRecording::Role::test;
 }
 
 std::vector<std::string> RecordingRoles::training() const {
@@ -31,9 +27,10 @@ std::vector<std::string> RecordingRoles::training() const {
 }
 
 std::string RecordingRoles::test() const {
-  const auto found = std::find_if(recordings.begin(), recordings.end(),
-                                  [](const OpenedRecording& one) { return one.role == OpenedRecording::Role::test; });
-  return found == recordings.end() ? "" : found->path;
+  for (const OpenedRecording& one : recordings) {
+    if (one.role == OpenedRecording::Role::test) return one.path;
+  }
+  return {};
 }
 
 void CurveTime::pause(double at_s) noexcept {

@@ -11,19 +11,11 @@
 namespace palpate {
 namespace {
 
-constexpr std::pair<int, const char*> kKeyNames[] = {{GLFW_KEY_SPACE, "Space"},
-                                                     {GLFW_KEY_HOME, "Home"},
-                                                     {GLFW_KEY_BACKSPACE, "Backspace"},
-                                                     {GLFW_KEY_ESCAPE, "Esc"},
-                                                     {GLFW_KEY_UP, "Up"},
-                                                     {GLFW_KEY_DOWN, "Down"},
-                                                     {GLFW_KEY_LEFT, "Left"},
-                                                     {GLFW_KEY_RIGHT, "Right"},
-                                                     {GLFW_KEY_PAGE_UP, "Page Up"},
-                                                     {GLFW_KEY_EQUAL, "+"},
-                                                     {GLFW_KEY_KP_ADD, "keypad +"},
-                                                     {GLFW_KEY_KP_SUBTRACT, "keypad -"},
-                                                     {GLFW_KEY_PAGE_DOWN, "Page Down"}};
+constexpr std::pair<int, const char*> kKeyNames[] = {
+    {GLFW_KEY_SPACE, "Space"},        {GLFW_KEY_HOME, "Home"},   {GLFW_KEY_BACKSPACE, "Backspace"},
+    {GLFW_KEY_ESCAPE, "Esc"},         {GLFW_KEY_UP, "Up"},       {GLFW_KEY_DOWN, "Down"},
+    {GLFW_KEY_LEFT, "Left"},          {GLFW_KEY_RIGHT, "Right"}, {GLFW_KEY_PAGE_UP, "Page Up"},
+    {GLFW_KEY_PAGE_DOWN, "Page Down"}};
 
 }  // namespace
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/base/text.h"
-#include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
@@ -45,10 +44,9 @@ ModelsView models_view(const LiveSession& session, double until_s) {
   view.replays_training = session.replay() != nullptr && session.replays_training();
   view.jnd = session.jnd();
   view.verdict = session.verdict();
-  if (const HistoryPoint* now = comparison.history().last_until(until_s)) {
-    view.now = *now;
-    view.any_now = true;
-  }
+  view.now.force_N.fill(std::nanf(""));
+  view.now.reference_N = std::nanf("");
+  if (const HistoryPoint* now = comparison.history().last_until(until_s)) view.now = *now;
   return view;
 }
 
@@ -90,7 +88,7 @@ std::string counted_words(const LiveSession& session) {
   if (session.models().info(active).other_material)
     return "no truth to compare " + session.models().info(active).name + " with";
   if (session.tests_recording()) {
-    return grouped(session.figures(active).errors.samples) + " samples in contact, all of " +
+    return with_thousands(std::to_string(session.figures(active).errors.samples)) + " samples in contact, all of " +
            session.replay()->recording().name;
   }
   std::string words = fixed(comparison.counted_s(), 1) + " s of contact since " + comparison.counted_since();
@@ -101,19 +99,13 @@ std::string counted_words(const LiveSession& session) {
 }
 
 HealthView health_view(const LiveSession& session) {
-  HealthView view;
-  view.loop = session.loop().statistics();
-  view.scheduling = session.loop().scheduling();
-  view.missed_of_late = session.faults().missed_of_late();
-  view.now_s = session.newest().loop_time_s;
-  view.faults = session.faults().events();
-  view.alarms = session.alarms();
-  view.device_name = session.device_name();
-  view.device = session.newest().device;
-  view.heat_share = static_cast<double>(session.newest().heat_share);
-  view.stiffness_share = static_cast<double>(session.newest().stiffness_share);
-  view.lag_ms = static_cast<double>(session.newest().lag_ms);
-  return view;
+  return {session.loop().statistics(),
+          session.loop().scheduling(),
+          session.newest(),
+          session.faults().missed_of_late(),
+          session.faults().events(),
+          session.alarms(),
+          session.device_name()};
 }
 
 WindowView window_view(const LiveSession& session, const ViewState& view) {

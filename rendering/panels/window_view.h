@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/live/device_health.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/tick/jnd.h"
 #include "rendering/panels/view_state.h"
@@ -40,9 +39,7 @@ struct ModelsView {
   bool replays_training = false;                // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
-  // The last tick that the curves show.
-  HistoryPoint now;
-  bool any_now = false;
+  HistoryPoint now;  // the last tick that the curves show; without one all forces are NaN
 
   // The slots that are not hidden, in order. Keys and tables number them.
   std::vector<std::size_t> listed() const;
@@ -57,14 +54,11 @@ struct ModelsView {
 struct HealthView {
   LoopStatistics loop;
   RtStatus scheduling;
+  LoopSnapshot newest;
   double missed_of_late = 0.0;  // see FaultLog
-  double now_s = 0.0;           // loop time
   std::vector<FaultEvent> faults;
   std::vector<std::string> alarms;  // not acknowledged yet
   std::string device_name;
-  DeviceHealth device;
-  double heat_share = 0.0;                     // see LoopSnapshot
-  double stiffness_share = 1.0, lag_ms = 0.0;  // see LoopSnapshot
 };
 
 struct WindowView {

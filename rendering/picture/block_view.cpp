@@ -65,9 +65,6 @@ std::vector<glm::vec2> ball_profile(const Detail& detail) {
   }
   return profile;
 }
-std::vector<glm::vec2> sensor_profile() {
-  return {{0.80F, 6.0F}, {1.36F, 6.001F}, {kToolWidth, 6.1F}, {kToolWidth, 6.9F}, {1.36F, 7.0F}, {0.9F, 7.001F}};
-}
 std::vector<glm::vec2> handle_profile() {
   std::vector<glm::vec2> profile{{0.9F, 7.0F}, {1.02F, 7.3F}, {1.04F, 8.0F}, {0.98F, 9.4F}, {1.10F, 12.6F}};
   for (int i = 0; i <= 8; ++i) {
@@ -77,22 +74,21 @@ std::vector<glm::vec2> handle_profile() {
   return profile;
 }
 
-// The two points of a corner differ slightly, because equal points have no normal.
-std::vector<glm::vec2> shaft_profile() { return {{1e-4F, 0.0F}, {0.0014F, 1e-5F}, {0.0014F, 1.0F}}; }
-std::vector<glm::vec2> tip_profile() {
-  return {{1e-4F, 0.0F}, {kArrowRadius_m, 1e-5F}, {0.0037F, 2e-4F}, {1e-4F, kArrowTip_m}};
-}
-
 }  // namespace
+
+// The two points of a corner of a profile differ slightly, because equal points have no normal.
 
 BlockView::Bodies::Bodies(const BlockGeometry& block, float dome_m, const Detail& detail)
     : top(block_top(glm::vec2(block.width_m, block.length_m), detail)),
       sides(block_sides(glm::vec2(block.width_m, block.length_m), static_cast<float>(block.height_m) - dome_m, detail)),
       ball(lathe_mesh(ball_profile(detail), detail.around)),
-      sensor(lathe_mesh(sensor_profile(), detail.around)),
+      sensor(lathe_mesh(
+          {{0.80F, 6.0F}, {1.36F, 6.001F}, {kToolWidth, 6.1F}, {kToolWidth, 6.9F}, {1.36F, 7.0F}, {0.9F, 7.001F}},
+          detail.around)),
       handle(lathe_mesh(handle_profile(), detail.around)),
-      shaft(lathe_mesh(shaft_profile(), detail.around / 2)),
-      tip(lathe_mesh(tip_profile(), detail.around)) {}
+      shaft(lathe_mesh({{1e-4F, 0.0F}, {0.0014F, 1e-5F}, {0.0014F, 1.0F}}, detail.around / 2)),
+      tip(lathe_mesh({{1e-4F, 0.0F}, {kArrowRadius_m, 1e-5F}, {0.0037F, 2e-4F}, {1e-4F, kArrowTip_m}}, detail.around)) {
+}
 
 Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene, std::optional<Smoothing> smoothing) {
   const auto assets = find_assets();
@@ -196,11 +192,10 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   glDisable(GL_BLEND);
   glEnable(GL_CULL_FACE);
   smooth_.begin(viewport, scale);
-  if (smooth_.keeps_still()) {
+  if (smooth_.filters()) {
     refresh_still(blocks.size(), shown, theme);
     smooth_.use_still(moving_parts(blocks));
   } else {
-    still_ = {};
     draw_all_still(blocks.size(), shown, theme);
   }
   glEnable(GL_DEPTH_TEST);

@@ -21,9 +21,7 @@ constexpr float kFar_m = 6.0F;
 
 void Camera::frame(float radius_m, float yaw_rad, bool at_once) {
   radius_m_ = radius_m;
-  framed_ = Pose{};
-  framed_.yaw_rad = yaw_rad;
-  framed_.distance_m = 1.12F * radius_m / std::tan(0.5F * kFieldOfView_rad);
+  framed_ = {yaw_rad, Pose{}.pitch_rad, 1.12F * radius_m / std::tan(0.5F * kFieldOfView_rad)};
   aim();
   if (at_once) now_ = target_;
 }

@@ -47,8 +47,6 @@ Outline outline(const glm::vec2& half, const Detail& detail) {
   return points;
 }
 
-void add_ring(Mesh& mesh, const Outline& ring) { mesh.vertices.insert(mesh.vertices.end(), ring.begin(), ring.end()); }
-
 // Joins the last ring with the one before it. The last ring is outside or below.
 void join_rings(Mesh& mesh, std::size_t around) {
   const auto points = static_cast<std::uint32_t>(around);
@@ -71,24 +69,20 @@ void add_top(Mesh& mesh, const Outline& rim, int rings) {
     const float t = static_cast<float>(k) / static_cast<float>(rings);
     const float size = 1e-4F + (1.0F - 1e-4F) * t * (0.22F + 0.78F * t * t);
     const float square = glm::smoothstep(0.4F, 1.0F, size);
-    Outline ring;
     for (const Vertex& point : rim) {
       const glm::vec3 round = nearest * glm::normalize(point.position);
-      ring.push_back({size * glm::mix(round, point.position, square), up});
+      mesh.vertices.push_back({size * glm::mix(round, point.position, square), up});
     }
-    add_ring(mesh, ring);
     if (k > 0) join_rings(mesh, rim.size());
   }
 }
 
 void add_shifted(Mesh& mesh, const Outline& rim, float outward_m, float down_m, float tilt_rad) {
-  Outline ring;
   for (const Vertex& point : rim) {
     const glm::vec3 place = point.position + outward_m * point.normal - glm::vec3(0.0F, down_m, 0.0F);
     const glm::vec3 normal = std::cos(tilt_rad) * point.normal + glm::vec3(0.0F, std::sin(tilt_rad), 0.0F);
-    ring.push_back({place, normal});
+    mesh.vertices.push_back({place, normal});
   }
-  add_ring(mesh, ring);
   join_rings(mesh, rim.size());
 }
 
@@ -115,27 +109,18 @@ Mesh block_sides(const glm::vec2& size_m, float height_m, const Detail& detail) 
 
 Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides) {
   Mesh mesh;
-  const auto around = static_cast<std::uint32_t>(sides);
-  for (std::size_t k = 0; k < profile.size(); ++k) {
+  for (std::size_t k = profile.size(); k-- > 0;) {
     const glm::vec2 before = profile[k == 0 ? 0 : k - 1];
     const glm::vec2 after = profile[std::min(k + 1, profile.size() - 1)];
     const glm::vec2 along = glm::normalize(after - before);
-    for (std::uint32_t i = 0; i < around; ++i) {
+    for (int i = 0; i < sides; ++i) {
       const float angle = 2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(sides);
       const float c = std::cos(angle);
       const float s = std::sin(angle);
       mesh.vertices.push_back(
           {{profile[k].x * c, profile[k].y, profile[k].x * s}, {along.y * c, -along.x, along.y * s}});
     }
-    if (k == 0) continue;
-    const auto upper = static_cast<std::uint32_t>(k) * around;
-    const std::uint32_t lower = upper - around;
-    for (std::uint32_t i = 0; i < around; ++i) {
-      const std::uint32_t next = (i + 1) % around;
-      for (const std::uint32_t index : {lower + i, upper + i, lower + next, lower + next, upper + i, upper + next}) {
-        mesh.triangles.push_back(index);
-      }
-    }
+    if (k + 1 < profile.size()) join_rings(mesh, static_cast<std::size_t>(sides));
   }
   return mesh;
 }

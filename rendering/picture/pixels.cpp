@@ -14,7 +14,7 @@ void Pixels::release() {
   framebuffer_ = 0;
 }
 
-bool Pixels::make() {
+void Pixels::make() {
   release();
   glGenFramebuffers(1, &framebuffer_);
   glGenTextures(1, &colour_);
@@ -36,20 +36,15 @@ bool Pixels::make() {
   glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, GL_DEPTH_COMPONENT24, width_, height_);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, kind, colour_, 0);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
-  return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
-bool Pixels::draw_into(int width, int height) {
+void Pixels::draw_into(int width, int height) {
   const bool same = framebuffer_ != 0 && width == width_ && height == height_;
   width_ = width;
   height_ = height;
-  if (!same && !make()) {
-    release();
-    return false;
-  }
+  if (!same) make();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   glViewport(0, 0, width, height);
-  return true;
 }
 
 void Pixels::copy_to(const Pixels& other, const Viewport& part) const {

@@ -18,9 +18,9 @@ class Pixels {
   Pixels& operator=(const Pixels&) = delete;
   ~Pixels() { release(); }
 
-  // Makes it the target of drawing. The contents are kept unless the size changes. False: the driver refuses; the
-  // contents are lost.
-  bool draw_into(int width, int height);
+  // Makes it the target of drawing. The contents are kept unless the size changes. OpenGL 3.3 guarantees the formats
+  // and 4 samples.
+  void draw_into(int width, int height);
   // Copies colour and depth of `part` into `other`, which has the same size, and makes `other` the target of drawing.
   void copy_to(const Pixels& other, const Viewport& part) const;
   int width() const noexcept { return width_; }
@@ -29,7 +29,7 @@ class Pixels {
   unsigned colour() const noexcept { return colour_; }
 
  private:
-  bool make();
+  void make();
   void release();
 
   int samples_, width_ = 0, height_ = 0;

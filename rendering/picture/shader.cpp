@@ -80,9 +80,6 @@ void Shader::set(const char* name, const glm::vec2& value) const {
 void Shader::set(const char* name, const glm::vec3& value) const {
   glUniform3fv(place(name), 1, glm::value_ptr(value));
 }
-void Shader::set(const char* name, const glm::vec4& value) const {
-  glUniform4fv(place(name), 1, glm::value_ptr(value));
-}
 void Shader::set(const char* name, const glm::mat4& value) const {
   glUniformMatrix4fv(place(name), 1, GL_FALSE, glm::value_ptr(value));
 }

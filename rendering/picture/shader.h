@@ -5,7 +5,6 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 #include <string>
 #include <vector>
 
@@ -30,7 +29,6 @@ class Shader {
   void set(const char* name, int value) const;
   void set(const char* name, const glm::vec2& value) const;
   void set(const char* name, const glm::vec3& value) const;
-  void set(const char* name, const glm::vec4& value) const;
   void set(const char* name, const glm::mat4& value) const;
   void set(const char* name, const glm::vec2* values, int count) const;
 

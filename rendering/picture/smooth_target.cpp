@@ -72,13 +72,11 @@ void SmoothTarget::begin(const Viewport& viewport, float scale) {
     return std::max(1, static_cast<int>(std::round(part * static_cast<float>(size))));
   };
   const int width = drawn(viewport.width), height = drawn(viewport.height);
-  refused_ = filters() && !(still_.draw_into(width, height) && smoothed_.draw_into(width, height));
-  if (filters() && (width != viewport.width || height != viewport.height))
-    refused_ = !enlarged_.draw_into(viewport.width, viewport.height) || refused_;
-  refused_ = !pixels_.draw_into(width, height) || refused_;
-  if (!refused_) return;
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
+  pixels_.draw_into(width, height);
+  if (!filters()) return;
+  still_.draw_into(width, height);
+  smoothed_.draw_into(width, height);
+  if (is_enlarged()) enlarged_.draw_into(viewport.width, viewport.height);
 }
 
 void SmoothTarget::begin_still() { still_.draw_into(width(), height()); }
@@ -105,7 +103,6 @@ void SmoothTarget::use_still(std::vector<Viewport> parts) {
 }
 
 void SmoothTarget::end() {
-  if (refused_) return;
   if (filters()) filter_edges(pixels_, parts_);
   enlarge(parts_);
   const Viewport& to = viewport_;

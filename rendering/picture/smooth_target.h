@@ -36,11 +36,9 @@ class SmoothTarget {
   // Size of the picture after `begin`, pixels.
   int width() const noexcept { return pixels_.width(); }
   int height() const noexcept { return pixels_.height(); }
-  // Begins the picture for a part of the window. With the filter it has `scale` (0..1) times the pixels per side. Where
-  // the driver refuses, drawing goes directly into the window.
+  // Begins the picture for a part of the window. With the filter it has `scale` (0..1) times the pixels per side, and a
+  // static picture is kept. Without it, draw all parts in each frame.
   void begin(const Viewport& viewport, float scale);
-  // Whether a static picture is kept. If not, draw all parts in each frame.
-  bool keeps_still() const noexcept { return filters() && !refused_; }
   // Between the two calls the static picture is drawn. It is kept until the size changes.
   void begin_still();
   void end_still();
@@ -61,8 +59,7 @@ class SmoothTarget {
   Pixels enlarged_;              // `smoothed_` in the size of the window
   std::vector<Viewport> parts_;  // in which this frame, or the one before, differs from the static picture
   std::vector<Viewport> drawn_;  // `parts` of this frame
-  bool refused_ = false;
-  unsigned no_vertices_ = 0;  // vertex array without buffers, for a triangle
+  unsigned no_vertices_ = 0;     // vertex array without buffers, for a triangle
 };
 
 }  // namespace palpate

@@ -64,16 +64,11 @@ double contrast(const Rgb& a, const Rgb& b) noexcept {
   return (high + 0.05) / (low + 0.05);
 }
 
-Rgb method_colour(std::string_view method, Theme theme) {
-  const std::uint32_t colour = method_rgb(method);
-  if (colour != 0) return legible(hex(colour), theme);
-  return theme == Theme::light ? Rgb(0.0F) : Rgb(1.0F);
-}
-
 Rgb method_colour(std::string_view method, Theme theme, std::size_t which) {
   // Shares of white; negative: of black.
   constexpr std::array<float, 4> kShades{-0.42F, 0.45F, -0.66F, 0.25F};
-  const Rgb colour = method_colour(method, theme);
+  const std::uint32_t hue = method_rgb(method);
+  const Rgb colour = hue != 0 ? legible(hex(hue), theme) : Rgb(theme == Theme::light ? 0.0F : 1.0F);
   if (which == 0) return colour;
   // The first shade moves away from the background.
   const bool turned = colour == Rgb(0.0F) || (theme == Theme::dark && colour != Rgb(1.0F));

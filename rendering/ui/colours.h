@@ -38,10 +38,8 @@ inline constexpr double kLeastTextContrast = 4.5;
 
 // The colour of a method (method_rgb in scenes/scene/scene.h), changed as far as the contrast to the background, the
 // panel, its controls and the JND band requires. Methods without a hue and unknown names are black, or white in the
-// dark theme.
-Rgb method_colour(std::string_view method, Theme theme);
-// A shade of it for the `which`-th model of the method, from 0.
-Rgb method_colour(std::string_view method, Theme theme, std::size_t which);
+// dark theme. Above 0, `which` gives a shade of it for a further model of the method.
+Rgb method_colour(std::string_view method, Theme theme, std::size_t which = 0);
 // The measured or true force; changed in the same way.
 Rgb reference_colour(Theme theme) noexcept;
 // A shade of any colour in which text can be read.

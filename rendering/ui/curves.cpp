@@ -16,19 +16,20 @@ float larger(float so_far, float value) noexcept { return value > so_far || std:
 const CurveColumn& empty_column() {
   static const CurveColumn empty = [] {
     CurveColumn column;
-    for (auto* values :
-         {&column.low_over_jnd, &column.high_over_jnd, &column.error_over_jnd, &column.sustained_over_jnd}) {
-      values->fill(kNone);
-    }
+    for (auto* values : {&column.low_over_jnd, &column.high_over_jnd, &column.sustained_over_jnd}) values->fill(kNone);
     column.tick.force_N.fill(kNone);
     column.tick.reference_N = column.jnd_N = kNone;
-    column.predicted_low_N = column.predicted_high_N = column.predicted_over_jnd = kNone;
     return column;
   }();
   return empty;
 }
 
 }  // namespace
+
+double predicted_error_N(const HistoryPoint& tick) noexcept {
+  if (!std::isnan(tick.reference_N)) return std::nan("");
+  return tick.in_contact ? static_cast<double>(tick.predicted_error_N) : 0.0;
+}
 
 void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::size_t slots, double from_s,
                           double to_s, std::size_t count) {
@@ -73,7 +74,6 @@ bool CurveColumns::scroll(double width_s, double first, std::size_t slots, std::
 
 void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
   column.fault_level = std::max(column.fault_level, point.fault_level);
-  if (std::isnan(point.reference_N)) add_prediction(point, jnd, column);
   const auto farthest = [&](const HistoryPoint& tick) {
     double most = -1.0;
     for (std::size_t i = 0; i < slots_; ++i) most = std::max(most, std::abs(tick.difference_over_jnd(i, jnd)));
@@ -85,28 +85,13 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
     column.jnd_N = static_cast<float>(jnd.at(static_cast<double>(point.reference_N)));
   }
   column.any = true;
-  for (std::size_t i = 0; i < slots_; ++i) add_model(point, i, jnd, column);
-}
-
-void CurveColumns::add_prediction(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
-  const float force_N = point.force_N[point.active];
-  const float error_N = point.in_contact ? point.predicted_error_N : 0.0F;
-  if (std::isnan(force_N) || std::isnan(point.predicted_error_N)) return;
-  column.predicted_low_N = smaller(column.predicted_low_N, force_N - error_N);
-  column.predicted_high_N = larger(column.predicted_high_N, force_N + error_N);
-  column.predicted_over_jnd =
-      larger(column.predicted_over_jnd, error_N / static_cast<float>(jnd.at(static_cast<double>(force_N))));
-}
-
-void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, const JndLine& jnd, CurveColumn& column) {
-  const double difference = point.difference_over_jnd(slot, jnd);
-  if (std::isnan(difference)) return;
-  const float sustained = std::abs(point.sustained_over_jnd[slot]);
-  column.low_over_jnd[slot] = smaller(column.low_over_jnd[slot], static_cast<float>(difference));
-  column.high_over_jnd[slot] = larger(column.high_over_jnd[slot], static_cast<float>(difference));
-  column.sustained_over_jnd[slot] = larger(column.sustained_over_jnd[slot], sustained);
-  if (!point.in_contact) return;
-  column.error_over_jnd[slot] = larger(column.error_over_jnd[slot], static_cast<float>(std::abs(difference)));
+  for (std::size_t i = 0; i < slots_; ++i) {
+    const auto difference = static_cast<float>(point.difference_over_jnd(i, jnd));
+    if (std::isnan(difference)) continue;
+    column.low_over_jnd[i] = smaller(column.low_over_jnd[i], difference);
+    column.high_over_jnd[i] = larger(column.high_over_jnd[i], difference);
+    column.sustained_over_jnd[i] = larger(column.sustained_over_jnd[i], std::abs(point.sustained_over_jnd[i]));
+  }
 }
 
 void CurveColumns::find_highest() {

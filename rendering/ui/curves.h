@@ -20,17 +20,15 @@ struct CurveColumn {
   // no difference is shown that did not occur.
   HistoryPoint tick;
   float jnd_N = 0.0F;  // at that tick; NaN: no reference
-  // Without a reference: the extremes of the active model's force -/+ its predicted error (95 %), and the largest
-  // predicted error over the JND; NaN: none.
-  float predicted_low_N = 0.0F;
-  float predicted_high_N = 0.0F;
-  float predicted_over_jnd = 0.0F;
   // Of each model; NaN: no force, or no comparison. Extremes of (model - reference) / JND, signed; 0 out of contact.
   std::array<float, kMaxModels> low_over_jnd{};
   std::array<float, kMaxModels> high_over_jnd{};
-  std::array<float, kMaxModels> error_over_jnd{};      // largest magnitude in a tick in contact
   std::array<float, kMaxModels> sustained_over_jnd{};  // largest magnitude of HistoryPoint::sustained_over_jnd
 };
+
+// The error (95 %) that the active model predicts of its force, 0 out of contact; NaN: there is none, or there is a
+// reference.
+double predicted_error_N(const HistoryPoint& tick) noexcept;
 
 class CurveColumns {
  public:
@@ -52,8 +50,6 @@ class CurveColumns {
  private:
   bool scroll(double width_s, double first, std::size_t slots, std::size_t count);
   void add(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
-  void add_model(const HistoryPoint& point, std::size_t slot, const JndLine& jnd, CurveColumn& column);
-  void add_prediction(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
   void find_highest();
 
   std::vector<CurveColumn> columns_;

@@ -59,12 +59,14 @@ class LivePlot {
   // Text inside the frame; `x`, `y`: 0..1 from the upper left corner.
   void caption(const std::string& text, float x, float y, ImU32 colour) const;
 
+ protected:
+  const UiStyle& style_;
+
  private:
   double shown(double value) const noexcept;  // the number of a label
   void draw_y_axis() const;
   void draw_x_axis() const;
 
-  const UiStyle& style_;
   ImDrawList* list_;
   ImVec2 low_, high_;
   PlotAxes axes_;

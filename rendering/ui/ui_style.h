@@ -22,8 +22,9 @@ inline float height_of(const ImFont* font) { return font->FontSize * font->Scale
 struct UiSize {
   float width = 1280.0F;  // in the window's units
   float height = 720.0F;
-  float content_scale = 1.0F;    // scale factor of the display for its contents
-  float pixels_per_unit = 1.0F;  // pixels of the framebuffer per unit of the window
+  float content_scale = 1.0F;       // scale factor of the display for its contents
+  float pixels_per_unit = 1.0F;     // pixels of the framebuffer per unit of the window
+  int width_px = 0, height_px = 0;  // of the framebuffer; 0: the window is minimised
 };
 
 // Window units per pixel of the design, which has 1080 lines, times the factor `larger`. Text has the same physical

@@ -11,19 +11,8 @@
 #include "tests/support/fitting.h"
 #include "tests/support/scripted_press.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::evaluate_moved;
-using test::fit_all;
-using test::ModelPtr;
-using test::prepare;
-using test::press_and_hold;
-using test::RecordingPtr;
-using test::scene_request;
-using test::scripted_press;
-using test::ScriptedPress;
-using test::Stretch;
 
 constexpr double kEncoder_m = 30e-6;
 constexpr double kModerateSpeed_m_per_s = 0.03;
@@ -56,22 +45,21 @@ constexpr double kTrainingRate_Hz = 250.0;
 
 const Subject& silicone() {
   static const Subject subject = [] {
-    RigSettings settings = test::train_settings("silicone");
+    RigSettings settings = train_settings("silicone");
     settings.seconds = 12.0;
     settings.rate_Hz = kTrainingRate_Hz;
-    return subject_of("silicone", prepare({test::rig_recording(settings)}, scene_request("silicone_block")),
+    return subject_of("silicone", prepare({rig_recording(settings)}, scene_request("silicone_block")),
                       kModerateSpeed_m_per_s);
   }();
   return subject;
 }
 
-bool have_press() { return std::filesystem::exists(test::real_data()); }
+bool have_press() { return std::filesystem::exists(real_data()); }
 
 const Subject& press() {
   static const Subject subject = [] {
     Subject made = subject_of(
-        "press", prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block")),
-        0.01);
+        "press", prepare({real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block")), 0.01);
     // Position 0 is where the force first exceeded 0.1 N.
     made.onset_N = 0.1;
     // Known limitation: with an encoder coarser than its own, steps exceed one JND.
@@ -105,31 +93,31 @@ std::vector<Stroke> stroke_over(const Subject& subject, const ScriptedPress& mot
   std::vector<double> last_N(subject.models.size(), 0.0);
   std::size_t row_index = 0;
   bool was_in_contact = false;
-  test::must(replay(motion.recording, ForceModels(subject.models.begin(), subject.models.end()),
-                    [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-                      double true_step_N =
-                          row_index > 0 ? std::abs(motion.true_N[row_index] - motion.true_N[row_index - 1]) : 0.0;
-                      if (snapshot.in_contact != was_in_contact) true_step_N = std::max(true_step_N, subject.onset_N);
-                      was_in_contact = snapshot.in_contact;
-                      EXPECT_EQ(snapshot.fault, TickFault::none);
-                      for (std::size_t i = 0; i < strokes.size(); ++i) {
-                        const double force_N = snapshot.force_N[i];
-                        Stroke& stroke = strokes[i];
-                        EXPECT_TRUE(std::isfinite(force_N));
-                        EXPECT_GE(force_N, 0.0);
-                        stroke.largest_N = std::max(stroke.largest_N, force_N);
-                        const double jnd_N = subject.models[i]->data().jnd.at(std::max(force_N, last_N[i]));
-                        const double allowed_N = std::max(jnd_N, true_step_N);
-                        stroke.largest_step_over_jnd =
-                            std::max(stroke.largest_step_over_jnd, std::abs(force_N - last_N[i]) / allowed_N);
-                        last_N[i] = force_N;
-                        if (row.position_m > 1.3 * subject.deepest_m) {
-                          ++stroke.outside;
-                          if ((snapshot.out_of_domain_mask >> i & 1U) == 0) ++stroke.outside_unmarked;
-                        }
-                      }
-                      ++row_index;
-                    }));
+  must(replay(motion.recording, ForceModels(subject.models.begin(), subject.models.end()),
+              [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+                double true_step_N =
+                    row_index > 0 ? std::abs(motion.true_N[row_index] - motion.true_N[row_index - 1]) : 0.0;
+                if (snapshot.in_contact != was_in_contact) true_step_N = std::max(true_step_N, subject.onset_N);
+                was_in_contact = snapshot.in_contact;
+                EXPECT_EQ(snapshot.fault, TickFault::none);
+                for (std::size_t i = 0; i < strokes.size(); ++i) {
+                  const double force_N = snapshot.force_N[i];
+                  Stroke& stroke = strokes[i];
+                  EXPECT_TRUE(std::isfinite(force_N));
+                  EXPECT_GE(force_N, 0.0);
+                  stroke.largest_N = std::max(stroke.largest_N, force_N);
+                  const double jnd_N = subject.models[i]->data().jnd.at(std::max(force_N, last_N[i]));
+                  const double allowed_N = std::max(jnd_N, true_step_N);
+                  stroke.largest_step_over_jnd =
+                      std::max(stroke.largest_step_over_jnd, std::abs(force_N - last_N[i]) / allowed_N);
+                  last_N[i] = force_N;
+                  if (row.position_m > 1.3 * subject.deepest_m) {
+                    ++stroke.outside;
+                    if ((snapshot.out_of_domain_mask >> i & 1U) == 0) ++stroke.outside_unmarked;
+                  }
+                }
+                ++row_index;
+              }));
   return strokes;
 }
 
@@ -209,11 +197,11 @@ TEST(AwayFromData, SweepsOfEveryFeature) {
 void expect_no_worse_than_position(const std::string& what, const RecordingPtr& train, const RecordingPtr& test_run,
                                    const std::string& scene) {
   const std::vector<ModelPtr> full = fit_all(prepare({train}, scene_request(scene)));
-  const std::vector<ModelPtr> alone = fit_all(prepare({train}, test::position_request()));
+  const std::vector<ModelPtr> alone = fit_all(prepare({train}, position_request()));
   const std::vector<ErrorSummary> full_errors = evaluate_moved(*test_run, full);
   const std::vector<ErrorSummary> alone_errors = evaluate_moved(*test_run, alone);
   for (std::size_t i = 0; i < full.size(); ++i) {
-    std::cout << what << ": " << test::figures(full[i]->name(), full_errors[i]) << "; position alone "
+    std::cout << what << ": " << figures(full[i]->name(), full_errors[i]) << "; position alone "
               << 1e3 * alone_errors[i].rms_error_N << " mN\n";
     EXPECT_LE(full_errors[i].rms_error_N, alone_errors[i].rms_error_N) << what << ", " << full[i]->name();
   }
@@ -258,10 +246,10 @@ TEST(UnlikeTheTraining, ShallowThenDeep) {
 }
 
 TEST(UnlikeTheTraining, TheSecondCycleOfTheRealPress) {
-  if (!have_press()) GTEST_SKIP() << "no recordings at " << test::real_data();
-  expect_no_worse_than_position("press, cycle 1 to 2", test::real_recording("ur3e_press_mit/train_cycle1.csv"),
-                                test::real_recording("ur3e_press_mit/test_cycle2.csv"), "silicone_block");
+  if (!have_press()) GTEST_SKIP() << "no recordings at " << real_data();
+  expect_no_worse_than_position("press, cycle 1 to 2", real_recording("ur3e_press_mit/train_cycle1.csv"),
+                                real_recording("ur3e_press_mit/test_cycle2.csv"), "silicone_block");
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -9,29 +9,8 @@
 #include "tests/support/closed_loop_energy.h"
 #include "tests/support/live_doubles.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::Grip;
-using test::held;
-using test::held_and_late_Ns_per_m;
-using test::kEncoders_m;
-using test::kFirm;
-using test::kFirmOnStiff;
-using test::kOneTick_s;
-using test::kSoftSpring_N_per_m;
-using test::kStiffSpring_N_per_m;
-using test::least_damping_Ns_per_m;
-using test::LoopSettings;
-using test::ModelPtr;
-using test::Press;
-using test::say;
-using test::silicone_models;
-using test::spring;
-using test::stiff_models;
-using test::stroke;
-using test::Strokes;
-using test::Ticking;
 
 TEST(ClosedLoop, NoCycleInSiliconeGivesEnergy) {
   for (const ModelPtr& model : silicone_models()) {
@@ -54,7 +33,7 @@ TEST(ClosedLoop, NoCycleInSiliconeGivesEnergy) {
 TEST(ClosedLoop, StrokesIntoSiliconeGiveLessThanTheyTake) {
   for (const ModelPtr& model : silicone_models()) {
     double worst_return = 0.0, worst_bounce = 0.0;
-    for (const Grip& grip : test::grips()) {
+    for (const Grip& grip : grips()) {
       for (const double encoder_m : kEncoders_m) {
         for (const Ticking ticking : {Ticking::even, Ticking::jittered, Ticking::gaps}) {
           const Strokes strokes = stroke(model, {grip, encoder_m, kOneTick_s, ticking}, kFirm);
@@ -73,7 +52,7 @@ TEST(ClosedLoop, StrokesIntoSiliconeGiveLessThanTheyTake) {
     // encoder step hides energy. Measured: 1.09; 1.19 without the controller.
     EXPECT_LE(worst_bounce, 1.15) << model->name();
   }
-  for (const Grip& grip : test::grips()) {
+  for (const Grip& grip : grips()) {
     LoopSettings settings{grip, 5e-6, kOneTick_s, Ticking::even};
     settings.passivity = false;
     EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), settings, kFirm).worst_return, 1.2) << grip.name;
@@ -88,7 +67,7 @@ TEST(ClosedLoop, TheControllerCostsAHandLessThanOneJnd) {
   const auto cost = [](const std::string& block, const std::vector<ModelPtr>& models, const Press& press) {
     Strokes worst;
     for (const ModelPtr& model : models) {
-      for (const Grip& grip : test::grips()) {
+      for (const Grip& grip : grips()) {
         if (!held(grip)) continue;
         for (const double encoder_m : kEncoders_m) {
           const Strokes strokes = stroke(model, {grip, encoder_m, kOneTick_s, Ticking::gaps}, press);
@@ -105,4 +84,4 @@ TEST(ClosedLoop, TheControllerCostsAHandLessThanOneJnd) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -11,26 +11,12 @@
 #include "tests/support/live_doubles.h"
 #include "tests/support/rt_guard.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::ClosedLoop;
-using test::ForcePtr;
-using test::Grip;
-using test::kEncoders_m;
-using test::kFirm;
-using test::kOneTick_s;
-using test::kSoftSpring_N_per_m;
-using test::lead;
-using test::ModelPtr;
-using test::say;
-using test::silicone_models;
-using test::spring;
-using test::Ticking;
 
 ModelPtr with_huge_weights(const ModelPtr& model) {
   ModelData data = model->data();
-  test::change_rbf(data, [](RbfFunction& f) {
+  change_rbf(data, [](RbfFunction& f) {
     for (Eigen::Index i = 0; i < f.weights.size(); ++i) f.weights[i] = i % 2 == 0 ? 1e300 : -1e300;
   });
   return std::make_shared<const FittedModel>(std::move(data));
@@ -55,7 +41,7 @@ double largest_change_jnd(const std::vector<ForcePtr>& models, const Grip& grip,
     std::size_t published = 0;
     const double aim_m = kFirm.depth_m + kFirm.force_N / grip.stiffness_N_per_m;
     loop.run(
-        3.0, [&](double time) { return test::minimum_jerk(-2e-3, aim_m, 0.3, time); },
+        3.0, [&](double time) { return minimum_jerk(-2e-3, aim_m, 0.3, time); },
         [&](const LoopSnapshot& snapshot) {
           EXPECT_TRUE(std::isfinite(snapshot.commanded_N) && std::isfinite(snapshot.rendered_N));
           time_s.push_back(snapshot.loop_time_s);
@@ -72,7 +58,7 @@ double largest_change_jnd(const std::vector<ForcePtr>& models, const Grip& grip,
         });
     EXPECT_GE(published, 190u);
     EXPECT_EQ(loop.faults() & loop_fault::kStops, 0u);
-    if (test::rt_guard_works()) {
+    if (rt_guard_works()) {
       EXPECT_EQ(loop.offences(), 0);
     }
     loop.slot().collect();
@@ -102,7 +88,7 @@ TEST(ClosedLoop, AtAHundredExchangesASecondTheErrorIsBelowTheJnd) {
   for (const Exchange& exchange : exchanges) {
     for (const double encoder_m : kEncoders_m) {
       const double led = largest_change_jnd(exchange.models, lead(), encoder_m);
-      const double in_hand = largest_change_jnd(exchange.models, test::grips()[1], encoder_m);
+      const double in_hand = largest_change_jnd(exchange.models, grips()[1], encoder_m);
       say("exchanges, " + exchange.name, "%.2f JND in 10 ms with the tool led, %.2f JND in a hand", led, in_hand);
       EXPECT_LE(led, exchange.led_jnd) << exchange.name;
       EXPECT_LE(in_hand, exchange.in_hand_jnd) << exchange.name;
@@ -111,4 +97,4 @@ TEST(ClosedLoop, AtAHundredExchangesASecondTheErrorIsBelowTheJnd) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -12,13 +12,8 @@
 #include "tests/support/closed_loop.h"
 #include "tests/support/live_doubles.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::ClosedLoop;
-using test::Grip;
-using test::LoopSettings;
-using test::spring;
 
 // 50 to 300 g, with the low damping of relaxed hands, 0.35 to 0.7 of critical.
 const Grip kHands[] = {{"finger, 50 g", 0.05, 100.0, 2.2},
@@ -47,12 +42,12 @@ Swing swing(const std::shared_ptr<const ForceModel>& model, const LoopSettings& 
   loop.publish(model);
   const double aim_m = 1e-3 + kPress_N / settings.grip.stiffness_N_per_m;
   const auto path = [&](double time_s) {
-    ClosedLoop::Drive drive = test::minimum_jerk(-2e-3, aim_m, 0.3, time_s);
+    ClosedLoop::Drive drive = minimum_jerk(-2e-3, aim_m, 0.3, time_s);
     if (time_s >= 0.6 && time_s < 0.62) drive.push_N = 1.0;
     return drive;
   };
   Swing result;
-  test::Span span;
+  Span span;
   double before_J = 0.0;
   loop.run(kSeconds, path, [&](const LoopSnapshot& snapshot) {
     result.share = snapshot.stiffness_share;
@@ -114,4 +109,4 @@ TEST(ClosedLoop, NoHandIsDrivenHoweverLateOrSlowTheLineIs) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

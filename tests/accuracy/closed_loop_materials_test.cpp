@@ -14,23 +14,8 @@
 #include "tests/support/closed_loop_energy.h"
 #include "tests/support/rt_guard.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::ClosedLoop;
-using test::Grip;
-using test::held;
-using test::hold;
-using test::kEncoders_m;
-using test::kOneTick_s;
-using test::LoopSettings;
-using test::ModelPtr;
-using test::Press;
-using test::Rest;
-using test::say;
-using test::stroke;
-using test::Strokes;
-using test::Ticking;
 
 constexpr const char* kMaterials[] = {"friction", "softening", "sponge", "layered", "tissue"};
 
@@ -39,13 +24,12 @@ const std::vector<ModelPtr>& models_of(const std::string& material) {
   static std::map<std::string, std::vector<ModelPtr>> fitted;
   std::vector<ModelPtr>& models = fitted[material];
   if (!models.empty()) return models;
-  RigSettings settings = test::train_settings(material);
+  RigSettings settings = train_settings(material);
   settings.seconds = 12.0;
   settings.rate_Hz = 250.0;
-  const PreparedTraining prepared =
-      test::prepare({test::rig_recording(settings)}, test::default_request("silicone_block"));
+  const PreparedTraining prepared = prepare({rig_recording(settings)}, default_request("silicone_block"));
   for (const char* method : {"trend", "direct", "voxel", "greedy"}) {
-    models.push_back(test::fit(prepared, find_method(method)));
+    models.push_back(fit(prepared, find_method(method)));
   }
   return models;
 }
@@ -80,7 +64,7 @@ TEST(ClosedLoop, ComesToRestOnMaterialsWithMemory) {
   for (const char* material : kMaterials) {
     std::printf("%s: %s\n", material, features_text(models_of(material).front()).c_str());
     for (const ModelPtr& model : models_of(material)) {
-      for (const Grip& grip : test::grips()) {
+      for (const Grip& grip : grips()) {
         if (!held(grip)) continue;
         for (const double encoder_m : kEncoders_m) {
           for (const double delay_s : {1e-3, 3e-3}) {
@@ -115,7 +99,7 @@ TEST(ClosedLoop, StrokesIntoMaterialsWithMemoryGiveLessThanTheyTake) {
   for (const char* material : kMaterials) {
     for (const ModelPtr& model : models_of(material)) {
       double worst_return = 0.0, cost_jnd = 0.0;
-      for (const Grip& grip : test::grips()) {
+      for (const Grip& grip : grips()) {
         if (!held(grip)) continue;
         for (const double encoder_m : kEncoders_m) {
           const Strokes strokes = stroke(model, {grip, encoder_m, kOneTick_s, Ticking::gaps}, press_of(model));
@@ -144,8 +128,8 @@ TEST(ClosedLoop, CyclesInMaterialsWithMemoryGiveLessThanAFingerTakes) {
   for (const char* material : kMaterials) {
     for (const ModelPtr& model : models_of(material)) {
       const double middle_m = press_of(model).depth_m;
-      const double alone = test::least_damping_Ns_per_m(model, middle_m, false);
-      const double least = test::least_damping_Ns_per_m(model, middle_m);
+      const double alone = least_damping_Ns_per_m(model, middle_m, false);
+      const double least = least_damping_Ns_per_m(model, middle_m);
       say(std::string("cycles, ") + material + " " + model->name(),
           "damping of %.2f N s/m or more by itself, %.2f with the controller", alone, least);
       EXPECT_GE(least, -kMostLacking_Ns_per_m) << material << ", " << model->name();
@@ -156,7 +140,7 @@ TEST(ClosedLoop, CyclesInMaterialsWithMemoryGiveLessThanAFingerTakes) {
 // Exchanges two materials in mid-press, a hundred times a second. Memory that both have
 // continues, other memory starts at rest, and nothing allocates.
 TEST(ClosedLoop, MaterialsExchangedInMidPressStayBounded) {
-  const Grip grip = test::grips()[1];
+  const Grip grip = grips()[1];
   ClosedLoop loop({grip, 30e-6, kOneTick_s, Ticking::gaps});
   std::vector<ModelPtr> models;
   for (const char* material : kMaterials) models.push_back(models_of(material).back());
@@ -165,7 +149,7 @@ TEST(ClosedLoop, MaterialsExchangedInMidPressStayBounded) {
   loop.publish(models.front());
   std::size_t published = 0;
   loop.run(
-      3.0, [](double time_s) { return test::minimum_jerk(-2e-3, 6e-3, 0.3, time_s); },
+      3.0, [](double time_s) { return minimum_jerk(-2e-3, 6e-3, 0.3, time_s); },
       [&](const LoopSnapshot& snapshot) {
         EXPECT_TRUE(std::isfinite(snapshot.rendered_N));
         EXPECT_LE(snapshot.rendered_N, largest_N);
@@ -174,13 +158,13 @@ TEST(ClosedLoop, MaterialsExchangedInMidPressStayBounded) {
       });
   EXPECT_GT(published, 200U);
   EXPECT_EQ(loop.faults() & loop_fault::kStops, 0U);
-  if (test::rt_guard_works()) {
+  if (rt_guard_works()) {
     EXPECT_EQ(loop.offences(), 0);
   }
   // Back in the air the force is zero.
-  loop.run(1.0, [](double time_s) { return test::minimum_jerk(6e-3, -5e-3, 0.3, time_s); });
+  loop.run(1.0, [](double time_s) { return minimum_jerk(6e-3, -5e-3, 0.3, time_s); });
   EXPECT_EQ(loop.tool().force_N(), 0.0);
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

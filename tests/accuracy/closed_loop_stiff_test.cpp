@@ -8,25 +8,8 @@
 #include "tests/support/closed_loop_energy.h"
 #include "tests/support/live_doubles.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::Grip;
-using test::held;
-using test::held_and_late_Ns_per_m;
-using test::hold;
-using test::kFirmOnStiff;
-using test::kOneTick_s;
-using test::kStiffSpring_N_per_m;
-using test::least_damping_Ns_per_m;
-using test::mass_alone;
-using test::ModelPtr;
-using test::Rest;
-using test::say;
-using test::spring;
-using test::stiff_models;
-using test::Ticking;
-using test::worst_hold;
 
 // Known limitation: one step of 30 um is 0.35 JND on 3 kN/m, and a relaxed hand
 // has less damping than the 4.5 N s/m that the block requires. With such an
@@ -39,7 +22,7 @@ constexpr double kFineStill_jnd = 0.5;
 TEST(ClosedLoop, TheStiffBlockIsStableInAHand) {
   for (const ModelPtr& model : stiff_models()) {
     Rest worst, fine;
-    for (const Grip& grip : test::grips()) {
+    for (const Grip& grip : grips()) {
       if (!held(grip)) continue;
       worst.keep_worse(worst_hold(model, grip, kFirmOnStiff, 3.0));
       fine.keep_worse(hold(model, {grip, 5e-6, kOneTick_s, Ticking::gaps}, kFirmOnStiff, 3.0));
@@ -54,7 +37,7 @@ TEST(ClosedLoop, TheStiffBlockIsStableInAHand) {
     EXPECT_GE(least, held_and_late_Ns_per_m(kStiffSpring_N_per_m)) << model->name() << ": its own viscosity helps";
   }
   // For comparison: a spring of the same stiffness, without viscosity, never comes to rest.
-  EXPECT_GT(worst_hold(spring(kStiffSpring_N_per_m), test::grips()[0], kFirmOnStiff, 3.0, false).force_jnd, 10.0);
+  EXPECT_GT(worst_hold(spring(kStiffSpring_N_per_m), grips()[0], kFirmOnStiff, 3.0, false).force_jnd, 10.0);
 }
 
 // A free mass gains energy from the held and late force of the stiff block and oscillates
@@ -78,4 +61,4 @@ TEST(ClosedLoop, TheStiffBlockDoesNotThrowAMassAbout) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -19,24 +19,8 @@
 #include "tests/support/closed_loop_energy.h"
 #include "tests/support/live_doubles.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::Grip;
-using test::held;
-using test::hold;
-using test::kEncoders_m;
-using test::kFirm;
-using test::kLight;
-using test::kSoftSpring_N_per_m;
-using test::mass_alone;
-using test::ModelPtr;
-using test::Rest;
-using test::say;
-using test::silicone_models;
-using test::spring;
-using test::Ticking;
-using test::worst_hold;
 
 // A tool on an edge of the encoder may be in either of two steps, and the loop sees it
 // move only when it enters a third. A hand cannot feel less than one JND.
@@ -47,7 +31,7 @@ constexpr double kStill_jnd = 1.0;
 TEST(ClosedLoop, ComesToRestOnSiliconeInEveryHand) {
   for (const ModelPtr& model : silicone_models()) {
     Rest worst;
-    for (const Grip& grip : test::grips()) {
+    for (const Grip& grip : grips()) {
       worst.keep_worse(worst_hold(model, grip, kFirm));
       if (held(grip)) worst.keep_worse(worst_hold(model, grip, kLight));
     }
@@ -68,7 +52,7 @@ TEST(ClosedLoop, ComesToRestOnSiliconeWithThreeMillisecondsOfDelay) {
   for (const double delay_s : {2e-3, 3e-3}) {
     Rest worst, alone;
     for (const ModelPtr& model : silicone_models()) {
-      for (const Grip& grip : test::grips()) {
+      for (const Grip& grip : grips()) {
         for (const double encoder_m : kEncoders_m) {
           Rest& of = held(grip) ? worst : alone;
           of.keep_worse(hold(model, {grip, encoder_m, delay_s, Ticking::gaps}, kFirm, 2.0));
@@ -122,11 +106,11 @@ TEST(ClosedLoop, ComesToRestInEveryHandOnAModelOfRecordingsThatBeginUnderLoad) {
         {time_s, position_m, kSoftSpring_N_per_m * (position_m + 1.5e-3) + 2.0 * velocity_m_per_s, 0.0, 0.0});
   }
   const auto shared = std::make_shared<const Recording>(recording);
-  const ModelPtr model = test::fit(test::prepare({shared}, test::default_request("silicone_block")), &kGreedyMethod);
+  const ModelPtr model = fit(prepare({shared}, default_request("silicone_block")), &kGreedyMethod);
   EXPECT_NEAR(surface_position_m(model->features()), -1.5e-3, 0.1e-3);
-  EXPECT_GT(test::judge(recording, model).within_jnd, 0.95);
+  EXPECT_GT(judge(recording, model).within_jnd, 0.95);
   Rest worst;
-  for (const Grip& grip : test::grips()) {
+  for (const Grip& grip : grips()) {
     if (!held(grip)) continue;
     worst.keep_worse(worst_hold(model, grip, kFirm));
     worst.keep_worse(worst_hold(model, grip, kLight));
@@ -138,4 +122,4 @@ TEST(ClosedLoop, ComesToRestInEveryHandOnAModelOfRecordingsThatBeginUnderLoad) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -12,14 +12,11 @@
 #include "tests/support/rt_guard.h"
 #include "tests/support/temporary_folder.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
-using test::fit_all;
-using test::ModelPtr;
-
 RigSettings short_recording() {
-  RigSettings settings = test::train_settings("silicone");
+  RigSettings settings = train_settings("silicone");
   settings.seconds = 10.0;
   return settings;
 }
@@ -28,7 +25,7 @@ RigSettings short_recording() {
 std::vector<ModelPtr> fitted_anew() {
   RigSettings settings = short_recording();
   settings.rate_Hz = 250.0;
-  return fit_all(test::prepare({test::rig_recording(settings)}, test::default_request("silicone_block")));
+  return fit_all(prepare({rig_recording(settings)}, default_request("silicone_block")));
 }
 
 const std::vector<ModelPtr>& fitted() {
@@ -41,11 +38,11 @@ std::vector<double> forces_of(const std::vector<ModelPtr>& models) {
   RigSettings settings = short_recording();
   settings.seed = 2;
   std::vector<double> forces_N;
-  test::must(replay(*test::rig_recording(settings), ForceModels(models.begin(), models.end()),
-                    [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
-                      forces_N.insert(forces_N.end(), snapshot.force_N.begin(),
-                                      snapshot.force_N.begin() + snapshot.model_count);
-                    }));
+  must(replay(*rig_recording(settings), ForceModels(models.begin(), models.end()),
+              [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
+                forces_N.insert(forces_N.end(), snapshot.force_N.begin(),
+                                snapshot.force_N.begin() + snapshot.model_count);
+              }));
   return forces_N;
 }
 
@@ -58,33 +55,33 @@ void expect_same_bits(const std::vector<double>& a, const std::vector<double>& b
 TEST(Determinism, TheSameFitTwiceGivesTheSameBits) { expect_same_bits(forces_of(fitted()), forces_of(fitted_anew())); }
 
 TEST(Determinism, ASavedModelGivesTheSameBits) {
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   std::vector<ModelPtr> loaded;
   for (const ModelPtr& model : fitted()) {
     const std::string path = folder.file(model->name() + ".json");
     ASSERT_TRUE(save_model(path, model->data(), false).ok());
-    loaded.push_back(test::must(load_model(path)));
+    loaded.push_back(must(load_model(path)));
   }
   expect_same_bits(forces_of(fitted()), forces_of(loaded));
 }
 
 TEST(Determinism, TenThousandTicksOfFittedModelsOffendNothing) {
-  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
-  const test::RecordingPtr recording = test::rig_recording(short_recording());
+  if (!rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  const RecordingPtr recording = rig_recording(short_recording());
   ASSERT_GE(recording->rows.size(), 10000u);
   SensorSpec sensor;
   sensor.encoder_step_m = 30e-6;
   HapticsTick tick(sensor, ForceModels(fitted().begin(), fitted().end()));
   std::size_t in_contact = 0;
-  test::RtGuard guard;
+  RtGuard guard;
   for (std::size_t i = 0; i < 10000; ++i) {
     const RecordingRow& row = recording->rows[i];
     in_contact += tick.step({row.time_s, row.position_m, 0.0, 0.0}).in_contact ? 1U : 0U;
   }
-  const test::RtOffences offences = guard.stop();
+  const RtOffences offences = guard.stop();
   EXPECT_EQ(offences.total(), 0);
   EXPECT_GT(in_contact, 3000u);
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

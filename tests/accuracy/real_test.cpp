@@ -8,42 +8,25 @@
 
 #include "tests/support/fitting.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::default_request;
-using test::evaluate_moved;
-using test::fit;
-using test::fit_all;
-using test::ModelPtr;
-using test::prepare;
-using test::real_recording;
-using test::RecordingPtr;
 
 class RealAccuracy : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(test::real_data())) GTEST_SKIP() << "no recordings at " << test::real_data();
+    if (!std::filesystem::exists(real_data())) GTEST_SKIP() << "no recordings at " << real_data();
   }
 };
 
-std::vector<RecordingPtr> skin(const std::string& kind, const std::vector<std::string>& forces_mN) {
-  std::vector<RecordingPtr> recordings;
-  for (const std::string& force : forces_mN) {
-    recordings.push_back(real_recording("aurora_skin/" + kind + "_" + force + "mN.csv"));
-  }
-  return recordings;
-}
-
 TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
-  const PreparedTraining prepared = prepare(skin("train", {"250", "600", "1000"}), default_request("skin"));
+  const PreparedTraining prepared = prepare(skin_recordings("train", {"250", "600", "1000"}), default_request("skin"));
   const ModelPtr greedy = fit(prepared, &kGreedyMethod);
   double squares = 0.0;
   double within = 0.0;
   double samples = 0.0;
-  for (const RecordingPtr& recording : skin("test", {"400", "800", "900"})) {
+  for (const RecordingPtr& recording : skin_recordings("test", {"400", "800", "900"})) {
     const ErrorSummary summary = evaluate_moved(*recording, {greedy}).front();
-    std::cout << test::figures(recording->name, summary) << "\n";
+    std::cout << figures(recording->name, summary) << "\n";
     const auto n = static_cast<double>(summary.samples);
     squares += n * summary.rms_error_N * summary.rms_error_N;
     within += n * summary.within_jnd;
@@ -63,7 +46,7 @@ TEST_F(RealAccuracy, SiliconeUnderAnIndenterOnAnotherSpot) {
   }
   const ModelPtr greedy = fit(prepare(training, default_request("silicone_block")), &kGreedyMethod);
   const ErrorSummary summary = evaluate_moved(*real_recording("zwick_silicone/test_trial9.csv"), {greedy}).front();
-  std::cout << test::figures("trial 9", summary) << "\n";
+  std::cout << figures("trial 9", summary) << "\n";
   EXPECT_GE(summary.within_jnd, 0.995);
   EXPECT_LE(summary.rms_error_N, 0.015);  // measured: 8.2 mN
 }
@@ -76,7 +59,7 @@ TEST_F(RealAccuracy, PressOnItsSecondCycle) {
   const RecordingPtr recording = real_recording("ur3e_press_mit/test_cycle2.csv");
   for (const ModelPtr& model : fit_all(prepared)) {
     const ErrorSummary summary = evaluate_moved(*recording, {model}).front();
-    std::cout << test::figures(model->name(), summary) << "\n";
+    std::cout << figures(model->name(), summary) << "\n";
     EXPECT_LE(summary.rms_error_N, 0.5) << model->name();
     EXPECT_GE(summary.within_jnd, 0.7) << model->name() << "; required of greedy only";
   }
@@ -98,20 +81,20 @@ TEST_F(RealAccuracy, PressThatCountsDepthFromItsPreload) {
   EXPECT_LT(prepared.common.features.front().surface_position_m, -0.3e-3);
   const ErrorSummary summary =
       evaluate_moved(*from_preload("ur3e_press_mit/test_cycle2.csv"), {fit(prepared, &kGreedyMethod)}).front();
-  std::cout << test::figures("cycle 2", summary) << "\n";
+  std::cout << figures("cycle 2", summary) << "\n";
   EXPECT_GE(summary.within_jnd, 0.99);  // 0.92 if the trend started at the preload
 }
 
 TEST_F(RealAccuracy, EcoflexFromPositionAlone) {
   for (const std::string thinner : {"0T", "100T"}) {
     const PreparedTraining prepared =
-        prepare({real_recording("ecoflex_static/EF10_" + thinner + "_train_A1.csv")}, test::position_request());
+        prepare({real_recording("ecoflex_static/EF10_" + thinner + "_train_A1.csv")}, position_request());
     const RecordingPtr recording = real_recording("ecoflex_static/EF10_" + thinner + "_test_A3.csv");
     double peak_N = 0.0;
     for (const RecordingRow& row : recording->rows) peak_N = std::max(peak_N, row.force_N);
     for (const ModelPtr& model : fit_all(prepared)) {
       const ErrorSummary summary = evaluate_moved(*recording, {model}).front();
-      std::cout << test::figures(model->name(), summary) << ", " << 100.0 * summary.rms_error_N / peak_N
+      std::cout << figures(model->name(), summary) << ", " << 100.0 * summary.rms_error_N / peak_N
                 << " % of the peak\n";
       EXPECT_LT(summary.rms_error_N, 0.01 * peak_N) << model->name() << ", " << thinner;
     }
@@ -119,4 +102,4 @@ TEST_F(RealAccuracy, EcoflexFromPositionAlone) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

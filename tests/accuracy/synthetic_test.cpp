@@ -10,54 +10,23 @@
 
 #include "tests/support/fitting.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::default_request;
-using test::fit;
-using test::judge;
-using test::ModelPtr;
-using test::prepare;
-using test::RecordingPtr;
-using test::rig_recording;
-using test::scene_request;
-using test::worst_bin_over_jnd;
-
-const RecordingPtr& silicone_train() {
-  static const RecordingPtr recording = rig_recording(test::train_settings("silicone"));
-  return recording;
-}
-
-const RecordingPtr& silicone_test() {
-  static const RecordingPtr recording = rig_recording(test::test_settings("silicone"));
-  return recording;
-}
-
-// Springs and dashpots with known relaxation times, 0.17 s and 1.27 s.
-const RecordingPtr& maxwell_train() {
-  static const RecordingPtr recording = rig_recording(test::train_settings("maxwell"));
-  return recording;
-}
-
-const RecordingPtr& maxwell_test() {
-  static const RecordingPtr recording = rig_recording(test::test_settings("maxwell"));
-  return recording;
-}
 
 ErrorSummary judged(const PreparedTraining& prepared, const Method* method, const RecordingPtr& recording,
                     std::uint64_t seed = 1) {
   const ModelPtr model = fit(prepared, method, seed);
   const ErrorSummary summary = judge(*recording, model);
-  std::cout << test::figures(model->name(), summary) << "\n";
+  std::cout << figures(model->name(), summary) << "\n";
   return summary;
 }
 
 TEST(SyntheticAccuracy, SiliconeWithAccelerometer) {
-  const PreparedTraining prepared = prepare({silicone_train()}, default_request("silicone_block"));
-  const ErrorSummary direct = judged(prepared, &kDirectMethod, silicone_test());
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, silicone_test());
-  const ErrorSummary kdtree = judged(prepared, &kKdTreeMethod, silicone_test());
-  const ErrorSummary random = judged(prepared, &kRandomMethod, silicone_test());
+  const PreparedTraining prepared = prepare({train_recording("silicone")}, default_request("silicone_block"));
+  const ErrorSummary direct = judged(prepared, &kDirectMethod, test_recording("silicone"));
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("silicone"));
+  const ErrorSummary kdtree = judged(prepared, &kKdTreeMethod, test_recording("silicone"));
+  const ErrorSummary random = judged(prepared, &kRandomMethod, test_recording("silicone"));
   EXPECT_LE(greedy.rms_error_N, 1.15 * direct.rms_error_N);
   EXPECT_GE(greedy.within_jnd, 0.999);
   EXPECT_LT(greedy.max_error_over_jnd, 1.5);
@@ -67,16 +36,18 @@ TEST(SyntheticAccuracy, SiliconeWithAccelerometer) {
 }
 
 TEST(SyntheticAccuracy, SiliconeWithTheEncoderAlone) {
-  const PreparedTraining prepared = prepare({test::encoder_only(silicone_train())}, default_request("silicone_block"));
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test::encoder_only(silicone_test()));
+  const PreparedTraining prepared =
+      prepare({encoder_only(train_recording("silicone"))}, default_request("silicone_block"));
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, encoder_only(test_recording("silicone")));
   EXPECT_GE(greedy.within_jnd, 0.999);
   EXPECT_LT(worst_bin_over_jnd(greedy), 1.0);
 }
 
+// Springs and dashpots with known relaxation times, 0.17 s and 1.27 s.
 TEST(SyntheticAccuracy, MaxwellWithTheTimesThatItHas) {
-  const PreparedTraining prepared = prepare({maxwell_train()}, scene_request("silicone_block"));
-  const ErrorSummary direct = judged(prepared, &kDirectMethod, maxwell_test());
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, maxwell_test());
+  const PreparedTraining prepared = prepare({train_recording("maxwell")}, scene_request("silicone_block"));
+  const ErrorSummary direct = judged(prepared, &kDirectMethod, test_recording("maxwell"));
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("maxwell"));
   EXPECT_GE(greedy.within_jnd, 0.999);
   // Reached: 8.9 mN, 9.6 mN, against 5 mN of force noise alone.
   EXPECT_LE(direct.rms_error_N, 0.012);
@@ -98,9 +69,8 @@ TEST(SyntheticAccuracy, ForeignPhysicsByDefault) {
                            {"sponge", 0.92, 12.0}};
   for (const Law& law : kLaws) {
     SCOPED_TRACE(law.material);
-    const RecordingPtr recording = rig_recording(test::test_settings(law.material));
-    const PreparedTraining prepared =
-        prepare({rig_recording(test::train_settings(law.material))}, default_request("silicone_block"));
+    const RecordingPtr recording = test_recording(law.material);
+    const PreparedTraining prepared = prepare({train_recording(law.material)}, default_request("silicone_block"));
     const ErrorSummary trend = judged(prepared, &kTrendMethod, recording);
     const ErrorSummary greedy = judged(prepared, &kGreedyMethod, recording);
     EXPECT_GE(greedy.within_jnd, law.within_jnd);
@@ -130,9 +100,9 @@ void expect_times(const PreparedTraining& prepared, const std::vector<double>& t
 TEST(SyntheticAccuracy, FoamWithIdentifiedRelaxation) {
   TrainingRequest request = scene_request("foam_block");
   request.relaxation = Relaxation::automatic;
-  const PreparedTraining prepared = prepare({rig_recording(test::train_settings("foam"))}, request);
+  const PreparedTraining prepared = prepare({train_recording("foam")}, request);
   expect_times(prepared, {0.08, 0.9}, {0.2, 0.2});
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, rig_recording(test::test_settings("foam")));
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("foam"));
   EXPECT_GE(greedy.within_jnd, 0.985);
   EXPECT_LT(greedy.max_error_over_jnd, 4.0);
 }
@@ -140,17 +110,17 @@ TEST(SyntheticAccuracy, FoamWithIdentifiedRelaxation) {
 TEST(SyntheticAccuracy, MaxwellWithIdentifiedRelaxation) {
   TrainingRequest request = scene_request("silicone_block");
   request.relaxation = Relaxation::automatic;
-  const PreparedTraining prepared = prepare({maxwell_train()}, request);
+  const PreparedTraining prepared = prepare({train_recording("maxwell")}, request);
   expect_times(prepared, {0.17, 1.27}, {0.2, 0.2});
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, maxwell_test());
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("maxwell"));
   EXPECT_GE(greedy.within_jnd, 0.999) << "as good as with the true times";
 }
 
 TEST(SyntheticAccuracy, GelWithThreeRelaxations) {
   TrainingRequest request = scene_request("silicone_block");
   request.relaxation = Relaxation::automatic;
-  const PreparedTraining prepared = prepare({rig_recording(test::train_settings("gel"))}, request);
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, rig_recording(test::test_settings("gel")));
+  const PreparedTraining prepared = prepare({train_recording("gel")}, request);
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("gel"));
   // Reached: 99.86 %, 2.5 JND. The limits are those of foam.
   EXPECT_GE(greedy.within_jnd, 0.985);
   EXPECT_LT(greedy.max_error_over_jnd, 4.0);
@@ -158,9 +128,8 @@ TEST(SyntheticAccuracy, GelWithThreeRelaxations) {
 
 TEST(SyntheticAccuracy, StiffAndElasticBlocksWithTheFeaturesTheyNeed) {
   for (const std::string material : {"stiff", "elastic"}) {
-    const PreparedTraining prepared =
-        prepare({rig_recording(test::train_settings(material))}, default_request(material + "_block"));
-    const RecordingPtr recording = rig_recording(test::test_settings(material));
+    const PreparedTraining prepared = prepare({train_recording(material)}, default_request(material + "_block"));
+    const RecordingPtr recording = test_recording(material);
     for (const Method* method : {&kGreedyMethod, &kKdTreeMethod, &kRandomMethod}) {
       const ErrorSummary summary = judged(prepared, method, recording);
       // Reached: all within, worst 0.61 JND.
@@ -173,28 +142,26 @@ TEST(SyntheticAccuracy, StiffAndElasticBlocksWithTheFeaturesTheyNeed) {
 // Reduction by force steps and rows weighted by 1/f, as in Hoever & Harders (2009).
 TEST(SyntheticAccuracy, ThePapersRecipeReproducesThePaper) {
   TrainingRequest request = scene_request("silicone_block");
-  request.recipe = FitRecipe::paper_2009;
-  request.reduction = Reduction::force;
-  request.weighting = Weighting::relative;
-  const PreparedTraining prepared = prepare({maxwell_train()}, request);
+  use_papers_recipe(request);
+  const PreparedTraining prepared = prepare({train_recording("maxwell")}, request);
   EXPECT_NEAR(static_cast<double>(prepared.set.sites.size()), 6850.0, 150.0) << "the paper's N";
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, maxwell_test());
-  const ErrorSummary kdtree = judged(prepared, &kKdTreeMethod, maxwell_test());
+  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("maxwell"));
+  const ErrorSummary kdtree = judged(prepared, &kKdTreeMethod, test_recording("maxwell"));
   EXPECT_LT(worst_bin_over_jnd(greedy, 0.5), 1.0);
   EXPECT_LT(worst_bin_over_jnd(kdtree, 0.5), 1.0);
   double squares = 0.0;
   constexpr int kDraws = 5;
   for (int draw = 1; draw <= kDraws; ++draw) {
     const auto seed = static_cast<std::uint64_t>(draw);
-    const double rms_N = judged(prepared, &kRandomMethod, maxwell_test(), seed).rms_error_N;
+    const double rms_N = judged(prepared, &kRandomMethod, test_recording("maxwell"), seed).rms_error_N;
     squares += rms_N * rms_N / kDraws;
   }
   EXPECT_GT(std::sqrt(squares), 1.2 * greedy.rms_error_N) << "reached: 38 mN against 22 mN";
   // Greedy has a smaller error than direct here (22 against 47 mN): the 6,900
   // centres of direct fit the noise of small forces, which 1/f weights most.
-  const ErrorSummary direct = judged(prepared, &kDirectMethod, maxwell_test());
+  const ErrorSummary direct = judged(prepared, &kDirectMethod, test_recording("maxwell"));
   EXPECT_LE(greedy.rms_error_N, 1.3 * direct.rms_error_N);
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

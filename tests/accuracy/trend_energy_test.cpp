@@ -18,10 +18,8 @@
 #include "engine/base/random_stream.h"
 #include "tests/support/fitting.h"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
-
-using test::ModelPtr;
 
 constexpr double kRate_Hz = 4000.0;
 constexpr double kSeconds = 30.0;
@@ -95,11 +93,10 @@ Balance balance_of(const ForceModel& model, const RandomMotion& motion) {
 }
 
 ModelPtr trend_of(const std::string& material) {
-  RigSettings settings = test::train_settings(material);
+  RigSettings settings = train_settings(material);
   settings.seconds = 15.0;
   settings.rate_Hz = 500.0;
-  return test::fit(test::prepare({test::rig_recording(settings)}, test::default_request("silicone_block")),
-                   find_method("trend"));
+  return fit(prepare({rig_recording(settings)}, default_request("silicone_block")), find_method("trend"));
 }
 
 TEST(TrendEnergy, NoMotionFromRestEverGetsOutMoreThanWasPutIn) {
@@ -122,4 +119,4 @@ TEST(TrendEnergy, NoMotionFromRestEverGetsOutMoreThanWasPutIn) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -36,9 +36,7 @@ const PreparedTraining& recorded() {
 const PreparedTraining& recorded_as_paper() {
   static const PreparedTraining prepared = [] {
     TrainingRequest request = test::scene_request("silicone_block");
-    request.recipe = FitRecipe::paper_2009;
-    request.reduction = Reduction::force;
-    request.weighting = Weighting::relative;
+    test::use_papers_recipe(request);
     return prepare(request);
   }();
   return prepared;

@@ -5,6 +5,8 @@
 #include <set>
 #include <vector>
 
+#include "engine/base/text.h"
+
 namespace palpate::bench {
 namespace {
 
@@ -69,21 +71,7 @@ constexpr Column kDimensionColumns[] = {
     {"one grid look-up", "dimension/evaluate_grid", false},
 };
 
-std::string text(const char* format, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
-
-std::string thousands(long value) {
-  const std::string digits = std::to_string(value);
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
-    text += digits[i];
-  }
-  return text;
-}
+std::string thousands(long value) { return with_thousands(std::to_string(value)); }
 
 const BenchRow* find(const BenchRows& rows, const std::string& name) {
   const auto found = rows.find(name);
@@ -115,7 +103,7 @@ void print_ratios(const BenchRows& rows) {
     if (first) print_header("One evaluation", {"centres", "plain scalar loop, -O2", "here", "ratio"});
     first = false;
     print_row({thousands(std::stol(centres)), duration(slow->seconds), duration(fast->seconds),
-               text("%.2f", slow->seconds / fast->seconds)});
+               fixed(slow->seconds / fast->seconds, 2)});
   }
 }
 
@@ -127,8 +115,8 @@ void print_shares(const BenchRows& rows) {
     if (whole == nullptr || part == nullptr) continue;
     if (first) print_header("Whole beside bare", {"work", "whole", "bare", "ratio", "goal"});
     first = false;
-    print_row({share.work, duration(whole->seconds), duration(part->seconds),
-               text("%.2f", whole->seconds / part->seconds), share.goal});
+    print_row({share.work, duration(whole->seconds), duration(part->seconds), fixed(whole->seconds / part->seconds, 2),
+               share.goal});
   }
 }
 
@@ -175,7 +163,7 @@ void print_against(const BenchRows& rows, const std::string& title, const char* 
     for (const Column& column : columns) {
       const BenchRow* row = find(rows, std::string(column.benchmark) + "/" + std::to_string(number));
       cells.push_back(row != nullptr ? duration(row->seconds) : "-");
-      if (column.with_memory) cells.push_back(row != nullptr ? text("%.3g MB", row->counters.at("peak_MB")) : "-");
+      if (column.with_memory) cells.push_back(row != nullptr ? general(row->counters.at("peak_MB"), 3) + " MB" : "-");
     }
     print_row(cells);
   }
@@ -188,7 +176,7 @@ void print_features(const BenchRows& rows) {
   print_header("Features", {"feature", "one tick of the filter", "of which the feature"});
   for (const auto& [name, row] : rows) {
     if (!starts_with(name, "feature/")) continue;
-    print_row({name.substr(8), duration(row.seconds), text("%.1f ns", 1e9 * (row.seconds - alone->seconds))});
+    print_row({name.substr(8), duration(row.seconds), fixed(1e9 * (row.seconds - alone->seconds), 1) + " ns"});
   }
 }
 
@@ -216,9 +204,9 @@ void print_peers(const BenchRows& rows) {
     }
     const BenchRow* query = find(rows, name.substr(0, name.rfind('/')) + "/query");
     print_row({peer, thousands(static_cast<long>(counter("sites"))), duration(fit.seconds),
-               query != nullptr ? duration(query->seconds) : "-", text("%.1f", counter("rms_mN")),
-               text("%.2f", counter("within_jnd_pct")), text("%.1f", counter("with_trend_rms_mN")),
-               text("%.2f", counter("with_trend_within_jnd_pct"))});
+               query != nullptr ? duration(query->seconds) : "-", fixed(counter("rms_mN"), 1),
+               fixed(counter("within_jnd_pct"), 2), fixed(counter("with_trend_rms_mN"), 1),
+               fixed(counter("with_trend_within_jnd_pct"), 2)});
     settings.push_back(peer + ": " + fit.label);
   }
   print_settings();
@@ -254,20 +242,19 @@ void print_materials(const BenchRows& rows, const std::string& group, const std:
 }
 
 void print_choices(const BenchRows& rows) {
-  print_materials(
-      rows, "choice", "What each choice is worth: RMS [mN] cross-validated / on a recording held out",
-      "greedy, 100 centres",
-      {"default", "filters_driven_by_velocity", "relaxation_identified", "kernel_linear", "kernel_thin_plate",
-       "kernel_quintic", "weights_relative", "weights_none", "every_50_mN", "papers_recipe", "candidates_all",
-       "direct"},
-      [](const BenchRow& row) {
-        const auto validated = row.counters.find("cross_validated_mN");
-        return (validated != row.counters.end() ? text("%.3g / ", validated->second) : std::string("- / ")) +
-               text("%.3g", row.counters.at("rms_mN"));
-      });
+  print_materials(rows, "choice", "What each choice is worth: RMS [mN] cross-validated / on a recording held out",
+                  "greedy, 100 centres",
+                  {"default", "filters_driven_by_velocity", "relaxation_identified", "kernel_linear",
+                   "kernel_thin_plate", "kernel_quintic", "weights_relative", "weights_none", "every_50_mN",
+                   "papers_recipe", "candidates_all", "direct"},
+                  [](const BenchRow& row) {
+                    const auto validated = row.counters.find("cross_validated_mN");
+                    return (validated != row.counters.end() ? general(validated->second, 3) : "-") + " / " +
+                           general(row.counters.at("rms_mN"), 3);
+                  });
   const std::vector<std::string> centres{"0", "1", "2", "5", "10", "20", "50", "100", "200"};
   const auto within = [](const BenchRow& row) {
-    return text("%.2f", row.counters.at("within_JND_percent")) + text(" (%.3g)", row.counters.at("rms_mN"));
+    return fixed(row.counters.at("within_JND_percent"), 2) + " (" + general(row.counters.at("rms_mN"), 3) + ")";
   };
   print_materials(rows, "centres", "Within the JND [%] (RMS [mN]) of a recording held out", "greedy centres", centres,
                   within);
@@ -281,14 +268,9 @@ std::string duration(double seconds) {
     double unit_s;
     const char* name;
   } kUnits[] = {{1.0, "s"}, {1e-3, "ms"}, {1e-6, "us"}};
-  char text[32];
   for (const auto& [unit_s, name] : kUnits)
-    if (seconds >= unit_s) {
-      std::snprintf(text, sizeof text, "%.3g %s", seconds / unit_s, name);
-      return text;
-    }
-  std::snprintf(text, sizeof text, "%.3g ns", 1e9 * seconds);
-  return text;
+    if (seconds >= unit_s) return general(seconds / unit_s, 3) + " " + name;
+  return general(1e9 * seconds, 3) + " ns";
 }
 
 void print_tables(const BenchRows& rows) {

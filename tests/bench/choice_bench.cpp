@@ -26,24 +26,17 @@ struct Material {
   std::vector<RecordingPtr> test;
 };
 
-std::vector<RecordingPtr> skin(const std::string& kind, const std::vector<std::string>& forces_mN) {
-  std::vector<RecordingPtr> recordings;
-  for (const std::string& force : forces_mN)
-    recordings.push_back(test::real_recording("aurora_skin/" + kind + "_" + force + "mN.csv"));
-  return recordings;
-}
-
 Material make_material(const std::string& name) {
-  if (name == "skin") return {"skin", skin("train", {"250", "600", "1000"}), skin("test", {"400", "800", "900"})};
+  if (name == "skin")
+    return {"skin", test::skin_recordings("train", {"250", "600", "1000"}),
+            test::skin_recordings("test", {"400", "800", "900"})};
   if (name == "press")
     return {"silicone_block",
             {test::real_recording("ur3e_press_mit/train_cycle1.csv")},
             {test::real_recording("ur3e_press_mit/test_cycle2.csv")}};
   const std::map<std::string, std::string> scenes{
       {"silicone", "silicone_block"}, {"foam", "foam_block"}, {"gel", "silicone_block"}, {"stiff", "stiff_block"}};
-  return {scenes.at(name),
-          {test::rig_recording(test::train_settings(name))},
-          {test::rig_recording(test::test_settings(name))}};
+  return {scenes.at(name), {test::train_recording(name)}, {test::test_recording(name)}};
 }
 
 const Material& material(const std::string& name) {
@@ -165,12 +158,7 @@ const std::vector<Choice>& choices() {
       {"weights_relative", [](TrainingRequest& t, MethodRequest&) { t.weighting = Weighting::relative; }},
       {"weights_none", [](TrainingRequest& t, MethodRequest&) { t.weighting = Weighting::none; }},
       {"every_50_mN", [](TrainingRequest& t, MethodRequest&) { t.reduction = Reduction::force; }},
-      {"papers_recipe",
-       [](TrainingRequest& t, MethodRequest&) {
-         t.recipe = FitRecipe::paper_2009;
-         t.reduction = Reduction::force;
-         t.weighting = Weighting::relative;
-       }},
+      {"papers_recipe", [](TrainingRequest& t, MethodRequest&) { test::use_papers_recipe(t); }},
       {"candidates_all", [](TrainingRequest&, MethodRequest& m) { m.candidates = 0; }},
       {"direct", [](TrainingRequest&, MethodRequest& m) { m.method = &kDirectMethod; }},
   };
@@ -192,9 +180,7 @@ const int registered = [] {
                               if (name == "gel") t.relaxation = Relaxation::automatic;
                             }});
       add("centres_papers_recipe", name, {std::to_string(centres), [centres](TrainingRequest& t, MethodRequest& m) {
-                                            t.recipe = FitRecipe::paper_2009;
-                                            t.reduction = Reduction::force;
-                                            t.weighting = Weighting::relative;
+                                            test::use_papers_recipe(t);
                                             m.centres = centres;
                                           }});
     }

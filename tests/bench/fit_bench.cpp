@@ -96,66 +96,56 @@ class TimedFit {
   std::optional<double> peak_bytes_;
 };
 
+using Benchmark = benchmark::internal::Benchmark;
+
+// One fit for each repetition, in milliseconds.
+Benchmark* in_single_fits(Benchmark* one, int repetitions) {
+  return one->Repetitions(repetitions)->Iterations(1)->ReportAggregatesOnly()->Unit(benchmark::kMillisecond);
+}
+
+void add_fit(const std::string& name, int repetitions, std::function<void(benchmark::State&)> run) {
+  in_single_fits(benchmark::RegisterBenchmark(name.c_str(), std::move(run)), repetitions)->UseManualTime();
+}
+
 void at_paper_size(const std::string& name, const Fit& fit, int repetitions) {
-  benchmark::RegisterBenchmark(("fit/" + name).c_str(),
-                               [timed = TimedFit(fit)](benchmark::State& state) mutable {
-                                 timed.run(state, recorded_sites(), recorded_jnd_N());
-                               })
-      ->Repetitions(repetitions)
-      ->Iterations(1)
-      ->UseManualTime()
-      ->ReportAggregatesOnly()
-      ->Unit(benchmark::kMillisecond);
+  add_fit("fit/" + name, repetitions, [timed = TimedFit(fit)](benchmark::State& state) mutable {
+    timed.run(state, recorded_sites(), recorded_jnd_N());
+  });
+}
+
+// A fit to `count` synthetic sites.
+void add_made(const std::string& name, int repetitions, const Fit& fit, int dimension, Eigen::Index count) {
+  add_fit(name, repetitions, [timed = TimedFit(fit), dimension, count](benchmark::State& state) mutable {
+    const Sites sites = made_sites(dimension, count);
+    timed.run(state, sites, sites.row_scale.cwiseInverse());
+  });
 }
 
 void against_size(const std::string& name, const Fit& fit) {
   for (const int count : {1000, 10000, 100000, 1000000})
-    benchmark::RegisterBenchmark(("size/" + name + "/" + std::to_string(count)).c_str(),
-                                 [timed = TimedFit(fit), count](benchmark::State& state) mutable {
-                                   const Sites sites = made_sites(4, count);
-                                   timed.run(state, sites, sites.row_scale.cwiseInverse());
-                                 })
-        ->Repetitions(count < 50000 ? 3 : 1)
-        ->Iterations(1)
-        ->UseManualTime()
-        ->ReportAggregatesOnly()
-        ->Unit(benchmark::kMillisecond);
+    add_made("size/" + name + "/" + std::to_string(count), count < 50000 ? 3 : 1, fit, 4, count);
 }
 
 // The cost over the dimension, as in figures 2 and 8 of the paper.
 void against_dimension(const std::string& name, const Fit& fit) {
   for (int d = 1; d <= kMaxDimension; ++d)
-    benchmark::RegisterBenchmark(("dimension/" + name + "/" + std::to_string(d)).c_str(),
-                                 [timed = TimedFit(fit), d](benchmark::State& state) mutable {
-                                   const Sites sites = made_sites(d, kPaperSites);
-                                   timed.run(state, sites, sites.row_scale.cwiseInverse());
-                                 })
-        ->Repetitions(3)
-        ->Iterations(1)
-        ->UseManualTime()
-        ->ReportAggregatesOnly()
-        ->Unit(benchmark::kMillisecond);
+    add_made("dimension/" + name + "/" + std::to_string(d), 3, fit, d, kPaperSites);
 }
 
 // Grids with ten nodes a side, as in the paper, with all sites as centres. Seven and
 // eight dimensions are left out: they would have 1e7 and 1e8 nodes.
 void grid_against_dimension() {
   for (int d = 1; d <= 6; ++d)
-    benchmark::RegisterBenchmark(
-        ("dimension/grid_10_a_side/" + std::to_string(d)).c_str(),
-        [d](benchmark::State& state) {
-          const Sites sites = made_sites(d, kPaperSites);
-          RbfFunction function{KernelKind::cubic, sites.points, sites.target_N, Eigen::VectorXd::Ones(1 + d)};
-          TimedFit timed([&](const Sites& all, const Eigen::VectorXd&) -> Result<FittedRbf> {
-            VoxelGrid grid = even_grid(all, std::vector<int>(static_cast<std::size_t>(d), 10));
-            if (const Status filled = fill(grid, function); !filled) return filled.error();
-            return FittedRbf{};
-          });
-          timed.run(state, sites, sites.target_N);
-        })
-        ->Iterations(1)
-        ->UseManualTime()
-        ->Unit(benchmark::kMillisecond);
+    add_fit("dimension/grid_10_a_side/" + std::to_string(d), 1, [d](benchmark::State& state) {
+      const Sites sites = made_sites(d, kPaperSites);
+      const RbfFunction function{KernelKind::cubic, sites.points, sites.target_N, Eigen::VectorXd::Ones(1 + d)};
+      TimedFit timed([&](const Sites& all, const Eigen::VectorXd&) -> Result<FittedRbf> {
+        VoxelGrid grid = even_grid(all, std::vector<int>(static_cast<std::size_t>(d), 10));
+        if (const Status filled = fill(grid, function); !filled) return filled.error();
+        return FittedRbf{};
+      });
+      timed.run(state, sites, sites.target_N);
+    });
 }
 
 void evaluate_rbf_in(benchmark::State& state) {
@@ -182,12 +172,7 @@ const int registered = [] {
   at_paper_size("greedy-100_of_20", greedy_fit(20), 5);
   at_paper_size("greedy-100_of_100", greedy_fit(100), 5);
   at_paper_size("greedy-200_of_100", greedy_fit(100, kMostCentres), 3);
-  benchmark::RegisterBenchmark("fit/greedy-1_to_200_of_100", slider_all)
-      ->Repetitions(3)
-      ->Iterations(1)
-      ->ReportAggregatesOnly()
-      ->UseRealTime()
-      ->Unit(benchmark::kMillisecond);
+  in_single_fits(benchmark::RegisterBenchmark("fit/greedy-1_to_200_of_100", slider_all), 3)->UseRealTime();
   for (const Method* method : methods()) {
     if (method->choose == nullptr) continue;
     for (const bool papers : {false, true})

@@ -65,26 +65,21 @@ constexpr const char* kMaterials[] = {"friction", "softening", "tissue", "layere
 
 PeerData make_data(const std::string& name) {
   if (name == "silicone") {
-    return make_data(
-        name, test::prepare({test::rig_recording(test::train_settings(name))}, test::scene_request("silicone_block")),
-        {test::rig_recording(test::test_settings(name))});
+    return make_data(name, test::prepare({test::train_recording(name)}, test::scene_request("silicone_block")),
+                     {test::test_recording(name)});
   }
   if (std::find(std::begin(kMaterials), std::end(kMaterials), name) != std::end(kMaterials)) {
-    return make_data(
-        name, test::prepare({test::rig_recording(test::train_settings(name))}, test::default_request("silicone_block")),
-        {test::rig_recording(test::test_settings(name))});
+    return make_data(name, test::prepare({test::train_recording(name)}, test::default_request("silicone_block")),
+                     {test::test_recording(name)});
   }
   if (name == "press") {
     return make_data(
         name, test::prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")}, test::default_request("skin")),
         {test::real_recording("ur3e_press_mit/test_cycle2.csv")});
   }
-  std::vector<RecordingPtr> train, tested;
-  for (const char* force : {"250", "600", "1000"})
-    train.push_back(test::real_recording(std::string("aurora_skin/train_") + force + "mN.csv"));
-  for (const char* force : {"400", "800", "900"})
-    tested.push_back(test::real_recording(std::string("aurora_skin/test_") + force + "mN.csv"));
-  return make_data(name, test::prepare(train, test::scene_request(name)), tested);
+  return make_data(name,
+                   test::prepare(test::skin_recordings("train", {"250", "600", "1000"}), test::scene_request(name)),
+                   test::skin_recordings("test", {"400", "800", "900"}));
 }
 
 PeerError error_of(const PeerData& data, const std::function<double(Eigen::Index i)>& force_N) {

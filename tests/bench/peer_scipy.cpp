@@ -1,7 +1,5 @@
 #include "tests/bench/peer_scipy.h"
 
-#include <stdlib.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -9,25 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "tests/support/temporary_folder.h"
+
 namespace palpate::bench {
 namespace {
 
 constexpr const char* kRepetitions = "3";
-
-// A folder that is removed by the destructor.
-struct TemporaryFolder {
-  std::filesystem::path path;
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "palpate-bench-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path.empty()) std::filesystem::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
 
 void write_rows(const std::filesystem::path& path, const Eigen::MatrixXd& columns) {
   std::ofstream file(path);
@@ -72,16 +57,16 @@ Result<Eigen::VectorXd> read_output(const std::filesystem::path& path, Eigen::In
 }
 
 Result<std::map<std::string, ScipyPeer>> run(const PeerData& data) {
-  const TemporaryFolder folder;
-  if (folder.path.empty()) return Error{"cannot make a temporary folder"};
-  write_data(folder.path, data);
-  const Result<std::string> said = run_script(folder.path);
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary.path();
+  write_data(folder, data);
+  const Result<std::string> said = run_script(folder);
   if (!said) return said.error();
   std::map<std::string, ScipyPeer> peers;
   for (const nlohmann::json& row : nlohmann::json::parse(*said)) {
     const auto name = row.at("name").get<std::string>();
     const auto target = row.at("target").get<std::string>();
-    const auto output = read_output(folder.path / (name + "_" + target + ".csv"), data.test_force_N.size());
+    const auto output = read_output(folder / (name + "_" + target + ".csv"), data.test_force_N.size());
     if (!output) return output.error();
     ScipyPeer& peer = peers[name];
     if (target == "remainder") {

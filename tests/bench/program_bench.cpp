@@ -40,7 +40,7 @@ void fit_program(benchmark::State& state, const std::string& options) {
 }
 
 void replayed_motion(benchmark::State& state) {
-  const auto recording = test::rig_recording(test::test_settings("silicone"));
+  const auto recording = test::test_recording("silicone");
   const SensorSpec sensor = identify_sensor(recording->rows.data(), recording->rows.size(), recording->columns);
   MotionEstimator motion(sensor);
   std::size_t at = 0;
@@ -53,7 +53,7 @@ void replayed_motion(benchmark::State& state) {
 }
 
 void replayed_tick(benchmark::State& state, const Method* method) {
-  const auto recording = test::rig_recording(test::test_settings("silicone"));
+  const auto recording = test::test_recording("silicone");
   const SensorSpec sensor = identify_sensor(recording->rows.data(), recording->rows.size(), recording->columns);
   HapticsTick tick(sensor, {test::fit(recorded(), method)});
   std::size_t at = 0;

@@ -37,11 +37,7 @@ struct HardCaseResult {
   bool safe = false;
 };
 
-// All cases except the materials, with methods in the order of methods(). Takes some seconds.
-// Deterministic.
-std::vector<HardCaseResult> run_hard_cases();
-
-// The parts of run_hard_cases().
+// With methods in the order of methods(). Deterministic.
 std::vector<HardCaseResult> run_hard_sites();
 std::vector<HardCaseResult> run_hard_recordings(FeatureChoice choice);
 std::vector<HardCaseResult> run_hard_motions();

@@ -5,13 +5,12 @@
 #include <memory>
 #include <utility>
 
-#include "models/model/grid/grid_correction.h"
-#include "models/model/rbf/rbf_correction.h"
 #include "scenes/material/rig.h"
 #include "tests/stability/hard_cases.h"
 #include "tests/stability/hard_methods.h"
 #include "tests/stability/hard_outcome.h"
 #include "tests/stability/hard_presses.h"
+#include "tests/support/example_model.h"
 
 namespace palpate {
 namespace {
@@ -68,16 +67,11 @@ OutcomeCounter sweep(const FittedModel& model) {
 
 // Weights (or grid values) that overflow every sum.
 ModelData with_huge_weights(ModelData data) {
-  if (const RbfFunction* rbf = rbf_of(data.correction)) {
-    RbfFunction huge = *rbf;
-    for (Eigen::Index j = 0; j < huge.weights.size(); ++j) huge.weights[j] = j % 2 == 0 ? 1e300 : -1e300;
-    data.correction = std::make_shared<const RbfCorrection>(std::move(huge));
-  }
-  if (const VoxelGrid* grid = grid_of(data.correction)) {
-    VoxelGrid huge = *grid;
-    for (std::size_t i = 0; i < huge.values_N.size(); ++i) huge.values_N[i] = i % 2 == 0 ? 1e300 : -1e300;
-    data.correction = std::make_shared<const GridCorrection>(std::move(huge));
-  }
+  const auto overflow = [](auto& values) {
+    for (auto i = values.size(); i-- > 0;) values[i] = i % 2 == 0 ? 1e300 : -1e300;
+  };
+  if (rbf_of(data.correction) != nullptr) test::change_rbf(data, [&](RbfFunction& rbf) { overflow(rbf.weights); });
+  if (grid_of(data.correction) != nullptr) test::change_grid(data, [&](VoxelGrid& grid) { overflow(grid.values_N); });
   return data;
 }
 

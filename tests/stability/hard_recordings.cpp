@@ -113,11 +113,4 @@ std::vector<HardCaseResult> run_hard_recordings(FeatureChoice choice) {
   return results;
 }
 
-std::vector<HardCaseResult> run_hard_cases() {
-  std::vector<HardCaseResult> results = run_hard_sites();
-  for (HardCaseResult& result : run_hard_recordings(FeatureChoice::scene)) results.push_back(std::move(result));
-  for (HardCaseResult& result : run_hard_motions()) results.push_back(std::move(result));
-  return results;
-}
-
 }  // namespace palpate

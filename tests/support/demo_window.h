@@ -13,6 +13,7 @@
 #include <memory>
 #include <string>
 
+#include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
 #include "rendering/app/demo_app.h"
 #include "tests/support/example_model.h"
@@ -42,17 +43,28 @@ class DemoWindowTest : public ::testing::Test {
     ASSERT_TRUE(save_model(folder_.file(file), data, false).ok());
   }
 
-  // Opens a scene without a virtual material, so that no fit runs during the test.
-  void open(const std::string& device, bool exhibit = false) {
+  DemoRequest request(const std::string& scene, const std::string& device) {
     DemoRequest request;
-    request.session.scene = "skin";
+    request.session.scene = scene;
     request.session.device = device;
     request.session.models = {folder_.file("soft.json"), folder_.file("firm.json")};
     request.session.realtime = false;  // tests do not need real-time priority
-    request.exhibit = exhibit;
+    return request;
+  }
+  void start(const DemoRequest& request) {
     auto app = DemoApp::create(request);
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);
+  }
+  // Saves strokes as a recording. Returns its path.
+  std::string save_strokes(const std::string& file, std::size_t rows = 2000, double rate_Hz = 1000.0) {
+    EXPECT_TRUE(write_recording(folder_.file(file), example_recording(rows, rate_Hz), {}, false).ok());
+    return folder_.file(file);
+  }
+
+  // Opens a scene without a virtual material, so that no fit runs during the test.
+  void open(const std::string& device) {
+    start(request("skin", device));
     app_->view().settings.block_count = 1;
     ASSERT_TRUE(until([&] { return app_->session().models().all_settled(); }));
   }
@@ -71,51 +83,48 @@ class DemoWindowTest : public ::testing::Test {
     for (int i = 0; i < count; ++i) app_->frame();
   }
 
-  // Presses a key through the installed GLFW callbacks, as the operating system does.
-  void press(int key, int modifiers = 0, bool held = false) {
+  // Calls the callback that is installed by `set`, a function of GLFW, as the operating system does.
+  template <typename Callback, typename... Arguments>
+  void send(Callback (*set)(GLFWwindow*, Callback), Arguments... arguments) {
     GLFWwindow* window = app_->window().handle();
-    const GLFWkeyfun callback = glfwSetKeyCallback(window, nullptr);
-    callback(window, key, 0, GLFW_PRESS, modifiers);
+    const Callback callback = set(window, nullptr);
+    set(window, callback);
+    callback(window, arguments...);
+  }
+  void press(int key, int modifiers = 0, bool held = false) {
+    send(glfwSetKeyCallback, key, 0, GLFW_PRESS, modifiers);
     if (held) app_->frame();
-    callback(window, key, 0, GLFW_RELEASE, modifiers);
-    glfwSetKeyCallback(window, callback);
+    send(glfwSetKeyCallback, key, 0, GLFW_RELEASE, modifiers);
     frames(2);
   }
   // Sends characters to the focused text field.
   void type(const std::string& text) {
-    GLFWwindow* window = app_->window().handle();
-    const GLFWcharfun callback = glfwSetCharCallback(window, nullptr);
-    glfwSetCharCallback(window, callback);
-    for (const char letter : text) callback(window, static_cast<unsigned char>(letter));
+    for (const char letter : text) send(glfwSetCharCallback, static_cast<unsigned char>(letter));
     frames(2);
   }
   // Holds the key down until `done`.
   template <typename Done>
   void hold(int key, Done done) {
-    GLFWwindow* window = app_->window().handle();
-    const GLFWkeyfun callback = glfwSetKeyCallback(window, nullptr);
-    glfwSetKeyCallback(window, callback);
-    callback(window, key, 0, GLFW_PRESS, 0);
+    send(glfwSetKeyCallback, key, 0, GLFW_PRESS, 0);
     EXPECT_TRUE(until(done));
-    callback(window, key, 0, GLFW_RELEASE, 0);
+    send(glfwSetKeyCallback, key, 0, GLFW_RELEASE, 0);
     frames(2);
   }
-  // Clicks the left button at the mouse position.
+  // Moves the mouse, and presses or releases its left button, in the window's units.
+  void move_mouse(double x, double y, int then = 0) {
+    glfwSetCursorPos(app_->window().handle(), x, y);
+    frames(then);
+  }
+  void left_button(int action, int then = 2) {
+    send(glfwSetMouseButtonCallback, GLFW_MOUSE_BUTTON_LEFT, action, 0);
+    frames(then);
+  }
   void click() {
-    GLFWwindow* window = app_->window().handle();
-    const GLFWmousebuttonfun callback = glfwSetMouseButtonCallback(window, nullptr);
-    glfwSetMouseButtonCallback(window, callback);
-    for (const int action : {GLFW_PRESS, GLFW_RELEASE}) {
-      callback(window, GLFW_MOUSE_BUTTON_LEFT, action, 0);
-      frames(2);
-    }
+    for (const int action : {GLFW_PRESS, GLFW_RELEASE}) left_button(action);
   }
   void drop(const std::string& path) {
-    GLFWwindow* window = app_->window().handle();
-    const GLFWdropfun callback = glfwSetDropCallback(window, nullptr);
     const char* paths[] = {path.c_str()};
-    callback(window, 1, paths);
-    glfwSetDropCallback(window, callback);
+    send(glfwSetDropCallback, 1, static_cast<const char**>(paths));
   }
   bool told(const std::string& words) const {
     const auto& toasts = app_->toasts();

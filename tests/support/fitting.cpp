@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/scene/scene.h"
@@ -40,6 +41,20 @@ RecordingPtr rig_recording(const RigSettings& settings) {
   return std::make_shared<const Recording>(must(record_sensors(settings)));
 }
 
+const RecordingPtr& train_recording(const std::string& material) {
+  static std::map<std::string, RecordingPtr> made;
+  RecordingPtr& recording = made[material];
+  if (recording == nullptr) recording = rig_recording(train_settings(material));
+  return recording;
+}
+
+const RecordingPtr& test_recording(const std::string& material) {
+  static std::map<std::string, RecordingPtr> made;
+  RecordingPtr& recording = made[material];
+  if (recording == nullptr) recording = rig_recording(test_settings(material));
+  return recording;
+}
+
 RecordingPtr encoder_only(const RecordingPtr& recording) {
   auto copy = std::make_shared<Recording>(*recording);
   copy->columns.acceleration = false;
@@ -53,12 +68,25 @@ RecordingPtr real_recording(const std::string& file) {
   return std::make_shared<const Recording>(must(read_recording((real_data() / file).string())));
 }
 
+std::vector<RecordingPtr> skin_recordings(const std::string& kind, const std::vector<std::string>& forces_mN) {
+  std::vector<RecordingPtr> recordings;
+  for (const std::string& force : forces_mN)
+    recordings.push_back(real_recording("aurora_skin/" + kind + "_" + force + "mN.csv"));
+  return recordings;
+}
+
 TrainingRequest default_request(const std::string& scene) { return training_request(must(load_scene(scene))); }
 
 TrainingRequest scene_request(const std::string& scene) {
   TrainingRequest request = default_request(scene);
   request.choice = FeatureChoice::scene;
   return request;
+}
+
+void use_papers_recipe(TrainingRequest& request) {
+  request.recipe = FitRecipe::paper_2009;
+  request.reduction = Reduction::force;
+  request.weighting = Weighting::relative;
 }
 
 TrainingRequest position_request() { return scene_request("elastic_block"); }

@@ -32,16 +32,23 @@ RigSettings train_settings(const std::string& material);
 RigSettings test_settings(const std::string& material);
 
 RecordingPtr rig_recording(const RigSettings& settings);
+// The recordings of these settings, made once.
+const RecordingPtr& train_recording(const std::string& material);
+const RecordingPtr& test_recording(const std::string& material);
 // Removes the acceleration column, so that only the encoder is left.
 RecordingPtr encoder_only(const RecordingPtr& recording);
 
 // Real recordings, from a folder beside the sources.
 std::filesystem::path real_data();
 RecordingPtr real_recording(const std::string& file);
+// `kind`: "train" or "test".
+std::vector<RecordingPtr> skin_recordings(const std::string& kind, const std::vector<std::string>& forces_mN);
 
 // The requests of `palpate fit --scene scene`, and of that with `--features scene`.
 TrainingRequest default_request(const std::string& scene);
 TrainingRequest scene_request(const std::string& scene);
+// Changes a request to the recipe of the paper (2009).
+void use_papers_recipe(TrainingRequest& request);
 // A request for a model of position alone.
 TrainingRequest position_request();
 

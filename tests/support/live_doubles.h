@@ -18,23 +18,33 @@
 
 namespace palpate::test {
 
-// F = stiffness x depth. By default, depth is its only feature.
-class SpringModel final : public ForceModel {
+class NamedModel : public ForceModel {
  public:
-  explicit SpringModel(double stiffness_N_per_m, std::vector<FeatureSpec> features = {FeatureSpec{}})
-      : stiffness_N_per_m_(stiffness_N_per_m), features_(std::move(features)) {}
-  ForceEstimate evaluate(const double* features) const noexcept override {
-    return {stiffness_N_per_m_ * features[0], false};
-  }
   const std::vector<FeatureSpec>& features() const noexcept override { return features_; }
   const std::string& name() const noexcept override { return name_; }
   const std::string& method() const noexcept override { return name_; }
   int centre_count() const noexcept override { return 0; }
 
+ protected:
+  explicit NamedModel(std::string name, std::vector<FeatureSpec> features = {FeatureSpec{}})
+      : features_(std::move(features)), name_(std::move(name)) {}
+
+ private:
+  std::vector<FeatureSpec> features_;
+  std::string name_;
+};
+
+// F = stiffness x depth. By default, depth is its only feature.
+class SpringModel final : public NamedModel {
+ public:
+  explicit SpringModel(double stiffness_N_per_m, std::vector<FeatureSpec> features = {FeatureSpec{}})
+      : NamedModel("spring", std::move(features)), stiffness_N_per_m_(stiffness_N_per_m) {}
+  ForceEstimate evaluate(const double* features) const noexcept override {
+    return {stiffness_N_per_m_ * features[0], false};
+  }
+
  private:
   double stiffness_N_per_m_;
-  std::vector<FeatureSpec> features_;
-  std::string name_ = "spring";
 };
 
 inline std::shared_ptr<const ForceModel> spring(double stiffness_N_per_m) {
@@ -42,22 +52,16 @@ inline std::shared_ptr<const ForceModel> spring(double stiffness_N_per_m) {
 }
 
 // Returns 0 N and counts its evaluations.
-class CountingModel final : public ForceModel {
+class CountingModel final : public NamedModel {
  public:
+  CountingModel() : NamedModel("counting") {}
   ForceEstimate evaluate(const double*) const noexcept override {
     ++evaluations_;
     return {};
   }
-  const std::vector<FeatureSpec>& features() const noexcept override { return features_; }
-  const std::string& name() const noexcept override { return name_; }
-  const std::string& method() const noexcept override { return name_; }
-  int centre_count() const noexcept override { return 0; }
-
   std::uint64_t evaluations() const { return evaluations_; }
 
  private:
-  std::vector<FeatureSpec> features_{FeatureSpec{}};
-  std::string name_ = "counting";
   mutable std::atomic<std::uint64_t> evaluations_ = 0;
 };
 

@@ -44,19 +44,6 @@ TEST_F(DemoAppTest, ShowsAPictureThatIsNotEmpty) {
   EXPECT_GT(panel.size(), 100u) << "text and curves";
 }
 
-TEST_F(DemoAppTest, ABadModelFileIsANoticeAndNotTheEnd) {
-  open("hand");
-  const std::string path = folder_.file("bad.json");
-  std::ofstream(path) << "{\"format\": \"palpate-model\", \"version\": 1, \"name\": ";
-  drop(path);
-  ASSERT_TRUE(until([&] { return told("bad.json"); }));
-  EXPECT_TRUE(app_->toasts().back().problem);
-  EXPECT_EQ(app_->session().models().size(), 2u);
-  drop(folder_.file("no such file.json"));
-  ASSERT_TRUE(until([&] { return told("no such file.json"); }));
-  EXPECT_FALSE(app_->closing());
-}
-
 TEST_F(DemoAppTest, ADroppedModelTakesPart) {
   open("hand");
   save("third.json", 3, 1.2);
@@ -65,18 +52,6 @@ TEST_F(DemoAppTest, ADroppedModelTakesPart) {
   EXPECT_EQ(app_->session().models().info(2).name, "third");
   press(GLFW_KEY_3);
   EXPECT_EQ(app_->session().models().selected(), 2u);
-}
-
-TEST_F(DemoAppTest, ADroppedRecordingIsOfferedAndReplayed) {
-  open("hand");
-  const std::string strokes = folder_.file("strokes.csv");
-  ASSERT_TRUE(write_recording(strokes, test::example_recording(2000, 1000.0), {}, false).ok());
-  drop(strokes);
-  ASSERT_TRUE(until([&] { return app_->view().dialogs.recording_roles.any(); }));
-  EXPECT_EQ(app_->view().dialogs.recording_roles.recordings.at(0).path, strokes);
-  frames(3);
-  press(GLFW_KEY_ESCAPE);
-  EXPECT_FALSE(app_->view().dialogs.recording_roles.any());
 }
 
 TEST_F(DemoAppTest, AnotherProgramsTableIsImportedAndOffered) {
@@ -141,9 +116,7 @@ TEST_F(DemoAppTest, WhatIsShownIsMadeOnceAFrame) {
 // Two recordings: models are fitted to one and tested on the whole other one, independent of the playhead.
 TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   open("hand");
-  const std::string train = folder_.file("train.csv"), test = folder_.file("test.csv");
-  ASSERT_TRUE(write_recording(train, test::example_recording(4000, 1000.0), {}, false).ok());
-  ASSERT_TRUE(write_recording(test, test::example_recording(2000, 500.0), {}, false).ok());
+  const std::string train = save_strokes("train.csv", 4000), test = save_strokes("test.csv", 2000, 500.0);
   drop(train);
   drop(test);
   ASSERT_TRUE(until([&] { return app_->view().dialogs.recording_roles.recordings.size() == 2; }));
@@ -183,29 +156,15 @@ TEST_F(DemoAppTest, ASessionThatCannotBeReopenedEndsTheProgram) {
   EXPECT_FALSE(app_->outcome().ok());
 }
 
-TEST_F(DemoAppTest, AMissingFileIsCalledMissingAndNotRemembered) {
-  open("hand");
-  drop(folder_.file("nowhere.csv"));
-  ASSERT_TRUE(until([&] { return told("there is no file"); }));
-  EXPECT_TRUE(app_->view().settings.recent.empty());
-}
-
 // The virtual display has 1920x1080 pixels.
 TEST_F(DemoAppTest, StartsInsideItsScreen) {
-  DemoRequest request;
-  request.session.scene = "skin";
-  request.session.device = "hand";
-  request.session.models = {folder_.file("soft.json")};
-  request.session.realtime = false;
-  request.window.width = 2600;
-  request.window.height = 1500;
-  auto app = DemoApp::create(request);
-  ASSERT_TRUE(app.ok()) << app.error().message;
-  app_ = std::move(*app);
+  DemoRequest large = request("skin", "hand");
+  large.window.width = 2600;
+  large.window.height = 1500;
+  start(large);
   frames(3);
-  const Framebuffer picture = app_->window().framebuffer();
-  EXPECT_EQ(picture.window_width, 1920);
-  EXPECT_EQ(picture.window_height, 1080);
+  EXPECT_EQ(app_->window().size().width, 1920.0F);
+  EXPECT_EQ(app_->window().size().height, 1080.0F);
   int x = -1, y = -1;
   glfwGetWindowPos(app_->window().handle(), &x, &y);
   EXPECT_EQ(x, 0);
@@ -230,14 +189,10 @@ TEST_F(DemoAppTest, FollowsTheSizeOfItsWindow) {
 class DefaultStart : public test::DemoWindowTest {
  protected:
   void open_as_started() {
-    DemoRequest request;
-    request.session.scene = "silicone_block";
-    request.session.device = "hand";
-    request.session.line_up = line_ups().front().name;
-    request.session.realtime = false;
-    auto app = DemoApp::create(request);
-    ASSERT_TRUE(app.ok()) << app.error().message;
-    app_ = std::move(*app);
+    DemoRequest wanted = request("silicone_block", "hand");
+    wanted.session.models.clear();
+    wanted.session.line_up = line_ups().front().name;
+    start(wanted);
   }
 };
 

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "engine/live/pacer.h"
-#include "engine/recording/recording.h"
 #include "rendering/panels/overlay_parts.h"
 #include "tests/support/demo_window.h"
 
@@ -22,9 +21,7 @@ class DemoCommandsTest : public test::DemoWindowTest {
 };
 
 TEST_F(DemoCommandsTest, EveryRowIsReachedByItsKeysAndListedInTheHelp) {
-  const std::string replayed = folder_.file("strokes.csv");
-  ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
-  open("replay:" + replayed);
+  open("replay:" + save_strokes("strokes.csv"));
   std::set<std::pair<int, bool>> keys;
   for (WindowCommand& command : app_->commands()) {
     EXPECT_FALSE(shown_keys(command).empty()) << command.help;
@@ -46,21 +43,17 @@ TEST_F(DemoCommandsTest, AButtonDoesWhatItsKeyDoes) {
   frames(3);
   ImGuiWindow* buttons = ImGui::FindWindowByName("buttons");
   ASSERT_NE(buttons, nullptr);
-  GLFWwindow* window = app_->window().handle();
-  glfwFocusWindow(window);
+  glfwFocusWindow(app_->window().handle());
   // Moves the mouse to the first button, Open.
   const ImVec2 padding = ImGui::GetStyle().WindowPadding;
-  glfwSetCursorPos(window, static_cast<double>(buttons->Pos.x + padding.x + 8.0F),
-                   static_cast<double>(buttons->Pos.y + padding.y + 6.0F));
-  frames(3);
+  move_mouse(static_cast<double>(buttons->Pos.x + padding.x + 8.0F),
+             static_cast<double>(buttons->Pos.y + padding.y + 6.0F), 3);
   click();
   EXPECT_TRUE(app_->view().dialogs.file_list);
 }
 
 TEST_F(DemoCommandsTest, ARecordingGoesOnByOneSample) {
-  const std::string replayed = folder_.file("strokes.csv");
-  ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
-  open("replay:" + replayed);
+  open("replay:" + save_strokes("strokes.csv"));
   ReplayControl& replay = *app_->session().replay();
   press(GLFW_KEY_PERIOD);
   EXPECT_TRUE(replay.paused());
@@ -75,9 +68,7 @@ TEST_F(DemoCommandsTest, ARecordingGoesOnByOneSample) {
 }
 
 TEST_F(DemoCommandsTest, ClosingWhileRecordingLeavesTheFileWhole) {
-  const std::string replayed = folder_.file("strokes.csv");
-  ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
-  open("replay:" + replayed);
+  open("replay:" + save_strokes("strokes.csv"));
   press(GLFW_KEY_R);
   const std::string path = app_->session().recording().path;
   EXPECT_TRUE(app_->session().recording().active);
@@ -122,6 +113,8 @@ TEST_F(DemoCommandsTest, AFileThatCannotBeReadIsNotARecentOne) {
   const std::string table = folder_.with_file("bad.csv", "time_s,position_m,force_N\n0,0,nan\n");
   drop(model);
   ASSERT_TRUE(until([&] { return told("bad.json"); }));
+  EXPECT_TRUE(app_->toasts().back().problem);
+  EXPECT_EQ(app_->session().models().size(), 2u);
   drop(table);
   ASSERT_TRUE(until([&] { return !app_->view().dialogs.recording_roles.problem.empty(); }));
   EXPECT_TRUE(app_->view().settings.recent.empty());
@@ -197,6 +190,8 @@ TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
   EXPECT_EQ(app_->view().settings.block_count, 2u);
   press(GLFW_KEY_SPACE);
   EXPECT_TRUE(app_->view().time.paused);
+  press(GLFW_KEY_SPACE);
+  EXPECT_FALSE(app_->view().time.paused);
   press(GLFW_KEY_H);
   press(GLFW_KEY_L);
   press(GLFW_KEY_M);
@@ -272,8 +267,7 @@ TEST_F(DemoCommandsTest, SavesTheModelInTheHand) {
 
 // The recording stays the material. All data of the replay are discarded.
 TEST_F(DemoCommandsTest, FromAReplayBackToTheHandWithTheSameMaterial) {
-  const std::string replayed = folder_.file("strokes.csv");
-  ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
+  const std::string replayed = save_strokes("strokes.csv");
   open("replay:" + replayed);
   EXPECT_EQ(app_->session().reference_words(), "as recorded in strokes");
   frames(60);
@@ -287,12 +281,6 @@ TEST_F(DemoCommandsTest, FromAReplayBackToTheHandWithTheSameMaterial) {
     EXPECT_EQ(app_->session().comparison().figures(i).errors.samples, 0u);
 }
 
-TEST_F(DemoCommandsTest, TheSameNoticeStandsThereOnce) {
-  open("hand");
-  for (int i = 0; i < 3; ++i) press(GLFW_KEY_D);
-  EXPECT_EQ(app_->toasts().size(), 1u);
-}
-
 TEST_F(DemoCommandsTest, APressIsExplainedUntilItWasDone) {
   open("mouse");
   frames(5);
@@ -304,22 +292,12 @@ TEST_F(DemoCommandsTest, APressIsExplainedUntilItWasDone) {
   EXPECT_TRUE(until([&] { return app_->view().has_pressed; }));
 }
 
-TEST_F(DemoCommandsTest, StandsStillAsAWholeAndSaysWhatItShows) {
-  open("hand");
-  frames(20);
-  press(GLFW_KEY_SPACE);
-  const CurveTime time = app_->view().time;
-  frames(10);
-  EXPECT_EQ(app_->view().time.end_s(1e9), time.end_s(0.0));
-  press(GLFW_KEY_SPACE);
-  EXPECT_FALSE(app_->view().time.paused);
-}
-
 TEST_F(DemoCommandsTest, SaysWhatThereIsNotForAKey) {
   open("hand");
-  press(GLFW_KEY_D);
+  for (int i = 0; i < 3; ++i) press(GLFW_KEY_D);
   EXPECT_EQ(app_->session().dead_man(), DeadMan::off);
   EXPECT_TRUE(told("no device that pushes"));
+  EXPECT_EQ(app_->toasts().size(), 1u) << "the same notice is there once";
   press(GLFW_KEY_B);
   press(GLFW_KEY_B);
   EXPECT_EQ(app_->view().settings.block_count, 4u);

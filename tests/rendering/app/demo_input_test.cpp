@@ -8,7 +8,13 @@
 namespace palpate {
 namespace {
 
-using DemoInputTest = test::DemoWindowTest;
+class DemoInputTest : public test::DemoWindowTest {
+ protected:
+  void point_at(double x, double y) {
+    glfwFocusWindow(app_->window().handle());
+    move_mouse(x, y, 5);
+  }
+};
 
 // The force changes by at most one JND in 10 ms, for any difference between the models.
 TEST_F(DemoInputTest, SwitchingWhilePressingFadesTheForce) {
@@ -44,32 +50,13 @@ TEST_F(DemoInputTest, SwitchingWhilePressingFadesTheForce) {
 
 TEST_F(DemoInputTest, TheWheelMovesTheProbeAndWithCtrlTheCamera) {
   open("mouse");
-  GLFWwindow* window = app_->window().handle();
-  const auto scroll = [&](double steps) {
-    const GLFWscrollfun callback = glfwSetScrollCallback(window, nullptr);
-    glfwSetScrollCallback(window, callback);
-    callback(window, 0.0, steps);
-    app_->frame();
-  };
-  glfwFocusWindow(window);
-  glfwSetCursorPos(window, 384.0, 380.0);
-  frames(5);
+  point_at(384.0, 380.0);
   const double before_m = app_->session().newest().tick.position_m;
-  for (int i = 0; i < 6; ++i) scroll(-1.0);
+  for (int i = 0; i < 6; ++i) {
+    send(glfwSetScrollCallback, 0.0, -1.0);
+    app_->frame();
+  }
   EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > before_m + 0.001; }));
-}
-
-TEST_F(DemoInputTest, AHardPressOfTheMouseEndsWhereTheDataEnd) {
-  open("mouse");
-  const double known_m = app_->session().models().trained_depth_m();
-  ASSERT_LT(known_m, 0.1);
-  GLFWwindow* window = app_->window().handle();
-  glfwFocusWindow(window);
-  glfwSetCursorPos(window, 384.0, 360.0);
-  frames(5);
-  glfwSetCursorPos(window, 384.0, 560.0);
-  frames(60);
-  EXPECT_LT(app_->session().newest().tick.position_m, 1.1 * known_m);
 }
 
 TEST_F(DemoInputTest, SaysWhenTheProbeIsAwayFromTheData) {
@@ -81,19 +68,14 @@ TEST_F(DemoInputTest, SaysWhenTheProbeIsAwayFromTheData) {
 
 TEST_F(DemoInputTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
   open("auto");
-  GLFWwindow* window = app_->window().handle();
-  glfwFocusWindow(window);
-  frames(3);
-  EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring());
   // Beside the block the mouse has no effect; over it, a lower position is deeper.
-  glfwSetCursorPos(window, 20.0, 300.0);
-  frames(5);
+  point_at(20.0, 300.0);
   EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring());
-  glfwSetCursorPos(window, 384.0, 380.0);
+  move_mouse(384.0, 380.0);
   ASSERT_TRUE(until([&] { return !app_->session().tool_input()->hand_is_exploring(); }));
   frames(30);
   const double high_m = app_->session().newest().tick.position_m;
-  glfwSetCursorPos(window, 384.0, 430.0);
+  move_mouse(384.0, 430.0);
   ASSERT_TRUE(until([&] { return app_->session().newest().tick.position_m > high_m + 0.001; }));
 }
 
@@ -161,14 +143,14 @@ TEST_F(DemoInputTest, ATapOfAKeyIsNotLostOnASlowFrame) {
 TEST_F(DemoInputTest, TheProbeFollowsTheMouseInAllOfThePicture) {
   open("mouse");
   app_->view().settings.block_count = 4;
-  GLFWwindow* window = app_->window().handle();
-  glfwFocusWindow(window);
-  glfwSetCursorPos(window, 384.0, 300.0);
-  frames(5);
-  glfwSetCursorPos(window, 700.0, 640.0);
+  point_at(384.0, 300.0);
+  move_mouse(700.0, 640.0);
   const double known_m = app_->session().models().trained_depth_m();
+  ASSERT_LT(known_m, 0.1);
   EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > 0.8 * known_m; }));
-  glfwSetCursorPos(window, 1000.0, 640.0);
+  frames(30);
+  EXPECT_LT(app_->session().newest().tick.position_m, 1.1 * known_m) << "a hard press ends where the data end";
+  move_mouse(1000.0, 640.0);
   EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m < 0.0; }));
   EXPECT_TRUE(told("the probe is lifted"));
 }

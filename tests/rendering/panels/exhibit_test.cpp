@@ -43,19 +43,15 @@ class ExhibitTest : public test::DemoWindowTest {
     int height = 720;
   };
   void open_exhibit(const Setting& setting) {
-    DemoRequest request;
-    request.window.height = setting.height;
-    request.window.width = setting.height * 16 / 9;
-    request.session.scene = setting.bus != nullptr ? "skin" : "silicone_block";
-    request.session.device = setting.bus != nullptr ? "hid" : "auto";
-    if (!setting.learned) request.session.models = {folder_.file("soft.json"), folder_.file("firm.json")};
-    request.session.bus = setting.bus;
-    request.session.realtime = false;
-    request.exhibit = true;
-    request.exhibit_times = setting.times;
-    auto app = DemoApp::create(request);
-    ASSERT_TRUE(app.ok()) << app.error().message;
-    app_ = std::move(*app);
+    const bool felt = setting.bus != nullptr;
+    DemoRequest wanted = request(felt ? "skin" : "silicone_block", felt ? "hid" : "auto");
+    wanted.window.height = setting.height;
+    wanted.window.width = setting.height * 16 / 9;
+    if (setting.learned) wanted.session.models.clear();
+    wanted.session.bus = setting.bus;
+    wanted.exhibit = true;
+    wanted.exhibit_times = setting.times;
+    start(wanted);
     for (int i = 0; i < 5 && !shows("1"); ++i) (void)until([&] { return shows("1"); });
     ASSERT_TRUE(shows("1")) << "has learned";
   }
@@ -78,10 +74,7 @@ class ExhibitTest : public test::DemoWindowTest {
     const glm::vec2 top = app_->blocks().on_screen(index, 2, {0.0F, 0.0F, 0.0F}, {768.0F, 720.0F});
     return {top.x, top.y + below_px};
   }
-  void move(const ImVec2& to) {
-    glfwSetCursorPos(app_->window().handle(), static_cast<double>(to.x), static_cast<double>(to.y));
-    frames(3);
-  }
+  void move(const ImVec2& to, int then = 3) { move_mouse(static_cast<double>(to.x), static_cast<double>(to.y), then); }
   // Moves the mouse to the button and clicks.
   void click_on(const std::string& button) {
     ASSERT_TRUE(until([&] { return shows(button); })) << button;
@@ -90,14 +83,9 @@ class ExhibitTest : public test::DemoWindowTest {
   }
   // A touch: the pointer appears at `at` and is pressed at the same time.
   void touch(const ImVec2& at, int held_frames = 3) {
-    GLFWwindow* window = app_->window().handle();
-    const GLFWmousebuttonfun callback = glfwSetMouseButtonCallback(window, nullptr);
-    glfwSetMouseButtonCallback(window, callback);
-    glfwSetCursorPos(window, static_cast<double>(at.x), static_cast<double>(at.y));
-    callback(window, GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, 0);
-    frames(held_frames);
-    callback(window, GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
-    frames(3);
+    move(at, 0);
+    left_button(GLFW_PRESS, held_frames);
+    left_button(GLFW_RELEASE, 3);
   }
   void touch_on(const std::string& button) {
     ASSERT_TRUE(until([&] { return shows(button); })) << button;

@@ -30,7 +30,7 @@ TEST(PanelWords, AStalledLoopComesBeforeAllElse) {
   HealthView health;
   health.loop.ticks = 10;
   health.loop.age_s = 0.3;
-  health.device.faults = device_fault::kUnplugged;
+  health.newest.device.faults = device_fault::kUnplugged;
   const HealthWords words = health_words(health, 60.0);
   EXPECT_TRUE(test::has_parts(words.text, {"0.3 s"}));
   EXPECT_TRUE(words.problem);
@@ -63,12 +63,12 @@ TEST(PanelWords, OnlyAZeroedDeviceHasALine) {
   HealthView health;
   EXPECT_EQ(device_line(health), "");
   health.device_name = "hid";
-  health.device.zeroing = Zeroing::done;
-  health.device.sample_age_s = 0.0012;
-  health.device.round_trip_s = 0.0021;
-  health.heat_share = 0.4;
+  health.newest.device.zeroing = Zeroing::done;
+  health.newest.device.sample_age_s = 0.0012;
+  health.newest.device.round_trip_s = 0.0021;
+  health.newest.heat_share = 0.4F;
   EXPECT_TRUE(test::has_parts(device_line(health), {"hid", "1.2 ms", "2.1 ms", "40 %"}));
-  health.stiffness_share = 0.5;
+  health.newest.stiffness_share = 0.5F;
   EXPECT_TRUE(test::has_parts(device_line(health), {"50 %"}));
 }
 

@@ -13,17 +13,8 @@ namespace {
 class TimePlotTest : public test::DemoWindowTest {
  protected:
   // Moves the mouse over the force plot of a window of 1280 x 720.
-  void move(double x) {
-    glfwSetCursorPos(app_->window().handle(), x, 100.0);
-    frames(3);
-  }
-  void button(int action) {
-    GLFWwindow* window = app_->window().handle();
-    const GLFWmousebuttonfun callback = glfwSetMouseButtonCallback(window, nullptr);
-    glfwSetMouseButtonCallback(window, callback);
-    callback(window, GLFW_MOUSE_BUTTON_LEFT, action, 0);
-    frames(1);
-  }
+  void move(double x) { move_mouse(x, 100.0, 3); }
+  void button(int action) { left_button(action, 1); }
 };
 
 TEST_F(TimePlotTest, ReadsZoomsAndRunsAgain) {

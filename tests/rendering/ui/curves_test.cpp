@@ -44,12 +44,12 @@ TEST(CurveColumns, LoseNoPeakAndKeepGapsOpen) {
   float largest_over_jnd = 0.0F;
   for (const CurveColumn& column : curves.columns()) {
     if (!column.any) continue;
-    largest_over_jnd = std::fmax(largest_over_jnd, column.error_over_jnd[0]);
-    largest_over_jnd = std::fmax(largest_over_jnd, column.error_over_jnd[1]);
+    largest_over_jnd = std::fmax(largest_over_jnd, column.high_over_jnd[0]);
+    largest_over_jnd = std::fmax(largest_over_jnd, column.high_over_jnd[1]);
     EXPECT_FLOAT_EQ(column.low_over_jnd[0], static_cast<float>(0.1 / jnd.at(1.0)));
     EXPECT_FLOAT_EQ(column.jnd_N, static_cast<float>(jnd.at(1.0)));
     if (!std::isnan(column.tick.force_N[1])) ++ready;
-    EXPECT_EQ(std::isnan(column.tick.force_N[1]), std::isnan(column.error_over_jnd[1]));
+    EXPECT_EQ(std::isnan(column.tick.force_N[1]), std::isnan(column.high_over_jnd[1]));
   }
   EXPECT_NEAR(ready, 25, 1);
   EXPECT_FLOAT_EQ(largest_over_jnd, static_cast<float>(2.0 / jnd.at(1.0)));
@@ -109,7 +109,7 @@ TEST(CurveColumns, ASingleTickIsAMarkAndNotSustained) {
   const CurveColumn* peak = curves.at(100.333);
   ASSERT_NE(peak, nullptr);
   const double lasting = 0.1 / jnd.at(1.0);
-  EXPECT_NEAR(peak->error_over_jnd[0], 2.0 / jnd.at(1.0), 1e-4);
+  EXPECT_NEAR(peak->high_over_jnd[0], 2.0 / jnd.at(1.0), 1e-4);
   // The peak is one of the 50 or 51 samples in 50 ms.
   EXPECT_NEAR(peak->sustained_over_jnd[0], lasting + 1.9 / jnd.at(1.0) / 50.0, 0.02 * lasting);
   EXPECT_EQ(curves.at(99.0), nullptr);
@@ -123,30 +123,17 @@ TEST(CurveColumns, HaveNothingToShowOfAnEmptyHistory) {
   EXPECT_EQ(curves.highest_force_N(), 0.0F);
 }
 
-TEST(CurveColumns, WithoutAReferenceHaveTheBandThatTheActiveModelPredicts) {
-  ForceHistory history;
-  for (int i = 0; i < 1000; ++i) {
-    HistoryPoint point;
-    point.loop_time_s = point.time_s = 100.0 + 1e-3 * i;
-    point.in_contact = i < 500;
-    point.reference_N = kNone;
-    point.force_N.fill(kNone);
-    point.force_N[1] = 2.0F;
-    point.active = 1;
-    point.predicted_error_N = 0.3F;
-    history.append(point);
-  }
-  CurveColumns curves;
-  const JndLine jnd;
-  curves.gather(history, jnd, 2, 100.0, 101.0, 50);
-  const CurveColumn* pressed = curves.at(100.25);
-  ASSERT_NE(pressed, nullptr);
-  EXPECT_FLOAT_EQ(pressed->predicted_low_N, 1.7F);
-  EXPECT_FLOAT_EQ(pressed->predicted_high_N, 2.3F);
-  EXPECT_FLOAT_EQ(pressed->predicted_over_jnd, 0.3F / static_cast<float>(jnd.at(2.0)));
-  EXPECT_EQ(curves.at(100.75)->predicted_over_jnd, 0.0F) << "out of contact there is no force to be wrong about";
-  curves.gather(example(), jnd, 2, 100.0, 101.0, 40);
-  EXPECT_TRUE(std::isnan(curves.at(100.25)->predicted_low_N)) << "a reference is better";
+TEST(CurveColumns, WithoutAReferenceTheActiveModelPredictsItsError) {
+  HistoryPoint point;
+  point.in_contact = true;
+  point.reference_N = kNone;
+  point.predicted_error_N = 0.3F;
+  EXPECT_FLOAT_EQ(static_cast<float>(predicted_error_N(point)), 0.3F);
+  point.reference_N = 1.0F;
+  EXPECT_TRUE(std::isnan(predicted_error_N(point))) << "a reference is better";
+  point.reference_N = kNone;
+  point.in_contact = false;
+  EXPECT_EQ(predicted_error_N(point), 0.0) << "out of contact there is no force to be wrong about";
 }
 
 }  // namespace
