@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "devices/registry/device_registry.h"
 #include "engine/base/text.h"
 #include "models/model/fitted_model.h"
 #include "models/recordings/recording_faults.h"
@@ -27,11 +26,6 @@ constexpr int kMostFaultFiles = 50;
 
 constexpr const char* kDefaultScene = "silicone_block";
 constexpr std::string_view kReplay = "replay:";
-
-DeviceRequest with_calibrations(DeviceRequest request) {
-  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
-  return request;
-}
 
 std::string replayed_file(const std::string& device) {
   return device.rfind(kReplay, 0) == 0 ? device.substr(kReplay.size()) : std::string();
@@ -104,11 +98,8 @@ PressRange press_range(const std::vector<Recording>& recordings) {
 }
 
 std::vector<DeviceChoice> device_choices() {
-  std::vector<DeviceChoice> choices;
-  for (DeviceDescription& device : list_devices(with_calibrations({}))) {
-    if (device.name.find(':') == std::string::npos)
-      choices.push_back({std::move(device.name), std::move(device.summary), std::move(device.problem)});
-  }
+  std::vector<DeviceChoice> choices = list_devices({.calibrations = calibrations_folder()});
+  std::erase_if(choices, [](const DeviceChoice& device) { return device.name.find(':') != std::string::npos; });
   return choices;
 }
 
@@ -124,7 +115,7 @@ LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
   Result<Scene> scene = load_scene(request.scene.empty() ? kDefaultScene : request.scene);
   if (!scene) return scene.error();
-  DeviceRequest device_request;
+  DeviceRequest device_request{.calibrations = calibrations_folder(), .bus = request.bus};
   device_request.hand.strongest_press_N = scene->strongest_press_N;
   if (const Status status = take_recordings(request, *scene, device_request.hand); !status) return status.error();
   const LineUp* line_up = request.models.empty() && scene->has_material() ? find_line_up(request.line_up) : nullptr;
@@ -139,8 +130,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   if (request.scene.empty() && !request.models.empty() && scene->recordings.empty())
     take_provenance(*plans, request.models.size(), *scene);
   device_request.seed = request.seed + 1;  // so that the gestures differ from those of the training recording
-  device_request.bus = request.bus;
-  Result<std::unique_ptr<Device>> device = open_device(request.device, with_calibrations(device_request));
+  Result<std::unique_ptr<Device>> device = open_device(request.device, device_request);
   if (!device) return device.error();
   std::unique_ptr<LiveSession> session(new LiveSession(request, std::move(*scene), std::move(*device)));
   if (line_up == nullptr) session->request_.line_up.clear();

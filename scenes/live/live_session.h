@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "devices/registry/device_registry.h"
 #include "engine/base/result.h"
 #include "engine/live/fault_recorder.h"
 #include "engine/live/haptics_loop.h"
@@ -27,7 +28,6 @@
 
 namespace palpate {
 
-class DeviceBus;
 struct Recording;
 
 struct SessionRequest {
@@ -55,14 +55,9 @@ struct PressRange {
 };
 PressRange press_range(const std::vector<Recording>& recordings);
 
-// A device that a session can be opened with, for code that may not include devices/.
-struct DeviceChoice {
-  std::string name;
-  std::string summary;  // one line
-  std::string problem;  // why it cannot be opened and what to do; empty: it can be opened
-};
-
-// The devices that need no argument after their name. Slow: opens and closes each connected device.
+// The devices that need no argument after their name, for code that may not include devices/. Slow: opens and closes
+// each connected device.
+using DeviceChoice = DeviceDescription;
 std::vector<DeviceChoice> device_choices();
 
 class LiveSession {
