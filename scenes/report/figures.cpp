@@ -55,7 +55,7 @@ Panel force_panel(const ReportData& data, const std::string& title, Recipe recip
                   recipe == Recipe::paper ? Mark::hollow_curve : Mark::curve,
                   {}};
     for (const ForceBin& bin : one.errors.bins) {
-      if (bin.count >= kFewSamples) series.rows.push_back({bin.mean_force_N, figure(bin)});
+      if (bin.force_N.count() >= kFewSamples) series.rows.push_back({bin.force_N.mean(), figure(bin)});
     }
     panel.series.push_back(std::move(series));
   }
@@ -184,8 +184,8 @@ Figure worst_figure(const ReportData& data) {
 
 Figure force_figure(const ReportData& data) {
   const std::pair<const char*, BinFigure> rows[] = {
-      {"Mean + deviation", [](const ForceBin& bin) { return bin.mean_error_over_jnd + bin.std_error_over_jnd; }},
-      {"Maximum", [](const ForceBin& bin) { return bin.max_error_over_jnd; }}};
+      {"Mean + deviation", [](const ForceBin& bin) { return bin.over_jnd.mean() + bin.over_jnd.deviation(); }},
+      {"Maximum", [](const ForceBin& bin) { return bin.over_jnd.largest(); }}};
   Figure figure;
   for (const auto& [title, value] : rows) {
     Panel paper = force_panel(data, title, Recipe::paper, value);
