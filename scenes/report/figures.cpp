@@ -149,7 +149,7 @@ Figure worst_figure(const ReportData& data) {
     measured.rows.push_back({row.time_s, row.measured_N});
     band.rows.push_back({row.time_s, 0.0, -1.0, 1.0});
     for (std::size_t i = 0; i < said.size(); ++i) {
-      const double over = (row.force_N[i] - row.measured_N) / data.jnd.at(row.measured_N);
+      const double over = (row.force_N[i] - row.measured_N) / data.scene.jnd.at(row.measured_N);
       said[i].rows.push_back({row.time_s, row.force_N[i]});
       differs[i].rows.push_back({row.time_s, row.in_contact ? over : kNoValue});
       if (i == 0 && row.in_contact) largest = std::max(largest, std::abs(over));

@@ -107,7 +107,7 @@ Table times_table(const ReportData& data) {
 
 Table recordings_table(const ReportData& data) {
   Table table{"recordings"};
-  for (const RecordingFacts& one : data.recordings) {
+  for (const RecordingFacts& one : data.recordings.facts) {
     table.begin_row();
     table.add({"role", "role"}, one.role);
     table.add({"name", "recording"}, one.name);
