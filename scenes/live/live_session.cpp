@@ -1,7 +1,6 @@
 #include "scenes/live/live_session.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "engine/base/text.h"
 #include "models/model/fitted_model.h"
 #include "models/recordings/recording_faults.h"
+#include "scenes/live/press_range.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/user_folders.h"
@@ -72,30 +72,6 @@ void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& sce
 }
 
 }  // namespace
-
-// Speeds are differences over at least 20 ms, to suppress encoder steps. The fastest 1 % are ignored as noise.
-PressRange press_range(const std::vector<Recording>& recordings) {
-  constexpr double kSpan_s = 0.02;
-  PressRange range;
-  std::vector<double> speeds;
-  for (const Recording& recording : recordings) {
-    std::size_t first = 0;
-    for (const RecordingRow& row : recording.rows) {
-      range.strongest_N = std::max(range.strongest_N, row.force_N);
-      range.deepest_m = std::max(range.deepest_m, row.position_m);
-      const RecordingRow& before = recording.rows[first];
-      if (row.time_s - before.time_s < kSpan_s) continue;
-      if (row.position_m > 0.0)
-        speeds.push_back(std::abs(row.position_m - before.position_m) / (row.time_s - before.time_s));
-      first = static_cast<std::size_t>(&row - recording.rows.data());
-    }
-  }
-  if (speeds.empty()) return range;
-  const auto fast = speeds.begin() + static_cast<std::ptrdiff_t>(99 * (speeds.size() - 1) / 100);
-  std::nth_element(speeds.begin(), fast, speeds.end());
-  range.fastest_m_per_s = *fast;
-  return range;
-}
 
 std::vector<DeviceChoice> device_choices() {
   std::vector<DeviceChoice> choices = list_devices({.calibrations = calibrations_folder()});

@@ -28,8 +28,6 @@
 
 namespace palpate {
 
-struct Recording;
-
 struct SessionRequest {
   std::string scene;  // empty: silicone_block, or with model files only the scene that the first was fitted for
   // Training set of the models. Empty: the recording that the device replays, else the scene's virtual material.
@@ -46,14 +44,6 @@ struct SessionRequest {
   std::string data_folder;     // for fault files; empty: the working directory
   DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
 };
-
-// The range of the training data, within which a simulated hand has to stay.
-struct PressRange {
-  double strongest_N = 0.0;      // largest force
-  double deepest_m = 0.0;        // largest depth
-  double fastest_m_per_s = 0.0;  // 99th percentile of the speed in contact, over at least 20 ms
-};
-PressRange press_range(const std::vector<Recording>& recordings);
 
 // The devices that need no argument after their name, for code that may not include devices/. Slow: opens and closes
 // each connected device.
