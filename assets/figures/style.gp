@@ -25,8 +25,6 @@ set rmargin 3
 # How each mark of scenes/plot/plot.h is drawn; a colour follows.
 line = "using 1:2 with lines linewidth 1.6"
 dashed = "using 1:2 with lines dashtype 2 linewidth 1.6"
-points = "using 1:2 with points pointtype 7 pointsize 0.8"
-hollow = "using 1:2 with points pointtype 6 pointsize 0.8 linewidth 1.6"
 curve = "using 1:2 with linespoints pointtype 7 pointsize 0.6 linewidth 1.3"
 hollow_curve = "using 1:2 with linespoints pointtype 6 pointsize 0.6 linewidth 1.3 dashtype 3"
 bars = "using 1:2:3:4:5:6 with xyerrorbars pointtype 7 pointsize 0.8 linewidth 1.3"

@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
-DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration) noexcept
-    : calibration_(calibration), monitor_(calibration) {}
+
+DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration, std::string name) noexcept
+    : calibration_(calibration), name_(std::move(name)), monitor_(calibration) {}
+
+SensorSpec DeviceEndpoint::sensor() const noexcept {
+  return {.encoder_step_m = std::max(calibration_.encoder_step_m, 1.0 / calibration_.counts_per_metre)};
+}
 
 void DeviceEndpoint::connected(double now_s) noexcept {
   last_written_s_.store(now_s, std::memory_order_relaxed);
@@ -91,7 +97,7 @@ double DeviceEndpoint::position_m(const MonitorState& state) const noexcept {
 }
 
 // After a pause of the haptics thread, skips old samples; `restart` is set if any of them began a new stream.
-bool DeviceEndpoint::read(DeviceSample& sample) noexcept {
+bool DeviceEndpoint::read(double, DeviceSample& sample) noexcept {
   bool restart = false;
   DeviceSample next;
   do {

@@ -1,4 +1,4 @@
-// The host's end of one device that renders force (HID or bridge), without threads and I/O. The reader thread gives it
+// A device that renders force (HID or bridge), without threads and I/O (LinkedDevice). The reader thread gives it
 // reports, the writer thread fetches commands, the haptics thread reads samples and writes forces. The threads exchange
 // data by a TripleBuffer each way and an SpscRing of samples.
 // The writer is a watchdog: when the haptics thread has not written for kHapticsSilent_s, the writer sends force 0. The
@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <string>
 
 #include "devices/link/device_calibration.h"
 #include "devices/link/device_link.h"
@@ -25,7 +26,7 @@ struct LinkState {
   bool connected = false;
 };
 
-class DeviceEndpoint final : public LinkListener {
+class DeviceEndpoint : public Device, public LinkListener {
  public:
   static constexpr double kHapticsSilent_s = 0.02;
   // A fault is reported when no command was written, or confirmed, for this time.
@@ -37,7 +38,13 @@ class DeviceEndpoint final : public LinkListener {
   // A timed device gets one command per sample, but at least one in this time.
   static constexpr double kSlowestSample_s = 0.01;
 
-  explicit DeviceEndpoint(const DeviceCalibration& calibration) noexcept;
+  // `name`: as in --device.
+  explicit DeviceEndpoint(const DeviceCalibration& calibration, std::string name = "hid") noexcept;
+
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override;
+  Holder holder() const noexcept override { return Holder::person; }
+  ForceLimits limits() const noexcept override;
 
   // Reader thread, wait-free. `now_s`: steady clock, non-decreasing.
   void connected(double now_s) noexcept override;
@@ -50,15 +57,12 @@ class DeviceEndpoint final : public LinkListener {
   void written(double now_s) noexcept override;
 
   // Haptics thread, wait-free; as Device.
-  bool read(DeviceSample& sample) noexcept;
-  void write(double force_N) noexcept;
-  DeviceHealth health(double now_s) noexcept;
+  bool read(double now_s, DeviceSample& sample) noexcept override;
+  void write(double force_N) noexcept override;
+  DeviceHealth health(double now_s) noexcept override;
 
   // Any thread, wait-free.
-  void start_zeroing() noexcept { zeroing_asked_.store(true, std::memory_order_relaxed); }
-
-  const DeviceCalibration& calibration() const noexcept { return calibration_; }
-  ForceLimits limits() const noexcept;
+  void start_zeroing() noexcept override { zeroing_asked_.store(true, std::memory_order_relaxed); }
 
  private:
   struct Command {
@@ -73,6 +77,7 @@ class DeviceEndpoint final : public LinkListener {
   void publish_sample() noexcept;
 
   DeviceCalibration calibration_;
+  std::string name_;
   std::atomic<bool> zeroing_asked_{false};
   std::atomic<double> commanded_N_{0.0};  // last command
   std::atomic<double> last_written_s_{0.0};

@@ -8,41 +8,39 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "devices/link/device_endpoint.h"
 #include "devices/link/device_link.h"
-#include "engine/live/device.h"
+#include "devices/link/device_stop.h"
 
 namespace palpate {
 
-class LinkedDevice final : public Device {
+class LinkedDevice final : public DeviceEndpoint {
  public:
   // `bus` outlives this, or is `own_bus`; `opened` has the calibration's protocol, which renders force; `name`: as in
   // --device.
   LinkedDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened, std::string name = "hid",
-               std::unique_ptr<DeviceBus> own_bus = nullptr);
+               std::unique_ptr<DeviceBus> own_bus = nullptr)
+      : DeviceEndpoint(calibration, std::move(name)),
+        own_bus_(std::move(own_bus)),
+        measures_force_(opened.measures_force),
+        link_(bus, *this, std::move(opened)) {}
   ~LinkedDevice() override { close(); }
 
-  const std::string& name() const noexcept override { return name_; }
-  SensorSpec sensor() const noexcept override;
-  Holder holder() const noexcept override { return Holder::person; }
   bool measures_force() const noexcept override { return measures_force_; }
-  ForceLimits limits() const noexcept override { return endpoint_.limits(); }
   // Errors: a thread cannot be started.
-  Status open() override;
+  Status open() override {
+    stop_devices_on_signals();
+    return link_.start();
+  }
   void close() noexcept override { link_.stop(); }
-  bool read(double, DeviceSample& sample) noexcept override { return endpoint_.read(sample); }
-  void write(double force_N) noexcept override { endpoint_.write(force_N); }
-  DeviceHealth health(double now_s) noexcept override { return endpoint_.health(now_s); }
-  void start_zeroing() noexcept override { endpoint_.start_zeroing(); }
   // See DeviceLink::description.
   std::string note() const override { return link_.description(); }
 
  private:
   std::unique_ptr<DeviceBus> own_bus_;
-  std::string name_;
   bool measures_force_;
-  DeviceEndpoint endpoint_;
   DeviceLink link_;
 };
 

@@ -161,7 +161,7 @@ void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown,
   drawing_ = std::async(std::launch::async, [path, table, plot = curve_plot(columns, source, from_s, to_s)] {
     if (const Status status = write_file_atomically(path + ".csv", table, false); !status)
       return Notice{status.error().message, true};
-    const Status drawn = draw_plot(plot, {path + ".svg"}, false);
+    const Status drawn = draw_plot(plot, path + ".svg", false);
     return drawn ? Notice{"saved " + path + ".svg and .csv", false}
                  : Notice{"saved " + path + ".csv without a figure: " + drawn.error().message, true};
   });

@@ -37,9 +37,9 @@ Limits limits_of(const ModelsView& models) {
   Limits limits;
   for (const ModelView& slot : models.slots) {
     for (const ForceBin& bin : slot.errors.bins) {
-      if (bin.count < kFewestSamples) continue;
+      if (bin.force_N.count() < kFewestSamples) continue;
       limits.force_N = std::max(limits.force_N, bin.force_to_N);
-      limits.error_N = std::max(limits.error_N, bin.mean_abs_error_N + bin.std_abs_error_N);
+      limits.error_N = std::max(limits.error_N, bin.error_N.mean() + bin.error_N.deviation());
     }
   }
   // The JND line is visible completely; larger maxima are cut at the top.
@@ -54,11 +54,11 @@ void draw_slot(const LivePlot& plot, const ModelsView& models, std::size_t index
   const float size = style.scale();
   std::vector<ImVec2> spread;
   for (const ForceBin& bin : slot.errors.bins) {
-    if (bin.count < kFewestSamples) continue;
+    if (bin.force_N.count() < kFewestSamples) continue;
     const float x = plot.x_px(0.5 * (bin.force_from_N + bin.force_to_N));
-    spread.emplace_back(x, plot.y_px(bin.mean_abs_error_N + bin.std_abs_error_N));
+    spread.emplace_back(x, plot.y_px(bin.error_N.mean() + bin.error_N.deviation()));
     plot.list().AddCircleFilled(spread.back(), (selected ? 4.0F : 3.0F) * size, colour);
-    const float top = std::max(plot.y_px(bin.max_abs_error_N), plot.top() + 4.0F * size);
+    const float top = std::max(plot.y_px(bin.error_N.largest()), plot.top() + 4.0F * size);
     plot.list().AddTriangleFilled({x - 4.0F * size, top + 3.0F * size}, {x + 4.0F * size, top + 3.0F * size},
                                   {x, top - 4.0F * size}, colour);
   }

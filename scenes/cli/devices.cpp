@@ -42,14 +42,9 @@ void print_plugged_in(const std::vector<HidDiagnosis>& all, const std::string& a
 }
 
 Status print_devices() {
-  DeviceRequest request;
-  std::string assets = "assets";
-  if (const Result<std::string> found = find_assets(); found) {
-    assets = *found;
-    request.calibrations = assets + "/devices";
-  }
+  const Result<std::string> assets = find_assets();
   const std::vector<HidDiagnosis> plugged_in = diagnose(system_hid_bus());
-  const std::vector<DeviceDescription> devices = list_devices(request);
+  const std::vector<DeviceDescription> devices = list_devices({.calibrations = calibrations_folder()});
   std::size_t width = 0;
   for (const DeviceDescription& device : devices) width = std::max(width, device.name.size());
   const int column = static_cast<int>(width);
@@ -60,7 +55,7 @@ Status print_devices() {
     if (!device.problem.empty()) std::printf("%*s  %s\n", column + 15, "", device.problem.c_str());
   }
   print_hid_protocols();
-  print_plugged_in(plugged_in, assets);
+  print_plugged_in(plugged_in, assets ? *assets : "assets");
   return {};
 }
 

@@ -212,26 +212,22 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   verb->add_option("--method", arguments->options.method, "Method of the correction: " + method_names())
       ->check(CLI::IsMember(names));
   verb->add_flag("--list-methods", arguments->list_methods, "Print the names of the methods, one per line");
+  verb->option_defaults()->always_capture_default();
   verb->add_option("--centres", arguments->options.centres,
                    "Number of centres, for " + methods_that_take(kTakesCentres) + "; direct uses every site")
-      ->check(CLI::Range(1, kMostFittedCentres))
-      ->capture_default_str();
+      ->check(CLI::Range(1, kMostFittedCentres));
   verb->add_option("--candidates", arguments->options.candidates,
                    "Candidate sites per step, a number or all, for " + methods_that_take(kTakesCandidates))
-      ->check(CLI::Validator(check_candidates, "N|all"))
-      ->capture_default_str();
+      ->check(CLI::Validator(check_candidates, "N|all"));
   verb->add_option("--kernel", arguments->options.kernel, "Kernel, for " + methods_that_take(kTakesKernel))
-      ->check(CLI::IsMember(kernel_names()))
-      ->capture_default_str();
+      ->check(CLI::IsMember(kernel_names()));
   verb->add_option("--weighting", arguments->options.weighting,
                    "Weight of an error: jnd (1/JND), relative (1/force, as in the paper) or none (1)")
-      ->check(CLI::IsMember({"jnd", "relative", "none"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"jnd", "relative", "none"}));
   verb->add_option("--reduction", arguments->options.reduction,
                    "Samples that become sites: coverage of the feature space, force (steps of 50 mN, as in the paper) "
                    "or none (all)")
-      ->check(CLI::IsMember({"coverage", "force", "none"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"coverage", "force", "none"}));
   CLI::Option* recipe = verb->add_option("--recipe", arguments->options.recipe,
                                          "The recipe of Hoever & Harders (2009), the same as --reduction force "
                                          "--weighting relative; it also sets the features and the surface")
@@ -242,25 +238,21 @@ void add_fit(CLI::App& app, Verbs& verbs) {
           std::string("Features of the force: auto (those that the recordings support), scene (the scene's), or a "
                       "list such as ") +
               kFeatureListExample)
-      ->check(CLI::Validator(check_features, "auto|scene|LIST"))
-      ->capture_default_str();
+      ->check(CLI::Validator(check_features, "auto|scene|LIST"));
   verb->add_option(
           "--relaxation", arguments->options.relaxation,
           "Use the scene's features with these relaxation times: scene (the scene's), auto (identified) or a list in s")
       ->check(CLI::Validator(check_relaxation, "scene|auto|S,S"));
   verb->add_option("--surface", arguments->options.surface,
                    "Surface position of each recording: auto (estimated) or recorded (0)")
-      ->check(CLI::IsMember({"auto", "recorded"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"auto", "recorded"}));
   for (const char* decided : {"--features", "--surface"}) recipe->excludes(decided);
   verb->add_option("--grid", arguments->options.grid,
                    "Nodes of the grid along each feature [25x11x11x11], for " + methods_that_take(kTakesGrid))
       ->check(CLI::Validator(check_grid, "NxN"));
-  verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
-      ->capture_default_str();
+  verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line");
   verb->add_option("--seed", arguments->options.seed,
-                   "Seed of the random numbers, for " + methods_that_take(kTakesSeed))
-      ->capture_default_str();
+                   "Seed of the random numbers, for " + methods_that_take(kTakesSeed));
   verb->add_option("--out", arguments->out, "Model file to write (JSON)")->type_name("JSON");
   verb->add_flag("--force", arguments->force, "Replace an existing file");
   verb->add_flag("--json", arguments->json, "Print one JSON object");

@@ -94,9 +94,8 @@ void zero_on_enter(Device& device, const DeviceHealth& health, bool& told, Recor
 }
 
 Result<std::unique_ptr<Device>> open_for_recording(const RecordOptions& options) {
-  DeviceRequest request;
-  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
-  return open_device(options.bridge_remote ? with_remote_bridge(options.device) : options.device, request);
+  return open_device(options.bridge_remote ? with_remote_bridge(options.device) : options.device,
+                     {.calibrations = calibrations_folder()});
 }
 
 RecorderRequest recorder_request(const RecordOptions& options, Device& device) {

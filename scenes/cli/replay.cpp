@@ -82,10 +82,10 @@ OrderedJson bins_json(const std::vector<ForceBin>& bins) {
   for (const ForceBin& bin : bins) {
     list.push_back({{"force_from_N", bin.force_from_N},
                     {"force_to_N", bin.force_to_N},
-                    {"count", bin.count},
-                    {"mean_abs_error_N", bin.mean_abs_error_N},
-                    {"std_abs_error_N", bin.std_abs_error_N},
-                    {"max_abs_error_N", bin.max_abs_error_N},
+                    {"count", bin.force_N.count()},
+                    {"mean_abs_error_N", bin.error_N.mean()},
+                    {"std_abs_error_N", bin.error_N.deviation()},
+                    {"max_abs_error_N", bin.error_N.largest()},
                     {"jnd_N", bin.jnd_N}});
   }
   return list;

@@ -179,14 +179,15 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
   for (std::size_t i = 0; i < models_.size(); ++i) {
     Series series{"", method_rgb(models_[i].model->method()), Mark::curve, {}};
     for (const ForceBin& bin : errors[i].bins) {
-      if (bin.count > 0) series.rows.push_back({bin.mean_force_N, bin.mean_abs_error_N + bin.std_abs_error_N});
+      if (bin.force_N.count() > 0)
+        series.rows.push_back({bin.force_N.mean(), bin.error_N.mean() + bin.error_N.deviation()});
       if (i == 0) jnd.rows.push_back({0.5 * (bin.force_from_N + bin.force_to_N), bin.jnd_N});
     }
     against.series.push_back(std::move(series));
   }
   against.series.push_back(std::move(jnd));
   plot.panels = {std::move(force), std::move(difference), std::move(against)};
-  return draw_plot(plot, {path}, overwrite);
+  return draw_plot(plot, path, overwrite);
 }
 
 }  // namespace palpate::cli

@@ -53,10 +53,10 @@ void ErrorFigures::add(double model_N, double reference_N, bool out_of_domain, c
 
   const std::size_t index = force_bin(reference_N, jnd);
   if (bins_.size() <= index) bins_.resize(index + 1);
-  Bin& bin = bins_[index];
+  ForceBin& bin = bins_[index];
   bin.force_N.add(reference_N);
   bin.error_N.add(error_N);
-  bin.ratio.add(ratio);
+  bin.over_jnd.add(ratio);
 }
 
 void ErrorFigures::add(const ErrorFigures& other) {
@@ -71,7 +71,7 @@ void ErrorFigures::add(const ErrorFigures& other) {
   for (std::size_t i = 0; i < other.bins_.size(); ++i) {
     bins_[i].force_N.add(other.bins_[i].force_N);
     bins_[i].error_N.add(other.bins_[i].error_N);
-    bins_[i].ratio.add(other.bins_[i].ratio);
+    bins_[i].over_jnd.add(other.bins_[i].over_jnd);
   }
 }
 
@@ -92,21 +92,12 @@ ErrorSummary ErrorFigures::summary(const JndLine& jnd) const {
   summary.within_jnd = within_jnd();
   summary.max_error_over_jnd = max_ratio_;
   summary.out_of_domain_samples = out_of_domain_;
+  summary.bins = bins_;
   for (std::size_t i = 0; i < bins_.size(); ++i) {
-    const Bin& held = bins_[i];
-    ForceBin bin;
+    ForceBin& bin = summary.bins[i];
     bin.force_from_N = force_bin_begin_N(i, jnd);
     bin.force_to_N = force_bin_begin_N(i + 1, jnd);
     bin.jnd_N = jnd.at(0.5 * (bin.force_from_N + bin.force_to_N));
-    bin.count = held.force_N.count();
-    bin.mean_force_N = held.force_N.mean();
-    bin.mean_abs_error_N = held.error_N.mean();
-    bin.std_abs_error_N = held.error_N.deviation();
-    bin.max_abs_error_N = held.error_N.largest();
-    bin.mean_error_over_jnd = held.ratio.mean();
-    bin.std_error_over_jnd = held.ratio.deviation();
-    bin.max_error_over_jnd = held.ratio.largest();
-    summary.bins.push_back(bin);
   }
   return summary;
 }

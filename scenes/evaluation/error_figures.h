@@ -20,22 +20,6 @@ inline constexpr double kBinWidth_jnd = 2.0;
 // Bounds the memory where the JND line is flat. The last bin holds all larger forces.
 inline constexpr std::size_t kMaximumForceBins = 2000;
 
-// Errors of the samples with force_from_N <= measured force < force_to_N. A bin without samples has 0 for every error.
-struct ForceBin {
-  double force_from_N = 0.0;
-  double force_to_N = 0.0;
-  std::uint64_t count = 0;
-  double mean_force_N = 0.0;
-  double mean_abs_error_N = 0.0;
-  double std_abs_error_N = 0.0;  // population standard deviation
-  double max_abs_error_N = 0.0;
-  // Of the ratio error / JND, computed sample by sample.
-  double mean_error_over_jnd = 0.0;
-  double std_error_over_jnd = 0.0;
-  double max_error_over_jnd = 0.0;
-  double jnd_N = 0.0;  // at the middle of the bin
-};
-
 // The bin of a force; forces below 0 (sensor noise) are in the first.
 std::size_t force_bin(double force_N, const JndLine& jnd) noexcept;
 // Where bin `index` begins, N.
@@ -59,6 +43,16 @@ class Moments {
   double mean_ = 0.0;
   double squares_ = 0.0;  // sum of squared deviations from the mean
   double largest_ = 0.0;
+};
+
+// The samples with force_from_N <= measured force < force_to_N.
+struct ForceBin {
+  double force_from_N = 0.0;
+  double force_to_N = 0.0;
+  double jnd_N = 0.0;  // at the middle of the bin
+  Moments force_N;     // measured
+  Moments error_N;     // absolute value
+  Moments over_jnd;    // error / JND, computed sample by sample
 };
 
 // The figures of merit. Without samples every figure is 0 and `bins` is empty; check `samples` first.
@@ -89,10 +83,6 @@ class ErrorFigures {
   ErrorSummary summary(const JndLine& jnd) const;
 
  private:
-  struct Bin {
-    Moments force_N, error_N, ratio;
-  };
-
   std::uint64_t samples_ = 0;
   std::uint64_t within_ = 0;
   std::uint64_t out_of_domain_ = 0;
@@ -100,7 +90,7 @@ class ErrorFigures {
   double max_error_N_ = 0.0;
   double ratios_ = 0.0;  // sum
   double max_ratio_ = 0.0;
-  std::vector<Bin> bins_;  // at most kMaximumForceBins
+  std::vector<ForceBin> bins_;  // at most kMaximumForceBins; only their moments are set
 };
 
 }  // namespace palpate

@@ -69,7 +69,7 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
         if (std::abs(model_N - row.force_N) <= bound_N) ++passed.bounds[i].held;
       }
     };
-    const auto summary = rows.replay(batch, visitor, surface_offset_m);
+    const auto summary = rows(batch, visitor, surface_offset_m);
     if (!summary) return summary.error();
     passed.summary = *summary;
   }
@@ -79,18 +79,18 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
 }  // namespace
 
 RowSource rows_of(const Recording& recording) {
-  return {[&recording](const ForceModels& models, const ReplayVisitor& visitor, double surface_offset_m) {
+  return [&recording](const ForceModels& models, const ReplayVisitor& visitor, double surface_offset_m) {
     return replay(recording, models, visitor, surface_offset_m);
-  }};
+  };
 }
 
 RowSource rows_of_file(const std::string& path) {
-  return {[path](const ForceModels& models, const ReplayVisitor& visitor,
-                 double surface_offset_m) -> Result<ReplaySummary> {
+  return [path](const ForceModels& models, const ReplayVisitor& visitor,
+                double surface_offset_m) -> Result<ReplaySummary> {
     Result<RecordingReader> reader = RecordingReader::open(path);
     if (!reader) return reader.error();
     return replay(*reader, models, visitor, surface_offset_m);
-  }};
+  };
 }
 
 Result<RecordingEvaluation> evaluate(const RowSource& rows, const Models& models, const EvaluationRequest& request) {

@@ -27,12 +27,10 @@ struct EvaluatedModel {
   JndLine jnd;
 };
 
-// A recording that can be replayed several times. `replay` steps a tick with up to kMaxModels models through all
-// rows and subtracts `surface_offset_m` from every position.
-struct RowSource {
-  std::function<Result<ReplaySummary>(const ForceModels& models, const ReplayVisitor& visitor, double surface_offset_m)>
-      replay;
-};
+// A recording that can be replayed several times: steps a tick with up to kMaxModels models through all rows and
+// subtracts `surface_offset_m` from every position.
+using RowSource = std::function<Result<ReplaySummary>(const ForceModels& models, const ReplayVisitor& visitor,
+                                                      double surface_offset_m)>;
 RowSource rows_of(const Recording& recording);    // `recording` outlives the result
 RowSource rows_of_file(const std::string& path);  // reads the file in each replay, in bounded memory
 

@@ -1,15 +1,14 @@
 #include "scenes/live/live_session.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
-#include "devices/registry/device_registry.h"
 #include "engine/base/text.h"
 #include "models/model/fitted_model.h"
 #include "models/recordings/recording_faults.h"
+#include "scenes/live/press_range.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/user_folders.h"
@@ -27,11 +26,6 @@ constexpr int kMostFaultFiles = 50;
 
 constexpr const char* kDefaultScene = "silicone_block";
 constexpr std::string_view kReplay = "replay:";
-
-DeviceRequest with_calibrations(DeviceRequest request) {
-  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
-  return request;
-}
 
 std::string replayed_file(const std::string& device) {
   return device.rfind(kReplay, 0) == 0 ? device.substr(kReplay.size()) : std::string();
@@ -79,36 +73,9 @@ void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& sce
 
 }  // namespace
 
-// Speeds are differences over at least 20 ms, to suppress encoder steps. The fastest 1 % are ignored as noise.
-PressRange press_range(const std::vector<Recording>& recordings) {
-  constexpr double kSpan_s = 0.02;
-  PressRange range;
-  std::vector<double> speeds;
-  for (const Recording& recording : recordings) {
-    std::size_t first = 0;
-    for (const RecordingRow& row : recording.rows) {
-      range.strongest_N = std::max(range.strongest_N, row.force_N);
-      range.deepest_m = std::max(range.deepest_m, row.position_m);
-      const RecordingRow& before = recording.rows[first];
-      if (row.time_s - before.time_s < kSpan_s) continue;
-      if (row.position_m > 0.0)
-        speeds.push_back(std::abs(row.position_m - before.position_m) / (row.time_s - before.time_s));
-      first = static_cast<std::size_t>(&row - recording.rows.data());
-    }
-  }
-  if (speeds.empty()) return range;
-  const auto fast = speeds.begin() + static_cast<std::ptrdiff_t>(99 * (speeds.size() - 1) / 100);
-  std::nth_element(speeds.begin(), fast, speeds.end());
-  range.fastest_m_per_s = *fast;
-  return range;
-}
-
 std::vector<DeviceChoice> device_choices() {
-  std::vector<DeviceChoice> choices;
-  for (DeviceDescription& device : list_devices(with_calibrations({}))) {
-    if (device.name.find(':') == std::string::npos)
-      choices.push_back({std::move(device.name), std::move(device.summary), std::move(device.problem)});
-  }
+  std::vector<DeviceChoice> choices = list_devices({.calibrations = calibrations_folder()});
+  std::erase_if(choices, [](const DeviceChoice& device) { return device.name.find(':') != std::string::npos; });
   return choices;
 }
 
@@ -124,7 +91,7 @@ LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
   Result<Scene> scene = load_scene(request.scene.empty() ? kDefaultScene : request.scene);
   if (!scene) return scene.error();
-  DeviceRequest device_request;
+  DeviceRequest device_request{.calibrations = calibrations_folder(), .bus = request.bus};
   device_request.hand.strongest_press_N = scene->strongest_press_N;
   if (const Status status = take_recordings(request, *scene, device_request.hand); !status) return status.error();
   const LineUp* line_up = request.models.empty() && scene->has_material() ? find_line_up(request.line_up) : nullptr;
@@ -139,8 +106,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   if (request.scene.empty() && !request.models.empty() && scene->recordings.empty())
     take_provenance(*plans, request.models.size(), *scene);
   device_request.seed = request.seed + 1;  // so that the gestures differ from those of the training recording
-  device_request.bus = request.bus;
-  Result<std::unique_ptr<Device>> device = open_device(request.device, with_calibrations(device_request));
+  Result<std::unique_ptr<Device>> device = open_device(request.device, device_request);
   if (!device) return device.error();
   std::unique_ptr<LiveSession> session(new LiveSession(request, std::move(*scene), std::move(*device)));
   if (line_up == nullptr) session->request_.line_up.clear();

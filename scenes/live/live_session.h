@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "devices/registry/device_registry.h"
 #include "engine/base/result.h"
 #include "engine/live/fault_recorder.h"
 #include "engine/live/haptics_loop.h"
@@ -26,9 +27,6 @@
 #include "scenes/worker/slot_plan.h"
 
 namespace palpate {
-
-class DeviceBus;
-struct Recording;
 
 struct SessionRequest {
   std::string scene;  // empty: silicone_block, or with model files only the scene that the first was fitted for
@@ -47,22 +45,9 @@ struct SessionRequest {
   DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
 };
 
-// The range of the training data, within which a simulated hand has to stay.
-struct PressRange {
-  double strongest_N = 0.0;      // largest force
-  double deepest_m = 0.0;        // largest depth
-  double fastest_m_per_s = 0.0;  // 99th percentile of the speed in contact, over at least 20 ms
-};
-PressRange press_range(const std::vector<Recording>& recordings);
-
-// A device that a session can be opened with, for code that may not include devices/.
-struct DeviceChoice {
-  std::string name;
-  std::string summary;  // one line
-  std::string problem;  // why it cannot be opened and what to do; empty: it can be opened
-};
-
-// The devices that need no argument after their name. Slow: opens and closes each connected device.
+// The devices that need no argument after their name, for code that may not include devices/. Slow: opens and closes
+// each connected device.
+using DeviceChoice = DeviceDescription;
 std::vector<DeviceChoice> device_choices();
 
 class LiveSession {

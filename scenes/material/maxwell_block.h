@@ -99,9 +99,6 @@ class MaxwellBlock final : public Block {
  public:
   explicit MaxwellBlock(const MaxwellParameters& parameters) noexcept : material_(parameters) {}
 
-  const MaxwellParameters& parameters() const noexcept { return material_; }
-  double branch_force_N(std::size_t branch) const noexcept { return inner_.branch_N[branch]; }
-
   double half_relaxed_force_N(double depth_m) const noexcept override {
     double held_N = material_.elastic_force_N(depth_m);
     for (std::size_t b = 0; b < material_.branch_count; ++b) held_N += 0.5 * material_.unrelaxed_force_N(b, depth_m);

@@ -24,7 +24,6 @@ RigTruth between(const RigTruth& a, const RigTruth& b, double u) {
   truth.velocity_m_per_s = straight(a.velocity_m_per_s, b.velocity_m_per_s);
   truth.acceleration_m_per_s2 = straight(a.acceleration_m_per_s2, b.acceleration_m_per_s2);
   truth.force_N = straight(a.force_N, b.force_N);
-  truth.surface_depth_m = straight(a.surface_depth_m, b.surface_depth_m);
   return truth;
 }
 
@@ -83,8 +82,7 @@ Rig::Rig(const RigSettings& settings, const Material& material, std::size_t row_
 }
 
 RigTruth Rig::truth_now() const noexcept {
-  return {hand_.position_m(), hand_.velocity_m_per_s(), hand_.acceleration_m_per_s2(), block_->force_N(),
-          block_->surface_depth_m()};
+  return {hand_.position_m(), hand_.velocity_m_per_s(), hand_.acceleration_m_per_s2(), block_->force_N()};
 }
 
 void Rig::advance() noexcept {

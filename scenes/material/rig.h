@@ -57,8 +57,7 @@ struct RigTruth {
   double position_m = 0.0;
   double velocity_m_per_s = 0.0;
   double acceleration_m_per_s2 = 0.0;
-  double force_N = 0.0;          // of the material, without noise; >= 0
-  double surface_depth_m = 0.0;  // see Block::surface_depth_m
+  double force_N = 0.0;  // of the material, without noise; >= 0
 };
 
 // Makes rows one at a time, in bounded memory.

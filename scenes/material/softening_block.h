@@ -34,8 +34,6 @@ class SofteningBlock final : public HereditaryBlock {
   double elastic_force_N(double depth_m) const noexcept override {
     return kStiffness_N_per_m1_5 * depth_m * std::sqrt(depth_m) * (1.0 + stiffened(depth_m));
   }
-  // m, metres.
-  double deepest_recent_m() const noexcept { return deepest_m_; }
 
  private:
   void prepare() noexcept override {

@@ -104,24 +104,14 @@ Status check_plot_path(const std::string& path, bool overwrite) {
   return {};
 }
 
-Status draw_plot(const Plot& plot, const std::vector<std::string>& paths, bool overwrite) {
-  for (const std::string& path : paths) {
-    if (const Status status = check_plot_path(path, overwrite); !status) return status;
-  }
-  const fs::path parent = fs::path(paths.front()).parent_path();
+Status draw_plot(const Plot& plot, const std::string& path, bool overwrite) {
+  if (const Status status = check_plot_path(path, overwrite); !status) return status;
+  const fs::path parent = fs::path(path).parent_path();
   const ScratchFolder scratch(parent.empty() ? "." : parent.string());
-  if (scratch.path().empty()) return Error{"cannot write " + paths.front() + ": no folder can be made beside it"};
+  if (scratch.path().empty()) return Error{"cannot write " + path + ": no folder can be made beside it"};
   if (const Status status = draw_plots(scratch.path(), {plot}); !status) return status;
-  std::vector<std::string> drawn;
-  for (const std::string& path : paths) {
-    const auto text = read_drawn(scratch.path(), plot.name + fs::path(path).extension().string());
-    if (!text) return text.error();
-    drawn.push_back(*text);
-  }
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (const Status status = write_file_atomically(paths[i], drawn[i], overwrite); !status) return status;
-  }
-  return {};
+  const auto drawn = read_drawn(scratch.path(), plot.name + fs::path(path).extension().string());
+  return drawn ? write_file_atomically(path, *drawn, overwrite) : drawn.error();
 }
 
 }  // namespace palpate

@@ -37,9 +37,9 @@ Status draw_plots(const std::string& folder, const std::vector<Plot>& plots);
 // The contents of `file` in `folder`. Errors: gnuplot wrote nothing.
 Result<std::string> read_drawn(const std::string& folder, const std::string& file);
 
-// Draws one plot into `paths`, files of one folder that end in .svg or .png. Nothing is written unless all could be
-// drawn; each file is whole. Errors: those of check_plot_path, draw_plots and read_drawn.
-Status draw_plot(const Plot& plot, const std::vector<std::string>& paths, bool overwrite);
+// Draws one plot into the file `path`, which ends in .svg or .png. Writes the whole file or nothing. Errors: those of
+// check_plot_path, draw_plots and read_drawn.
+Status draw_plot(const Plot& plot, const std::string& path, bool overwrite);
 // Errors: `path` does not end in .svg or .png; it exists and `overwrite` is false.
 Status check_plot_path(const std::string& path, bool overwrite);
 

@@ -79,9 +79,9 @@ struct MarkStyle {
   const char* style;
   const char* legend;
 };
-constexpr MarkStyle kMarks[] = {{"line", "— "},  {"dashed", "– – "},     {"points", "● "}, {"hollow", "○ "},
-                                {"curve", "● "}, {"hollow_curve", "○ "}, {"bars", "● "},   {"hollow_bars", "○ "},
-                                {"up", "▲ "},    {"down", "▼ "},         {"area", "■ "}};
+constexpr MarkStyle kMarks[] = {{"line", "— "},         {"dashed", "– – "}, {"curve", "● "},
+                                {"hollow_curve", "○ "}, {"bars", "● "},     {"hollow_bars", "○ "},
+                                {"up", "▲ "},           {"down", "▼ "},     {"area", "■ "}};
 
 const MarkStyle& style_of(const Series& series) { return kMarks[static_cast<std::size_t>(series.mark)]; }
 

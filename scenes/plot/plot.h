@@ -27,10 +27,8 @@ inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 enum class Mark {
   line,
   dashed,
-  points,
-  hollow,        // points filled with the background colour
   curve,         // a line through points
-  hollow_curve,  // with hollow points
+  hollow_curve,  // with points filled with the background colour
   bars,          // points with bars from `low` to `high` and from `left` to `right`
   hollow_bars,   // with hollow points
   up,            // small triangles at the edge

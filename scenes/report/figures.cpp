@@ -55,7 +55,7 @@ Panel force_panel(const ReportData& data, const std::string& title, Recipe recip
                   recipe == Recipe::paper ? Mark::hollow_curve : Mark::curve,
                   {}};
     for (const ForceBin& bin : one.errors.bins) {
-      if (bin.count >= kFewSamples) series.rows.push_back({bin.mean_force_N, figure(bin)});
+      if (bin.force_N.count() >= kFewSamples) series.rows.push_back({bin.force_N.mean(), figure(bin)});
     }
     panel.series.push_back(std::move(series));
   }
@@ -149,7 +149,7 @@ Figure worst_figure(const ReportData& data) {
     measured.rows.push_back({row.time_s, row.measured_N});
     band.rows.push_back({row.time_s, 0.0, -1.0, 1.0});
     for (std::size_t i = 0; i < said.size(); ++i) {
-      const double over = (row.force_N[i] - row.measured_N) / data.jnd.at(row.measured_N);
+      const double over = (row.force_N[i] - row.measured_N) / data.scene.jnd.at(row.measured_N);
       said[i].rows.push_back({row.time_s, row.force_N[i]});
       differs[i].rows.push_back({row.time_s, row.in_contact ? over : kNoValue});
       if (i == 0 && row.in_contact) largest = std::max(largest, std::abs(over));
@@ -184,8 +184,8 @@ Figure worst_figure(const ReportData& data) {
 
 Figure force_figure(const ReportData& data) {
   const std::pair<const char*, BinFigure> rows[] = {
-      {"Mean + deviation", [](const ForceBin& bin) { return bin.mean_error_over_jnd + bin.std_error_over_jnd; }},
-      {"Maximum", [](const ForceBin& bin) { return bin.max_error_over_jnd; }}};
+      {"Mean + deviation", [](const ForceBin& bin) { return bin.over_jnd.mean() + bin.over_jnd.deviation(); }},
+      {"Maximum", [](const ForceBin& bin) { return bin.over_jnd.largest(); }}};
   Figure figure;
   for (const auto& [title, value] : rows) {
     Panel paper = force_panel(data, title, Recipe::paper, value);

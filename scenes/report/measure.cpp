@@ -52,19 +52,15 @@ struct Measured {
 
 class Measurement {
  public:
-  Measurement(const RecordingSet& recordings, const Scene& scene, ReportData& data, const FitControl& control)
-      : recordings_(recordings),
-        scene_(scene),
-        data_(data),
-        models_(planned(data.quick, scene)),
-        progress_(control, expected_total()) {}
+  Measurement(ReportData& data, const FitControl& control)
+      : data_(data), models_(planned(data.quick, data.scene)), progress_(control, expected_total()) {}
 
   Status run() {
-    for (const Split& fold : recordings_.folds) {
+    for (const Split& fold : data_.recordings.folds) {
       if (const Status status = run_fold(fold); !status) return status;
     }
     for (Measured& one : models_) finish(one);
-    data_.floor = noise_floor(tested_, scene_.jnd);
+    data_.floor = noise_floor(tested_, data_.scene.jnd);
     time_all();
     merge_equal();
     for (Measured& one : models_) data_.models.push_back(std::move(one.result));
@@ -89,14 +85,14 @@ class Measurement {
       const PlannedModel& plan = one.result.plan;
       if (plan.recipe != Recipe::no_force) total += plan.request.method->expected_seconds(plan.request);
     }
-    return static_cast<double>(recordings_.folds.size()) *
+    return static_cast<double>(data_.recordings.folds.size()) *
            (total + kEvaluateSeconds * static_cast<double>(models_.size()));
   }
 
   Result<Preparations> prepare(const std::vector<SharedRecording>& training) {
     std::vector<MotionSource::Input> inputs;
     for (const SharedRecording& recording : training) inputs.push_back({"", prepare_recording(*recording)});
-    const TrainingRequest request = training_request(scene_);
+    const TrainingRequest request = training_request(data_.scene);
     std::vector<PreparedTraining> made;
     for (const TrainingRequest& one : {recipe_2009_request(request), request}) {
       MotionSource source(inputs);
@@ -127,7 +123,7 @@ class Measurement {
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       const double seconds = elapsed.count() + (base == bases.end() ? 0.0 : base->second.second);
       bases.try_emplace({plan.recipe, plan.request.method}, *one, seconds);
-      result.fit_seconds += seconds / static_cast<double>(recordings_.folds.size());
+      result.fit_seconds += seconds / static_cast<double>(data_.recordings.folds.size());
       result.model = std::make_shared<const FittedModel>(std::move(one->data));
       result.size = std::max(result.size, result.model->centre_count());
       measured.fits.push_back(result.model);
@@ -172,7 +168,7 @@ class Measurement {
     for (const Measured& measured : models_) {
       const ModelResult& one = measured.result;
       if (!one.model) continue;
-      models.push_back({one.model, scene_.jnd});
+      models.push_back({one.model, data_.scene.jnd});
       if (one.plan.main && one.plan.recipe == Recipe::palpate) request.surface_models.push_back(one.model);
     }
     request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
@@ -233,19 +229,18 @@ class Measurement {
       if (data_.models[i].errors.p99_error_over_jnd < data_.models[best].errors.p99_error_over_jnd) best = i;
     }
     add(best);
-    for (std::size_t fold = 0; fold < recordings_.folds.size(); ++fold) {
+    for (std::size_t fold = 0; fold < data_.recordings.folds.size(); ++fold) {
       std::vector<ModelPointer> models;
       for (const std::size_t i : shown) models.push_back(models_[i].fits[fold]);
-      for (const SharedRecording& recording : recordings_.folds[fold].tested) {
-        WorstStretch stretch = worst_stretch(*recording, models, scene_.jnd, recordings_.folds[fold].counted_from_s);
+      for (const SharedRecording& recording : data_.recordings.folds[fold].tested) {
+        WorstStretch stretch =
+            worst_stretch(*recording, models, data_.scene.jnd, data_.recordings.folds[fold].counted_from_s);
         if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
       }
     }
     data_.worst.models = std::move(shown);
   }
 
-  const RecordingSet& recordings_;
-  const Scene& scene_;
   ReportData& data_;
   std::vector<Measured> models_;
   Progress progress_;
@@ -300,14 +295,10 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
 
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control) {
   ReportData data;
-  data.scene = scene.name;
-  data.jnd = scene.jnd;
+  data.scene = scene;
+  data.recordings = recordings;
   data.quick = quick;
-  data.virtual_recordings = recordings.virtual_recordings;
-  data.folds = recordings.folds.size() > 1 ? static_cast<int>(recordings.folds.size()) : 0;
-  data.tested_on = recordings.folds.front().words;
-  data.recordings = recordings.facts;
-  if (const Status status = Measurement(recordings, scene, data, control).run(); !status) return status.error();
+  if (const Status status = Measurement(data, control).run(); !status) return status.error();
   return data;
 }
 

@@ -67,13 +67,9 @@ struct Choice {
 };
 
 struct ReportData {
-  std::string scene;
-  JndLine jnd;
+  Scene scene;
+  RecordingSet recordings;
   bool quick = false;
-  bool virtual_recordings = false;
-  int folds = 0;          // of a cross-validation; 0: there is one split
-  std::string tested_on;  // description of the test data where there are no test recordings
-  std::vector<RecordingFacts> recordings;
   std::vector<MovedSurface> tested;  // every test recording
   NoiseFloor floor;                  // of all test recordings together
   std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces

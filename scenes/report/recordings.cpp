@@ -98,6 +98,27 @@ std::string seconds(const Recording& recording, std::size_t row) {
   return three_digits(recording.rows[row].time_s - recording.rows.front().time_s);
 }
 
+// Splits off a block of up to 40 % at the end of a recording as test data. The block begins at the first sample in the
+// air, if one is within 10 % of the rows. A recording of fewer than 1000 rows gives an empty split.
+Split leave_out(const SharedRecording& training) {
+  Split split;
+  const Recording& whole = *training;
+  if (whole.rows.size() < kSmallestRecording) return split;
+  const auto kept =
+      whole.rows.begin() + static_cast<std::ptrdiff_t>(kKeptShare * static_cast<double>(whole.rows.size()));
+  const auto near = kept + static_cast<std::ptrdiff_t>(whole.rows.size() / 10);
+  const auto in_air = std::find_if(kept, near, [](const RecordingRow& row) { return row.position_m <= 0.0; });
+  const auto cut = in_air == near ? kept : in_air;
+  split.train.push_back(
+      std::make_shared<const Recording>(Recording{whole.name, whole.columns, {whole.rows.begin(), cut}}));
+  split.tested.push_back(training);
+  split.counted_from_s = cut->time_s;
+  split.words = "a block at the end of the training recording, " +
+                std::to_string(100 - 100 * split.train[0]->rows.size() / whole.rows.size()) +
+                " % of it, left out of these fits";
+  return split;
+}
+
 }  // namespace
 
 Result<std::vector<SharedRecording>> virtual_recordings(const std::string& material, double share) {
@@ -142,25 +163,6 @@ Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t train
     }
   }
   return {};
-}
-
-Split leave_out(const SharedRecording& training) {
-  Split split;
-  const Recording& whole = *training;
-  if (whole.rows.size() < kSmallestRecording) return split;
-  const auto kept =
-      whole.rows.begin() + static_cast<std::ptrdiff_t>(kKeptShare * static_cast<double>(whole.rows.size()));
-  const auto near = kept + static_cast<std::ptrdiff_t>(whole.rows.size() / 10);
-  const auto in_air = std::find_if(kept, near, [](const RecordingRow& row) { return row.position_m <= 0.0; });
-  const auto cut = in_air == near ? kept : in_air;
-  split.train.push_back(
-      std::make_shared<const Recording>(Recording{whole.name, whole.columns, {whole.rows.begin(), cut}}));
-  split.tested.push_back(training);
-  split.counted_from_s = cut->time_s;
-  split.words = "a block at the end of the training recording, " +
-                std::to_string(100 - 100 * split.train[0]->rows.size() / whole.rows.size()) +
-                " % of it, left out of these fits";
-  return split;
 }
 
 Result<RecordingSet> split_recordings(std::vector<SharedRecording> train, std::vector<SharedRecording> test) {

@@ -41,10 +41,6 @@ struct Split {
   std::string words;               // description of the test data where it was split off the training data
 };
 
-// Splits off a block of up to 40 % at the end of a recording as test data. The block begins at the first sample in the
-// air, if one is within 10 % of the rows. A recording of fewer than 1000 rows gives an empty split.
-Split leave_out(const SharedRecording& training);
-
 struct RecordingSet {
   std::vector<Split> folds;  // several for a cross-validation
   std::vector<RecordingFacts> facts;
@@ -70,8 +66,8 @@ SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained);
 
 // Without a training recording the virtual silicone is used: seed 1 for training, seed 2 for the test. Without a test
-// recording the training recordings are divided into up to kMostFolds folds for cross-validation, and a single one is
-// divided by leave_out. Recordings are sorted by name and content.
+// recording the training recordings are divided into up to kMostFolds folds for cross-validation, and of a single one a
+// block at its end is the test. Recordings are sorted by name and content.
 // Errors: those of refuse_leakage; a test recording without contact; a single recording that is too short.
 inline constexpr std::size_t kMostFolds = 5;
 Result<RecordingSet> split_recordings(std::vector<SharedRecording> train, std::vector<SharedRecording> test);

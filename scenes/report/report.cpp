@@ -55,11 +55,11 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
   for (const MovedSurface& one : data.tested) offsets.push_back(one.offset_m);
   return {{"format", "palpate-report"},
           {"version", 1},
-          {"scene", data.scene},
-          {"jnd", {{"offset_N", data.jnd.offset_N}, {"weber_fraction", data.jnd.weber_fraction}}},
+          {"scene", data.scene.name},
+          {"jnd", {{"offset_N", data.scene.jnd.offset_N}, {"weber_fraction", data.scene.jnd.weber_fraction}}},
           {"quick", data.quick},
-          {"virtual_recordings", data.virtual_recordings},
-          {"folds", data.folds},
+          {"virtual_recordings", data.recordings.virtual_recordings},
+          {"folds", data.recordings.folds.size() > 1 ? data.recordings.folds.size() : 0},
           {"noise_floor",
            {{"force_noise_N", data.floor.force_noise_N},
             {"within_jnd", data.floor.within_jnd},
@@ -117,7 +117,7 @@ Table headline_table(const ReportData& data) {
 
 double largest_force_N(const ReportData& data) {
   double largest = 0.0;
-  for (const RecordingFacts& facts : data.recordings) largest = std::max(largest, facts.largest_force_N);
+  for (const RecordingFacts& facts : data.recordings.facts) largest = std::max(largest, facts.largest_force_N);
   return largest;
 }
 
@@ -135,11 +135,13 @@ std::string notes_html(const ReportData& data) {
     for (const std::string& name : one.same) names += (names.empty() ? "" : ", ") + name;
     notes.push_back("The same forces as " + one.plan.name + ": " + names + ".");
   }
-  if (!data.tested_on.empty()) notes.push_back("No test recording: " + data.tested_on + ".");
+  const std::string& tested_on = data.recordings.folds.front().words;
+  if (!tested_on.empty()) notes.push_back("No test recording: " + tested_on + ".");
   const JndLine paper;
-  notes.push_back("JND: " + three_digits(1e3 * data.jnd.offset_N) + " mN + " +
-                  three_digits(100.0 * data.jnd.weber_fraction) + " % of the force." +
-                  (data.jnd.offset_N == paper.offset_N && data.jnd.weber_fraction == paper.weber_fraction &&
+  const JndLine& jnd = data.scene.jnd;
+  notes.push_back("JND: " + three_digits(1e3 * jnd.offset_N) + " mN + " + three_digits(100.0 * jnd.weber_fraction) +
+                  " % of the force." +
+                  (jnd.offset_N == paper.offset_N && jnd.weber_fraction == paper.weber_fraction &&
                            largest_force_N(data) > kStudiedUpTo_N
                        ? " It was measured up to 2.5 N; these forces go up to " + three_digits(largest_force_N(data)) +
                              " N, where it is extrapolated."
@@ -148,7 +150,7 @@ std::string notes_html(const ReportData& data) {
                   " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
                   " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +
                   " mN, from second differences in the quietest fifth of each test recording, without drift).");
-  const bool any = std::any_of(data.recordings.begin(), data.recordings.end(),
+  const bool any = std::any_of(data.recordings.facts.begin(), data.recordings.facts.end(),
                                [](const RecordingFacts& facts) { return facts.accelerometer; });
   notes.push_back(any ? "With the accelerometer of the recordings."
                       : "From positions alone, without an accelerometer.");
@@ -188,7 +190,7 @@ std::string learnt_html(const ReportData& data) {
 Result<std::string> make_page(const ReportData& data, const Sentence& answer, const std::string& origin,
                               const std::vector<Table>& tables, const std::vector<Figure>& figures) {
   std::string tests;
-  for (const RecordingFacts& facts : data.recordings) {
+  for (const RecordingFacts& facts : data.recordings.facts) {
     if (facts.role != "train") tests += (tests.empty() ? "" : ", ") + facts.name;
   }
   std::map<std::string, std::string> values{

@@ -107,7 +107,7 @@ Table times_table(const ReportData& data) {
 
 Table recordings_table(const ReportData& data) {
   Table table{"recordings"};
-  for (const RecordingFacts& one : data.recordings) {
+  for (const RecordingFacts& one : data.recordings.facts) {
     table.begin_row();
     table.add({"role", "role"}, one.role);
     table.add({"name", "recording"}, one.name);
@@ -128,19 +128,19 @@ Table bins_table(const ReportData& data) {
   Table table{"force_bins"};
   for (const ModelResult& one : data.models) {
     for (const ForceBin& bin : one.errors.bins) {
-      if (!one.plan.main || bin.count == 0) continue;
+      if (!one.plan.main || bin.force_N.count() == 0) continue;
       table.begin_row();
       table.add({"model", ""}, one.plan.name);
       table.add({"force_from_N", ""}, bin.force_from_N);
       table.add({"force_to_N", ""}, bin.force_to_N);
-      table.add({"count", ""}, bin.count);
-      table.add({"mean_force_N", ""}, bin.mean_force_N);
-      table.add({"mean_abs_error_N", ""}, bin.mean_abs_error_N);
-      table.add({"std_abs_error_N", ""}, bin.std_abs_error_N);
-      table.add({"max_abs_error_N", ""}, bin.max_abs_error_N);
-      table.add({"mean_error_over_jnd", ""}, bin.mean_error_over_jnd);
-      table.add({"std_error_over_jnd", ""}, bin.std_error_over_jnd);
-      table.add({"max_error_over_jnd", ""}, bin.max_error_over_jnd);
+      table.add({"count", ""}, bin.force_N.count());
+      table.add({"mean_force_N", ""}, bin.force_N.mean());
+      table.add({"mean_abs_error_N", ""}, bin.error_N.mean());
+      table.add({"std_abs_error_N", ""}, bin.error_N.deviation());
+      table.add({"max_abs_error_N", ""}, bin.error_N.largest());
+      table.add({"mean_error_over_jnd", ""}, bin.over_jnd.mean());
+      table.add({"std_error_over_jnd", ""}, bin.over_jnd.deviation());
+      table.add({"max_error_over_jnd", ""}, bin.over_jnd.largest());
     }
   }
   return table;

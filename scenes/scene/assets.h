@@ -5,7 +5,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "engine/base/result.h"
 
@@ -14,7 +13,7 @@ namespace palpate {
 // Errors: no folder has a subfolder scenes; lists the folders that were tried.
 Result<std::string> find_assets();
 
-// The same for the given folders; returns the first that has a subfolder scenes.
-Result<std::string> first_assets_folder(const std::vector<std::string>& places);
+// The folder of the devices' calibrations; empty where there are no assets.
+std::string calibrations_folder();
 
 }  // namespace palpate

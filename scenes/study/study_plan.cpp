@@ -9,8 +9,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint64_t kStudySeed = 0x70a1fa7e5eed0001u;  // fixed, so that the plan depends on the subject code
-                                                           // only
+// Fixed, so that the plan depends on the subject code only.
+constexpr std::uint64_t kStudySeed = 0x70a1fa7e5eed0001u;
 constexpr double kEasyShare = 0.5;
 
 // Random numbers of this subject; each use has its own `stream`.
@@ -26,8 +26,7 @@ void shuffle(std::vector<T>& values, RandomStream& random) {
   for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.index(i)]);
 }
 
-// The trial `count` times (even), the comparison first in half of them,
-// shuffled.
+// The trial `count` times (even), the comparison first in half of them, shuffled.
 std::vector<StudyTrial> balanced(StudyTrial trial, std::size_t count, RandomStream& random) {
   std::vector<StudyTrial> trials(count, trial);
   for (std::size_t i = 0; i < count / 2; ++i) trials[i].comparison_first = true;
@@ -83,9 +82,8 @@ Status check_subject_code(const std::string& code) {
   static const std::regex kCode("[A-Z]{1,3}[0-9]{1,4}");
   if (std::regex_match(code, kCode)) return {};
   return Error{"found the subject \"" + code +
-               "\", expected a code of one to three capital letters and one to "
-               "four digits, such as S01; "
-               "names are not stored"};
+               "\", expected a code of one to three capital letters and one to four digits, such as S01; names are "
+               "not stored"};
 }
 
 StudyPlan plan_study(const std::string& code, const StrokePair* strokes) {

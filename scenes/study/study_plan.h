@@ -1,21 +1,15 @@
-// The trials of a subject and their order, which depend on the subject code
-// only.
+// The trials of a subject and their order, which depend on the subject code only.
 //
-// Constant stimuli: two-alternative forced choice (2AFC) without movement;
-// which of two forces was larger? As in Hoever & Harders (2009), section 4.1:
-// reference forces 0.3, 0.5, 1.0 and 2.5 N; comparison forces from 60 % to 140
-// % of the reference in eight steps without 100 %; each pair ten times: 320
-// trials. Each pair comes once in every 32 trials, five times with the
-// comparison first and five times second.
+// Constant stimuli: two-alternative forced choice (2AFC) without movement; which of two forces was larger? As in Hoever
+// & Harders (2009), section 4.1: reference forces 0.3, 0.5, 1.0 and 2.5 N; comparison forces from 60 % to 140 % of the
+// reference in eight steps without 100 %; each pair ten times: 320 trials. Each pair comes once in every 32 trials,
+// five times with the comparison first and five times second.
 //
-// Two strokes: 2AFC with a reminder (M. J. Hautus, N. A. Macmillan & C. D.
-// Creelman 2022, Detection Theory: A User's Guide, 3rd ed., chapter 7; ISO
-// 10399). The reference stroke is followed by reference and comparison in
-// either order; which of the two was like the first? An observer who uses the
-// difference performs as in 2AFC without a reminder, so that one JND is 75 %
-// correct. The reminder is necessary because strokes may differ in any way, not
-// only in size. Thread guarantee: values and pure functions; slow side (they
-// allocate).
+// Two strokes: 2AFC with a reminder (M. J. Hautus, N. A. Macmillan & C. D. Creelman 2022, Detection Theory: A User's
+// Guide, 3rd ed., chapter 7; ISO 10399). The reference stroke is followed by reference and comparison in either order;
+// which of the two was like the first? An observer who uses the difference performs as in 2AFC without a reminder, so
+// that one JND is 75 % correct. The reminder is necessary because strokes may differ in any way, not only in size.
+// Thread guarantee: values and pure functions; slow side (they allocate).
 #pragma once
 
 #include <array>
@@ -30,8 +24,7 @@
 
 namespace palpate {
 
-// One recorded stroke as rendered by two models, or by a model and the recorded
-// force (prepare_strokes.h).
+// One recorded stroke as rendered by two models, or by a model and the recorded force (prepare_strokes.h).
 struct StrokePair {
   std::string reference;   // "recorded force" or a model's name
   std::string comparison;  // a model's name
@@ -39,15 +32,13 @@ struct StrokePair {
   double from_s = 0.0;         // in the recording
   std::uint64_t checksum = 0;  // of both forces
   JndLine jnd;
-  // |comparison - reference| over the JND of the reference, over the ticks in
-  // contact, with the ramps of an interval.
+  // |comparison - reference| over the JND of the reference, over the ticks in contact, with the ramps of an interval.
   double mean_over_jnd = 0.0;
   double max_over_jnd = 0.0;
   // Means between the ramps, which represent the strokes in a study file.
   double reference_mean_N = 0.0;
   double comparison_mean_N = 0.0;
-  // One force per tick of an interval, rounded to 0.1 mN; empty when the pair
-  // was read from a study file.
+  // One force per tick of an interval, rounded to 0.1 mN; empty when the pair was read from a study file.
   std::vector<double> reference_N;
   std::vector<double> comparison_N;
 };
@@ -73,8 +64,8 @@ struct StudyTrial {
 // A comparison force, rounded to 0.1 mN as in the study file.
 double percent_of(double reference_N, double percent) noexcept;
 
-// Subjects are anonymous: a code has one to three capital letters and one to
-// four digits, such as S01. Errors: another form.
+// Subjects are anonymous: a code has one to three capital letters and one to four digits, such as S01. Errors: another
+// form.
 Status check_subject_code(const std::string& code);
 
 struct StudyPlan {
@@ -85,9 +76,8 @@ struct StudyPlan {
 
   Stimuli stimuli(const StudyTrial& trial) const;
 };
-// The trials of a subject. With `strokes`, which outlive the plan, the forces
-// of a trial are the means of the strokes, and the training compares the
-// reference with half of it.
+// The trials of a subject. With `strokes`, which outlive the plan, the forces of a trial are the means of the strokes,
+// and the training compares the reference with half of it.
 StudyPlan plan_study(const std::string& code, const StrokePair* strokes);
 
 }  // namespace palpate

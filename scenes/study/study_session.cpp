@@ -151,9 +151,7 @@ std::string StudySession::message(const StudyView& view) const {
 
 Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const std::string& device, bool realtime,
                                                    std::shared_ptr<const StrokePair> strokes) {
-  DeviceRequest request;
-  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
-  auto opened = open_device(device, request);
+  auto opened = open_device(device, {.calibrations = calibrations_folder()});
   if (!opened) return opened.error();
   std::unique_ptr<LiveStudy> study(new LiveStudy);
   study->realtime_ = realtime;

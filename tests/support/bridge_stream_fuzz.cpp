@@ -63,7 +63,7 @@ class Host {
     now_s_ += 1e-3;
     endpoint_->report_arrived(frame, size, now_s_);
     DeviceSample sample;
-    while (endpoint_->read(sample)) {
+    while (endpoint_->read(now_s_, sample)) {
       require(std::isfinite(sample.tool.position_m) && sample.tool.time_s > last_s_, "sample");
       last_s_ = sample.tool.time_s;
     }

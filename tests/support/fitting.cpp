@@ -134,8 +134,8 @@ ErrorSummary judge(const Recording& recording, const ModelPtr& model) {
 double worst_bin_over_jnd(const ErrorSummary& summary, double from_N) {
   double worst = 0.0;
   for (const ForceBin& bin : summary.bins) {
-    if (bin.force_from_N < from_N || bin.count < kFullBin) continue;
-    worst = std::max(worst, (bin.mean_abs_error_N + bin.std_abs_error_N) / bin.jnd_N);
+    if (bin.force_from_N < from_N || bin.force_N.count() < kFullBin) continue;
+    worst = std::max(worst, (bin.error_N.mean() + bin.error_N.deviation()) / bin.jnd_N);
   }
   return worst;
 }

@@ -50,7 +50,7 @@ void check_decoder(const DeviceProtocol* protocol, const std::uint8_t* bytes, st
 
 void check_handed_over(DeviceEndpoint& endpoint, double now_s, double& last_sample_s) {
   DeviceSample sample;
-  if (endpoint.read(sample)) {
+  if (endpoint.read(now_s, sample)) {
     require(std::isfinite(sample.tool.position_m) && std::isfinite(sample.tool.time_s), "sample not finite");
     require(sample.tool.time_s > last_sample_s, "time does not go on");
     last_sample_s = sample.tool.time_s;

@@ -155,23 +155,33 @@ inline std::unique_ptr<DeviceModel> device_model(const DeviceProtocol* protocol)
   return std::make_unique<OpenFfBoardModel>();
 }
 
-// The endpoint as a device of the live tick.
-class EndpointDevice final : public Device {
- public:
-  explicit EndpointDevice(const DeviceCalibration& calibration) : endpoint(calibration) {}
-  const std::string& name() const noexcept override { return name_; }
-  SensorSpec sensor() const noexcept override { return {1.0 / endpoint.calibration().counts_per_metre}; }
-  Holder holder() const noexcept override { return Holder::person; }
-  ForceLimits limits() const noexcept override { return endpoint.limits(); }
-  bool read(double, DeviceSample& sample) noexcept override { return endpoint.read(sample); }
-  void write(double force_N) noexcept override { endpoint.write(force_N); }
-  DeviceHealth health(double now_s) noexcept override { return endpoint.health(now_s); }
-  void start_zeroing() noexcept override { endpoint.start_zeroing(); }
-  DeviceEndpoint endpoint;
-
- private:
-  std::string name_ = "simulated";
-};
+// Disturbances of the line, for SimulatedDevice::on_the_way_in.
+using Reports = std::vector<Report>;
+inline Reports lost(const Report&) { return {}; }
+// The first report again and again.
+inline auto first_again() {
+  return [first = Report()](const Report& report) mutable {
+    if (first.empty()) first = report;
+    return Reports{first};
+  };
+}
+// Each report comes `count` reports late.
+inline auto late_by(std::size_t count) {
+  return [count, queue = std::deque<Report>()](const Report& report) mutable {
+    queue.push_back(report);
+    if (queue.size() <= count) return Reports{};
+    Reports oldest{queue.front()};
+    queue.pop_front();
+    return oldest;
+  };
+}
+template <typename Change>
+auto changed(Change change) {
+  return [change](Report report) {
+    change(report);
+    return Reports{report};
+  };
+}
 
 class SimulatedDevice {
  public:
@@ -184,7 +194,7 @@ class SimulatedDevice {
       : calibration(of), device(calibration), model(device_model(calibration.protocol)), live(device, slot_) {
     slot_.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(kStiffness_N_per_m)}));
     live.warm_up();
-    device.endpoint.connected(kStart_s);
+    device.connected(kStart_s);
     hear(calibration.protocol->encode_start());
   }
 
@@ -210,8 +220,8 @@ class SimulatedDevice {
     }
     snapshot = live.run(now_s, controls);
     if (!writer_hangs) {
-      const OutReports reports = device.endpoint.next(now_s);
-      if (reports.count > 0) device.endpoint.written(now_s);
+      const OutReports reports = device.next(now_s);
+      if (reports.count > 0) device.written(now_s);
       hear(reports);
     }
     return snapshot;
@@ -232,7 +242,7 @@ class SimulatedDevice {
   std::int32_t counts() const { return counts_; }
 
   DeviceCalibration calibration;
-  EndpointDevice device;
+  DeviceEndpoint device;
   std::unique_ptr<DeviceModel> model;
   LoopControls controls;
   LoopSnapshot snapshot;
@@ -246,7 +256,7 @@ class SimulatedDevice {
   std::int32_t counts_offset = 0;
   // May change, drop or delay reports from the device. The returned reports are
   // delivered.
-  std::function<std::vector<Report>(const Report&)> on_the_way_in;
+  std::function<Reports(const Report&)> on_the_way_in;
   std::function<bool(Report&)> on_the_way_out;  // false: the report is lost
 
  private:
@@ -255,18 +265,18 @@ class SimulatedDevice {
       const Report report = model->outbox.front();
       model->outbox.pop_front();
       if (unplugged) continue;
-      for (const Report& one : on_the_way_in ? on_the_way_in(report) : std::vector<Report>{report}) {
+      for (const Report& one : on_the_way_in ? on_the_way_in(report) : Reports{report}) {
         arrive(one);
       }
     }
   }
   // Bridge frames are sent as a stream of bytes.
   void arrive(const Report& one) {
-    if (calibration.protocol != &kBridgeProtocol) return device.endpoint.report_arrived(one.data(), one.size(), now_s);
+    if (calibration.protocol != &kBridgeProtocol) return device.report_arrived(one.data(), one.size(), now_s);
     const std::uint8_t* at = one.data();
     std::uint8_t report[bridge::kDeviceBytes];
     while (const int size = frames_.next(at, one.data() + one.size(), report)) {
-      device.endpoint.report_arrived(report, static_cast<std::size_t>(size), now_s);
+      device.report_arrived(report, static_cast<std::size_t>(size), now_s);
     }
   }
   void hear(const OutReports& reports) {

@@ -36,9 +36,7 @@ void later_by_15_ms(SimulatedDevice& simulated) {
   };
 }
 
-void silence(SimulatedDevice& simulated) {
-  simulated.on_the_way_in = [](const Report&) { return std::vector<Report>{}; };
-}
+void silence(SimulatedDevice& simulated) { simulated.on_the_way_in = test::lost; }
 
 constexpr Event kEvents[] = {
     {"nothing", [](SimulatedDevice&) {}, 0.0, false},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/random_stream.h"
@@ -28,75 +29,36 @@ struct Injection {
   double within_s;  // time limit for the force to be zero
 };
 
-template <typename Change>
-void on_the_way(SimulatedDevice& simulated, Change change) {
-  simulated.on_the_way_in = change;
+// Every second report comes after its successor.
+auto out_of_order() {
+  return [last = Report()](const Report& report) mutable {
+    if (!last.empty()) return test::Reports{report, std::exchange(last, {})};
+    last = report;
+    return test::Reports{};
+  };
 }
 
 const std::vector<Injection>& injections() {
   using namespace device_fault;
-  using Reports = std::vector<Report>;
   static const std::vector<Injection> all = {
       {"the port or the program is gone",
        [](SimulatedDevice& s) {
          s.unplugged = true;
-         s.device.endpoint.unplugged();
+         s.device.unplugged();
        },
        kUnplugged, 0.0205},
-      {"frames fail to come", [](SimulatedDevice& s) { on_the_way(s, [](const Report&) { return Reports{}; }); }, kLate,
-       0.0205},
+      {"frames fail to come", [](SimulatedDevice& s) { s.on_the_way_in = test::lost; }, kLate, 0.0205},
       {"the position stands still although the motor pushes (`stuck_after_s`)",
        [](SimulatedDevice& s) { s.encoder_frozen = true; }, kStuck, 0.53},
-      {"the same frame comes again and again",
-       [](SimulatedDevice& s) {
-         auto first = std::make_shared<Report>();
-         on_the_way(s, [first](const Report& report) {
-           if (first->empty()) *first = report;
-           return Reports{*first};
-         });
-       },
-       kLate, 0.0205},
-      {"frames come 30 ms late",
-       [](SimulatedDevice& s) {
-         auto queue = std::make_shared<std::deque<Report>>();
-         on_the_way(s, [queue](const Report& report) {
-           queue->push_back(report);
-           if (queue->size() <= 30) return Reports{};
-           const Report oldest = queue->front();
-           queue->pop_front();
-           return Reports{oldest};
-         });
-       },
-       kLate, 0.0205},
-      {"frames come out of order",
-       [](SimulatedDevice& s) {
-         auto last = std::make_shared<Report>();
-         on_the_way(s, [last](const Report& report) {
-           if (last->empty()) {
-             *last = report;
-             return Reports{};
-           }
-           const Report older = *last;
-           last->clear();
-           return Reports{report, older};
-         });
-       },
-       kOutOfOrder, 0.0205},
+      {"the same frame comes again and again", [](SimulatedDevice& s) { s.on_the_way_in = test::first_again(); }, kLate,
+       0.0205},
+      {"frames come 30 ms late", [](SimulatedDevice& s) { s.on_the_way_in = test::late_by(30); }, kLate, 0.0205},
+      {"frames come out of order", [](SimulatedDevice& s) { s.on_the_way_in = out_of_order(); }, kOutOfOrder, 0.0205},
       {"a wrong checksum",
-       [](SimulatedDevice& s) {
-         on_the_way(s, [](Report report) {
-           report[13] ^= 0x5A;
-           return Reports{report};
-         });
-       },
+       [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report[13] ^= 0x5A; }); },
        kCorrupt, 0.0205},
       {"another version",
-       [](SimulatedDevice& s) {
-         on_the_way(s, [](Report report) {
-           report[2] = 9;
-           return Reports{report};
-         });
-       },
+       [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report[2] = 9; }); },
        kWrongFirmware, 0.0205},
       {"the device reports a motor fault",
        [](SimulatedDevice& s) { dynamic_cast<test::BridgeModel&>(*s.model).conditions = bridge::kMotorFault; }, kOwn,
@@ -168,7 +130,7 @@ TEST(BridgeEndpoint, EveryFaultRemovesTheForceUntilTheTimeInTheReadme) {
     simulated.writer_hangs = simulated.encoder_frozen = false;
     simulated.counts_offset = 0;
     dynamic_cast<test::BridgeModel&>(*simulated.model).conditions = 0;
-    if (simulated.unplugged) simulated.device.endpoint.connected(simulated.now_s);
+    if (simulated.unplugged) simulated.device.connected(simulated.now_s);
     simulated.unplugged = false;
     const int back = ticks_until(simulated, true, 1000, faults);
     EXPECT_LE(back, 300) << injection.name;
@@ -233,48 +195,6 @@ TEST(BridgeEndpoint, TheGripIsADeadManSwitch) {
   board.conditions = 0;
   simulated.run_s(0.02);
   EXPECT_EQ(simulated.motor_N(), 0.0);
-}
-
-TEST(BridgeEndpoint, TheDeviceStopsByItselfWithoutFramesOrHeartbeat) {
-  test::BridgeModel model;
-  DeviceCommand command;
-  command.drive = true;
-  command.units = -1e6;
-  const auto send = [&] {
-    const OutReports out = kBridgeProtocol.encode_command(command);
-    model.hear(Report(out.bytes[0].begin(), out.bytes[0].begin() + bridge::kHostBytes));
-  };
-  const auto status = [&] {
-    bridge::FromDevice in{};
-    EXPECT_TRUE(bridge::decode(model.outbox.back().data(), in));
-    return in.status;
-  };
-  std::uint32_t now_us = 0;
-  const auto run = [&](int ms, bool frames, bool beats) {
-    for (int i = 0; i < ms; ++i) {
-      now_us += 1000;
-      ++command.sequence;
-      if (beats) ++command.heartbeat;
-      if (frames) send();
-      model.step(now_us, 0);
-    }
-  };
-  run(20, true, true);
-  EXPECT_EQ(model.force_units(), -1e6);
-  EXPECT_EQ(status(), bridge::kDriving);
-  run(49, false, false);
-  EXPECT_EQ(model.force_units(), -1e6);
-  run(1, false, false);
-  EXPECT_EQ(model.force_units(), 0.0);
-  run(1, false, false);
-  EXPECT_EQ(status(), bridge::kStopped);
-  run(2, true, true);
-  EXPECT_EQ(model.force_units(), -1e6) << "valid frames come again";
-  run(60, true, false);
-  EXPECT_EQ(model.force_units(), 0.0) << "the heartbeat stood still";
-  EXPECT_EQ(status(), bridge::kStopped);
-  run(2, true, true);
-  EXPECT_EQ(model.force_units(), -1e6);
 }
 
 }  // namespace

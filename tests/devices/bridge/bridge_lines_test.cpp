@@ -1,10 +1,8 @@
 // Bridge devices over all kinds of lines, in real time: a child program, sockets, a
 // pseudo-terminal, and their faults. With PALPATE_FAULT_TABLE=1 every fault is tested on
-// every line, and latencies are printed with those of a HID device.
+// every line.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -13,10 +11,7 @@
 #include <optional>
 
 #include "devices/bridge/byte_stream.h"
-#include "devices/link/linked_device.h"
 #include "tests/support/bridge_session.h"
-#include "tests/support/fake_device_bus.h"
-#include "tests/support/hid_ticks.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
@@ -223,47 +218,6 @@ TEST(BridgeLines, ErrorsHaveReasonAndAdvice) {
                                                        "COMMAND", "devices/README.md#bridge"}));
   EXPECT_EQ(with_remote_bridge("bridge:tcp:lab:5000"), "bridge:remote-tcp:lab:5000");
   EXPECT_EQ(with_remote_bridge("hand"), "hand");
-}
-
-double part(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? NAN : values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-void print_latencies(const char* name, SpringSession& session) {
-  std::vector<double> trips_ms;
-  for (int i = 0; i < 500; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    for (const LoopSnapshot& one : session.snapshots()) {
-      if (!std::isnan(one.device.round_trip_s)) trips_ms.push_back(1e3 * one.device.round_trip_s);
-    }
-  }
-  const TimePercentiles lateness = session.loop().statistics().lateness;
-  std::printf(
-      "%-6s round trip [ms] p50 %.2f p99 %.2f p99.9 %.2f; lateness of the tick [us] p50 %.0f p99 %.0f "
-      "p99.9 %.0f\n",
-      name, part(trips_ms, 0.5), part(trips_ms, 0.99), part(trips_ms, 0.999), lateness.p50_us, lateness.p99_us,
-      lateness.p99_9_us);
-}
-
-TEST(BridgeLines, LatenciesBesideAHidDevice) {
-  if (!everything()) return;  // a measurement without assertions
-  test::FakeDeviceBus bus;
-  auto opened = open_first(bus, {&kOpenFfBoardProtocol});
-  ASSERT_TRUE(opened.ok());
-  auto hid = std::make_unique<LinkedDevice>(bus, test::patient(test::example_calibration(&kOpenFfBoardProtocol)),
-                                            std::move(*opened));
-  ASSERT_TRUE(hid->open().ok());
-  SpringSession board(std::move(hid));
-  print_latencies("hid", board);
-  for (const char* kind : {"exec", "unix", "tcp", "pty"}) {
-    const test::TemporaryFolder folder;
-    const Line line(kind, folder, "none");
-    auto device = line.open();
-    ASSERT_TRUE(device.ok());
-    SpringSession session(std::move(*device));
-    print_latencies(kind, session);
-  }
 }
 
 }  // namespace

@@ -90,19 +90,6 @@ TEST(HidReports, WritesOpenFfBoard) {
   EXPECT_EQ(wire::read32(ffb.bytes[1].data() + 13), 0xFFFFFFFFu);
 }
 
-TEST(HidReports, TheForceOfAnOpenFfBoardHasAnEndThatIsPutOff) {
-  const OutReports start = kOpenFfBoardProtocol.encode_start();
-  ASSERT_EQ(start.count, 4u);
-  EXPECT_EQ(ffb_command(start, 2), 7u) << "duration, ms";
-  EXPECT_EQ(ffb_value(start, 2), 50u);
-  for (std::size_t i = 0; i < start.count; ++i) EXPECT_NE(ffb_command(start, i), 5u) << "nothing runs yet";
-  const OutReports fourth = kOpenFfBoardProtocol.encode_command({8, 1, true, 1.0});
-  ASSERT_EQ(fourth.count, 3u);
-  EXPECT_EQ(ffb_object(fourth, 2), 0xA03);
-  EXPECT_EQ(ffb_command(fourth, 2), 5u) << "starts it anew";
-  EXPECT_EQ(ffb_value(fourth, 2), 1u);
-}
-
 TEST(HidReports, NoNumberIsNoForce) {
   for (const DeviceProtocol* protocol : {&kBridgeProtocol, &kOpenFfBoardProtocol}) {
     const OutReports nan = protocol->encode_command({1, 1, true, std::nan("")});

@@ -70,18 +70,6 @@ TEST(DeviceStop, StopsDevicesInACrash) {
   EXPECT_TRUE(WIFSIGNALED(ended.status));
 }
 
-TEST(DeviceStop, GoesOnWithTheHandlerThatWasThere) {
-  const Ended ended = run([] { signal(SIGINT, [](int) { _exit(3); }); }, [] { raise(SIGINT); });
-  EXPECT_TRUE(ended.told);
-  EXPECT_EQ(WEXITSTATUS(ended.status), 3);
-}
-
-TEST(DeviceStop, AnIgnoredSignalStaysIgnored) {
-  const Ended ended = run([] { signal(SIGHUP, SIG_IGN); }, [] { raise(SIGHUP); });
-  EXPECT_FALSE(ended.told);
-  EXPECT_EQ(WEXITSTATUS(ended.status), 7);
-}
-
 // Writes reports without pause, each blocked for 2 ms as by a slow device.
 void push_without_end(int descriptor) {
   DeviceCommand command;

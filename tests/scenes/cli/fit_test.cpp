@@ -208,13 +208,6 @@ TEST_F(FitVerb, ChecksTheOutputBeforeTheFit) {
   expect_refused(fit({"--out", recording() + "/model.json"}), 1, {"press.csv", "folder"});
 }
 
-TEST_F(FitVerb, NoContactIsOneErrorLine) {
-  Recording air = example_recording(100, 1000.0);
-  for (RecordingRow& row : air.rows) row.position_m = -1e-3;
-  ASSERT_TRUE(write_recording(recording(), air, {}, true).ok());
-  expect_refused(fit({}), 1, {"no_force: "});
-}
-
 // The direct fit takes seconds.
 TEST_F(FitVerb, AnInterruptedRunLeavesNoFile) {
   ASSERT_TRUE(write_recording(recording(), example_recording(400000, 1000.0, 30e-6), {}, true).ok());

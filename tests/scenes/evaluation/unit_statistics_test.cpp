@@ -15,12 +15,6 @@ TEST(StudentT, AgreesWithThePublishedTable) {
   EXPECT_NEAR(student_t(0.025, 120), 1.980, 5e-4);
 }
 
-TEST(UnitStatistics, ThreeSpotsThatDifferHaveAWideBound) {
-  const double error = standard_error({0.79, 0.49, 0.85});
-  EXPECT_NEAR(bound_95(0.71, -error, 3), 0.384, 1e-3);
-  EXPECT_FALSE(interval_95(0.64, standard_error({0.79, 0.49}), 2).known()) << "two units say nothing";
-}
-
 TEST(UnitStatistics, ARatioOfEqualUnitsIsAMean) {
   const std::vector<double> shares{0.5, 0.7, 0.9, 0.6};
   const std::vector<double> within{50.0, 70.0, 90.0, 60.0};

@@ -38,14 +38,6 @@ TEST(Dent, IsTheDepthLessTheLowPassedVelocity) {
   EXPECT_GT(dent.depth_m(), 1e-6) << "still on its way back";
 }
 
-TEST(Dent, WithoutMemoryIsTheDepth) {
-  Dent dent({FeatureSpec{}});
-  dent.step(3e-3, 0.0, kStep_s);
-  EXPECT_EQ(dent.depth_m(), 3e-3);
-  dent.step(0.0, 0.0, kStep_s);
-  EXPECT_EQ(dent.depth_m(), 0.0);
-}
-
 TEST(Dent, ColourFadesWithinAThirdOfASecond) {
   Dent dent;
   dent.step(1e-3, 2.0, kStep_s);

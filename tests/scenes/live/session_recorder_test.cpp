@@ -172,17 +172,6 @@ TEST(SessionRecorder, RecordsOneFileAtATime) {
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
 }
 
-TEST(SessionRecorder, IsCompleteWhenTheSessionEnds) {
-  const TemporaryFolder folder;
-  PathDevice device(test::strokes);
-  {
-    Rig rig(device);
-    ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-    rig.run(500);
-  }
-  EXPECT_EQ(read_recording(folder.file("a.csv")).value().rows.size(), 500u);
-}
-
 TEST(SessionRecorder, ReportsAMissingFolder) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.file("sub"));

@@ -158,21 +158,6 @@ TEST(Block, RecoversInFreeAir) {
   }
 }
 
-TEST(Block, LoadsAboveAndUnloadsBelowTheRelaxedForce) {
-  for (const Material& material : materials()) {
-    if (material.name == "elastic") continue;
-    const BlockPtr in = material.make_block(), still = material.make_block(), out = material.make_block();
-    const double depth_m = 0.5 * depth_of_5_N(*in);
-    for (Block* block : {in.get(), still.get(), out.get()}) {
-      for (int i = 0; i < 1000; ++i) block->step(depth_m * (i + 1) / 1000, 0.0, 1e-3);
-      for (int i = 0; i < 5000; ++i) block->step(depth_m, 0.0, 1e-3);
-    }
-    const double still_N = still->step(depth_m, 0.0, 1e-3);
-    EXPECT_GT(in->step(depth_m + 2e-5, 0.02, 1e-3), still_N) << material.name;
-    EXPECT_LT(out->step(depth_m - 2e-5, -0.02, 1e-3), still_N) << material.name;
-  }
-}
-
 TEST(Block, InvalidInputChangesNothing) {
   for (const Material& material : materials()) {
     const BlockPtr block = material.make_block();

@@ -64,13 +64,5 @@ TEST(FrictionBlock, FrictionGrowsWithTheDepthGripped) {
   EXPECT_EQ(FrictionBlock::friction_limit_N(9e-3), FrictionBlock::kFriction_N);
 }
 
-TEST(FrictionBlock, SurfaceWithoutAProbeComesBackFlat) {
-  FrictionBlock block;
-  double at_m = 0.0;
-  slide(block, at_m, 4e-3);
-  for (int i = 0; i < 60000; ++i) block.step(-1e-3, 0.0, 1e-3);
-  EXPECT_LT(block.surface_depth_m(), 1e-6);
-}
-
 }  // namespace
 }  // namespace palpate

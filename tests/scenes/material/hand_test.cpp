@@ -92,27 +92,5 @@ TEST(Hand, HalvingTheStepHardlyChangesTheMotion) {
   EXPECT_LT(worst_m, 3e-6);
 }
 
-TEST(Hand, PressesTouchesAndLeavesAgain) {
-  Hand hand(silicone(), {}, 1);
-  const auto owned = silicone().make_block();
-  Block& block = *owned;
-  block.reset(hand.position_m());
-  int touches = 0;
-  double fastest = 0.0, strongest_N = 0.0;
-  bool inside = false;
-  for (int i = 0; i < 800000; ++i) {  // 40 s
-    advance(hand, block);
-    touches += hand.position_m() > 0.0 && !inside;
-    inside = hand.position_m() > 0.0;
-    fastest = std::max(fastest, std::abs(hand.velocity_m_per_s()));
-    strongest_N = std::max(strongest_N, block.force_N());
-  }
-  EXPECT_GT(touches, 25);
-  EXPECT_GT(fastest, 0.15);
-  EXPECT_LT(fastest, 0.5);
-  EXPECT_GT(strongest_N, 5.0);
-  EXPECT_LT(strongest_N, 7.5);
-}
-
 }  // namespace
 }  // namespace palpate

@@ -39,16 +39,6 @@ TEST(SofteningBlock, IsSofterBelowItsDeepestPressAndHeals) {
   EXPECT_NEAR(go(pressed, 0.0, 4e-3, 0.2), first_N, 1e-3 * first_N);
 }
 
-TEST(SofteningBlock, TheDeepestDepthFadesExponentially) {
-  SofteningBlock block;
-  go(block, 0.0, 8e-3, 0.2);
-  go(block, 8e-3, 2e-3, 1e-3);
-  const double start_m = block.deepest_recent_m();
-  for (int i = 0; i < 6000; ++i) block.step(2e-3, 0.0, 1e-3);
-  EXPECT_NEAR(block.deepest_recent_m(), 2e-3 + (start_m - 2e-3) * std::exp(-1.0), 1e-7)
-      << "but for the moment in which the surface comes after";
-}
-
 // Healing during a hold returns energy, but no more than the softening dissipated before.
 TEST(SofteningBlock, HealingMakesNoEnergy) {
   SofteningBlock block;

@@ -11,16 +11,6 @@
 namespace palpate {
 namespace {
 
-TEST(Gnuplot, RunsScriptsInTheirFolder) {
-  const Status found = find_gnuplot();
-  ASSERT_TRUE(found.ok()) << found.error().message;
-  const test::TemporaryFolder folder;
-  folder.with_file("a.gp", "set print 'a.txt'\nprint 1.5\n");
-  const Status status = run_gnuplot(folder.path(), "a.gp");
-  EXPECT_TRUE(status.ok()) << status.error().message;
-  EXPECT_EQ(test::read_text(folder.file("a.txt")), "1.5\n");
-}
-
 TEST(Gnuplot, ErrorsHaveItsFirstLine) {
   const test::TemporaryFolder folder;
   folder.with_file("a.gp", "dance\n");

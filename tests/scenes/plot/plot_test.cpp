@@ -131,13 +131,6 @@ TEST(Plot, ALegendOfSeveralLinesHasAsManyLinesOfRoom) {
   EXPECT_NE(plot_script(plot)->find("title \" \\n \\n \\n \"\n"), std::string::npos) << *plot_script(plot);
 }
 
-TEST(Plot, ScriptHoldsItsOwnData) {
-  const auto script = plot_script(errors_up_to(30.0));
-  ASSERT_TRUE(script.ok()) << script.error().message;
-  EXPECT_NE(script->find("$panel0_0 << END\n3 0.6 NaN NaN\n"), std::string::npos) << *script;
-  EXPECT_EQ(script->find(".csv"), std::string::npos);
-}
-
 TEST(Plot, NamesAreTextAndNoCommands) {
   Plot plot = errors_up_to(1.0);
   plot.panels[0].title = "a\"; system('touch hit') #`x`\\";
@@ -157,11 +150,11 @@ TEST(Plot, AGapBreaksTheLine) {
 TEST(DrawPlot, WritesOneFileWholeOrNothing) {
   if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
   const test::TemporaryFolder folder;
-  EXPECT_TRUE(test::has_parts(draw_plot(errors_up_to(3.0), {folder.file("a.jpg")}, false).error().message,
+  EXPECT_TRUE(test::has_parts(draw_plot(errors_up_to(3.0), folder.file("a.jpg"), false).error().message,
                               {"--plot", folder.file("a.jpg")}));
-  ASSERT_TRUE(draw_plot(errors_up_to(3.0), {folder.file("a.svg")}, false).ok());
+  ASSERT_TRUE(draw_plot(errors_up_to(3.0), folder.file("a.svg"), false).ok());
   EXPECT_EQ(folder.entries(), (std::vector<std::string>{"a.svg"}));
-  EXPECT_FALSE(draw_plot(errors_up_to(3.0), {folder.file("a.svg")}, false).ok()) << "it exists";
+  EXPECT_FALSE(draw_plot(errors_up_to(3.0), folder.file("a.svg"), false).ok()) << "it exists";
 }
 
 TEST(InlineSvg, FollowsThePageAndKeepsItsIdsApart) {

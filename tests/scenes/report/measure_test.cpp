@@ -11,27 +11,9 @@
 #include "scenes/report/plan.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
-#include "tests/support/message_parts.h"
 
 namespace palpate {
 namespace {
-
-SharedRecording example(const std::string& name, std::size_t rows) {
-  Recording recording = test::example_recording(rows, 1000.0);
-  recording.name = name;
-  return std::make_shared<const Recording>(std::move(recording));
-}
-
-TEST(LeaveOut, OfOneRecordingABlockAtItsEnd) {
-  const Split part = leave_out(example("a", 5000));
-  ASSERT_EQ(part.train.size(), 1u);
-  ASSERT_EQ(part.tested.size(), 1u);
-  EXPECT_EQ(part.tested[0]->rows.size(), 5000u) << "what came before is replayed too";
-  EXPECT_EQ(part.counted_from_s, part.train[0]->rows.back().time_s + 1e-3);
-  EXPECT_TRUE(test::has_parts(part.words, {"block at the end"}));
-}
-
-TEST(LeaveOut, OfAShortOneNothing) { EXPECT_TRUE(leave_out(example("a", 500)).tested.empty()); }
 
 TEST(Plan, BeginsWithNoForceAndHasBothRecipesInEverySize) {
   for (const bool quick : {true, false}) {

@@ -23,16 +23,6 @@ TEST(ReportFolder, AppearsWholeOnCommit) {
   EXPECT_EQ(test::read_text(out + "/tables/a.csv"), "x\n");
 }
 
-TEST(ReportFolder, LeavesNothingWithoutCommit) {
-  const test::TemporaryFolder folder;
-  {
-    auto report = ReportFolder::create(folder.file("report"), false);
-    ASSERT_TRUE(report.ok());
-    ASSERT_TRUE(report->write("figures/a.svg", "x").ok());
-  }
-  EXPECT_TRUE(folder.entries().empty());
-}
-
 TEST(ReportFolder, ReplacesAnEarlierReportOnlyWhenForced) {
   const test::TemporaryFolder folder;
   const std::string out = folder.file("report");

@@ -11,27 +11,6 @@
 namespace palpate {
 namespace {
 
-TEST(Assets, FirstFolderWithScenesWins) {
-  const test::TemporaryFolder folder;
-  std::filesystem::create_directories(folder.file("b/scenes"));
-  std::filesystem::create_directories(folder.file("c/scenes"));
-  const auto found = first_assets_folder({folder.file("a"), folder.file("b"), folder.file("c")});
-  ASSERT_TRUE(found.ok());
-  EXPECT_EQ(*found, folder.file("b"));
-}
-
-TEST(Assets, NamesThePlacesItLookedAt) {
-  const auto found = first_assets_folder({"/none/a", "/none/b"});
-  ASSERT_FALSE(found.ok());
-  EXPECT_TRUE(test::has_parts(found.error().message, {"folder", "/none/a", "/none/b", "PALPATE_ASSETS"}));
-}
-
-TEST(Assets, TheSourceTreeHasThem) {
-  const auto found = find_assets();
-  ASSERT_TRUE(found.ok());
-  EXPECT_TRUE(std::filesystem::exists(*found + "/scenes/silicone_block.json"));
-}
-
 TEST(Assets, TheEnvironmentDecidesAlone) {
   const auto run = test::run_palpate({"scenes"}, {"PALPATE_ASSETS=/none"});
   EXPECT_EQ(run.exit_code, 1);

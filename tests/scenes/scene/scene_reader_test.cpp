@@ -107,15 +107,6 @@ TEST(SceneReader, LimitsTheNumberOfFeatures) {
   EXPECT_FALSE(parse_scene(document.dump(), "x.json").ok());
 }
 
-TEST(SceneReader, RefusesOtherTextThanJson) {
-  const auto cut = parse_scene(std::string(kGood).substr(0, 40), "x.json");
-  ASSERT_FALSE(cut.ok());
-  EXPECT_EQ(cut.error().message.rfind("x.json:4:", 0), 0u) << cut.error().message;
-  for (const char* text : {"", "[]", "null", "{\"name\": 1e999}", "\xff\xfe", "{\"name\": \"\xff\"}"}) {
-    EXPECT_FALSE(parse_scene(text, "x.json").ok()) << text;
-  }
-}
-
 // Every field in turn has a wrong type or is missing: it is refused without a crash.
 TEST(SceneReader, RefusesEveryFieldOfAWrongTypeOrMissing) {
   const Json good = Json::parse(kGood);

@@ -34,14 +34,6 @@ TEST(Scene, SiliconeHasThePapersFeatures) {
   EXPECT_EQ(scene->default_models.size(), 5u);
 }
 
-TEST(Scene, OtherScenesHaveFewerFeatures) {
-  EXPECT_EQ(describe_features(*load_scene("elastic_block")), "depth");
-  EXPECT_EQ(describe_features(*load_scene("stiff_block")), "depth, velocity");
-  EXPECT_EQ(describe_features(*load_scene("foam_block")), "depth, velocity, relaxation 0.08 s, relaxation 0.9 s");
-  EXPECT_FALSE(load_scene("skin")->material.has_value());
-  EXPECT_FALSE(load_scene("jnd_study")->material.has_value());
-}
-
 TEST(Scene, UnknownNameListsTheKnownOnes) {
   for (const std::string name : {"rubber", "", "../scenes/skin", "skin.json"}) {
     const auto scene = load_scene(name);

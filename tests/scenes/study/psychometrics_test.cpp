@@ -51,12 +51,6 @@ TEST(Psychometrics, JndIsHalfTheDistanceBetweenTheCriterionPoints) {
   EXPECT_NEAR(function.at(-function.jnd(), true), 1.0 - kJndCriterion, 1e-12);
 }
 
-TEST(Psychometrics, AnOrderBiasDoesNotChangeTheSlope) {
-  const PsychometricFunction truth{5.0, 0.8, 0.0};
-  const double found = fit_psychometric(expected_answers({truth}, 5.0), 1).functions[0].jnd();
-  EXPECT_NEAR(found, truth.jnd(), 1e-5);
-}
-
 TEST(Psychometrics, MarksSlopesThatAnswersDoNotBound) {
   // All correct, guesses, something between, no answers.
   std::vector<AnswerCell> cells = expected_answers({{5.0, 0.0, 0.0}}, 5.0);

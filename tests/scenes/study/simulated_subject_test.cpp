@@ -2,11 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "tests/support/study_driving.h"
-#include "tests/support/temporary_folder.h"
-
 namespace palpate {
 namespace {
 
@@ -37,16 +32,6 @@ TEST(SimulatedSubject, GivesAllAnswersOfAPlanAndRepeatsThem) {
   EXPECT_EQ(one.size(), 328u);
   EXPECT_EQ(one, simulated_answers({"S01"}, {}, 7));
   EXPECT_NE(one, simulated_answers({"S01"}, {}, 8));
-  // A session accepts the answers as those of its plan.
-  const test::TemporaryFolder folder;
-  {
-    auto file = StudyFile::open(folder.file("S01.csv"), {"S01"});
-    ASSERT_TRUE(file.ok() && file->consent("").ok());
-    for (const StudyRecord& record : one) ASSERT_TRUE(file->append(record).ok());
-  }
-  const auto session = test::session_at(folder.file("S01.csv"));
-  ASSERT_TRUE(session.ok()) << session.error().message;
-  EXPECT_EQ((*session)->state(), StudyState::done);
 }
 
 }  // namespace

@@ -113,27 +113,6 @@ TEST_F(StudyFileTest, AFullDiskLosesNothingThatWasAnswered) {
   EXPECT_EQ(read_study(path_)->records.size(), 2u);
 }
 
-// The process is killed between two trials.
-TEST_F(StudyFileTest, AKilledSessionIsResumed) {
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    auto session = test::session_at(path_);
-    if (!session.ok()) _exit(1);
-    (*session)->accept_consent("");
-    test::answer_trials(**session, 20, test::truly_larger);
-    raise(SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status));
-  const auto session = test::session_at(path_);
-  ASSERT_TRUE(session.ok()) << session.error().message;
-  EXPECT_EQ((*session)->view().answered, 12u);
-  test::answer_trials(**session, 1, test::truly_larger);
-  EXPECT_EQ(read_study(path_)->records.back().trial.number, 13u);
-}
-
 TEST_F(StudyFileTest, StrokesAreNamedAndResumed) {
   const StudyHeader header = test::discrimination_header(0.8);
   std::vector<StudyRecord> answered;

@@ -86,13 +86,6 @@ TEST(StudyPresenter, LimitsForcesThatAreTooLarge) {
   }
 }
 
-TEST(StudyPresenter, NoForceOutlastsItsInterval) {
-  StudyPresenter presenter;
-  presenter.present(stimuli(1.0, 2.0));
-  run(presenter, kPresentation_ticks);
-  for (const double force_N : run(presenter, 20000)) ASSERT_EQ(force_N, 0.0);
-}
-
 TEST(StudyPresenter, StopIsImmediateAndPermanent) {
   StudyPresenter presenter;
   presenter.present(stimuli(3.0, 2.0));
