@@ -124,7 +124,8 @@ std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noe
 // A model file of another material is not wrong where it differs from the true force of this one. Recordings that the
 // user named count as the material of all models.
 bool SessionModels::is_of_other_material(const Slot& slot) const {
-  if (!scene_.material || slot.claimed || slot.plan.origin != ModelOrigin::file) return false;
+  const bool claimed = slot.claimed || slot.plan.of_this_material;
+  if (!scene_.material || claimed || slot.plan.origin != ModelOrigin::file) return false;
   const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
   return std::any_of(recordings.begin(), recordings.end(), [&](const std::string& name) {
     const std::string start = *scene_.material + "_";  // the rig names its recordings MATERIAL_SEED
@@ -321,7 +322,10 @@ const ModelInfo& SessionModels::info(std::size_t slot) const noexcept { return s
 const std::shared_ptr<const FittedModel>& SessionModels::model(std::size_t slot) const noexcept {
   return slots_[slot]->model;
 }
-void SessionModels::treat_as_this_material(std::size_t slot) noexcept { slots_[slot]->info.other_material = false; }
+void SessionModels::treat_as_this_material(std::size_t slot) noexcept {
+  slots_[slot]->plan.of_this_material = true;
+  slots_[slot]->info.other_material = false;
+}
 
 std::vector<SlotPlan> SessionModels::plans() const {
   std::vector<SlotPlan> plans;
