@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "engine/base/csv_scanner.h"
@@ -31,6 +30,11 @@ std::string field_name(std::string_view pointer) {
     pointer.remove_prefix(end);
   }
   return name;
+}
+
+// No range contains a non-finite number.
+bool is_number_of(const Json& value, const NumberRange& range) {
+  return value.is_number() && range.holds(value.get<double>());
 }
 
 }  // namespace
@@ -80,7 +84,12 @@ std::string found(const Json& value) {
 
 std::string NumberRange::words() const {
   char text[80];
-  std::snprintf(text, sizeof text, "a number %s %g up to %g", open ? "above" : "from", low, high);
+  if (low == -kLargestNumber) return "a number";
+  if (high == kLargestNumber) {
+    std::snprintf(text, sizeof text, open ? "a number above %g" : "a number, %g or more", low);
+  } else {
+    std::snprintf(text, sizeof text, "a number %s %g up to %g", open ? "above" : "from", low, high);
+  }
   return text;
 }
 
@@ -165,23 +174,10 @@ std::string JsonFields::filled_text(const JsonNode& object, const char* key) {
   return value != nullptr ? value->get<std::string>() : std::string();
 }
 
-double JsonFields::number_in(const JsonNode& object, const char* key, const std::string& expected, double instead,
-                             const NumberRange& range) {
-  // No range contains a non-finite number.
-  const Json* value = value_where(object, key, expected,
-                                  [&](const Json& one) { return one.is_number() && range.holds(one.get<double>()); });
-  return value != nullptr ? value->get<double>() : instead;
-}
-
-double JsonFields::number(const JsonNode& object, const char* key, Sign sign) {
-  const double most = std::numeric_limits<double>::max();
-  if (sign == Sign::kAny) return number_in(object, key, "a number", 1.0, {-most, most});
-  const bool positive = sign == Sign::kPositive;
-  return number_in(object, key, positive ? "a number above 0" : "a number, 0 or more", 1.0, {0.0, most, positive});
-}
-
 double JsonFields::number(const JsonNode& object, const char* key, const NumberRange& range) {
-  return number_in(object, key, range.words(), range.low, range);
+  const Json* value =
+      value_where(object, key, range.words(), [&](const Json& one) { return is_number_of(one, range); });
+  return value != nullptr ? value->get<double>() : std::clamp(1.0, range.low, range.high);
 }
 
 std::optional<std::size_t> JsonFields::choice(const JsonNode& node, const std::vector<std::string>& names) {
@@ -212,8 +208,8 @@ JsonNode JsonFields::list(const JsonNode& object, const char* key, const std::st
           object.pointer + "/" + key};
 }
 
-// Reads exactly `expected_count` numbers into `values`; `words` describes them in errors.
-bool JsonFields::fill(const JsonNode& node, std::size_t expected_count, const std::string& words, double* values) {
+bool JsonFields::fill(const JsonNode& node, std::size_t expected_count, const std::string& words, double* values,
+                      const NumberRange& range) {
   if (node.value == nullptr) return false;
   if (!node.value->is_array() || node.value->size() != expected_count) {
     complain(node.pointer, found(*node.value) + ", expected " + std::to_string(expected_count) + " " + words);
@@ -221,8 +217,8 @@ bool JsonFields::fill(const JsonNode& node, std::size_t expected_count, const st
   }
   for (std::size_t i = 0; i < expected_count; ++i) {
     const Json& entry = (*node.value)[i];
-    if (!entry.is_number()) {
-      complain(node.pointer + "/" + std::to_string(i), found(entry) + ", expected a number");
+    if (!is_number_of(entry, range)) {
+      complain(node.pointer + "/" + std::to_string(i), found(entry) + ", expected " + range.words());
       return false;
     }
     values[i] = entry.get<double>();

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -31,18 +32,20 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& path
 // "found 3.5", "found a list of 7": a short description of a value for a message.
 std::string found(const nlohmann::json& value);
 
-enum class Sign { kAny, kNotNegative, kPositive };
+inline constexpr double kLargestNumber = std::numeric_limits<double>::max();
 
 // The range of a number, both ends included; if `open`, without `low`.
 struct NumberRange {
-  double low = 0.0;
-  double high = 1.0;
+  double low = -kLargestNumber;
+  double high = kLargestNumber;
   bool open = false;
 
   bool holds(double number) const noexcept { return (open ? number > low : number >= low) && number <= high; }
-  // "a number above 0 up to 100"
+  // "a number above 0 up to 100", "a number, 0 or more"
   std::string words() const;
 };
+inline constexpr NumberRange kNotNegative{0.0};
+inline constexpr NumberRange kPositive{0.0, kLargestNumber, true};
 
 // A value and its JSON pointer; `value` is null if it does not exist.
 struct JsonNode {
@@ -79,13 +82,13 @@ class JsonFields {
   std::string filled_text(const JsonNode& object, const char* key);
   bool boolean(const JsonNode& object, const char* key);
   std::uint64_t count(const JsonNode& object, const char* key);
-  double number(const JsonNode& object, const char* key, Sign sign = Sign::kAny);
-  double number(const JsonNode& object, const char* key, const NumberRange& range);
+  double number(const JsonNode& object, const char* key, const NumberRange& range = {});
   // The index in `names` of the text; otherwise reports an error with all names and returns none.
   std::optional<std::size_t> choice(const JsonNode& node, const std::vector<std::string>& names);
 
-  // Reads exactly `expected_count` numbers, which messages call `words`, into `values`.
-  bool fill(const JsonNode& node, std::size_t expected_count, const std::string& words, double* values);
+  // Reads exactly `expected_count` numbers of the range, which messages call `words`, into `values`.
+  bool fill(const JsonNode& node, std::size_t expected_count, const std::string& words, double* values,
+            const NumberRange& range = {});
 
   // To be called after all members have been read: reports an error for every member that was not requested, in all
   // objects from which a member was.
@@ -95,8 +98,6 @@ class JsonFields {
   template <typename Good>
   const nlohmann::json* value_where(const JsonNode& object, const char* key, const std::string& expected,
                                     const Good& good);
-  double number_in(const JsonNode& object, const char* key, const std::string& expected, double instead,
-                   const NumberRange& range);
   bool reported_already(const std::string& pointer) const;
   std::string_view text_;
   const std::string& path_;

@@ -33,7 +33,7 @@ struct ExportedC {
   std::size_t state_bytes = 0;  // size of the variables
 };
 
-// `data` must pass validate_model. Errors: a kind of correction that cannot be exported.
+// Errors: a kind of correction that cannot be exported.
 Result<ExportedC> export_c(const ModelData& data, const ExportRequest& request);
 
 }  // namespace palpate

@@ -94,7 +94,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   }
   fit.data.name = method.name;
   if (!fitted->size.empty()) fit.data.name.append("-").append(fitted->size);
-  if (const Status valid = validate_model(fit.data); !valid) {
+  if (const Status valid = check_forces(fit.data); !valid) {
     return Error{"the " + fit.data.name + " fit did not give a usable model (" + valid.error().message +
                  "); try more smoothing or fewer centres"};
   }

@@ -104,7 +104,7 @@ Result<MethodFit> NestedFit::fit(Eigen::Index count) const {
     fit.data.error_bound = bound_of(*prepared_, cross_validate(*prepared_, of_folds));
   }
   fit.data.name = fit.data.method + "-" + std::to_string(fit.report.centres_used);
-  if (const Status valid = validate_model(fit.data); !valid) return valid.error();
+  if (const Status valid = check_forces(fit.data); !valid) return valid.error();
   return fit;
 }
 

@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/result.h"
-
 namespace palpate {
 
 class JsonFields;  // engine/json/json_fields.h
@@ -25,16 +23,13 @@ class Correction {
  public:
   virtual ~Correction() = default;
 
-  // h(u) in newtons. `u`: one normalised value per feature. The correction must have passed `validate`. Haptics
-  // thread, wait-free, no allocation.
+  // h(u) in newtons. `u`: one normalised value per feature. Haptics thread, wait-free, no allocation.
   virtual double evaluate(const double* u) const noexcept = 0;
   // The number of centres, or of nodes of a grid; 0 for neither.
   virtual int size() const noexcept = 0;
   // True if the model is its trend alone; `evaluate` is then not called.
   virtual bool is_none() const noexcept { return false; }
 
-  // Checks sizes and finiteness for `dimension` features. Errors: the field, the value found and the value expected.
-  virtual Status validate(int dimension) const = 0;
   // The fields of a model file; `read` of the kind makes a bit-identical correction from them.
   virtual FileFields file_fields() const = 0;
 };
@@ -45,7 +40,6 @@ class NoCorrection final : public Correction {
   double evaluate(const double*) const noexcept override { return 0.0; }
   int size() const noexcept override { return 0; }
   bool is_none() const noexcept override { return true; }
-  Status validate(int) const override { return {}; }
   FileFields file_fields() const override { return {{"trend_alone", "true"}}; }
 };
 
@@ -54,8 +48,7 @@ using CorrectionPtr = std::shared_ptr<const Correction>;
 // The identification of a kind in a model file and its reader.
 struct CorrectionKind {
   const char* key;  // the top-level field that only this kind has
-  // Reports errors to `fields`, and may then return null. `top`: the whole document. The caller validates the
-  // result.
+  // Reports errors to `fields`, and then returns null. `top`: the whole document; `dimension`: number of features.
   CorrectionPtr (*read)(JsonFields& fields, const JsonNode& top, int dimension);
 };
 

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/tick/force_model.h"
 #include "engine/tick/jnd.h"
 #include "models/model/correction.h"
@@ -92,8 +93,9 @@ struct ModelData {
 
 inline constexpr double kForceMargin = 1.2;
 
-// Checks sizes, signs, finiteness and plausible forces. Errors: the field, the value found and the value expected.
-Status validate_model(const ModelData& data);
+// Checks the forces at the points of the cover. Errors: a part of the force is not finite or far above the limits of
+// the model.
+Status check_forces(const ModelData& data);
 
 // The sensor of a tool with this encoder step: the sensor of the training recordings if the step is theirs or 0 (not
 // known), else one with this step and no noise.
@@ -105,7 +107,7 @@ double deepest_in_domain_m(const ModelData& data, std::size_t& feature);
 
 class FittedModel final : public ForceModel {
  public:
-  // `data` must pass validate_model.
+  // `data`: from a fit or a file, with sizes that match.
   explicit FittedModel(ModelData data);
 
   ForceEstimate evaluate(const double* features) const noexcept override;

@@ -15,7 +15,7 @@ namespace palpate::test {
 
 // A model of a soft block, about 2 N at 6 mm, with a random correction. `method`
 // "voxel" gives a grid, "trend" nothing, every other one radial basis functions.
-// Passes validate_model; the same arguments give the same model.
+// The same arguments give the same model.
 ModelData example_model(const std::string& method, KernelKind kernel, std::vector<FeatureSpec> features,
                         std::uint64_t seed);
 

@@ -7,9 +7,10 @@
 namespace palpate {
 
 Eigen::VectorXd read_vector(JsonFields& fields, const JsonNode& object, const char* key, Eigen::Index size,
-                            const std::string& words) {
+                            const std::string& words, const NumberRange& range) {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
-  fields.fill(fields.member(object, key, "a list of numbers"), static_cast<std::size_t>(size), words, values.data());
+  const JsonNode list = fields.member(object, key, "a list of numbers");
+  fields.fill(list, static_cast<std::size_t>(size), words, values.data(), range);
   return values;
 }
 
@@ -37,10 +38,15 @@ std::string json_quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+std::string json_joined(const char* open, const std::vector<std::string>& items, const char* between,
+                        const char* close) {
+  std::string text = open;
+  for (std::size_t i = 0; i < items.size(); ++i) text.append(i == 0 ? "" : between).append(items[i]);
+  return text.append(close);
+}
+
 std::string json_lines(const std::vector<std::string>& items) {
-  std::string text = "[";
-  for (std::size_t i = 0; i < items.size(); ++i) text += (i == 0 ? "\n    " : ",\n    ") + items[i];
-  return text + (items.empty() ? "]" : "\n  ]");
+  return items.empty() ? "[]" : json_joined("[\n    ", items, ",\n    ", "\n  ]");
 }
 
 std::string json_columns(const Eigen::MatrixXd& matrix) {

@@ -11,10 +11,10 @@
 
 namespace palpate {
 
-// The member `key`: exactly `size` numbers, which error messages call `words`. Otherwise zeros, and an error in
+// The member `key`: exactly `size` numbers of the range, which error messages call `words`. Otherwise an error in
 // `fields`.
 Eigen::VectorXd read_vector(JsonFields& fields, const JsonNode& object, const char* key, Eigen::Index size,
-                            const std::string& words);
+                            const std::string& words, const NumberRange& range = {});
 
 // The member `key`: a list of at least one point, each a list of `dimension` numbers. Returns one column a point.
 Eigen::MatrixXd read_points(JsonFields& fields, const JsonNode& object, const char* key, Eigen::Index dimension);
@@ -29,6 +29,9 @@ std::string json_list(const Values& values) {
   for (const double value : values) text += (text.empty() ? "" : ", ") + json_number(value);
   return "[" + text + "]";
 }
+// `items` between brackets.
+std::string json_joined(const char* open, const std::vector<std::string>& items, const char* between,
+                        const char* close);
 // A list of `items`, each on its own line.
 std::string json_lines(const std::vector<std::string>& items);
 // A list of the columns, each on its own line.

@@ -14,7 +14,7 @@ namespace palpate {
 // Larger files are rejected unread. A grid of ten million nodes, the largest that is saved, needs about half of it.
 inline constexpr std::uintmax_t kMaximumModelFileBytes = std::uintmax_t{512} << 20;
 
-// Writes a model file atomically. Errors: data that violates validate_model; the file exists and `overwrite` is false;
+// Writes a model file atomically. Errors: data that the reader would refuse; the file exists and `overwrite` is false;
 // input/output errors.
 Status save_model(const std::string& path, const ModelData& data, bool overwrite);
 

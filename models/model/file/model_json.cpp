@@ -6,13 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <exception>
-#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/json/json_fields.h"
+#include "engine/recording/recording_rules.h"
 #include "models/model/file/json_arrays.h"
 
 namespace palpate {
@@ -21,27 +21,28 @@ namespace {
 constexpr const char* kFitAgain = "; fit the model again";
 constexpr const char* kDamaged = "; the file is damaged: copy it again or fit the model again";
 
+// The curve of a branch with a short relaxation time may be large, but it is a force.
+constexpr NumberRange kDriveForce_N{-1e9, 1e9};
+// Relaxation times that grow by more than exp(20), or 5e8, with the depth indicate a damaged file.
+constexpr NumberRange kSlowing{-20.0, 20.0};
+
 // Whether members, or items, are written on a line each or all on one.
 enum class Layout { lines, one_line };
 
-// The fault of the name of a model or a method, empty if there is none. The name is the header of a column of a CSV
+// What is wrong with the name of a model or a method, empty if nothing. The name is the header of a column of a CSV
 // file, so it must not contain characters that separate columns.
 std::string name_fault(const std::string& name) {
-  const std::string expected =
-      "expected 1 to " + std::to_string(kModelNameBytes) + " bytes without control characters, commas and quotes";
-  if (name.empty()) return "found an empty text, " + expected;
-  if (name.size() > kModelNameBytes) return "found " + std::to_string(name.size()) + " bytes, " + expected;
+  if (name.empty()) return "an empty text";
+  if (name.size() > kModelNameBytes) return std::to_string(name.size()) + " bytes";
   const bool plain = std::none_of(name.begin(), name.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"';
   });
-  return plain ? "" : "found a control character, comma or quote, " + expected;
+  return plain ? "" : "a control character, comma or quote";
 }
 
-// ---- the description of a model file; File: a ModelReader or a ModelWriter ----
+// ---- the description of a model file; `file`: a ModelReader or a ModelWriter ----
 
-template <typename File, typename Item, typename Body>
-void describe_each(File& file, const char* key, std::vector<Item>& items, std::size_t most, Layout layout,
-                   const Body& body) {
+void describe_each(auto& file, const char* key, auto& items, std::size_t most, Layout layout, const auto& body) {
   std::size_t count = items.size();
   file.each(key, count, most, layout, [&](std::size_t i) {
     if (i == items.size()) items.emplace_back();
@@ -49,84 +50,69 @@ void describe_each(File& file, const char* key, std::vector<Item>& items, std::s
   });
 }
 
-template <typename File>
-void describe_drive(File& file, DriveCurve& curve) {
+void describe_drive(auto& file, DriveCurve& curve) {
   file.object("drive", "an object with reference_depth_m and coefficient_N", Layout::one_line, [&] {
-    file.number("reference_depth_m", curve.reference_depth_m, Sign::kPositive);
-    file.list("coefficient_N", curve.coefficient_N);
+    file.number("reference_depth_m", curve.reference_depth_m, kPositive);
+    file.list("coefficient_N", curve.coefficient_N, kDriveForce_N);
     curve.has_knots = file.has("knot_N", curve.has_knots);
-    if (curve.has_knots) file.list("knot_N", curve.knot_N);
+    if (curve.has_knots) file.list("knot_N", curve.knot_N, kDriveForce_N);
   });
 }
 
-// A spectrum of one branch in the form of earlier files, read only.
-template <typename File>
-void describe_earlier_branch(File& file, FeatureSpec& spec) {
-  spec.part_count = 1;
-  file.number("relaxation_time_s", spec.parts[0].relaxation_time_s, Sign::kPositive);
-  describe_drive(file, spec.parts[0].drive);
-}
-
-template <typename File>
-void describe_feature(File& file, FeatureSpec& spec) {
+void describe_feature(auto& file, FeatureSpec& spec) {
   file.kind(spec.kind);
-  if (has_time(spec.kind)) file.number("relaxation_time_s", spec.relaxation_time_s, Sign::kPositive);
+  if (has_time(spec.kind)) file.number("relaxation_time_s", spec.relaxation_time_s, kPositive);
   if (spec.kind == FeatureKind::depth && file.has("surface_position_m", spec.surface_position_m != 0.0)) {
     file.number("surface_position_m", spec.surface_position_m);
   }
-  if (is_branch(spec.kind) && file.has("slowing", spec.slowing != 0.0)) file.number("slowing", spec.slowing);
+  if (is_branch(spec.kind) && file.has("slowing", spec.slowing != 0.0)) file.number("slowing", spec.slowing, kSlowing);
   if (has_drive(spec.kind)) describe_drive(file, spec.drive);
   if (!has_parts(spec.kind)) return;
-  if (is_branch(spec.kind) && file.has("drive", false)) return describe_earlier_branch(file, spec);
-  file.each("parts", spec.part_count, kMaxFeatureParts, Layout::one_line, [&](std::size_t p) {
+  const auto describe_part = [&](std::size_t p) {
     FeaturePart& part = spec.parts[p];
-    if (is_bristle(spec.kind)) file.number("threshold_m", part.threshold_m, Sign::kPositive);
-    if (spec.kind != FeatureKind::stops) file.number("relaxation_time_s", part.relaxation_time_s, Sign::kPositive);
+    if (is_bristle(spec.kind)) file.number("threshold_m", part.threshold_m, kPositive);
+    if (spec.kind != FeatureKind::stops) file.number("relaxation_time_s", part.relaxation_time_s, kPositive);
     describe_drive(file, part.drive);
-  });
+  };
+  if (is_branch(spec.kind) && file.has("drive", false)) {  // the only branch, in earlier files
+    spec.part_count = 1;
+    return describe_part(0);
+  }
+  file.each("parts", spec.part_count, kMaxFeatureParts, Layout::one_line, describe_part);
 }
 
-// The form of earlier files, read only: six powers of u, of which fits used three, and knots.
-template <typename File>
-void describe_earlier_elastic(File& file, ElasticSpline& elastic) {
-  std::array<double, 6> power_N{};
-  std::array<double, 7> knot_N{};
-  file.list("elastic_N", power_N);
-  if (file.has("elastic_knot_N", false)) file.list("elastic_knot_N", knot_N);
-  elastic = spline_from_powers({power_N[0], power_N[1], power_N[2]}, knot_N);
-}
-
-template <typename File>
-void describe_trend(File& file, Trend& trend) {
+void describe_trend(auto& file, Trend& trend) {
   file.object("trend", "an object", Layout::lines, [&] {
-    file.number("reference_depth_m", trend.reference_depth_m, Sign::kPositive);
-    if (file.has("elastic_N", false)) {
-      describe_earlier_elastic(file, trend.elastic);
+    file.number("reference_depth_m", trend.reference_depth_m, kPositive);
+    if (file.has("elastic_N", false)) {  // of earlier files: powers of u, of which fits used three, and knots
+      std::array<double, 6> power_N{};
+      std::array<double, 7> knot_N{};
+      file.list("elastic_N", power_N);
+      if (file.has("elastic_knot_N", false)) file.list("elastic_knot_N", knot_N);
+      trend.elastic = spline_from_powers({power_N[0], power_N[1], power_N[2]}, knot_N);
     } else {
       file.list("elastic_pieces_N", trend.elastic.pieces_N);
     }
     file.list("viscosity_Ns_per_m", trend.viscosity_Ns_per_m);
     file.list("thinning_Ns_per_m", trend.thinning_Ns_per_m);
-    file.number("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, Sign::kPositive);
-    file.number("velocity_limit_m_per_s", trend.velocity_limit_m_per_s, Sign::kNotNegative);
+    file.number("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, kPositive);
+    file.number("velocity_limit_m_per_s", trend.velocity_limit_m_per_s, kNotNegative);
   });
 }
 
-template <typename File>
-void describe_surface(File& file, RecordingSurface& surface) {
+void describe_surface(auto& file, RecordingSurface& surface) {
   file.text("name", surface.name);
   file.number("surface_offset_m", surface.offset_m);
   if (file.has("standard_error_m", std::isfinite(surface.standard_error_m))) {
-    file.number("standard_error_m", surface.standard_error_m, Sign::kNotNegative);
+    file.number("standard_error_m", surface.standard_error_m, kNotNegative);
   } else {
-    surface.standard_error_m = std::numeric_limits<double>::infinity();
+    surface.standard_error_m = HUGE_VAL;
   }
   file.number("force_zero_N", surface.force_zero_N);
   if (file.has("force_lag_s", surface.lag_s != 0.0)) file.number("force_lag_s", surface.lag_s);
 }
 
-template <typename File>
-void describe_provenance(File& file, Provenance& from) {
+void describe_provenance(auto& file, Provenance& from) {
   file.object("provenance", "an object", Layout::lines, [&] {
     file.names("recordings", from.recordings);
     // Models fitted to positions as recorded have no such list.
@@ -144,62 +130,61 @@ void describe_provenance(File& file, Provenance& from) {
     file.text("reduction", from.reduction);
     file.text("relaxation", from.relaxation);
     describe_each(file, "relaxation_times", from.relaxation_times, 0, Layout::one_line, [&](RelaxationTime& time) {
-      file.number("time_s", time.time_s, Sign::kPositive);
-      file.number("standard_error_s", time.standard_error_s, Sign::kNotNegative);
+      file.number("time_s", time.time_s, kPositive);
+      file.number("standard_error_s", time.standard_error_s, kNotNegative);
     });
-    file.number("training_within_jnd", from.training_within_jnd, Sign::kNotNegative);
+    file.number("training_within_jnd", from.training_within_jnd, {0.0, 1.0});
   });
 }
 
-template <typename File>
-void describe_names(File& file, ModelData& data) {
-  file.text("name", data.name);
-  file.text("method", data.method);
+void describe_names(auto& file, ModelData& data) {
+  file.name("name", data.name);
+  file.name("method", data.method);
 }
 
-template <typename File>
-void describe_features(File& file, ModelData& data) {
+void describe_features(auto& file, ModelData& data) {
   describe_each(file, "features", data.features, kMaxFeatures, Layout::lines,
                 [&](FeatureSpec& spec) { describe_feature(file, spec); });
 }
 
 // All members whose size depends on the features, and all others except the correction.
-template <typename File>
-void describe_rest(File& file, ModelData& data) {
+void describe_rest(auto& file, ModelData& data) {
   file.object("normalisation", "an object with offset and scale", Layout::lines, [&] {
     file.per_feature("offset", data.offset);
-    file.per_feature("scale", data.scale);
+    file.per_feature("scale", data.scale, kPositive);
   });
   describe_trend(file, data.trend);
   file.flag("corrects_trend", data.corrects_trend);
-  file.number("correction_limit_N", data.correction_limit_N, Sign::kNotNegative);
-  file.number("largest_force_N", data.largest_force_N, Sign::kNotNegative);
+  file.number("correction_limit_N", data.correction_limit_N, {0.0, kMaximumForce_N});
+  file.number("largest_force_N", data.largest_force_N, {0.0, kMaximumForce_N});
   file.object("jnd", "an object with offset_N and weber_fraction", Layout::one_line, [&] {
-    file.number("offset_N", data.jnd.offset_N, Sign::kPositive);
-    file.number("weber_fraction", data.jnd.weber_fraction, Sign::kNotNegative);
+    file.number("offset_N", data.jnd.offset_N, kPositive);
+    file.number("weber_fraction", data.jnd.weber_fraction, kNotNegative);
   });
   describe_provenance(file, data.provenance);
   file.object("domain", "an object", Layout::lines, [&] {
     file.per_feature("lower", data.lower);
     file.per_feature("upper", data.upper);
-    file.number("inner_radius", data.cover.inner_radius, Sign::kNotNegative);
-    file.number("outer_radius", data.cover.outer_radius, Sign::kPositive);
+    file.number("inner_radius", data.cover.inner_radius, kNotNegative);
+    file.number("outer_radius", data.cover.outer_radius, {data.cover.inner_radius, kLargestNumber, true});
     file.points("points", data.cover.points);
   });
-  if (file.has("lowest_force_N", data.lowest_force_N < 0.0)) file.number("lowest_force_N", data.lowest_force_N);
+  if (file.has("lowest_force_N", data.lowest_force_N < 0.0)) {
+    file.number("lowest_force_N", data.lowest_force_N, {-kMaximumForce_N, 0.0});
+  }
   if (file.has("sensor", data.sensor.has_value())) {
     PositionSensor& sensor = data.sensor ? *data.sensor : data.sensor.emplace();
     file.object("sensor", "an object", Layout::one_line, [&] {
-      file.number("encoder_step_m", sensor.encoder_step_m, Sign::kNotNegative);
-      file.number("position_noise_m", sensor.position_noise_m, Sign::kNotNegative);
+      file.number("encoder_step_m", sensor.encoder_step_m, kNotNegative);
+      file.number("position_noise_m", sensor.position_noise_m, kNotNegative);
     });
   }
   if (file.has("error_bound", data.error_bound.has_value())) {
     ErrorBound& bound = data.error_bound ? *data.error_bound : data.error_bound.emplace();
     file.object("error_bound", "an object", Layout::one_line, [&] {
-      file.number("floor_N", bound.floor_N, Sign::kNotNegative);
-      file.number("per_force", bound.per_force, Sign::kNotNegative);
-      file.number("per_distance_N", bound.per_distance_N, Sign::kNotNegative);
+      file.number("floor_N", bound.floor_N, kNotNegative);
+      file.number("per_force", bound.per_force, kNotNegative);
+      file.number("per_distance_N", bound.per_distance_N, kNotNegative);
     });
   }
 }
@@ -211,25 +196,39 @@ class ModelReader {
   ModelReader(const nlohmann::json& document, std::string_view text, const std::string& path)
       : fields_(text, path, kFitAgain), top_{&document, ""}, at_(top_) {}
 
-  Result<ModelData> read() {
-    ModelData data;
-    read_document(data);
-    if (fields_.error()) return *fields_.error();
-    return data;
+  std::optional<Error> read(ModelData& data) {
+    if (!read_format()) return fields_.error();
+    describe_names(*this, data);
+    const std::size_t named = fields_.error_count();
+    describe_features(*this, data);
+    if (fields_.error_count() > named) return fields_.error();  // every size below depends on the features
+    dimension_ = static_cast<Eigen::Index>(data.features.size());
+    describe_rest(*this, data);
+    read_correction(data);
+    // After another error some known members were not read and would seem unknown.
+    if (fields_.error_count() == 0) fields_.refuse_unknown(top_);
+    return fields_.error();
   }
 
   // The members of the object that is being read. `has`: whether there is such a member.
   bool has(const char* key, bool) { return fields_.optional_member(at_, key).value != nullptr; }
   void text(const char* key, std::string& value) { value = fields_.text(at_, key); }
+  void name(const char* key, std::string& value) {
+    text(key, value);
+    const std::string fault = name_fault(value);
+    if (fault.empty()) return;
+    fields_.complain(std::string("/") + key, "found " + fault + ", expected 1 to " + std::to_string(kModelNameBytes) +
+                                                 " bytes without control characters, commas and quotes");
+  }
   void flag(const char* key, bool& value) { value = fields_.boolean(at_, key); }
   void count(const char* key, std::uint64_t& value) { value = fields_.count(at_, key); }
-  void number(const char* key, double& value, Sign sign = Sign::kAny) { value = fields_.number(at_, key, sign); }
+  void number(const char* key, double& value, NumberRange range = {}) { value = fields_.number(at_, key, range); }
   template <std::size_t n>
-  void list(const char* key, std::array<double, n>& values) {
-    fields_.fill(fields_.member(at_, key, "a list of numbers"), n, "coefficients", values.data());
+  void list(const char* key, std::array<double, n>& values, NumberRange range = {}) {
+    fields_.fill(fields_.member(at_, key, "a list of numbers"), n, "coefficients", values.data(), range);
   }
-  void per_feature(const char* key, Eigen::VectorXd& values) {
-    values = read_vector(fields_, at_, key, dimension_, "numbers, one per feature");
+  void per_feature(const char* key, Eigen::VectorXd& values, NumberRange range = {}) {
+    values = read_vector(fields_, at_, key, dimension_, "numbers, one per feature", range);
   }
   void points(const char* key, Eigen::MatrixXd& values) { values = read_points(fields_, at_, key, dimension_); }
 
@@ -244,12 +243,6 @@ class ModelReader {
 
   void kind(FeatureKind& value) {
     const JsonNode node = fields_.member(at_, "kind", "a text");
-    if (node.value != nullptr && *node.value == "fading_peak") {
-      fields_.complain(
-          node.pointer,
-          "found \"fading_peak\", a feature that this version does not have; fit the model again (palpate fit)");
-      return;
-    }
     if (node.value != nullptr && *node.value == "maxwell_branch") {  // of earlier files
       value = FeatureKind::maxwell_spectrum;
       return;
@@ -259,14 +252,12 @@ class ModelReader {
     if (const auto known = fields_.choice(node, names)) value = static_cast<FeatureKind>(*known);
   }
 
-  template <typename Body>
-  void object(const char* key, const char* expected, Layout, const Body& body) {
+  void object(const char* key, const char* expected, Layout, const auto& body) {
     inside(fields_.member(at_, key, expected), body);
   }
 
   // `most`: the largest number of items; 0: any number, or none.
-  template <typename Body>
-  void each(const char* key, std::size_t& count, std::size_t most, Layout, const Body& body) {
+  void each(const char* key, std::size_t& count, std::size_t most, Layout, const auto& body) {
     const std::string expected = most == 0 ? "a list" : "a list of 1 to " + std::to_string(most) + " " + key;
     const JsonNode list = fields_.list(at_, key, expected);
     count = list.value != nullptr ? list.value->size() : 0;
@@ -278,35 +269,19 @@ class ModelReader {
   }
 
  private:
-  template <typename Body>
-  void inside(const JsonNode& node, const Body& body) {
+  void inside(const JsonNode& node, const auto& body) {
     const JsonNode outer = std::exchange(at_, node);
     body();
     at_ = outer;
   }
 
-  void read_document(ModelData& data) {
-    if (!read_format()) return;
-    describe_names(*this, data);
-    if (const std::string fault = name_fault(data.name); !fault.empty()) fields_.complain("/name", fault);
-    if (const std::string fault = name_fault(data.method); !fault.empty()) fields_.complain("/method", fault);
-    const std::size_t named = fields_.error_count();
-    describe_features(*this, data);
-    if (fields_.error_count() > named) return;  // every size below depends on the features
-    dimension_ = static_cast<Eigen::Index>(data.features.size());
-    describe_rest(*this, data);
-    read_correction(data);
-    // After another error some known members were not read and would seem unknown.
-    if (fields_.error_count() == 0) fields_.refuse_unknown(top_);
-  }
-
   bool read_format() {
-    const char* advice = "; name a file that palpate fit wrote";
     const JsonNode format = fields_.optional_member(top_, "format");
-    if (format.value == nullptr || *format.value != "palpate-model") {
-      const bool none = format.value == nullptr;
+    const bool none = format.value == nullptr;
+    if (none || *format.value != "palpate-model") {
       fields_.complain(none ? "" : format.pointer,
-                       (none ? "found no \"format\"" : found(*format.value)) + ", expected \"palpate-model\"", advice);
+                       (none ? "found no \"format\"" : found(*format.value)) + ", expected \"palpate-model\"",
+                       "; name a file that palpate fit wrote");
       return false;
     }
     const JsonNode version = fields_.member(top_, "version", std::to_string(kModelVersion));
@@ -319,20 +294,19 @@ class ModelReader {
 
   // Reads the correction from exactly one of the fields that identify its kind.
   void read_correction(ModelData& data) {
-    const auto quoted = [](const CorrectionKind& kind) { return std::string("\"").append(kind.key).append("\""); };
     std::vector<const CorrectionKind*> present;
-    std::string known;
+    std::string known, given;
     for (const CorrectionKind& kind : correction_kinds()) {
-      known += (known.empty() ? "" : ", ") + quoted(kind);
-      if (top_.value->contains(kind.key)) present.push_back(&kind);
+      const std::string quoted = json_quoted(kind.key);
+      known += (known.empty() ? "" : ", ") + quoted;
+      if (!top_.value->contains(kind.key)) continue;
+      given += (given.empty() ? "" : " and ") + quoted;
+      present.push_back(&kind);
     }
-    if (present.size() > 1) {
-      fields_.complain("",
-                       "found both " + quoted(*present[0]) + " and " + quoted(*present[1]) + ", expected one of them");
-    } else if (present.empty()) {
-      fields_.complain("", "found none of " + known + ", expected one of them");
-    } else {
+    if (present.size() == 1) {
       data.correction = present[0]->read(fields_, top_, static_cast<int>(dimension_));
+    } else {
+      fields_.complain("", "found " + (given.empty() ? "none" : given) + ", expected one of " + known);
     }
   }
 
@@ -348,106 +322,67 @@ class ModelWriter {
  public:
   bool has(const char*, bool there) { return there; }
   void text(const char* key, const std::string& value) { add(key, json_quoted(value)); }
+  void name(const char* key, const std::string& value) { text(key, value); }
   void flag(const char* key, bool value) { add(key, value ? "true" : "false"); }
   void count(const char* key, std::uint64_t value) { add(key, std::to_string(value)); }
-  void number(const char* key, double value, Sign = Sign::kAny) { add(key, json_number(value)); }
-  template <typename Values>
-  void list(const char* key, const Values& values) {
-    add(key, json_list(values));
-  }
-  void per_feature(const char* key, const Eigen::VectorXd& values) { list(key, values); }
+  void number(const char* key, double value, NumberRange = {}) { add(key, json_number(value)); }
+  void list(const char* key, const auto& values, NumberRange = {}) { add(key, json_list(values)); }
+  void per_feature(const char* key, const Eigen::VectorXd& values, NumberRange = {}) { list(key, values); }
   void points(const char* key, const Eigen::MatrixXd& values) { add(key, json_columns(values)); }
   void kind(FeatureKind value) { text("kind", std::string(facts_of(value).name)); }
 
   void names(const char* key, const std::vector<std::string>& values) {
     std::vector<std::string> quoted;
     for (const std::string& value : values) quoted.push_back(json_quoted(value));
-    add(key, joined("[", quoted, ", ", "]"));
+    add(key, json_joined("[", quoted, ", ", "]"));
   }
 
-  template <typename Body>
-  void object(const char* key, const char*, Layout layout, const Body& body) {
+  void object(const char* key, const char*, Layout layout, const auto& body) {
     add(key, layout == Layout::lines ? members("{\n    ", ",\n    ", "\n  }", body) : members("{", ", ", "}", body));
   }
 
-  template <typename Body>
-  void each(const char* key, std::size_t count, std::size_t, Layout layout, const Body& body) {
+  void each(const char* key, std::size_t count, std::size_t, Layout layout, const auto& body) {
     std::vector<std::string> items;
     for (std::size_t i = 0; i < count; ++i) items.push_back(members("{", ", ", "}", [&] { body(i); }));
-    add(key, layout == Layout::lines ? json_lines(items) : joined("[", items, ", ", "]"));
+    add(key, layout == Layout::lines ? json_lines(items) : json_joined("[", items, ", ", "]"));
   }
 
   void add(const std::string& key, const std::string& value) {
     members_.push_back(std::string("\"").append(key).append("\": ").append(value));
   }
   // The text of the object whose members `body` adds.
-  template <typename Body>
-  std::string members(const char* open, const char* between, const char* close, const Body& body) {
+  std::string members(const char* open, const char* between, const char* close, const auto& body) {
     std::vector<std::string> outer = std::exchange(members_, {});
     body();
     std::swap(members_, outer);
-    return joined(open, outer, between, close);
+    return json_joined(open, outer, between, close);
   }
 
  private:
-  static std::string joined(const char* open, const std::vector<std::string>& items, const char* between,
-                            const char* close) {
-    std::string text = open;
-    for (std::size_t i = 0; i < items.size(); ++i) text.append(i == 0 ? "" : between).append(items[i]);
-    return text.append(close);
-  }
-
   std::vector<std::string> members_;  // of the object that is being written
 };
 
 // File name without its folders.
 std::string stem_of(const std::string& name) { return name.substr(name.find_last_of("/\\") + 1); }
 
-Status check(const ModelData& data) {
-  if (Status status = validate_model(data); !status) return status;
-  if (const std::string fault = name_fault(data.name); !fault.empty()) return Error{"name: " + fault};
-  if (const std::string fault = name_fault(data.method); !fault.empty()) return Error{"method: " + fault};
-  const Provenance& from = data.provenance;
-  bool plausible = from.training_within_jnd >= 0.0 && from.training_within_jnd <= 1.0;
-  for (const RelaxationTime& time : from.relaxation_times) {
-    plausible = plausible && time.time_s > 0.0 && std::isfinite(time.time_s) && time.standard_error_s >= 0.0 &&
-                std::isfinite(time.standard_error_s);
-  }
-  for (const RecordingSurface& surface : from.surfaces) {
-    plausible = plausible && std::isfinite(surface.offset_m) && std::isfinite(surface.force_zero_N) &&
-                surface.standard_error_m >= 0.0;
-  }
-  if (!plausible)
-    return Error{"provenance: found a number that is negative or not finite, expected finite numbers of 0 or more"};
-  return {};
-}
-
 }  // namespace
 
 Result<ModelData> read_model_text(std::string_view text, const std::string& path) {
-  try {
-    const Result<nlohmann::json> document = parse_json(text, path, kModelNesting, {kFitAgain, kDamaged});
-    if (!document) return document.error();
-    Result<ModelData> data = ModelReader(*document, text, path).read();
-    if (!data) return data;
-    if (const Status status = validate_model(*data); !status) {
-      return Error{path + ": " + status.error().message + kFitAgain};
-    }
-    return data;
-  } catch (const std::bad_alloc&) {
-    return Error{path + ": found more data than memory holds, expected a model file" + kDamaged};
-  } catch (const std::exception& error) {
-    return Error{path + ": " + error.what()};
-  }
+  const Result<nlohmann::json> document = parse_json(text, path, kModelNesting, {kFitAgain, kDamaged});
+  if (!document) return document.error();
+  ModelData data;
+  if (const auto error = ModelReader(*document, text, path).read(data)) return *error;
+  if (const Status forces = check_forces(data); !forces) return Error{path + ": " + forces.error().message + kFitAgain};
+  return data;
 }
 
 Result<std::string> write_model_text(const ModelData& data) {
-  if (const Status status = check(data); !status) return status.error();
+  if (const Status status = check_forces(data); !status) return status.error();
   ModelData written = data;
   for (std::string& name : written.provenance.recordings) name = stem_of(name);
   for (RecordingSurface& surface : written.provenance.surfaces) surface.name = stem_of(surface.name);
   ModelWriter file;
-  return file.members("{\n  ", ",\n  ", "\n}\n", [&] {
+  std::string text = file.members("{\n  ", ",\n  ", "\n}\n", [&] {
     file.text("format", "palpate-model");
     file.add("version", std::to_string(kModelVersion));
     describe_names(file, written);
@@ -455,6 +390,9 @@ Result<std::string> write_model_text(const ModelData& data) {
     describe_rest(file, written);
     for (const auto& [key, value] : data.correction->file_fields()) file.add(key, value);
   });
+  // What cannot be read is not written.
+  if (const auto back = read_model_text(text, "model"); !back) return back.error();
+  return text;
 }
 
 }  // namespace palpate

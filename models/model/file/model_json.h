@@ -31,8 +31,7 @@ inline constexpr std::size_t kModelNameBytes = 100;
 // Limit of the nesting of lists and objects; the format itself needs four levels.
 inline constexpr int kModelNesting = 16;
 
-// The text of a model file, with recording names without their folders. Errors: those of validate_model; a name of the
-// method or the model that the reader would reject.
+// The text of a model file, with recording names without their folders. Errors: those of read_model_text for this text.
 Result<std::string> write_model_text(const ModelData& data);
 
 // Reads the text of a model file. `path` is the file in messages:

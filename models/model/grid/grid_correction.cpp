@@ -58,9 +58,7 @@ CorrectionPtr read_grid(JsonFields& fields, const JsonNode& top, int dimension) 
 extern const CorrectionKind kGridCorrectionKind;
 const CorrectionKind kGridCorrectionKind{"grid", read_grid};
 
-GridCorrection::GridCorrection(VoxelGrid grid) : grid_(std::move(grid)) {
-  if (validate_voxel_grid(grid_, static_cast<int>(grid_.nodes.size()))) lookup_.emplace(grid_);
-}
+GridCorrection::GridCorrection(VoxelGrid grid) : grid_(std::move(grid)), lookup_(grid_) {}
 
 FileFields GridCorrection::file_fields() const {
   std::string axes;

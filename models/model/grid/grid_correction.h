@@ -2,8 +2,6 @@
 // Thread guarantee: immutable.
 #pragma once
 
-#include <optional>
-
 #include "models/model/correction.h"
 #include "models/model/grid/voxel_grid.h"
 
@@ -13,9 +11,8 @@ class GridCorrection final : public Correction {
  public:
   explicit GridCorrection(VoxelGrid grid);
 
-  double evaluate(const double* u) const noexcept override { return lookup_->evaluate(u); }
+  double evaluate(const double* u) const noexcept override { return lookup_.evaluate(u); }
   int size() const noexcept override { return static_cast<int>(grid_.node_count()); }
-  Status validate(int dimension) const override { return validate_voxel_grid(grid_, dimension); }
   // grid {nodes, values_N}: first the axes, then the values, one line for each run along the last axis.
   FileFields file_fields() const override;
 
@@ -23,7 +20,7 @@ class GridCorrection final : public Correction {
 
  private:
   VoxelGrid grid_;
-  std::optional<VoxelLookup> lookup_;  // none if the grid is not valid
+  VoxelLookup lookup_;
 };
 
 // The grid of a correction of this kind, else null.

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/base/result.h"
 #include "engine/tick/features.h"
 
 namespace palpate {
@@ -23,12 +22,9 @@ struct VoxelGrid {
   std::size_t node_count() const noexcept { return values_N.size(); }
 };
 
-// Errors: the array, the value found and the value expected.
-Status validate_voxel_grid(const VoxelGrid& grid, int dimension);
-
 class VoxelLookup {
  public:
-  // `grid` must pass validate_voxel_grid; it is copied.
+  // `grid`: 1 to kMaxFeatures dimensions, one value for each node; it is copied.
   explicit VoxelLookup(const VoxelGrid& grid);
 
   // The grid's value at x, d values. Coordinates outside the box are clamped to it; NaN counts as the lower edge.

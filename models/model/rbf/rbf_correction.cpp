@@ -14,6 +14,7 @@ CorrectionPtr read_rbf(JsonFields& fields, const JsonNode& top, int dimension) {
   function.tail = read_vector(fields, top, "tail", tail_size(tail_degree(function.kernel), dimension), "coefficients");
   function.centres = read_points(fields, top, "centres", dimension);
   function.weights = read_vector(fields, top, "weights", function.centre_count(), "numbers, one per centre");
+  if (fields.error()) return nullptr;
   return std::make_shared<const RbfCorrection>(std::move(function));
 }
 
@@ -22,17 +23,7 @@ CorrectionPtr read_rbf(JsonFields& fields, const JsonNode& top, int dimension) {
 extern const CorrectionKind kRbfCorrectionKind;
 const CorrectionKind kRbfCorrectionKind{"centres", read_rbf};
 
-RbfCorrection::RbfCorrection(RbfFunction function) : function_(std::move(function)) {
-  if (validate_rbf_function(function_)) evaluator_.emplace(function_);
-}
-
-Status RbfCorrection::validate(int dimension) const {
-  if (function_.dimension() != dimension) {
-    return Error{"centres: found " + std::to_string(function_.dimension()) + " values each, expected " +
-                 std::to_string(dimension)};
-  }
-  return validate_rbf_function(function_);
-}
+RbfCorrection::RbfCorrection(RbfFunction function) : function_(std::move(function)), evaluator_(function_) {}
 
 FileFields RbfCorrection::file_fields() const {
   std::vector<std::string> weights;

@@ -2,8 +2,6 @@
 // Thread guarantee: immutable.
 #pragma once
 
-#include <optional>
-
 #include "models/model/correction.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/model/rbf/rbf_function.h"
@@ -14,9 +12,8 @@ class RbfCorrection final : public Correction {
  public:
   explicit RbfCorrection(RbfFunction function);
 
-  double evaluate(const double* u) const noexcept override { return evaluator_->evaluate(u); }
+  double evaluate(const double* u) const noexcept override { return evaluator_.evaluate(u); }
   int size() const noexcept override { return static_cast<int>(function_.centre_count()); }
-  Status validate(int dimension) const override;
   // kernel, tail, centres and weights; centres and weights one to a line.
   FileFields file_fields() const override;
 
@@ -24,7 +21,7 @@ class RbfCorrection final : public Correction {
 
  private:
   RbfFunction function_;
-  std::optional<RbfEvaluator> evaluator_;  // none if the function is not valid
+  RbfEvaluator evaluator_;
 };
 
 // The function of a correction of this kind, else null.

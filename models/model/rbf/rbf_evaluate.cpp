@@ -35,7 +35,8 @@ RbfEvaluator::RbfEvaluator(const RbfFunction& function)
       tail_(function.tail.begin(), function.tail.end()),
       dimension_(function.dimension()),
       evaluate_(simd::kernel_loops(function.kernel, function.dimension()).evaluate) {
-  assert(validate_rbf_function(function).ok());
+  assert(function.weights.size() == function.centre_count());
+  assert(function.tail.size() == tail_size(tail_degree(function.kernel), dimension_));
   auto weights = aligned_array<double>(centres_.view().padded);
   for (Eigen::Index j = 0; j < function.weights.size(); ++j) weights[j] = simd::without_denormals(function.weights[j]);
   weights_ = std::move(weights);

@@ -43,7 +43,7 @@ class PointArrays {
 // h(x) of eq. 2. Immutable; may be used by several threads at once.
 class RbfEvaluator {
  public:
-  // `function` must pass validate_rbf_function.
+  // `function`: one weight for each centre, and the tail of its kernel.
   explicit RbfEvaluator(const RbfFunction& function);
 
   // h(x) in newtons. `x`: d values, normalised. Haptics thread, wait-free, O(n), no allocation.

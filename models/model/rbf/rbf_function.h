@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 
-#include "engine/base/result.h"
 #include "models/model/rbf/kernels.h"
 
 namespace palpate {
@@ -20,8 +19,5 @@ struct RbfFunction {
   int dimension() const { return static_cast<int>(centres.rows()); }
   Eigen::Index centre_count() const { return centres.cols(); }
 };
-
-// Checks sizes and finiteness. Errors: the array, and what is wrong with it.
-Status validate_rbf_function(const RbfFunction& function);
 
 }  // namespace palpate

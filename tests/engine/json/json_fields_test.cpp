@@ -35,6 +35,9 @@ TEST(JsonFields, ARangeKnowsItsEnds) {
   const NumberRange open{0.0, 1e9, true};
   EXPECT_FALSE(open.holds(0.0));
   EXPECT_EQ(open.words(), "a number above 0 up to 1e+09");
+  EXPECT_EQ(NumberRange{}.words(), "a number");
+  EXPECT_EQ(kNotNegative.words(), "a number, 0 or more");
+  EXPECT_EQ(kPositive.words(), "a number above 0");
 }
 
 TEST(JsonFields, SaysWhereAndWhyATextIsNoJson) {
@@ -43,6 +46,8 @@ TEST(JsonFields, SaysWhereAndWhyATextIsNoJson) {
   EXPECT_EQ(cut.rfind("x.json:2:8: syntax error", 0), 0u) << cut;
   EXPECT_EQ(cut.substr(cut.size() - 15), "; copy it again");
   EXPECT_TRUE(test::has_parts(fault_of("{\"a\": 1e999}"), {"x.json:1:7:", "1e999", "finite", "; "}));
+  EXPECT_TRUE(test::has_parts(fault_of("{\"a\": -1e400}"), {"x.json:1:7:", "-1e400", "finite", "; "}));
+  EXPECT_TRUE(test::has_parts(fault_of("{\"a\": \"b\xff\"}"), {"x.json:1:", "\\xff", "; "}));
   EXPECT_TRUE(test::has_parts(fault_of("[[[[[1]]]]]"), {"x.json:1:5:", "4", "; "}));
 }
 

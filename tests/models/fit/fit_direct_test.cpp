@@ -146,7 +146,7 @@ TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
                                smooth_sites(4, 2, 0, 1), smooth_sites(4, 5, 0, 1), smooth_sites(4, 6, 0, 1)}) {
       const auto fitted = fit_direct(sites, {.kernel = kernel});
       ASSERT_TRUE(fitted.ok());
-      EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
+      EXPECT_TRUE(fitted->function.weights.allFinite());
       // At the sites the force is at most twice the largest target.
       const double range = sites.target_N.cwiseAbs().maxCoeff();
       Eigen::VectorXd values;

@@ -109,7 +109,6 @@ TEST(SolveWeights, AConstantFeatureLeavesAFiniteFit) {
   const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(20));
   ASSERT_TRUE(fitted.ok());
   EXPECT_LT(worst_error(fitted->function, sites), 1.0);  // of forces up to 5 N
-  EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
 }
 
 TEST(SolveWeights, OneSiteGivesItsForce) {

@@ -96,7 +96,6 @@ TEST(VoxelLookup, ReproducesAMultilinearFunction) {
   ASSERT_TRUE(fill_grid(grid, [&](const Eigen::MatrixXd& points, Eigen::VectorXd& out) {
                 for (Eigen::Index i = 0; i < points.cols(); ++i) out[i] = value(points.col(i));
               }).ok());
-  ASSERT_TRUE(validate_voxel_grid(grid, 3).ok());
   const VoxelLookup lookup(grid);
   const Eigen::MatrixXd queries = random_points(3, 100, 2);
   for (Eigen::Index i = 0; i < queries.cols(); ++i)
