@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <string_view>
+#include <utility>
 
 #include "engine/base/csv_scanner.h"
 
@@ -42,16 +43,9 @@ constexpr int kSecondChoice = 3;  // subtracted
 // Returns lower case, with umlauts and accents as plain letters.
 std::string plain_name(std::string_view text) {
   std::string plain = lower_ascii(text);
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kLetters = {{{"\xC3\xBC", "ue"},
-                                                                                       {"\xC3\x9C", "ue"},
-                                                                                       {"\xC3\xA4", "ae"},
-                                                                                       {"\xC3\xA9", "e"},
-                                                                                       {"\xC3\x89", "e"},
-                                                                                       {"\xC3\xB6", "oe"},
-                                                                                       {"\xC3\xA8", "e"},
-                                                                                       {"\xC3\xB3", "o"},
-                                                                                       {"\xC3\xAD", "i"},
-                                                                                       {"\xC3\x9F", "ss"}}};
+  constexpr std::pair<std::string_view, std::string_view> kLetters[] = {
+      {"\xC3\xBC", "ue"}, {"\xC3\x9C", "ue"}, {"\xC3\xA4", "ae"}, {"\xC3\xA9", "e"}, {"\xC3\x89", "e"},
+      {"\xC3\xB6", "oe"}, {"\xC3\xA8", "e"},  {"\xC3\xB3", "o"},  {"\xC3\xAD", "i"}, {"\xC3\x9F", "ss"}};
   for (const auto& [from, to] : kLetters) {
     for (std::size_t at = 0; (at = plain.find(from, at)) != std::string::npos; at += to.size()) {
       plain.replace(at, from.size(), to);

@@ -54,11 +54,6 @@ Error wrong_kind(const std::string& path, const char* found, const char* advice)
 
 }  // namespace
 
-std::string_view encoding_name(TextEncoding encoding) {
-  constexpr std::string_view kNames[] = {"UTF-8", "Latin-1", "UTF-16"};
-  return kNames[static_cast<std::size_t>(encoding)];
-}
-
 Result<ForeignText> read_foreign_text(const std::string& path) {
   auto file = read_plain_file(path, "a table as text (CSV, TXT)");
   if (!file) return file.error();
@@ -72,10 +67,10 @@ Result<ForeignText> read_foreign_text(const std::string& path) {
   std::size_t bad_offset = 0;
   ForeignText foreign;
   if (big_endian || bytes.starts_with("\xFF\xFE")) {
-    foreign = {decode_utf16(std::string_view(bytes).substr(2), big_endian), TextEncoding::utf16};
+    foreign = {decode_utf16(std::string_view(bytes).substr(2), big_endian), "UTF-16"};
   } else if (!is_utf8(sample, bad_offset) && (sample.size() == bytes.size() || bad_offset + 4 <= sample.size())) {
     // A sequence that is cut by the end of the sample is not an error.
-    foreign.encoding = TextEncoding::latin1;
+    foreign.encoding = "Latin-1";
     for (const char c : bytes) append_utf8(foreign.text, static_cast<unsigned char>(c));
   } else {
     if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);

@@ -10,12 +10,9 @@
 
 namespace palpate {
 
-enum class TextEncoding { utf8, latin1, utf16 };
-std::string_view encoding_name(TextEncoding encoding);
-
 struct ForeignText {
-  std::string text;  // UTF-8 without byte order mark
-  TextEncoding encoding = TextEncoding::utf8;
+  std::string text;                     // UTF-8 without byte order mark
+  std::string_view encoding = "UTF-8";  // of the file: UTF-8, Latin-1 or UTF-16
 };
 
 // Errors: no such file, not a regular file, unreadable, empty, an Excel workbook or another binary file; each with

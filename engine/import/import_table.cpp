@@ -51,7 +51,6 @@ class Importer {
   bool is_bad_row(std::string_view line);
   Error explain_row(std::string_view line, std::uint64_t number);
   Result<bool> add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
-  void mark_constant_columns();
   void use_unit(std::size_t role, const Unit& unit);
   double seconds_since_first(const TableTime& time) const;
   void check_rate();
@@ -125,9 +124,12 @@ Status Importer::find_columns() {
     if (!layout.units.empty() && i < layout.units.size()) {
       if (const auto unit = find_unit(layout.units[i])) column.parts.unit = unit;
     }
+    const auto changes = [&](const auto& row) {
+      return i < std::min(row.size(), first_row.size()) && row[i] != first_row[i];
+    };
+    column.constant = first_rows_.size() > 1 && std::none_of(first_rows_.begin(), first_rows_.end(), changes);
     header_.push_back(std::move(column));
   }
-  mark_constant_columns();
   auto choice = choose_columns(header_, request_.columns, has_header, true);
   // With a given rate the times of the file are only compared with it.
   if (request_.rate_Hz && !choice) choice = choose_columns(header_, request_.columns, has_header, false);
@@ -140,14 +142,6 @@ Status Importer::find_columns() {
                             choice->guessed[role]};
   }
   return {};
-}
-
-void Importer::mark_constant_columns() {
-  const auto& first = first_rows_.front();
-  for (std::size_t i = 0; i < header_.size(); ++i) {
-    const auto changes = [&](const auto& row) { return i < std::min(row.size(), first.size()) && row[i] != first[i]; };
-    header_[i].constant = first_rows_.size() > 1 && std::none_of(first_rows_.begin(), first_rows_.end(), changes);
-  }
 }
 
 void Importer::use_unit(std::size_t role, const Unit& unit) {

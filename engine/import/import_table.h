@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -44,7 +45,7 @@ struct ImportedColumn {
 
 struct ImportedTable {
   Recording recording;
-  TextEncoding encoding = TextEncoding::utf8;
+  std::string_view encoding;
   TableLayout layout;  // without names and units, which refer to the text
   std::array<ImportedColumn, kRoles> columns;
   std::vector<std::string> notes;  // sentences: guesses, omissions, advice

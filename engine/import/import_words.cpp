@@ -19,7 +19,7 @@ std::string column_words(const ImportedColumn& column) {
 std::string table_words(const ImportedTable& table) {
   const TableLayout& layout = table.layout;
   return std::string(delimiter_name(layout.delimiter)) + " between fields, decimal " + decimal_name(layout) + ", " +
-         std::string(encoding_name(table.encoding)) + ", " +
+         std::string(table.encoding) + ", " +
          (layout.header_line > 0 ? "header in line " + std::to_string(layout.header_line) : "no header") +
          ", numbers from line " + std::to_string(layout.data_line);
 }

@@ -165,9 +165,6 @@ class LiveTick {
   // As `run`, with command 0; true when the device has got 0.
   bool release(double now_s) noexcept;
 
-  // The tick of the models, for tests that compare live and replay.
-  const HapticsTick* models() const noexcept { return models_ != nullptr ? &models_->tick : nullptr; }
-
  private:
   void update_models() noexcept;
   void process_samples(double now_s) noexcept;

@@ -48,12 +48,9 @@ EndForce end_force(const std::array<Slice, kSlices>& slices, bool low) {
 
 PressDirection find_press_direction(const std::vector<RecordingRow>& rows) {
   PressDirection direction;
-  double lowest_m = HUGE_VAL;
-  double highest_m = -HUGE_VAL;
-  for (const RecordingRow& row : rows) {
-    lowest_m = std::min(lowest_m, row.position_m);
-    highest_m = std::max(highest_m, row.position_m);
-  }
+  const auto [lowest, highest] = std::ranges::minmax(rows, {}, &RecordingRow::position_m);
+  const double lowest_m = lowest.position_m;
+  const double highest_m = highest.position_m;
   if (!(highest_m > lowest_m)) return direction;
   std::array<Slice, kSlices> slices{};
   const double per_metre = static_cast<double>(kSlices) / (highest_m - lowest_m);

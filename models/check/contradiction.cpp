@@ -31,18 +31,14 @@ struct Bin {
 };
 
 struct Range {
-  double low_m = HUGE_VAL;
-  double high_m = -HUGE_VAL;
+  double low_m = 0.0;
+  double high_m = 0.0;
   double way_m() const { return high_m - low_m; }
 };
 
 Range range_of(const Recording& recording) {
-  Range range;
-  for (const RecordingRow& row : recording.rows) {
-    range.low_m = std::min(range.low_m, row.position_m);
-    range.high_m = std::max(range.high_m, row.position_m);
-  }
-  return range;
+  const auto [low, high] = std::ranges::minmax(recording.rows, {}, &RecordingRow::position_m);
+  return {low.position_m, high.position_m};
 }
 
 // Bins of `width_m` from the outermost position on.

@@ -35,14 +35,12 @@ void measure_sampling(const std::vector<RecordingRow>& rows, RecordingMeasures& 
 }
 
 void measure_ranges(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
-  measures.lowest_position_m = measures.highest_position_m = rows.front().position_m;
-  measures.lowest_force_N = measures.highest_force_N = rows.front().force_N;
-  for (const RecordingRow& row : rows) {
-    measures.lowest_position_m = std::min(measures.lowest_position_m, row.position_m);
-    measures.highest_position_m = std::max(measures.highest_position_m, row.position_m);
-    measures.lowest_force_N = std::min(measures.lowest_force_N, row.force_N);
-    measures.highest_force_N = std::max(measures.highest_force_N, row.force_N);
-  }
+  const auto [outermost, deepest] = std::ranges::minmax(rows, {}, &RecordingRow::position_m);
+  measures.lowest_position_m = outermost.position_m;
+  measures.highest_position_m = deepest.position_m;
+  const auto [weakest, strongest] = std::ranges::minmax(rows, {}, &RecordingRow::force_N);
+  measures.lowest_force_N = weakest.force_N;
+  measures.highest_force_N = strongest.force_N;
 }
 
 void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {

@@ -36,14 +36,9 @@ void CText::rows(const std::string& declaration, const Eigen::MatrixXd& values, 
   table_bytes_ += static_cast<std::size_t>(values.size()) * (single ? sizeof(float) : sizeof(double));
 }
 
-void CText::table(const std::string& name, const Eigen::MatrixXd& values) {
-  rows("static const real " + name + "[" + std::to_string(values.cols()) + "][" + std::to_string(values.rows()) + "]",
-       values, single_);
-}
-
-void CText::float_table(const std::string& name, const Eigen::MatrixXd& values) {
-  rows("static const float " + name + "[" + std::to_string(values.cols()) + "][" + std::to_string(values.rows()) + "]",
-       values, true);
+void CText::table(const std::string& name, const Eigen::MatrixXd& values, const std::string& type) {
+  const std::string sizes = "[" + std::to_string(values.cols()) + "][" + std::to_string(values.rows()) + "]";
+  rows("static const " + type + " " + name + sizes, values, single_ || type == "float");
 }
 
 void CText::list(const std::string& name, const Eigen::VectorXd& values) {

@@ -18,10 +18,9 @@ class CText {
 
   // The shortest decimal that reads back as the same number, as a literal of type `real`.
   std::string number(double value) const;
-  // "static const real NAME[ROWS][COLUMNS] = {...};": each column of `values` is one row of the table.
-  void table(const std::string& name, const Eigen::MatrixXd& values);
-  // The same in single precision, independent of the precision of the file.
-  void float_table(const std::string& name, const Eigen::MatrixXd& values);
+  // "static const TYPE NAME[ROWS][COLUMNS] = {...};": each column of `values` is one row of the table. `type`: real, or
+  // float for single precision in any file.
+  void table(const std::string& name, const Eigen::MatrixXd& values, const std::string& type = "real");
   // "static const real NAME[SIZE] = {...};"
   void list(const std::string& name, const Eigen::VectorXd& values);
 

@@ -146,7 +146,7 @@ void write_trust(CText& out, const DomainCover& cover) {
   out.add(exact.number(cover.inner_radius) + "\n#define OUTER_RADIUS " + exact.number(cover.outer_radius) + "\n");
   out.add(out.single() ? "#define ADD_SQUARE(sum, x) sum += (x) * (x)\n"
                        : "#define ADD_SQUARE(sum, x) sum = (float)((double)(x) * (double)(x) + (double)sum)\n");
-  out.float_table("cover", cover.points.unaryExpr([](double x) { return std::abs(x) < 1e-11 ? 0.0 : x; }));
+  out.table("cover", cover.points.unaryExpr([](double x) { return std::abs(x) < 1e-11 ? 0.0 : x; }), "float");
   out.add(kTrustC);
 }
 

@@ -165,25 +165,22 @@ Result<Recording> recording_of(std::string name, std::size_t n, const double* ti
 // Assigns samples, which are in order of recordings, to folds; returns the number of folds.
 int assign_folds(std::size_t n, const double* depth_m, const int* recording, int* fold) {
   const auto recording_of = [&](std::size_t i) { return recording == nullptr ? 0 : recording[i]; };
-  std::vector<MotionRow> rows(n);
+  std::vector<int> stroke(n);
   TrainingExtent extent;
   std::size_t recordings = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    MotionRow& row = rows[i];
-    row.sample.position_m = depth_m[i];
-    row.recording = recording_of(i);
-    row.first = i == 0 || recording_of(i - 1) != row.recording;
-    recordings += row.first ? 1 : 0;
-    row.stroke = static_cast<int>(extent.strokes);
-    if (!row.first)
+    const bool first = i == 0 || recording_of(i - 1) != recording_of(i);
+    recordings += first ? 1 : 0;
+    stroke[i] = static_cast<int>(extent.strokes);
+    if (!first)
       (depth_m[i] > depth_m[i - 1] ? extent.loading_path_m : extent.unloading_path_m) +=
           std::abs(depth_m[i] - depth_m[i - 1]);
     if (!(depth_m[i] > 0.0)) continue;
-    if (row.first || !(depth_m[i - 1] > 0.0)) row.stroke = static_cast<int>(++extent.strokes);
+    if (first || !(depth_m[i - 1] > 0.0)) stroke[i] = static_cast<int>(++extent.strokes);
     ++extent.contact_samples;
   }
   FoldAssignment assignment(recordings, extent.strokes, extent.contact_samples, extent.has_unloading());
-  for (std::size_t i = 0; i < n; ++i) fold[i] = assignment.next(rows[i].recording, rows[i].stroke, depth_m[i] > 0.0);
+  for (std::size_t i = 0; i < n; ++i) fold[i] = assignment.next(recording_of(i), stroke[i], depth_m[i] > 0.0);
   return assignment.folds();
 }
 

@@ -224,15 +224,10 @@ palpate_stream* palpate_stream_new_with_sensor(const palpate_model* model, const
 
 int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* error, size_t error_size) {
   return guarded<int>(-1, {error, error_size}, [&](Place place) -> int {
-    if (path == nullptr || sensor == nullptr) {
-      place.fail("found no path or no sensor to fill, expected both");
-      return -1;
-    }
+    if (path == nullptr || sensor == nullptr)
+      return place.report(palpate::Error{"found no path or no sensor to fill, expected both"});
     const auto spec = palpate::library::sensor_of_recording(path);
-    if (!spec) {
-      place.fail(spec.error().message);
-      return -1;
-    }
+    if (!spec) return place.report(spec.error());
     *sensor = palpate::library::sensor_from(*spec);
     return 0;
   });

@@ -137,7 +137,7 @@ void print_import_json(const ImportOptions& options, const ImportRequest& reques
               {"rows", table.recording.rows.size()},
               {"seconds", seconds},
               {"rate_Hz", static_cast<double>(table.recording.rows.size() - 1) / seconds},
-              {"encoding", encoding_name(table.encoding)},
+              {"encoding", table.encoding},
               {"delimiter", delimiter_name(table.layout.delimiter)},
               {"decimal", decimal_name(table.layout)},
               {"header_line", table.layout.header_line},
