@@ -204,11 +204,5 @@ TEST(ImportTable, ReadsAMeasuredVelocity) {
   EXPECT_FALSE(table(-1.0).recording.columns.velocity);  // not the rate of the position
 }
 
-TEST(ImportTable, NeverFlipsByItself) {
-  const auto table = import_table(file("22_outward.csv"), {});
-  ASSERT_TRUE(table.ok());
-  EXPECT_LT(table->recording.rows[12].position_m, 0.0);
-}
-
 }  // namespace
 }  // namespace palpate

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -119,31 +120,21 @@ int ticks_to_zero(const ForceConditions& conditions, std::uint32_t flag) {
   return 100;
 }
 
-TEST(ForceLimiter, AStaleSampleTakesTheForceAwayInTenMilliseconds) {
-  EXPECT_LE(ticks_to_zero({0.0101}, force_limit::kStale), 11);
-  EXPECT_LE(ticks_to_zero({kNaN}, force_limit::kStale), 11);
-  EXPECT_LE(ticks_to_zero({kInfinity}, force_limit::kStale), 11);
-  ForceLimiter limiter = with(10.0, 1e9, 0.0);
-  limiter.limit(8.0, kTick_s, {0.0099});
-  EXPECT_EQ(limiter.limit(8.0, kTick_s, {0.0099}), 8.0) << "not stale yet";
-}
-
-TEST(ForceLimiter, ADeviceFaultTakesTheForceAwayInTenMilliseconds) {
-  EXPECT_LE(ticks_to_zero({0.0, true}, force_limit::kDeviceFault), 11);
-}
-
-TEST(ForceLimiter, AReleasedDeadManSwitchTakesTheForceAwayInTenMilliseconds) {
-  EXPECT_LE(ticks_to_zero({0.0, false, true}, force_limit::kReleased), 11);
-}
-
-TEST(ForceLimiter, RampsUpAfterEachStop) {
-  for (const ForceConditions& stop :
-       {ForceConditions{1.0}, ForceConditions{0.0, true}, ForceConditions{0.0, false, true}}) {
+TEST(ForceLimiter, AStopTakesTheForceAwayInTenMillisecondsThenRampsUp) {
+  for (const auto& [stop, flag] : {std::pair{ForceConditions{0.0101}, force_limit::kStale},
+                                   {ForceConditions{kNaN}, force_limit::kStale},
+                                   {ForceConditions{kInfinity}, force_limit::kStale},
+                                   {ForceConditions{0.0, true}, force_limit::kDeviceFault},
+                                   {ForceConditions{0.0, false, true}, force_limit::kReleased}}) {
+    EXPECT_LE(ticks_to_zero(stop, flag), 11);
     ForceLimiter limiter = with(100.0, 1e9, 0.1);
     for (int i = 0; i < 200; ++i) limiter.limit(4.0, kTick_s);
     for (int i = 0; i < 20; ++i) limiter.limit(4.0, kTick_s, stop);
     expect_ramp(limiter);
   }
+  ForceLimiter limiter = with(10.0, 1e9, 0.0);
+  limiter.limit(8.0, kTick_s, {0.0099});
+  EXPECT_EQ(limiter.limit(8.0, kTick_s, {0.0099}), 8.0) << "not stale yet";
 }
 
 // Peak force 10 N, continuous force 2 N, thermal time constant 10 s.

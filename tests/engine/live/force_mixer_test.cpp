@@ -79,14 +79,5 @@ TEST(ForceMixer, AStallIsNoLicenceAndNoTimeIsNoStep) {
   EXPECT_LE(mixer.mix(forces_N, 1, 5.0), 0.065);
 }
 
-TEST(ForceMixer, AfterAHandOverStartsFromWhatWasFelt) {
-  ForceMixer mixer({});
-  mixer.jump_to(ForceMixer::kOutgoing);
-  ForceMixer::Forces forces_N{};
-  forces_N[0] = 6.0;
-  forces_N[ForceMixer::kOutgoing] = 2.0;
-  EXPECT_NEAR(mixer.mix(forces_N, 0, kTick_s), 2.0, 0.0192) << "a tenth of the JND at 2 N";
-}
-
 }  // namespace
 }  // namespace palpate

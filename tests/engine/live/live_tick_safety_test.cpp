@@ -1,5 +1,4 @@
-// The live tick under faults: device faults, a released dead-man switch, and the
-// recorded ticks.
+// The live tick under faults: device faults, a released dead-man switch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "engine/live/fault_recorder.h"
 #include "engine/live/live_tick.h"
 #include "tests/support/live_doubles.h"
 
@@ -199,30 +197,6 @@ TEST(LiveTickSafety, ADeviceThatHasGivenNothingIsNotDriven) {
   device.speaks = false;
   for (int i = 200; i < 225; ++i) live.run(kTick_s * i, {});
   EXPECT_EQ(device.written_N, 0.0) << "its last sample is too old";
-}
-
-TEST(LiveTickSafety, KeepsTheTicksAroundAFault) {
-  FrailDevice device;
-  ModelSlot<LiveModels> slot;
-  LiveTick live(device, slot);
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(1000.0)}));
-  FaultRecorder recorder;
-  bool whole = false;
-  for (int i = 0; i < 2000 && !whole; ++i) {
-    device.state.faults = i >= 1500 ? device_fault::kReset : 0;
-    whole = recorder.add(live.run(kTick_s * i, {}));
-  }
-  ASSERT_TRUE(whole);
-  const auto& ticks = recorder.ticks();
-  ASSERT_EQ(ticks.size(), FaultRecorder::kTicks);
-  const LoopSnapshot& before = ticks[FaultRecorder::kTicks - FaultRecorder::kTicksAfter - 2];
-  const LoopSnapshot& first = ticks[FaultRecorder::kTicks - FaultRecorder::kTicksAfter - 1];
-  EXPECT_EQ(before.faults, 0u);
-  EXPECT_NEAR(before.rendered_N, 5.0, 0.01);
-  EXPECT_EQ(first.faults & loop_fault::kStops, loop_fault::kDeviceFault);
-  EXPECT_EQ(first.device.faults, device_fault::kReset);
-  EXPECT_EQ(first.loop_time_s, kTick_s * 1500);
-  EXPECT_EQ(ticks.back().rendered_N, 0.0);
 }
 
 }  // namespace

@@ -23,12 +23,6 @@ TEST(RowRules, AllowFivePercentBeyondTheRangeOfRates) {
   }
 }
 
-TEST(RowRules, BlameTheFirstRowForTheRateAndTheEndForTooFewRows) {
-  EXPECT_EQ(verdict(20, 1.0)->place, RowFault::Place::kFirstRow);
-  EXPECT_EQ(verdict(9, 0.001)->place, RowFault::Place::kEnd);
-  EXPECT_EQ(verdict(0, 0.001)->place, RowFault::Place::kEnd);
-}
-
 TEST(RowRules, NameTheColumnAtFault) {
   const auto role = [](const RecordingRow& row) {
     RowRules rules;

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <clocale>
-#include <filesystem>
 
 #include "engine/recording/recording_reader.h"
 #include "tests/support/broken_recordings.h"
@@ -47,15 +46,6 @@ TEST(Recording, ReadsRowsAndItsNameFromTheFile) {
   expect_good_rows(*recording);
 }
 
-TEST(Recording, RefusesEveryBrokenFile) {
-  const TemporaryFolder folder;
-  for (const auto& broken : test::broken_recordings()) {
-    const std::string path = folder.with_file("rec.csv", broken.text);
-    EXPECT_TRUE(test::has_parts(message_for(path), {path + ":" + broken.place + ": "})) << broken.name;
-    EXPECT_TRUE(test::has_parts(message_for(path), broken.parts)) << broken.name;
-  }
-}
-
 TEST(Recording, RefusesWhatIsNotAFile) {
   const TemporaryFolder folder;
   EXPECT_TRUE(test::has_parts(message_for(folder.file("none.csv")), {folder.file("none.csv"), "no such file", "; "}));
@@ -86,11 +76,6 @@ TEST(Recording, AcceptsByteOrderMarkCrlfAndAMissingLastNewline) {
 TEST(Recording, AcceptsCommentsBeforeTheHeaderAndBlankLinesAtTheEnd) {
   expect_good_rows(accepted("# a rig\n#\n# time_s,position_m\n" + test::good_recording()));
   expect_good_rows(accepted(test::good_recording() + "\n \t\r\n\n"));
-}
-
-TEST(Recording, AcceptsTheLongestLineAllowed) {
-  const std::string comment = "#" + std::string(64 * 1024 - 1, ' ');
-  expect_good_rows(accepted(comment + "\r\n" + test::good_recording()));
 }
 
 TEST(Recording, AcceptsColumnsInAnyOrderAndIgnoresFurtherOnes) {
@@ -133,16 +118,6 @@ TEST(Recording, AcceptsRatesFrom10HzTo20KHzWithGaps) {
   EXPECT_EQ(accepted(at_step(0.1, 20)).rows.size(), 20u);
   EXPECT_EQ(accepted(at_step(0.1, 2000)).rows.size(), 2000u);
   EXPECT_EQ(accepted(at_step(0.00005, 2000)).rows.size(), 2000u);
-}
-
-TEST(Recording, AcceptsJitter) {
-  std::string text = test::good_header();
-  double time_s = 0.0;
-  for (int i = 0; i < 1200; ++i) {
-    time_s += 0.0001 * (1 + i * 7919 % 20);  // 0.1 to 2 ms
-    text += std::to_string(time_s) + ",0,0\n";
-  }
-  EXPECT_EQ(accepted(text).rows.size(), 1200u);
 }
 
 TEST(RecordingReader, StreamsTheSameRowsInPiecesOfAnySize) {
@@ -201,21 +176,6 @@ TEST(Recording, ReadsDecimalPointsWhateverTheLocale) {
   const GermanNumbers german;
   if (!german.active()) GTEST_SKIP() << "no German locale on this machine";
   expect_good_rows(accepted(test::good_recording()));
-}
-
-TEST(Recording, ReadsTheRealRecordings) {
-  const std::filesystem::path data = std::filesystem::path(PALPATE_SOURCE_DIR) / "../shared/data";
-  if (!std::filesystem::is_directory(data)) GTEST_SKIP() << "no real recordings beside the source";
-  std::size_t files = 0;
-  for (const std::filesystem::path& folder : {data, data / "../labs"}) {
-    if (!std::filesystem::is_directory(folder)) continue;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-      if (entry.path().extension() != ".csv") continue;
-      EXPECT_EQ(message_for(entry.path().string()), "accepted");
-      ++files;
-    }
-  }
-  EXPECT_GT(files, 0u);
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 #include "engine/recording/recording_writer.h"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 
 #include <bit>
 #include <cstdint>
@@ -134,39 +132,6 @@ TEST(WriteRecording, CutsACommentThatIsTooLongForTheReader) {
   EXPECT_TRUE(read_recording(path).ok());
 }
 
-// Limits the size of files written by this process, as a full disk does.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    handler_ = signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int) = nullptr;
-};
-
-TEST(WriteRecording, LeavesNoFileWhenTheDiskIsFull) {
-  const TemporaryFolder folder;
-  const Recording recording = random_recording(20000, {});
-  Status written;
-  {
-    const FullDisk full(100000);
-    written = write_recording(folder.file("rec.csv"), recording, {}, false);
-  }
-  ASSERT_FALSE(written.ok());
-  EXPECT_NE(written.error().message.find(folder.file("rec.csv")), std::string::npos) << written.error().message;
-  EXPECT_TRUE(folder.entries().empty());
-}
-
 TEST(RecordingWriter, GivesTheSameFileRowByRowAndLeavesOutWhatIsRefused) {
   const TemporaryFolder folder;
   const Recording recording = random_recording(5000, {true, false});
@@ -184,15 +149,6 @@ TEST(RecordingWriter, GivesTheSameFileRowByRowAndLeavesOutWhatIsRefused) {
   EXPECT_EQ(writer->rows(), 5000u);
   ASSERT_TRUE(writer->commit().ok());
   EXPECT_EQ(test::read_text(folder.file("rows.csv")), test::read_text(folder.file("whole.csv")));
-}
-
-TEST(RecordingWriter, RefusesTooFewRows) {
-  const TemporaryFolder folder;
-  auto writer = RecordingWriter::create(folder.file("rec.csv"), {}, {}, false);
-  ASSERT_TRUE(writer.ok());
-  for (int i = 0; i < 9; ++i) ASSERT_TRUE(writer->add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
-  EXPECT_FALSE(writer->commit().ok());
-  EXPECT_TRUE(folder.entries().empty());
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// The motion estimator on quantised motion with known velocity, compared with raw
-// differences, a 40 Hz low-pass and first-order adaptive windowing.
+// The motion estimator on quantised motion with known velocity, compared with first-order adaptive windowing.
 #include "engine/tick/motion_estimator.h"
 
 #include <gtest/gtest.h>
@@ -119,23 +118,6 @@ Estimator ours(const SensorSpec& sensor) {
   };
 }
 
-Estimator difference() {
-  return [last = ToolSample{}, started = false](const ToolSample& sample) mutable {
-    const double velocity = started ? (sample.position_m - last.position_m) / (sample.time_s - last.time_s) : 0.0;
-    last = sample;
-    started = true;
-    return velocity;
-  };
-}
-
-Estimator lowpass_40_Hz() {
-  const double keep = std::exp(-2.0 * std::numbers::pi * 40.0 / kRate_Hz);
-  return [raw = difference(), value = 0.0, keep](const ToolSample& sample) mutable {
-    value = keep * value + (1.0 - keep) * raw(sample);
-    return value;
-  };
-}
-
 // First-order adaptive windowing, end-fit: the longest window whose every sample lies
 // within `bound_m` of the line through its ends. Janabi-Sharifi, Hayward & Chen (2000).
 Estimator adaptive_window(double bound_m, std::size_t longest) {
@@ -166,17 +148,11 @@ TEST(MotionEstimator, BeatsTheUsualEstimatorsOnAnEncoder) {
       window = std::min(window, rms_error(adaptive_window(bound * kStep_m, longest)));
     }
   }
-  const double lowpass = rms_error(lowpass_40_Hz());
-  const double raw = rms_error(difference());
   RecordProperty("ours_um_per_s", static_cast<int>(1e6 * error));
   RecordProperty("adaptive_window_um_per_s", static_cast<int>(1e6 * window));
-  RecordProperty("lowpass_um_per_s", static_cast<int>(1e6 * lowpass));
-  RecordProperty("difference_um_per_s", static_cast<int>(1e6 * raw));
   // Measured: 0.76. Adaptive windowing has the best of nine settings, chosen with the
   // true velocity.
   EXPECT_LT(error, 0.8 * window);
-  EXPECT_LT(error, lowpass);
-  EXPECT_LT(error, raw);
 }
 
 TEST(MotionEstimator, AnAccelerometerWithADriftingBiasHelps) {

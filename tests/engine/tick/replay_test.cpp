@@ -97,15 +97,6 @@ TEST(Replay, MovesTheSurface) {
   EXPECT_EQ(plain.values, moved.values);
 }
 
-TEST(Replay, GivesTheSameEveryTime) {
-  const Recording recording = example_recording(2000, 1000.0, 30e-6);
-  Trace first;
-  Trace second;
-  ASSERT_TRUE(replay(recording, all_models(), first.visitor()).ok());
-  ASSERT_TRUE(replay(recording, all_models(), second.visitor()).ok());
-  EXPECT_EQ(first.values, second.values);
-}
-
 // Longer than the rows used for identification, so that chunks follow.
 TEST(Replay, InChunksEqualsTheWhole) {
   const test::TemporaryFolder folder;
@@ -142,12 +133,6 @@ TEST(Replay, RefusesMoreModelsThanATickTakes) {
   const auto summary = replay(example_recording(100, 1000.0), models, {});
   ASSERT_FALSE(summary.ok());
   EXPECT_TRUE(test::has_parts(summary.error().message, {"17", "16", "; "}));
-}
-
-TEST(Replay, NeedsNoModel) {
-  const auto summary = replay(example_recording(100, 1000.0), {}, {});
-  ASSERT_TRUE(summary.ok());
-  EXPECT_EQ(summary->samples, 100u);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "tests/support/example_model.h"
-#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -21,28 +20,6 @@ void add_noise(Recording& recording, double RecordingRow::*column, double sigma)
   std::mt19937_64 engine(7);
   std::normal_distribution<double> noise(0.0, sigma);
   for (RecordingRow& row : recording.rows) row.*column += noise(engine);
-}
-
-TEST(SensorIdentification, FindsTheStepOfAnEncoderInAFile) {
-  const test::TemporaryFolder folder;
-  for (const double step_m : {30e-6, 1e-5, 1.0 / 4096.0 * 0.1}) {
-    const std::string path = folder.file("r.csv");
-    ASSERT_TRUE(write_recording(path, test::example_recording(5000, 1000.0, step_m), {}, true).ok());
-    const auto recording = read_recording(path);
-    ASSERT_TRUE(recording.ok()) << recording.error().message;
-    const SensorSpec sensor = identify(*recording);
-    EXPECT_NEAR(sensor.encoder_step_m, step_m, 1e-9 * step_m);
-    EXPECT_LT(sensor.position_noise_m, 0.5 * step_m);
-    EXPECT_FALSE(sensor.has_velocity);
-    EXPECT_FALSE(sensor.has_acceleration);
-  }
-}
-
-// The identified step equals the data sheet value exactly, so that both give the same forces.
-TEST(SensorIdentification, AStepOfFewDigitsIsFoundToTheLastBit) {
-  for (const double step_m : {30e-6, 25e-6, 1e-6, 1.2345e-5}) {
-    EXPECT_EQ(identify(test::example_recording(5000, 1000.0, step_m)).encoder_step_m, step_m);
-  }
 }
 
 // Linear strokes of a machine, recorded as commanded positions.

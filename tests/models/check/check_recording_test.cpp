@@ -39,12 +39,6 @@ std::string all_of(const RecordingCheck& check) {
   return text;
 }
 
-struct Fault {
-  const char* code;
-  const char* verdict;
-  std::function<void(Recording&)> apply;
-};
-
 void each(Recording& recording, const std::function<void(RecordingRow&)>& change) {
   for (RecordingRow& row : recording.rows) change(row);
 }
@@ -64,39 +58,6 @@ void first_seconds(Recording& recording, double from_s, double seconds) {
                 [&](const RecordingRow& row) { return row.time_s < from_s || row.time_s > from_s + seconds; });
 }
 
-TEST(CheckRecording, FindsEachFault) {
-  const std::vector<Fault> faults = {
-      {"force_sign", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = -row.force_N; }); }},
-      {"position_sign", "unusable",
-       [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = -row.position_m; }); }},
-      {"no_force", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = 0.0; }); }},
-      {"no_motion", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = 0.002; }); }},
-      {"force_unit", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N *= 1000.0; }); }},
-      {"clipping", "care",
-       [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = std::min(row.force_N, 2.0); }); }},
-      {"force_zero", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N += 0.5; }); }},
-      {"lag", "care", [](Recording& r) { delay_force(r, 0.03); }},
-      {"gap", "care",
-       [](Recording& r) {
-         each(r, [](RecordingRow& row) {
-           if (row.time_s > 10.0) row.time_s += 5.0;
-         });
-       }},
-      {"too_short", "care", [](Recording& r) { first_seconds(r, 2.0, 1.0); }},
-  };
-  for (const Fault& fault : faults) {
-    SCOPED_TRACE(fault.code);
-    Recording recording = silicone();
-    fault.apply(recording);
-    const RecordingCheck check = checked(recording, kSilicone);
-    const Finding* const finding = find(check, fault.code);
-    EXPECT_NE(finding, nullptr) << all_of(check);
-    EXPECT_STREQ(check.verdict(), fault.verdict) << all_of(check);
-    if (finding == nullptr) continue;
-    EXPECT_FALSE(finding->advice.empty());
-  }
-}
-
 TEST(CheckRecording, WarnsOfNoForceThatAMachineReaches) {
   Recording recording = silicone();
   each(recording, [](RecordingRow& row) { row.force_N *= 100.0; });  // 700 N
@@ -104,12 +65,14 @@ TEST(CheckRecording, WarnsOfNoForceThatAMachineReaches) {
   EXPECT_EQ(find(check, "force_unit"), nullptr) << all_of(check);
 }
 
-// Following the advice of a finding removes it or its advice.
-TEST(CheckRecording, AdviceThatIsFollowedChangesTheFinding) {
-  struct Advice {
+// Each fault is found, and following its advice removes the finding or its advice.
+TEST(CheckRecording, FindsEachFaultWhichItsAdviceRemoves) {
+  using Change = std::function<void(Recording&)>;
+  struct Fault {
     const char* code;
-    std::function<void(Recording&)> fault;
-    std::function<void(Recording&)> remedy;
+    const char* verdict;
+    Change fault;
+    Change remedy;
   };
   const auto scale_force = [](double factor) {
     return [=](Recording& r) { each(r, [=](RecordingRow& row) { row.force_N *= factor; }); };
@@ -118,41 +81,43 @@ TEST(CheckRecording, AdviceThatIsFollowedChangesTheFinding) {
     return [=](Recording& r) { each(r, [=](RecordingRow& row) { row.*column += value; }); };
   };
   const auto flip_position = [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = -row.position_m; }); };
-  const auto pause = [](double seconds) {
-    return [=](Recording& r) {
-      each(r, [=](RecordingRow& row) {
-        if (row.time_s > 10.0) row.time_s += seconds;
-      });
-    };
+  const auto pause = [](Recording& r) {
+    each(r, [](RecordingRow& row) {
+      if (row.time_s > 10.0) row.time_s += 5.0;
+    });
   };
   const auto cut = [](double from_s, double seconds) {
     return [=](Recording& r) { first_seconds(r, from_s, seconds); };
   };
+  const auto hold = [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = 0.002; }); };
+  const auto clip = [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = std::min(row.force_N, 2.0); }); };
+  const auto delay = [](Recording& r) { delay_force(r, 0.03); };
   const auto record_again = [](Recording& r) { r = silicone(); };
-  const std::vector<Advice> advices = {
-      {"force_sign", scale_force(-1.0), scale_force(-1.0)},
-      {"position_sign", flip_position, flip_position},
-      {"force_unit", scale_force(1000.0), scale_force(1e-3)},
-      {"force_zero", add(&RecordingRow::force_N, 0.5), add(&RecordingRow::force_N, -0.5)},
-      {"no_contact", add(&RecordingRow::position_m, -0.05), add(&RecordingRow::position_m, 0.05)},
-      {"gap", pause(5.0), cut(0.0, 10.0)},
-      {"too_short", cut(2.0, 1.0), record_again},
-      {"clipping", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = std::min(row.force_N, 2.0); }); },
-       record_again},
-      {"lag", [](Recording& r) { delay_force(r, 0.03); }, record_again},
-      {"no_force", scale_force(0.0), record_again},
-      {"no_motion", [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = 0.002; }); }, record_again},
+  const std::vector<Fault> faults = {
+      {"force_sign", "unusable", scale_force(-1.0), scale_force(-1.0)},
+      {"position_sign", "unusable", flip_position, flip_position},
+      {"no_force", "unusable", scale_force(0.0), record_again},
+      {"no_motion", "unusable", hold, record_again},
+      {"no_contact", "unusable", add(&RecordingRow::position_m, -0.05), add(&RecordingRow::position_m, 0.05)},
+      {"force_unit", "care", scale_force(1000.0), scale_force(1e-3)},
+      {"force_zero", "care", add(&RecordingRow::force_N, 0.5), add(&RecordingRow::force_N, -0.5)},
+      {"clipping", "care", clip, record_again},
+      {"lag", "care", delay, record_again},
+      {"gap", "care", pause, cut(0.0, 10.0)},
+      {"too_short", "care", cut(2.0, 1.0), record_again},
   };
-  for (const Advice& advice : advices) {
-    SCOPED_TRACE(advice.code);
+  for (const Fault& one : faults) {
+    SCOPED_TRACE(one.code);
     Recording recording = silicone();
-    advice.fault(recording);
+    one.fault(recording);
     const RecordingCheck before = checked(recording, kSilicone);
-    const Finding* const finding = find(before, advice.code);
+    const Finding* const finding = find(before, one.code);
     ASSERT_NE(finding, nullptr) << all_of(before);
+    EXPECT_STREQ(before.verdict(), one.verdict) << all_of(before);
     EXPECT_FALSE(finding->advice.empty());
-    advice.remedy(recording);
-    const Finding* const after = find(checked(recording, kSilicone), advice.code);
+    one.remedy(recording);
+    const RecordingCheck remedied = checked(recording, kSilicone);
+    const Finding* const after = find(remedied, one.code);
     EXPECT_TRUE(after == nullptr || after->advice.empty());
   }
 }

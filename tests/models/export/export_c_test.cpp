@@ -113,24 +113,6 @@ TEST(ExportC, GivesTheLibrarysForcesWhateverTheSteps) {
   }
 }
 
-TEST(ExportC, ALongPauseAndAGlitchAreForgottenAtOnce) {
-  for (const ModelData& data : models_by_features()) {
-    const CompiledModel<double> compiled(data, {false, {30e-6, 0.0}});
-    ASSERT_NE(compiled.force, nullptr);
-    double t = 0.0;
-    double held_N = 0.0;
-    for (int i = 0; i < 200000; ++i) held_N = compiled.force(t += 0.01, 4.2e-3);
-    compiled.reset();
-    for (int i = 0; i < 1000; ++i) compiled.force(t += 1e-3, 4.2e-3);
-    compiled.force(t += 3600.0, 4.2e-3);
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(compiled.force(t += 1e-3, 4.2e-3), held_N, 2e-3) << data.name;
-    for (const double glitch_m : {0.3, 1.0, -0.5}) {
-      compiled.force(t += 1e-3, glitch_m);
-      EXPECT_NEAR(compiled.force(t += 1e-3, 4.2e-3), held_N, 2e-3) << data.name << ", after " << glitch_m << " m";
-    }
-  }
-}
-
 // The limit is the larger of 1 mN and a fiftieth of the JND.
 TEST(ExportC, InSinglePrecisionNobodyFeelsTheDifference) {
   const Recording& recording = recordings().front();

@@ -166,24 +166,6 @@ TEST_F(LibraryC, AStreamOutlivesItsModel) {
   EXPECT_GT(palpate_stream_force(one.get(), 0.001, 0.003), 0.0);
 }
 
-TEST_F(LibraryC, AForceAllocatesAndLocksNothing) {
-  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
-  const Recording recording = test::example_recording(2000, 1000.0, 30e-6);
-  const palpate_sensor sensor = sensor_of(recording);
-  for (const ModelData& data : test::example_models()) {
-    const ModelHandle model = load(save(data));
-    const StreamPtr one = stream(model, sensor);
-    test::RtGuard guard;
-    for (const RecordingRow& row : recording.rows) {
-      palpate_stream_force(one.get(), row.time_s, row.position_m);
-      palpate_stream_out_of_domain(one.get());
-      palpate_stream_predicted_error(one.get());
-    }
-    palpate_stream_reset(one.get());
-    EXPECT_EQ(guard.stop().total(), 0) << data.name;
-  }
-}
-
 TEST_F(LibraryC, TheLimiterIsTheProgramsOwn) {
   palpate_limits limits;
   palpate_limits_default(&limits);

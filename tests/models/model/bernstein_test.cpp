@@ -24,14 +24,6 @@ TEST(Bernstein, CoefficientsGiveTheDefinition) {
   }
 }
 
-TEST(Bernstein, SumsToOne) {
-  for (double u = 0.0; u <= 1.0; u += 0.1) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k <= 5; ++k) sum += polynomial(bernstein<5>(k), u);
-    EXPECT_NEAR(sum, 1.0, 1e-13);
-  }
-}
-
 // Simpson's rule over 64 panels of a fifth-order polynomial: error far below 1e-8.
 TEST(Bernstein, IntegralMatchesQuadrature) {
   for (std::size_t k = 0; k <= 5; ++k) {
@@ -46,17 +38,6 @@ TEST(Bernstein, IntegralMatchesQuadrature) {
       EXPECT_NEAR(u * polynomial(bernstein_integral<5>(k), u), sum, 1e-8) << k << " to " << u;
     }
   }
-}
-
-// Every Bernstein polynomial of order n has the area 1 / (n + 1).
-TEST(Bernstein, IntegralOverAllIsTheSameForEach) {
-  for (std::size_t k = 0; k <= 5; ++k) EXPECT_NEAR(polynomial(bernstein_integral<5>(k), 1.0), 1.0 / 6.0, 1e-14);
-}
-
-TEST(Bernstein, BinomialsAreExact) {
-  EXPECT_EQ(binomial(5, 0), 1.0);
-  EXPECT_EQ(binomial(5, 2), 10.0);
-  EXPECT_EQ(binomial(10, 5), 252.0);
 }
 
 }  // namespace
