@@ -167,10 +167,6 @@ void split_at_wide_gaps(std::string_view line, std::vector<std::string_view>& fi
   }
 }
 
-bool fits(const std::vector<std::string_view>& fields, std::size_t columns) {
-  return fields.size() >= columns && columns > 0;
-}
-
 // Splits a line above the table, by the separator of the table or, if that fails, by any one that gives as many fields
 // as the table has columns.
 bool split_header(std::string_view line, const TableLayout& layout, std::vector<std::string_view>& fields) {
@@ -178,7 +174,7 @@ bool split_header(std::string_view line, const TableLayout& layout, std::vector<
   for (const std::string_view text : {line, bare}) {
     split_table_fields(text, layout.delimiter, fields);
     if (layout.delimiter != Delimiter::blanks) {
-      if (fits(fields, layout.columns)) return true;
+      if (fields.size() >= layout.columns) return true;
       continue;
     }
     if (fields.size() == layout.columns) return true;

@@ -226,17 +226,12 @@ bool is_force(FeatureKind kind) { return is_branch(kind) || is_bristle(kind); }
 
 void write_features(CText& out, const std::vector<FeatureSpec>& features) {
   out.add(kFeatureHelpersC);
-  const bool has_curves = std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) {
-    return has_drive(spec.kind) || has_parts(spec.kind);
-  });
-  if (has_curves) out.add(kCurveC);
-  if (std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) { return has_filter(spec.kind); })) {
-    out.add(kFilterC);
-  }
-  if (std::any_of(features.begin(), features.end(),
-                  [](const FeatureSpec& spec) { return spec.kind == FeatureKind::creep; })) {
-    out.add(kCreepC);
-  }
+  const auto any = [&](bool (*has)(FeatureKind)) {
+    return std::any_of(features.begin(), features.end(), [&](const FeatureSpec& spec) { return has(spec.kind); });
+  };
+  if (any([](FeatureKind kind) { return has_drive(kind) || has_parts(kind); })) out.add(kCurveC);
+  if (any(has_filter)) out.add(kFilterC);
+  if (any([](FeatureKind kind) { return kind == FeatureKind::creep; })) out.add(kCreepC);
   std::string body;
   for (std::size_t i = 0; i < features.size(); ++i) {
     out.add("\n/* " + feature_name(features[i]) + " */\n");

@@ -73,12 +73,6 @@ Result<SensorSpec> sensor_spec(const palpate_sensor& sensor) {
   return spec;
 }
 
-Result<SensorSpec> sensor_of_recording(const std::string& path) {
-  Result<RecordingReader> reader = RecordingReader::open(path);
-  if (!reader) return reader.error();
-  return identify_sensor(*reader);
-}
-
 palpate_sensor sensor_from(const SensorSpec& spec) {
   return {spec.encoder_step_m,         spec.position_noise_m,
           spec.velocity_noise_m_per_s, spec.acceleration_noise_m_per_s2,
@@ -226,7 +220,9 @@ int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* 
   return guarded<int>(-1, {error, error_size}, [&](Place place) -> int {
     if (path == nullptr || sensor == nullptr)
       return place.report(palpate::Error{"found no path or no sensor to fill, expected both"});
-    const auto spec = palpate::library::sensor_of_recording(path);
+    auto reader = palpate::RecordingReader::open(path);
+    if (!reader) return place.report(reader.error());
+    const auto spec = palpate::identify_sensor(*reader);
     if (!spec) return place.report(spec.error());
     *sensor = palpate::library::sensor_from(*spec);
     return 0;

@@ -10,19 +10,6 @@
 namespace palpate {
 namespace {
 
-TEST(LineScanner, EndsLinesAtLfAndCrlf) {
-  LineScanner scanner(std::make_unique<std::istringstream>("\xEF\xBB\xBFone\ntwo\r\n\nlast"), "x");
-  CsvLine line;
-  for (const char* expected : {"one", "two", "", "last"}) {
-    ASSERT_TRUE(scanner.next(line));
-    EXPECT_EQ(line.text, expected);
-    EXPECT_EQ(line.terminated, line.text != "last");
-  }
-  EXPECT_EQ(line.number, 4u);
-  EXPECT_FALSE(scanner.next(line));
-  EXPECT_FALSE(scanner.error().has_value());
-}
-
 TEST(LineScanner, HasALimitOfTheLengthOfALine) {
   const std::string longest(kMaximumLineBytes, 'a');
   for (const std::string start : {"", "\xEF\xBB\xBF"}) {
@@ -71,11 +58,6 @@ TEST(Printable, EscapesWhatATerminalWouldObey) {
 TEST(Trimmed, TakesBlanksAndTabsFromBothEnds) {
   EXPECT_EQ(trimmed(" \ta b\t "), "a b");
   EXPECT_EQ(trimmed(" \t"), "");
-}
-
-TEST(Shortest, ReadsAsTheSameNumber) {
-  EXPECT_EQ(shortest(0.1), "0.1");
-  EXPECT_EQ(shortest(12.5), "12.5");
 }
 
 }  // namespace

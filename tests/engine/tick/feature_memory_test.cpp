@@ -72,16 +72,6 @@ TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
   }
 }
 
-TEST(FeatureMemory, ABranchMaySlowDownWithDepth) {
-  FeatureSpec slow = spectrum({0.2}, DriveCurve{5e-3, {3.0}});
-  slow.slowing = 2.0;
-  FeatureFilter filter({slow});
-  feed(filter, 0.0, 0.0);
-  const double start_N = feed(filter, 1e-3, 2.5e-3).values[0];
-  for (int i = 2; i <= 1001; ++i) feed(filter, 1e-3 * i, 2.5e-3);
-  EXPECT_NEAR(filter.vector().values[0], start_N * std::exp(-1.0 / (0.2 * std::exp(1.0))), 1e-9);
-}
-
 // A complete material with nonnegative force. Energy returned in a cycle may have been stored
 // in an earlier one, so the sum over all cycles from rest must be positive.
 TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {

@@ -17,30 +17,6 @@ using namespace test;
 // The relative rounding error of sums over some thousand steps is well below this.
 constexpr double kRounding = 1e-11;
 
-TEST(Features, ASpectrumIsTheSumOfItsBranches) {
-  FeatureFilter together({spectrum({0.02, 0.3, 4.0}, stiffening())});
-  FeatureFilter apart({spectrum({0.02}, stiffening()), spectrum({0.3}, stiffening()), spectrum({4.0}, stiffening())});
-  for (int i = 0; i < 3000; ++i) {
-    const double t = 1e-3 * i;
-    const auto& each = feed(apart, t, closed_motion_m(t / 3.0)).values;
-    const double sum = feed(together, t, closed_motion_m(t / 3.0)).values[0];
-    ASSERT_DOUBLE_EQ(sum, each[0] + each[1] + each[2]) << t;
-  }
-}
-
-TEST(Features, AStopBendsThenSlipsAndTurnsWithTheTool) {
-  // The drive is g(d) = 1 N d / 5 mm.
-  const double threshold_m = 1e-4;
-  FeatureFilter filter({stops({threshold_m}, {5e-3, {1.0, 0.0, 0.0, 0.0}})});
-  const auto at = [&](double depth_m, double bend_m) { return depth_m / 5e-3 * bend_m / threshold_m; };
-  EXPECT_EQ(feed(filter, 0.0, 0.0).values[0], 0.0);
-  EXPECT_NEAR(feed(filter, 0.1, 5e-5).values[0], at(5e-5, 5e-5), 1e-15);
-  EXPECT_NEAR(feed(filter, 0.2, 5e-3).values[0], at(5e-3, 1e-4), 1e-15) << "slipping on the way in";
-  EXPECT_NEAR(feed(filter, 0.3, 4.9e-3).values[0], 0.0, 1e-12) << "half way back";
-  EXPECT_NEAR(feed(filter, 0.4, 4e-3).values[0], at(4e-3, -1e-4), 1e-15) << "slipping on the way out";
-  EXPECT_NEAR(feed(filter, 9.4, 4e-3).values[0], at(4e-3, -1e-4), 1e-14) << "time alone changes nothing";
-}
-
 TEST(Features, FreeAirForgetsStopsAndCreepGoesOnInIt) {
   FeatureFilter filter({stops({1e-4}, stiffening()), creep({0.5}, stiffening())});
   feed(filter, 0.0, 0.0);

@@ -80,16 +80,6 @@ TEST(VoxelLookup, AgreesWithThePlainGridInsideAndOutsideTheBox) {
   }
 }
 
-TEST(VoxelLookup, GivesTheNodesTheirValues) {
-  const VoxelGrid grid = uneven_grid(2, 40, 7);
-  const VoxelLookup lookup(grid);
-  for (std::size_t i = 0; i < 40; ++i)
-    for (std::size_t j = 0; j < 40; ++j) {
-      const double x[] = {grid.nodes[0][i], grid.nodes[1][j]};
-      EXPECT_NEAR(lookup.evaluate(x), grid.values_N[i * 40 + j], 1e-14);
-    }
-}
-
 TEST(VoxelLookup, ReproducesAMultilinearFunction) {
   VoxelGrid grid = even_grid(-1.0, 2.0, {4, 2, 7});
   const auto value = [](const auto& x) { return 1.0 + x[0] - 2.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2]; };
