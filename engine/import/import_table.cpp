@@ -7,14 +7,13 @@
 
 #include "engine/base/csv_scanner.h"
 #include "engine/import/import_words.h"
+#include "engine/import/row_times.h"
 #include "engine/import/table_number.h"
 #include "engine/recording/recording_rules.h"
 
 namespace palpate {
 namespace {
 
-// A larger backward step is a clock that passed midnight.
-constexpr std::int64_t kHalfDay_s = 43200;
 // The first rows determine which columns are constant, and the unit of time.
 constexpr std::size_t kFirstRows = 200;
 constexpr double kVelocitySlope = 0.2;
@@ -45,14 +44,12 @@ class Importer {
   Status find_columns();
   Status find_unit_of(std::size_t role);
   Status find_time_unit();
-  bool parse_time(std::string_view field, TableTime& time) const;
   void split(std::string_view line);
   bool parse_row(std::string_view line, TableTime& time, RecordingRow& row);
   bool is_bad_row(std::string_view line);
   Error explain_row(std::string_view line, std::uint64_t number);
   Result<bool> add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
   void use_unit(std::size_t role, const Unit& unit);
-  double seconds_since_first(const TableTime& time) const;
   void check_rate();
   void check_velocity();
   Status read_rows();
@@ -68,12 +65,7 @@ class Importer {
   std::array<double, kRoles> to_si_{1.0, 1.0, 1.0};
   std::vector<std::string_view> row_;
   std::array<std::string_view, kRoles> fields_;
-  bool clock_ = false;
-  bool has_date_ = false;
-  bool started_ = false;
-  TableTime first_;
-  double last_time_s_ = 0.0;
-  std::int64_t midnights_ = 0;
+  RowTimes times_{'.'};
   std::uint64_t repeated_ = 0;
   bool own_time_ = false;  // the file has times besides a given rate
   std::optional<VelocityColumn> velocity_;
@@ -145,6 +137,7 @@ Status Importer::find_columns() {
 }
 
 void Importer::use_unit(std::size_t role, const Unit& unit) {
+  if (role == 0) times_.use_unit(unit.to_si);
   to_si_[role] = unit.to_si;
   table_.columns[role].unit = unit.name;
 }
@@ -179,40 +172,20 @@ Status Importer::find_unit_of(std::size_t role) {
   return {};
 }
 
-bool Importer::parse_time(std::string_view field, TableTime& time) const {
-  return clock_ ? parse_clock_time(field, time) : parse_number_time(field, table_.layout.decimal, time);
-}
-
 // The times are those of a clock, have a unit from the header or the user, or are in the only unit with a valid rate.
 Status Importer::find_time_unit() {
   const std::size_t index = index_[0];
-  std::vector<double> steps;
-  TableTime last;
-  for (std::size_t row = 0; row < first_rows_.size(); ++row) {
-    const std::string_view field = index < first_rows_[row].size() ? first_rows_[row][index] : std::string_view();
-    TableTime time;
-    if (row == 0) {
-      clock_ = !parse_number_time(field, table_.layout.decimal, time) && parse_clock_time(field, time);
-      has_date_ = clock_ && has_date(field);
-    }
-    if (!parse_time(field, time)) break;
-    const double step = static_cast<double>(time.whole - last.whole) + (time.fraction - last.fraction);
-    if (row > 0 && step > 0.0) steps.push_back(step);
-    last = time;
-  }
-  if (clock_) {
+  std::vector<std::string_view> fields;
+  for (const auto& row : first_rows_) fields.push_back(index < row.size() ? row[index] : std::string_view());
+  times_ = RowTimes(table_.layout.decimal);
+  const double step = times_.examine(fields);
+  if (times_.are_of_a_clock()) {
     table_.columns[0].unit = "clock";
     return {};
   }
   if (const auto unit = unit_of(Quantity::time, request_, header_[index]); unit && unit->quantity == Quantity::time) {
     use_unit(0, *unit);
     return {};
-  }
-  double step = 0.0;
-  if (!steps.empty()) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    step = *middle;
   }
   std::vector<Unit> possible;
   for (const char* name : {"s", "ms", "us", "ns"}) {
@@ -240,7 +213,7 @@ void Importer::split(std::string_view line) {
 
 bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& row) {
   split(line);
-  if (!request_.rate_Hz && !parse_time(fields_[0], time)) return false;
+  if (!request_.rate_Hz && !times_.parse(fields_[0], time)) return false;
   const char decimal = table_.layout.decimal;
   if (!parse_table_number(fields_[1], decimal, row.position_m) ||
       !parse_table_number(fields_[2], decimal, row.force_N)) {
@@ -271,7 +244,7 @@ Error Importer::explain_row(std::string_view line, std::uint64_t number) {
     TableTime time;
     double value = 0.0;
     const bool good =
-        role == 0 ? parse_time(fields_[0], time) : parse_table_number(fields_[role], table_.layout.decimal, value);
+        role == 0 ? times_.parse(fields_[0], time) : parse_table_number(fields_[role], table_.layout.decimal, value);
     if (good) continue;
     const std::string_view field = trimmed(fields_[role]);
     const std::string found =
@@ -290,29 +263,17 @@ Result<bool> Importer::add_time(const TableTime& time, std::uint64_t line, Recor
     row.time_s = static_cast<double>(table_.recording.rows.size()) / *request_.rate_Hz;
     return true;
   }
-  if (!started_) first_ = time;
-  row.time_s = seconds_since_first(time);
-  if (started_ && clock_ && !has_date_ && last_time_s_ - row.time_s > static_cast<double>(kHalfDay_s)) {
-    ++midnights_;
-    row.time_s = seconds_since_first(time);
+  const double last_s = times_.last_s();
+  const RowTimes::Step step = times_.add(time);
+  row.time_s = times_.seconds(time);
+  if (step == RowTimes::Step::repeated) ++repeated_;
+  if (step == RowTimes::Step::after_midnight) {
     note("the clock passes midnight in line " + std::to_string(line) + ": a day is added from there");
   }
-  if (started_ && row.time_s == last_time_s_) {
-    ++repeated_;
-    return false;
+  if (step == RowTimes::Step::backward) {
+    return fail_at(line, time_fault_words(quoted_name(0), row.time_s, last_s, table_.recording.rows.size()));
   }
-  if (started_ && !(row.time_s > last_time_s_)) {
-    return fail_at(line, time_fault_words(quoted_name(0), row.time_s, last_time_s_, table_.recording.rows.size()));
-  }
-  started_ = true;
-  last_time_s_ = row.time_s;
-  return true;
-}
-
-double Importer::seconds_since_first(const TableTime& time) const {
-  return (static_cast<double>(time.whole - first_.whole + midnights_ * 2 * kHalfDay_s) +
-          (time.fraction - first_.fraction)) *
-         to_si_[0];
+  return step != RowTimes::Step::repeated;
 }
 
 // Reads every row in one pass. Other lines are allowed at the end only, except for the number of bad rows that the
@@ -367,9 +328,7 @@ Status Importer::read_rows() {
     const auto added = add_time(time, number, row);
     if (!added) return added.error();
     if (*added) rows.push_back(row);
-    if (!own_time_ || !parse_time(fields_[0], time)) continue;
-    if (!std::exchange(started_, true)) first_ = time;
-    last_time_s_ = seconds_since_first(time);
+    if (own_time_ && times_.parse(fields_[0], time)) times_.add(time);
   }
   if (comments > 0) note("left out " + count_of(comments, "comment line") + " between the rows");
   if (repeated_ > 0) note("left out " + count_of(repeated_, "row") + " with the time of the previous row");
@@ -384,10 +343,10 @@ Status Importer::read_rows() {
 void Importer::describe_time() {
   if (request_.rate_Hz)
     return note("the rows are evenly spaced at the --rate of " + short_number(*request_.rate_Hz) + " Hz");
-  if (clock_)
-    return note(has_date_ ? "the times are dates: time_s is 0 at the first row"
-                          : "the times are times of day: time_s is 0 at the first row");
-  const double start_s = (static_cast<double>(first_.whole) + first_.fraction) * to_si_[0];
+  if (times_.are_of_a_clock())
+    return note(times_.have_dates() ? "the times are dates: time_s is 0 at the first row"
+                                    : "the times are times of day: time_s is 0 at the first row");
+  const double start_s = times_.first_s();
   if (start_s != 0.0) note("the first time was " + short_number(start_s) + " s: time_s is 0 there");
 }
 
@@ -395,9 +354,9 @@ void Importer::describe_time() {
 void Importer::check_rate() {
   if (!own_time_) return;
   const double seconds = table_.recording.rows.back().time_s;
-  if (std::abs(seconds - last_time_s_) <= kRateTolerance * last_time_s_) return;
+  if (std::abs(seconds - times_.last_s()) <= kRateTolerance * times_.last_s()) return;
   note("warning: with --rate " + short_number(*request_.rate_Hz) + " the recording is " + short_number(seconds) +
-       " s long, but " + short_number(last_time_s_) + " s by the times in the file");
+       " s long, but " + short_number(times_.last_s()) + " s by the times in the file");
 }
 
 // Drops a velocity that is not the derivative of the position (unsigned, a set value): the slope of one over the other
