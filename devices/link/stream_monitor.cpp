@@ -125,10 +125,10 @@ void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
   const double quickest = speed_ + calibration_.counts_per_metre * kQuickest_m_per_s2 * step_s;
   const double fastest = std::min(quickest, calibration_.counts_per_metre * calibration_.fastest_m_per_s);
   const double noise = kNoiseSteps * std::max(1.0, calibration_.encoder_step_m * calibration_.counts_per_metre);
-  const double way = std::abs(static_cast<double>(step));
-  const bool jumped = way > fastest * step_s + noise;
+  const double distance = std::abs(static_cast<double>(step));
+  const bool jumped = distance > fastest * step_s + noise;
   if (jumped) lose(device_fault::kJump, now_s);
-  speed_ = jumped ? 0.0 : way / step_s;
+  speed_ = jumped ? 0.0 : distance / step_s;
   state_.counts += step;
 }
 

@@ -33,7 +33,7 @@ struct Bin {
 struct Range {
   double low_m = 0.0;
   double high_m = 0.0;
-  double way_m() const { return high_m - low_m; }
+  double length_m() const { return high_m - low_m; }
 };
 
 Range range_of(const Recording& recording) {
@@ -43,7 +43,7 @@ Range range_of(const Recording& recording) {
 
 // Bins of `width_m` from the outermost position on.
 std::vector<Bin> bins_of(const Recording& recording, const Range& range, double width_m) {
-  std::vector<Bin> bins(static_cast<std::size_t>(range.way_m() / width_m) + 1);
+  std::vector<Bin> bins(static_cast<std::size_t>(range.length_m() / width_m) + 1);
   double turn_m = range.low_m;
   bool inward = true;
   for (const RecordingRow& row : recording.rows) {
@@ -94,15 +94,15 @@ Comparison compare(const std::vector<Bin>& first, const std::vector<Bin>& second
 }
 
 double inward_speed(const Recording& recording) {
-  double way_m = 0.0;
+  double path_m = 0.0;
   double time_s = 0.0;
   for (std::size_t i = 1; i < recording.rows.size(); ++i) {
     const double step_m = recording.rows[i].position_m - recording.rows[i - 1].position_m;
     if (!(step_m > 0.0)) continue;
-    way_m += step_m;
+    path_m += step_m;
     time_s += recording.rows[i].time_s - recording.rows[i - 1].time_s;
   }
-  return time_s > 0.0 ? way_m / time_s : 0.0;
+  return time_s > 0.0 ? path_m / time_s : 0.0;
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ std::optional<Contradiction> find_contradiction(const Recording& first, const Re
   const Range b = range_of(second);
   const double overlap_m = std::min(a.high_m, b.high_m) - std::max(a.low_m, b.low_m);
   const double width_m = overlap_m / kBins;
-  if (!(overlap_m > kLeastOverlap * std::min(a.way_m(), b.way_m())) || !(width_m > 0.0)) return std::nullopt;
+  if (!(overlap_m > kLeastOverlap * std::min(a.length_m(), b.length_m())) || !(width_m > 0.0)) return std::nullopt;
   const std::vector<Bin> one = bins_of(first, a, width_m);
   const std::vector<Bin> other = bins_of(second, b, width_m);
   const int recorded = static_cast<int>(std::lround((b.low_m - a.low_m) / width_m));

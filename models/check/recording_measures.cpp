@@ -73,8 +73,8 @@ class MotionMeasure {
     if (!(depth_m > 0.0)) return;
     ++measures_.contact_rows;
     const double window_s = row.time_s - before.time_s;
-    const double way_m = row.position_m - before.position_m;
-    const double speed_m_per_s = window_s > 0.0 ? way_m / window_s : 0.0;
+    const double travel_m = row.position_m - before.position_m;
+    const double speed_m_per_s = window_s > 0.0 ? travel_m / window_s : 0.0;
     (speed_m_per_s > 0.0 ? measures_.inward_travel_m : measures_.outward_travel_m) += std::abs(speed_m_per_s) * step_s;
     const auto quarter = static_cast<std::size_t>(depth_m / deepest_m_ * static_cast<double>(kDepthQuarters));
     const auto band = static_cast<std::size_t>(
@@ -101,9 +101,9 @@ class MotionMeasure {
 
   // Finds turns: the tool has come back from its extreme by more than noise.
   void follow_turns(double depth_m) {
-    const double way_m = (depth_m - farthest_m_) * direction_;
-    if (way_m >= 0.0) farthest_m_ = depth_m;
-    if (way_m > -kSmallestStroke * deepest_m_) return;
+    const double travel_m = (depth_m - farthest_m_) * direction_;
+    if (travel_m >= 0.0) farthest_m_ = depth_m;
+    if (travel_m > -kSmallestStroke * deepest_m_) return;
     const double stroke_m = std::abs(farthest_m_ - turned_m_);
     if (stroke_m > kSmallestStroke * deepest_m_ && stroke_m < kLargestSmallStroke * deepest_m_) {
       ++measures_.small_strokes;

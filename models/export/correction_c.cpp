@@ -53,9 +53,9 @@ static real correction_of(const real *u) {
     fraction[k] = (at - axis[cell]) / (axis[cell + 1] - axis[cell]);
   }
   for (c = 0; c < CORNERS; ++c) {
-    int place = base;
-    for (k = 0; k < FEATURES; ++k) place += ((c >> k) & 1) * axis_stride[k];
-    corner[c] = grid_values[place];
+    int node = base;
+    for (k = 0; k < FEATURES; ++k) node += ((c >> k) & 1) * axis_stride[k];
+    corner[c] = grid_values[node];
   }
   for (k = FEATURES - 1, half = CORNERS / 2; k >= 0; --k, half /= 2) {
     for (c = 0; c < half; ++c) corner[c] += fraction[k] * (corner[c + half] - corner[c]);

@@ -31,7 +31,7 @@ class GrowingFit {
   // Sets the columns `at` to those of `centres` (d x k). A column is below size(), or the next ones.
   void set(const Eigen::MatrixXd& centres, const std::vector<Eigen::Index>& at) {
     const Eigen::Index count = centres.cols();
-    for (const Eigen::Index place : at) size_ = std::max(size_, place + 1);
+    for (const Eigen::Index index : at) size_ = std::max(size_, index + 1);
     Eigen::MatrixXd fresh(sites_.count(), count);
     std::array<Eigen::MatrixXd, kParts> shares;
     for_parts([&](int part) {
@@ -163,11 +163,11 @@ Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& 
   sequence.pool.resize(sites.dimension(), 2 * most - 1);
   std::vector<std::size_t> of_leaf;  // the column of each leaf
   const auto add = [&](Eigen::Index leaf) {
-    const auto place = static_cast<std::size_t>(leaf);
-    of_leaf.resize(std::max(of_leaf.size(), place + 1));
-    of_leaf[place] = sequence.memberships.size();
+    const auto index = static_cast<std::size_t>(leaf);
+    of_leaf.resize(std::max(of_leaf.size(), index + 1));
+    of_leaf[index] = sequence.memberships.size();
     sequence.memberships.push_back({leaf, tree.leaf_count(), 0});
-    sequence.pool.col(static_cast<Eigen::Index>(of_leaf[place])) = tree.barycentre(leaf);
+    sequence.pool.col(static_cast<Eigen::Index>(of_leaf[index])) = tree.barycentre(leaf);
   };
   add(0);
   fit.set(sequence.pool.leftCols(1), {0});

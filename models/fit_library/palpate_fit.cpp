@@ -187,14 +187,14 @@ int assign_folds(std::size_t n, const double* depth_m, const int* recording, int
 }  // namespace
 }  // namespace palpate::library
 
+using palpate::library::ErrorBuffer;
 using palpate::library::guarded;
-using palpate::library::Place;
 
 palpate_recording* palpate_recording_load(const char* path, char* error, size_t error_size) {
-  return guarded<palpate_recording*>(nullptr, {error, error_size}, [&](Place place) -> palpate_recording* {
-    if (path == nullptr) return place.fail("found no path, expected that of a recording");
+  return guarded<palpate_recording*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_recording* {
+    if (path == nullptr) return buffer.fail("found no path, expected that of a recording");
     auto recording = palpate::read_recording(path);
-    if (!recording) return place.fail(recording.error().message);
+    if (!recording) return buffer.fail(recording.error().message);
     return new palpate_recording{std::move(*recording)};
   });
 }
@@ -203,12 +203,12 @@ palpate_recording* palpate_recording_new(const char* name, size_t n, const doubl
                                          const double* force_N, const double* velocity_m_per_s,
                                          const double* acceleration_m_per_s2, const unsigned char* left_out,
                                          char* error, size_t error_size) {
-  return guarded<palpate_recording*>(nullptr, {error, error_size}, [&](Place place) -> palpate_recording* {
+  return guarded<palpate_recording*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_recording* {
     if (name == nullptr || time_s == nullptr || position_m == nullptr || force_N == nullptr)
-      return place.fail("found no name, time, position or force, expected all of them");
+      return buffer.fail("found no name, time, position or force, expected all of them");
     auto recording =
         palpate::library::recording_of(name, n, time_s, position_m, force_N, velocity_m_per_s, acceleration_m_per_s2);
-    if (!recording) return place.fail(recording.error().message);
+    if (!recording) return buffer.fail(recording.error().message);
     std::vector<bool> left(left_out, left_out == nullptr ? nullptr : left_out + n);
     return new palpate_recording{std::move(*recording), std::move(left)};
   });
@@ -237,25 +237,25 @@ const palpate_row* palpate_recording_rows(const palpate_recording* recording) {
 }
 
 int palpate_import(const char* table, const char* recording, int overwrite, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](Place place) {
+  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
     if (table == nullptr || recording == nullptr) {
-      return place.report(palpate::Error{"found no path, expected a table and a recording"});
+      return buffer.report(palpate::Error{"found no path, expected a table and a recording"});
     }
-    return place.report(palpate::library::import_to(table, recording, overwrite != 0));
+    return buffer.report(palpate::library::import_to(table, recording, overwrite != 0));
   });
 }
 
 int palpate_check(const char* recording, palpate_check_result* result, char* findings, size_t findings_size,
                   char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](Place place) {
+  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
     if (recording == nullptr || result == nullptr) {
-      return place.report(palpate::Error{"found no path or no result, expected both"});
+      return buffer.report(palpate::Error{"found no path or no result, expected both"});
     }
     const auto file = palpate::check_recording_file(
         recording, palpate::library::check_of(*palpate::library::scene_of(palpate::library::or_default(nullptr))));
-    if (!file) return place.report(file.error());
+    if (!file) return buffer.report(file.error());
     *result = palpate::library::result_of(file->check);
-    Place{findings, findings_size}.fail(palpate::library::findings_of(file->check));
+    ErrorBuffer{findings, findings_size}.fail(palpate::library::findings_of(file->check));
     return 0;
   });
 }
@@ -272,15 +272,15 @@ void palpate_fit_options_default(palpate_fit_options* options) {
 
 palpate_model* palpate_fit_recordings(const palpate_recording* const* recordings, size_t recording_count,
                                       const palpate_fit_options* options, char* error, size_t error_size) {
-  return guarded<palpate_model*>(nullptr, {error, error_size}, [&](Place place) -> palpate_model* {
+  return guarded<palpate_model*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_model* {
     std::vector<const palpate_recording*> some;
     for (size_t i = 0; recordings != nullptr && i < recording_count; ++i) {
       if (recordings[i] != nullptr) some.push_back(recordings[i]);
     }
-    if (some.empty() || some.size() != recording_count) return place.fail("found no recording, expected one or more");
+    if (some.empty() || some.size() != recording_count) return buffer.fail("found no recording, expected one or more");
     const palpate_fit_options chosen = palpate::library::or_default(options);
     auto fitted = palpate::library::fit_memory(some, chosen);
-    if (!fitted) return place.fail(fitted.error().message);
+    if (!fitted) return buffer.fail(fitted.error().message);
     const std::string report = palpate::fit_json(*fitted, palpate::library::options_of(chosen)).dump();
     return new palpate_model(std::make_shared<const palpate::FittedModel>(std::move(fitted->fit.data)), report);
   });
@@ -288,21 +288,21 @@ palpate_model* palpate_fit_recordings(const palpate_recording* const* recordings
 
 int palpate_fit(const char* const* recordings, size_t recording_count, const palpate_fit_options* options,
                 const char* model, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](Place place) {
+  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
     std::vector<std::string> paths;
     for (size_t i = 0; recordings != nullptr && i < recording_count; ++i) {
       if (recordings[i] != nullptr) paths.emplace_back(recordings[i]);
     }
     if (paths.empty() || paths.size() != recording_count || model == nullptr)
-      return place.report(palpate::Error{"found no path, expected recordings and a model to write"});
+      return buffer.report(palpate::Error{"found no path, expected recordings and a model to write"});
     const palpate_fit_options chosen = palpate::library::or_default(options);
     const auto fitted = palpate::library::fit_files(paths, chosen);
-    if (!fitted) return place.report(fitted.error());
-    return place.report(palpate::save_model(model, fitted->fit.data, chosen.overwrite != 0));
+    if (!fitted) return buffer.report(fitted.error());
+    return buffer.report(palpate::save_model(model, fitted->fit.data, chosen.overwrite != 0));
   });
 }
 
 int palpate_folds(size_t n, const double* depth_m, const int* recording, int* fold) {
   if (depth_m == nullptr || fold == nullptr) return -1;
-  return guarded<int>(-1, {}, [&](Place) { return palpate::library::assign_folds(n, depth_m, recording, fold); });
+  return guarded<int>(-1, {}, [&](ErrorBuffer) { return palpate::library::assign_folds(n, depth_m, recording, fold); });
 }

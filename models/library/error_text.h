@@ -12,7 +12,7 @@
 namespace palpate::library {
 
 // The caller's buffer for one error message; `text` may be null.
-struct Place {
+struct ErrorBuffer {
   char* text = nullptr;
   std::size_t size = 0;
 
@@ -37,18 +37,19 @@ struct Place {
   }
 };
 
-// Returns the result of `work`, or `failed` if it throws, with the text at `place`. Without an error the text is empty.
+// Returns the result of `work`, or `failed` if it throws, with the text at `buffer`. Without an error the text is
+// empty.
 template <typename T, typename Work>
-T guarded(T failed, Place place, Work&& work) noexcept {
-  place.fail("");
+T guarded(T failed, ErrorBuffer buffer, Work&& work) noexcept {
+  buffer.fail("");
   try {
-    return work(place);
+    return work(buffer);
   } catch (const std::bad_alloc&) {
-    place.fail("out of memory");
+    buffer.fail("out of memory");
   } catch (const std::exception& error) {
-    place.fail(error.what());
+    buffer.fail(error.what());
   } catch (...) {
-    place.fail("unexpected: an exception that is not a std::exception");
+    buffer.fail("unexpected: an exception that is not a std::exception");
   }
   return failed;
 }

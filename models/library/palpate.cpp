@@ -128,16 +128,16 @@ double step(palpate_stream& stream, const ToolSample& sample) noexcept {
 }  // namespace
 }  // namespace palpate::library
 
+using palpate::library::ErrorBuffer;
 using palpate::library::guarded;
-using palpate::library::Place;
 
 int palpate_abi_version(void) { return PALPATE_ABI_VERSION; }
 
 palpate_model* palpate_model_load(const char* path, char* error, size_t error_size) {
-  return guarded<palpate_model*>(nullptr, {error, error_size}, [&](Place place) -> palpate_model* {
-    if (path == nullptr) return place.fail("found no path, expected that of a model file");
+  return guarded<palpate_model*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_model* {
+    if (path == nullptr) return buffer.fail("found no path, expected that of a model file");
     auto model = palpate::load_model(path);
-    if (!model) return place.fail(model.error().message);
+    if (!model) return buffer.fail(model.error().message);
     return new palpate_model(std::move(*model));
   });
 }
@@ -151,19 +151,19 @@ const char* palpate_model_name(const palpate_model* model) {
 const char* palpate_model_report(const palpate_model* model) { return model == nullptr ? "" : model->report.c_str(); }
 
 int palpate_model_save(const palpate_model* model, const char* path, int overwrite, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](Place place) {
+  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
     if (model == nullptr || path == nullptr)
-      return place.report(palpate::Error{"found no model or no path, expected both"});
-    return place.report(palpate::save_model(path, model->model->data(), overwrite != 0));
+      return buffer.report(palpate::Error{"found no model or no path, expected both"});
+    return buffer.report(palpate::save_model(path, model->model->data(), overwrite != 0));
   });
 }
 
 int palpate_model_export_c(const palpate_model* model, double encoder_step_m, int single_precision, const char* path,
                            int overwrite, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](Place place) {
+  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
     if (model == nullptr || path == nullptr)
-      return place.report(palpate::Error{"found no model or no path, expected both"});
-    return place.report(
+      return buffer.report(palpate::Error{"found no model or no path, expected both"});
+    return buffer.report(
         palpate::library::export_to(*model->model, encoder_step_m, single_precision != 0, path, overwrite != 0));
   });
 }
@@ -207,23 +207,23 @@ palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_st
 
 palpate_stream* palpate_stream_new_with_sensor(const palpate_model* model, const palpate_sensor* sensor, char* error,
                                                size_t error_size) {
-  return guarded<palpate_stream*>(nullptr, {error, error_size}, [&](Place place) -> palpate_stream* {
-    if (model == nullptr) return place.fail("found no model, expected one that palpate_model_load gave");
-    if (sensor == nullptr) return place.fail("found no sensor, expected a palpate_sensor");
+  return guarded<palpate_stream*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_stream* {
+    if (model == nullptr) return buffer.fail("found no model, expected one that palpate_model_load gave");
+    if (sensor == nullptr) return buffer.fail("found no sensor, expected a palpate_sensor");
     const auto spec = palpate::library::sensor_spec(*sensor);
-    if (!spec) return place.fail(spec.error().message);
+    if (!spec) return buffer.fail(spec.error().message);
     return new palpate_stream(*spec, model->model);
   });
 }
 
 int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](Place place) -> int {
+  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) -> int {
     if (path == nullptr || sensor == nullptr)
-      return place.report(palpate::Error{"found no path or no sensor to fill, expected both"});
+      return buffer.report(palpate::Error{"found no path or no sensor to fill, expected both"});
     auto reader = palpate::RecordingReader::open(path);
-    if (!reader) return place.report(reader.error());
+    if (!reader) return buffer.report(reader.error());
     const auto spec = palpate::identify_sensor(*reader);
-    if (!spec) return place.report(spec.error());
+    if (!spec) return buffer.report(spec.error());
     *sensor = palpate::library::sensor_from(*spec);
     return 0;
   });
@@ -232,7 +232,7 @@ int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* 
 int palpate_sensor_of_samples(size_t n, const double* time_s, const double* position_m, const double* velocity_m_per_s,
                               const double* acceleration_m_per_s2, palpate_sensor* sensor) {
   if (time_s == nullptr || position_m == nullptr || sensor == nullptr) return -1;
-  return guarded<int>(-1, {}, [&](Place) {
+  return guarded<int>(-1, {}, [&](ErrorBuffer) {
     *sensor = palpate::library::sensor_from(
         palpate::library::sensor_of_samples(n, time_s, position_m, velocity_m_per_s, acceleration_m_per_s2));
     return 0;
@@ -241,7 +241,7 @@ int palpate_sensor_of_samples(size_t n, const double* time_s, const double* posi
 
 int palpate_in_contact(size_t n, const double* position_m, const double* force_N, unsigned char* in_contact) {
   if (position_m == nullptr || force_N == nullptr || in_contact == nullptr) return -1;
-  return guarded<int>(-1, {}, [&](Place) {
+  return guarded<int>(-1, {}, [&](ErrorBuffer) {
     std::vector<palpate::RecordingRow> rows(std::min(n, palpate::kSensorIdentificationRows));
     for (size_t i = 0; i < rows.size(); ++i) rows[i] = {0.0, position_m[i], force_N[i]};
     const double least_N = palpate::least_contact_N(rows.data(), rows.size(), 0.0);
@@ -307,12 +307,12 @@ void palpate_limits_default(palpate_limits* limits) {
 }
 
 palpate_limiter* palpate_limiter_new(const palpate_limits* limits, char* error, size_t error_size) {
-  return guarded<palpate_limiter*>(nullptr, {error, error_size}, [&](Place place) -> palpate_limiter* {
+  return guarded<palpate_limiter*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_limiter* {
     palpate_limits chosen;
     palpate_limits_default(&chosen);
     if (limits != nullptr) chosen = *limits;
     const auto checked = palpate::library::force_limits(chosen);
-    if (!checked) return place.fail(checked.error().message);
+    if (!checked) return buffer.fail(checked.error().message);
     return new palpate_limiter(*checked);
   });
 }

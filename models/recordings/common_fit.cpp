@@ -43,10 +43,10 @@ class MotionAt {
     const SurfaceRow& b = rows_[at_ + 1];
     const double step_s = b.sample.time_s - a.sample.time_s;
     const double u = std::clamp((time_s - a.sample.time_s) / step_s, 0.0, 1.0);
-    const double way_m = b.motion.position_m - a.motion.position_m;
-    const double c = step_s * a.motion.velocity_m_per_s - way_m;
-    const double d = -step_s * b.motion.velocity_m_per_s + way_m;
-    return {a.motion.position_m + u * way_m + u * (1.0 - u) * (c * (1.0 - u) + d * u),
+    const double step_m = b.motion.position_m - a.motion.position_m;
+    const double c = step_s * a.motion.velocity_m_per_s - step_m;
+    const double d = -step_s * b.motion.velocity_m_per_s + step_m;
+    return {a.motion.position_m + u * step_m + u * (1.0 - u) * (c * (1.0 - u) + d * u),
             a.motion.velocity_m_per_s + u * (b.motion.velocity_m_per_s - a.motion.velocity_m_per_s)};
   }
 

@@ -20,7 +20,7 @@ constexpr double kWorstCost = 1e100;
 
 double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
 
-struct Place {
+struct Candidate {
   double at = 0.0;
   BlockCosts costs;
 };
@@ -33,8 +33,8 @@ class Search {
     if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans))
       return {0.0, false, kUnknownError};
     scan();
-    const Place zero = place(0.0);
-    if (range_.systematic_effect > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Place& one) {
+    const Candidate zero = candidate(0.0);
+    if (range_.systematic_effect > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Candidate& one) {
           return !is_significantly_worse(zero.costs, one.costs);
         })) {
       return {0.0, false, kUnknownError, false, sum(zero.costs), sum(zero.costs)};
@@ -64,15 +64,15 @@ class Search {
   }
 
  private:
-  Place place(double at) const {
-    Place made{at, cost_(at)};
+  Candidate candidate(double at) const {
+    Candidate made{at, cost_(at)};
     for (double& cost : made.costs) cost = std::abs(cost) < kWorstCost ? cost : kWorstCost;
     return made;
   }
 
   void scan() {
     const auto steps = static_cast<int>((range_.high - range_.low) / range_.coarse_step) + 1;
-    for (int i = 0; i <= steps; ++i) scanned_.push_back(place(range_.low + (range_.high - range_.low) * i / steps));
+    for (int i = 0; i <= steps; ++i) scanned_.push_back(candidate(range_.low + (range_.high - range_.low) * i / steps));
   }
 
   void refine_valleys() {
@@ -86,7 +86,7 @@ class Search {
     std::sort(valleys.begin(), valleys.end(),
               [&](std::size_t a, std::size_t b) { return sum(scanned_[a].costs) < sum(scanned_[b].costs); });
     valleys.resize(std::min(valleys.size(), kMostValleys));
-    std::vector<Place> bottoms;
+    std::vector<Candidate> bottoms;
     for (const std::size_t valley : valleys) {
       const double around = scanned_[valley].at;
       bottoms.push_back(golden(std::max(range_.low, around - range_.coarse_step),
@@ -94,8 +94,8 @@ class Search {
       scanned_.push_back(bottoms.back());
     }
     best_ = *std::min_element(bottoms.begin(), bottoms.end(),
-                              [](const Place& a, const Place& b) { return sum(a.costs) < sum(b.costs); });
-    alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const Place& one) {
+                              [](const Candidate& a, const Candidate& b) { return sum(a.costs) < sum(b.costs); });
+    alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const Candidate& one) {
       return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_significantly_worse(one.costs, best_.costs);
     });
   }
@@ -104,10 +104,10 @@ class Search {
   void look_around() {
     for (double step = range_.fine_step; step < range_.coarse_step; step *= 2.0) {
       for (const double at : {best_.at - step, best_.at + step}) {
-        if (at > range_.low && at < range_.high) scanned_.push_back(place(at));
+        if (at > range_.low && at < range_.high) scanned_.push_back(candidate(at));
       }
     }
-    std::sort(scanned_.begin(), scanned_.end(), [](const Place& a, const Place& b) { return a.at < b.at; });
+    std::sort(scanned_.begin(), scanned_.end(), [](const Candidate& a, const Candidate& b) { return a.at < b.at; });
   }
 
   // The minimum of the cost without one block: a parabola through the best offset tried and its neighbours.
@@ -126,31 +126,31 @@ class Search {
     return bend > 0.0 ? at + 0.5 * (fall * right - climb * left) / bend : at;
   }
 
-  bool significantly_worse(double at) const { return is_significantly_worse(place(at).costs, best_.costs); }
+  bool significantly_worse(double at) const { return is_significantly_worse(candidate(at).costs, best_.costs); }
 
   // The jackknife of Quenouille (1956) and Tukey (1958), with one block left out at a time.
   double jackknife_error() const {
     const std::size_t count = best_.costs.size();
-    std::vector<double> places;
-    for (std::size_t b = 0; b < count; ++b) places.push_back(best_without(b));
-    const double mean = std::accumulate(places.begin(), places.end(), 0.0) / static_cast<double>(count);
+    std::vector<double> minima;
+    for (std::size_t b = 0; b < count; ++b) minima.push_back(best_without(b));
+    const double mean = std::accumulate(minima.begin(), minima.end(), 0.0) / static_cast<double>(count);
     double squares = 0.0;
-    for (const double at : places) squares += (at - mean) * (at - mean);
+    for (const double at : minima) squares += (at - mean) * (at - mean);
     return std::max(std::sqrt(squares * static_cast<double>(count - 1) / static_cast<double>(count)), range_.fine_step);
   }
 
-  Place golden(double low, double high) const {
-    Place a = place(high - kGolden * (high - low));
-    Place b = place(low + kGolden * (high - low));
+  Candidate golden(double low, double high) const {
+    Candidate a = candidate(high - kGolden * (high - low));
+    Candidate b = candidate(low + kGolden * (high - low));
     for (int step = 0; step < kMostGoldenSteps && high - low > range_.fine_step; ++step) {
       if (sum(a.costs) < sum(b.costs)) {
         high = b.at;
         b = std::move(a);
-        a = place(high - kGolden * (high - low));
+        a = candidate(high - kGolden * (high - low));
       } else {
         low = a.at;
         a = std::move(b);
-        b = place(low + kGolden * (high - low));
+        b = candidate(low + kGolden * (high - low));
       }
     }
     return sum(a.costs) < sum(b.costs) ? a : b;
@@ -158,8 +158,8 @@ class Search {
 
   const std::function<BlockCosts(double)>& cost_;
   SearchRange range_;
-  std::vector<Place> scanned_;
-  Place best_;
+  std::vector<Candidate> scanned_;
+  Candidate best_;
   bool alone_ = true;
 };
 

@@ -44,13 +44,13 @@ std::vector<SurfaceRow> all_rows(const Recording& recording) {
 }
 
 std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows, std::size_t blocks) {
-  std::vector<double> way_m(rows.size(), 0.0);
+  std::vector<double> path_m(rows.size(), 0.0);
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    way_m[i] = way_m[i - 1] + std::abs(rows[i].motion.position_m - rows[i - 1].motion.position_m);
+    path_m[i] = path_m[i - 1] + std::abs(rows[i].motion.position_m - rows[i - 1].motion.position_m);
   }
   std::vector<std::size_t> block(rows.size(), 0);
-  for (std::size_t i = 0; i < rows.size() && way_m.back() > 0.0; ++i) {
-    block[i] = std::min(blocks - 1, static_cast<std::size_t>(way_m[i] / way_m.back() * static_cast<double>(blocks)));
+  for (std::size_t i = 0; i < rows.size() && path_m.back() > 0.0; ++i) {
+    block[i] = std::min(blocks - 1, static_cast<std::size_t>(path_m[i] / path_m.back() * static_cast<double>(blocks)));
   }
   return block;
 }

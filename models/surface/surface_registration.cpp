@@ -28,9 +28,9 @@ struct Member {
   SurfaceEstimate own;
   double low_m = 0.0;
   double high_m = 0.0;
-  OffsetEstimate place;
+  OffsetEstimate offset;
 
-  double way_m() const { return high_m - low_m; }
+  double range_m() const { return high_m - low_m; }
 };
 
 // The common lag; 0 if less than half of the recordings identify one, or if they disagree.
@@ -65,18 +65,18 @@ double largest_force_N(const std::vector<SurfaceRow>& rows) {
 }
 
 // Estimates the offset of `member` to the recordings in `fit`, whose positions range from `low_m` to `high_m`.
-OffsetEstimate place_of(const CommonFit& fit, const Member& member, double low_m, double high_m) {
-  const double overlap_m = kLeastOverlap * std::min(member.way_m(), high_m - low_m);
+OffsetEstimate offset_of(const CommonFit& fit, const Member& member, double low_m, double high_m) {
+  const double overlap_m = kLeastOverlap * std::min(member.range_m(), high_m - low_m);
   const double from_m = member.low_m - high_m + overlap_m;
   const double to_m = member.high_m - low_m - overlap_m;
   const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFinest_m, kWidestSurface_m, true};
-  const OffsetEstimate place =
+  const OffsetEstimate offset =
       estimate_offset([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
   // Recordings that do not overlap as recorded are consistent with any force offset.
-  if (from_m > 0.0 || to_m < 0.0) return place;
+  if (from_m > 0.0 || to_m < 0.0) return offset;
   std::vector<SurfaceRow> rows = member.rows;
   return unless_force_offset(
-      place,
+      offset,
       [&](double offset_N) {
         for (std::size_t i = 0; i < rows.size(); ++i) rows[i].force_N = member.rows[i].force_N - offset_N;
         return fit.residual(rows, 0.0);
@@ -86,53 +86,53 @@ OffsetEstimate place_of(const CommonFit& fit, const Member& member, double low_m
 
 // The offset is 0 if it contradicts the onsets of both recordings, each estimated by itself, and these agree: the
 // material causes it, because recordings at two speeds look shifted.
-OffsetEstimate unless_onsets_agree(OffsetEstimate place, const SurfaceEstimate& own, const SurfaceEstimate& first) {
-  if (!own.identified() || !first.identified()) return place;
+OffsetEstimate unless_onsets_agree(OffsetEstimate offset, const SurfaceEstimate& own, const SurfaceEstimate& first) {
+  if (!own.identified() || !first.identified()) return offset;
   const double apart_m = own.raw_offset_m - first.raw_offset_m;
   const double error_m = std::hypot(own.law_error_m, first.law_error_m);
-  const double off_m = std::abs(place.at - apart_m);
+  const double off_m = std::abs(offset.at - apart_m);
   if (std::abs(apart_m) <= std::max(kLeastOffset_m, kSignificantErrors * error_m) &&
-      off_m > kSignificantErrors * std::hypot(error_m, place.standard_error)) {
-    place.identified = true;
-    place.standard_error = error_m;
-    place.at = 0.0;
+      off_m > kSignificantErrors * std::hypot(error_m, offset.standard_error)) {
+    offset.identified = true;
+    offset.standard_error = error_m;
+    offset.at = 0.0;
   }
-  return place;
+  return offset;
 }
 
 // The recording with the largest range of positions has the offset 0. The offsets of the others are estimated in
 // descending order of their range, each to all identified recordings before it.
-void place_all(std::vector<Member>& members, double force_noise_N, const FitControl& control) {
+void estimate_offsets_of_all(std::vector<Member>& members, double force_noise_N, const FitControl& control) {
   std::vector<std::size_t> order(members.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return members[a].way_m() > members[b].way_m(); });
+                   [&](std::size_t a, std::size_t b) { return members[a].range_m() > members[b].range_m(); });
   Member& first = members[order.front()];
-  first.place.identified = true;
+  first.offset.identified = true;
   double low_m = first.low_m;
   double high_m = first.high_m;
   CommonFit fit(low_m, high_m, force_noise_N);
   fit.add(first.rows, 0.0);
   for (std::size_t k = 1; k < order.size() && control.may_continue(0.0); ++k) {
     Member& member = members[order[k]];
-    member.place = unless_onsets_agree(place_of(fit, member, low_m, high_m), member.own, first.own);
-    if (!member.place.identified) continue;
-    fit.add(member.rows, member.place.at);
-    low_m = std::min(low_m, member.low_m - member.place.at);
-    high_m = std::max(high_m, member.high_m - member.place.at);
+    member.offset = unless_onsets_agree(offset_of(fit, member, low_m, high_m), member.own, first.own);
+    if (!member.offset.identified) continue;
+    fit.add(member.rows, member.offset.at);
+    low_m = std::min(low_m, member.low_m - member.offset.at);
+    high_m = std::max(high_m, member.high_m - member.offset.at);
   }
 }
 
 bool unmoved(const Member& member, double shift_m) {
-  return std::abs(member.place.at - shift_m) <=
-         std::max(kLeastOffset_m, kSignificantErrors * member.place.standard_error);
+  return std::abs(member.offset.at - shift_m) <=
+         std::max(kLeastOffset_m, kSignificantErrors * member.offset.standard_error);
 }
 
 // The median of the identified offsets.
 double common_shift_m(const std::vector<Member>& members) {
   std::vector<double> offsets_m;
   for (const Member& one : members) {
-    if (one.place.identified) offsets_m.push_back(one.place.at);
+    if (one.offset.identified) offsets_m.push_back(one.offset.at);
   }
   return median_of(offsets_m);
 }
@@ -185,14 +185,14 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
     for (SurfaceRow& row : member.rows) row.force_N -= member.own.force_zero_N;
   }
   RegisteredSurfaces result;
-  if (members.size() > 1) place_all(members, force_noise_N, control);
+  if (members.size() > 1) estimate_offsets_of_all(members, force_noise_N, control);
   const double shift_m = members.size() > 1 ? common_shift_m(members) : 0.0;
   for (const Member& member : members) {
     RegisteredSurface one{0.0, kUnknownError, member.own.force_zero_N};
     if (members.size() == 1) one.standard_error_m = member.own.standard_error_m;
-    if (member.place.identified) {
-      one.standard_error_m = member.place.standard_error;
-      if (!unmoved(member, shift_m)) one.offset_m = member.place.at - shift_m;
+    if (member.offset.identified) {
+      one.standard_error_m = member.offset.standard_error;
+      if (!unmoved(member, shift_m)) one.offset_m = member.offset.at - shift_m;
     }
     result.recordings.push_back(one);
   }

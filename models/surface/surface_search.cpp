@@ -49,8 +49,8 @@ OffsetEstimate locate_surface(const std::vector<SurfaceRow>& rows,
     return a.motion.position_m < b.motion.position_m;
   });
   // The range reaches from a recording that is all in air to one that begins at the greatest depth of this one.
-  const double way_m = high->motion.position_m - low->motion.position_m;
-  const double reach_m = std::max({way_m, std::abs(low->motion.position_m), std::abs(high->motion.position_m)});
+  const double range_m = high->motion.position_m - low->motion.position_m;
+  const double reach_m = std::max({range_m, std::abs(low->motion.position_m), std::abs(high->motion.position_m)});
   const std::vector<std::size_t> blocks = blocks_by_path(rows, CommonFit::kBlocks);
   const OffsetEstimate shift = estimate_offset(
       [&](double offset_m) {

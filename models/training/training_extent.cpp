@@ -53,8 +53,8 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
           squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
           count += 1.0;
           extent.strokes = static_cast<std::size_t>(row.stroke);
-          const double way_m = row.motion.position_m - last_m;
-          if (!row.first) (way_m > 0.0 ? extent.loading_path_m : extent.unloading_path_m) += std::abs(way_m);
+          const double travel_m = row.motion.position_m - last_m;
+          if (!row.first) (travel_m > 0.0 ? extent.loading_path_m : extent.unloading_path_m) += std::abs(travel_m);
         }
         last_m = row.motion.position_m;
         if (row.first) {

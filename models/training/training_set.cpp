@@ -51,7 +51,7 @@ using CellKey = std::array<std::int32_t, kMaxFeatures + 1>;
 class CellTable {
  public:
   // Returns the number of the cell and whether the cell is new.
-  std::pair<std::size_t, bool> place_of(const CellKey& key) {
+  std::pair<std::size_t, bool> index_of(const CellKey& key) {
     std::size_t slot = hash(key) % kSlots;
     for (; slots_[slot] != 0; slot = (slot + 1) % kSlots) {
       if (keys_[slots_[slot] - 1] == key) return {slots_[slot] - 1, false};
@@ -90,7 +90,7 @@ class CoverageReduction {
   explicit CoverageReduction(const Normalisation& normalisation) : normalisation_(normalisation) {}
 
   void add(const TrainingSite& site) {
-    place(site);
+    add_to_cell(site);
     if (sites_.size() > kCoverageSites) coarsen();
   }
 
@@ -109,8 +109,8 @@ class CoverageReduction {
     return result;
   }
 
-  void place(const TrainingSite& site) {
-    const auto [number, fresh] = cells_.place_of(key(site));
+  void add_to_cell(const TrainingSite& site) {
+    const auto [number, fresh] = cells_.index_of(key(site));
     if (fresh)
       sites_.push_back(site);
     else
@@ -130,7 +130,7 @@ class CoverageReduction {
       const std::vector<TrainingSite> old = std::move(sites_);
       sites_.clear();
       cells_.clear();
-      for (const TrainingSite& site : old) place(site);
+      for (const TrainingSite& site : old) add_to_cell(site);
     }
   }
 

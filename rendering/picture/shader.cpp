@@ -71,20 +71,20 @@ Shader::~Shader() {
 }
 
 void Shader::use() const { glUseProgram(program_); }
-int Shader::place(const char* name) const { return glGetUniformLocation(program_, name); }
-void Shader::set(const char* name, float value) const { glUniform1f(place(name), value); }
-void Shader::set(const char* name, int value) const { glUniform1i(place(name), value); }
+int Shader::uniform(const char* name) const { return glGetUniformLocation(program_, name); }
+void Shader::set(const char* name, float value) const { glUniform1f(uniform(name), value); }
+void Shader::set(const char* name, int value) const { glUniform1i(uniform(name), value); }
 void Shader::set(const char* name, const glm::vec2& value) const {
-  glUniform2fv(place(name), 1, glm::value_ptr(value));
+  glUniform2fv(uniform(name), 1, glm::value_ptr(value));
 }
 void Shader::set(const char* name, const glm::vec3& value) const {
-  glUniform3fv(place(name), 1, glm::value_ptr(value));
+  glUniform3fv(uniform(name), 1, glm::value_ptr(value));
 }
 void Shader::set(const char* name, const glm::mat4& value) const {
-  glUniformMatrix4fv(place(name), 1, GL_FALSE, glm::value_ptr(value));
+  glUniformMatrix4fv(uniform(name), 1, GL_FALSE, glm::value_ptr(value));
 }
 void Shader::set(const char* name, const glm::vec2* values, int count) const {
-  glUniform2fv(place(name), count, glm::value_ptr(*values));
+  glUniform2fv(uniform(name), count, glm::value_ptr(*values));
 }
 
 }  // namespace palpate

@@ -34,7 +34,7 @@ class Shader {
 
  private:
   explicit Shader(unsigned program) : program_(program) {}
-  int place(const char* name) const;
+  int uniform(const char* name) const;
   unsigned program_;
 };
 

@@ -14,8 +14,8 @@ namespace palpate {
 class ErrorQuantile {
  public:
   void add(double error_over_jnd) noexcept {
-    const double place = kPerOctave * std::log2(std::max(error_over_jnd, 1e-9)) + kBelow;
-    ++counts_[static_cast<std::size_t>(std::clamp(std::ceil(place - 1e-9), 0.0, kBins - 1.0))];
+    const double bin = kPerOctave * std::log2(std::max(error_over_jnd, 1e-9)) + kBelow;
+    ++counts_[static_cast<std::size_t>(std::clamp(std::ceil(bin - 1e-9), 0.0, kBins - 1.0))];
     ++samples_;
   }
   // 0 without samples.

@@ -54,9 +54,9 @@ class FrictionBlock final : public HereditaryBlock {
   }
   // F_c(s) z after the probe has moved to `surface_m`, exact for each bristle.
   double friction_after_N(double surface_m) const noexcept {
-    const double way_m = surface_m - last_surface_m();
-    const double side = way_m < 0.0 ? -1.0 : 1.0;
-    const double slipped = -std::expm1(-std::abs(way_m) / kPresliding_m);
+    const double travel_m = surface_m - last_surface_m();
+    const double side = travel_m < 0.0 ? -1.0 : 1.0;
+    const double slipped = -std::expm1(-std::abs(travel_m) / kPresliding_m);
     const double bend = bend_ + (side - bend_) * slipped;
     // Bristles that are added in this sub-step are unbent.
     return bend * friction_limit_N(std::min(surface_m, last_surface_m()));

@@ -9,19 +9,19 @@ namespace palpate {
 namespace fs = std::filesystem;
 
 Result<std::string> find_assets() {
-  std::vector<fs::path> places;
+  std::vector<fs::path> folders;
   std::error_code error;
   if (const char* named = std::getenv("PALPATE_ASSETS"); named != nullptr && *named != '\0') {
-    places = {named};
+    folders = {named};
   } else {
     const fs::path prefix = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
-    if (!error) places = {prefix / "share" / "palpate", prefix / "assets"};
-    places.emplace_back(PALPATE_SOURCE_ASSETS);
+    if (!error) folders = {prefix / "share" / "palpate", prefix / "assets"};
+    folders.emplace_back(PALPATE_SOURCE_ASSETS);
   }
   std::string tried;
-  for (const fs::path& place : places) {
-    if (fs::is_directory(place / "scenes", error)) return place.string();
-    tried += (tried.empty() ? "" : ", ") + place.string();
+  for (const fs::path& folder : folders) {
+    if (fs::is_directory(folder / "scenes", error)) return folder.string();
+    tried += (tried.empty() ? "" : ", ") + folder.string();
   }
   return Error{"cannot find the assets folder (with its subfolder scenes); looked at " + tried +
                "; set PALPATE_ASSETS to it"};

@@ -32,7 +32,7 @@ VoxelLookup::VoxelLookup(const VoxelGrid& grid)
   }
 }
 
-VoxelLookup::Place VoxelLookup::locate(const Axis& axis, double x) noexcept {
+VoxelLookup::Cell VoxelLookup::locate(const Axis& axis, double x) noexcept {
   const std::vector<double>& nodes = axis.nodes;
   const double inside = x > nodes.front() ? std::min(x, nodes.back()) : nodes.front();  // NaN: the lower edge
   const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, inside);
@@ -46,9 +46,9 @@ double VoxelLookup::interpolate(const double* x) const noexcept {
   std::array<std::size_t, kDimension> stride;
   const double* corner = values_.data();
   for (std::size_t k = 0; k < kDimension; ++k) {
-    const Place place = locate(axes_[k], x[k]);
-    corner += place.offset;
-    fraction[k] = place.fraction;
+    const Cell cell = locate(axes_[k], x[k]);
+    corner += cell.offset;
+    fraction[k] = cell.fraction;
     stride[k] = axes_[k].stride;
   }
   const Eigen::Array2d ends = between<0, kDimension>(corner, stride.data(), fraction.data());

@@ -37,12 +37,12 @@ class VoxelLookup {
     std::vector<double> reciprocal_width;  // of the cell that begins at each node but the last
     std::size_t stride = 0;                // in values_
   };
-  struct Place {
+  struct Cell {
     std::size_t offset = 0;
     double fraction = 0.0;
   };
 
-  static Place locate(const Axis& axis, double x) noexcept;
+  static Cell locate(const Axis& axis, double x) noexcept;
   template <int kDimension>
   double interpolate(const double* x) const noexcept;
 
