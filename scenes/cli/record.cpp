@@ -81,13 +81,13 @@ class RecordProgress {
 };
 
 // If the device needs zeroing, waits without blocking for Enter, which says that the tool is at its rest position.
-void zero_on_enter(Device& device, const DeviceHealth& health, bool& told, RecordProgress& progress) {
+void zero_on_enter(Device& device, const DeviceHealth& health, bool& announced, RecordProgress& progress) {
   if (health.zeroing != Zeroing::needed) {
-    told = false;
+    announced = false;
     return;
   }
-  if (!told) progress.line(zeroing_words(health) + " (press Enter)");
-  told = true;
+  if (!announced) progress.line(zeroing_words(health) + " (press Enter)");
+  announced = true;
   pollfd input{STDIN_FILENO, POLLIN, 0};
   char typed[256];
   if (poll(&input, 1, 0) == 1 && ::read(STDIN_FILENO, typed, sizeof typed) > 0) device.start_zeroing();

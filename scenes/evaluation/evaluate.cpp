@@ -14,14 +14,14 @@ using Models = std::vector<EvaluatedModel>;
 // The predicted bounds of one model, and the number of errors within them.
 struct Bounds {
   std::vector<float> bound_N;
-  std::size_t held = 0;
+  std::size_t covered = 0;
 
   BoundCoverage predicted() const {
     if (bound_N.empty()) return {};
     std::vector<float> all = bound_N;
     const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
     std::nth_element(all.begin(), middle, all.end());
-    return {static_cast<double>(held) / static_cast<double>(all.size()), static_cast<double>(*middle)};
+    return {static_cast<double>(covered) / static_cast<double>(all.size()), static_cast<double>(*middle)};
   }
 };
 
@@ -66,7 +66,7 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
         const double bound_N = snapshot.predicted_error_N[i - first];
         if (std::isnan(bound_N)) continue;
         passed.bounds[i].bound_N.push_back(static_cast<float>(bound_N));
-        if (std::abs(model_N - row.force_N) <= bound_N) ++passed.bounds[i].held;
+        if (std::abs(model_N - row.force_N) <= bound_N) ++passed.bounds[i].covered;
       }
     };
     const auto summary = rows(batch, visitor, surface_offset_m);
