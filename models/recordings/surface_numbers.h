@@ -29,12 +29,12 @@ inline double huber(double error, double limit) {
   return size <= limit ? size * size : limit * (2.0 * size - limit);
 }
 
-// The median; 0 for no values.
+// The median (the upper one of an even number); 0 for no values.
 inline double median_of(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
-  return values.size() % 2 == 1 ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
+  return *middle;
 }
 
 }  // namespace palpate

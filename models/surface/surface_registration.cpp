@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -128,13 +129,21 @@ bool unmoved(const Member& member, double shift_m) {
          std::max(kLeastOffset_m, kSignificantErrors * member.offset.standard_error);
 }
 
-// The median of the identified offsets.
+// The identified offset with the smallest sum of distances to the others; of nearly equal ones that of the latest
+// recording, with whose state the next recording begins.
 double common_shift_m(const std::vector<Member>& members) {
-  std::vector<double> offsets_m;
-  for (const Member& one : members) {
-    if (one.offset.identified) offsets_m.push_back(one.offset.at);
+  double best_m = 0.0;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Member& candidate : members) {
+    if (!candidate.offset.identified) continue;
+    double away_m = 0.0;
+    for (const Member& one : members)
+      away_m += one.offset.identified ? std::abs(one.offset.at - candidate.offset.at) : 0.0;
+    if (away_m > least_m + kLeastOffset_m) continue;
+    least_m = std::min(least_m, away_m);
+    best_m = candidate.offset.at;
   }
-  return median_of(offsets_m);
+  return best_m;
 }
 
 // The weighted mean of the onsets of the recordings after their offsets; 0 if no onset is identified, or if the mean

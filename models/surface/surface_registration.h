@@ -2,8 +2,8 @@
 //
 // The recording with the longest range of positions is the reference. Every other one is shifted over all offsets at
 // which the ranges overlap by 30 %, to the one at which one force law explains both best (common_fit.h,
-// profile_search.h). The common offset belongs to the rig, so the median of the offsets is subtracted from all. A
-// recording whose offset is not identified stays as recorded.
+// profile_search.h). The common offset belongs to the rig, so the recording with the medoid of the offsets keeps its
+// positions (of two, the later one). A recording whose offset is not identified stays as recorded.
 //
 // The surface of the model is the weighted mean of the onsets of force in these positions, on either side of 0; it is 0
 // without free air or if it does not differ from 0 significantly and by 0.25 mm. If measured forces reach further out
