@@ -67,7 +67,8 @@ class Importer {
   std::array<std::string_view, kRoles> fields_;
   RowTimes times_{'.'};
   std::uint64_t repeated_ = 0;
-  bool own_time_ = false;  // the file has times besides a given rate
+  bool own_time_ = false;     // the file has times besides a given rate
+  double own_seconds_ = 0.0;  // by these times
   std::optional<VelocityColumn> velocity_;
 };
 
@@ -137,8 +138,11 @@ Status Importer::find_columns() {
 }
 
 void Importer::use_unit(std::size_t role, const Unit& unit) {
-  if (role == 0) times_.use_unit(unit.to_si);
-  to_si_[role] = unit.to_si;
+  if (role == 0) {
+    times_.use_unit(unit.to_si);
+  } else {
+    to_si_[role] = unit.to_si;
+  }
   table_.columns[role].unit = unit.name;
 }
 
@@ -328,7 +332,10 @@ Status Importer::read_rows() {
     const auto added = add_time(time, number, row);
     if (!added) return added.error();
     if (*added) rows.push_back(row);
-    if (own_time_ && times_.parse(fields_[0], time)) times_.add(time);
+    if (own_time_ && times_.parse(fields_[0], time)) {
+      times_.add(time);
+      own_seconds_ = times_.seconds(time);
+    }
   }
   if (comments > 0) note("left out " + count_of(comments, "comment line") + " between the rows");
   if (repeated_ > 0) note("left out " + count_of(repeated_, "row") + " with the time of the previous row");
@@ -354,9 +361,9 @@ void Importer::describe_time() {
 void Importer::check_rate() {
   if (!own_time_) return;
   const double seconds = table_.recording.rows.back().time_s;
-  if (std::abs(seconds - times_.last_s()) <= kRateTolerance * times_.last_s()) return;
+  if (std::abs(seconds - own_seconds_) <= kRateTolerance * own_seconds_) return;
   note("warning: with --rate " + short_number(*request_.rate_Hz) + " the recording is " + short_number(seconds) +
-       " s long, but " + short_number(times_.last_s()) + " s by the times in the file");
+       " s long, but " + short_number(own_seconds_) + " s by the times in the file");
 }
 
 // Drops a velocity that is not the derivative of the position (unsigned, a set value): the slope of one over the other

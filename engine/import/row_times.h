@@ -24,8 +24,8 @@ class RowTimes {
   bool parse(std::string_view field, TableTime& time) const;
 
   enum class Step { later, after_midnight, repeated, backward };
-  // Adds the time of the next row, except one before the last. A clock without dates that goes back by more than half a
-  // day has passed midnight.
+  // Adds the time of the next row. A repeated or earlier time is not added. A clock without dates that goes back by
+  // more than half a day has passed midnight.
   Step add(const TableTime& time) noexcept;
   // Since the first time, s.
   double seconds(const TableTime& time) const noexcept;

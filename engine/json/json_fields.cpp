@@ -84,7 +84,7 @@ std::string found(const Json& value) {
 
 std::string NumberRange::words() const {
   char text[80];
-  if (low == -kLargestNumber) return "a number";
+  if (low == -kLargestNumber && high == kLargestNumber) return "a number";
   if (high == kLargestNumber) {
     std::snprintf(text, sizeof text, open ? "a number above %g" : "a number, %g or more", low);
   } else {
@@ -177,7 +177,8 @@ std::string JsonFields::filled_text(const JsonNode& object, const char* key) {
 double JsonFields::number(const JsonNode& object, const char* key, const NumberRange& range) {
   const Json* value =
       value_where(object, key, range.words(), [&](const Json& one) { return is_number_of(one, range); });
-  return value != nullptr ? value->get<double>() : std::clamp(1.0, range.low, range.high);
+  if (value != nullptr) return value->get<double>();
+  return range.open || range.low == -kLargestNumber ? std::clamp(1.0, range.low, range.high) : range.low;
 }
 
 std::optional<std::size_t> JsonFields::choice(const JsonNode& node, const std::vector<std::string>& names) {

@@ -3,7 +3,6 @@
 // Thread guarantee: slow side.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 

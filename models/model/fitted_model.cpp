@@ -1,6 +1,7 @@
 #include "models/model/fitted_model.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -20,6 +21,7 @@ constexpr double kMostOfLimit = 100.0;
 }  // namespace
 
 Status check_forces(const ModelData& data) {
+  assert(data.correction != nullptr);
   const double limit_N = kMostOfLimit * (data.largest_force_N + data.correction_limit_N + data.jnd.offset_N);
   const TrendInputs inputs(data.features);
   std::array<double, kMaxFeatures> features{};

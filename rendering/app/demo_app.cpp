@@ -217,6 +217,7 @@ void DemoApp::use_material(const std::string& scene, const std::vector<std::stri
   next_->kept = session_->models().plans();
   next_->refits = true;
   std::erase_if(next_->kept, [](const SlotPlan& plan) { return plan.origin != ModelOrigin::file; });
+  for (SlotPlan& plan : next_->kept) plan.of_this_material = false;
   if (next_->line_up.empty()) next_->line_up = line_ups().front().name;
 }
 

@@ -220,6 +220,7 @@ struct Drawing {
     fill_prediction(plot, [&](const CurveColumn& column) { return Range{0.0, predicted_over_jnd(column)}; });
     // Faint marks for the largest difference of a single tick, where a hand could feel it.
     for (std::size_t slot = 0; slot < models().slots.size(); ++slot) {
+      if (models().slots[slot].state != SlotState::ready) continue;
       for (const CurveColumn& column : columns.columns()) {
         const double largest = std::abs(farther(difference_of(column, slot)));
         if (!(largest > 1.0)) continue;

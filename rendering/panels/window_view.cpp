@@ -46,7 +46,12 @@ ModelsView models_view(const LiveSession& session, double until_s) {
   view.verdict = session.verdict();
   view.now.force_N.fill(std::nanf(""));
   view.now.reference_N = std::nanf("");
-  if (const HistoryPoint* now = comparison.history().last_until(until_s)) view.now = *now;
+  const ForceHistory& history = comparison.history();
+  if (const HistoryPoint* now = history.last_until(until_s)) {
+    view.now = *now;
+  } else if (history.size() > 0) {
+    view.now = history[0];  // a pause that is longer than the history
+  }
   return view;
 }
 

@@ -10,7 +10,7 @@ void Pixels::release() {
   if (framebuffer_ == 0) return;
   glDeleteFramebuffers(1, &framebuffer_);
   glDeleteTextures(1, &colour_);
-  glDeleteRenderbuffers(1, &depth_);
+  glDeleteRenderbuffers(2, buffers_);
   framebuffer_ = 0;
 }
 
@@ -18,24 +18,26 @@ void Pixels::make() {
   release();
   glGenFramebuffers(1, &framebuffer_);
   glGenTextures(1, &colour_);
-  glGenRenderbuffers(1, &depth_);
+  glGenRenderbuffers(2, buffers_);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  const GLenum kind = samples_ > 0 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
-  glBindTexture(kind, colour_);
+  const auto attach_buffer = [&](GLenum attachment, unsigned buffer, GLenum format) {
+    glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, format, width_, height_);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
+  };
   if (samples_ > 0) {
-    glTexImage2DMultisample(kind, samples_, GL_RGBA8, width_, height_, GL_TRUE);
+    attach_buffer(GL_COLOR_ATTACHMENT0, buffers_[0], GL_RGBA8);
   } else {
+    glBindTexture(GL_TEXTURE_2D, colour_);
     // The order of colours of a window, so that a software renderer copies memory without converting it.
-    glTexImage2D(kind, 0, GL_RGBA8, width_, height_, 0, GL_BGRA, GL_UNSIGNED_BYTE, nullptr);
-    for (const int filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-      glTexParameteri(kind, static_cast<GLenum>(filter), GL_LINEAR);
-    for (const int wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-      glTexParameteri(kind, static_cast<GLenum>(wrap), GL_CLAMP_TO_EDGE);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width_, height_, 0, GL_BGRA, GL_UNSIGNED_BYTE, nullptr);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+      glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour_, 0);
   }
-  glBindRenderbuffer(GL_RENDERBUFFER, depth_);
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, GL_DEPTH_COMPONENT24, width_, height_);
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, kind, colour_, 0);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
+  attach_buffer(GL_DEPTH_ATTACHMENT, buffers_[1], GL_DEPTH_COMPONENT24);
 }
 
 void Pixels::draw_into(int width, int height) {

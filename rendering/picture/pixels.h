@@ -12,14 +12,13 @@ struct Viewport {
 
 class Pixels {
  public:
-  // `samples` per pixel; 0: no multisampling, so that `colour` is a plain texture.
+  // `samples` per pixel, at most the 4 that OpenGL 3.3 guarantees; 0: no multisampling, and `colour` is a texture.
   explicit Pixels(int samples) : samples_(samples) {}
   Pixels(const Pixels&) = delete;
   Pixels& operator=(const Pixels&) = delete;
   ~Pixels() { release(); }
 
-  // Makes it the target of drawing. The contents are kept unless the size changes. OpenGL 3.3 guarantees the formats
-  // and 4 samples.
+  // Makes it the target of drawing. The contents are kept unless the size changes.
   void draw_into(int width, int height);
   // Copies colour and depth of `part` into `other`, which has the same size, and makes `other` the target of drawing.
   void copy_to(const Pixels& other, const Viewport& part) const;
@@ -33,7 +32,8 @@ class Pixels {
   void release();
 
   int samples_, width_ = 0, height_ = 0;
-  unsigned framebuffer_ = 0, colour_ = 0, depth_ = 0;
+  unsigned framebuffer_ = 0, colour_ = 0;
+  unsigned buffers_[2] = {};  // of colour, with several samples, and of depth
 };
 
 }  // namespace palpate

@@ -1,4 +1,5 @@
-// Gathers ticks into the columns of a plot. Columns have extremes, so that no peak is lost.
+// Gathers ticks into the columns of a plot. Columns have the extremes of the differences, so that no peak of them is
+// lost; the forces and the predicted error are those of one tick.
 // Thread guarantee: value type; `gather` reuses its memory.
 #pragma once
 

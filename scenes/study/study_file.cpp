@@ -200,6 +200,7 @@ Status StudyFile::consent(const std::string& when) {
 Status StudyFile::append(StudyRecord record) {
   if (!consented()) return Error{"cannot write " + path_ + ": there is no consent yet"};
   record.device = header_.device;
+  std::replace(record.device.begin(), record.device.end(), ',', ';');  // a comma separates columns
   record.rendered = header_.rendered;
   const std::string row = study_row(record, header_.strokes != nullptr);
   if (Status stored = replace(std::string(whole_lines(text_)) + row); !stored) return stored;

@@ -156,9 +156,7 @@ Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const std::string& device, bo
   std::unique_ptr<LiveStudy> study(new LiveStudy);
   study->realtime_ = realtime;
   study->device_ = std::move(*opened);
-  std::string name = study->device_->name();
-  std::replace(name.begin(), name.end(), ',', ';');  // a comma separates columns of the file
-  study->header_ = {"", std::move(strokes), std::move(name), study->device_->holder() == Holder::person};
+  study->header_ = {"", std::move(strokes), study->device_->name(), study->device_->holder() == Holder::person};
   return study;
 }
 

@@ -391,7 +391,7 @@ Result<std::string> write_model_text(const ModelData& data) {
     for (const auto& [key, value] : data.correction->file_fields()) file.add(key, value);
   });
   // What cannot be read is not written.
-  if (const auto back = read_model_text(text, "model"); !back) return back.error();
+  if (const auto back = read_model_text(text, "its text"); !back) return back.error();
   return text;
 }
 

@@ -100,6 +100,8 @@ TEST(BridgeFirmware, StopsWhenOnlyTheThreadThatWritesLives) {
     device.run_us(1000);
   }
   EXPECT_EQ(device.board.force_uN, 0);
+  device.push(300);
+  EXPECT_EQ(device.board.force_uN, 300) << "the heartbeat goes on";
 }
 
 TEST(BridgeFirmware, ObeysOnlyNewFramesUnlessTheyStop) {

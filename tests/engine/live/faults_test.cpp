@@ -25,6 +25,8 @@ TEST(Faults, EveryBitHasOneRow) {
 TEST(Faults, EveryAlarmHasASentenceAndEveryFaultOfADeviceStopsTheForce) {
   for (const Fault& fault : kFaults) {
     EXPECT_TRUE(!fault.alarm || std::strlen(fault.sentence) > 10);
+    EXPECT_TRUE(fault.source != FaultSource::device || std::strstr(fault.sentence, ": ") != nullptr)
+        << "what happened, then what to do";
     EXPECT_TRUE(fault.source != FaultSource::device || (fault.alarm && fault.stops_force)) << fault.sentence;
   }
   using namespace loop_fault;

@@ -195,6 +195,7 @@ TEST(LiveSession, ARemovedModelFreesItsSlotButTheLastOneStays) {
   const Session session = must(LiveSession::open(request));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_FALSE(session->load_file(files.folder.file("b.json"))) << "the loop takes no more";
+  EXPECT_TRUE(session->read_notices().back().problem);
   session->remove(5);
   EXPECT_TRUE(session->load_file(files.folder.file("b.json"))) << "in its place";
   frames(*session, 0.1);

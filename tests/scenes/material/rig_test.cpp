@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "tests/support/message_parts.h"
 
@@ -134,6 +135,13 @@ TEST(Rig, RatesShareMotionAndForce) {
 }
 
 // 300 Hz does not divide the 20 kHz grid, but every third row (100 Hz) is on it.
+TEST(Rig, ALongerRecordingBeginsWithTheShorterOne) {
+  const Recording brief = made("silicone", 3, 4.0).recording;
+  const Recording lengthy = made("silicone", 3, 8.0).recording;
+  ASSERT_LT(brief.rows.size(), lengthy.rows.size());
+  EXPECT_EQ(std::memcmp(brief.rows.data(), lengthy.rows.data(), brief.rows.size() * sizeof(RecordingRow)), 0);
+}
+
 TEST(Rig, RatesBesideTheGridAreInterpolated) {
   const RigRecording odd = made("gel", 5, 3.0, 300.0);
   const RigRecording grid = made("gel", 5, 3.0, 100.0);

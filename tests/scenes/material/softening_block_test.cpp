@@ -35,6 +35,10 @@ TEST(SofteningBlock, IsSofterBelowItsDeepestPressAndHeals) {
   EXPECT_LT(soon_N, 0.9 * first_N);
   EXPECT_GT(soon_N, (1.0 - SofteningBlock::kSoftening - 0.05) * first_N);
   go(pressed, 4e-3, 0.0, 0.2);
+  // The deepest depth of 8 mm fades to 4 mm in 6 s x ln 2 = 4.2 s.
+  SofteningBlock healing = pressed;
+  for (int i = 0; i < 3000; ++i) healing.step(-1e-3, 0.0, 1e-3);
+  EXPECT_LT(go(healing, 0.0, 4e-3, 0.2), 0.99 * first_N);
   for (int i = 0; i < 30000; ++i) pressed.step(-1e-3, 0.0, 1e-3);  // five times 6 s
   EXPECT_NEAR(go(pressed, 0.0, 4e-3, 0.2), first_N, 1e-3 * first_N);
 }

@@ -78,7 +78,8 @@ TEST_F(ReportRecordings, OfASingleOneABlockAtItsEndIsTested) {
   ASSERT_EQ(set->folds.size(), 1u);
   const Split& fold = set->folds.front();
   ASSERT_EQ(fold.train.size(), 1u);
-  EXPECT_LT(fold.train[0]->rows.back().time_s, fold.counted_from_s);
+  EXPECT_NEAR(fold.train[0]->rows.back().time_s + 1e-3, fold.counted_from_s, 1e-9) << "the next row";
+  EXPECT_TRUE(test::has_parts(fold.words, {"block at the end"}));
   EXPECT_EQ(fold.tested[0]->rows.size(), 3000u);
   ASSERT_EQ(set->facts.size(), 1u);
   EXPECT_EQ(set->facts[0].role, "both");

@@ -1,8 +1,6 @@
 #include "scenes/study/study_file.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <filesystem>
 
@@ -95,6 +93,14 @@ TEST_F(StudyFileTest, OtherStudiesAndOtherFilesAreRefusedAndKept) {
   const std::string notes = folder_.with_file("notes.csv", "time_s,position_m\n");
   EXPECT_TRUE(has_parts(complaint(notes), {notes + ":1:1:", "time_s,position_m", "# palpate-study 1"}));
   EXPECT_EQ(read_text(notes), "time_s,position_m\n");
+}
+
+TEST_F(StudyFileTest, ACommaInTheNameOfADeviceBreaksNoRow) {
+  auto file = StudyFile::open(path_, {"S01", nullptr, "bridge:a,b", true});
+  ASSERT_TRUE(file.ok() && file->consent("").ok() && file->append(answer_to(0)).ok());
+  const auto data = read_study(path_);
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  EXPECT_EQ(data->records.at(0).device, "bridge:a;b");
 }
 
 TEST_F(StudyFileTest, AFullDiskLosesNothingThatWasAnswered) {

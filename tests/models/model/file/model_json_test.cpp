@@ -149,6 +149,42 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
       });
 }
 
+// Limits that the tick relies on: its arrays have room for eight features of eight parts, and it divides by lengths.
+TEST(ModelReader, RefusesWhatTheTickCannotCompute) {
+  const std::string text = small_text();
+  const std::string feature = "{\"kind\": \"velocity\"},";
+  const std::size_t first = text.find("{\"relaxation_time_s\"");
+  const std::string part = text.substr(first, text.find("]}}", first) + 3 - first);
+  std::string features, parts;
+  for (int i = 0; i < 7; ++i) features += feature;
+  for (int i = 0; i < 9; ++i) parts += (i > 0 ? ", " : "") + part;
+  const auto number = [&](const std::string& key) {
+    const std::size_t at = text.find("\"" + key + "\": ");
+    return text.substr(at, text.find_first_of(",}\n", at) - at);
+  };
+  expect_all(text, {
+                       {feature, features, {"m.json:6:15:", "features", "9", "1 to 8", "; "}},
+                       {part, parts, {"m.json", "features[2].parts", "9", "1 to 8", "; "}},
+                       {number("thinning_velocity_m_per_s"),
+                        "\"thinning_velocity_m_per_s\": 0",
+                        {"m.json", "trend.thinning_velocity_m_per_s", "0", "above 0", "; "}},
+                       {number("velocity_limit_m_per_s"),
+                        "\"velocity_limit_m_per_s\": -1",
+                        {"m.json", "trend.velocity_limit_m_per_s", "-1", "0 or more", "; "}},
+                       {number("correction_limit_N"),
+                        "\"correction_limit_N\": -1",
+                        {"m.json", "correction_limit_N", "-1", "0", "; "}},
+                   });
+  for (const char* const group : {"\"drive\": {", "\"trend\": {"}) {
+    const std::size_t at = text.find("\"reference_depth_m\": ", text.find(group));
+    const std::string spoiled = std::string(text).replace(at, text.find(',', at) - at, "\"reference_depth_m\": 0");
+    EXPECT_TRUE(test::has_parts(complaint(spoiled), {"reference_depth_m", "0", "above 0", "; "}));
+  }
+  const std::size_t list = text.find("\"features\": [");
+  const std::string none = std::string(text).replace(list, text.find("\n  ]", list) - list, "\"features\": [");
+  EXPECT_TRUE(test::has_parts(complaint(none), {"features", "0", "1 to 8", "; "}));
+}
+
 TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
   expect_all(small_text(),
              {
