@@ -19,6 +19,7 @@ constexpr double kStiffest_N_per_m = 20e3;
 
 void LearningHand::learn(double force_N, double step_s) noexcept {
   if (!(position_m() > 0.0) || !(force_N > kLeastForce_N)) return;
+  has_felt_ = true;
   const double secant_N_per_m = std::clamp(force_N / position_m(), kSoftest_N_per_m, kStiffest_N_per_m);
   stiffness_N_per_m_ += std::min(1.0, step_s / kLearning_s) * (secant_N_per_m - stiffness_N_per_m_);
 }

@@ -22,8 +22,10 @@ class LearningHand final : public HandMotion {
 
  protected:
   double held_depth_m(double force_N) const noexcept override;
+  bool is_pushed_back() const noexcept override { return has_felt_; }
 
  private:
+  bool has_felt_ = false;             // a force, which begins with the first model of a session
   double stiffness_N_per_m_ = 800.0;  // secant, low-pass filtered; the initial value is a guess
 };
 

@@ -50,6 +50,8 @@ class HandMotion {
  protected:
   // The depth at which the block holds `force_N` after a short press.
   virtual double held_depth_m(double force_N) const noexcept = 0;
+  // Whether anything pushes back. If not, the target of a press is the depth alone, which the hand then reaches.
+  virtual bool is_pushed_back() const noexcept { return true; }
 
   const HandSettings& settings() const noexcept { return settings_; }
 
@@ -84,7 +86,7 @@ class HandMotion {
   double air(double from_m, double to_m);
   void start_tremor(double dt_s);
   double aim_for(double force_N) const noexcept {
-    return held_depth_m(force_N) + force_N / settings_.stiffness_N_per_m;
+    return held_depth_m(force_N) + (is_pushed_back() ? force_N / settings_.stiffness_N_per_m : 0.0);
   }
   double any(double from, double to) { return random_.uniform(from, to); }
   void advance_aim(double dt_s);

@@ -48,7 +48,8 @@ TEST(HandDevice, IsPushedBackByTheForce) {
   }
   HandDevice device;
   const std::vector<double> in_air_m = explore(device, 0.0, 30000);
-  EXPECT_LT(*std::max_element(in_air_m.begin(), in_air_m.end()), 0.03) << "it does not push through the block";
+  EXPECT_LT(*std::max_element(in_air_m.begin(), in_air_m.end()), 1.1 * HandSettings().deepest_m)
+      << "where nothing pushes back, only its overshoot is deeper";
 }
 
 TEST(HandDevice, StaysStableOnAStiffBlock) {
