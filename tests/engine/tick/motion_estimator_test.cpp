@@ -139,7 +139,7 @@ Estimator adaptive_window(double bound_m, std::size_t longest) {
   };
 }
 
-TEST(MotionEstimator, BeatsTheUsualEstimatorsOnAnEncoder) {
+TEST(MotionEstimator, BeatsAdaptiveWindowingOnAnEncoder) {
   const double error = rms_error(ours({kStep_m, 0.0}));
   // The bound and window with the smallest error of adaptive windowing.
   double window = 1.0;
