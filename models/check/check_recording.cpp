@@ -236,7 +236,7 @@ void Checker::check_surface() {
             ? "the position where the force begins cannot be identified: depth is measured from position 0"
             : "the tool may never leave the material, so the surface cannot be identified: depth is measured from "
               "position 0",
-        "");
+        "begin the recording 1 mm or more outside of the material, and pause there for 5 s before another touch");
   }
   if (surface_.offset_m != 0.0) {
     add("surface_offset", Severity::note, surface_.offset_m,

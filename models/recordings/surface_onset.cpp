@@ -15,6 +15,8 @@ namespace {
 // A touch reaches from kTouchOut_m outside of its first force to kTouchIn_m inside.
 constexpr double kTouchOut_m = 1e-3;
 constexpr double kTouchIn_m = 2e-3;
+// An approach without force over this distance begins in free air.
+constexpr double kAirBefore_m = 0.5 * kTouchOut_m;
 // A retreat slower than this is jitter of an approach.
 constexpr double kBackward_m_per_s = 2e-3;
 // Rows of a slow touch beyond this many are thinned.
@@ -155,7 +157,8 @@ std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double z
     const double first_m = rows[first].motion.position_m;
     const Touch touch{approach_begin(rows, first, first_m - kTouchOut_m),
                       approach_end(rows, first, first_m + kTouchIn_m), first_m};
-    if (in_air && touch.end >= first + kForceRun + 1) touches.push_back(touch);
+    const bool from_air = in_air || first_m - rows[touch.begin].motion.position_m >= kAirBefore_m;
+    if (from_air && touch.end >= first + kForceRun + 1) touches.push_back(touch);
     in_air = false;
   }
   return touches;
