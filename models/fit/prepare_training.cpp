@@ -110,22 +110,93 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   if (is_papers_recipe(request)) without_guard(prepared);
 }
 
-// Corrects every recording to the common surface; returns the position of that, m.
-Result<double> find_surfaces(MotionSource& source, const TrainingRequest& request, Provenance& provenance,
-                             const FitControl& control) {
+// The recordings with one set of corrections.
+struct CorrectedRecordings {
+  std::vector<RowCorrection> corrections;
+  double surface_m = 0.0;  // position of the surface, in positions as recorded
+  TrainingExtent extent{};
+};
+
+// Applies the corrections and measures the recordings.
+Status apply(CorrectedRecordings& corrected, MotionSource& source, const TrainingRequest& request,
+             const FitControl& control) {
+  source.correct(corrected.corrections);
+  auto extent = measure_extent(source, control);
+  if (!extent) return extent.error();
+  corrected.extent = *extent;
+  if (request.surface == Surface::recorded) return {};
+  const auto beginning_m = find_preload_surface(source, *extent, request.jnd, control);
+  if (!beginning_m) return beginning_m.error();
+  if (*beginning_m == 0.0) return {};
+  for (RowCorrection& one : corrected.corrections) one.offset_m += *beginning_m;
+  corrected.surface_m += *beginning_m;
+  source.correct(corrected.corrections);
+  extent = measure_extent(source, control);
+  if (!extent) return extent.error();
+  corrected.extent = *extent;
+  return {};
+}
+
+TrendProblem problem_of(const MotionSource& source, const TrainingExtent& extent, const TrainingRequest& request) {
+  // Contact with a material that pulls is not one-sided: a force of 0 counts like any other.
+  const double force_noise_floor_N =
+      extent.lowest_force_N < 0.0 ? -std::numeric_limits<double>::infinity() : no_force_N(source.force_noise_N());
+  return {extent.depth_m, extent.rms_velocity_m_per_s, force_noise_floor_N,
+          is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
+}
+
+FeatureList dictionary_of(const MotionSource& source, const TrainingExtent& extent) {
+  return dictionary(extent.sample_s, extent.longest_recording_s, extent.depth_m, source.encoder_step_m());
+}
+
+// The cross-validated error of a trend of the recordings in their present correction.
+Result<FoldErrors> error_of(MotionSource& source, const TrainingExtent& extent, const TrainingRequest& request,
+                            const FitControl& control) {
+  source.assign_folds({1, extent.strokes, extent.contact_samples, extent.has_unloading()});
+  return simple_law_error(source, dictionary_of(source, extent), problem_of(source, extent, request), control, 0.05);
+}
+
+// Corrects the recordings by their offsets, force zeros and lag, unless a trend predicts them better as recorded: an
+// effect of the material that the registration does not know may look like an offset.
+Result<CorrectedRecordings> correct_recordings(MotionSource& source, const TrainingRequest& request,
+                                               Provenance& provenance, const FitControl& control) {
+  CorrectedRecordings recorded;
+  if (request.surface == Surface::recorded) {
+    if (Status status = apply(recorded, source, request, control); !status) return status.error();
+    return recorded;
+  }
   source.correct({});
-  if (request.surface == Surface::recorded) return 0.0;
   const auto found = register_surfaces(source, control);
   if (!found) return found.error();
-  std::vector<RowCorrection> corrections;
+  CorrectedRecordings corrected;
+  corrected.surface_m = found->surface_position_m;
+  recorded.surface_m = found->recorded_surface_position_m;
+  for (const RegisteredSurface& one : found->recordings) {
+    corrected.corrections.push_back({one.offset_m + corrected.surface_m, one.force_zero_N, found->lag_s});
+    recorded.corrections.push_back({recorded.surface_m, 0.0, 0.0});
+  }
+  bool as_recorded = false;
+  if (found->corrects()) {
+    if (Status status = apply(recorded, source, request, control); !status) return status.error();
+    const auto without = error_of(source, recorded.extent, request, control);
+    if (!without) return without.error();
+    if (Status status = apply(corrected, source, request, control); !status) return status.error();
+    const auto with = error_of(source, corrected.extent, request, control);
+    if (!with) return with.error();
+    const FoldErrors candidates[] = {*with, *without};
+    as_recorded = simplest_adequate(candidates) == 1;
+    if (as_recorded) source.correct(recorded.corrections);
+  } else if (Status status = apply(corrected, source, request, control); !status) {
+    return status.error();
+  }
   for (std::size_t i = 0; i < found->recordings.size(); ++i) {
     const RegisteredSurface& one = found->recordings[i];
-    corrections.push_back({one.offset_m + found->surface_position_m, one.force_zero_N, found->lag_s});
-    provenance.surfaces.push_back(
-        {source.names()[i], one.offset_m, one.standard_error_m, one.force_zero_N, found->lag_s, source.hashes()[i]});
+    provenance.surfaces.push_back({source.names()[i], as_recorded ? 0.0 : one.offset_m,
+                                   as_recorded ? std::numeric_limits<double>::infinity() : one.standard_error_m,
+                                   as_recorded ? 0.0 : one.force_zero_N, as_recorded ? 0.0 : found->lag_s,
+                                   source.hashes()[i]});
   }
-  source.correct(std::move(corrections));
-  return found->surface_position_m;
+  return as_recorded ? recorded : corrected;
 }
 
 // The data that all lists of features share.
@@ -158,10 +229,8 @@ Result<std::vector<double>> scene_times(const Given& given, Provenance& provenan
 
 // All candidate terms, with the law of memory selected from the recordings.
 Result<FeatureList> automatic_list(PreparedTraining& prepared, const Given& given, const FitControl& control) {
-  const TrainingExtent& extent = given.extent;
-  const FeatureList list =
-      dictionary(extent.sample_s, extent.longest_recording_s, extent.depth_m, given.source.encoder_step_m());
-  return select_memory_law(given.source, list, given.problem, prepared.gains, control, 0.15);
+  return select_memory_law(given.source, dictionary_of(given.source, given.extent), given.problem, prepared.gains,
+                           control, 0.15);
 }
 
 // The gain of each part of the list: the cross-validated error with it and without it.
@@ -232,33 +301,18 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control) {
   PreparedTraining prepared;
-  auto surface_m = find_surfaces(source, request, prepared.common.provenance, control);
-  if (!surface_m) return surface_m.error();
-  auto extent = measure_extent(source, control);
-  if (!extent) return extent.error();
-  if (request.surface == Surface::automatic) {
-    const auto beginning_m = find_preload_surface(source, *extent, request.jnd, control);
-    if (!beginning_m) return beginning_m.error();
-    if (*beginning_m != 0.0) {
-      source.shift(*beginning_m);
-      *surface_m += *beginning_m;
-      extent = measure_extent(source, control);
-      if (!extent) return extent.error();
-    }
-  }
+  const auto corrected = correct_recordings(source, request, prepared.common.provenance, control);
+  if (!corrected) return corrected.error();
+  const TrainingExtent& extent = corrected->extent;
   if (!control.may_continue(0.05)) return interrupted();
-  if (!(extent->depth_m > 0.0)) {
+  if (!(extent.depth_m > 0.0)) {
     return Error{
         "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; "
         "record a press, check the sign of position_m, or set its zero (palpate import FILE --zero contact)"};
   }
-  // Contact with a material that pulls is not one-sided: a force of 0 counts like any other.
-  const double force_noise_floor_N =
-      extent->lowest_force_N < 0.0 ? -std::numeric_limits<double>::infinity() : no_force_N(source.force_noise_N());
-  const TrendProblem problem{extent->depth_m, extent->rms_velocity_m_per_s, force_noise_floor_N,
-                             is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
-  source.assign_folds(fold_assignment_for(source, *extent));
-  const Given given{source, request, *extent, problem};
+  const TrendProblem problem = problem_of(source, extent, request);
+  source.assign_folds(fold_assignment_for(source, extent));
+  const Given given{source, request, extent, problem};
   FeatureList list = request.list;
   // The paper's recipe always uses the features of the scene.
   const bool everything = request.choice == FeatureChoice::automatic && !is_papers_recipe(request);
@@ -275,7 +329,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
 
   // A model takes positions in the coordinate of its recordings.
   for (FeatureSpec& spec : prepared.common.features) {
-    if (spec.kind == FeatureKind::depth) spec.surface_position_m = *surface_m;
+    if (spec.kind == FeatureKind::depth) spec.surface_position_m = corrected->surface_m;
   }
   prepared.common.sensor = PositionSensor{source.encoder_step_m(), source.position_noise_m()};
   Provenance& provenance = prepared.common.provenance;

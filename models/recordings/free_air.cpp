@@ -21,6 +21,8 @@ constexpr double kFlatFloor_N = 2e-3;
 // Over free air the mean stiffness would change the force by more than this multiple of the limit above: materials
 // begin ten times softer than they end.
 constexpr double kEvidence = 20.0;
+// The standard deviation of normal errors over the median of their sizes.
+constexpr double kNormalDeviations = 1.4826;
 // The acceleration is a difference of velocities over this time.
 constexpr double kAccelerationWindow_s = 0.01;
 constexpr double kLeastMass_kg = 1e-3;
@@ -120,20 +122,24 @@ class AirSearch {
     return air;
   }
 
-  static void put_zero(FreeAir& air, const std::vector<double>& forces_N) {
+  // The mean of the forces within three standard deviations of their median, estimated by the median of the deviations:
+  // the median of a quantised force is one of its steps, and rows in the material would bias the mean of all.
+  void put_zero(FreeAir& air, std::vector<double> forces_N) const {
+    const auto third = static_cast<std::ptrdiff_t>(forces_N.size() / 3);
+    air.drift_N =
+        median_of({forces_N.end() - third, forces_N.end()}) - median_of({forces_N.begin(), forces_N.begin() + third});
     const double middle_N = median_of(forces_N);
+    std::vector<double> deviations_N;
+    for (const double force_N : forces_N) deviations_N.push_back(std::abs(force_N - middle_N));
+    const double limit_N = std::max(flat_N_, 3.0 * kNormalDeviations * median_of(std::move(deviations_N)));
+    std::erase_if(forces_N, [&](double force_N) { return std::abs(force_N - middle_N) > limit_N; });
     const auto count = static_cast<double>(forces_N.size());
     double mean_N = 0.0;
     double squares = 0.0;
     for (const double force_N : forces_N) mean_N += (force_N - middle_N) / count;
     for (const double force_N : forces_N) squares += (force_N - middle_N) * (force_N - middle_N);
-    const double spread_N = std::sqrt(squares / count);
-    // The median of a quantised force is one of its steps; the mean of the forces near it is not.
-    air.zero_N = std::abs(mean_N) < spread_N ? middle_N + mean_N : middle_N;
-    air.zero_error_N = spread_N / std::sqrt(count);
-    const auto third = static_cast<std::ptrdiff_t>(forces_N.size() / 3);
-    air.drift_N =
-        median_of({forces_N.end() - third, forces_N.end()}) - median_of({forces_N.begin(), forces_N.begin() + third});
+    air.zero_N = middle_N + mean_N;
+    air.zero_error_N = std::sqrt(squares) / count;
   }
 
   // The mass of the tool, by a regression of the force on the acceleration in the outermost tenth of the slices; 0 if

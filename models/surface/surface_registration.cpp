@@ -205,12 +205,21 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
     }
     result.recordings.push_back(one);
   }
-  result.surface_position_m =
-      outermost_contact_m(members, result.recordings, force_noise_N, common_surface_m(members, result.recordings));
+  const auto surface_m = [&](const std::vector<RegisteredSurface>& recordings) {
+    return outermost_contact_m(members, recordings, force_noise_N, common_surface_m(members, recordings));
+  };
+  result.surface_position_m = surface_m(result.recordings);
+  result.recorded_surface_position_m = surface_m(std::vector<RegisteredSurface>(members.size()));
   return result;
 }
 
 }  // namespace
+
+bool RegisteredSurfaces::corrects() const {
+  return lag_s != 0.0 || std::any_of(recordings.begin(), recordings.end(), [](const RegisteredSurface& one) {
+           return one.offset_m != 0.0 || one.force_zero_N != 0.0;
+         });
+}
 
 Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control, double fraction) {
   std::vector<Member> members;

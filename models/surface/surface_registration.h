@@ -33,6 +33,10 @@ struct RegisteredSurfaces {
   std::vector<RegisteredSurface> recordings;  // in the order of `source.names()`
   double surface_position_m = 0.0;            // in positions corrected by the offsets
   double lag_s = 0.0;                         // of the force, one for all recordings; 0: none, or not identified
+  double recorded_surface_position_m = 0.0;   // in positions as recorded, without any correction
+
+  // Whether an offset, a force zero or the lag corrects a recording.
+  bool corrects() const;
 };
 
 // `source` must have no corrections. `fraction`: passed to `control` as progress. Errors: those of the source;

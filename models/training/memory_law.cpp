@@ -104,6 +104,15 @@ class LawSearch {
 
 }  // namespace
 
+Result<FoldErrors> simple_law_error(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
+                                    const FitControl& control, double fraction) {
+  Tried tried;
+  if (Status status = LawSearch(source, list, problem, control, fraction).add(tried, {}, false); !status) {
+    return status.error();
+  }
+  return tried.errors.front();
+}
+
 Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
                                       std::vector<PartGain>& gains, const FitControl& control, double fraction) {
   if (all_times(list).empty()) return list;

@@ -25,4 +25,9 @@ struct PartGain {
 Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
                                       std::vector<PartGain>& gains, const FitControl& control, double fraction);
 
+// The cross-validated error of the trend without surface lag and slowing, by which two ways to correct the recordings
+// are compared. Errors: as above.
+Result<FoldErrors> simple_law_error(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
+                                    const FitControl& control, double fraction);
+
 }  // namespace palpate
