@@ -23,9 +23,9 @@ class LinkListener {
   virtual void connected(double now_s) noexcept = 0;
   virtual void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept = 0;
   virtual void unplugged() noexcept = 0;
-  // Writer thread.
-  virtual OutReports next(double now_s) noexcept = 0;  // empty: nothing to write now
-  virtual void written(double now_s) noexcept = 0;
+  // Writer thread, of a protocol that renders force.
+  virtual OutReports next(double) noexcept { return {}; }  // empty: nothing to write now
+  virtual void written(double) noexcept {}
 };
 
 // An open device, its node and its protocol.

@@ -60,16 +60,14 @@ MadeDevice make_auto(const std::string&, const DeviceRequest& request) {
   bool no_haptic = false;
   auto haptic = make_hid_device<LinkedDevice>(request, true, no_haptic);
   if (haptic) return MadeDevice(std::move(*haptic));
-  auto device = std::make_unique<AutoDevice>(request.seed, request.hand);
   std::string note = no_haptic ? "no haptic device is plugged in" : haptic.error().message;
   bool no_mouse = false;
   auto mouse = make_hid_device<SpaceMouse>(request, false, no_mouse);
   if (!mouse && !no_mouse) note += "; " + mouse.error().message;
   note += std::string(": a simulated hand moves until the mouse") + (mouse ? " or the SpaceMouse (no force)" : "") +
           " takes over";
-  if (mouse) device->use(std::move(*mouse));
-  device->explain(std::move(note));
-  return MadeDevice(std::move(device));
+  return MadeDevice(
+      std::make_unique<AutoDevice>(request.seed, request.hand, mouse ? std::move(*mouse) : nullptr, std::move(note)));
 }
 
 MadeDevice make_hand(const std::string&, const DeviceRequest& request) {
