@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "devices/link/device_stop.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
@@ -75,8 +74,6 @@ const DeviceProtocol kBridgeProtocol = {
     .encode_stop = stop_bridge,
 };
 
-BridgeConnection::~BridgeConnection() { unregister_device_stop(stop_slot_); }
-
 int BridgeConnection::read(std::uint8_t* bytes, std::size_t capacity) noexcept {
   if (capacity < bridge::kDeviceBytes) return 0;
   if (const int size = reports_.next(next_, end_, bytes); size > 0) return size;
@@ -88,18 +85,6 @@ int BridgeConnection::read(std::uint8_t* bytes, std::size_t capacity) noexcept {
     first_[first_count_++] = *at++;
   }
   return reports_.next(next_, end_, bytes);
-}
-
-bool BridgeConnection::write(const std::uint8_t* bytes, std::size_t size) noexcept {
-  if (!begin_force_write()) return false;
-  const bool taken = stream_->write(bytes, size);
-  end_force_write();
-  return taken;
-}
-
-void BridgeConnection::stop_with(const OutReports& reports) noexcept {
-  unregister_device_stop(stop_slot_);
-  stop_slot_ = register_device_stop(stream_->descriptor(), reports);
 }
 
 std::string BridgeConnection::garbage() const {

@@ -60,12 +60,11 @@ class BridgeReports {
 class BridgeConnection final : public DeviceConnection {
  public:
   explicit BridgeConnection(std::unique_ptr<ByteStream> stream) : stream_(std::move(stream)) {}
-  ~BridgeConnection() override;
 
   // Reads one report, see BridgeReports.
   int read(std::uint8_t* bytes, std::size_t capacity) noexcept override;
-  bool write(const std::uint8_t* bytes, std::size_t size) noexcept override;
-  void stop_with(const OutReports& reports) noexcept override;
+  bool write(const std::uint8_t* bytes, std::size_t size) noexcept override { return stream_->write(bytes, size); }
+  int descriptor() const noexcept override { return stream_->descriptor(); }
 
   // The first bytes that arrived before any frame, where they are text; else empty.
   std::string garbage() const;
@@ -79,7 +78,6 @@ class BridgeConnection final : public DeviceConnection {
   const std::uint8_t* end_ = bytes_;
   std::uint8_t first_[80] = {};  // first bytes, until there is a frame
   std::size_t first_count_ = 0;
-  int stop_slot_ = -1;
 };
 
 class BridgeBus final : public DeviceBus {

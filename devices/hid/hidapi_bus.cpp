@@ -11,7 +11,6 @@
 #include <mutex>
 
 #include "devices/hid/hid_protocols.h"
-#include "devices/link/device_stop.h"
 
 namespace palpate {
 namespace {
@@ -32,37 +31,28 @@ std::string narrow(const wchar_t* text) {
 
 class HidapiConnection final : public DeviceConnection {
  public:
-  HidapiConnection(hid_device* reader, hid_device* writer, int descriptor, int wait_ms) noexcept
-      : reader_(reader), writer_(writer), descriptor_(descriptor), wait_ms_(wait_ms) {}
+  HidapiConnection(hid_device* reader, int descriptor, int wait_ms) noexcept
+      : reader_(reader), descriptor_(descriptor), wait_ms_(wait_ms) {}
   HidapiConnection(const HidapiConnection&) = delete;
   HidapiConnection& operator=(const HidapiConnection&) = delete;
   ~HidapiConnection() override {
-    unregister_device_stop(slot_);
     hid_close(reader_);
-    hid_close(writer_);
     ::close(descriptor_);
   }
 
   int read(std::uint8_t* bytes, std::size_t capacity) noexcept override {
     return wait_ms_ < 0 ? hid_read(reader_, bytes, capacity) : hid_read_timeout(reader_, bytes, capacity, wait_ms_);
   }
+  // As hid_write of hidraw, but without the handle's last error, which has no lock.
   bool write(const std::uint8_t* bytes, std::size_t size) noexcept override {
-    if (!begin_force_write()) return false;
-    const bool taken = hid_write(writer_, bytes, size) >= 0;
-    end_force_write();
-    return taken;
+    return ::write(descriptor_, bytes, size) >= 0;
   }
-  void stop_with(const OutReports& reports) noexcept override {
-    unregister_device_stop(slot_);
-    slot_ = register_device_stop(descriptor_, reports);
-  }
+  int descriptor() const noexcept override { return descriptor_; }
 
  private:
   hid_device* reader_;
-  hid_device* writer_;
   int descriptor_;
   int wait_ms_;
-  int slot_ = -1;
 };
 
 // hidapi lists a node once for each usage in its descriptor; the one with a protocol is preferred.
@@ -127,15 +117,12 @@ Result<std::unique_ptr<DeviceConnection>> HidapiBus::open(const DeviceNode& info
   }
   const std::lock_guard<std::mutex> lock(hidapi_mutex());
   hid_device* const reader = hid_open_path(info.path.c_str());
-  hid_device* const writer = reader != nullptr ? hid_open_path(info.path.c_str()) : nullptr;
-  if (writer == nullptr) {
+  if (reader == nullptr) {
     const std::string words = narrow(hid_error(nullptr));
-    if (reader != nullptr) hid_close(reader);
     ::close(descriptor);
     return Error{info.path + ": cannot be opened as a HID device (" + words + "); plug it in again"};
   }
-  return Result<std::unique_ptr<DeviceConnection>>(
-      std::make_unique<HidapiConnection>(reader, writer, descriptor, wait_ms_));
+  return Result<std::unique_ptr<DeviceConnection>>(std::make_unique<HidapiConnection>(reader, descriptor, wait_ms_));
 }
 
 DeviceBus& system_hid_bus() {

@@ -1,6 +1,6 @@
 // The USB HID bus of this machine: libhidapi over hidraw.
-// Each device is opened three times: once for the reading and once for the writing thread, because a handle of hidapi
-// stores its last error without a lock; and once as a file, which holds the lock against a second program and takes the
+// Each device is opened twice: by hidapi for the reading thread, because a handle of hidapi stores its last error
+// without a lock; and as a file for the writing thread, which holds the lock against a second program and takes the
 // stop report when a signal ends the program.
 #pragma once
 

@@ -20,8 +20,8 @@ class DeviceConnection {
   virtual int read(std::uint8_t* bytes, std::size_t capacity) noexcept = 0;
   // Blocking. False: the report was not accepted.
   virtual bool write(const std::uint8_t* bytes, std::size_t size) noexcept = 0;
-  // Registers `reports`, which are sent when a signal ends the program, see device_stop.h.
-  virtual void stop_with(const OutReports&) noexcept {}
+  // The file to which the stop report is written when a signal ends the program (device_stop.h); -1: none.
+  virtual int descriptor() const noexcept { return -1; }
 };
 
 class DeviceBus {

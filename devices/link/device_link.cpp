@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "devices/link/device_stop.h"
 #include "engine/live/pacer.h"
 #include "engine/live/rt_thread.h"
 
@@ -67,7 +68,8 @@ std::shared_ptr<DeviceConnection> DeviceLink::connection() noexcept {
 }
 
 void DeviceLink::use(std::shared_ptr<DeviceConnection> connection) noexcept {
-  if (connection != nullptr) connection->stop_with(protocol_.encode_stop());
+  unregister_device_stop(stop_slot_);
+  stop_slot_ = connection != nullptr ? register_device_stop(connection->descriptor(), protocol_.encode_stop()) : -1;
   const std::lock_guard<std::mutex> lock(mutex_);
   connection_.swap(connection);
 }
@@ -129,7 +131,9 @@ void DeviceLink::look_again() noexcept {
 void DeviceLink::write(DeviceConnection& connection, const OutReports& reports) noexcept {
   bool good = reports.count > 0;
   for (std::size_t i = 0; i < reports.count; ++i) {
+    if (!begin_force_write()) return;
     good = connection.write(reports.bytes[i].data(), reports.sizes[i]) && good;
+    end_force_write();
   }
   if (good) listener_.written(steady_now_s());
 }

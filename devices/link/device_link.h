@@ -76,6 +76,7 @@ class DeviceLink {
   const DeviceProtocol& protocol_;
   std::mutex mutex_;  // guards connection_; the haptics thread never locks it
   std::shared_ptr<DeviceConnection> connection_;
+  int stop_slot_ = -1;  // of connection_, see device_stop.h
   std::atomic<bool> stop_{false};
   std::thread reader_;
   std::thread writer_;
