@@ -23,14 +23,13 @@ class BridgeTest {
 
   Result<std::string> run() {
     step_until(kDriven_s, {true, true}, [] { return false; });
-    const bool drove = driving_;
     const auto silence_s = time_to_stop({});
     const bool woke = wakes();
     const auto stands_still_s = silence_s && woke ? time_to_stop({true, false}) : std::nullopt;
     wakes();
-    if (gone_) return Error{opened_.info.path + ": the line ended during the test; " + "run the test again"};
+    if (gone_) return Error{opened_.info.path + ": the line ended during the test; run the test again"};
     const std::string start = opened_.info.path + ": ";
-    if (sent_at_s_.empty() || round_trips_s_.empty()) {
+    if (round_trips_s_.empty()) {
       return Error{start +
                    "the device confirms no frame of the host; bytes 22 and 23 must be the low half of its sequence"};
     }
@@ -38,7 +37,7 @@ class BridgeTest {
     if (!woke)
       return Error{start + "the device stays stopped after valid frames return; clear status bit 2 when they return"};
     if (!stands_still_s) return Error{start + no_stop("after the heartbeat stood still")};
-    return text(drove, *silence_s, *stands_still_s);
+    return text(*silence_s, *stands_still_s);
   }
 
  private:
@@ -60,7 +59,6 @@ class BridgeTest {
     const OutReports reports = kBridgeProtocol.encode_command(command);
     opened_.connection->write(reports.bytes[0].data(), reports.sizes[0]);
     last_sent_s_ = steady_now_s();
-    sent_at_s_.resize(65536, 0.0);
     sent_at_s_[sequence_ & 0xFFFF] = last_sent_s_;
   }
 
@@ -70,7 +68,7 @@ class BridgeTest {
     if (frames_++ > 0) intervals_s_.push_back(1e-6 * (reading.time_us - last_.time_us));
     lowest_nm_ = std::min(lowest_nm_, reading.counts);
     highest_nm_ = std::max(highest_nm_, reading.counts);
-    if (!sent_at_s_.empty() && reading.confirmed != last_.confirmed && sent_at_s_[reading.confirmed] > 0.0) {
+    if (reading.confirmed != last_.confirmed && sent_at_s_[reading.confirmed] > 0.0) {
       round_trips_s_.push_back(steady_now_s() - sent_at_s_[reading.confirmed]);
     }
     last_ = reading;
@@ -120,7 +118,7 @@ class BridgeTest {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
   }
 
-  std::string text(bool drove, double silence_s, double stands_still_s) {
+  std::string text(double silence_s, double stands_still_s) {
     const auto ms = [](double s) { return fixed(1e3 * s, 2) + " ms"; };
     const double mean_s = part(intervals_s_, 0.5);
     return opened_.info.path + "\n  samples     " + fixed(mean_s > 0.0 ? 1.0 / mean_s : 0.0, 0) +
@@ -130,7 +128,7 @@ class BridgeTest {
            fixed(1e-6 * (highest_nm_ - lowest_nm_), 3) + " mm in the test\n  force       " +
            (std::isfinite(last_.measured_N) ? fixed(last_.measured_N, 3) + " N measured" : "not measured") +
            "\n  drive       " +
-           (drove ? "yes, it got a force of 0" : "no, the device never reported that it drives (status bit 1)") +
+           (driving_ ? "yes, it got a force of 0" : "no, the device never reported that it drives (status bit 1)") +
            "\n  watchdog    stopped " + ms(silence_s) + " after the last frame (limit 50 ms, reported with a sample)" +
            "\n  heartbeat   stopped " + ms(stands_still_s) + " after it stood still (limit 50 ms)\n";
   }
@@ -138,7 +136,7 @@ class BridgeTest {
   OpenedDevice opened_;
   std::uint32_t sequence_ = 0;
   std::uint16_t heartbeat_ = 0;
-  std::vector<double> sent_at_s_;  // indexed by the low half of the sequence
+  std::vector<double> sent_at_s_ = std::vector<double>(65536, 0.0);  // indexed by the low half of the sequence
   std::vector<double> intervals_s_, round_trips_s_;
   DeviceReading last_;
   int frames_ = 0;
@@ -150,9 +148,7 @@ class BridgeTest {
 }  // namespace
 
 Result<std::string> test_bridge(const std::string& target) {
-  const Result<BridgeTarget> parsed = parse_bridge_target(target);
-  if (!parsed) return parsed.error();
-  BridgeBus bus(*parsed, target);
+  BridgeBus bus(target);
   Result<OpenedDevice> opened = bus.open_and_identify();
   if (!opened) return opened.error();
   return BridgeTest(std::move(*opened)).run();

@@ -32,7 +32,7 @@ class LinkListener {
 struct OpenedDevice {
   DeviceNode info;
   const DeviceProtocol* protocol = nullptr;  // not null once it is open
-  std::unique_ptr<DeviceConnection> connection;
+  std::unique_ptr<DeviceConnection> connection{};
   bool measures_force = false;
 };
 

@@ -84,11 +84,9 @@ MadeDevice make_replay(const std::string& path, const DeviceRequest&) {
 }
 
 MadeDevice make_bridge(const std::string& target, const DeviceRequest& request) {
-  const Result<BridgeTarget> parsed = parse_bridge_target(target);
-  if (!parsed) return parsed.error();
   const Result<DeviceCalibration> calibration = calibration_of(request, kBridgeProtocol);
   if (!calibration) return calibration.error();
-  auto bus = std::make_unique<BridgeBus>(*parsed, target);
+  auto bus = std::make_unique<BridgeBus>(target);
   Result<OpenedDevice> opened = bus->open_and_identify();
   if (!opened) return opened.error();
   BridgeBus& used = *bus;
