@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -20,9 +19,9 @@ constexpr auto kPause = std::chrono::milliseconds(10);
 // Real-time priority below the 80 of the haptics thread.
 constexpr int kPriority = 70;
 
-// Searches the bus once; devices that cannot be opened are reported in `problems`.
-std::optional<OpenedDevice> try_open(DeviceBus& bus, const DeviceProtocols& protocols, std::string& problems) {
-  problems.clear();
+// Searches the bus once, as open_first.
+Result<OpenedDevice> try_open(DeviceBus& bus, const DeviceProtocols& protocols) {
+  std::string problems;
   for (const DeviceNode& info : bus.list()) {
     const auto needed =
         std::find_if(protocols.begin(), protocols.end(), [&](const DeviceProtocol* one) { return one->matches(info); });
@@ -31,22 +30,19 @@ std::optional<OpenedDevice> try_open(DeviceBus& bus, const DeviceProtocols& prot
     if (connection) return OpenedDevice{info, *needed, std::move(*connection)};
     problems += (problems.empty() ? "" : "; ") + connection.error().message;
   }
-  return std::nullopt;
+  if (!problems.empty()) return Error{problems};
+  return OpenedDevice{};
 }
 
 }  // namespace
 
-Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols, bool* none_found) {
-  std::string problems;
-  for (int i = 0; i < kOpenTries; ++i) {
-    if (i > 0) std::this_thread::sleep_for(kBetweenTries);
-    if (std::optional<OpenedDevice> opened = try_open(bus, protocols, problems)) {
-      return Result<OpenedDevice>(std::move(*opened));
-    }
-    if (problems.empty()) break;
+Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols) {
+  Result<OpenedDevice> opened = try_open(bus, protocols);
+  for (int more = 1; !opened && more < kOpenTries; ++more) {
+    std::this_thread::sleep_for(kBetweenTries);
+    opened = try_open(bus, protocols);
   }
-  if (none_found != nullptr) *none_found = problems.empty();
-  return Error{problems.empty() ? "no device that the program knows is plugged in" : problems};
+  return opened;
 }
 
 DeviceLink::DeviceLink(DeviceBus& bus, LinkListener& listener, OpenedDevice opened)
@@ -120,9 +116,8 @@ void DeviceLink::look_again() noexcept {
     std::this_thread::sleep_for(kPause);
     if (stop_.load(std::memory_order_relaxed)) return;
   }
-  std::string problems;
-  std::optional<OpenedDevice> opened = try_open(bus_, {&protocol_}, problems);
-  if (!opened) return;
+  Result<OpenedDevice> opened = try_open(bus_, {&protocol_});
+  if (!opened || opened->connection == nullptr) return;
   write(*opened->connection, protocol_.encode_start());
   listener_.connected(steady_now_s());
   use(std::move(opened->connection));

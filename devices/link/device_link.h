@@ -30,17 +30,16 @@ class LinkListener {
 
 // An open device, its node and its protocol.
 struct OpenedDevice {
-  DeviceNode info;
-  const DeviceProtocol* protocol = nullptr;  // not null once it is open
-  std::unique_ptr<DeviceConnection> connection{};
+  DeviceNode info{};
+  const DeviceProtocol* protocol = nullptr;
+  std::unique_ptr<DeviceConnection> connection{};  // null: no device was found
   bool measures_force = false;
 };
 
-// Opens the first device of one of `protocols`. Where one is plugged in but cannot be opened, it tries for half a
-// second, because udev may still be setting the permissions.
-// Slow side. Errors: none is plugged in (then *none_found is true, else false); all that are plugged in cannot be
-// opened, with the reason for each.
-Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols, bool* none_found = nullptr);
+// Opens the first device of one of `protocols`; without a connection if none is plugged in. Where one is plugged in but
+// cannot be opened, it tries for half a second, because udev may still be setting the permissions.
+// Slow side. Errors: none of the devices that are plugged in can be opened, with the reason for each.
+Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols);
 
 class DeviceLink {
  public:

@@ -33,41 +33,37 @@ Result<DeviceCalibration> calibration_of(const DeviceRequest& request, const Dev
   return read_calibration(request.calibrations, protocol);
 }
 
-// Opens the first HID device that renders forces, or does not, and makes a `T` of it with its calibration.
-// `none_found`: set if there is no such device.
-template <typename T>
-Result<std::unique_ptr<T>> make_hid_device(const DeviceRequest& request, bool renders_force, bool& none_found) {
-  Result<OpenedDevice> opened = open_first(bus_of(request), protocols_that(renders_force), &none_found);
+// Opens the first HID device that renders forces, or does not, and makes a `T` of it with its calibration. Null: none
+// is plugged in.
+template <typename T, typename Made = T>
+Result<std::unique_ptr<Made>> make_hid_device(const DeviceRequest& request, bool renders_force) {
+  Result<OpenedDevice> opened = open_first(bus_of(request), protocols_that(renders_force));
   if (!opened) return opened.error();
+  if (opened->connection == nullptr) return std::unique_ptr<Made>();
   const Result<DeviceCalibration> calibration = calibration_of(request, *opened->protocol);
   if (!calibration) return calibration.error();
-  return std::make_unique<T>(bus_of(request), *calibration, std::move(*opened));
+  return std::unique_ptr<Made>(std::make_unique<T>(bus_of(request), *calibration, std::move(*opened)));
 }
 
 MadeDevice make_hid(const std::string&, const DeviceRequest& request) {
-  bool no_haptic = false;
-  auto haptic = make_hid_device<LinkedDevice>(request, true, no_haptic);
-  if (haptic) return MadeDevice(std::move(*haptic));
-  if (!no_haptic) return haptic.error();
-  bool no_mouse = false;
-  auto mouse = make_hid_device<SpaceMouse>(request, false, no_mouse);
-  if (mouse) return MadeDevice(std::make_unique<SpaceMouseDevice>(std::move(*mouse)));
-  if (!no_mouse) return mouse.error();
+  MadeDevice haptic = make_hid_device<LinkedDevice, Device>(request, true);
+  if (!haptic || *haptic != nullptr) return haptic;
+  auto mouse = make_hid_device<SpaceMouse>(request, false);
+  if (!mouse) return mouse.error();
+  if (*mouse != nullptr) return MadeDevice(std::make_unique<SpaceMouseDevice>(std::move(*mouse)));
   return Error{"no haptic device is plugged in; plug one in or use --device auto (palpate devices explains)"};
 }
 
 MadeDevice make_auto(const std::string&, const DeviceRequest& request) {
-  bool no_haptic = false;
-  auto haptic = make_hid_device<LinkedDevice>(request, true, no_haptic);
-  if (haptic) return MadeDevice(std::move(*haptic));
-  std::string note = no_haptic ? "no haptic device is plugged in" : haptic.error().message;
-  bool no_mouse = false;
-  auto mouse = make_hid_device<SpaceMouse>(request, false, no_mouse);
-  if (!mouse && !no_mouse) note += "; " + mouse.error().message;
-  note += std::string(": a simulated hand moves until the mouse") + (mouse ? " or the SpaceMouse (no force)" : "") +
-          " takes over";
-  return MadeDevice(
-      std::make_unique<AutoDevice>(request.seed, request.hand, mouse ? std::move(*mouse) : nullptr, std::move(note)));
+  MadeDevice haptic = make_hid_device<LinkedDevice, Device>(request, true);
+  if (haptic && *haptic != nullptr) return haptic;
+  std::string note = haptic ? "no haptic device is plugged in" : haptic.error().message;
+  auto mouse = make_hid_device<SpaceMouse>(request, false);
+  if (!mouse) note += "; " + mouse.error().message;
+  std::unique_ptr<SpaceMouse> space_mouse = mouse ? std::move(*mouse) : nullptr;
+  note += ": a simulated hand moves until the mouse";
+  note += space_mouse != nullptr ? " or the SpaceMouse (no force) takes over" : " takes over";
+  return MadeDevice(std::make_unique<AutoDevice>(request.seed, request.hand, std::move(space_mouse), std::move(note)));
 }
 
 MadeDevice make_hand(const std::string&, const DeviceRequest& request) {
