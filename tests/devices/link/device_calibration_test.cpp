@@ -14,9 +14,12 @@ const std::string kAssets = std::string(PALPATE_SOURCE_DIR) + "/assets/devices";
 
 std::string good() { return test::read_text(kAssets + "/openffboard.json"); }
 
+// The message about the text without its folder.
 std::string complaint(const std::string& text) {
-  const Result<DeviceCalibration> result = parse_calibration(text, "openffboard.json", kOpenFfBoardProtocol);
-  return result ? "accepted" : result.error().message;
+  const test::TemporaryFolder folder;
+  folder.with_file("openffboard.json", text);
+  const Result<DeviceCalibration> result = read_calibration(folder.path(), kOpenFfBoardProtocol);
+  return result ? "accepted" : result.error().message.substr(folder.path().size() + 1);
 }
 
 TEST(DeviceCalibration, ReadsEveryKindOfTheAssets) {
@@ -50,9 +53,8 @@ TEST(DeviceCalibration, RefusesAMissingFileAndAnotherKind) {
   const test::TemporaryFolder folder;
   EXPECT_TRUE(test::has_parts(read_calibration(folder.path(), kOpenFfBoardProtocol).error().message,
                               {folder.file("openffboard.json"), "assets/devices/"}));
-  folder.with_file("openffboard.json", test::read_text(kAssets + "/bridge.json"));
-  const std::string of_another = read_calibration(folder.path(), kOpenFfBoardProtocol).error().message;
-  EXPECT_TRUE(test::has_parts(of_another, {"kind", "\"bridge\"", "openffboard"}));
+  EXPECT_TRUE(
+      test::has_parts(complaint(test::read_text(kAssets + "/bridge.json")), {"kind", "\"bridge\"", "openffboard"}));
 }
 
 }  // namespace
