@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -18,9 +19,11 @@ constexpr double kPeakOverMean = 1.875;
 }  // namespace
 
 HandMotion::HandMotion(const HandSettings& settings, std::uint64_t seed) : settings_(settings), random_(seed, 0) {
-  using enum Gesture;
-  deck_ = {slow_press, slow_press, slow_press, taps,  taps,       taps,       poke,       poke,
-           poke,       poke,       poke,       steps, modulation, modulation, modulation, rest};
+  const std::pair<Gesture, int> times[] = {{&HandMotion::slow_press, 3}, {&HandMotion::taps, 3},
+                                           {&HandMotion::poke, 5},       {&HandMotion::steps, 1},
+                                           {&HandMotion::modulation, 3}, {&HandMotion::rest, 1}};
+  auto next = deck_.begin();
+  for (const auto& [gesture, count] : times) next = std::fill_n(next, count, gesture);
   dealt_ = deck_.size();
   const double slowness = std::min(1.0, settings.fastest_m_per_s / kUsual_m_per_s);
   for (Tremor& tremor : tremor_) {
@@ -104,26 +107,7 @@ void HandMotion::plan() {
     }
     dealt_ = 0;
   }
-  switch (deck_[dealt_++]) {
-    case Gesture::slow_press:
-      plan_slow_press();
-      break;
-    case Gesture::taps:
-      plan_taps();
-      break;
-    case Gesture::poke:
-      plan_poke();
-      break;
-    case Gesture::steps:
-      plan_steps();
-      break;
-    case Gesture::modulation:
-      plan_modulation();
-      break;
-    case Gesture::rest:
-      go({air(-0.010, -0.003), any(0.5, 1.0)});
-      break;
-  }
+  (this->*deck_[dealt_++])();
 }
 
 double HandMotion::air(double from_m, double to_m) {
@@ -137,7 +121,7 @@ void HandMotion::leave(double fastest_s, double slowest_s) {
   go({air_m, any(0.03, 0.15)});
 }
 
-void HandMotion::plan_slow_press() {
+void HandMotion::slow_press() {
   press({any(0.5, 1.0) * settings_.strongest_press_N, any(0.35, 0.9)});
   go({planned_m_, any(0.1, 0.6)});
   if (any(0.0, 1.0) < 0.4) {
@@ -147,7 +131,7 @@ void HandMotion::plan_slow_press() {
   leave(0.2, 0.7);
 }
 
-void HandMotion::plan_taps() {
+void HandMotion::taps() {
   const std::uint64_t count = 5 + random_.index(6);
   for (std::uint64_t i = 0; i < count; ++i) {
     press({any(0.2, 0.85) * settings_.strongest_press_N, any(0.1, 0.18)});
@@ -155,13 +139,13 @@ void HandMotion::plan_taps() {
   }
 }
 
-void HandMotion::plan_poke() {
+void HandMotion::poke() {
   press({any(0.5, 0.95) * settings_.strongest_press_N, any(0.1, 0.2)});
   go({planned_m_, any(0.02, 0.4)});
   leave(0.08, 0.25);
 }
 
-void HandMotion::plan_steps() {
+void HandMotion::steps() {
   const std::uint64_t count = 3 + random_.index(4);
   for (std::uint64_t i = 0; i < count; ++i) {
     press({any(0.05, 1.0) * settings_.strongest_press_N, any(0.1, 0.3)});
@@ -170,7 +154,7 @@ void HandMotion::plan_steps() {
   leave(0.15, 0.5);
 }
 
-void HandMotion::plan_modulation() {
+void HandMotion::modulation() {
   const double middle = any(0.4, 0.6);
   const double swing = any(0.2, 0.4);
   press({middle * settings_.strongest_press_N, any(0.3, 0.6)});
@@ -181,5 +165,7 @@ void HandMotion::plan_modulation() {
   }
   leave(0.15, 0.6);
 }
+
+void HandMotion::rest() { go({air(-0.010, -0.003), any(0.5, 1.0)}); }
 
 }  // namespace palpate

@@ -56,7 +56,7 @@ class HandMotion {
   const HandSettings& settings() const noexcept { return settings_; }
 
  private:
-  enum class Gesture { slow_press, taps, poke, steps, modulation, rest };
+  using Gesture = void (HandMotion::*)();  // plans the segments of one gesture
   struct Segment {
     double target_m = 0.0;
     double duration_s = 0.0;
@@ -72,11 +72,12 @@ class HandMotion {
   static constexpr std::size_t kMostSegments = 32;
 
   void plan();
-  void plan_slow_press();
-  void plan_taps();
-  void plan_poke();
-  void plan_steps();
-  void plan_modulation();
+  void slow_press();
+  void taps();
+  void poke();
+  void steps();
+  void modulation();
+  void rest();
   // The arguments are structs because braces are evaluated from left to right, so that random numbers are drawn in a
   // defined order.
   void go(Segment segment);
