@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "devices/firmware/bridge_protocol.h"
-#include "devices/link/device_bus.h"
 #include "devices/link/device_link.h"
 
 namespace palpate {

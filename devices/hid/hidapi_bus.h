@@ -4,7 +4,7 @@
 // stop report when a signal ends the program.
 #pragma once
 
-#include "devices/link/device_bus.h"
+#include "devices/link/device_link.h"
 
 namespace palpate {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "devices/link/device_stop.h"
+
 namespace palpate {
 
 DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration, std::string name) noexcept
@@ -50,22 +52,12 @@ void DeviceEndpoint::publish_sample() noexcept {
   if (!known || state.lost != 0) return;
   DeviceSample sample;
   sample.tool.time_s = state.sample_time_s;
-  sample.tool.position_m = position_m(state);
+  const double counts = static_cast<double>(state.counts) - state.zero_counts;
+  sample.tool.position_m =
+      calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
   sample.measured_force_N = state.measured_N;
   sample.restart = state.streams != streams_published_;
   if (samples_.push(sample)) streams_published_ = state.streams;
-}
-
-DeviceCommand DeviceEndpoint::command_for(double force_N) noexcept {
-  const double peak_N = calibration_.limits.largest_N;
-  const double safe_N = std::isfinite(force_N) ? std::clamp(force_N, -peak_N, peak_N) : 0.0;
-  commanded_N_.store(safe_N, std::memory_order_relaxed);
-  DeviceCommand command;
-  command.sequence = ++sequence_;
-  command.heartbeat = last_heartbeat_;
-  command.drive = safe_N != 0.0;
-  command.units = -calibration_.direction * safe_N / calibration_.force_N_per_unit;
-  return command;
 }
 
 OutReports DeviceEndpoint::next(double now_s) noexcept {
@@ -84,17 +76,19 @@ OutReports DeviceEndpoint::next(double now_s) noexcept {
   last_sent_s_ = now_s;
   answered_ = samples;
   const bool haptics_live = now_s - last_beat_s_ < kHapticsSilent_s;
-  const DeviceCommand next = command_for(haptics_live ? command.force_N : 0.0);
-  sent_at_s_[next.sequence % sent_at_s_.size()].store(now_s, std::memory_order_relaxed);
-  return calibration_.protocol->encode_command(next);
+  const double peak_N = calibration_.limits.largest_N;
+  const bool drives = haptics_live && std::isfinite(command.force_N);
+  const double safe_N = drives ? std::clamp(command.force_N, -peak_N, peak_N) : 0.0;
+  commanded_N_.store(safe_N, std::memory_order_relaxed);
+  sent_at_s_[++sequence_ % sent_at_s_.size()].store(now_s, std::memory_order_relaxed);
+  return calibration_.protocol->encode_command(
+      {.sequence = sequence_,
+       .heartbeat = last_heartbeat_,
+       .drive = safe_N != 0.0,
+       .units = -calibration_.direction * safe_N / calibration_.force_N_per_unit});
 }
 
 void DeviceEndpoint::written(double now_s) noexcept { last_written_s_.store(now_s, std::memory_order_relaxed); }
-
-double DeviceEndpoint::position_m(const MonitorState& state) const noexcept {
-  const double counts = static_cast<double>(state.counts) - state.zero_counts;
-  return calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
-}
 
 // After a pause of the haptics thread, skips old samples; `restart` is set if any of them began a new stream.
 bool DeviceEndpoint::read(double, DeviceSample& sample) noexcept {
@@ -160,6 +154,11 @@ DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
   health.round_trip_s = link.round_trip_s;
   health.lag_s = lag_s(link);
   return health;
+}
+
+Status LinkedDevice::open() {
+  stop_devices_on_signals();
+  return link_.start();
 }
 
 }  // namespace palpate

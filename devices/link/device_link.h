@@ -1,19 +1,43 @@
-// The threads between an open device and its listener: one reads all reports, so that none queue up; the other writes
-// the newest command and skips older ones. Only they do blocking I/O. A device that was unplugged is searched for and
-// opened again until the link ends.
+// A DeviceBus lists devices and opens them. It is USB HID (devices/hid), a byte stream (devices/bridge), or a test
+// double. A DeviceLink has the threads between an open device and its listener: one reads all reports, so that none
+// queue up; the other writes the newest command and skips older ones. Only they do blocking I/O. A device that was
+// unplugged is searched for and opened again until the link ends.
 #pragma once
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "devices/link/device_bus.h"
+#include "devices/link/device_protocol.h"
 #include "engine/base/result.h"
 
 namespace palpate {
+
+// One open device. One thread may call `read` and another one `write` at the same time; the rest is slow side.
+class DeviceConnection {
+ public:
+  virtual ~DeviceConnection() = default;
+  // Blocks for a limited time. Returns the size of the next report; 0: none yet; below 0: the device is gone.
+  virtual int read(std::uint8_t* bytes, std::size_t capacity) noexcept = 0;
+  // Blocking. False: the report was not accepted.
+  virtual bool write(const std::uint8_t* bytes, std::size_t size) noexcept = 0;
+  // The file to which the stop report is written when a signal ends the program (device_stop.h); -1: none.
+  virtual int descriptor() const noexcept { return -1; }
+};
+
+class DeviceBus {
+ public:
+  virtual ~DeviceBus() = default;
+  // Slow side. One entry per node.
+  virtual std::vector<DeviceNode> list() = 0;
+  // Slow side. Errors: the node cannot be opened; with the reason and what to do.
+  virtual Result<std::unique_ptr<DeviceConnection>> open(const DeviceNode& node) = 0;
+};
 
 // Receives the reports of a link and gives the commands to write. `now_s`: steady clock.
 class LinkListener {

@@ -7,7 +7,7 @@
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/hid/spacemouse.h"
-#include "devices/link/linked_device.h"
+#include "devices/link/device_endpoint.h"
 #include "devices/registry/auto_device.h"
 #include "devices/virtual/hand_device.h"
 #include "devices/virtual/mouse_device.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/link/device_bus.h"
+#include "devices/link/device_link.h"
 #include "devices/virtual/hand_motion.h"
 #include "engine/live/device.h"
 

@@ -14,7 +14,7 @@
 
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
-#include "devices/link/linked_device.h"
+#include "devices/link/device_endpoint.h"
 #include "engine/base/signals.h"
 #include "engine/live/pacer.h"
 #include "tests/devices/emulated/emulated_board.h"

@@ -1,6 +1,6 @@
 // A device with its threads, in real time, on a fake bus.
-#include "devices/link/linked_device.h"
 #include "devices/hid/hid_protocols.h"
+#include "devices/link/device_endpoint.h"
 
 #include <gtest/gtest.h>
 
