@@ -18,35 +18,35 @@ SensorSpec DeviceEndpoint::sensor() const noexcept {
 void DeviceEndpoint::connected(double now_s) noexcept {
   last_written_s_.store(now_s, std::memory_order_relaxed);
   connected_at_s_.store(now_s, std::memory_order_relaxed);
-  link_.connected = true;
-  state_.write(link_);
+  connected_ = true;
+  publish_state();
 }
 
 void DeviceEndpoint::unplugged() noexcept {
   monitor_.unplugged();
-  link_.monitor = monitor_.state();
-  link_.connected = false;
-  state_.write(link_);
+  connected_ = false;
+  publish_state();
 }
+
+void DeviceEndpoint::publish_state() noexcept { state_.write({monitor_.state(), round_trip_s_, connected_}); }
 
 void DeviceEndpoint::report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
   if (zeroing_asked_.exchange(false, std::memory_order_relaxed)) monitor_.start_zeroing();
-  const std::uint32_t confirmed = monitor_.state().confirmed;
+  const MonitorState before = monitor_.state();
   DeviceReading reading;
   const ReportVerdict verdict = calibration_.protocol->decode(bytes, size, reading);
   monitor_.update(verdict, reading, now_s, commanded_N_.load(std::memory_order_relaxed));
-  const bool accepted = monitor_.state().samples != link_.monitor.samples;
-  link_.monitor = monitor_.state();
-  if (accepted) publish_sample();
-  if (link_.monitor.confirmed != confirmed) {
-    const double sent_s = sent_at_s_[link_.monitor.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
-    if (sent_s > 0.0) link_.round_trip_s = now_s - sent_s;
+  const MonitorState& state = monitor_.state();
+  if (state.samples != before.samples) publish_sample();
+  if (state.confirmed != before.confirmed) {
+    const double sent_s = sent_at_s_[state.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
+    if (sent_s > 0.0) round_trip_s_ = now_s - sent_s;
   }
-  state_.write(link_);
+  publish_state();
 }
 
 void DeviceEndpoint::publish_sample() noexcept {
-  const MonitorState& state = link_.monitor;
+  const MonitorState& state = monitor_.state();
   accepted_.store(state.samples, std::memory_order_relaxed);
   const bool known = state.zeroing == Zeroing::done || state.zeroing == Zeroing::not_needed;
   if (!known || state.lost != 0) return;
@@ -122,7 +122,7 @@ bool DeviceEndpoint::stalled(const LinkState& link, double now_s) const noexcept
   if (now_s - last_written_s_.load(std::memory_order_relaxed) > kWriteStalled_s) return true;
   if (!calibration_.protocol->confirms) return false;
   if (link.round_trip_s > kWriteStalled_s) return true;
-  const double confirmed_s = std::max(link.monitor.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
+  const double confirmed_s = std::max(link.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
   return now_s - confirmed_s > kWriteStalled_s;
 }
 
@@ -130,27 +130,26 @@ bool DeviceEndpoint::stalled(const LinkState& link, double now_s) const noexcept
 // without confirmations is on USB, which takes a frame of 1 ms in each direction.
 double DeviceEndpoint::lag_s(const LinkState& link) const noexcept {
   const double round_trip_s = link.round_trip_s > 0.0 ? link.round_trip_s : 2e-3;
-  return kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - link.monitor.interval_s);
+  return kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - link.interval_s);
 }
 
 DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
   const LinkState& link = state_.newest();
-  const MonitorState& state = link.monitor;
   DeviceHealth health;
-  health.faults = state.lost;
-  if (now_s < state.transient_until_s) health.faults |= state.transient;
+  health.faults = link.lost;
+  if (now_s < link.transient_until_s) health.faults |= link.transient;
   health.sample_age_s =
-      state.samples > 0 ? std::max(0.0, now_s - state.sample_time_s) : std::numeric_limits<double>::infinity();
+      link.samples > 0 ? std::max(0.0, now_s - link.sample_time_s) : std::numeric_limits<double>::infinity();
   if (!link.connected) {
     health.faults |= device_fault::kUnplugged;
   } else {
-    if (health.sample_age_s > state.late_after_s) health.faults |= device_fault::kLate;
+    if (health.sample_age_s > link.late_after_s) health.faults |= device_fault::kLate;
     if (stalled(link, now_s)) health.faults |= device_fault::kWriteStalled;
   }
-  health.interval_s = state.interval_s;
-  health.zeroing = state.zeroing;
-  health.zeroing_progress = state.zeroing_progress;
-  health.grip_held = state.grip;
+  health.interval_s = link.interval_s;
+  health.zeroing = link.zeroing;
+  health.zeroing_progress = link.zeroing_progress;
+  health.grip_held = link.grip;
   health.round_trip_s = link.round_trip_s;
   health.lag_s = lag_s(link);
   return health;

@@ -26,8 +26,7 @@
 namespace palpate {
 
 // The state of the stream and of the connection.
-struct LinkState {
-  MonitorState monitor;
+struct LinkState : MonitorState {
   double round_trip_s = std::numeric_limits<double>::quiet_NaN();
   bool connected = false;
 };
@@ -78,6 +77,7 @@ class DeviceEndpoint : public Device, public LinkListener {
 
   double lag_s(const LinkState& link) const noexcept;
   bool stalled(const LinkState& state, double now_s) const noexcept;
+  void publish_state() noexcept;
   void publish_sample() noexcept;
 
   DeviceCalibration calibration_;
@@ -93,7 +93,8 @@ class DeviceEndpoint : public Device, public LinkListener {
   TripleBuffer<Command> command_;
   // Reader thread only.
   StreamMonitor monitor_;
-  LinkState link_;
+  double round_trip_s_ = std::numeric_limits<double>::quiet_NaN();
+  bool connected_ = false;
   std::uint32_t streams_published_ = 0;
   // Writer thread only.
   std::uint32_t sequence_ = 0;
