@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "devices/link/device_stop.h"
-
 namespace palpate {
 
 DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration, std::string name) noexcept
-    : calibration_(calibration), name_(std::move(name)), monitor_(calibration) {}
+    : calibration_(calibration), name_(std::move(name)), monitor_(calibration) {
+  publish_state();
+}
 
 SensorSpec DeviceEndpoint::sensor() const noexcept {
   return {.encoder_step_m = std::max(calibration_.encoder_step_m, 1.0 / calibration_.counts_per_metre)};
@@ -28,7 +28,12 @@ void DeviceEndpoint::unplugged() noexcept {
   publish_state();
 }
 
-void DeviceEndpoint::publish_state() noexcept { state_.write({monitor_.state(), round_trip_s_, connected_}); }
+void DeviceEndpoint::publish_state() noexcept {
+  MonitorState state = monitor_.state();
+  state.health.round_trip_s = round_trip_s_;
+  if (!connected_) state.health.faults = device_fault::kUnplugged;
+  state_.write(state);
+}
 
 void DeviceEndpoint::report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
   if (zeroing_asked_.exchange(false, std::memory_order_relaxed)) monitor_.start_zeroing();
@@ -48,8 +53,7 @@ void DeviceEndpoint::report_arrived(const std::uint8_t* bytes, std::size_t size,
 void DeviceEndpoint::publish_sample() noexcept {
   const MonitorState& state = monitor_.state();
   accepted_.store(state.samples, std::memory_order_relaxed);
-  const bool known = state.zeroing == Zeroing::done || state.zeroing == Zeroing::not_needed;
-  if (!known || state.lost != 0) return;
+  if (state.lost != 0 || !state.health.may_push()) return;
   DeviceSample sample;
   sample.tool.time_s = state.sample_time_s;
   const double counts = static_cast<double>(state.counts) - state.zero_counts;
@@ -118,46 +122,29 @@ ForceLimits DeviceEndpoint::limits() const noexcept {
   return limits;
 }
 
-bool DeviceEndpoint::stalled(const LinkState& link, double now_s) const noexcept {
+bool DeviceEndpoint::stalled(const MonitorState& state, double now_s) const noexcept {
   if (now_s - last_written_s_.load(std::memory_order_relaxed) > kWriteStalled_s) return true;
   if (!calibration_.protocol->confirms) return false;
-  if (link.round_trip_s > kWriteStalled_s) return true;
-  const double confirmed_s = std::max(link.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
+  if (state.health.round_trip_s > kWriteStalled_s) return true;
+  const double confirmed_s = std::max(state.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
   return now_s - confirmed_s > kWriteStalled_s;
 }
 
-// A round trip includes the wait for the next sample, on average half the time for which a force is constant. A device
-// without confirmations is on USB, which takes a frame of 1 ms in each direction.
-double DeviceEndpoint::lag_s(const LinkState& link) const noexcept {
-  const double round_trip_s = link.round_trip_s > 0.0 ? link.round_trip_s : 2e-3;
-  return kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - link.interval_s);
-}
-
 DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
-  const LinkState& link = state_.newest();
-  DeviceHealth health;
-  health.faults = link.lost;
-  if (now_s < link.transient_until_s) health.faults |= link.transient;
-  health.sample_age_s =
-      link.samples > 0 ? std::max(0.0, now_s - link.sample_time_s) : std::numeric_limits<double>::infinity();
-  if (!link.connected) {
-    health.faults |= device_fault::kUnplugged;
-  } else {
-    if (health.sample_age_s > link.late_after_s) health.faults |= device_fault::kLate;
-    if (stalled(link, now_s)) health.faults |= device_fault::kWriteStalled;
+  const MonitorState& state = state_.newest();
+  DeviceHealth health = state.health;
+  if (state.samples > 0) health.sample_age_s = std::max(0.0, now_s - state.sample_time_s);
+  if (health.faults == 0) {
+    if (health.sample_age_s > state.late_after_s) health.faults |= device_fault::kLate;
+    if (stalled(state, now_s)) health.faults |= device_fault::kWriteStalled;
   }
-  health.interval_s = link.interval_s;
-  health.zeroing = link.zeroing;
-  health.zeroing_progress = link.zeroing_progress;
-  health.grip_held = link.grip;
-  health.round_trip_s = link.round_trip_s;
-  health.lag_s = lag_s(link);
+  health.faults |= state.lost;
+  if (now_s < state.transient_until_s) health.faults |= state.transient;
+  // A round trip includes the wait for the next sample, on average half the time for which a force is constant. A
+  // device without confirmations is on USB, which takes a frame of 1 ms in each direction.
+  const double round_trip_s = health.round_trip_s > 0.0 ? health.round_trip_s : 2e-3;
+  health.lag_s = kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - health.interval_s);
   return health;
-}
-
-Status LinkedDevice::open() {
-  stop_devices_on_signals();
-  return link_.start();
 }
 
 }  // namespace palpate

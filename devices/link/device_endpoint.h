@@ -25,12 +25,6 @@
 
 namespace palpate {
 
-// The state of the stream and of the connection.
-struct LinkState : MonitorState {
-  double round_trip_s = std::numeric_limits<double>::quiet_NaN();
-  bool connected = false;
-};
-
 class DeviceEndpoint : public Device, public LinkListener {
  public:
   static constexpr double kHapticsSilent_s = 0.02;
@@ -75,8 +69,8 @@ class DeviceEndpoint : public Device, public LinkListener {
     std::uint16_t heartbeat = 0;
   };
 
-  double lag_s(const LinkState& link) const noexcept;
-  bool stalled(const LinkState& state, double now_s) const noexcept;
+  bool stalled(const MonitorState& state, double now_s) const noexcept;
+  // Reader thread.
   void publish_state() noexcept;
   void publish_sample() noexcept;
 
@@ -88,7 +82,7 @@ class DeviceEndpoint : public Device, public LinkListener {
   std::atomic<std::uint64_t> accepted_{0};            // number of accepted samples
   std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence modulo 256
   static_assert(std::atomic<double>::is_always_lock_free);
-  TripleBuffer<LinkState> state_;
+  TripleBuffer<MonitorState> state_;
   SpscRing<DeviceSample, 256> samples_;
   TripleBuffer<Command> command_;
   // Reader thread only.
@@ -123,7 +117,7 @@ class LinkedDevice final : public DeviceEndpoint {
 
   bool measures_force() const noexcept override { return measures_force_; }
   // Errors: a thread cannot be started.
-  Status open() override;
+  Status open() override { return link_.start(); }
   void close() noexcept override { link_.stop(); }
   // See DeviceLink::description.
   std::string note() const override { return link_.description(); }

@@ -65,7 +65,8 @@ std::shared_ptr<DeviceConnection> DeviceLink::connection() noexcept {
 
 void DeviceLink::use(std::shared_ptr<DeviceConnection> connection) noexcept {
   unregister_device_stop(stop_slot_);
-  stop_slot_ = connection != nullptr ? register_device_stop(connection->descriptor(), protocol_.encode_stop()) : -1;
+  const bool stops = connection != nullptr && protocol_.renders_force;
+  stop_slot_ = stops ? register_device_stop(connection->descriptor(), protocol_.encode_stop()) : -1;
   const std::lock_guard<std::mutex> lock(mutex_);
   connection_.swap(connection);
 }

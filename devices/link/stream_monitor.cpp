@@ -23,7 +23,7 @@ bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::
 StreamMonitor::StreamMonitor(const DeviceCalibration& calibration) noexcept
     : calibration_(calibration), protocol_(*calibration.protocol) {
   state_.late_after_s = calibration.limits.stale_after_s;
-  if (protocol_.absolute) state_.zeroing = Zeroing::not_needed;
+  state_.health.zeroing = protocol_.absolute ? Zeroing::not_needed : Zeroing::needed;
 }
 
 void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
@@ -39,8 +39,8 @@ void StreamMonitor::lose(std::uint32_t bit, double now_s) noexcept {
     return;
   }
   state_.lost |= bit;
-  state_.zeroing = Zeroing::needed;
-  state_.zeroing_progress = 0.0F;
+  state_.health.zeroing = Zeroing::needed;
+  state_.health.zeroing_progress = 0.0F;
 }
 
 void StreamMonitor::unplugged() noexcept {
@@ -50,9 +50,9 @@ void StreamMonitor::unplugged() noexcept {
 }
 
 void StreamMonitor::start_zeroing() noexcept {
-  if (state_.zeroing == Zeroing::not_needed) return;
-  state_.zeroing = Zeroing::hold_still;
-  state_.zeroing_progress = 0.0F;
+  if (state_.health.zeroing == Zeroing::not_needed) return;
+  state_.health.zeroing = Zeroing::hold_still;
+  state_.health.zeroing_progress = 0.0F;
   zeroing_since_s_ = -1.0;
 }
 
@@ -124,7 +124,7 @@ void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
 }
 
 void StreamMonitor::watch_zeroing(double now_s) noexcept {
-  if (state_.zeroing != Zeroing::hold_still) return;
+  if (state_.health.zeroing != Zeroing::hold_still) return;
   zeroing_from_ = std::min(zeroing_from_, state_.counts);
   zeroing_to_ = std::max(zeroing_to_, state_.counts);
   const double most = std::max(2.0, kRest_m * calibration_.counts_per_metre);
@@ -133,10 +133,10 @@ void StreamMonitor::watch_zeroing(double now_s) noexcept {
     zeroing_from_ = zeroing_to_ = state_.counts;
   }
   const double share = (now_s - zeroing_since_s_) / kZeroing_s;
-  state_.zeroing_progress = static_cast<float>(std::min(1.0, share));
+  state_.health.zeroing_progress = static_cast<float>(std::min(1.0, share));
   if (share < 1.0) return;
   state_.zero_counts = 0.5 * static_cast<double>(zeroing_from_ + zeroing_to_);
-  state_.zeroing = Zeroing::done;
+  state_.health.zeroing = Zeroing::done;
   state_.lost = 0;
   ++state_.streams;
 }
@@ -160,14 +160,15 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
   state_.sample_time_s = std::max(read_time_s_, before_s + kLeastStep_s);
   if (connected_) {
     const double step_s = std::min(state_.sample_time_s - before_s, kHold_s);
-    state_.interval_s += (step_s - state_.interval_s) * (state_.interval_s > 0.0 ? kIntervalShare : 1.0);
+    state_.health.interval_s +=
+        (step_s - state_.health.interval_s) * (state_.health.interval_s > 0.0 ? kIntervalShare : 1.0);
   }
   if (protocol_.timed) {
     state_.late_after_s =
-        std::clamp(kLateIntervals * state_.interval_s, calibration_.limits.stale_after_s, kLongestSilence_s);
+        std::clamp(kLateIntervals * state_.health.interval_s, calibration_.limits.stale_after_s, kLongestSilence_s);
   }
   state_.measured_N = reading.measured_N;
-  state_.grip = reading.grip;
+  state_.health.grip_held = reading.grip;
   ++state_.samples;
   last_ = reading;
   connected_ = true;

@@ -36,12 +36,9 @@ struct MonitorState {
   std::uint32_t transient = 0;  // device_fault, until transient_until_s
   std::uint32_t lost = 0;       // device_fault, until the device is zeroed
   std::uint32_t streams = 0;    // number of streams; one begins when the position becomes known or jumps
-  double interval_s = 0.0;      // between samples, averaged over about ten
   double late_after_s = 0.0;    // largest age of a sample, see kLateIntervals
   double measured_N = std::numeric_limits<double>::quiet_NaN();
-  Zeroing zeroing = Zeroing::needed;
-  float zeroing_progress = 0.0F;
-  bool grip = false;
+  DeviceHealth health;  // zeroing, grip and interval, which is averaged over about ten samples
 };
 
 class StreamMonitor {

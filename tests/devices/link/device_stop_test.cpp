@@ -32,7 +32,6 @@ Ended run(void (*before)(), void (*end)()) {
   if (child == 0) {
     before();
     register_device_stop(pipe_ends[1], kBridgeProtocol.encode_stop());
-    stop_devices_on_signals();
     end();
     _exit(7);
   }
@@ -93,7 +92,6 @@ Ended run_two_signals(int first, int second) {
     nothing_ignored();
     const StopListener listener;
     register_device_stop(ends[1], kBridgeProtocol.encode_stop());
-    stop_devices_on_signals();
     std::thread([&] { push_without_end(ends[1]); }).detach();
     poll(nullptr, 0, 10);
     raise(first);
