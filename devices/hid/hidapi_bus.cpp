@@ -5,7 +5,6 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <mutex>
@@ -55,11 +54,6 @@ class HidapiConnection final : public DeviceConnection {
   int wait_ms_;
 };
 
-// hidapi lists a node once for each usage in its descriptor; the one with a protocol is preferred.
-bool better(const DeviceNode& a, const DeviceNode& b) {
-  return hid_protocol_of(a) != nullptr && hid_protocol_of(b) == nullptr;
-}
-
 }  // namespace
 
 std::string open_error_words(const std::string& path, int error_number) {
@@ -95,11 +89,11 @@ std::vector<DeviceNode> HidapiBus::list() {
     info.product_id = entry->product_id;
     info.usage_page = entry->usage_page;
     info.usage = entry->usage;
-    const auto same = std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.path == info.path; });
-    if (same == all.end()) {
+    // hidapi lists a node once for each usage in its descriptor, one after the other; one with a protocol is preferred.
+    if (all.empty() || all.back().path != info.path) {
       all.push_back(info);
-    } else if (better(info, *same)) {
-      *same = info;
+    } else if (hid_protocol_of(info) != nullptr) {
+      all.back() = info;
     }
   }
   hid_free_enumeration(first);

@@ -35,15 +35,6 @@ enum FfbType : std::uint8_t {
   kErr = 15
 };
 
-std::int16_t int16_units(const DeviceCommand& command) noexcept {
-  if (!command.drive || !std::isfinite(command.units)) return 0;
-  return static_cast<std::int16_t>(std::lround(std::clamp(command.units, -32767.0, 32767.0)));
-}
-
-bool is_openffboard(const DeviceNode& info) noexcept {
-  return info.vendor_id == kFfbVendor && info.product_id == kFfbProduct;
-}
-
 ReportVerdict decode_openffboard(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept {
   using wire::read16;
   using wire::read32;
@@ -84,9 +75,9 @@ void append_ffb(OutReports& reports, FfbType type, std::uint16_t object, std::ui
   wire::write32(at + 20, 0);
 }
 
-void append_ffb_force(OutReports& reports, std::int16_t magnitude) noexcept {
-  const auto data = static_cast<std::uint64_t>(static_cast<std::int64_t>(magnitude));
-  append_ffb(reports, kWriteTo, kFfbEffects, kFfbMagnitude, data);
+void append_ffb_force(OutReports& reports, double units) noexcept {
+  const std::int64_t magnitude = std::lround(std::clamp(units, -32767.0, 32767.0));
+  append_ffb(reports, kWriteTo, kFfbEffects, kFfbMagnitude, static_cast<std::uint64_t>(magnitude));
 }
 
 // A new effect has no end. It gets its duration here, before the commands start it.
@@ -102,14 +93,14 @@ OutReports start_openffboard() noexcept {
 OutReports encode_openffboard(const DeviceCommand& command) noexcept {
   OutReports reports;
   append_ffb(reports, kRequest, kFfbAxis, kFfbPosition, 0);
-  append_ffb_force(reports, int16_units(command));
+  append_ffb_force(reports, command.drive && std::isfinite(command.units) ? command.units : 0.0);
   if (command.sequence % kFfbRenewEvery == 0) append_ffb(reports, kWriteTo, kFfbEffects, kFfbState, 1);
   return reports;
 }
 
 OutReports stop_openffboard() noexcept {
   OutReports reports;
-  append_ffb_force(reports, 0);
+  append_ffb_force(reports, 0.0);
   return reports;
 }
 
@@ -119,7 +110,8 @@ const DeviceProtocol kOpenFfBoardProtocol = {
     .name = "openffboard",
     .description = "OpenFFBoard, one axis",
     .renders_force = true,
-    .matches = is_openffboard,
+    .matches =
+        [](const DeviceNode& node) noexcept { return node.vendor_id == kFfbVendor && node.product_id == kFfbProduct; },
     .decode = decode_openffboard,
     .encode_start = start_openffboard,
     .encode_command = encode_openffboard,

@@ -40,9 +40,6 @@ ReportVerdict decode_space_mouse(const std::uint8_t* bytes, std::size_t size, De
   return ReportVerdict::position;
 }
 
-OutReports no_report() noexcept { return {}; }
-OutReports no_command(const DeviceCommand&) noexcept { return {}; }
-
 }  // namespace
 
 const DeviceProtocol kSpaceMouseProtocol = {
@@ -51,9 +48,9 @@ const DeviceProtocol kSpaceMouseProtocol = {
     .renders_force = false,
     .matches = is_space_mouse,
     .decode = decode_space_mouse,
-    .encode_start = no_report,
-    .encode_command = no_command,
-    .encode_stop = no_report,
+    .encode_start = []() noexcept { return OutReports{}; },
+    .encode_command = [](const DeviceCommand&) noexcept { return OutReports{}; },
+    .encode_stop = []() noexcept { return OutReports{}; },
 };
 
 Status SpaceMouse::start(MouseDevice& tool) {

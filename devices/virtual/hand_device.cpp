@@ -37,8 +37,8 @@ SensorSpec SimulatedDevice::sensor() const noexcept {
 }
 
 bool SimulatedDevice::read(double now_s, DeviceSample& sample) noexcept {
-  if (started_ && !(now_s > now_s_)) return false;
-  if (started_) advance(std::min(now_s - now_s_, kLongestStep_s), force_N_);
+  if (now_s <= now_s_) return false;
+  if (now_s > now_s_) advance(std::min(now_s - now_s_, kLongestStep_s), force_N_);
   start_at(now_s);
   sample = {};
   sample.tool.time_s = now_s;

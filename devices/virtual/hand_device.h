@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "devices/virtual/hand_motion.h"
@@ -50,16 +51,12 @@ class SimulatedDevice : public Device {
  protected:
   // Haptics thread: integrates the motion over `gap_s` with a constant force, in sufficiently small steps.
   virtual void advance(double gap_s, double force_N) noexcept = 0;
-  void start_at(double now_s) noexcept {
-    now_s_ = now_s;
-    started_ = true;
-  }
+  void start_at(double now_s) noexcept { now_s_ = now_s; }
 
  private:
   std::string name_;
   double force_N_ = 0.0;
-  double now_s_ = 0.0;
-  bool started_ = false;
+  double now_s_ = std::numeric_limits<double>::quiet_NaN();  // of the last sample; NaN: none yet
 };
 
 class HandDevice final : public SimulatedDevice {
