@@ -38,7 +38,7 @@ void read_force(JsonFields& fields, const JsonNode& top, DeviceCalibration& cali
 Result<DeviceCalibration> read_calibration(const std::string& folder, const DeviceProtocol& protocol) {
   const std::string path = folder + "/" + protocol.name + ".json";
   const std::optional<std::string> text = read_whole_file(path);
-  if (!text) return Error{path + ": cannot read the calibration; put the file there, see assets/devices/"};
+  if (!text) return Error{path + ": cannot be read; set PALPATE_ASSETS to the assets folder (with assets/devices/)"};
   const Result<nlohmann::json> document = parse_json(*text, path, kCalibrationNesting, {});
   if (!document) return document.error();
   JsonFields fields(*text, path, "");

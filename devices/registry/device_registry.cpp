@@ -26,13 +26,6 @@ DeviceProtocols protocols_that(bool render_force) {
 
 DeviceBus& bus_of(const DeviceRequest& request) { return request.bus != nullptr ? *request.bus : system_hid_bus(); }
 
-Result<DeviceCalibration> calibration_of(const DeviceRequest& request, const DeviceProtocol& protocol) {
-  if (request.calibrations.empty()) {
-    return Error{"found no calibrations of HID devices; set PALPATE_ASSETS to the assets folder"};
-  }
-  return read_calibration(request.calibrations, protocol);
-}
-
 // Opens the first HID device that renders forces, or does not, and makes a `T` of it with its calibration. Null: none
 // is plugged in.
 template <typename T, typename Made = T>
@@ -40,7 +33,7 @@ Result<std::unique_ptr<Made>> make_hid_device(const DeviceRequest& request, bool
   Result<OpenedDevice> opened = open_first(bus_of(request), protocols_that(renders_force));
   if (!opened) return opened.error();
   if (opened->connection == nullptr) return std::unique_ptr<Made>();
-  const Result<DeviceCalibration> calibration = calibration_of(request, *opened->protocol);
+  const Result<DeviceCalibration> calibration = read_calibration(request.calibrations, *opened->protocol);
   if (!calibration) return calibration.error();
   return std::unique_ptr<Made>(std::make_unique<T>(bus_of(request), *calibration, std::move(*opened)));
 }
@@ -80,7 +73,7 @@ MadeDevice make_replay(const std::string& path, const DeviceRequest&) {
 }
 
 MadeDevice make_bridge(const std::string& target, const DeviceRequest& request) {
-  const Result<DeviceCalibration> calibration = calibration_of(request, kBridgeProtocol);
+  const Result<DeviceCalibration> calibration = read_calibration(request.calibrations, kBridgeProtocol);
   if (!calibration) return calibration.error();
   auto bus = std::make_unique<BridgeBus>(target);
   Result<OpenedDevice> opened = bus->open_and_identify();
