@@ -160,6 +160,14 @@ TEST(BridgeEndpoint, RunsFromOneHundredToTenThousandSamplesASecond) {
   }
 }
 
+TEST(BridgeEndpoint, FramesThatComeTwiceDoNoHarm) {
+  SimulatedDevice simulated(&kBridgeProtocol);
+  simulated.on_the_way_in = [](const Report& report) { return test::Reports{report, report}; };
+  press(simulated);
+  EXPECT_EQ(simulated.snapshot.device_faults_latched, 0u);
+  EXPECT_NEAR(simulated.motor_N(), wanted_N(simulated), kResolution_N);
+}
+
 // Random sample periods from 10 kHz to 200 Hz, for half a second.
 TEST(BridgeEndpoint, IrregularSamplesAreAllHandedOverAndNoFault) {
   SimulatedDevice simulated(&kBridgeProtocol);

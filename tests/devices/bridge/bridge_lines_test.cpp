@@ -153,20 +153,6 @@ TEST(BridgeLines, FaultsOfSocketsAndSerialLinesTakeTheForceAway) {
   }
 }
 
-TEST(BridgeLines, FramesThatComeTwiceDoNoHarm) {
-  const test::TemporaryFolder folder;
-  const Line line("exec", folder, "doubled");
-  auto device = line.open();
-  ASSERT_TRUE(device.ok());
-  SpringSession session(std::move(*device));
-  ASSERT_TRUE(test::wait_for([&] { return logged_s(folder.file("log"), "event") > 0.0; }));
-  session.snapshots();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  std::uint32_t faults = 0;
-  for (const LoopSnapshot& one : session.snapshots()) faults |= one.device.faults;
-  EXPECT_EQ(faults & (device_fault::kOutOfOrder | device_fault::kCorrupt), 0u);
-}
-
 TEST(BridgeLines, APortThatVanishesAndReturnsIsUsedAgain) {
   const test::TemporaryFolder folder;
   auto line = std::make_unique<Line>("unix", folder, "die");
