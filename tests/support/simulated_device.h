@@ -147,7 +147,8 @@ class BridgeModel final : public DeviceModel {
   std::unique_ptr<bridge::Firmware<BridgeModel>> firmware_;
   std::deque<std::uint8_t> inbox_;
   std::uint32_t now_us_ = 0, sampled_us_ = 0;
-  std::int32_t counts_ = 0, pushed_uN_ = 0;
+  std::int32_t counts_ = 0;
+  std::int32_t pushed_uN_ = 99;  // until the firmware switches the motor off
 };
 
 inline std::unique_ptr<DeviceModel> device_model(const DeviceProtocol* protocol) {
