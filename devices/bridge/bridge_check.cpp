@@ -22,10 +22,10 @@ class BridgeTest {
   explicit BridgeTest(OpenedDevice opened) : opened_(std::move(opened)) {}
 
   Result<std::string> run() {
-    step_until(kDriven_s, {true, true}, [] { return false; });
-    const auto silence_s = time_to_stop({});
+    step_until(kDriven_s, Host::alive, [] { return false; });
+    const auto silence_s = time_to_stop(Host::silent);
     const bool woke = wakes();
-    const auto stands_still_s = silence_s && woke ? time_to_stop({true, false}) : std::nullopt;
+    const auto stands_still_s = silence_s && woke ? time_to_stop(Host::hung) : std::nullopt;
     wakes();
     if (gone_) return Error{opened_.info.path + ": the line ended during the test; run the test again"};
     const std::string start = opened_.info.path + ": ";
@@ -41,21 +41,20 @@ class BridgeTest {
   }
 
  private:
-  struct Sent {
-    bool frames = false;
-    bool heartbeat = false;
-  };
+  // What the host sends: no frames; frames with a constant heartbeat, as when its haptics thread hangs; valid frames.
+  enum class Host { silent, hung, alive };
 
   static std::string no_stop(const std::string& when) {
     return "the device did not report within 100 ms that its watchdog stopped it " + when +
            " (status bit 2); do not touch the device before this works";
   }
 
-  void send(bool drive, bool beat) {
+  void send(Host host) {
+    if (host == Host::alive) ++heartbeat_;
     DeviceCommand command;
     command.sequence = ++sequence_;
-    command.heartbeat = beat ? ++heartbeat_ : heartbeat_;
-    command.drive = drive;
+    command.heartbeat = heartbeat_;
+    command.drive = drive_;
     const OutReports reports = kBridgeProtocol.encode_command(command);
     opened_.connection->write(reports.bytes[0].data(), reports.sizes[0]);
     last_sent_s_ = steady_now_s();
@@ -76,29 +75,27 @@ class BridgeTest {
 
   // Sends and reads for `span_s`. Returns true if `done` ended it.
   template <typename Done>
-  bool step_until(double span_s, Sent sent, Done done) {
+  bool step_until(double span_s, Host host, Done done) {
     double next_s = steady_now_s();
     for (const double until_s = next_s + span_s; steady_now_s() < until_s && !gone_;) {
-      if (sent.frames && steady_now_s() >= next_s) {
-        send(drive_, sent.heartbeat);
+      if (host != Host::silent && steady_now_s() >= next_s) {
+        send(host);
         next_s += kStep_s;
       }
       std::uint8_t bytes[kLargestReport];
       const int size = opened_.connection->read(bytes, sizeof bytes);
       gone_ = size < 0;
       DeviceReading reading;
-      if (size > 0 &&
-          kBridgeProtocol.decode(bytes, static_cast<std::size_t>(size), reading) == ReportVerdict::position) {
-        take(reading);
-      }
+      const auto bytes_read = static_cast<std::size_t>(std::max(0, size));
+      if (kBridgeProtocol.decode(bytes, bytes_read, reading) == ReportVerdict::position) take(reading);
       if (done()) return true;
     }
     return false;
   }
 
-  std::optional<double> time_to_stop(Sent sent) {
+  std::optional<double> time_to_stop(Host host) {
     const double since_s = last_sent_s_;
-    const bool shown = step_until(kPatience_s, sent, [&] { return stopped_; });
+    const bool shown = step_until(kPatience_s, host, [&] { return stopped_; });
     const double after_s = steady_now_s() - since_s;
     return shown && after_s <= kStopsWithin_s ? std::optional<double>(after_s) : std::nullopt;
   }
@@ -106,8 +103,8 @@ class BridgeTest {
   // Sends valid frames again, first without `drive`. Returns whether the device leaves its stop.
   bool wakes() {
     drive_ = false;
-    const bool woke = step_until(kPatience_s, {true, true}, [&] { return !stopped_; });
-    step_until(0.05, {true, true}, [] { return false; });
+    const bool woke = step_until(kPatience_s, Host::alive, [&] { return !stopped_; });
+    step_until(0.05, Host::alive, [] { return false; });
     drive_ = true;
     return woke;
   }

@@ -247,17 +247,15 @@ int ByteStream::read(std::uint8_t* bytes, std::size_t capacity, int wait_ms) noe
   return count < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
 }
 
-bool ByteStream::finish_piece() noexcept {
-  if (rest_size_ == 0) return true;
-  const ssize_t taken = ::write(descriptor_, rest_, rest_size_);
-  if (taken <= 0) return false;
-  rest_size_ -= static_cast<std::size_t>(taken);
-  std::memmove(rest_, rest_ + taken, rest_size_);
-  return rest_size_ == 0;
-}
-
 bool ByteStream::write(const std::uint8_t* bytes, std::size_t size) noexcept {
-  if (size > sizeof rest_ || !finish_piece()) return false;
+  if (size > sizeof rest_) return false;
+  if (rest_size_ > 0) {
+    const ssize_t taken = ::write(descriptor_, rest_, rest_size_);
+    if (taken <= 0) return false;
+    rest_size_ -= static_cast<std::size_t>(taken);
+    std::memmove(rest_, rest_ + taken, rest_size_);
+    if (rest_size_ > 0) return false;
+  }
   const ssize_t taken = ::write(descriptor_, bytes, size);
   if (taken <= 0) return false;
   rest_size_ = size - static_cast<std::size_t>(taken);

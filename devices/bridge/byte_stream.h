@@ -39,7 +39,6 @@ class ByteStream {
 
  private:
   ByteStream(int descriptor, int child) noexcept : descriptor_(descriptor), child_(child) {}
-  bool finish_piece() noexcept;
 
   int descriptor_;
   int child_;  // process; 0: none

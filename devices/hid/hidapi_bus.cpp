@@ -15,10 +15,7 @@ namespace palpate {
 namespace {
 
 // hidapi keeps the error of hid_enumerate and hid_open_path in one global.
-std::mutex& hidapi_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
+std::mutex hidapi_mutex;
 
 std::string narrow(const wchar_t* text) {
   std::string result;
@@ -78,7 +75,7 @@ std::string open_error_words(const std::string& path, int error_number) {
 }
 
 std::vector<DeviceNode> HidapiBus::list() {
-  const std::lock_guard<std::mutex> lock(hidapi_mutex());
+  const std::lock_guard<std::mutex> lock(hidapi_mutex);
   std::vector<DeviceNode> all;
   hid_device_info* const first = hid_enumerate(0, 0);
   for (const hid_device_info* entry = first; entry != nullptr; entry = entry->next) {
@@ -109,7 +106,7 @@ Result<std::unique_ptr<DeviceConnection>> HidapiBus::open(const DeviceNode& info
     ::close(descriptor);
     return Error{open_error_words(info.path, error_number)};
   }
-  const std::lock_guard<std::mutex> lock(hidapi_mutex());
+  const std::lock_guard<std::mutex> lock(hidapi_mutex);
   hid_device* const reader = hid_open_path(info.path.c_str());
   if (reader == nullptr) {
     const std::string words = narrow(hid_error(nullptr));

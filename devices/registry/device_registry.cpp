@@ -59,12 +59,6 @@ MadeDevice make_auto(const std::string&, const DeviceRequest& request) {
   return MadeDevice(std::make_unique<AutoDevice>(request.seed, request.hand, std::move(space_mouse), std::move(note)));
 }
 
-MadeDevice make_hand(const std::string&, const DeviceRequest& request) {
-  return MadeDevice(std::make_unique<HandDevice>(request.seed, request.hand));
-}
-
-MadeDevice make_mouse(const std::string&, const DeviceRequest&) { return MadeDevice(std::make_unique<MouseDevice>()); }
-
 MadeDevice make_replay(const std::string& path, const DeviceRequest&) {
   if (path.empty()) return Error{"--device replay: names no recording; write replay:FILE.csv"};
   Result<Recording> recording = read_recording(path);
@@ -95,8 +89,12 @@ const std::vector<DeviceEntry>& device_entries() {
       {{"auto", "a haptic device if there is one, otherwise a simulated hand until the mouse takes over",
         Holder::simulated, ""},
        make_auto},
-      {{"hand", "a simulated hand that moves by itself and yields to the force", Holder::simulated, ""}, make_hand},
-      {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", Holder::simulated, ""}, make_mouse},
+      {{"hand", "a simulated hand that moves by itself and yields to the force", Holder::simulated, ""},
+       [](const std::string&, const DeviceRequest& request) {
+         return MadeDevice(std::make_unique<HandDevice>(request.seed, request.hand));
+       }},
+      {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", Holder::simulated, ""},
+       [](const std::string&, const DeviceRequest&) { return MadeDevice(std::make_unique<MouseDevice>()); }},
       {{"hid", "a haptic device on a USB port, or a SpaceMouse without force", Holder::person, ""}, make_hid},
       {{"replay:FILE", "a recording, repeated at its own speed; its force is the reference", Holder::none, ""},
        make_replay},

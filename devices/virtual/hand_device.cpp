@@ -29,11 +29,7 @@ double LearningHand::held_depth_m(double force_N) const noexcept {
 }
 
 SensorSpec SimulatedDevice::sensor() const noexcept {
-  SensorSpec sensor;
-  sensor.position_noise_m = 1e-7;
-  sensor.has_velocity = true;
-  sensor.velocity_noise_m_per_s = 1e-4;
-  return sensor;
+  return {.position_noise_m = 1e-7, .has_velocity = true, .velocity_noise_m_per_s = 1e-4};
 }
 
 bool SimulatedDevice::read(double now_s, DeviceSample& sample) noexcept {

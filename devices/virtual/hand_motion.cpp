@@ -45,14 +45,6 @@ void HandMotion::resume_at(double position_m) noexcept {
   go({kStart_m, kReturn_s});
 }
 
-void HandMotion::start_tremor(double dt_s) {
-  tremor_dt_s_ = dt_s;
-  for (Tremor& tremor : tremor_) {
-    tremor.turn_cos = std::cos(tremor.rate_rad_per_s * dt_s);
-    tremor.turn_sin = std::sin(tremor.rate_rad_per_s * dt_s);
-  }
-}
-
 void HandMotion::move(double dt_s) noexcept {
   position_m_ += dt_s * (velocity_m_per_s_ + 0.5 * dt_s * acceleration_m_per_s2_);
   velocity_m_per_s_ += dt_s * acceleration_m_per_s2_;
@@ -80,14 +72,18 @@ void HandMotion::advance_aim(double dt_s) {
   const double distance_m = segment.target_m - segment_from_m_;
   aim_m_ = segment_from_m_ + distance_m * u * u * u * (10.0 + u * (6.0 * u - 15.0));
   aim_velocity_m_per_s_ = distance_m / segment.duration_s * 30.0 * u * u * (1.0 - u) * (1.0 - u);
-  if (dt_s != tremor_dt_s_) start_tremor(dt_s);
   for (Tremor& tremor : tremor_) {
+    if (dt_s != tremor_dt_s_) {
+      tremor.turn_cos = std::cos(tremor.rate_rad_per_s * dt_s);
+      tremor.turn_sin = std::sin(tremor.rate_rad_per_s * dt_s);
+    }
     const double along = tremor.along * tremor.turn_cos - tremor.across * tremor.turn_sin;
     tremor.across = tremor.along * tremor.turn_sin + tremor.across * tremor.turn_cos;
     tremor.along = along;
     aim_m_ += along;
     aim_velocity_m_per_s_ -= tremor.rate_rad_per_s * tremor.across;
   }
+  tremor_dt_s_ = dt_s;
 }
 
 void HandMotion::go(Segment segment) {

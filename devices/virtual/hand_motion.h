@@ -85,7 +85,6 @@ class HandMotion {
   void leave(double fastest_s, double slowest_s);
   // A random position in the air, nearer to the block where fastest_m_per_s is small.
   double air(double from_m, double to_m);
-  void start_tremor(double dt_s);
   double aim_for(double force_N) const noexcept {
     return held_depth_m(force_N) + (is_pushed_back() ? force_N / settings_.stiffness_N_per_m : 0.0);
   }
