@@ -20,7 +20,7 @@ constexpr auto kPause = std::chrono::milliseconds(10);
 constexpr int kPriority = 70;
 
 // Searches the bus once, as open_first.
-Result<OpenedDevice> try_open(DeviceBus& bus, const DeviceProtocols& protocols) {
+Result<OpenedDevice> try_open(DeviceBus& bus, const std::vector<const DeviceProtocol*>& protocols) {
   std::string problems;
   for (const DeviceNode& info : bus.list()) {
     const auto needed =
@@ -36,7 +36,7 @@ Result<OpenedDevice> try_open(DeviceBus& bus, const DeviceProtocols& protocols) 
 
 }  // namespace
 
-Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols) {
+Result<OpenedDevice> open_first(DeviceBus& bus, const std::vector<const DeviceProtocol*>& protocols) {
   Result<OpenedDevice> opened = try_open(bus, protocols);
   for (int more = 1; !opened && more < kOpenTries; ++more) {
     std::this_thread::sleep_for(kBetweenTries);

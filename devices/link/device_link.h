@@ -63,7 +63,7 @@ struct OpenedDevice {
 // Opens the first device of one of `protocols`; without a connection if none is plugged in. Where one is plugged in but
 // cannot be opened, it tries for half a second, because udev may still be setting the permissions.
 // Slow side. Errors: none of the devices that are plugged in can be opened, with the reason for each.
-Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols);
+Result<OpenedDevice> open_first(DeviceBus& bus, const std::vector<const DeviceProtocol*>& protocols);
 
 class DeviceLink {
  public:

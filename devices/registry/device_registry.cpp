@@ -16,8 +16,8 @@
 namespace palpate {
 namespace {
 
-DeviceProtocols protocols_that(bool render_force) {
-  DeviceProtocols protocols;
+std::vector<const DeviceProtocol*> protocols_that(bool render_force) {
+  std::vector<const DeviceProtocol*> protocols;
   for (const DeviceProtocol* protocol : kHidProtocols) {
     if (protocol->renders_force == render_force) protocols.push_back(protocol);
   }

@@ -13,23 +13,6 @@
 
 namespace palpate {
 
-// A hand that estimates the block's stiffness from the force.
-class LearningHand final : public HandMotion {
- public:
-  LearningHand(const HandSettings& settings, std::uint64_t seed) : HandMotion(settings, seed) {}
-
-  // Updates the estimate with the force at the present position, which lasted for `step_s`.
-  void learn(double force_N, double step_s) noexcept;
-
- protected:
-  double held_depth_m(double force_N) const noexcept override;
-  bool is_pushed_back() const noexcept override { return has_felt_; }
-
- private:
-  bool has_felt_ = false;             // a force, which begins with the first model of a session
-  double stiffness_N_per_m_ = 800.0;  // secant, low-pass filtered; the initial value is a guess
-};
-
 // Force limits of simulated tools.
 inline constexpr ForceLimits kSimulatedLimits{40.0, 5000.0, 0.3};
 
@@ -59,19 +42,23 @@ class SimulatedDevice : public Device {
   double now_s_ = std::numeric_limits<double>::quiet_NaN();  // of the last sample; NaN: none yet
 };
 
-class HandDevice final : public SimulatedDevice {
+class HandDevice final : public SimulatedDevice, private HandMotion {
  public:
   explicit HandDevice(std::uint64_t seed = 1, const HandSettings& settings = {})
-      : SimulatedDevice("hand"), hand_(settings, seed) {}
+      : SimulatedDevice("hand"), HandMotion(settings, seed) {}
 
   // Haptics thread: see HandMotion::resume_at; `now_s`: steady clock.
   void resume_at(double position_m, double now_s) noexcept;
-  double position_m() const noexcept override { return hand_.position_m(); }
-  double velocity_m_per_s() const noexcept override { return hand_.velocity_m_per_s(); }
+  double position_m() const noexcept override { return HandMotion::position_m(); }
+  double velocity_m_per_s() const noexcept override { return HandMotion::velocity_m_per_s(); }
 
  private:
   void advance(double gap_s, double force_N) noexcept override;
-  LearningHand hand_;
+  double held_depth_m(double force_N) const noexcept override;
+  bool is_pushed_back() const noexcept override { return has_felt_; }
+
+  bool has_felt_ = false;             // a force, which begins with the first model of a session
+  double stiffness_N_per_m_ = 800.0;  // secant, low-pass filtered; the initial value is a guess
 };
 
 }  // namespace palpate

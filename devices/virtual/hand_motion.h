@@ -26,7 +26,7 @@ struct HandSettings {
   double damping_Ns_per_m = 14.0;    // 0.7 of critical in the air
   double tremor_rms_m = 5e-5;
   double strongest_press_N = 6.0;  // largest target force
-  double deepest_m = 0.012;        // largest depth that LearningHand assumes for a force
+  double deepest_m = 0.012;        // largest depth that HandDevice assumes for a force
   double fastest_m_per_s = std::numeric_limits<double>::infinity();  // largest speed of the target, without tremor
 };
 

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace palpate {
 namespace {
 
-constexpr double kMouseStart_m = -0.006;
 constexpr HandSettings kArm;                         // mass, stiffness and damping of the coupling
 constexpr double kSmoothingTime_s = 0.015;           // tau: two reports of a mouse at 125 Hz
 constexpr double kDriveAcceleration_m_per_s2 = 0.3;  // of the velocity of `drive`: 18 mm/s after 60 ms
@@ -15,13 +13,6 @@ constexpr double kDriveAcceleration_m_per_s2 = 0.3;  // of the velocity of `driv
 constexpr double kMouseSubstep_s = 250e-6;
 
 }  // namespace
-
-MouseDevice::MouseDevice(const char* name)
-    : SimulatedDevice(name),
-      target_m_(kMouseStart_m),
-      last_input_s_(-std::numeric_limits<double>::infinity()),
-      smooth_m_(kMouseStart_m),
-      position_m_(kMouseStart_m) {}
 
 void MouseDevice::set_target(double position_m, double now_s) noexcept {
   if (!std::isfinite(position_m)) return;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <atomic>
+#include <limits>
 
 #include "devices/virtual/hand_device.h"
 
@@ -18,7 +19,7 @@ class MouseDevice : public SimulatedDevice, public ToolInput {
   static constexpr double kHighest_m = -0.03, kDeepest_m = 0.03;
   static constexpr double kIdleTime_s = 20.0;  // see `idle`
 
-  explicit MouseDevice(const char* name = "mouse");
+  explicit MouseDevice(const char* name = "mouse") : SimulatedDevice(name) {}
 
   ToolInput* tool_input() noexcept override { return this; }
 
@@ -43,14 +44,15 @@ class MouseDevice : public SimulatedDevice, public ToolInput {
   void advance(double gap_s, double force_N) noexcept override;
   void move_target(double gap_s) noexcept;
 
-  std::atomic<double> target_m_;
-  std::atomic<double> last_input_s_;
+  static constexpr double kStart_m = -0.006;
+  std::atomic<double> target_m_{kStart_m};
+  std::atomic<double> last_input_s_{-std::numeric_limits<double>::infinity()};
   std::atomic<double> drive_m_per_s_{0.0};  // of the key that is held
   std::atomic<double> drive_limit_m_{0.0};
   static_assert(std::atomic<double>::is_always_lock_free);
   // Haptics thread only.
-  double smooth_m_;  // y
-  double position_m_;
+  double smooth_m_ = kStart_m;  // y
+  double position_m_ = kStart_m;
   double velocity_m_per_s_ = 0.0;
   double target_velocity_m_per_s_ = 0.0;  // follows drive_m_per_s_
 };
