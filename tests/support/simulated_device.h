@@ -230,6 +230,19 @@ class SimulatedDevice {
   void run_s(double span_s) {
     for (int i = 0; i < static_cast<int>(std::lround(1e3 * span_s)); ++i) tick();
   }
+  void unplug() {
+    unplugged = true;
+    device.unplugged();
+  }
+  // Ends every disturbance.
+  void mend() {
+    on_the_way_in = nullptr;
+    on_the_way_out = nullptr;
+    encoder_frozen = writer_hangs = false;
+    if (std::exchange(unplugged, false)) device.connected(now_s);
+  }
+  // The model of a bridge device.
+  BridgeModel& board() { return dynamic_cast<BridgeModel&>(*model); }
   // Zeroes the device at rest, then presses into the block until the force is steady.
   void press() {
     rest = true;

@@ -82,44 +82,48 @@ TEST(SpaceMouse, LetsGoWhenItIsUnplugged) {
   EXPECT_NEAR(moved.tool.target_m(), -0.006, 1e-12);
 }
 
+// A SpaceMouse whose cap is pushed by 300 counts.
+struct Pushed {
+  Pushed() { bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01}; }
+  std::unique_ptr<SpaceMouse> mouse() {
+    return std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol})));
+  }
+  test::FakeDeviceBus bus{test::found_space_mouse()};
+};
+
+// Reads `device` about every millisecond, in real time.
+template <typename Done>
+bool read_until(Device& device, DeviceSample& sample, Done done) {
+  for (int i = 0; i < 5000 && !done(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    device.read(1.0 + 1e-3 * i, sample);
+  }
+  return done();
+}
+
 TEST(SpaceMouse, TakesOverFromTheHandInAuto) {
-  test::FakeDeviceBus bus(test::found_space_mouse());
-  bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};
-  AutoDevice device(
-      1, {}, std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol}))));
+  Pushed pushed;
+  AutoDevice device(1, {}, pushed.mouse());
   DeviceSample sample;
   for (int ms = 0; ms < 5; ++ms) device.read(1e-3 * ms, sample);
   EXPECT_TRUE(device.hand_is_exploring());
   ASSERT_TRUE(device.open().ok());
-  for (int i = 0; i < 5000 && device.hand_is_exploring(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    device.read(1.0 + 1e-3 * i, sample);
-  }
-  EXPECT_FALSE(device.hand_is_exploring());
+  EXPECT_TRUE(read_until(device, sample, [&] { return !device.hand_is_exploring(); }));
   device.close();
 }
 
 TEST(SpaceMouse, IsADeviceWithoutForce) {
-  test::FakeDeviceBus bus(test::found_space_mouse());
-  bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};
-  SpaceMouseDevice device(
-      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol}))));
+  Pushed pushed;
+  SpaceMouseDevice device(pushed.mouse());
   EXPECT_EQ(device.holder(), Holder::simulated);
   EXPECT_TRUE(test::has_parts(device.note(), {"SpaceNavigator", "/dev/hidraw8"}));
   ASSERT_TRUE(device.open().ok());
   DeviceSample sample;
-  for (int i = 0; i < 5000 && sample.tool.position_m < 5e-3; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    device.read(1.0 + 1e-3 * i, sample);
-  }
-  EXPECT_GT(sample.tool.position_m, 5e-3);
+  EXPECT_TRUE(read_until(device, sample, [&] { return sample.tool.position_m > 5e-3; }));
   EXPECT_EQ(device.health(1.0).faults, 0u);
-  bus.plugged_in = false;
-  for (int i = 0; i < 5000 && device.health(1.0).faults == 0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  EXPECT_EQ(device.health(1.0).faults, device_fault::kUnplugged);
-  EXPECT_EQ(bus.writes, 0);
+  pushed.bus.plugged_in = false;
+  EXPECT_TRUE(read_until(device, sample, [&] { return device.health(1.0).faults == device_fault::kUnplugged; }));
+  EXPECT_EQ(pushed.bus.writes, 0);
 }
 
 }  // namespace

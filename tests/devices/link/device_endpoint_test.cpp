@@ -91,12 +91,7 @@ struct Injection {
 const std::vector<Injection>& injections() {
   using namespace device_fault;
   static const std::vector<Injection> all = {
-      {"unplugged",
-       [](SimulatedDevice& s) {
-         s.unplugged = true;
-         s.device.unplugged();
-       },
-       kUnplugged, 0.0},
+      {"unplugged", [](SimulatedDevice& s) { s.unplug(); }, kUnplugged, 0.0},
       {"silent", [](SimulatedDevice& s) { s.on_the_way_in = test::lost; }, kLate, 0.0},
       {"stuck at one value", [](SimulatedDevice& s) { s.encoder_frozen = true; }, kStuck, 0.5},
       {"the same report again and again", [](SimulatedDevice& s) { s.on_the_way_in = test::first_again(); }, kStuck,
@@ -190,10 +185,7 @@ TEST(DeviceEndpoint, EveryFaultTakesTheForceAwayUntilItEnds) {
     EXPECT_NE(simulated.snapshot.faults_latched & loop_fault::kDeviceFault, 0u);
     EXPECT_NE(simulated.snapshot.device_faults_latched & injection.fault, 0u);
 
-    simulated.on_the_way_in = nullptr;
-    simulated.encoder_frozen = simulated.writer_hangs = false;
-    if (simulated.unplugged) simulated.device.connected(simulated.now_s);
-    simulated.unplugged = false;
+    simulated.mend();
     if ((injection.fault & device_fault::kLosesPosition) != 0) {
       expect_return_after_zeroing(injection, simulated);
     } else {
