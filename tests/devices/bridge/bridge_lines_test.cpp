@@ -190,16 +190,16 @@ TEST(BridgeLines, ErrorsHaveReasonAndAdvice) {
     const auto device = open_bridge(target);
     return device ? "opened" : device.error().message;
   };
-  EXPECT_TRUE(test::has_parts(complaint("exec:echo Traceback"), {"exit code", "0", "\"Traceback \"", "; "}));
-  EXPECT_TRUE(test::has_parts(complaint("exec:exit 3"), {"3", "exit code", "3", "; "}));
-  EXPECT_TRUE(test::has_parts(complaint("exec:cd / && exit 4"), {"4", "exit code", "4", "; "}));
+  EXPECT_TRUE(test::has_parts(complaint("exec:echo Traceback"), {"exit code 0", "\"Traceback \"", "; "}));
+  EXPECT_TRUE(test::has_parts(complaint("exec:exit 3"), {"exit code 3", "; "}));
+  EXPECT_TRUE(test::has_parts(complaint("exec:cd / && exit 4"), {"exit code 4", "; "}));
   EXPECT_TRUE(test::has_parts(complaint("unix:/nowhere/at/all"), {"/nowhere/at/all", "; "}));
   EXPECT_TRUE(test::has_parts(complaint("/dev/null"), {"/dev/null: ", "serial line; "}));
   EXPECT_TRUE(test::has_parts(complaint("/dev/nowhere"), {"/dev/nowhere: No such file or directory; ", "/dev/tty*"}));
-  EXPECT_TRUE(test::has_parts(complaint("/dev/tty,300"), {"/dev/tty", "300", "9600"}));
+  EXPECT_TRUE(test::has_parts(complaint("/dev/tty,300"), {"/dev/tty,300:", "9600"}));
   EXPECT_TRUE(test::has_parts(complaint("tcp:192.0.2.1:5000"), {"192.0.2.1:5000:", "another computer"}));
-  EXPECT_TRUE(test::has_parts(complaint("tcp:127.0.0.1:0"),
-                              {"--device", "127.0.0.1:0:", "HOST", "PORT", "1", "65535", "devices/README.md#bridge"}));
+  EXPECT_TRUE(test::has_parts(complaint("tcp:127.0.0.1:0"), {"--device", "127.0.0.1:0:", "HOST", "PORT",
+                                                             "from 1 to 65535", "devices/README.md#bridge"}));
   EXPECT_TRUE(test::has_parts(complaint("somewhere"), {"--device", "/dev/TTY", "BAUD", "PATH", "HOST", "PORT",
                                                        "COMMAND", "devices/README.md#bridge"}));
   EXPECT_EQ(with_remote_bridge("bridge:tcp:lab:5000"), "bridge:remote-tcp:lab:5000");

@@ -57,38 +57,39 @@ TEST(DeviceRegistry, AutoPrefersAHapticDevice) {
   for (const DeviceDescription& description : list_devices(request_with(bus))) EXPECT_EQ(description.problem, "");
 }
 
+// A bus on which every device is refused, and one with a SpaceMouse.
+struct OtherBuses {
+  OtherBuses() {
+    refused.refusals = 1000;
+    mouse.silent = true;
+  }
+  test::FakeDeviceBus refused, mouse{test::found_space_mouse()};
+};
+
 TEST(DeviceRegistry, AutoNotesTheFallbackAndItsReason) {
-  auto device = open_device("auto", request_with(nothing_plugged_in()));
-  ASSERT_TRUE(device.ok());
-  EXPECT_EQ((*device)->name(), "auto");
-  EXPECT_TRUE(test::has_parts((*device)->note(), {"simulated hand", "mouse"}));
-  test::FakeDeviceBus refused;
-  refused.refusals = 1000;
-  device = open_device("auto", request_with(refused));
-  ASSERT_TRUE(device.ok());
-  EXPECT_TRUE(test::has_parts((*device)->note(), {"/dev/hidraw7", "permission", "simulated hand"}));
-  test::FakeDeviceBus mouse(test::found_space_mouse());
-  mouse.silent = true;
-  device = open_device("auto", request_with(mouse));
-  ASSERT_TRUE(device.ok());
-  EXPECT_TRUE(test::has_parts((*device)->note(), {"simulated hand", "mouse", "SpaceMouse"}));
+  OtherBuses buses;
   test::FakeDeviceBus board;
-  DeviceRequest request;
-  request.bus = &board;
-  device = open_device("auto", request);
-  ASSERT_TRUE(device.ok());
-  EXPECT_TRUE(test::has_parts((*device)->note(), {"PALPATE_ASSETS", "simulated hand"}));
+  DeviceRequest without_calibrations;
+  without_calibrations.bus = &board;
+  const std::pair<DeviceRequest, std::vector<std::string>> notes[] = {
+      {request_with(nothing_plugged_in()), {"simulated hand", "mouse"}},
+      {request_with(buses.refused), {"/dev/hidraw7", "permission", "simulated hand"}},
+      {request_with(buses.mouse), {"simulated hand", "mouse", "SpaceMouse"}},
+      {without_calibrations, {"PALPATE_ASSETS", "simulated hand"}}};
+  for (const auto& [request, parts] : notes) {
+    auto device = open_device("auto", request);
+    ASSERT_TRUE(device.ok());
+    EXPECT_EQ((*device)->name(), "auto");
+    EXPECT_TRUE(test::has_parts((*device)->note(), parts));
+  }
 }
 
 TEST(DeviceRegistry, HidIsNeverAnythingElse) {
+  OtherBuses buses;
   EXPECT_TRUE(test::has_parts(open_device("hid", request_with(nothing_plugged_in())).error().message,
                               {"--device", "palpate devices"}));
-  test::FakeDeviceBus refused;
-  refused.refusals = 1000;
-  EXPECT_EQ(open_device("hid", request_with(refused)).error().message, "/dev/hidraw7: no permission");
-  test::FakeDeviceBus mouse(test::found_space_mouse());
-  mouse.silent = true;
-  auto device = open_device("hid", request_with(mouse));
+  EXPECT_EQ(open_device("hid", request_with(buses.refused)).error().message, "/dev/hidraw7: no permission");
+  auto device = open_device("hid", request_with(buses.mouse));
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->holder(), Holder::simulated);
 }
