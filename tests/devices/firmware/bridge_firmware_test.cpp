@@ -10,7 +10,7 @@ namespace {
 
 struct Device {
   test::BridgeModel board;
-  uint32_t now_us = 4'294'000'000u;  // wraps within the test
+  uint32_t now_us = 4'294'900'000u;  // wraps within the test
   uint32_t sequence = 0;
   uint16_t heartbeat = 0;
   FromDevice last{};
