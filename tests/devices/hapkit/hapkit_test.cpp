@@ -36,22 +36,18 @@ class Board {
         process_({"sh", "-c",
                   "exec " PALPATE_HAPKIT_BOARD " " PALPATE_HAPKIT_ELF " " + arguments + " > " + said_ +
                       " 2>&1 < /dev/zero"}) {
-    test::wait_for([this] { return !line_with("/dev/").empty(); });
+    test::wait_for([this] { return !port().empty(); });
   }
-  std::string line_with(const std::string& start) const {
-    std::ifstream file(said_);
-    for (std::string line; std::getline(file, line);) {
-      if (line.rfind(start, 0) == 0) return line;
-    }
-    return {};
-  }
-  std::string last_line() const {
+  // The last line that begins with `start`; else empty.
+  std::string last_line(const std::string& start = "") const {
     std::ifstream file(said_);
     std::string last;
-    for (std::string line; std::getline(file, line);) last = line;
+    for (std::string line; std::getline(file, line);) {
+      if (line.starts_with(start)) last = line;
+    }
     return last;
   }
-  std::string port() const { return line_with("/dev/"); }
+  std::string port() const { return last_line("/dev/"); }
 
  private:
   test::TemporaryFolder folder_;
@@ -114,7 +110,7 @@ bool record_without_gaps(const std::string& seed, const std::string& path) {
     for (std::size_t i = 1; i < recording->rows.size(); ++i) {
       longest_s = std::max(longest_s, recording->rows[i].time_s - recording->rows[i - 1].time_s);
     }
-    const std::string held_up = board.line_with("held up");
+    const std::string held_up = board.last_line("held up");
     if (held_up.empty() && longest_s < 0.05) {
       EXPECT_TRUE(test::has_parts(run.out, {seed + ".csv: usable"}));
       const auto [out, in] =
