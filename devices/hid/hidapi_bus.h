@@ -1,7 +1,7 @@
 // The USB HID bus of this machine: libhidapi over hidraw.
-// Each device is opened twice: by hidapi for the reading thread, because a handle of hidapi stores its last error
-// without a lock; and as a file for the writing thread, which holds the lock against a second program and takes the
-// stop report when a signal ends the program.
+// Each device is opened twice. hidapi reads from it. The writing thread uses a file of its own, because a handle of
+// hidapi stores its last error without a lock; this file also has the lock against a second program, and takes the stop
+// report when a signal ends the program.
 #pragma once
 
 #include "devices/link/device_link.h"

@@ -1,12 +1,14 @@
 // A device that renders force (HID or bridge): DeviceEndpoint without threads and I/O, LinkedDevice with them. The
 // reader thread gives it reports, the writer thread fetches commands, the haptics thread reads samples and writes
-// forces. The threads exchange data by a TripleBuffer each way and an SpscRing of samples. A device with an incremental
-// encoder gives neither samples nor force until it is zeroed: bring the tool to its marked rest position
-// (rest_position_m of the calibration), call `start_zeroing` and hold it still. `health` has the progress,
-// zeroing_words the next step. Zeroing is necessary again after the device was unplugged or restarted, or its encoder
-// jumped or was stuck. The writer is a watchdog: when the haptics thread has not written for kHapticsSilent_s, the
-// writer sends force 0. The heartbeat in the frames of the bridge then stops, so that the board's watchdog acts as
-// well.
+// forces. The threads exchange data by a TripleBuffer each way and an SpscRing of samples.
+//
+// A device with an incremental encoder gives neither samples nor force until it is zeroed: bring the tool to its marked
+// rest position (rest_position_m of the calibration), call `start_zeroing` and hold it still. `health` has the
+// progress, zeroing_words the next step. Zeroing is necessary again after the device was unplugged or restarted, or its
+// encoder jumped or was stuck.
+//
+// The writer is a watchdog: when the haptics thread has not written for kHapticsSilent_s, the writer sends force 0. The
+// heartbeat in the frames of the bridge then stops, so that the board's watchdog acts as well.
 #pragma once
 
 #include <array>
@@ -79,6 +81,7 @@ class DeviceEndpoint : public Device, public LinkListener {
   std::atomic<bool> zeroing_asked_{false};
   std::atomic<double> commanded_N_{0.0};  // last command
   std::atomic<double> last_written_s_{0.0};
+  std::atomic<double> connected_at_s_{0.0};
   std::atomic<std::uint64_t> accepted_{0};            // number of accepted samples
   std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence modulo 256
   static_assert(std::atomic<double>::is_always_lock_free);
@@ -96,7 +99,6 @@ class DeviceEndpoint : public Device, public LinkListener {
   double last_beat_s_ = 0.0;
   double last_sent_s_ = -1.0;
   std::uint64_t answered_ = 0;  // accepted samples at the last command
-  std::atomic<double> connected_at_s_{0.0};
   // Haptics thread only.
   Command next_command_;
   bool began_ = false;  // a sample was read, so that the position is known

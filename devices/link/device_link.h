@@ -1,7 +1,8 @@
 // A DeviceBus lists devices and opens them. It is USB HID (devices/hid), a byte stream (devices/bridge), or a test
-// double. A DeviceLink has the threads between an open device and its listener: one reads all reports, so that none
-// queue up; the other writes the newest command and skips older ones. Only they do blocking I/O. A device that was
-// unplugged is searched for and opened again until the link ends.
+// double.
+// A DeviceLink has the threads between an open device and its listener: one reads all reports, so that none queue up;
+// the other writes the newest command and skips older ones. Only they do blocking I/O. A device that was unplugged is
+// searched for and opened again until the link ends.
 #pragma once
 
 #include <atomic>
