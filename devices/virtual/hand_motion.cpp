@@ -30,8 +30,7 @@ HandMotion::HandMotion(const HandSettings& settings, std::uint64_t seed) : setti
     tremor.rate_rad_per_s = 2.0 * std::numbers::pi * any(8.0, 12.0);
     const double phase_rad = any(-std::numbers::pi, std::numbers::pi);
     const double amplitude_m = slowness * settings.tremor_rms_m * std::sqrt(2.0 / static_cast<double>(tremor_.size()));
-    tremor.along = amplitude_m * std::cos(phase_rad);
-    tremor.across = amplitude_m * std::sin(phase_rad);
+    tremor.vector_m = std::polar(amplitude_m, phase_rad);
   }
   position_m_ = segment_from_m_ = planned_m_ = aim_m_ = kStart_m;
   go({kStart_m, any(0.15, 0.4)});
@@ -73,15 +72,10 @@ void HandMotion::advance_aim(double dt_s) {
   aim_m_ = segment_from_m_ + distance_m * u * u * u * (10.0 + u * (6.0 * u - 15.0));
   aim_velocity_m_per_s_ = distance_m / segment.duration_s * 30.0 * u * u * (1.0 - u) * (1.0 - u);
   for (Tremor& tremor : tremor_) {
-    if (dt_s != tremor_dt_s_) {
-      tremor.turn_cos = std::cos(tremor.rate_rad_per_s * dt_s);
-      tremor.turn_sin = std::sin(tremor.rate_rad_per_s * dt_s);
-    }
-    const double along = tremor.along * tremor.turn_cos - tremor.across * tremor.turn_sin;
-    tremor.across = tremor.along * tremor.turn_sin + tremor.across * tremor.turn_cos;
-    tremor.along = along;
-    aim_m_ += along;
-    aim_velocity_m_per_s_ -= tremor.rate_rad_per_s * tremor.across;
+    if (dt_s != tremor_dt_s_) tremor.turn = std::polar(1.0, tremor.rate_rad_per_s * dt_s);
+    tremor.vector_m *= tremor.turn;
+    aim_m_ += tremor.vector_m.real();
+    aim_velocity_m_per_s_ -= tremor.rate_rad_per_s * tremor.vector_m.imag();
   }
   tremor_dt_s_ = dt_s;
 }

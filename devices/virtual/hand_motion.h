@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -67,7 +68,8 @@ class HandMotion {
   };
   // A tremor component as a rotating vector, which needs no cosine per step.
   struct Tremor {
-    double along = 0.0, across = 0.0, turn_cos = 1.0, turn_sin = 0.0, rate_rad_per_s = 0.0;
+    std::complex<double> vector_m, turn;  // the real part is the displacement; the turn of one step
+    double rate_rad_per_s = 0.0;
   };
   static constexpr std::size_t kMostSegments = 32;
 
