@@ -156,16 +156,16 @@ TEST(IncludeDirection, NoSourceIncludesAgainstIt) {
 TEST(IncludeDirection, FindsTheFaultOfEachArrow) {
   EXPECT_EQ(find_fault("models/model", "engine/tick/jnd.h", true), "");
   EXPECT_EQ(find_fault("models/fit", "models/model/trend.h", true), "");
-  EXPECT_EQ(find_fault("scenes/live", "devices/link/device_bus.h", true), "");
+  EXPECT_EQ(find_fault("scenes/live", "devices/link/device_link.h", true), "");
   EXPECT_EQ(find_fault("engine/tick", "vector", false), "");
   EXPECT_NE(find_fault("engine/tick", "engine/live/pacer.h", true), "");
   EXPECT_NE(find_fault("engine/live", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("models/model", "models/linear/lapack.h", true), "");
   EXPECT_NE(find_fault("models/model", "models/training/sites.h", true), "");
-  EXPECT_NE(find_fault("models/model", "devices/link/device_bus.h", true), "");
+  EXPECT_NE(find_fault("models/model", "devices/link/device_link.h", true), "");
   EXPECT_NE(find_fault("scenes/report", "scenes/live/live_session.h", true), "");
   EXPECT_NE(find_fault("scenes/study", "scenes/live/live_session.h", true), "");
-  EXPECT_NE(find_fault("engine/live", "devices/link/device_bus.h", true), "");
+  EXPECT_NE(find_fault("engine/live", "devices/link/device_link.h", true), "");
   EXPECT_NE(find_fault("devices/hid", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("rendering/ui", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("scenes/live", "rendering/ui/plot.h", true), "");

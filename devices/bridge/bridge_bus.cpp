@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "devices/link/device_stop.h"
+#include "devices/bridge/byte_stream.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
@@ -59,6 +59,48 @@ OutReports encode_bridge(const DeviceCommand& command) noexcept {
 
 OutReports stop_bridge() noexcept { return encode_bridge({}); }
 
+class BridgeConnection final : public DeviceConnection {
+ public:
+  explicit BridgeConnection(std::unique_ptr<ByteStream> stream) : stream_(std::move(stream)) {
+    beginning_.reserve(kBeginning);
+  }
+
+  // Reads one report, see BridgeReports.
+  int read(std::uint8_t* bytes, std::size_t capacity) noexcept override {
+    if (capacity < bridge::kDeviceBytes) return 0;
+    if (const int size = reports_.next(next_, end_, bytes); size > 0) return size;
+    const int came = stream_->read(bytes_, sizeof bytes_, kRead_ms);
+    if (came <= 0) return came;
+    next_ = bytes_;
+    end_ = bytes_ + came;
+    if (!reports_.any_frame()) {
+      beginning_.append(next_, next_ + std::min(static_cast<std::size_t>(came), kBeginning - beginning_.size()));
+    }
+    return reports_.next(next_, end_, bytes);
+  }
+  bool write(const std::uint8_t* bytes, std::size_t size) noexcept override { return stream_->write(bytes, size); }
+  int descriptor() const noexcept override { return stream_->descriptor(); }
+
+  // The text that the device sent before its first frame; else empty.
+  std::string text() const {
+    std::string text = beginning_;
+    for (char& one : text) one = one == '\n' || one == '\r' ? ' ' : one;
+    const auto printable = [](unsigned char one) { return std::isprint(one) != 0; };
+    return std::all_of(text.begin(), text.end(), printable) ? text : "";
+  }
+  std::string end_words() noexcept { return stream_->end_words(); }
+
+ private:
+  static constexpr std::size_t kBeginning = 80;
+
+  std::unique_ptr<ByteStream> stream_;
+  BridgeReports reports_;
+  std::uint8_t bytes_[4096] = {};
+  const std::uint8_t* next_ = bytes_;
+  const std::uint8_t* end_ = bytes_;
+  std::string beginning_;  // the bytes until there is a frame, at most kBeginning
+};
+
 }  // namespace
 
 const DeviceProtocol kBridgeProtocol = {
@@ -75,46 +117,7 @@ const DeviceProtocol kBridgeProtocol = {
     .encode_stop = stop_bridge,
 };
 
-BridgeConnection::~BridgeConnection() { unregister_device_stop(stop_slot_); }
-
-int BridgeConnection::read(std::uint8_t* bytes, std::size_t capacity) noexcept {
-  if (capacity < bridge::kDeviceBytes) return 0;
-  if (const int size = reports_.next(next_, end_, bytes); size > 0) return size;
-  const int came = stream_->read(bytes_, sizeof bytes_, kRead_ms);
-  if (came <= 0) return came;
-  next_ = bytes_;
-  end_ = bytes_ + came;
-  for (const std::uint8_t* at = next_; at != end_ && !reports_.any_frame() && first_count_ < sizeof first_;) {
-    first_[first_count_++] = *at++;
-  }
-  return reports_.next(next_, end_, bytes);
-}
-
-bool BridgeConnection::write(const std::uint8_t* bytes, std::size_t size) noexcept {
-  if (!begin_force_write()) return false;
-  const bool taken = stream_->write(bytes, size);
-  end_force_write();
-  return taken;
-}
-
-void BridgeConnection::stop_with(const OutReports& reports) noexcept {
-  unregister_device_stop(stop_slot_);
-  stop_slot_ = register_device_stop(stream_->descriptor(), reports);
-}
-
-std::string BridgeConnection::garbage() const {
-  std::string text;
-  for (std::size_t i = 0; i < first_count_; ++i) {
-    const bool printable = std::isprint(first_[i]) != 0;
-    if (!printable && first_[i] != '\n' && first_[i] != '\r') return {};
-    text += printable ? static_cast<char>(first_[i]) : ' ';
-  }
-  return text;
-}
-
-BridgeBus::BridgeBus(BridgeTarget target, const std::string& text) : target_(std::move(target)) {
-  info_.path = "bridge:" + text;
-}
+BridgeBus::BridgeBus(std::string target) : target_(std::move(target)) { info_.path = "bridge:" + target_; }
 
 Result<std::unique_ptr<DeviceConnection>> BridgeBus::open(const DeviceNode&) {
   Result<std::unique_ptr<ByteStream>> stream = ByteStream::open(target_);
@@ -127,27 +130,28 @@ Result<OpenedDevice> BridgeBus::open_and_identify() {
   Result<std::unique_ptr<DeviceConnection>> opened = open(info_);
   if (!opened) return opened.error();
   auto& connection = static_cast<BridgeConnection&>(**opened);
+  const auto said = [&] { return connection.text().empty() ? "" : ", after \"" + connection.text() + "\""; };
   const OutReports start = kBridgeProtocol.encode_start();
-  connection.write(start.bytes[0].data(), start.sizes[0]);
-  OpenedDevice result;
-  int frames = 0;
-  double last_sent_s = steady_now_s();
-  const double patience_s = target_.kind == BridgeTarget::Kind::command ? kFirstFrameOfProgram_s : kFirstFrame_s;
-  for (const double until_s = last_sent_s + patience_s; frames < kFramesToInspect && steady_now_s() < until_s;) {
+  OpenedDevice result{info_, &kBridgeProtocol};
+  const double patience_s = target_.starts_with("exec:") ? kFirstFrameOfProgram_s : kFirstFrame_s;
+  const double until_s = steady_now_s() + patience_s;
+  double last_sent_s = 0.0;
+  for (int frames = 0; frames < kFramesToInspect;) {
     if (stop_requested() != 0) return Error{"interrupted"};
-    std::uint8_t bytes[kLargestReport];
-    const int size = connection.read(bytes, sizeof bytes);
-    if (size < 0) {
-      const std::string said = connection.garbage();
-      return Error{info_.path + ": " + connection.end_words() + (said.empty() ? "" : ", after \"" + said + "\"") +
-                   "; run it by itself to see why"};
-    }
-    // Opening the line may reset the board, which then misses the first frame.
+    // Opening the line may reset the board, which then misses the first frames of the host.
     if (steady_now_s() - last_sent_s > 0.1) {
       connection.write(start.bytes[0].data(), start.sizes[0]);
       last_sent_s = steady_now_s();
     }
-    if (size == 0) continue;
+    std::uint8_t bytes[kLargestReport];
+    const int size = connection.read(bytes, sizeof bytes);
+    if (size < 0) return Error{info_.path + ": " + connection.end_words() + said() + "; run it by itself to see why"};
+    if (steady_now_s() >= until_s) {
+      return Error{info_.path + ": found " + std::to_string(frames) + " frames of 28 bytes within " +
+                   fixed(patience_s, 0) + " s" + said() +
+                   ", expected 100 to 10000 a second; check that the device's program runs and that the baud rate is "
+                   "right"};
+    }
     DeviceReading reading;
     const ReportVerdict verdict = kBridgeProtocol.decode(bytes, static_cast<std::size_t>(size), reading);
     if (verdict == ReportVerdict::wrong_version) {
@@ -157,22 +161,10 @@ Result<OpenedDevice> BridgeBus::open_and_identify() {
     }
     if (verdict != ReportVerdict::position) continue;
     ++frames;
-    result.measures_force = result.measures_force || reading.measured_N == reading.measured_N;
+    result.measures_force = result.measures_force || !std::isnan(reading.measured_N);
   }
-  if (frames < kFramesToInspect) {
-    const std::string said = connection.garbage();
-    if (frames > 0) {
-      return Error{info_.path + ": found " + std::to_string(frames) + " frames in " + fixed(patience_s, 0) +
-                   " s, expected 100 to 10000 a second"};
-    }
-    if (!said.empty()) return Error{info_.path + ": found text, expected frames of 28 bytes: \"" + said + "\""};
-    return Error{info_.path + ": no frame within " + fixed(patience_s, 0) +
-                 " s; check that the device's program runs and that the baud rate is right"};
-  }
-  result.info = info_;
   result.info.product = result.measures_force ? "measures force" : "measures no force";
-  if (target_.remote) result.info.product += ", on a network, which adds delay";
-  result.protocol = &kBridgeProtocol;
+  if (target_.starts_with("remote-")) result.info.product += ", on a network, which adds delay";
   result.connection = std::move(*opened);
   return Result<OpenedDevice>(std::move(result));
 }

@@ -22,15 +22,14 @@ class BridgeTest {
   explicit BridgeTest(OpenedDevice opened) : opened_(std::move(opened)) {}
 
   Result<std::string> run() {
-    step_until(kDriven_s, {true, true}, [] { return false; });
-    const bool drove = driving_;
-    const auto silence_s = time_to_stop({});
+    step_until(kDriven_s, Host::alive, [] { return false; });
+    const auto silence_s = time_to_stop(Host::silent);
     const bool woke = wakes();
-    const auto stands_still_s = silence_s && woke ? time_to_stop({true, false}) : std::nullopt;
+    const auto stands_still_s = silence_s && woke ? time_to_stop(Host::hung) : std::nullopt;
     wakes();
-    if (gone_) return Error{opened_.info.path + ": the line ended during the test; " + "run the test again"};
+    if (gone_) return Error{opened_.info.path + ": the line ended during the test; run the test again"};
     const std::string start = opened_.info.path + ": ";
-    if (sent_at_s_.empty() || round_trips_s_.empty()) {
+    if (round_trips_s_.empty()) {
       return Error{start +
                    "the device confirms no frame of the host; bytes 22 and 23 must be the low half of its sequence"};
     }
@@ -38,29 +37,27 @@ class BridgeTest {
     if (!woke)
       return Error{start + "the device stays stopped after valid frames return; clear status bit 2 when they return"};
     if (!stands_still_s) return Error{start + no_stop("after the heartbeat stood still")};
-    return text(drove, *silence_s, *stands_still_s);
+    return text(*silence_s, *stands_still_s);
   }
 
  private:
-  struct Sent {
-    bool frames = false;
-    bool heartbeat = false;
-  };
+  // What the host sends: no frames; frames with a constant heartbeat, as when its haptics thread hangs; valid frames.
+  enum class Host { silent, hung, alive };
 
   static std::string no_stop(const std::string& when) {
     return "the device did not report within 100 ms that its watchdog stopped it " + when +
            " (status bit 2); do not touch the device before this works";
   }
 
-  void send(bool drive, bool beat) {
+  void send(Host host) {
+    if (host == Host::alive) ++heartbeat_;
     DeviceCommand command;
     command.sequence = ++sequence_;
-    command.heartbeat = beat ? ++heartbeat_ : heartbeat_;
-    command.drive = drive;
+    command.heartbeat = heartbeat_;
+    command.drive = drive_;
     const OutReports reports = kBridgeProtocol.encode_command(command);
     opened_.connection->write(reports.bytes[0].data(), reports.sizes[0]);
     last_sent_s_ = steady_now_s();
-    sent_at_s_.resize(65536, 0.0);
     sent_at_s_[sequence_ & 0xFFFF] = last_sent_s_;
   }
 
@@ -70,7 +67,7 @@ class BridgeTest {
     if (frames_++ > 0) intervals_s_.push_back(1e-6 * (reading.time_us - last_.time_us));
     lowest_nm_ = std::min(lowest_nm_, reading.counts);
     highest_nm_ = std::max(highest_nm_, reading.counts);
-    if (!sent_at_s_.empty() && reading.confirmed != last_.confirmed && sent_at_s_[reading.confirmed] > 0.0) {
+    if (reading.confirmed != last_.confirmed && sent_at_s_[reading.confirmed] > 0.0) {
       round_trips_s_.push_back(steady_now_s() - sent_at_s_[reading.confirmed]);
     }
     last_ = reading;
@@ -78,29 +75,27 @@ class BridgeTest {
 
   // Sends and reads for `span_s`. Returns true if `done` ended it.
   template <typename Done>
-  bool step_until(double span_s, Sent sent, Done done) {
+  bool step_until(double span_s, Host host, Done done) {
     double next_s = steady_now_s();
     for (const double until_s = next_s + span_s; steady_now_s() < until_s && !gone_;) {
-      if (sent.frames && steady_now_s() >= next_s) {
-        send(drive_, sent.heartbeat);
+      if (host != Host::silent && steady_now_s() >= next_s) {
+        send(host);
         next_s += kStep_s;
       }
       std::uint8_t bytes[kLargestReport];
       const int size = opened_.connection->read(bytes, sizeof bytes);
       gone_ = size < 0;
       DeviceReading reading;
-      if (size > 0 &&
-          kBridgeProtocol.decode(bytes, static_cast<std::size_t>(size), reading) == ReportVerdict::position) {
-        take(reading);
-      }
+      const auto bytes_read = static_cast<std::size_t>(std::max(0, size));
+      if (kBridgeProtocol.decode(bytes, bytes_read, reading) == ReportVerdict::position) take(reading);
       if (done()) return true;
     }
     return false;
   }
 
-  std::optional<double> time_to_stop(Sent sent) {
+  std::optional<double> time_to_stop(Host host) {
     const double since_s = last_sent_s_;
-    const bool shown = step_until(kPatience_s, sent, [&] { return stopped_; });
+    const bool shown = step_until(kPatience_s, host, [&] { return stopped_; });
     const double after_s = steady_now_s() - since_s;
     return shown && after_s <= kStopsWithin_s ? std::optional<double>(after_s) : std::nullopt;
   }
@@ -108,8 +103,8 @@ class BridgeTest {
   // Sends valid frames again, first without `drive`. Returns whether the device leaves its stop.
   bool wakes() {
     drive_ = false;
-    const bool woke = step_until(kPatience_s, {true, true}, [&] { return !stopped_; });
-    step_until(0.05, {true, true}, [] { return false; });
+    const bool woke = step_until(kPatience_s, Host::alive, [&] { return !stopped_; });
+    step_until(0.05, Host::alive, [] { return false; });
     drive_ = true;
     return woke;
   }
@@ -120,7 +115,7 @@ class BridgeTest {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
   }
 
-  std::string text(bool drove, double silence_s, double stands_still_s) {
+  std::string text(double silence_s, double stands_still_s) {
     const auto ms = [](double s) { return fixed(1e3 * s, 2) + " ms"; };
     const double mean_s = part(intervals_s_, 0.5);
     return opened_.info.path + "\n  samples     " + fixed(mean_s > 0.0 ? 1.0 / mean_s : 0.0, 0) +
@@ -130,7 +125,7 @@ class BridgeTest {
            fixed(1e-6 * (highest_nm_ - lowest_nm_), 3) + " mm in the test\n  force       " +
            (std::isfinite(last_.measured_N) ? fixed(last_.measured_N, 3) + " N measured" : "not measured") +
            "\n  drive       " +
-           (drove ? "yes, it got a force of 0" : "no, the device never reported that it drives (status bit 1)") +
+           (driving_ ? "yes, it got a force of 0" : "no, the device never reported that it drives (status bit 1)") +
            "\n  watchdog    stopped " + ms(silence_s) + " after the last frame (limit 50 ms, reported with a sample)" +
            "\n  heartbeat   stopped " + ms(stands_still_s) + " after it stood still (limit 50 ms)\n";
   }
@@ -138,7 +133,7 @@ class BridgeTest {
   OpenedDevice opened_;
   std::uint32_t sequence_ = 0;
   std::uint16_t heartbeat_ = 0;
-  std::vector<double> sent_at_s_;  // indexed by the low half of the sequence
+  std::vector<double> sent_at_s_ = std::vector<double>(65536, 0.0);  // indexed by the low half of the sequence
   std::vector<double> intervals_s_, round_trips_s_;
   DeviceReading last_;
   int frames_ = 0;
@@ -150,9 +145,7 @@ class BridgeTest {
 }  // namespace
 
 Result<std::string> test_bridge(const std::string& target) {
-  const Result<BridgeTarget> parsed = parse_bridge_target(target);
-  if (!parsed) return parsed.error();
-  BridgeBus bus(*parsed, target);
+  BridgeBus bus(target);
   Result<OpenedDevice> opened = bus.open_and_identify();
   if (!opened) return opened.error();
   return BridgeTest(std::move(*opened)).run();

@@ -36,12 +36,6 @@ int whole_number(const std::string& text, int most) {
   return read.ec == std::errc() && read.ptr == end && value >= 1 && value <= most ? value : 0;
 }
 
-bool take_prefix(std::string& text, const std::string& prefix) {
-  if (text.rfind(prefix, 0) != 0) return false;
-  text.erase(0, prefix.size());
-  return true;
-}
-
 Error wrong(const std::string& text, const std::string& expected) {
   return Error{"--device bridge:" + text + ": expected " + expected + " (devices/README.md#bridge)"};
 }
@@ -50,22 +44,6 @@ Error wrong(const std::string& text, const std::string& expected) {
 constexpr int kQueueBytes = 1024;
 // Time that a child program has to end before it is killed.
 constexpr int kEnd_ms = 500;
-
-struct Speed {
-  int baud;
-  speed_t code;
-};
-constexpr std::array<Speed, 11> kSpeeds = {{{9600, B9600},
-                                            {19200, B19200},
-                                            {38400, B38400},
-                                            {57600, B57600},
-                                            {115200, B115200},
-                                            {230400, B230400},
-                                            {460800, B460800},
-                                            {500000, B500000},
-                                            {921600, B921600},
-                                            {1000000, B1000000},
-                                            {2000000, B2000000}}};
 
 using Opened = Result<std::pair<int, int>>;  // file descriptor, process id of the child (0: none)
 
@@ -78,33 +56,36 @@ Error close_with(int descriptor, Error error) {
   return error;
 }
 
-Opened open_serial(const BridgeTarget& target) {
-  const auto speed =
-      std::find_if(kSpeeds.begin(), kSpeeds.end(), [&](const Speed& s) { return s.baud == target.baud; });
-  if (speed == kSpeeds.end()) {
-    std::string known;
-    for (const Speed& one : kSpeeds) known += (known.empty() ? "" : ", ") + std::to_string(one.baud);
-    return Error{target.path + ": found " + std::to_string(target.baud) + " baud, expected one of " + known};
+// `rest`, here and below: the target without its prefix in kLines.
+Opened open_serial(const std::string& rest) {
+  std::string path = "/" + rest;
+  int baud = 1'000'000;
+  if (const std::size_t comma = path.rfind(','); comma != std::string::npos) {
+    baud = whole_number(path.substr(comma + 1), 4'000'000);
+    path.resize(comma);
   }
-  const int line = ::open(target.path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  termios settings{};
+  // cfsetspeed refuses unusual rates, but takes numbers up to 4111 as its own codes of rates.
+  if (baud < 9600 || cfsetspeed(&settings, static_cast<speed_t>(baud)) != 0) {
+    return wrong("/" + rest, "a usual baud rate from 9600 to 4000000 after the comma, as in /dev/ttyACM0,115200");
+  }
+  const int line = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (line < 0) {
     const bool denied = errno == EACCES || errno == EPERM;
-    return failure(target.path, errno,
+    return failure(path, errno,
                    denied ? "join the group that owns it (sudo adduser $USER dialout), then log in again"
                           : "check that the device is plugged in; ls /dev/tty* lists the ports");
   }
   if (flock(line, LOCK_EX | LOCK_NB) != 0) {
-    return close_with(line, Error{target.path + ": in use by another program; close it"});
+    return close_with(line, Error{path + ": in use by another program; close it"});
   }
-  termios settings{};
-  if (tcgetattr(line, &settings) != 0)
-    return close_with(line, Error{target.path + ": is not a serial line; name a tty"});
+  if (tcgetattr(line, &settings) != 0) return close_with(line, Error{path + ": is not a serial line; name a tty"});
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | HUPCL);  // so that closing the line does not reset the board
-  cfsetspeed(&settings, speed->code);
+  cfsetspeed(&settings, static_cast<speed_t>(baud));
   if (tcsetattr(line, TCSANOW, &settings) != 0) {
-    return close_with(line, failure(target.path, errno, "choose another baud rate"));
+    return close_with(line, failure(path, errno, "choose another baud rate"));
   }
   // If the driver supports it, low latency: it passes bytes on at once instead of every 16 ms.
   serial_struct serial{};
@@ -128,20 +109,19 @@ Status connect_within(int socket, const sockaddr* address, socklen_t size) {
   return error_number == 0 ? Status() : Error{std::strerror(error_number)};
 }
 
-Opened open_unix(const BridgeTarget& target) {
+Opened open_unix(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  if (target.path.size() >= sizeof address.sun_path) {
-    return Error{target.path + ": the path of a socket has at most " + std::to_string(sizeof address.sun_path - 1) +
-                 " bytes; choose a shorter one"};
+  const std::size_t most = sizeof address.sun_path - 1;
+  if (path.empty() || path.size() > most) {
+    return wrong("unix:" + path, "unix:PATH, the path of a socket of 1 to " + std::to_string(most) + " bytes");
   }
-  std::copy(target.path.begin(), target.path.end(), address.sun_path);
+  std::copy(path.begin(), path.end(), address.sun_path);
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return failure(target.path, errno, "close other programs");
+  if (descriptor < 0) return failure(path, errno, "close other programs");
   const Status status = connect_within(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address);
   if (status) return std::pair(descriptor, 0);
-  return close_with(descriptor,
-                    Error{target.path + ": " + status.error().message + "; start the device's program first"});
+  return close_with(descriptor, Error{path + ": " + status.error().message + "; start the device's program first"});
 }
 
 bool is_loopback(const sockaddr* address) {
@@ -152,17 +132,20 @@ bool is_loopback(const sockaddr* address) {
          IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6*>(address)->sin6_addr) != 0;
 }
 
-Opened open_tcp(const BridgeTarget& target) {
-  const std::string name = target.host + ":" + std::to_string(target.port);
+Opened open_tcp(const std::string& name, bool remote) {
+  const std::size_t colon = std::min(name.rfind(':'), name.size());
+  const std::string host = name.substr(0, colon);
+  const int port = whole_number(name.substr(std::min(colon + 1, name.size())), 65535);
+  if (host.empty() || port == 0) return wrong("tcp:" + name, "tcp:HOST:PORT, a port from 1 to 65535");
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* list = nullptr;
-  const int looked_up = getaddrinfo(target.host.c_str(), std::to_string(target.port).c_str(), &hints, &list);
+  const int looked_up = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
   if (looked_up != 0) return Error{name + ": " + gai_strerror(looked_up) + "; check the host's name"};
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, freeaddrinfo);
   std::string problem = "no address";
   for (const addrinfo* one = list; one != nullptr; one = one->ai_next) {
-    if (!target.remote && !is_loopback(one->ai_addr)) {
+    if (!remote && !is_loopback(one->ai_addr)) {
       return Error{name +
                    ": is another computer, so others on the network could move the device; use an SSH tunnel to "
                    "127.0.0.1, or allow it with --bridge-remote"};
@@ -199,63 +182,34 @@ Opened open_tcp(const BridgeTarget& target) {
   _exit(127);
 }
 
-Opened open_command(const BridgeTarget& target) {
+Opened open_command(const std::string& command) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-    return failure(target.path, errno, "close other programs");
+    return failure(command, errno, "close other programs");
   }
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child == 0) run_child(ends[1], target.path.c_str(), parent);
+  if (child == 0) run_child(ends[1], command.c_str(), parent);
   ::close(ends[1]);
-  if (child < 0) return close_with(ends[0], failure(target.path, errno, "close other programs"));
+  if (child < 0) return close_with(ends[0], failure(command, errno, "close other programs"));
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
   return std::pair(ends[0], static_cast<int>(child));
 }
 
-Opened open_any(const BridgeTarget& target) {
-  switch (target.kind) {
-    case BridgeTarget::Kind::serial:
-      return open_serial(target);
-    case BridgeTarget::Kind::unix_socket:
-      return open_unix(target);
-    case BridgeTarget::Kind::tcp:
-      return open_tcp(target);
-    case BridgeTarget::Kind::command:
-      return open_command(target);
-  }
-  return Error{"found no such kind of line"};
-}
+// The kinds of lines, by the beginning of their targets.
+struct Line {
+  std::string_view prefix;
+  Opened (*open)(const std::string& rest);
+};
+constexpr std::array<Line, 5> kLines = {{
+    {"/", open_serial},
+    {"unix:", open_unix},
+    {"tcp:", [](const std::string& name) { return open_tcp(name, false); }},
+    {"remote-tcp:", [](const std::string& name) { return open_tcp(name, true); }},
+    {"exec:", open_command},
+}};
 
 }  // namespace
-
-Result<BridgeTarget> parse_bridge_target(const std::string& text) {
-  BridgeTarget target;
-  target.path = text;
-  if (take_prefix(target.path, "unix:")) {
-    target.kind = BridgeTarget::Kind::unix_socket;
-    if (target.path.empty()) return wrong(text, "the path of a socket, unix:PATH");
-  } else if (take_prefix(target.path, "exec:")) {
-    target.kind = BridgeTarget::Kind::command;
-    if (target.path.find_first_not_of(' ') == std::string::npos) return wrong(text, "a program, exec:COMMAND");
-  } else if ((target.remote = take_prefix(target.path, "remote-")), take_prefix(target.path, "tcp:")) {
-    target.kind = BridgeTarget::Kind::tcp;
-    const std::size_t colon = target.path.rfind(':');
-    target.host = target.path.substr(0, colon);
-    target.port = colon == std::string::npos ? 0 : whole_number(target.path.substr(colon + 1), 65535);
-    if (target.host.empty() || target.port == 0) return wrong(text, "tcp:HOST:PORT, a port from 1 to 65535");
-  } else if (!target.path.empty() && target.path.front() == '/') {
-    const std::size_t comma = target.path.rfind(',');
-    if (comma != std::string::npos) {
-      target.baud = whole_number(target.path.substr(comma + 1), 4'000'000);
-      if (target.baud == 0) return wrong(text, "a baud rate after the comma, as in /dev/ttyACM0,1000000");
-      target.path.resize(comma);
-    }
-  } else {
-    return wrong(text, "/dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT or exec:COMMAND");
-  }
-  return target;
-}
 
 std::string with_remote_bridge(std::string device) {
   constexpr std::string_view kBridge = "bridge:";
@@ -263,8 +217,11 @@ std::string with_remote_bridge(std::string device) {
   return device;
 }
 
-Result<std::unique_ptr<ByteStream>> ByteStream::open(const BridgeTarget& target) {
-  const Opened opened = open_any(target);
+Result<std::unique_ptr<ByteStream>> ByteStream::open(const std::string& target) {
+  const auto line =
+      std::find_if(kLines.begin(), kLines.end(), [&](const Line& one) { return target.starts_with(one.prefix); });
+  if (line == kLines.end()) return wrong(target, "/dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT or exec:COMMAND");
+  const Opened opened = line->open(target.substr(line->prefix.size()));
   if (!opened) return opened.error();
   setsockopt(opened->first, SOL_SOCKET, SO_SNDBUF, &kQueueBytes, sizeof kQueueBytes);  // only of a socket
   return std::unique_ptr<ByteStream>(new ByteStream(opened->first, opened->second));
@@ -290,17 +247,15 @@ int ByteStream::read(std::uint8_t* bytes, std::size_t capacity, int wait_ms) noe
   return count < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
 }
 
-bool ByteStream::finish_piece() noexcept {
-  if (rest_size_ == 0) return true;
-  const ssize_t taken = ::write(descriptor_, rest_, rest_size_);
-  if (taken <= 0) return false;
-  rest_size_ -= static_cast<std::size_t>(taken);
-  std::memmove(rest_, rest_ + taken, rest_size_);
-  return rest_size_ == 0;
-}
-
 bool ByteStream::write(const std::uint8_t* bytes, std::size_t size) noexcept {
-  if (size > sizeof rest_ || !finish_piece()) return false;
+  if (size > sizeof rest_) return false;
+  if (rest_size_ > 0) {
+    const ssize_t taken = ::write(descriptor_, rest_, rest_size_);
+    if (taken <= 0) return false;
+    rest_size_ -= static_cast<std::size_t>(taken);
+    std::memmove(rest_, rest_ + taken, rest_size_);
+    if (rest_size_ > 0) return false;
+  }
   const ssize_t taken = ::write(descriptor_, bytes, size);
   if (taken <= 0) return false;
   rest_size_ = size - static_cast<std::size_t>(taken);

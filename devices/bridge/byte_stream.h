@@ -12,21 +12,6 @@
 
 namespace palpate {
 
-// The target of --device bridge:TARGET: where the byte stream of a device is.
-struct BridgeTarget {
-  enum class Kind { serial, unix_socket, tcp, command };
-  Kind kind = Kind::serial;
-  std::string path;  // of a serial line or Unix socket; or the command
-  std::string host;
-  int port = 0;
-  bool remote = false;  // another computer is allowed
-  int baud = 1'000'000;
-};
-
-// "/dev/TTY[,BAUD]", "unix:PATH", "[remote-]tcp:HOST:PORT", "exec:COMMAND". Errors: another form, an invalid baud rate
-// or port.
-Result<BridgeTarget> parse_bridge_target(const std::string& text);
-
 // Applies --bridge-remote to the value of --device: bridge:tcp: becomes bridge:remote-tcp:, which may name another
 // computer. Other values are unchanged.
 std::string with_remote_bridge(std::string device);
@@ -35,8 +20,9 @@ class ByteStream {
  public:
   static constexpr int kConnect_ms = 3000;
 
-  // Errors: it cannot be opened; with the reason and what to do.
-  static Result<std::unique_ptr<ByteStream>> open(const BridgeTarget& target);
+  // `target`: "/dev/TTY[,BAUD]", "unix:PATH", "[remote-]tcp:HOST:PORT", "exec:COMMAND". The default is 1 Mbaud. Errors:
+  // another form; it cannot be opened, with the reason and what to do.
+  static Result<std::unique_ptr<ByteStream>> open(const std::string& target);
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
   // Ends a child program: SIGTERM, half a second later SIGKILL.
@@ -53,7 +39,6 @@ class ByteStream {
 
  private:
   ByteStream(int descriptor, int child) noexcept : descriptor_(descriptor), child_(child) {}
-  bool finish_piece() noexcept;
 
   int descriptor_;
   int child_;  // process; 0: none

@@ -1,8 +1,8 @@
 // The hardware-independent firmware of a board for the bridge protocol (devices/README.md#bridge). hapkit.cpp uses it
 // on an ATmega328P, paddle.ino on a Teensy, the tests on a simulated board.
-// A frame is obeyed when its drive flag is 0 or its sequence is newer than the last one. The motor is off after
-// HostWatch::kTimeout_us without such a frame or without a new heartbeat, until both return, and while motor or sensor
-// has a fault.
+// A frame is obeyed when its drive flag is 0, so that stopping works and a host may restart, or when its sequence is
+// newer than the last one. The motor is off after kTimeout_us without such a frame or without a new heartbeat, until
+// both return, and while motor or sensor has a fault.
 // Thread guarantee: one thread.
 #pragma once
 
@@ -24,8 +24,13 @@ namespace bridge {
 template <typename Board>
 class Firmware {
  public:
+  static constexpr uint32_t kTimeout_us = 50000;
+
   // `most_uN`: largest force of the motor.
-  Firmware(Board& board, int32_t most_uN) : board_(board), most_uN_(most_uN), host_(board.now_us()) { board_.push(0); }
+  Firmware(Board& board, int32_t most_uN)
+      : board_(board), most_uN_(most_uN), obeyed_us_(board.now_us()), beat_us_(obeyed_us_) {
+    board_.push(0);
+  }
 
   // Call it as often as possible.
   void loop() {
@@ -34,13 +39,13 @@ class Firmware {
     while (board_.receive(byte)) {
       if (finder_.add(byte)) obey(finder_.frame());
     }
-    if (host_.host_timed_out(board_.now_us())) stop();
+    if (timed_out(board_.now_us())) stop();
     if (faulty()) push(0, false);
     FromDevice in = FromDevice();
     if (!board_.sample(in.time_us, in.position_nm, in.force_uN)) return;
     in.sequence = ++sequence_;
     in.status = static_cast<uint8_t>(condition_ | (driving_ ? kDriving : 0) | (stopped_ ? kStopped : 0));
-    in.confirmed = static_cast<uint16_t>(host_.sequence());
+    in.confirmed = static_cast<uint16_t>(host_sequence_);
     uint8_t frame[kDeviceBytes];
     encode(in, frame);
     board_.send(frame);
@@ -51,8 +56,15 @@ class Firmware {
     FromHost out;
     if (!decode(frame, out)) return;
     const bool drive = (out.flags & kDrive) != 0;
+    if (drive && !any_sequence_ && !wire::later(out.sequence, host_sequence_)) return;
     const uint32_t now_us = board_.now_us();
-    if (!host_.accept(now_us, out.sequence, out.heartbeat, drive) || host_.host_timed_out(now_us)) return;
+    if (!any_frame_ || out.heartbeat != heartbeat_) beat_us_ = now_us;
+    obeyed_us_ = now_us;
+    heartbeat_ = out.heartbeat;
+    host_sequence_ = out.sequence;
+    any_frame_ = true;
+    any_sequence_ = false;
+    if (timed_out(now_us)) return;
     stopped_ = false;
     push(drive && !faulty() ? out.force_uN : 0, drive && !faulty());
   }
@@ -63,16 +75,24 @@ class Firmware {
   }
 
   void stop() {
-    stopped_ = stopped_ || host_.any_command();
+    stopped_ = stopped_ || any_frame_;
     push(0, false);
-    host_.accept_any_sequence();
+    any_sequence_ = true;
+  }
+
+  bool timed_out(uint32_t now_us) const {
+    return now_us - obeyed_us_ >= kTimeout_us || now_us - beat_us_ >= kTimeout_us;
   }
 
   bool faulty() const { return (condition_ & (kMotorFault | kSensorFault)) != 0; }
 
   Board& board_;
   int32_t most_uN_;
-  wire::HostWatch host_;
+  uint32_t obeyed_us_, beat_us_;  // of the last obeyed frame and of the last new heartbeat
+  uint32_t host_sequence_ = 0;    // of the last obeyed frame
+  uint16_t heartbeat_ = 0;
+  bool any_frame_ = false;    // a frame was obeyed
+  bool any_sequence_ = true;  // the next frame may have any sequence: the host may have restarted
   FrameFinder<kHostBytes, kFromHost> finder_;
   uint32_t sequence_ = 0;
   uint8_t condition_ = 0;

@@ -43,9 +43,8 @@ struct FromHost {
   uint8_t flags;
 };
 
-namespace detail {
-
-inline void begin(uint8_t* frame, uint8_t kind, uint32_t sequence) {
+// The bytes that all frames begin with.
+inline void begin_frame(uint8_t* frame, uint8_t kind, uint32_t sequence) {
   frame[0] = 0x50;
   frame[1] = 0x42;
   frame[2] = kVersion;
@@ -53,10 +52,8 @@ inline void begin(uint8_t* frame, uint8_t kind, uint32_t sequence) {
   wire::write32(frame + 4, sequence);
 }
 
-}  // namespace detail
-
 inline void encode(const FromDevice& in, uint8_t* frame) {
-  detail::begin(frame, kFromDevice, in.sequence);
+  begin_frame(frame, kFromDevice, in.sequence);
   wire::write32(frame + 8, in.time_us);
   wire::write32(frame + 12, static_cast<uint32_t>(in.position_nm));
   wire::write32(frame + 16, static_cast<uint32_t>(in.force_uN));
@@ -67,7 +64,7 @@ inline void encode(const FromDevice& in, uint8_t* frame) {
 }
 
 inline void encode(const FromHost& out, uint8_t* frame) {
-  detail::begin(frame, kFromHost, out.sequence);
+  begin_frame(frame, kFromHost, out.sequence);
   wire::write32(frame + 8, static_cast<uint32_t>(out.force_uN));
   wire::write16(frame + 12, out.heartbeat);
   frame[14] = out.flags;

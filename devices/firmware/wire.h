@@ -1,6 +1,6 @@
-// Common parts of firmware and HID reports: little-endian numbers, a checksum, and the watchdog for a silent host.
+// Common parts of firmware and HID reports: little-endian numbers and a checksum.
 // C++11 with no library but stdint, so that it compiles for an Arduino.
-// Thread guarantee: pure functions and values, wait-free, never throw.
+// Thread guarantee: pure functions, wait-free, never throw.
 #pragma once
 
 #include <stdint.h>
@@ -37,44 +37,6 @@ inline void write32(uint8_t* at, uint32_t value) {
 
 // Whether `a` comes after `b` on a counter that wraps.
 inline bool later(uint32_t a, uint32_t b) { return static_cast<int32_t>(a - b) > 0; }
-
-// A board's watchdog: decides whether a command may be obeyed, and whether the host is silent. A command with `drive`
-// is obeyed only when its sequence is later than the last one; a command without it is always obeyed, so that stopping
-// works and a host may restart.
-class HostWatch {
- public:
-  // The host is silent after this time without a valid command or without a new heartbeat.
-  static constexpr uint32_t kTimeout_us = 50000;
-
-  explicit HostWatch(uint32_t now_us) : valid_us_(now_us), beat_us_(now_us) {}
-
-  // Call it for each valid command. False: the command is old and must not be obeyed.
-  bool accept(uint32_t now_us, uint32_t sequence, uint16_t heartbeat, bool drive) {
-    if (drive && !any_sequence_ && !later(sequence, sequence_)) return false;
-    if (!any_command_ || heartbeat != heartbeat_) beat_us_ = now_us;
-    heartbeat_ = heartbeat;
-    sequence_ = sequence;
-    any_command_ = true;
-    any_sequence_ = false;
-    valid_us_ = now_us;
-    return true;
-  }
-
-  bool host_timed_out(uint32_t now_us) const {
-    return now_us - valid_us_ >= kTimeout_us || now_us - beat_us_ >= kTimeout_us;
-  }
-  uint32_t sequence() const { return sequence_; }    // of the last accepted command
-  bool any_command() const { return any_command_; }  // whether any command was accepted
-  // Accepts any sequence next, for a restarted host. A new heartbeat is still required.
-  void accept_any_sequence() { any_sequence_ = true; }
-
- private:
-  uint32_t valid_us_, beat_us_;
-  uint32_t sequence_ = 0;
-  uint16_t heartbeat_ = 0;
-  bool any_command_ = false;
-  bool any_sequence_ = true;
-};
 
 }  // namespace wire
 }  // namespace palpate

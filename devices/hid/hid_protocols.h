@@ -3,10 +3,8 @@
 #pragma once
 
 #include <array>
-#include <string>
-#include <vector>
 
-#include "devices/link/device_bus.h"
+#include "devices/link/device_protocol.h"
 
 namespace palpate {
 
@@ -20,14 +18,11 @@ inline constexpr std::array kHidProtocols = {
 };
 
 // The protocol of `node`, by its ids; null: unknown.
-const DeviceProtocol* hid_protocol_of(const DeviceNode& node);
-
-// For `palpate devices`: whether a node is supported and can be opened.
-struct HidDiagnosis {
-  DeviceNode node;
-  std::string use;      // description of the protocol, or "not supported"
-  std::string problem;  // why it cannot be opened and what to do; else empty
-};
-std::vector<HidDiagnosis> diagnose(DeviceBus& bus);
+inline const DeviceProtocol* hid_protocol_of(const DeviceNode& node) {
+  for (const DeviceProtocol* protocol : kHidProtocols) {
+    if (protocol->matches(node)) return protocol;
+  }
+  return nullptr;
+}
 
 }  // namespace palpate

@@ -5,22 +5,17 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <mutex>
 
 #include "devices/hid/hid_protocols.h"
-#include "devices/link/device_stop.h"
 
 namespace palpate {
 namespace {
 
 // hidapi keeps the error of hid_enumerate and hid_open_path in one global.
-std::mutex& hidapi_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
+std::mutex hidapi_mutex;
 
 std::string narrow(const wchar_t* text) {
   std::string result;
@@ -32,43 +27,29 @@ std::string narrow(const wchar_t* text) {
 
 class HidapiConnection final : public DeviceConnection {
  public:
-  HidapiConnection(hid_device* reader, hid_device* writer, int descriptor, int wait_ms) noexcept
-      : reader_(reader), writer_(writer), descriptor_(descriptor), wait_ms_(wait_ms) {}
+  HidapiConnection(hid_device* reader, int descriptor, int wait_ms) noexcept
+      : reader_(reader), descriptor_(descriptor), wait_ms_(wait_ms) {}
   HidapiConnection(const HidapiConnection&) = delete;
   HidapiConnection& operator=(const HidapiConnection&) = delete;
   ~HidapiConnection() override {
-    unregister_device_stop(slot_);
     hid_close(reader_);
-    hid_close(writer_);
     ::close(descriptor_);
   }
 
   int read(std::uint8_t* bytes, std::size_t capacity) noexcept override {
     return wait_ms_ < 0 ? hid_read(reader_, bytes, capacity) : hid_read_timeout(reader_, bytes, capacity, wait_ms_);
   }
+  // As hid_write of hidraw, but without the handle's last error, which has no lock.
   bool write(const std::uint8_t* bytes, std::size_t size) noexcept override {
-    if (!begin_force_write()) return false;
-    const bool taken = hid_write(writer_, bytes, size) >= 0;
-    end_force_write();
-    return taken;
+    return ::write(descriptor_, bytes, size) >= 0;
   }
-  void stop_with(const OutReports& reports) noexcept override {
-    unregister_device_stop(slot_);
-    slot_ = register_device_stop(descriptor_, reports);
-  }
+  int descriptor() const noexcept override { return descriptor_; }
 
  private:
   hid_device* reader_;
-  hid_device* writer_;
   int descriptor_;
   int wait_ms_;
-  int slot_ = -1;
 };
-
-// hidapi lists a node once for each usage in its descriptor; the one with a protocol is preferred.
-bool better(const DeviceNode& a, const DeviceNode& b) {
-  return hid_protocol_of(a) != nullptr && hid_protocol_of(b) == nullptr;
-}
 
 }  // namespace
 
@@ -94,7 +75,7 @@ std::string open_error_words(const std::string& path, int error_number) {
 }
 
 std::vector<DeviceNode> HidapiBus::list() {
-  const std::lock_guard<std::mutex> lock(hidapi_mutex());
+  const std::lock_guard<std::mutex> lock(hidapi_mutex);
   std::vector<DeviceNode> all;
   hid_device_info* const first = hid_enumerate(0, 0);
   for (const hid_device_info* entry = first; entry != nullptr; entry = entry->next) {
@@ -105,11 +86,11 @@ std::vector<DeviceNode> HidapiBus::list() {
     info.product_id = entry->product_id;
     info.usage_page = entry->usage_page;
     info.usage = entry->usage;
-    const auto same = std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.path == info.path; });
-    if (same == all.end()) {
+    // hidapi lists a node once for each usage in its descriptor, one after the other; one with a protocol is preferred.
+    if (all.empty() || all.back().path != info.path) {
       all.push_back(info);
-    } else if (better(info, *same)) {
-      *same = info;
+    } else if (hid_protocol_of(info) != nullptr) {
+      all.back() = info;
     }
   }
   hid_free_enumeration(first);
@@ -125,17 +106,14 @@ Result<std::unique_ptr<DeviceConnection>> HidapiBus::open(const DeviceNode& info
     ::close(descriptor);
     return Error{open_error_words(info.path, error_number)};
   }
-  const std::lock_guard<std::mutex> lock(hidapi_mutex());
+  const std::lock_guard<std::mutex> lock(hidapi_mutex);
   hid_device* const reader = hid_open_path(info.path.c_str());
-  hid_device* const writer = reader != nullptr ? hid_open_path(info.path.c_str()) : nullptr;
-  if (writer == nullptr) {
+  if (reader == nullptr) {
     const std::string words = narrow(hid_error(nullptr));
-    if (reader != nullptr) hid_close(reader);
     ::close(descriptor);
     return Error{info.path + ": cannot be opened as a HID device (" + words + "); plug it in again"};
   }
-  return Result<std::unique_ptr<DeviceConnection>>(
-      std::make_unique<HidapiConnection>(reader, writer, descriptor, wait_ms_));
+  return Result<std::unique_ptr<DeviceConnection>>(std::make_unique<HidapiConnection>(reader, descriptor, wait_ms_));
 }
 
 DeviceBus& system_hid_bus() {

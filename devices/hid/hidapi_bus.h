@@ -1,10 +1,10 @@
 // The USB HID bus of this machine: libhidapi over hidraw.
-// Each device is opened three times: once for the reading and once for the writing thread, because a handle of hidapi
-// stores its last error without a lock; and once as a file, which holds the lock against a second program and takes the
-// stop report when a signal ends the program.
+// Each device is opened twice. hidapi reads from it. The writing thread uses a file of its own, because a handle of
+// hidapi stores its last error without a lock; this file also has the lock against a second program, and takes the stop
+// report when a signal ends the program.
 #pragma once
 
-#include "devices/link/device_bus.h"
+#include "devices/link/device_link.h"
 
 namespace palpate {
 

@@ -25,29 +25,11 @@ constexpr std::uint64_t kFfbDuration_ms = 50;
 // Every fourth command starts the force again. Commands are at most 5 ms apart (DeviceEndpoint::kRepeat_s), so that one
 // start may be lost. A start with every command would need a third report each millisecond.
 constexpr std::uint32_t kFfbRenewEvery = 4;
-enum FfbType : std::uint8_t {
-  kWrite = 0,
-  kRequest = 1,
-  kWriteTo = 3,
-  kAck = 10,
-  kNotFound = 13,
-  kNotify = 14,
-  kErr = 15
-};
-
-std::int16_t int16_units(const DeviceCommand& command) noexcept {
-  if (!command.drive || !std::isfinite(command.units)) return 0;
-  return static_cast<std::int16_t>(std::lround(std::clamp(command.units, -32767.0, 32767.0)));
-}
-
-bool is_openffboard(const DeviceNode& info) noexcept {
-  return info.vendor_id == kFfbVendor && info.product_id == kFfbProduct;
-}
+// Types of reports.
+constexpr std::uint8_t kWrite = 0, kRequest = 1, kWriteTo = 3, kAck = 10, kNotFound = 13, kNotify = 14, kErr = 15;
 
 ReportVerdict decode_openffboard(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept {
-  using wire::read16;
-  using wire::read32;
-  if (size == 0 || bytes[0] != kFfbReport) return size == 0 ? ReportVerdict::corrupt : ReportVerdict::nothing;
+  if (size > 0 && bytes[0] != kFfbReport) return ReportVerdict::nothing;
   if (size != kFfbBytes) return ReportVerdict::corrupt;
   const std::uint8_t type = bytes[1];
   const bool known = type <= 4 || type == kAck || type == kNotFound || type == kNotify || type == kErr;
@@ -57,18 +39,18 @@ ReportVerdict decode_openffboard(const std::uint8_t* bytes, std::size_t size, De
     return ReportVerdict::nothing;
   }
   const bool answer = type == kRequest || type == kAck;
-  if (!answer || read16(bytes + 2) != kFfbAxis || bytes[4] != 0 || read32(bytes + 5) != kFfbPosition) {
+  if (!answer || wire::read16(bytes + 2) != kFfbAxis || bytes[4] != 0 || wire::read32(bytes + 5) != kFfbPosition) {
     return ReportVerdict::nothing;
   }
   // The field of 64 bits has a position of 32 bits; the upper half repeats the sign.
-  const auto low = static_cast<std::int32_t>(read32(bytes + 9));
-  const std::uint32_t high = read32(bytes + 13);
+  const auto low = static_cast<std::int32_t>(wire::read32(bytes + 9));
+  const std::uint32_t high = wire::read32(bytes + 13);
   if (high != 0 && high != 0xFFFFFFFFu) return ReportVerdict::corrupt;
   reading.counts = low;
   return ReportVerdict::position;
 }
 
-void append_ffb(OutReports& reports, FfbType type, std::uint16_t object, std::uint32_t command,
+void append_ffb(OutReports& reports, std::uint8_t type, std::uint16_t object, std::uint32_t command,
                 std::uint64_t data) noexcept {
   reports.sizes[reports.count] = kFfbBytes;
   std::uint8_t* at = reports.bytes[reports.count++].data();
@@ -84,9 +66,9 @@ void append_ffb(OutReports& reports, FfbType type, std::uint16_t object, std::ui
   wire::write32(at + 20, 0);
 }
 
-void append_ffb_force(OutReports& reports, std::int16_t magnitude) noexcept {
-  const auto data = static_cast<std::uint64_t>(static_cast<std::int64_t>(magnitude));
-  append_ffb(reports, kWriteTo, kFfbEffects, kFfbMagnitude, data);
+void append_ffb_force(OutReports& reports, double units) noexcept {
+  const std::int64_t magnitude = std::lround(std::clamp(units, -32767.0, 32767.0));
+  append_ffb(reports, kWriteTo, kFfbEffects, kFfbMagnitude, static_cast<std::uint64_t>(magnitude));
 }
 
 // A new effect has no end. It gets its duration here, before the commands start it.
@@ -102,14 +84,14 @@ OutReports start_openffboard() noexcept {
 OutReports encode_openffboard(const DeviceCommand& command) noexcept {
   OutReports reports;
   append_ffb(reports, kRequest, kFfbAxis, kFfbPosition, 0);
-  append_ffb_force(reports, int16_units(command));
+  append_ffb_force(reports, command.drive && std::isfinite(command.units) ? command.units : 0.0);
   if (command.sequence % kFfbRenewEvery == 0) append_ffb(reports, kWriteTo, kFfbEffects, kFfbState, 1);
   return reports;
 }
 
 OutReports stop_openffboard() noexcept {
   OutReports reports;
-  append_ffb_force(reports, 0);
+  append_ffb_force(reports, 0.0);
   return reports;
 }
 
@@ -119,7 +101,8 @@ const DeviceProtocol kOpenFfBoardProtocol = {
     .name = "openffboard",
     .description = "OpenFFBoard, one axis",
     .renders_force = true,
-    .matches = is_openffboard,
+    .matches =
+        [](const DeviceNode& node) noexcept { return node.vendor_id == kFfbVendor && node.product_id == kFfbProduct; },
     .decode = decode_openffboard,
     .encode_start = start_openffboard,
     .encode_command = encode_openffboard,

@@ -1,93 +1,60 @@
-// A 3Dconnexion SpaceMouse: pushing its cap down moves the tool into the block. It renders no force to the hand; the
-// force acts on the simulated mass of a MouseDevice.
-// It reports at 60 to 125 Hz, and not at all at rest. The target is interpolated linearly from one value to the next
-// over the last interval of reports, so that it moves at every tick. This adds a delay of one interval.
+// A 3Dconnexion SpaceMouse: pushing its cap down moves the target of a MouseDevice into the block. It renders no force
+// to the hand; the force acts on the simulated mass of the MouseDevice.
+// It reports at 60 to 125 Hz, and not at all at rest. The low-pass filter of the MouseDevice turns the steps of the
+// target into a motion at every tick.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "devices/link/device_calibration.h"
 #include "devices/link/device_link.h"
 #include "devices/virtual/mouse_device.h"
-#include "engine/live/device.h"
-#include "engine/live/triple_buffer.h"
 
 namespace palpate {
 
-// Converts reports to a target position at any time.
-class SpaceMouseAxis final : public LinkListener {
- public:
-  // Limits of the interval between reports.
-  static constexpr double kShortest_s = 0.004;
-  static constexpr double kLongest_s = 0.02;
-  // Smaller deflections count as 0.
-  static constexpr int kDeadCounts = 8;
-
-  explicit SpaceMouseAxis(const DeviceCalibration& calibration) noexcept : calibration_(calibration) {}
-
-  // Reader thread, wait-free.
-  void connected(double) noexcept override;
-  void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
-  void unplugged() noexcept override;
-  // Writer thread. Nothing is written to a SpaceMouse.
-  OutReports next(double) noexcept override { return {}; }
-  void written(double) noexcept override {}
-
-  // Haptics thread, wait-free; `now_s` increasing. The target position of the tool.
-  double target_m(double now_s) noexcept;
-  // Haptics thread, wait-free. Sets the target of `tool` if it has changed since the last call.
-  void drive(MouseDevice& tool, double now_s) noexcept;
-  DeviceHealth health(double now_s) noexcept;
-
- private:
-  struct Deflection {
-    std::uint64_t reports = 0;
-    double counts = 0.0;
-    double at_s = 0.0;
-    double interval_s = kLongest_s;
-    double corrupt_until_s = 0.0;
-    bool connected = false;
-  };
-
-  DeviceCalibration calibration_;
-  TripleBuffer<Deflection> newest_;
-  Deflection deflection_;  // reader thread only
-  // Haptics thread only: the interpolation.
-  std::uint64_t seen_ = 0;
-  double from_counts_ = 0.0, to_counts_ = 0.0, since_s_ = 0.0, over_s_ = kShortest_s;
-  double last_target_m_ = std::numeric_limits<double>::quiet_NaN();
-};
-
-// A SpaceMouseAxis with its threads.
-class SpaceMouse {
+class SpaceMouse final : public LinkListener {
  public:
   // `bus` outlives this.
-  SpaceMouse(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened);
-  Status start() { return link_.start(); }
+  SpaceMouse(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened)
+      : calibration_(calibration), link_(bus, *this, std::move(opened)) {}
+
+  // Slow side: moves `tool` until `stop`. Errors: a thread cannot be started.
+  Status start(MouseDevice& tool);
   void stop() noexcept { link_.stop(); }
-  SpaceMouseAxis& axis() noexcept { return axis_; }
   std::string description() const { return link_.description(); }
+  // Any thread, wait-free.
+  bool is_connected() const noexcept { return connected_.load(std::memory_order_relaxed); }
+
+  // Reader thread, wait-free.
+  void connected(double) noexcept override { connected_.store(true, std::memory_order_relaxed); }
+  void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
+  void unplugged() noexcept override;
 
  private:
-  SpaceMouseAxis axis_;
+  void deflect(int counts, double now_s) noexcept;
+
+  DeviceCalibration calibration_;
+  std::atomic<bool> connected_{false};
+  MouseDevice* tool_ = nullptr;  // not null after `start`
+  int counts_ = 0;               // reader thread only: the deflection of the cap
   DeviceLink link_;
 };
 
+// The device "hid" when a SpaceMouse is plugged in and no haptic device.
 class SpaceMouseDevice final : public MouseDevice {
  public:
-  explicit SpaceMouseDevice(std::unique_ptr<SpaceMouse> mouse) : MouseDevice({}, "hid"), mouse_(std::move(mouse)) {}
+  explicit SpaceMouseDevice(std::unique_ptr<SpaceMouse> mouse) : MouseDevice("hid"), mouse_(std::move(mouse)) {}
   ~SpaceMouseDevice() override { close(); }
 
-  Status open() override { return mouse_->start(); }
+  Status open() override { return mouse_->start(*this); }
   void close() noexcept override { mouse_->stop(); }
-  bool read(double now_s, DeviceSample& sample) noexcept override {
-    mouse_->axis().drive(*this, now_s);
-    return MouseDevice::read(now_s, sample);
+  DeviceHealth health(double) noexcept override {
+    return {.faults = mouse_->is_connected() ? 0 : device_fault::kUnplugged};
   }
-  DeviceHealth health(double now_s) noexcept override { return mouse_->axis().health(now_s); }
   std::string note() const override { return mouse_->description(); }
   ToolInput* tool_input() noexcept override { return nullptr; }  // only the SpaceMouse moves the tool
 

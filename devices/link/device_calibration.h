@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "devices/link/device_protocol.h"
 #include "engine/base/result.h"
@@ -27,12 +26,8 @@ struct DeviceCalibration {
   ForceLimits limits;             // stop_s keeps its default
 };
 
-// "kind" in the file must be the name of `protocol`. Errors: not JSON; a value that is missing, unknown or out of
-// range; each with path:line:column, found, expected.
-Result<DeviceCalibration> parse_calibration(std::string_view text, const std::string& path,
-                                            const DeviceProtocol& protocol);
-
-// Reads `folder`/<name of the protocol>.json. Errors: those of parse_calibration; the file cannot be read.
+// Reads `folder`/<name of the protocol>.json, whose "kind" must be that name. Errors: the file cannot be read; not
+// JSON; a value that is missing, unknown or out of range, with path:line:column, found, expected.
 Result<DeviceCalibration> read_calibration(const std::string& folder, const DeviceProtocol& protocol);
 
 }  // namespace palpate

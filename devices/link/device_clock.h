@@ -42,8 +42,6 @@ class DeviceClock {
     return std::min(arrival_s, arrival_s - above_line_s(point));
   }
 
-  void restart() noexcept { *this = DeviceClock(); }
-
  private:
   // Well above the error of a ceramic resonator, 0.5 %, plus that of a host clock which is slewed, 0.5 %.
   static constexpr double kLargestDrift = 0.015;

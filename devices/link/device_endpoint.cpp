@@ -7,7 +7,9 @@
 namespace palpate {
 
 DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration, std::string name) noexcept
-    : calibration_(calibration), name_(std::move(name)), monitor_(calibration) {}
+    : calibration_(calibration), name_(std::move(name)), monitor_(calibration) {
+  publish_state();
+}
 
 SensorSpec DeviceEndpoint::sensor() const noexcept {
   return {.encoder_step_m = std::max(calibration_.encoder_step_m, 1.0 / calibration_.counts_per_metre)};
@@ -16,56 +18,50 @@ SensorSpec DeviceEndpoint::sensor() const noexcept {
 void DeviceEndpoint::connected(double now_s) noexcept {
   last_written_s_.store(now_s, std::memory_order_relaxed);
   connected_at_s_.store(now_s, std::memory_order_relaxed);
-  link_.connected = true;
-  state_.write(link_);
+  connected_ = true;
+  publish_state();
 }
 
 void DeviceEndpoint::unplugged() noexcept {
   monitor_.unplugged();
-  link_.monitor = monitor_.state();
-  link_.connected = false;
-  state_.write(link_);
+  connected_ = false;
+  publish_state();
+}
+
+void DeviceEndpoint::publish_state() noexcept {
+  MonitorState state = monitor_.state();
+  state.health.round_trip_s = round_trip_s_;
+  if (!connected_) state.health.faults = device_fault::kUnplugged;
+  state_.write(state);
 }
 
 void DeviceEndpoint::report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
   if (zeroing_asked_.exchange(false, std::memory_order_relaxed)) monitor_.start_zeroing();
-  const std::uint32_t confirmed = monitor_.state().confirmed;
+  const MonitorState before = monitor_.state();
   DeviceReading reading;
   const ReportVerdict verdict = calibration_.protocol->decode(bytes, size, reading);
   monitor_.update(verdict, reading, now_s, commanded_N_.load(std::memory_order_relaxed));
-  const bool accepted = monitor_.state().samples != link_.monitor.samples;
-  link_.monitor = monitor_.state();
-  if (accepted) publish_sample();
-  if (link_.monitor.confirmed != confirmed) {
-    const double sent_s = sent_at_s_[link_.monitor.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
-    if (sent_s > 0.0) link_.round_trip_s = now_s - sent_s;
+  const MonitorState& state = monitor_.state();
+  if (state.samples != before.samples) publish_sample();
+  if (state.confirmed != before.confirmed) {
+    const double sent_s = sent_at_s_[state.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
+    if (sent_s > 0.0) round_trip_s_ = now_s - sent_s;
   }
-  state_.write(link_);
+  publish_state();
 }
 
 void DeviceEndpoint::publish_sample() noexcept {
-  const MonitorState& state = link_.monitor;
+  const MonitorState& state = monitor_.state();
   accepted_.store(state.samples, std::memory_order_relaxed);
-  const bool known = state.zeroing == Zeroing::done || state.zeroing == Zeroing::not_needed;
-  if (!known || state.lost != 0) return;
+  if (state.lost != 0 || !state.health.may_push()) return;
   DeviceSample sample;
   sample.tool.time_s = state.sample_time_s;
-  sample.tool.position_m = position_m(state);
+  const double counts = static_cast<double>(state.counts) - state.zero_counts;
+  sample.tool.position_m =
+      calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
   sample.measured_force_N = state.measured_N;
   sample.restart = state.streams != streams_published_;
   if (samples_.push(sample)) streams_published_ = state.streams;
-}
-
-DeviceCommand DeviceEndpoint::command_for(double force_N) noexcept {
-  const double peak_N = calibration_.limits.largest_N;
-  const double safe_N = std::isfinite(force_N) ? std::clamp(force_N, -peak_N, peak_N) : 0.0;
-  commanded_N_.store(safe_N, std::memory_order_relaxed);
-  DeviceCommand command;
-  command.sequence = ++sequence_;
-  command.heartbeat = last_heartbeat_;
-  command.drive = safe_N != 0.0;
-  command.units = -calibration_.direction * safe_N / calibration_.force_N_per_unit;
-  return command;
 }
 
 OutReports DeviceEndpoint::next(double now_s) noexcept {
@@ -84,17 +80,19 @@ OutReports DeviceEndpoint::next(double now_s) noexcept {
   last_sent_s_ = now_s;
   answered_ = samples;
   const bool haptics_live = now_s - last_beat_s_ < kHapticsSilent_s;
-  const DeviceCommand next = command_for(haptics_live ? command.force_N : 0.0);
-  sent_at_s_[next.sequence % sent_at_s_.size()].store(now_s, std::memory_order_relaxed);
-  return calibration_.protocol->encode_command(next);
+  const double peak_N = calibration_.limits.largest_N;
+  const bool drives = haptics_live && std::isfinite(command.force_N);
+  const double safe_N = drives ? std::clamp(command.force_N, -peak_N, peak_N) : 0.0;
+  commanded_N_.store(safe_N, std::memory_order_relaxed);
+  sent_at_s_[++sequence_ % sent_at_s_.size()].store(now_s, std::memory_order_relaxed);
+  return calibration_.protocol->encode_command(
+      {.sequence = sequence_,
+       .heartbeat = last_heartbeat_,
+       .drive = safe_N != 0.0,
+       .units = -calibration_.direction * safe_N / calibration_.force_N_per_unit});
 }
 
 void DeviceEndpoint::written(double now_s) noexcept { last_written_s_.store(now_s, std::memory_order_relaxed); }
-
-double DeviceEndpoint::position_m(const MonitorState& state) const noexcept {
-  const double counts = static_cast<double>(state.counts) - state.zero_counts;
-  return calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
-}
 
 // After a pause of the haptics thread, skips old samples; `restart` is set if any of them began a new stream.
 bool DeviceEndpoint::read(double, DeviceSample& sample) noexcept {
@@ -124,41 +122,28 @@ ForceLimits DeviceEndpoint::limits() const noexcept {
   return limits;
 }
 
-bool DeviceEndpoint::stalled(const LinkState& link, double now_s) const noexcept {
+bool DeviceEndpoint::stalled(const MonitorState& state, double now_s) const noexcept {
   if (now_s - last_written_s_.load(std::memory_order_relaxed) > kWriteStalled_s) return true;
   if (!calibration_.protocol->confirms) return false;
-  if (link.round_trip_s > kWriteStalled_s) return true;
-  const double confirmed_s = std::max(link.monitor.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
+  if (state.health.round_trip_s > kWriteStalled_s) return true;
+  const double confirmed_s = std::max(state.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
   return now_s - confirmed_s > kWriteStalled_s;
 }
 
-// A round trip includes the wait for the next sample, on average half the time for which a force is constant. A device
-// without confirmations is on USB, which takes a frame of 1 ms in each direction.
-double DeviceEndpoint::lag_s(const LinkState& link) const noexcept {
-  const double round_trip_s = link.round_trip_s > 0.0 ? link.round_trip_s : 2e-3;
-  return kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - link.monitor.interval_s);
-}
-
 DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
-  const LinkState& link = state_.newest();
-  const MonitorState& state = link.monitor;
-  DeviceHealth health;
-  health.faults = state.lost;
-  if (now_s < state.transient_until_s) health.faults |= state.transient;
-  health.sample_age_s =
-      state.samples > 0 ? std::max(0.0, now_s - state.sample_time_s) : std::numeric_limits<double>::infinity();
-  if (!link.connected) {
-    health.faults |= device_fault::kUnplugged;
-  } else {
+  const MonitorState& state = state_.newest();
+  DeviceHealth health = state.health;
+  if (state.samples > 0) health.sample_age_s = std::max(0.0, now_s - state.sample_time_s);
+  if (health.faults == 0) {
     if (health.sample_age_s > state.late_after_s) health.faults |= device_fault::kLate;
-    if (stalled(link, now_s)) health.faults |= device_fault::kWriteStalled;
+    if (stalled(state, now_s)) health.faults |= device_fault::kWriteStalled;
   }
-  health.interval_s = state.interval_s;
-  health.zeroing = state.zeroing;
-  health.zeroing_progress = state.zeroing_progress;
-  health.grip_held = state.grip;
-  health.round_trip_s = link.round_trip_s;
-  health.lag_s = lag_s(link);
+  health.faults |= state.lost;
+  if (now_s < state.transient_until_s) health.faults |= state.transient;
+  // A round trip includes the wait for the next sample, on average half the time for which a force is constant. A
+  // device without confirmations is on USB, which takes a frame of 1 ms in each direction.
+  const double round_trip_s = health.round_trip_s > 0.0 ? health.round_trip_s : 2e-3;
+  health.lag_s = kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - health.interval_s);
   return health;
 }
 

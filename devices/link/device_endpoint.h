@@ -1,6 +1,12 @@
-// A device that renders force (HID or bridge), without threads and I/O (LinkedDevice). The reader thread gives it
-// reports, the writer thread fetches commands, the haptics thread reads samples and writes forces. The threads exchange
-// data by a TripleBuffer each way and an SpscRing of samples.
+// A device that renders force (HID or bridge): DeviceEndpoint without threads and I/O, LinkedDevice with them. The
+// reader thread gives it reports, the writer thread fetches commands, the haptics thread reads samples and writes
+// forces. The threads exchange data by a TripleBuffer each way and an SpscRing of samples.
+//
+// A device with an incremental encoder gives neither samples nor force until it is zeroed: bring the tool to its marked
+// rest position (rest_position_m of the calibration), call `start_zeroing` and hold it still. `health` has the
+// progress, zeroing_words the next step. Zeroing is necessary again after the device was unplugged or restarted, or its
+// encoder jumped or was stuck.
+//
 // The writer is a watchdog: when the haptics thread has not written for kHapticsSilent_s, the writer sends force 0. The
 // heartbeat in the frames of the bridge then stops, so that the board's watchdog acts as well.
 #pragma once
@@ -8,7 +14,9 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "devices/link/device_calibration.h"
 #include "devices/link/device_link.h"
@@ -18,13 +26,6 @@
 #include "engine/live/triple_buffer.h"
 
 namespace palpate {
-
-// The state of the stream and of the connection.
-struct LinkState {
-  MonitorState monitor;
-  double round_trip_s = std::numeric_limits<double>::quiet_NaN();
-  bool connected = false;
-};
 
 class DeviceEndpoint : public Device, public LinkListener {
  public:
@@ -70,10 +71,9 @@ class DeviceEndpoint : public Device, public LinkListener {
     std::uint16_t heartbeat = 0;
   };
 
-  DeviceCommand command_for(double force_N) noexcept;
-  double position_m(const MonitorState& state) const noexcept;
-  double lag_s(const LinkState& link) const noexcept;
-  bool stalled(const LinkState& state, double now_s) const noexcept;
+  bool stalled(const MonitorState& state, double now_s) const noexcept;
+  // Reader thread.
+  void publish_state() noexcept;
   void publish_sample() noexcept;
 
   DeviceCalibration calibration_;
@@ -81,15 +81,17 @@ class DeviceEndpoint : public Device, public LinkListener {
   std::atomic<bool> zeroing_asked_{false};
   std::atomic<double> commanded_N_{0.0};  // last command
   std::atomic<double> last_written_s_{0.0};
+  std::atomic<double> connected_at_s_{0.0};
   std::atomic<std::uint64_t> accepted_{0};            // number of accepted samples
   std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence modulo 256
   static_assert(std::atomic<double>::is_always_lock_free);
-  TripleBuffer<LinkState> state_;
+  TripleBuffer<MonitorState> state_;
   SpscRing<DeviceSample, 256> samples_;
   TripleBuffer<Command> command_;
   // Reader thread only.
   StreamMonitor monitor_;
-  LinkState link_;
+  double round_trip_s_ = std::numeric_limits<double>::quiet_NaN();
+  bool connected_ = false;
   std::uint32_t streams_published_ = 0;
   // Writer thread only.
   std::uint32_t sequence_ = 0;
@@ -97,10 +99,35 @@ class DeviceEndpoint : public Device, public LinkListener {
   double last_beat_s_ = 0.0;
   double last_sent_s_ = -1.0;
   std::uint64_t answered_ = 0;  // accepted samples at the last command
-  std::atomic<double> connected_at_s_{0.0};
   // Haptics thread only.
   Command next_command_;
   bool began_ = false;  // a sample was read, so that the position is known
+};
+
+// A DeviceEndpoint and its threads.
+class LinkedDevice final : public DeviceEndpoint {
+ public:
+  // `bus` outlives this, or is `own_bus`; `opened` has the calibration's protocol, which renders force; `name`: as in
+  // --device.
+  LinkedDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened, std::string name = "hid",
+               std::unique_ptr<DeviceBus> own_bus = nullptr)
+      : DeviceEndpoint(calibration, std::move(name)),
+        own_bus_(std::move(own_bus)),
+        measures_force_(opened.measures_force),
+        link_(bus, *this, std::move(opened)) {}
+  ~LinkedDevice() override { close(); }
+
+  bool measures_force() const noexcept override { return measures_force_; }
+  // Errors: a thread cannot be started.
+  Status open() override { return link_.start(); }
+  void close() noexcept override { link_.stop(); }
+  // See DeviceLink::description.
+  std::string note() const override { return link_.description(); }
+
+ private:
+  std::unique_ptr<DeviceBus> own_bus_;
+  bool measures_force_;
+  DeviceLink link_;
 };
 
 }  // namespace palpate

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <optional>
 #include <system_error>
 #include <utility>
 
+#include "devices/link/device_stop.h"
 #include "engine/live/pacer.h"
 #include "engine/live/rt_thread.h"
 
@@ -19,9 +19,9 @@ constexpr auto kPause = std::chrono::milliseconds(10);
 // Real-time priority below the 80 of the haptics thread.
 constexpr int kPriority = 70;
 
-// Searches the bus once; devices that cannot be opened are reported in `problems`.
-std::optional<OpenedDevice> try_open(DeviceBus& bus, const DeviceProtocols& protocols, std::string& problems) {
-  problems.clear();
+// Searches the bus once, as open_first.
+Result<OpenedDevice> try_open(DeviceBus& bus, const std::vector<const DeviceProtocol*>& protocols) {
+  std::string problems;
   for (const DeviceNode& info : bus.list()) {
     const auto needed =
         std::find_if(protocols.begin(), protocols.end(), [&](const DeviceProtocol* one) { return one->matches(info); });
@@ -30,22 +30,19 @@ std::optional<OpenedDevice> try_open(DeviceBus& bus, const DeviceProtocols& prot
     if (connection) return OpenedDevice{info, *needed, std::move(*connection)};
     problems += (problems.empty() ? "" : "; ") + connection.error().message;
   }
-  return std::nullopt;
+  if (!problems.empty()) return Error{problems};
+  return OpenedDevice{};
 }
 
 }  // namespace
 
-Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols, bool* none_found) {
-  std::string problems;
-  for (int i = 0; i < kOpenTries; ++i) {
-    if (i > 0) std::this_thread::sleep_for(kBetweenTries);
-    if (std::optional<OpenedDevice> opened = try_open(bus, protocols, problems)) {
-      return Result<OpenedDevice>(std::move(*opened));
-    }
-    if (problems.empty()) break;
+Result<OpenedDevice> open_first(DeviceBus& bus, const std::vector<const DeviceProtocol*>& protocols) {
+  Result<OpenedDevice> opened = try_open(bus, protocols);
+  for (int more = 1; !opened && more < kOpenTries; ++more) {
+    std::this_thread::sleep_for(kBetweenTries);
+    opened = try_open(bus, protocols);
   }
-  if (none_found != nullptr) *none_found = problems.empty();
-  return Error{problems.empty() ? "no device that the program knows is plugged in" : problems};
+  return opened;
 }
 
 DeviceLink::DeviceLink(DeviceBus& bus, LinkListener& listener, OpenedDevice opened)
@@ -67,7 +64,9 @@ std::shared_ptr<DeviceConnection> DeviceLink::connection() noexcept {
 }
 
 void DeviceLink::use(std::shared_ptr<DeviceConnection> connection) noexcept {
-  if (connection != nullptr) connection->stop_with(protocol_.encode_stop());
+  unregister_device_stop(stop_slot_);
+  const bool stops = connection != nullptr && protocol_.renders_force;
+  stop_slot_ = stops ? register_device_stop(connection->descriptor(), protocol_.encode_stop()) : -1;
   const std::lock_guard<std::mutex> lock(mutex_);
   connection_.swap(connection);
 }
@@ -118,9 +117,8 @@ void DeviceLink::look_again() noexcept {
     std::this_thread::sleep_for(kPause);
     if (stop_.load(std::memory_order_relaxed)) return;
   }
-  std::string problems;
-  std::optional<OpenedDevice> opened = try_open(bus_, {&protocol_}, problems);
-  if (!opened) return;
+  Result<OpenedDevice> opened = try_open(bus_, {&protocol_});
+  if (!opened || opened->connection == nullptr) return;
   write(*opened->connection, protocol_.encode_start());
   listener_.connected(steady_now_s());
   use(std::move(opened->connection));
@@ -129,7 +127,9 @@ void DeviceLink::look_again() noexcept {
 void DeviceLink::write(DeviceConnection& connection, const OutReports& reports) noexcept {
   bool good = reports.count > 0;
   for (std::size_t i = 0; i < reports.count; ++i) {
+    if (!begin_force_write()) return;
     good = connection.write(reports.bytes[i].data(), reports.sizes[i]) && good;
+    end_force_write();
   }
   if (good) listener_.written(steady_now_s());
 }

@@ -1,19 +1,44 @@
-// The threads between an open device and its listener: one reads all reports, so that none queue up; the other writes
-// the newest command and skips older ones. Only they do blocking I/O. A device that was unplugged is searched for and
-// opened again until the link ends.
+// A DeviceBus lists devices and opens them. It is USB HID (devices/hid), a byte stream (devices/bridge), or a test
+// double.
+// A DeviceLink has the threads between an open device and its listener: one reads all reports, so that none queue up;
+// the other writes the newest command and skips older ones. Only they do blocking I/O. A device that was unplugged is
+// searched for and opened again until the link ends.
 #pragma once
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "devices/link/device_bus.h"
+#include "devices/link/device_protocol.h"
 #include "engine/base/result.h"
 
 namespace palpate {
+
+// One open device. One thread may call `read` and another one `write` at the same time; the rest is slow side.
+class DeviceConnection {
+ public:
+  virtual ~DeviceConnection() = default;
+  // Blocks for a limited time. Returns the size of the next report; 0: none yet; below 0: the device is gone.
+  virtual int read(std::uint8_t* bytes, std::size_t capacity) noexcept = 0;
+  // Blocking. False: the report was not accepted.
+  virtual bool write(const std::uint8_t* bytes, std::size_t size) noexcept = 0;
+  // The file to which the stop report is written when a signal ends the program (device_stop.h); -1: none.
+  virtual int descriptor() const noexcept { return -1; }
+};
+
+class DeviceBus {
+ public:
+  virtual ~DeviceBus() = default;
+  // Slow side. One entry per node.
+  virtual std::vector<DeviceNode> list() = 0;
+  // Slow side. Errors: the node cannot be opened; with the reason and what to do.
+  virtual Result<std::unique_ptr<DeviceConnection>> open(const DeviceNode& node) = 0;
+};
 
 // Receives the reports of a link and gives the commands to write. `now_s`: steady clock.
 class LinkListener {
@@ -23,24 +48,23 @@ class LinkListener {
   virtual void connected(double now_s) noexcept = 0;
   virtual void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept = 0;
   virtual void unplugged() noexcept = 0;
-  // Writer thread.
-  virtual OutReports next(double now_s) noexcept = 0;  // empty: nothing to write now
-  virtual void written(double now_s) noexcept = 0;
+  // Writer thread, of a protocol that renders force.
+  virtual OutReports next(double) noexcept { return {}; }  // empty: nothing to write now
+  virtual void written(double) noexcept {}
 };
 
 // An open device, its node and its protocol.
 struct OpenedDevice {
-  DeviceNode info;
-  const DeviceProtocol* protocol = nullptr;  // not null once it is open
-  std::unique_ptr<DeviceConnection> connection;
+  DeviceNode info{};
+  const DeviceProtocol* protocol = nullptr;
+  std::unique_ptr<DeviceConnection> connection{};  // null: no device was found
   bool measures_force = false;
 };
 
-// Opens the first device of one of `protocols`. Where one is plugged in but cannot be opened, it tries for half a
-// second, because udev may still be setting the permissions.
-// Slow side. Errors: none is plugged in (then *none_found is true, else false); all that are plugged in cannot be
-// opened, with the reason for each.
-Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols, bool* none_found = nullptr);
+// Opens the first device of one of `protocols`; without a connection if none is plugged in. Where one is plugged in but
+// cannot be opened, it tries for half a second, because udev may still be setting the permissions.
+// Slow side. Errors: none of the devices that are plugged in can be opened, with the reason for each.
+Result<OpenedDevice> open_first(DeviceBus& bus, const std::vector<const DeviceProtocol*>& protocols);
 
 class DeviceLink {
  public:
@@ -76,6 +100,7 @@ class DeviceLink {
   const DeviceProtocol& protocol_;
   std::mutex mutex_;  // guards connection_; the haptics thread never locks it
   std::shared_ptr<DeviceConnection> connection_;
+  int stop_slot_ = -1;  // of connection_, see device_stop.h
   std::atomic<bool> stop_{false};
   std::thread reader_;
   std::thread writer_;

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <vector>
 
 namespace palpate {
 
@@ -81,8 +80,5 @@ struct DeviceProtocol {
   // Removes the force.
   OutReports (*encode_stop)() noexcept;
 };
-
-// No element is null.
-using DeviceProtocols = std::vector<const DeviceProtocol*>;
 
 }  // namespace palpate

@@ -27,9 +27,26 @@ std::atomic<int> writes_under_way{0};
 std::atomic<bool> no_more_forces{false};
 constexpr int kLongestWrite_ms = 20;  // several times the duration of a report on USB
 
+// Async-signal-safe.
+void stop_all_devices() noexcept {
+  no_more_forces.store(true);
+  // The wait is bounded, because this handler may have interrupted the thread that writes.
+  for (int i = 0; i < kLongestWrite_ms && writes_under_way.load() > 0; ++i) poll(nullptr, 0, 1);
+  for (Slot& slot : slots) {
+    const int descriptor = slot.descriptor.load(std::memory_order_acquire);
+    if (descriptor < 0) continue;
+    for (std::size_t i = 0; i < slot.reports.count; ++i) {
+      // A signal handler cannot react to an error.
+      [[maybe_unused]] const ssize_t written = ::write(descriptor, slot.reports.bytes[i].data(), slot.reports.sizes[i]);
+    }
+  }
+}
+
 }  // namespace
 
 int register_device_stop(int descriptor, const OutReports& reports) noexcept {
+  stop_forces_by(stop_all_devices);
+  install_signal_handlers();
   for (std::size_t i = 0; i < kSlots; ++i) {
     if (slots[i].taken.exchange(true)) continue;
     slots[i].reports = reports;
@@ -54,24 +71,5 @@ bool begin_force_write() noexcept {
 }
 
 void end_force_write() noexcept { writes_under_way.fetch_sub(1); }
-
-void stop_all_devices() noexcept {
-  no_more_forces.store(true);
-  // The wait is bounded, because this handler may have interrupted the thread that writes.
-  for (int i = 0; i < kLongestWrite_ms && writes_under_way.load() > 0; ++i) poll(nullptr, 0, 1);
-  for (Slot& slot : slots) {
-    const int descriptor = slot.descriptor.load(std::memory_order_acquire);
-    if (descriptor < 0) continue;
-    for (std::size_t i = 0; i < slot.reports.count; ++i) {
-      // A signal handler cannot react to an error.
-      [[maybe_unused]] const ssize_t written = ::write(descriptor, slot.reports.bytes[i].data(), slot.reports.sizes[i]);
-    }
-  }
-}
-
-void stop_devices_on_signals() noexcept {
-  stop_forces_by(stop_all_devices);
-  install_signal_handlers();
-}
 
 }  // namespace palpate

@@ -10,8 +10,9 @@
 
 namespace palpate {
 
-// Slow side. `reports` are written to `descriptor`, which stays open until `unregister_device_stop`. Returns the slot;
-// -1 when all eight are in use.
+// Slow side. `reports` are written to `descriptor`, which stays open until `unregister_device_stop`, when one of the
+// signals of signals.h ends the program: new writes of forces are refused, running ones finish within 20 ms, and the
+// registered reports are the last. Returns the slot; -1 when all eight are in use.
 int register_device_stop(int descriptor, const OutReports& reports) noexcept;
 // Slow side. -1 is ignored.
 void unregister_device_stop(int slot) noexcept;
@@ -20,13 +21,5 @@ void unregister_device_stop(int slot) noexcept;
 // program; do not write, and report the write as failed. Else call `end_force_write` afterwards.
 bool begin_force_write() noexcept;
 void end_force_write() noexcept;
-
-// Async-signal-safe: blocks new force writes, waits for running ones (at most 20 ms), then writes all registered
-// reports as the last ones.
-void stop_all_devices() noexcept;
-
-// Slow side, may be called repeatedly: handles the signals (signals.h) so that all devices stop before one of them ends
-// the program. LinkedDevice::open calls it.
-void stop_devices_on_signals() noexcept;
 
 }  // namespace palpate

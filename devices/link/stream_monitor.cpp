@@ -23,7 +23,7 @@ bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::
 StreamMonitor::StreamMonitor(const DeviceCalibration& calibration) noexcept
     : calibration_(calibration), protocol_(*calibration.protocol) {
   state_.late_after_s = calibration.limits.stale_after_s;
-  if (protocol_.absolute) state_.zeroing = Zeroing::not_needed;
+  state_.health.zeroing = protocol_.absolute ? Zeroing::not_needed : Zeroing::needed;
 }
 
 void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
@@ -39,8 +39,8 @@ void StreamMonitor::lose(std::uint32_t bit, double now_s) noexcept {
     return;
   }
   state_.lost |= bit;
-  state_.zeroing = Zeroing::needed;
-  state_.zeroing_progress = 0.0F;
+  state_.health.zeroing = Zeroing::needed;
+  state_.health.zeroing_progress = 0.0F;
 }
 
 void StreamMonitor::unplugged() noexcept {
@@ -50,65 +50,49 @@ void StreamMonitor::unplugged() noexcept {
 }
 
 void StreamMonitor::start_zeroing() noexcept {
-  if (state_.zeroing == Zeroing::not_needed) return;
-  state_.zeroing = Zeroing::hold_still;
-  state_.zeroing_progress = 0.0F;
+  if (state_.health.zeroing == Zeroing::not_needed) return;
+  state_.health.zeroing = Zeroing::hold_still;
+  state_.health.zeroing_progress = 0.0F;
   zeroing_since_s_ = -1.0;
 }
 
-bool StreamMonitor::started_again(const DeviceReading& reading) noexcept {
-  refused_in_order_ = reading.sequence == refused_ + 1 ? refused_in_order_ + 1 : 0;
-  refused_ = reading.sequence;
-  return refused_in_order_ >= kStartedAgain;
-}
-
-bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcept {
-  if (!protocol_.timed || !connected_) return true;
-  const bool newer = later(reading.sequence, last_.sequence);
-  // A repeated report is ignored; the age of the sample grows until it is late.
-  const bool again = reading.sequence == last_.sequence;
-  if (!newer && !again && started_again(reading)) {
-    lose(device_fault::kReset, now_s);
-    connected_ = false;
-    return true;
-  }
-  if (newer) return true;
-  if (!again) fault(device_fault::kOutOfOrder, now_s);
-  return false;
-}
-
-// After a pause, or when the device's clock was set back, a new stream begins: neither the fit of the clock nor the
-// motion continues.
-void StreamMonitor::watch_clock(const DeviceReading& reading, double now_s) noexcept {
-  if (!protocol_.timed || !connected_) return;
-  const bool set_back = static_cast<std::int32_t>(reading.time_us - last_.time_us) <= 0;
-  if (set_back) fault(device_fault::kReset, now_s);
-  if (set_back || now_s - state_.sample_time_s > kLongestSilence_s) connected_ = false;
-}
-
-bool StreamMonitor::settled(const DeviceReading& reading, double now_s) noexcept {
-  if (!protocol_.timed || connected_) return true;
-  if (first_s_ < 0.0) {
-    clock_.restart();
-    first_s_ = now_s;
-  }
-  if (now_s - first_s_ >= kSettling_s) return true;
-  clock_.host_time_s(reading.time_us, now_s);
-  return false;
-}
-
-bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept {
+bool StreamMonitor::accept_untimed(double now_s) noexcept {
   const bool together = now_s - arrivals_s_[2] < kTogether_s;
   std::copy_backward(arrivals_s_, arrivals_s_ + 2, arrivals_s_ + 3);
   arrivals_s_[0] = now_s;
-  if (!protocol_.timed) {
-    read_time_s_ = now_s;
-    if (together) fault(device_fault::kBurst, now_s);
-    return !together;
+  read_time_s_ = now_s;
+  if (together) fault(device_fault::kBurst, now_s);
+  return !together;
+}
+
+bool StreamMonitor::accept_timed(const DeviceReading& reading, double now_s) noexcept {
+  if (connected_ && !later(reading.sequence, last_.sequence)) {
+    // A repeated report is ignored; the age of the sample grows until it is late.
+    if (reading.sequence == last_.sequence) return false;
+    refused_in_order_ = reading.sequence == refused_ + 1 ? refused_in_order_ + 1 : 0;
+    refused_ = reading.sequence;
+    if (refused_in_order_ < kStartedAgain) {
+      fault(device_fault::kOutOfOrder, now_s);
+      return false;
+    }
+    lose(device_fault::kReset, now_s);
+    connected_ = false;
+  }
+  // After a pause, or when the device's clock was set back, a new stream begins: neither the fit of the clock nor the
+  // motion continues.
+  if (connected_) {
+    const bool set_back = static_cast<std::int32_t>(reading.time_us - last_.time_us) <= 0;
+    if (set_back) fault(device_fault::kReset, now_s);
+    connected_ = !set_back && now_s - state_.sample_time_s <= kLongestSilence_s;
+  }
+  if (!connected_ && first_s_ < 0.0) {
+    clock_ = {};
+    first_s_ = now_s;
   }
   read_time_s_ = clock_.host_time_s(reading.time_us, now_s);
+  if (!connected_ && now_s - first_s_ < kSettling_s) return false;
   late_ = now_s - read_time_s_ > (late_ ? kOnTimeAgain : 1.0) * state_.late_after_s;
-  if (late_) fault(now_s - arrivals_s_[1] < kTogether_s ? device_fault::kBurst : device_fault::kLate, now_s);
+  if (late_) fault(device_fault::kLate, now_s);
   return !late_;
 }
 
@@ -140,7 +124,7 @@ void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
 }
 
 void StreamMonitor::watch_zeroing(double now_s) noexcept {
-  if (state_.zeroing != Zeroing::hold_still) return;
+  if (state_.health.zeroing != Zeroing::hold_still) return;
   zeroing_from_ = std::min(zeroing_from_, state_.counts);
   zeroing_to_ = std::max(zeroing_to_, state_.counts);
   const double most = std::max(2.0, kRest_m * calibration_.counts_per_metre);
@@ -149,10 +133,10 @@ void StreamMonitor::watch_zeroing(double now_s) noexcept {
     zeroing_from_ = zeroing_to_ = state_.counts;
   }
   const double share = (now_s - zeroing_since_s_) / kZeroing_s;
-  state_.zeroing_progress = static_cast<float>(std::min(1.0, share));
+  state_.health.zeroing_progress = static_cast<float>(std::min(1.0, share));
   if (share < 1.0) return;
   state_.zero_counts = 0.5 * static_cast<double>(zeroing_from_ + zeroing_to_);
-  state_.zeroing = Zeroing::done;
+  state_.health.zeroing = Zeroing::done;
   state_.lost = 0;
   ++state_.streams;
 }
@@ -163,9 +147,7 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
   if (reading.own_fault) fault(device_fault::kOwn, now_s);
   if (reading.stopped) fault(device_fault::kWriteStalled, now_s);
   if (verdict != ReportVerdict::position) return;
-  if (!in_order(reading, now_s)) return;
-  watch_clock(reading, now_s);
-  if (!settled(reading, now_s) || !recent(reading, now_s)) return;
+  if (!(protocol_.timed ? accept_timed(reading, now_s) : accept_untimed(now_s))) return;
   const std::int64_t before = state_.counts;
   move(reading, now_s);
   if (!connected_ && protocol_.absolute) ++state_.streams;
@@ -178,14 +160,15 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
   state_.sample_time_s = std::max(read_time_s_, before_s + kLeastStep_s);
   if (connected_) {
     const double step_s = std::min(state_.sample_time_s - before_s, kHold_s);
-    state_.interval_s += (step_s - state_.interval_s) * (state_.interval_s > 0.0 ? kIntervalShare : 1.0);
+    state_.health.interval_s +=
+        (step_s - state_.health.interval_s) * (state_.health.interval_s > 0.0 ? kIntervalShare : 1.0);
   }
   if (protocol_.timed) {
     state_.late_after_s =
-        std::clamp(kLateIntervals * state_.interval_s, calibration_.limits.stale_after_s, kLongestSilence_s);
+        std::clamp(kLateIntervals * state_.health.interval_s, calibration_.limits.stale_after_s, kLongestSilence_s);
   }
   state_.measured_N = reading.measured_N;
-  state_.grip = reading.grip;
+  state_.health.grip_held = reading.grip;
   ++state_.samples;
   last_ = reading;
   connected_ = true;

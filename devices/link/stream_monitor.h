@@ -4,8 +4,7 @@
 //   the decoder refuses a report                                          kCorrupt, kWrongFirmware
 //   a sequence number decreases                                           kOutOfOrder
 //   timed: a sample is older than late_after_s                            kLate
-//   reports waited in a queue (timed: a late sample within kTogether_s of
-//   the one before; else four reports within kTogether_s)                 kBurst
+//   untimed: four reports within kTogether_s waited in a queue            kBurst
 //   a step is faster than the device or a hand can move                   kJump
 //   sequence numbers or the device's time start again                     kReset
 //   no count changes within `stuck_after_s` at kPushing_N or more         kStuck
@@ -37,12 +36,9 @@ struct MonitorState {
   std::uint32_t transient = 0;  // device_fault, until transient_until_s
   std::uint32_t lost = 0;       // device_fault, until the device is zeroed
   std::uint32_t streams = 0;    // number of streams; one begins when the position becomes known or jumps
-  double interval_s = 0.0;      // between samples, averaged over about ten
   double late_after_s = 0.0;    // largest age of a sample, see kLateIntervals
   double measured_N = std::numeric_limits<double>::quiet_NaN();
-  Zeroing zeroing = Zeroing::needed;
-  float zeroing_progress = 0.0F;
-  bool grip = false;
+  DeviceHealth health;  // zeroing, grip and interval, which is averaged over about ten samples
 };
 
 class StreamMonitor {
@@ -80,11 +76,9 @@ class StreamMonitor {
  private:
   void fault(std::uint32_t bit, double now_s) noexcept;
   void lose(std::uint32_t bit, double now_s) noexcept;
-  bool started_again(const DeviceReading& reading) noexcept;
-  bool in_order(const DeviceReading& reading, double now_s) noexcept;
-  void watch_clock(const DeviceReading& reading, double now_s) noexcept;
-  bool settled(const DeviceReading& reading, double now_s) noexcept;
-  bool recent(const DeviceReading& reading, double now_s) noexcept;
+  // Whether the reading is used. They set read_time_s_; a new stream ends connected_.
+  bool accept_untimed(double now_s) noexcept;
+  bool accept_timed(const DeviceReading& reading, double now_s) noexcept;
   void move(const DeviceReading& reading, double now_s) noexcept;
   void watch_stuck(double now_s, double force_N) noexcept;
   void watch_zeroing(double now_s) noexcept;
@@ -100,7 +94,7 @@ class StreamMonitor {
   double first_s_ = -1.0;                      // arrival of the first reading of a new timed stream; below 0: none
   double read_time_s_ = 0.0;                   // of the present reading
   double speed_ = 0.0;                         // counts per second, of the last step
-  double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three readings, newest first
+  double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three untimed readings, newest first
   double still_since_s_ = 0.0;
   bool late_ = false;
   double zeroing_since_s_ = -1.0;  // below 0: not begun

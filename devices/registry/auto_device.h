@@ -1,5 +1,5 @@
 // The simulated hand, until the user moves the mouse or a SpaceMouse, and again once both have been idle for
-// MouseSettings::idle_time_s. The tool continues from its last position.
+// MouseDevice::kIdleTime_s. The tool continues from its last position.
 // Thread guarantee: as Device; `mouse` as ToolInput.
 #pragma once
 
@@ -17,20 +17,18 @@ namespace palpate {
 
 class AutoDevice final : public MouseDevice {
  public:
-  explicit AutoDevice(std::uint64_t seed = 1, const HandSettings& hand = {}, const MouseSettings& mouse = {})
-      : MouseDevice(mouse, "auto"), hand_(seed, hand) {}
+  // `space_mouse`: null where there is none; `note`: see Device::note.
+  explicit AutoDevice(std::uint64_t seed = 1, const HandSettings& hand = {},
+                      std::unique_ptr<SpaceMouse> space_mouse = nullptr, std::string note = "")
+      : MouseDevice("auto"), note_(std::move(note)), space_mouse_(std::move(space_mouse)), hand_(seed, hand) {}
+  ~AutoDevice() override { close(); }
 
-  // Call them before `open`: the text of `note`, and a SpaceMouse if there is one.
-  void explain(std::string note) { note_ = std::move(note); }
-  void use(std::unique_ptr<SpaceMouse> space_mouse) { space_mouse_ = std::move(space_mouse); }
-
-  Status open() override { return space_mouse_ != nullptr ? space_mouse_->start() : Status(); }
+  Status open() override { return space_mouse_ != nullptr ? space_mouse_->start(*this) : Status(); }
   void close() noexcept override {
     if (space_mouse_ != nullptr) space_mouse_->stop();
   }
   std::string note() const override { return note_; }
   bool read(double now_s, DeviceSample& sample) noexcept override {
-    if (space_mouse_ != nullptr) space_mouse_->axis().drive(*this, now_s);
     const bool exploring = idle(now_s);
     // Only this thread writes exploring_.
     const bool was_exploring = exploring_.load(std::memory_order_relaxed);

@@ -7,7 +7,7 @@
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/hid/spacemouse.h"
-#include "devices/link/linked_device.h"
+#include "devices/link/device_endpoint.h"
 #include "devices/registry/auto_device.h"
 #include "devices/virtual/hand_device.h"
 #include "devices/virtual/mouse_device.h"
@@ -16,8 +16,8 @@
 namespace palpate {
 namespace {
 
-DeviceProtocols protocols_that(bool render_force) {
-  DeviceProtocols protocols;
+std::vector<const DeviceProtocol*> protocols_that(bool render_force) {
+  std::vector<const DeviceProtocol*> protocols;
   for (const DeviceProtocol* protocol : kHidProtocols) {
     if (protocol->renders_force == render_force) protocols.push_back(protocol);
   }
@@ -26,57 +26,38 @@ DeviceProtocols protocols_that(bool render_force) {
 
 DeviceBus& bus_of(const DeviceRequest& request) { return request.bus != nullptr ? *request.bus : system_hid_bus(); }
 
-Result<DeviceCalibration> calibration_of(const DeviceRequest& request, const DeviceProtocol& protocol) {
-  if (request.calibrations.empty()) {
-    return Error{"found no calibrations of HID devices; set PALPATE_ASSETS to the assets folder"};
-  }
-  return read_calibration(request.calibrations, protocol);
-}
-
-// Opens the first HID device that renders forces, or does not, and makes a `T` of it with its calibration.
-// `none_found`: set if there is no such device.
-template <typename T>
-Result<std::unique_ptr<T>> make_hid_device(const DeviceRequest& request, bool renders_force, bool& none_found) {
-  Result<OpenedDevice> opened = open_first(bus_of(request), protocols_that(renders_force), &none_found);
+// Opens the first HID device that renders forces, or does not, and makes a `T` of it with its calibration. Null: none
+// is plugged in.
+template <typename T, typename Made = T>
+Result<std::unique_ptr<Made>> make_hid_device(const DeviceRequest& request, bool renders_force) {
+  Result<OpenedDevice> opened = open_first(bus_of(request), protocols_that(renders_force));
   if (!opened) return opened.error();
-  const Result<DeviceCalibration> calibration = calibration_of(request, *opened->protocol);
+  if (opened->connection == nullptr) return std::unique_ptr<Made>();
+  const Result<DeviceCalibration> calibration = read_calibration(request.calibrations, *opened->protocol);
   if (!calibration) return calibration.error();
-  return std::make_unique<T>(bus_of(request), *calibration, std::move(*opened));
+  return std::unique_ptr<Made>(std::make_unique<T>(bus_of(request), *calibration, std::move(*opened)));
 }
 
 MadeDevice make_hid(const std::string&, const DeviceRequest& request) {
-  bool no_haptic = false;
-  auto haptic = make_hid_device<LinkedDevice>(request, true, no_haptic);
-  if (haptic) return MadeDevice(std::move(*haptic));
-  if (!no_haptic) return haptic.error();
-  bool no_mouse = false;
-  auto mouse = make_hid_device<SpaceMouse>(request, false, no_mouse);
-  if (mouse) return MadeDevice(std::make_unique<SpaceMouseDevice>(std::move(*mouse)));
-  if (!no_mouse) return mouse.error();
+  MadeDevice haptic = make_hid_device<LinkedDevice, Device>(request, true);
+  if (!haptic || *haptic != nullptr) return haptic;
+  auto mouse = make_hid_device<SpaceMouse>(request, false);
+  if (!mouse) return mouse.error();
+  if (*mouse != nullptr) return MadeDevice(std::make_unique<SpaceMouseDevice>(std::move(*mouse)));
   return Error{"no haptic device is plugged in; plug one in or use --device auto (palpate devices explains)"};
 }
 
 MadeDevice make_auto(const std::string&, const DeviceRequest& request) {
-  bool no_haptic = false;
-  auto haptic = make_hid_device<LinkedDevice>(request, true, no_haptic);
-  if (haptic) return MadeDevice(std::move(*haptic));
-  auto device = std::make_unique<AutoDevice>(request.seed, request.hand);
-  std::string note = no_haptic ? "no haptic device is plugged in" : haptic.error().message;
-  bool no_mouse = false;
-  auto mouse = make_hid_device<SpaceMouse>(request, false, no_mouse);
-  if (!mouse && !no_mouse) note += "; " + mouse.error().message;
-  note += std::string(": a simulated hand moves until the mouse") + (mouse ? " or the SpaceMouse (no force)" : "") +
-          " takes over";
-  if (mouse) device->use(std::move(*mouse));
-  device->explain(std::move(note));
-  return MadeDevice(std::move(device));
+  MadeDevice haptic = make_hid_device<LinkedDevice, Device>(request, true);
+  if (haptic && *haptic != nullptr) return haptic;
+  std::string note = haptic ? "no haptic device is plugged in" : haptic.error().message;
+  auto mouse = make_hid_device<SpaceMouse>(request, false);
+  if (!mouse) note += "; " + mouse.error().message;
+  std::unique_ptr<SpaceMouse> space_mouse = mouse ? std::move(*mouse) : nullptr;
+  note += ": a simulated hand moves until the mouse";
+  note += space_mouse != nullptr ? " or the SpaceMouse (no force) takes over" : " takes over";
+  return MadeDevice(std::make_unique<AutoDevice>(request.seed, request.hand, std::move(space_mouse), std::move(note)));
 }
-
-MadeDevice make_hand(const std::string&, const DeviceRequest& request) {
-  return MadeDevice(std::make_unique<HandDevice>(request.seed, request.hand));
-}
-
-MadeDevice make_mouse(const std::string&, const DeviceRequest&) { return MadeDevice(std::make_unique<MouseDevice>()); }
 
 MadeDevice make_replay(const std::string& path, const DeviceRequest&) {
   if (path.empty()) return Error{"--device replay: names no recording; write replay:FILE.csv"};
@@ -86,11 +67,9 @@ MadeDevice make_replay(const std::string& path, const DeviceRequest&) {
 }
 
 MadeDevice make_bridge(const std::string& target, const DeviceRequest& request) {
-  const Result<BridgeTarget> parsed = parse_bridge_target(target);
-  if (!parsed) return parsed.error();
-  const Result<DeviceCalibration> calibration = calibration_of(request, kBridgeProtocol);
+  const Result<DeviceCalibration> calibration = read_calibration(request.calibrations, kBridgeProtocol);
   if (!calibration) return calibration.error();
-  auto bus = std::make_unique<BridgeBus>(*parsed, target);
+  auto bus = std::make_unique<BridgeBus>(target);
   Result<OpenedDevice> opened = bus->open_and_identify();
   if (!opened) return opened.error();
   BridgeBus& used = *bus;
@@ -110,8 +89,12 @@ const std::vector<DeviceEntry>& device_entries() {
       {{"auto", "a haptic device if there is one, otherwise a simulated hand until the mouse takes over",
         Holder::simulated, ""},
        make_auto},
-      {{"hand", "a simulated hand that moves by itself and yields to the force", Holder::simulated, ""}, make_hand},
-      {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", Holder::simulated, ""}, make_mouse},
+      {{"hand", "a simulated hand that moves by itself and yields to the force", Holder::simulated, ""},
+       [](const std::string&, const DeviceRequest& request) {
+         return MadeDevice(std::make_unique<HandDevice>(request.seed, request.hand));
+       }},
+      {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", Holder::simulated, ""},
+       [](const std::string&, const DeviceRequest&) { return MadeDevice(std::make_unique<MouseDevice>()); }},
       {{"hid", "a haptic device on a USB port, or a SpaceMouse without force", Holder::person, ""}, make_hid},
       {{"replay:FILE", "a recording, repeated at its own speed; its force is the reference", Holder::none, ""},
        make_replay},

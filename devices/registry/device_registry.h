@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/link/device_bus.h"
+#include "devices/link/device_link.h"
 #include "devices/virtual/hand_motion.h"
 #include "engine/live/device.h"
 
@@ -23,7 +23,7 @@ struct DeviceDescription {
 struct DeviceRequest {
   std::uint64_t seed = 1;  // of the simulated hand
   HandSettings hand{};     // of the simulated hand
-  // Folder of the calibrations, assets/devices. Without it no HID or bridge device can be opened.
+  // Folder of the calibrations, assets/devices, without which no HID or bridge device can be opened.
   std::string calibrations{};
   DeviceBus* bus = nullptr;  // bus of the HID devices; null: that of this machine
 };

@@ -17,28 +17,13 @@ constexpr double kStiffest_N_per_m = 20e3;
 
 }  // namespace
 
-void LearningHand::learn(double force_N, double step_s) noexcept {
-  if (!(position_m() > 0.0) || !(force_N > kLeastForce_N)) return;
-  has_felt_ = true;
-  const double secant_N_per_m = std::clamp(force_N / position_m(), kSoftest_N_per_m, kStiffest_N_per_m);
-  stiffness_N_per_m_ += std::min(1.0, step_s / kLearning_s) * (secant_N_per_m - stiffness_N_per_m_);
-}
-
-double LearningHand::held_depth_m(double force_N) const noexcept {
-  return std::min(force_N / stiffness_N_per_m_, settings().deepest_m);
-}
-
 SensorSpec SimulatedDevice::sensor() const noexcept {
-  SensorSpec sensor;
-  sensor.position_noise_m = 1e-7;
-  sensor.has_velocity = true;
-  sensor.velocity_noise_m_per_s = 1e-4;
-  return sensor;
+  return {.position_noise_m = 1e-7, .has_velocity = true, .velocity_noise_m_per_s = 1e-4};
 }
 
 bool SimulatedDevice::read(double now_s, DeviceSample& sample) noexcept {
-  if (started_ && !(now_s > now_s_)) return false;
-  if (started_) advance(std::min(now_s - now_s_, kLongestStep_s), force_N_);
+  if (now_s <= now_s_) return false;
+  if (now_s > now_s_) advance(std::min(now_s - now_s_, kLongestStep_s), force_N_);
   start_at(now_s);
   sample = {};
   sample.tool.time_s = now_s;
@@ -48,17 +33,24 @@ bool SimulatedDevice::read(double now_s, DeviceSample& sample) noexcept {
 }
 
 void HandDevice::resume_at(double position_m, double now_s) noexcept {
-  hand_.resume_at(position_m);
+  HandMotion::resume_at(position_m);
   start_at(now_s);
 }
 
 void HandDevice::advance(double gap_s, double force_N) noexcept {
   const int steps = static_cast<int>(std::ceil(gap_s / kSubstep_s));
   for (int i = 0; i < steps; ++i) {
-    hand_.move(gap_s / steps);
-    hand_.feel(force_N, gap_s / steps);
+    move(gap_s / steps);
+    feel(force_N, gap_s / steps);
   }
-  hand_.learn(force_N, gap_s);
+  if (!(position_m() > 0.0) || !(force_N > kLeastForce_N)) return;
+  has_felt_ = true;
+  const double secant_N_per_m = std::clamp(force_N / position_m(), kSoftest_N_per_m, kStiffest_N_per_m);
+  stiffness_N_per_m_ += std::min(1.0, gap_s / kLearning_s) * (secant_N_per_m - stiffness_N_per_m_);
+}
+
+double HandDevice::held_depth_m(double force_N) const noexcept {
+  return std::min(force_N / stiffness_N_per_m_, settings().deepest_m);
 }
 
 }  // namespace palpate

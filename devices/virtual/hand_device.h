@@ -5,29 +5,13 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "devices/virtual/hand_motion.h"
 #include "engine/live/device.h"
 
 namespace palpate {
-
-// A hand that estimates the block's stiffness from the force.
-class LearningHand final : public HandMotion {
- public:
-  LearningHand(const HandSettings& settings, std::uint64_t seed) : HandMotion(settings, seed) {}
-
-  // Updates the estimate with the force at the present position, which lasted for `step_s`.
-  void learn(double force_N, double step_s) noexcept;
-
- protected:
-  double held_depth_m(double force_N) const noexcept override;
-  bool is_pushed_back() const noexcept override { return has_felt_; }
-
- private:
-  bool has_felt_ = false;             // a force, which begins with the first model of a session
-  double stiffness_N_per_m_ = 800.0;  // secant, low-pass filtered; the initial value is a guess
-};
 
 // Force limits of simulated tools.
 inline constexpr ForceLimits kSimulatedLimits{40.0, 5000.0, 0.3};
@@ -50,31 +34,31 @@ class SimulatedDevice : public Device {
  protected:
   // Haptics thread: integrates the motion over `gap_s` with a constant force, in sufficiently small steps.
   virtual void advance(double gap_s, double force_N) noexcept = 0;
-  void start_at(double now_s) noexcept {
-    now_s_ = now_s;
-    started_ = true;
-  }
+  void start_at(double now_s) noexcept { now_s_ = now_s; }
 
  private:
   std::string name_;
   double force_N_ = 0.0;
-  double now_s_ = 0.0;
-  bool started_ = false;
+  double now_s_ = std::numeric_limits<double>::quiet_NaN();  // of the last sample; NaN: none yet
 };
 
-class HandDevice final : public SimulatedDevice {
+class HandDevice final : public SimulatedDevice, private HandMotion {
  public:
   explicit HandDevice(std::uint64_t seed = 1, const HandSettings& settings = {})
-      : SimulatedDevice("hand"), hand_(settings, seed) {}
+      : SimulatedDevice("hand"), HandMotion(settings, seed) {}
 
   // Haptics thread: see HandMotion::resume_at; `now_s`: steady clock.
   void resume_at(double position_m, double now_s) noexcept;
-  double position_m() const noexcept override { return hand_.position_m(); }
-  double velocity_m_per_s() const noexcept override { return hand_.velocity_m_per_s(); }
+  double position_m() const noexcept override { return HandMotion::position_m(); }
+  double velocity_m_per_s() const noexcept override { return HandMotion::velocity_m_per_s(); }
 
  private:
   void advance(double gap_s, double force_N) noexcept override;
-  LearningHand hand_;
+  double held_depth_m(double force_N) const noexcept override;
+  bool is_pushed_back() const noexcept override { return has_felt_; }
+
+  bool has_felt_ = false;             // a force, which begins with the first model of a session
+  double stiffness_N_per_m_ = 800.0;  // secant, low-pass filtered; the initial value is a guess
 };
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -18,17 +19,18 @@ constexpr double kPeakOverMean = 1.875;
 }  // namespace
 
 HandMotion::HandMotion(const HandSettings& settings, std::uint64_t seed) : settings_(settings), random_(seed, 0) {
-  using enum Gesture;
-  deck_ = {slow_press, slow_press, slow_press, taps,  taps,       taps,       poke,       poke,
-           poke,       poke,       poke,       steps, modulation, modulation, modulation, rest};
+  const std::pair<Gesture, int> times[] = {{&HandMotion::slow_press, 3}, {&HandMotion::taps, 3},
+                                           {&HandMotion::poke, 5},       {&HandMotion::steps, 1},
+                                           {&HandMotion::modulation, 3}, {&HandMotion::rest, 1}};
+  auto next = deck_.begin();
+  for (const auto& [gesture, count] : times) next = std::fill_n(next, count, gesture);
   dealt_ = deck_.size();
   const double slowness = std::min(1.0, settings.fastest_m_per_s / kUsual_m_per_s);
   for (Tremor& tremor : tremor_) {
     tremor.rate_rad_per_s = 2.0 * std::numbers::pi * any(8.0, 12.0);
     const double phase_rad = any(-std::numbers::pi, std::numbers::pi);
     const double amplitude_m = slowness * settings.tremor_rms_m * std::sqrt(2.0 / static_cast<double>(tremor_.size()));
-    tremor.along = amplitude_m * std::cos(phase_rad);
-    tremor.across = amplitude_m * std::sin(phase_rad);
+    tremor.vector_m = std::polar(amplitude_m, phase_rad);
   }
   position_m_ = segment_from_m_ = planned_m_ = aim_m_ = kStart_m;
   go({kStart_m, any(0.15, 0.4)});
@@ -40,14 +42,6 @@ void HandMotion::resume_at(double position_m) noexcept {
   segment_count_ = segment_ = 0;
   segment_time_s_ = 0.0;
   go({kStart_m, kReturn_s});
-}
-
-void HandMotion::start_tremor(double dt_s) {
-  tremor_dt_s_ = dt_s;
-  for (Tremor& tremor : tremor_) {
-    tremor.turn_cos = std::cos(tremor.rate_rad_per_s * dt_s);
-    tremor.turn_sin = std::sin(tremor.rate_rad_per_s * dt_s);
-  }
 }
 
 void HandMotion::move(double dt_s) noexcept {
@@ -77,14 +71,13 @@ void HandMotion::advance_aim(double dt_s) {
   const double distance_m = segment.target_m - segment_from_m_;
   aim_m_ = segment_from_m_ + distance_m * u * u * u * (10.0 + u * (6.0 * u - 15.0));
   aim_velocity_m_per_s_ = distance_m / segment.duration_s * 30.0 * u * u * (1.0 - u) * (1.0 - u);
-  if (dt_s != tremor_dt_s_) start_tremor(dt_s);
   for (Tremor& tremor : tremor_) {
-    const double along = tremor.along * tremor.turn_cos - tremor.across * tremor.turn_sin;
-    tremor.across = tremor.along * tremor.turn_sin + tremor.across * tremor.turn_cos;
-    tremor.along = along;
-    aim_m_ += along;
-    aim_velocity_m_per_s_ -= tremor.rate_rad_per_s * tremor.across;
+    if (dt_s != tremor_dt_s_) tremor.turn = std::polar(1.0, tremor.rate_rad_per_s * dt_s);
+    tremor.vector_m *= tremor.turn;
+    aim_m_ += tremor.vector_m.real();
+    aim_velocity_m_per_s_ -= tremor.rate_rad_per_s * tremor.vector_m.imag();
   }
+  tremor_dt_s_ = dt_s;
 }
 
 void HandMotion::go(Segment segment) {
@@ -104,26 +97,7 @@ void HandMotion::plan() {
     }
     dealt_ = 0;
   }
-  switch (deck_[dealt_++]) {
-    case Gesture::slow_press:
-      plan_slow_press();
-      break;
-    case Gesture::taps:
-      plan_taps();
-      break;
-    case Gesture::poke:
-      plan_poke();
-      break;
-    case Gesture::steps:
-      plan_steps();
-      break;
-    case Gesture::modulation:
-      plan_modulation();
-      break;
-    case Gesture::rest:
-      go({air(-0.010, -0.003), any(0.5, 1.0)});
-      break;
-  }
+  (this->*deck_[dealt_++])();
 }
 
 double HandMotion::air(double from_m, double to_m) {
@@ -137,7 +111,7 @@ void HandMotion::leave(double fastest_s, double slowest_s) {
   go({air_m, any(0.03, 0.15)});
 }
 
-void HandMotion::plan_slow_press() {
+void HandMotion::slow_press() {
   press({any(0.5, 1.0) * settings_.strongest_press_N, any(0.35, 0.9)});
   go({planned_m_, any(0.1, 0.6)});
   if (any(0.0, 1.0) < 0.4) {
@@ -147,7 +121,7 @@ void HandMotion::plan_slow_press() {
   leave(0.2, 0.7);
 }
 
-void HandMotion::plan_taps() {
+void HandMotion::taps() {
   const std::uint64_t count = 5 + random_.index(6);
   for (std::uint64_t i = 0; i < count; ++i) {
     press({any(0.2, 0.85) * settings_.strongest_press_N, any(0.1, 0.18)});
@@ -155,13 +129,13 @@ void HandMotion::plan_taps() {
   }
 }
 
-void HandMotion::plan_poke() {
+void HandMotion::poke() {
   press({any(0.5, 0.95) * settings_.strongest_press_N, any(0.1, 0.2)});
   go({planned_m_, any(0.02, 0.4)});
   leave(0.08, 0.25);
 }
 
-void HandMotion::plan_steps() {
+void HandMotion::steps() {
   const std::uint64_t count = 3 + random_.index(4);
   for (std::uint64_t i = 0; i < count; ++i) {
     press({any(0.05, 1.0) * settings_.strongest_press_N, any(0.1, 0.3)});
@@ -170,7 +144,7 @@ void HandMotion::plan_steps() {
   leave(0.15, 0.5);
 }
 
-void HandMotion::plan_modulation() {
+void HandMotion::modulation() {
   const double middle = any(0.4, 0.6);
   const double swing = any(0.2, 0.4);
   press({middle * settings_.strongest_press_N, any(0.3, 0.6)});
@@ -181,5 +155,7 @@ void HandMotion::plan_modulation() {
   }
   leave(0.15, 0.6);
 }
+
+void HandMotion::rest() { go({air(-0.010, -0.003), any(0.5, 1.0)}); }
 
 }  // namespace palpate

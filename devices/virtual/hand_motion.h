@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -26,7 +27,7 @@ struct HandSettings {
   double damping_Ns_per_m = 14.0;    // 0.7 of critical in the air
   double tremor_rms_m = 5e-5;
   double strongest_press_N = 6.0;  // largest target force
-  double deepest_m = 0.012;        // largest depth that LearningHand assumes for a force
+  double deepest_m = 0.012;        // largest depth that HandDevice assumes for a force
   double fastest_m_per_s = std::numeric_limits<double>::infinity();  // largest speed of the target, without tremor
 };
 
@@ -56,7 +57,7 @@ class HandMotion {
   const HandSettings& settings() const noexcept { return settings_; }
 
  private:
-  enum class Gesture { slow_press, taps, poke, steps, modulation, rest };
+  using Gesture = void (HandMotion::*)();  // plans the segments of one gesture
   struct Segment {
     double target_m = 0.0;
     double duration_s = 0.0;
@@ -67,16 +68,18 @@ class HandMotion {
   };
   // A tremor component as a rotating vector, which needs no cosine per step.
   struct Tremor {
-    double along = 0.0, across = 0.0, turn_cos = 1.0, turn_sin = 0.0, rate_rad_per_s = 0.0;
+    std::complex<double> vector_m, turn;  // the real part is the displacement; the turn of one step
+    double rate_rad_per_s = 0.0;
   };
   static constexpr std::size_t kMostSegments = 32;
 
   void plan();
-  void plan_slow_press();
-  void plan_taps();
-  void plan_poke();
-  void plan_steps();
-  void plan_modulation();
+  void slow_press();
+  void taps();
+  void poke();
+  void steps();
+  void modulation();
+  void rest();
   // The arguments are structs because braces are evaluated from left to right, so that random numbers are drawn in a
   // defined order.
   void go(Segment segment);
@@ -84,7 +87,6 @@ class HandMotion {
   void leave(double fastest_s, double slowest_s);
   // A random position in the air, nearer to the block where fastest_m_per_s is small.
   double air(double from_m, double to_m);
-  void start_tremor(double dt_s);
   double aim_for(double force_N) const noexcept {
     return held_depth_m(force_N) + (is_pushed_back() ? force_N / settings_.stiffness_N_per_m : 0.0);
   }

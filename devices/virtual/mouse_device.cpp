@@ -2,28 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace palpate {
 namespace {
 
-constexpr double kMouseStart_m = -0.006;
+constexpr HandSettings kArm;                         // mass, stiffness and damping of the coupling
+constexpr double kSmoothingTime_s = 0.015;           // tau: two reports of a mouse at 125 Hz
+constexpr double kDriveAcceleration_m_per_s2 = 0.3;  // of the velocity of `drive`: 18 mm/s after 60 ms
 // A twentieth of the shortest time constant of the coupling, m / c.
 constexpr double kMouseSubstep_s = 250e-6;
 
 }  // namespace
 
-MouseDevice::MouseDevice(const MouseSettings& settings, const char* name)
-    : SimulatedDevice(name),
-      settings_(settings),
-      target_m_(kMouseStart_m),
-      last_input_s_(-std::numeric_limits<double>::infinity()),
-      smooth_m_(kMouseStart_m),
-      position_m_(kMouseStart_m) {}
-
 void MouseDevice::set_target(double position_m, double now_s) noexcept {
   if (!std::isfinite(position_m)) return;
-  target_m_.store(std::clamp(position_m, settings_.highest_m, settings_.deepest_m), std::memory_order_relaxed);
+  target_m_.store(std::clamp(position_m, kHighest_m, kDeepest_m), std::memory_order_relaxed);
   last_input_s_.store(now_s, std::memory_order_relaxed);
 }
 
@@ -32,7 +25,7 @@ void MouseDevice::nudge(double by_m, double now_s) noexcept { set_target(target_
 // A tick between the two stores sees the old velocity with the new limit. It is on the other side and stops the target.
 void MouseDevice::drive(double velocity_m_per_s, double limit_m, double now_s) noexcept {
   if (!std::isfinite(velocity_m_per_s) || !std::isfinite(limit_m)) return;
-  drive_limit_m_.store(std::clamp(limit_m, settings_.highest_m, settings_.deepest_m), std::memory_order_relaxed);
+  drive_limit_m_.store(std::clamp(limit_m, kHighest_m, kDeepest_m), std::memory_order_relaxed);
   drive_m_per_s_.store(velocity_m_per_s, std::memory_order_relaxed);
   last_input_s_.store(now_s, std::memory_order_relaxed);
 }
@@ -44,7 +37,7 @@ void MouseDevice::release() noexcept {
 
 bool MouseDevice::idle(double now_s) const noexcept {
   return drive_m_per_s_.load(std::memory_order_relaxed) == 0.0 &&
-         !(now_s - last_input_s_.load(std::memory_order_relaxed) < settings_.idle_time_s);
+         !(now_s - last_input_s_.load(std::memory_order_relaxed) < kIdleTime_s);
 }
 
 void MouseDevice::resume_at(double position_m, double velocity_m_per_s, double now_s) noexcept {
@@ -57,7 +50,7 @@ void MouseDevice::resume_at(double position_m, double velocity_m_per_s, double n
 
 void MouseDevice::move_target(double gap_s) noexcept {
   const double wanted_m_per_s = drive_m_per_s_.load(std::memory_order_relaxed);
-  const double most_m_per_s = settings_.drive_acceleration_m_per_s2 * gap_s;
+  const double most_m_per_s = kDriveAcceleration_m_per_s2 * gap_s;
   target_velocity_m_per_s_ += std::clamp(wanted_m_per_s - target_velocity_m_per_s_, -most_m_per_s, most_m_per_s);
   if (target_velocity_m_per_s_ == 0.0) return;
   const double limit_m = drive_limit_m_.load(std::memory_order_relaxed);
@@ -66,7 +59,7 @@ void MouseDevice::move_target(double gap_s) noexcept {
   if (target_velocity_m_per_s_ > 0.0) {
     // The spring of the hand is stretched in contact, so the target may be deeper than the limit of the tool.
     if (position_m_ >= limit_m) to_m = from_m;
-    to_m = std::min(to_m, settings_.deepest_m);
+    to_m = std::min(to_m, kDeepest_m);
   } else {
     to_m = std::max(to_m, std::min(from_m, limit_m));
   }
@@ -80,11 +73,11 @@ void MouseDevice::advance(double gap_s, double force_N) noexcept {
   const int steps = static_cast<int>(std::ceil(gap_s / kMouseSubstep_s));
   for (int i = 0; i < steps; ++i) {
     const double step_s = gap_s / steps;
-    const double drift_m_per_s = (target_m() - smooth_m_) / settings_.smoothing_time_s;
+    const double drift_m_per_s = (target_m() - smooth_m_) / kSmoothingTime_s;
     smooth_m_ += drift_m_per_s * step_s;
-    const double drive_N = settings_.stiffness_N_per_m * (smooth_m_ - position_m_) +
-                           settings_.damping_Ns_per_m * (drift_m_per_s - velocity_m_per_s_);
-    velocity_m_per_s_ += step_s * (drive_N - force_N) / settings_.mass_kg;
+    const double drive_N = kArm.stiffness_N_per_m * (smooth_m_ - position_m_) +
+                           kArm.damping_Ns_per_m * (drift_m_per_s - velocity_m_per_s_);
+    velocity_m_per_s_ += step_s * (drive_N - force_N) / kArm.mass_kg;
     position_m_ += step_s * velocity_m_per_s_;
   }
 }

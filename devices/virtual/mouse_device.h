@@ -7,39 +7,32 @@
 #pragma once
 
 #include <atomic>
+#include <limits>
 
 #include "devices/virtual/hand_device.h"
 
 namespace palpate {
 
-struct MouseSettings {
-  double mass_kg = 0.12;  // as HandSettings
-  double stiffness_N_per_m = 800.0;
-  double damping_Ns_per_m = 14.0;
-  double smoothing_time_s = 0.015;  // tau: two reports of a mouse at 125 Hz
-  double highest_m = -0.03;         // lower limit of targets
-  double deepest_m = 0.03;          // upper limit of targets
-  double idle_time_s = 20.0;        // see `idle`
-  // Limits the change of the velocity of `drive`: 18 mm/s after 60 ms.
-  double drive_acceleration_m_per_s2 = 0.3;
-};
-
 class MouseDevice : public SimulatedDevice, public ToolInput {
  public:
-  explicit MouseDevice(const MouseSettings& settings = {}, const char* name = "mouse");
+  // The range of targets.
+  static constexpr double kHighest_m = -0.03, kDeepest_m = 0.03;
+  static constexpr double kIdleTime_s = 20.0;  // see `idle`
+
+  explicit MouseDevice(const char* name = "mouse") : SimulatedDevice(name) {}
 
   ToolInput* tool_input() noexcept override { return this; }
 
-  // The window's thread only, wait-free. `now_s`: steady clock. A target that is not finite is ignored.
+  // Any thread, wait-free. `now_s`: steady clock. A target that is not finite is ignored.
   void set_target(double position_m, double now_s) noexcept override;
-  // The same for a relative motion, by a wheel or a key.
+  // The window's thread only, wait-free: a relative motion, by a wheel or a key.
   void nudge(double by_m, double now_s) noexcept override;
   void drive(double velocity_m_per_s, double limit_m, double now_s) noexcept override;
   void release() noexcept override;
   bool hand_is_exploring() const noexcept override { return false; }
   // Any thread, wait-free.
   double target_m() const noexcept { return target_m_.load(std::memory_order_relaxed); }
-  // Any thread, wait-free. Whether no target was set for idle_time_s, or since `release`. False while it is driven.
+  // Any thread, wait-free. Whether no target was set for kIdleTime_s, or since `release`. False while it is driven.
   bool idle(double now_s) const noexcept;
 
   // Haptics thread: continues from this position and velocity of the tool.
@@ -51,15 +44,15 @@ class MouseDevice : public SimulatedDevice, public ToolInput {
   void advance(double gap_s, double force_N) noexcept override;
   void move_target(double gap_s) noexcept;
 
-  MouseSettings settings_;
-  std::atomic<double> target_m_;
-  std::atomic<double> last_input_s_;
+  static constexpr double kStart_m = -0.006;
+  std::atomic<double> target_m_{kStart_m};
+  std::atomic<double> last_input_s_{-std::numeric_limits<double>::infinity()};
   std::atomic<double> drive_m_per_s_{0.0};  // of the key that is held
   std::atomic<double> drive_limit_m_{0.0};
   static_assert(std::atomic<double>::is_always_lock_free);
   // Haptics thread only.
-  double smooth_m_;  // y
-  double position_m_;
+  double smooth_m_ = kStart_m;  // y
+  double position_m_ = kStart_m;
   double velocity_m_per_s_ = 0.0;
   double target_velocity_m_per_s_ = 0.0;  // follows drive_m_per_s_
 };

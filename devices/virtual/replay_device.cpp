@@ -18,7 +18,7 @@ ReplayDevice::ReplayDevice(Recording recording)
     : name_("replay:" + recording.name),
       recording_(std::move(recording)),
       sensor_(identify_sensor(recording_.rows.data(), recording_.rows.size(), recording_.columns)) {
-  if (!recording_.rows.empty()) duration_s_ = recording_.rows.back().time_s - recording_.rows.front().time_s;
+  duration_s_ = time_of(recording_.rows.size() - 1);
 }
 
 void ReplayDevice::set_speed(double speed) noexcept {
@@ -46,7 +46,7 @@ void ReplayDevice::go_to(double at_s) noexcept {
                                     [](const RecordingRow& a, double time) { return a.time_s < time; });
   next_ = std::min(static_cast<std::size_t>(row - recording_.rows.begin()), recording_.rows.size() - 1);
   // The playhead is at the row exactly, so that the row is read even while paused.
-  playhead_s_ = recording_.rows[next_].time_s - recording_.rows.front().time_s;
+  playhead_s_ = time_of(next_);
   restart_ = true;
 }
 
@@ -54,7 +54,7 @@ void ReplayDevice::go_to(double at_s) noexcept {
 void ReplayDevice::go_by(int rows) noexcept {
   const auto last = static_cast<long>(recording_.rows.size()) - 1;
   const long row = std::clamp(static_cast<long>(next_) - 1 + rows, 0L, last);
-  const double at_s = recording_.rows[static_cast<std::size_t>(row)].time_s - recording_.rows.front().time_s;
+  const double at_s = time_of(static_cast<std::size_t>(row));
   if (rows < 0) {
     go_to(at_s);
   } else {
@@ -85,14 +85,13 @@ void ReplayDevice::move_playhead(double now_s) noexcept {
 }
 
 bool ReplayDevice::read(double now_s, DeviceSample& sample) noexcept {
-  if (recording_.rows.empty()) return false;
   if (!started_ || now_s > now_s_) move_playhead(now_s);
   if (next_ == recording_.rows.size()) return false;
-  const RecordingRow& row = recording_.rows[next_];
-  const double due_s = row.time_s - recording_.rows.front().time_s;
+  const double due_s = time_of(next_);
   if (due_s > playhead_s_) return false;
   // The loop reads no more samples in this tick, so the playhead waits.
   if (++handed_over_ == kMaxSamplesPerTick) playhead_s_ = due_s;
+  const RecordingRow& row = recording_.rows[next_];
   sample = {};
   sample.tool = tool_sample(row);
   sample.tool.position_m -= moved_m_;

@@ -54,6 +54,10 @@ class ReplayDevice final : public Device, public ReplayControl {
   const Recording& recording() const noexcept override { return recording_; }
 
  private:
+  // From the beginning of the recording.
+  double time_of(std::size_t row) const noexcept {
+    return recording_.rows[row].time_s - recording_.rows.front().time_s;
+  }
   void move_playhead(double now_s) noexcept;
   void go_to(double at_s) noexcept;
   void go_by(int rows) noexcept;

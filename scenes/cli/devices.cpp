@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "devices/bridge/bridge_bus.h"
+#include "devices/bridge/byte_stream.h"
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/registry/device_registry.h"
@@ -23,16 +24,20 @@ void print_hid_protocols() {
   }
 }
 
-void print_plugged_in(const std::vector<HidDiagnosis>& all, const std::string& assets) {
+void print_plugged_in(DeviceBus& bus, const std::string& assets) {
   std::printf("\nPLUGGED IN (hidraw)\n");
-  if (all.empty()) std::printf("  none; a haptic device appears here when it is plugged in\n");
+  const std::vector<DeviceNode> nodes = bus.list();
+  if (nodes.empty()) std::printf("  none; a haptic device appears here when it is plugged in\n");
   bool problems = false;
-  for (const HidDiagnosis& one : all) {
-    std::printf("  %s  %04x:%04x  %s: %s\n", one.node.path.empty() ? "(no node)" : one.node.path.c_str(),
-                one.node.vendor_id, one.node.product_id, one.node.product.c_str(), one.use.c_str());
-    if (one.problem.empty()) continue;
+  for (const DeviceNode& node : nodes) {
+    const DeviceProtocol* const protocol = hid_protocol_of(node);
+    std::printf("  %s  %04x:%04x  %s: %s\n", node.path.empty() ? "(no node)" : node.path.c_str(), node.vendor_id,
+                node.product_id, node.product.c_str(), protocol != nullptr ? protocol->description : "not supported");
+    if (protocol == nullptr) continue;
+    const auto opened = bus.open(node);
+    if (opened) continue;
     problems = true;
-    std::printf("    cannot be used: %s\n", one.problem.c_str());
+    std::printf("    cannot be used: %s\n", opened.error().message.c_str());
   }
   if (!problems) return;
   std::printf(
@@ -43,7 +48,6 @@ void print_plugged_in(const std::vector<HidDiagnosis>& all, const std::string& a
 
 Status print_devices() {
   const Result<std::string> assets = find_assets();
-  const std::vector<HidDiagnosis> plugged_in = diagnose(system_hid_bus());
   const std::vector<DeviceDescription> devices = list_devices({.calibrations = calibrations_folder()});
   std::size_t width = 0;
   for (const DeviceDescription& device : devices) width = std::max(width, device.name.size());
@@ -55,7 +59,7 @@ Status print_devices() {
     if (!device.problem.empty()) std::printf("%*s  %s\n", column + 15, "", device.problem.c_str());
   }
   print_hid_protocols();
-  print_plugged_in(plugged_in, assets ? *assets : "assets");
+  print_plugged_in(system_hid_bus(), assets ? *assets : "assets");
   return {};
 }
 

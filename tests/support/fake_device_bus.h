@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "devices/link/device_bus.h"
+#include "devices/link/device_link.h"
 #include "tests/support/simulated_device.h"
 
 namespace palpate::test {

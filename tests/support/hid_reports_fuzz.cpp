@@ -9,7 +9,6 @@
 #include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_protocol.h"
 #include "devices/hid/hid_protocols.h"
-#include "devices/hid/spacemouse.h"
 #include "devices/link/device_endpoint.h"
 
 namespace palpate::test {
@@ -70,13 +69,11 @@ void check_sent(const DeviceProtocol* protocol, const OutReports& reports) {
   require(std::abs(out.force_uN) <= 1250, "above the peak");
 }
 
-// Feeds a stream of reports to all of their readers.
+// Feeds a stream of reports to their decoder and to an endpoint.
 class Stream {
  public:
-  explicit Stream(const DeviceProtocol* protocol)
-      : protocol_(protocol), endpoint_(calibration_of(protocol)), cap_(calibration_of(&kSpaceMouseProtocol)) {
+  explicit Stream(const DeviceProtocol* protocol) : protocol_(protocol), endpoint_(calibration_of(protocol)) {
     endpoint_.connected(now_s_);
-    cap_.connected(now_s_);
   }
 
   void take(const std::uint8_t* bytes, std::size_t size, std::uint8_t step) {
@@ -89,14 +86,11 @@ class Stream {
     endpoint_.write(step * 1e3);
     check_sent(protocol_, endpoint_.next(now_s_));
     endpoint_.written(now_s_);
-    cap_.report_arrived(bytes, size, now_s_);
-    require(std::isfinite(cap_.target_m(now_s_)), "target not finite");
   }
 
  private:
   const DeviceProtocol* protocol_;
   DeviceEndpoint endpoint_;
-  SpaceMouseAxis cap_;
   double now_s_ = 100.0;
   double last_sample_s_ = 0.0;
 };

@@ -147,7 +147,8 @@ class BridgeModel final : public DeviceModel {
   std::unique_ptr<bridge::Firmware<BridgeModel>> firmware_;
   std::deque<std::uint8_t> inbox_;
   std::uint32_t now_us_ = 0, sampled_us_ = 0;
-  std::int32_t counts_ = 0, pushed_uN_ = 0;
+  std::int32_t counts_ = 0;
+  std::int32_t pushed_uN_ = 99;  // until the firmware switches the motor off
 };
 
 inline std::unique_ptr<DeviceModel> device_model(const DeviceProtocol* protocol) {
@@ -229,6 +230,19 @@ class SimulatedDevice {
   void run_s(double span_s) {
     for (int i = 0; i < static_cast<int>(std::lround(1e3 * span_s)); ++i) tick();
   }
+  void unplug() {
+    unplugged = true;
+    device.unplugged();
+  }
+  // Ends every disturbance.
+  void mend() {
+    on_the_way_in = nullptr;
+    on_the_way_out = nullptr;
+    encoder_frozen = writer_hangs = false;
+    if (std::exchange(unplugged, false)) device.connected(now_s);
+  }
+  // The model of a bridge device.
+  BridgeModel& board() { return dynamic_cast<BridgeModel&>(*model); }
   // Zeroes the device at rest, then presses into the block until the force is steady.
   void press() {
     rest = true;

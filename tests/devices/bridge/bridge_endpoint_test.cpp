@@ -41,12 +41,7 @@ auto out_of_order() {
 const std::vector<Injection>& injections() {
   using namespace device_fault;
   static const std::vector<Injection> all = {
-      {"the port or the program is gone",
-       [](SimulatedDevice& s) {
-         s.unplugged = true;
-         s.device.unplugged();
-       },
-       kUnplugged, 0.0205},
+      {"the port or the program is gone", [](SimulatedDevice& s) { s.unplug(); }, kUnplugged, 0.0205},
       {"frames fail to come", [](SimulatedDevice& s) { s.on_the_way_in = test::lost; }, kLate, 0.0205},
       {"the position stands still although the motor pushes (`stuck_after_s`)",
        [](SimulatedDevice& s) { s.encoder_frozen = true; }, kStuck, 0.53},
@@ -60,16 +55,14 @@ const std::vector<Injection>& injections() {
       {"another version",
        [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report[2] = 9; }); },
        kWrongFirmware, 0.0205},
-      {"the device reports a motor fault",
-       [](SimulatedDevice& s) { dynamic_cast<test::BridgeModel&>(*s.model).conditions = bridge::kMotorFault; }, kOwn,
+      {"the device reports a motor fault", [](SimulatedDevice& s) { s.board().conditions = bridge::kMotorFault; }, kOwn,
        0.0205},
       {"the position jumps by 50 mm", [](SimulatedDevice& s) { s.counts_offset = 50'000'000; }, kJump, 0.0205},
       {"the device starts again", [](SimulatedDevice& s) { s.model->restart(); }, kReset | kOutOfOrder, 0.0205},
       {"commands cannot be written", [](SimulatedDevice& s) { s.writer_hangs = true; }, kWriteStalled, 0.0705},
       {"the device confirms no command", [](SimulatedDevice& s) { s.on_the_way_out = [](Report&) { return false; }; },
        kWriteStalled, 0.0705},
-      {"its clock is set back by 10 ms",
-       [](SimulatedDevice& s) { dynamic_cast<test::BridgeModel&>(*s.model).clock_offset_us -= 10'000; }, kReset,
+      {"its clock is set back by 10 ms", [](SimulatedDevice& s) { s.board().clock_offset_us -= 10'000; }, kReset,
        0.0205},
   };
   return all;
@@ -125,13 +118,9 @@ TEST(BridgeEndpoint, EveryFaultRemovesTheForceUntilTheTimeInTheReadme) {
               injection.fault == device_fault::kStuck ? calibration->stuck_after_s + 0.03 : injection.within_s)
         << injection.name;
 
-    simulated.on_the_way_in = nullptr;
-    simulated.on_the_way_out = nullptr;
-    simulated.writer_hangs = simulated.encoder_frozen = false;
+    simulated.mend();
     simulated.counts_offset = 0;
-    dynamic_cast<test::BridgeModel&>(*simulated.model).conditions = 0;
-    if (simulated.unplugged) simulated.device.connected(simulated.now_s);
-    simulated.unplugged = false;
+    simulated.board().conditions = 0;
     const int back = ticks_until(simulated, true, 1000, faults);
     EXPECT_LE(back, 300) << injection.name;
     EXPECT_LT(simulated.snapshot.rendered_N, 0.2) << injection.name << ": with a ramp";
@@ -149,7 +138,7 @@ TEST(BridgeEndpoint, RunsFromOneHundredToTenThousandSamplesASecond) {
   for (const std::uint32_t period_us : {10'000u, 2'000u, 1'000u, 250u, 100u}) {
     SimulatedDevice simulated(&kBridgeProtocol);
     simulated.step_us = period_us < 250 ? 50 : 250;
-    dynamic_cast<test::BridgeModel&>(*simulated.model).period_us = period_us;
+    simulated.board().period_us = period_us;
     press(simulated);
     EXPECT_EQ(simulated.snapshot.device.faults, 0u) << period_us;
     EXPECT_NEAR(simulated.snapshot.rendered_N, wanted_N(simulated), kResolution_N) << period_us;
@@ -160,11 +149,19 @@ TEST(BridgeEndpoint, RunsFromOneHundredToTenThousandSamplesASecond) {
   }
 }
 
+TEST(BridgeEndpoint, FramesThatComeTwiceDoNoHarm) {
+  SimulatedDevice simulated(&kBridgeProtocol);
+  simulated.on_the_way_in = [](const Report& report) { return test::Reports{report, report}; };
+  press(simulated);
+  EXPECT_EQ(simulated.snapshot.device_faults_latched & (device_fault::kOutOfOrder | device_fault::kCorrupt), 0u);
+  EXPECT_NEAR(simulated.motor_N(), wanted_N(simulated), kResolution_N);
+}
+
 // Random sample periods from 10 kHz to 200 Hz, for half a second.
 TEST(BridgeEndpoint, IrregularSamplesAreAllHandedOverAndNoFault) {
   SimulatedDevice simulated(&kBridgeProtocol);
   simulated.step_us = 50;
-  auto& model = dynamic_cast<test::BridgeModel&>(*simulated.model);
+  test::BridgeModel& model = simulated.board();
   RandomStream random(3, 0);
   model.next_period_us = [&random] {
     return static_cast<std::uint32_t>(std::lround(100.0 * std::pow(50.0, random.uniform(0.0, 1.0))));
@@ -184,7 +181,7 @@ TEST(BridgeEndpoint, IrregularSamplesAreAllHandedOverAndNoFault) {
 
 TEST(BridgeEndpoint, TheGripIsADeadManSwitch) {
   SimulatedDevice simulated(&kBridgeProtocol);
-  auto& board = dynamic_cast<test::BridgeModel&>(*simulated.model);
+  test::BridgeModel& board = simulated.board();
   simulated.controls.dead_man = DeadMan::grip;
   press(simulated);
   EXPECT_EQ(simulated.motor_N(), 0.0);

@@ -153,20 +153,6 @@ TEST(BridgeLines, FaultsOfSocketsAndSerialLinesTakeTheForceAway) {
   }
 }
 
-TEST(BridgeLines, FramesThatComeTwiceDoNoHarm) {
-  const test::TemporaryFolder folder;
-  const Line line("exec", folder, "doubled");
-  auto device = line.open();
-  ASSERT_TRUE(device.ok());
-  SpringSession session(std::move(*device));
-  ASSERT_TRUE(test::wait_for([&] { return logged_s(folder.file("log"), "event") > 0.0; }));
-  session.snapshots();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  std::uint32_t faults = 0;
-  for (const LoopSnapshot& one : session.snapshots()) faults |= one.device.faults;
-  EXPECT_EQ(faults & (device_fault::kOutOfOrder | device_fault::kCorrupt), 0u);
-}
-
 TEST(BridgeLines, APortThatVanishesAndReturnsIsUsedAgain) {
   const test::TemporaryFolder folder;
   auto line = std::make_unique<Line>("unix", folder, "die");
@@ -204,16 +190,16 @@ TEST(BridgeLines, ErrorsHaveReasonAndAdvice) {
     const auto device = open_bridge(target);
     return device ? "opened" : device.error().message;
   };
-  EXPECT_TRUE(test::has_parts(complaint("exec:echo Traceback"), {"exit code", "0", "\"Traceback \"", "; "}));
-  EXPECT_TRUE(test::has_parts(complaint("exec:exit 3"), {"3", "exit code", "3", "; "}));
-  EXPECT_TRUE(test::has_parts(complaint("exec:cd / && exit 4"), {"4", "exit code", "4", "; "}));
+  EXPECT_TRUE(test::has_parts(complaint("exec:echo Traceback"), {"exit code 0", "\"Traceback \"", "; "}));
+  EXPECT_TRUE(test::has_parts(complaint("exec:exit 3"), {"exit code 3", "; "}));
+  EXPECT_TRUE(test::has_parts(complaint("exec:cd / && exit 4"), {"exit code 4", "; "}));
   EXPECT_TRUE(test::has_parts(complaint("unix:/nowhere/at/all"), {"/nowhere/at/all", "; "}));
   EXPECT_TRUE(test::has_parts(complaint("/dev/null"), {"/dev/null: ", "serial line; "}));
   EXPECT_TRUE(test::has_parts(complaint("/dev/nowhere"), {"/dev/nowhere: No such file or directory; ", "/dev/tty*"}));
-  EXPECT_TRUE(test::has_parts(complaint("/dev/tty,300"), {"/dev/tty", "300", "9600"}));
+  EXPECT_TRUE(test::has_parts(complaint("/dev/tty,300"), {"/dev/tty,300:", "9600"}));
   EXPECT_TRUE(test::has_parts(complaint("tcp:192.0.2.1:5000"), {"192.0.2.1:5000:", "another computer"}));
-  EXPECT_TRUE(test::has_parts(complaint("tcp:127.0.0.1:0"),
-                              {"--device", "127.0.0.1:0:", "HOST", "PORT", "1", "65535", "devices/README.md#bridge"}));
+  EXPECT_TRUE(test::has_parts(complaint("tcp:127.0.0.1:0"), {"--device", "127.0.0.1:0:", "HOST", "PORT",
+                                                             "from 1 to 65535", "devices/README.md#bridge"}));
   EXPECT_TRUE(test::has_parts(complaint("somewhere"), {"--device", "/dev/TTY", "BAUD", "PATH", "HOST", "PORT",
                                                        "COMMAND", "devices/README.md#bridge"}));
   EXPECT_EQ(with_remote_bridge("bridge:tcp:lab:5000"), "bridge:remote-tcp:lab:5000");

@@ -39,8 +39,6 @@ def wrong(frame, sequence, held):
         return bytes(b ^ 0x11 if i == 13 else b for i, b in enumerate(frame))
     if MODE == "cut":
         return frame[:17]
-    if MODE == "doubled":
-        return frame + frame
     if MODE == "reordered":
         held.append(frame)
         return b"" if len(held) % 2 else held.pop() + held.pop()

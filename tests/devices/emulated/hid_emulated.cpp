@@ -14,7 +14,7 @@
 
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
-#include "devices/link/linked_device.h"
+#include "devices/link/device_endpoint.h"
 #include "engine/base/signals.h"
 #include "engine/live/pacer.h"
 #include "tests/devices/emulated/emulated_board.h"
@@ -76,17 +76,14 @@ TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
   EXPECT_EQ(found[0].product_id, 0xFFB0);
   EXPECT_EQ(found[0].usage_page, 0xFF00);
   EXPECT_EQ(found[0].usage, 1);
-  const std::vector<HidDiagnosis> diagnosis = diagnose(bus);
-  ASSERT_EQ(diagnosis.size(), 1u);
-  EXPECT_EQ(diagnosis[0].use, "OpenFFBoard, one axis");
-  EXPECT_EQ(diagnosis[0].problem, "");
+  EXPECT_EQ(hid_protocol_of(found[0]), &kOpenFfBoardProtocol);
 }
 
 TEST_F(HidEmulated, IsOpenedByOneProgramAtATime) {
   EmulatedBoard board;
   Result<OpenedDevice> first = open_first(bus, {&kOpenFfBoardProtocol});
   ASSERT_TRUE(first.ok());
-  EXPECT_TRUE(test::has_parts(diagnose(bus).at(0).problem, {"/dev/hidraw0", "in use", "; "}));
+  EXPECT_TRUE(test::has_parts(bus.open(first->info).error().message, {"/dev/hidraw0", "in use", "; "}));
 }
 
 TEST_F(HidEmulated, ReadsAndWritesWholeReports) {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -21,24 +20,19 @@ using test::SimulatedDevice;
 TEST(BridgeFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
   SimulatedDevice simulated(&kBridgeProtocol);
   RandomStream random(1, 0);
-  std::int64_t lost = 0, corrupted = 0, swapped = 0, restarts = 0, stalls = 0;
+  int restarts = 0;
   int silent_in = 0, silent_out = 0;
   Report waiting;
   const auto trouble = [&](double share) { return random.uniform(0.0, 1.0) < share; };
   simulated.on_the_way_in = [&](const Report& report) {
     if (silent_in > 0) --silent_in;
-    if (silent_in > 0 || trouble(0.02)) {
-      ++lost;
-      return std::vector<Report>{};
-    }
+    if (silent_in > 0 || trouble(0.02)) return std::vector<Report>{};
     std::vector<Report> some = {report};
     if (trouble(0.0003)) {
-      ++corrupted;
       some[0][random.index(some[0].size())] ^= static_cast<std::uint8_t>(1 + random.index(255));
     }
     if (!waiting.empty()) some.push_back(std::exchange(waiting, {}));
     if (trouble(0.0003)) {
-      ++swapped;
       waiting = std::exchange(some[0], some.back());
       some.pop_back();
     }
@@ -46,18 +40,15 @@ TEST(BridgeFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
   };
   simulated.on_the_way_out = [&](Report& report) {
     if (silent_out > 0) --silent_out;
-    if (silent_out > 0 || trouble(0.02)) {
-      ++lost;
-      return false;
-    }
+    if (silent_out > 0 || trouble(0.02)) return false;
     if (trouble(0.001)) report[random.index(report.size())] ^= static_cast<std::uint8_t>(1 + random.index(255));
     return true;
   };
   simulated.press();
   double last_N = simulated.snapshot.rendered_N, pushed_s = 0.0, age_of_push_s = 0.0;
   for (int tick = 0; tick < 600'000; ++tick) {
-    if (trouble(0.0001)) silent_in = static_cast<int>(random.index(100)), ++stalls;
-    if (trouble(0.0001)) silent_out = static_cast<int>(random.index(100)), ++stalls;
+    if (trouble(0.0001)) silent_in = static_cast<int>(random.index(100));
+    if (trouble(0.0001)) silent_out = static_cast<int>(random.index(100));
     if (trouble(0.00001)) simulated.model->restart(), ++restarts;
     const LoopSnapshot& snapshot = simulated.tick();
     const double motor_N = simulated.motor_N();
@@ -71,11 +62,6 @@ TEST(BridgeFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
     ASSERT_TRUE(motor_N == 0.0 || simulated.now_s - age_of_push_s <= 0.0755) << tick;
     if (motor_N > 0.5) pushed_s += 1e-3;
   }
-  std::printf(
-      "ten minutes: %lld lost, %lld corrupted, %lld out of order, %lld stalls, %lld restarts; pushed for "
-      "%.0f s\n",
-      static_cast<long long>(lost), static_cast<long long>(corrupted), static_cast<long long>(swapped),
-      static_cast<long long>(stalls), static_cast<long long>(restarts), pushed_s);
   EXPECT_GT(restarts, 0);
   EXPECT_GT(pushed_s, 60.0) << "or nothing was shown";
 }

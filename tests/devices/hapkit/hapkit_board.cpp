@@ -159,14 +159,10 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[i], "--seed") == 0) seed = std::strtoull(argv[i + 1], nullptr, 10);
   }
   if (argc < 2) fail("names no firmware");
+  palpate::HandDevice feeling(seed);  // without a material
   std::unique_ptr<palpate::HandMotion> hand;
   std::unique_ptr<palpate::Block> block;
-  palpate::LearningHand* learning = nullptr;
-  if (material_name.empty()) {
-    auto feels = std::make_unique<palpate::LearningHand>(palpate::HandSettings{}, seed);
-    learning = feels.get();
-    hand = std::move(feels);
-  } else {
+  if (!material_name.empty()) {
     const auto material = palpate::find_material(material_name);
     if (!material) fail(material.error().message.c_str());
     hand = std::make_unique<palpate::Hand>(*material, material->hand, seed);
@@ -190,18 +186,20 @@ int main(int argc, char** argv) {
   for (std::uint64_t step = 1;; ++step) {
     const double now_s = kStep_s * static_cast<double>(step);
     if (now_s > kAtSurface_s) {
-      if (!moving) hand->resume_at(0.0);
+      if (!moving && block != nullptr) hand->resume_at(0.0);
+      if (!moving) feeling.resume_at(0.0, now_s - kStep_s);
       moving = true;
       constexpr int kSubsteps = 4;
-      for (int i = 0; i < kSubsteps; ++i) {
+      for (int i = 0; i < kSubsteps && block != nullptr; ++i) {
         const double dt_s = kStep_s / kSubsteps;
         hand->move(dt_s);
-        position_m = hand->position_m();
-        force_N = block != nullptr ? block->step(position_m, hand->velocity_m_per_s(), dt_s) : 0.0;
-        const double felt_N = force_N + motor_N(bench);
-        if (learning != nullptr) learning->learn(felt_N, dt_s);
-        hand->feel(felt_N, dt_s);
+        force_N = block->step(hand->position_m(), hand->velocity_m_per_s(), dt_s);
+        hand->feel(force_N + motor_N(bench), dt_s);
       }
+      palpate::DeviceSample sample;
+      feeling.write(motor_N(bench));
+      feeling.read(now_s, sample);
+      position_m = block != nullptr ? hand->position_m() : sample.tool.position_m;
     }
     const double counts = position_m / kMetresPerCount + 0.5 * kSensorRange;
     set_volts(bench, 2, counts - kSensorRange * std::floor(counts / kSensorRange));

@@ -36,22 +36,18 @@ class Board {
         process_({"sh", "-c",
                   "exec " PALPATE_HAPKIT_BOARD " " PALPATE_HAPKIT_ELF " " + arguments + " > " + said_ +
                       " 2>&1 < /dev/zero"}) {
-    test::wait_for([this] { return !line_with("/dev/").empty(); });
+    test::wait_for([this] { return !port().empty(); });
   }
-  std::string line_with(const std::string& start) const {
-    std::ifstream file(said_);
-    for (std::string line; std::getline(file, line);) {
-      if (line.rfind(start, 0) == 0) return line;
-    }
-    return {};
-  }
-  std::string last_line() const {
+  // The last line that begins with `start`; else empty.
+  std::string last_line(const std::string& start = "") const {
     std::ifstream file(said_);
     std::string last;
-    for (std::string line; std::getline(file, line);) last = line;
+    for (std::string line; std::getline(file, line);) {
+      if (line.starts_with(start)) last = line;
+    }
     return last;
   }
-  std::string port() const { return line_with("/dev/"); }
+  std::string port() const { return last_line("/dev/"); }
 
  private:
   test::TemporaryFolder folder_;
@@ -67,25 +63,6 @@ TEST(Hapkit, ShowsThatItsWatchdogWorks) {
   for (const char* words : {"N measured", "yes, it got a force of 0", "after the last frame", "after it stood still"}) {
     EXPECT_TRUE(test::has_parts(run.out, {words})) << words << run.out;
   }
-}
-
-TEST(Hapkit, RecordsASimulatedMaterial) {
-  const test::TemporaryFolder folder;
-  const Board board("--material silicone");
-  const auto run = run_palpate(
-      {"record", "--device", "bridge:" + board.port(), "--seconds", "5", "--out", folder.file("press.csv")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(test::has_parts(run.out, {"press.csv: usable"}));
-  const auto recording = read_recording(folder.file("press.csv"));
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  double deepest_m = 0.0, largest_N = 0.0;
-  for (const RecordingRow& row : recording->rows) {
-    deepest_m = std::max(deepest_m, row.position_m);
-    largest_N = std::max(largest_N, row.force_N);
-  }
-  EXPECT_GT(deepest_m, 1e-3);
-  EXPECT_LT(deepest_m, 0.03) << "an unwound magnet";
-  EXPECT_GT(largest_N, 0.5);
 }
 
 // Renders `model`, kills the host during a press, and checks that the motor's pins stop.
@@ -116,8 +93,6 @@ void expect_stop_after_kill(const std::shared_ptr<const ForceModel>& model) {
   EXPECT_EQ(board.last_line(), zero) << "nothing drives again";
 }
 
-TEST(Hapkit, StopsWithin60MsWhenTheHostIsKilled) { expect_stop_after_kill(test::spring(1000.0)); }
-
 // Records 12 s of silicone. Gaps of 26 ms occur on a quiet machine; pauses of 300 ms left 95 % within the JND. Tries up
 // to five times, because a machine that stalls the board or the recorder for 50 ms leaves gaps in the recording that a
 // real Hapkit does not have.
@@ -135,8 +110,18 @@ bool record_without_gaps(const std::string& seed, const std::string& path) {
     for (std::size_t i = 1; i < recording->rows.size(); ++i) {
       longest_s = std::max(longest_s, recording->rows[i].time_s - recording->rows[i - 1].time_s);
     }
-    const std::string held_up = board.line_with("held up");
-    if (held_up.empty() && longest_s < 0.05) return true;
+    const std::string held_up = board.last_line("held up");
+    if (held_up.empty() && longest_s < 0.05) {
+      EXPECT_TRUE(test::has_parts(run.out, {seed + ".csv: usable"}));
+      const auto [out, in] =
+          std::minmax_element(recording->rows.begin(), recording->rows.end(),
+                              [](const auto& a, const auto& b) { return a.position_m < b.position_m; });
+      EXPECT_LT(out->position_m, 0.0);
+      EXPECT_GT(in->position_m, 1e-3);
+      EXPECT_LT(in->position_m, 0.03) << "an unwound magnet";
+      EXPECT_GT(in->force_N, 0.5);
+      return true;
+    }
     std::printf("recorded again: %s, longest gap %.0f ms\n", held_up.c_str(), 1e3 * longest_s);
   }
   return false;

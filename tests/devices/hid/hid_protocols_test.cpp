@@ -1,4 +1,4 @@
-// Encoding and decoding of every report; other bytes are refused.
+// Devices by their ids; encoding and decoding of every report; other bytes are refused.
 #include "devices/hid/hid_protocols.h"
 #include "devices/bridge/bridge_bus.h"
 
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "devices/firmware/wire.h"
+#include "tests/support/fake_device_bus.h"
 
 namespace palpate {
 namespace {
@@ -29,6 +30,14 @@ Bytes ffb_answer(std::uint8_t type, std::int64_t position) {
   bytes[5] = 0x09;
   for (std::size_t i = 0; i < 8; ++i) bytes[9 + i] = static_cast<std::uint8_t>(position >> (8 * i));
   return bytes;
+}
+
+TEST(HidProtocols, AreKnownByTheIdsOfANode) {
+  EXPECT_EQ(hid_protocol_of(test::found_board()), &kOpenFfBoardProtocol);
+  EXPECT_EQ(hid_protocol_of(test::found_space_mouse()), &kSpaceMouseProtocol);
+  EXPECT_EQ(hid_protocol_of({"/dev/hidraw0", "", 0x256F, 0xC635, 1, 8}), &kSpaceMouseProtocol);
+  EXPECT_EQ(hid_protocol_of({"/dev/hidraw0", "", 0x256F, 0xC635, 1, 2}), nullptr) << "its other usage";
+  EXPECT_EQ(hid_protocol_of({"/dev/hidraw0", "Mouse", 0x046D, 0xC077, 1, 2}), nullptr);
 }
 
 TEST(HidReports, ReadsOpenFfBoard) {

@@ -1,7 +1,6 @@
 // The stop command that is sent when a signal ends the program.
 #include "devices/link/device_stop.h"
 #include "devices/bridge/bridge_bus.h"
-#include "devices/hid/hid_protocols.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -10,6 +9,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 #include <thread>
 
 #include "devices/firmware/bridge_protocol.h"
@@ -17,58 +17,6 @@
 
 namespace palpate {
 namespace {
-
-// How a child process with a device ended, and whether the device got the stop
-// command.
-struct Ended {
-  int status = 0;
-  bool told = false;
-};
-
-Ended run(void (*before)(), void (*end)()) {
-  int pipe_ends[2];
-  EXPECT_EQ(pipe(pipe_ends), 0);
-  const pid_t child = fork();
-  if (child == 0) {
-    before();
-    register_device_stop(pipe_ends[1], kBridgeProtocol.encode_stop());
-    stop_devices_on_signals();
-    end();
-    _exit(7);
-  }
-  close(pipe_ends[1]);
-  Ended ended;
-  waitpid(child, &ended.status, 0);
-  std::uint8_t bytes[bridge::kHostBytes];
-  bridge::FromHost out{};
-  ended.told = read(pipe_ends[0], bytes, sizeof bytes) == sizeof bytes && bridge::decode(bytes, out) &&
-               out.flags == 0 && out.force_uN == 0;
-  close(pipe_ends[0]);
-  return ended;
-}
-
-// Restores default handlers, because nohup starts a program with ignored signals.
-void nothing_ignored() {
-  for (const int one : {SIGINT, SIGTERM, SIGHUP}) signal(one, SIG_DFL);
-}
-
-TEST(DeviceStop, StopsDevicesBeforeASignalEndsTheProgram) {
-  for (const auto& [signal, end] : {std::pair<int, void (*)()>{SIGINT, [] { raise(SIGINT); }},
-                                    {SIGTERM, [] { raise(SIGTERM); }},
-                                    {SIGHUP, [] { raise(SIGHUP); }},
-                                    {SIGABRT, [] { std::abort(); }}}) {
-    const Ended ended = run(nothing_ignored, end);
-    EXPECT_TRUE(ended.told) << signal;
-    EXPECT_TRUE(WIFSIGNALED(ended.status)) << signal;
-    EXPECT_EQ(WTERMSIG(ended.status), signal);
-  }
-}
-
-TEST(DeviceStop, StopsDevicesInACrash) {
-  const Ended ended = run([] { signal(SIGSEGV, SIG_DFL); }, [] { raise(SIGSEGV); });
-  EXPECT_TRUE(ended.told);
-  EXPECT_TRUE(WIFSIGNALED(ended.status));
-}
 
 // Writes reports without pause, each blocked for 2 ms as by a slow device.
 void push_without_end(int descriptor) {
@@ -84,43 +32,54 @@ void push_without_end(int descriptor) {
   }
 }
 
-// The last command to the device when a child that renders force all the time got two signals.
-Ended run_two_signals(int first, int second) {
+// Runs `end` in a child process with a device. With `renders` it renders force all the time and listens for a first
+// signal. Checks that `signal` ends the child and that the last command to the device is the stop.
+template <typename End>
+void expect_stop_before(int signal, bool renders, End end) {
   int ends[2];
-  EXPECT_EQ(pipe(ends), 0);
+  ASSERT_EQ(pipe(ends), 0);
   const pid_t child = fork();
   if (child == 0) {
-    nothing_ignored();
-    const StopListener listener;
+    // Default handlers, because nohup starts a program with ignored signals, and sanitizers handle crashes.
+    for (const int one : {SIGINT, SIGTERM, SIGHUP, SIGSEGV}) ::signal(one, SIG_DFL);
+    std::optional<StopListener> listener;
+    if (renders) listener.emplace();
     register_device_stop(ends[1], kBridgeProtocol.encode_stop());
-    stop_devices_on_signals();
-    std::thread([&] { push_without_end(ends[1]); }).detach();
-    poll(nullptr, 0, 10);
-    raise(first);
-    poll(nullptr, 0, 10);
-    raise(second);
+    if (renders) std::thread([&] { push_without_end(ends[1]); }).detach();
+    end();
     _exit(7);
   }
   close(ends[1]);
-  Ended ended;
   std::uint8_t bytes[bridge::kHostBytes];
   bridge::FromHost out{};
   int reports = 0;
-  for (; read(ends[0], bytes, sizeof bytes) == sizeof bytes; ++reports) {
-    ended.told = bridge::decode(bytes, out) && out.flags == 0 && out.force_uN == 0;
-  }
-  EXPECT_GT(reports, 2);
+  for (; read(ends[0], bytes, sizeof bytes) == sizeof bytes; ++reports) ASSERT_TRUE(bridge::decode(bytes, out));
   close(ends[0]);
-  waitpid(child, &ended.status, 0);
-  return ended;
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_GT(reports, renders ? 2 : 0);
+  EXPECT_TRUE(out.flags == 0 && out.force_uN == 0);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
+}
+
+TEST(DeviceStop, StopsDevicesBeforeASignalOrACrashEndsTheProgram) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT}) {
+    SCOPED_TRACE(signal);
+    expect_stop_before(signal, false,
+                       [signal] { signal == SIGABRT ? std::abort() : static_cast<void>(raise(signal)); });
+  }
 }
 
 TEST(DeviceStop, NoForceFollowsTheStopInAnyOrderOfTwoSignals) {
   for (const int first : {SIGINT, SIGTERM, SIGHUP}) {
     for (const int second : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
-      const Ended ended = run_two_signals(first, second);
-      EXPECT_TRUE(ended.told) << first << " then " << second;
-      EXPECT_TRUE(WIFSIGNALED(ended.status) && WTERMSIG(ended.status) == second) << ended.status;
+      SCOPED_TRACE(std::to_string(first) + " then " + std::to_string(second));
+      expect_stop_before(second, true, [first, second] {
+        poll(nullptr, 0, 10);
+        raise(first);
+        poll(nullptr, 0, 10);
+        raise(second);
+      });
     }
   }
 }

@@ -47,7 +47,7 @@ struct Stream {
   void zero() {
     monitor.start_zeroing();
     steps(210);
-    EXPECT_EQ(monitor.state().zeroing, Zeroing::done);
+    EXPECT_EQ(monitor.state().health.zeroing, Zeroing::done);
   }
 };
 
@@ -81,7 +81,7 @@ TEST(StreamMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
   EXPECT_EQ(stream.monitor.state().lost, 0u);
   stream.step(counts + 300);
   EXPECT_EQ(stream.monitor.state().lost, device_fault::kJump);
-  EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::needed);
+  EXPECT_EQ(stream.monitor.state().health.zeroing, Zeroing::needed);
   stream.zero();
   EXPECT_EQ(stream.monitor.state().lost, 0u);
   EXPECT_EQ(stream.monitor.state().streams, 2u);
@@ -148,7 +148,7 @@ TEST(StreamMonitor, ZeroingTakesTheMiddleOfWhereItRested) {
   Stream stream;
   stream.monitor.start_zeroing();
   for (int i = 0; i < 210; ++i) stream.step(100 + i % 2 * 10);
-  EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::done);
+  EXPECT_EQ(stream.monitor.state().health.zeroing, Zeroing::done);
   EXPECT_EQ(stream.monitor.state().zero_counts, 105.0);
 }
 

@@ -1,11 +1,16 @@
-// Opening devices by name.
+// Opening devices by name; a new device of three files.
 #include "devices/registry/device_registry.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "engine/live/live_tick.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fake_device_bus.h"
+#include "tests/support/live_doubles.h"
 #include "tests/support/message_parts.h"
+#include "tests/support/own_device.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -57,38 +62,39 @@ TEST(DeviceRegistry, AutoPrefersAHapticDevice) {
   for (const DeviceDescription& description : list_devices(request_with(bus))) EXPECT_EQ(description.problem, "");
 }
 
+// A bus on which every device is refused, and one with a SpaceMouse.
+struct OtherBuses {
+  OtherBuses() {
+    refused.refusals = 1000;
+    mouse.silent = true;
+  }
+  test::FakeDeviceBus refused, mouse{test::found_space_mouse()};
+};
+
 TEST(DeviceRegistry, AutoNotesTheFallbackAndItsReason) {
-  auto device = open_device("auto", request_with(nothing_plugged_in()));
-  ASSERT_TRUE(device.ok());
-  EXPECT_EQ((*device)->name(), "auto");
-  EXPECT_TRUE(test::has_parts((*device)->note(), {"simulated hand", "mouse"}));
-  test::FakeDeviceBus refused;
-  refused.refusals = 1000;
-  device = open_device("auto", request_with(refused));
-  ASSERT_TRUE(device.ok());
-  EXPECT_TRUE(test::has_parts((*device)->note(), {"/dev/hidraw7", "permission", "simulated hand"}));
-  test::FakeDeviceBus mouse(test::found_space_mouse());
-  mouse.silent = true;
-  device = open_device("auto", request_with(mouse));
-  ASSERT_TRUE(device.ok());
-  EXPECT_TRUE(test::has_parts((*device)->note(), {"simulated hand", "mouse", "SpaceMouse"}));
+  OtherBuses buses;
   test::FakeDeviceBus board;
-  DeviceRequest request;
-  request.bus = &board;
-  device = open_device("auto", request);
-  ASSERT_TRUE(device.ok());
-  EXPECT_TRUE(test::has_parts((*device)->note(), {"PALPATE_ASSETS", "simulated hand"}));
+  DeviceRequest without_calibrations;
+  without_calibrations.bus = &board;
+  const std::pair<DeviceRequest, std::vector<std::string>> notes[] = {
+      {request_with(nothing_plugged_in()), {"simulated hand", "mouse"}},
+      {request_with(buses.refused), {"/dev/hidraw7", "permission", "simulated hand"}},
+      {request_with(buses.mouse), {"simulated hand", "mouse", "SpaceMouse"}},
+      {without_calibrations, {"PALPATE_ASSETS", "simulated hand"}}};
+  for (const auto& [request, parts] : notes) {
+    auto device = open_device("auto", request);
+    ASSERT_TRUE(device.ok());
+    EXPECT_EQ((*device)->name(), "auto");
+    EXPECT_TRUE(test::has_parts((*device)->note(), parts));
+  }
 }
 
 TEST(DeviceRegistry, HidIsNeverAnythingElse) {
+  OtherBuses buses;
   EXPECT_TRUE(test::has_parts(open_device("hid", request_with(nothing_plugged_in())).error().message,
                               {"--device", "palpate devices"}));
-  test::FakeDeviceBus refused;
-  refused.refusals = 1000;
-  EXPECT_EQ(open_device("hid", request_with(refused)).error().message, "/dev/hidraw7: no permission");
-  test::FakeDeviceBus mouse(test::found_space_mouse());
-  mouse.silent = true;
-  auto device = open_device("hid", request_with(mouse));
+  EXPECT_EQ(open_device("hid", request_with(buses.refused)).error().message, "/dev/hidraw7: no permission");
+  auto device = open_device("hid", request_with(buses.mouse));
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->holder(), Holder::simulated);
 }
@@ -111,6 +117,35 @@ TEST(DeviceRegistry, TheProgramListsThem) {
     EXPECT_TRUE(test::has_parts(run.out, {std::string(protocol->description) + "; tested on real hardware: no"}));
   }
   EXPECT_TRUE(test::has_parts(run.out, {"PLUGGED IN"}));
+}
+
+// The third file of a new device is the table of devices, with a new row. These tests use their own table.
+const std::vector<DeviceEntry>& entries() {
+  static const std::vector<DeviceEntry> all = {
+      {{"own:MM", "a device of three files", Holder::person, ""}, test::make_own_device}};
+  return all;
+}
+
+TEST(OwnDevice, IsOpenedByItsNameAndRenderedOn) {
+  auto device = open_device("own:4", {}, entries());
+  ASSERT_TRUE(device.ok()) << device.error().message;
+  ModelSlot<LiveModels> slot;
+  LiveTick live(**device, slot);
+  slot.publish(std::make_unique<LiveModels>(1, (*device)->sensor(), std::vector{test::spring(500.0)}));
+  double largest_N = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    const LoopSnapshot& snapshot = live.run(1e-3 * i, {});
+    ASSERT_EQ(snapshot.faults & loop_fault::kStops, 0u) << i;
+    largest_N = std::max(largest_N, static_cast<test::OwnDevice&>(**device).force_N());
+  }
+  EXPECT_NEAR(largest_N, 2.0, 0.02);
+}
+
+TEST(OwnDevice, HasTheErrorsOfAnyOther) {
+  EXPECT_FALSE(open_device("own:no", {}, entries()).ok());
+  const auto unknown = open_device("mouse", {}, entries());
+  ASSERT_FALSE(unknown.ok());
+  EXPECT_TRUE(test::has_parts(unknown.error().message, {"own:MM"}));
 }
 
 }  // namespace

@@ -38,27 +38,19 @@ TEST(HandDevice, PressesAndLeavesAgainAndAgain) {
 
 // The same seed in air and on springs: a stiffer spring reduces the depth.
 TEST(HandDevice, IsPushedBackByTheForce) {
-  double before_m = 1.0;
+  double before_m = 0.03;
   for (const double stiffness_N_per_m : {200.0, 800.0, 3000.0}) {
     HandDevice device;
     const std::vector<double> positions_m = explore(device, stiffness_N_per_m, 30000);
     const double deepest_m = *std::max_element(positions_m.begin(), positions_m.end());
     EXPECT_LT(deepest_m, before_m);
+    EXPECT_GT(*std::min_element(positions_m.begin(), positions_m.end()), -0.03) << "stable";
     before_m = deepest_m;
   }
   HandDevice device;
   const std::vector<double> in_air_m = explore(device, 0.0, 30000);
   EXPECT_LT(*std::max_element(in_air_m.begin(), in_air_m.end()), 1.1 * HandSettings().deepest_m)
       << "where nothing pushes back, only its overshoot is deeper";
-}
-
-TEST(HandDevice, StaysStableOnAStiffBlock) {
-  HandDevice device(3);
-  const std::vector<double> positions_m = explore(device, 3000.0, 60000);
-  for (const double position_m : positions_m) {
-    ASSERT_TRUE(std::isfinite(position_m));
-    ASSERT_LT(std::abs(position_m), 0.03);
-  }
 }
 
 TEST(HandDevice, TheSameSeedMovesTheSame) {
