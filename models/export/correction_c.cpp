@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "models/model/grid/grid_correction.h"
+#include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_correction.h"
+#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
 namespace {
@@ -71,7 +71,7 @@ void emit_grid(CText& out, const VoxelGrid& grid) {
   std::string sizes;
   std::string begins;
   std::string strides;
-  std::size_t stride = grid.node_count();
+  std::size_t stride = grid.values_N.size();
   for (const std::vector<double>& axis : grid.nodes) {
     const std::string comma = sizes.empty() ? "" : ", ";
     stride /= axis.size();

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 
-#include "models/model/file/model_json.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"

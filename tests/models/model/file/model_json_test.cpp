@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "models/model/file/model_io.h"
-#include "models/model/file/model_json.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"

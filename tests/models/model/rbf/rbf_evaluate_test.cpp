@@ -53,7 +53,7 @@ TEST_P(RbfEvaluatorOnTarget, AgreesWithALongDoubleReferenceForEveryKernelAndDime
     for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
       for (const int n : {0, 1, 7, 8, 9, 16, 100}) {
         const RbfFunction f = random_function(kernel, d, n, static_cast<std::uint64_t>(100 * d + n));
-        const RbfEvaluator evaluator(f);
+        const RbfCorrection evaluator(f);
         const Eigen::MatrixXd queries = random_points(d, 20, 5);
         for (int i = 0; i < 20; ++i) {
           long double size = 0;
@@ -70,14 +70,14 @@ TEST_P(RbfEvaluatorOnTarget, KernelsKeepTheirRelativeAccuracyFromTinyToHugeDista
   f.centres.setZero();
   f.weights.setConstant(1.0 / 16.0);
   f.tail.setZero();
-  const RbfEvaluator evaluator(f);
+  const RbfCorrection evaluator(f);
   for (double r = 1.1e-18; r < 1e50; r *= 3.7) EXPECT_NEAR(evaluator.evaluate(&r) / (r * r * r), 1.0, 6 * 0x1p-52) << r;
   for (const double r : {0.0, 1e-90, 1e-25, 0.9e-18}) EXPECT_NEAR(evaluator.evaluate(&r), 1e-54, 1e-66) << r;
 }
 
 TEST_P(RbfEvaluatorOnTarget, IsExactlyTheTailAtACoincidentCentreOfACubic) {
   RbfFunction f = random_function(KernelKind::cubic, 4, 1, 3);
-  EXPECT_DOUBLE_EQ(RbfEvaluator(f).evaluate(f.centres.data()), tail_value(f.tail.data(), 1, 4, f.centres.data()));
+  EXPECT_DOUBLE_EQ(RbfCorrection(f).evaluate(f.centres.data()), tail_value(f.tail.data(), 1, 4, f.centres.data()));
 }
 
 TEST_P(RbfEvaluatorOnTarget, DenormalInputsCountAsZero) {
@@ -89,11 +89,11 @@ TEST_P(RbfEvaluatorOnTarget, DenormalInputsCountAsZero) {
   zeroed.weights[1] = 0.0;
   const double denormal[] = {3e-310, 0.5};
   const double zero[] = {0.0, 0.5};
-  EXPECT_EQ(RbfEvaluator(f).evaluate(denormal), RbfEvaluator(zeroed).evaluate(zero));
+  EXPECT_EQ(RbfCorrection(f).evaluate(denormal), RbfCorrection(zeroed).evaluate(zero));
 }
 
 TEST_P(RbfEvaluatorOnTarget, ANonFiniteQueryGivesANonFiniteResult) {
-  const RbfEvaluator evaluator(random_function(KernelKind::cubic, 2, 20, 3));
+  const RbfCorrection evaluator(random_function(KernelKind::cubic, 2, 20, 3));
   for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     const double x[] = {0.1, bad};
     EXPECT_FALSE(std::isfinite(evaluator.evaluate(x)));
@@ -101,7 +101,7 @@ TEST_P(RbfEvaluatorOnTarget, ANonFiniteQueryGivesANonFiniteResult) {
 }
 
 TEST_P(RbfEvaluatorOnTarget, ManyPointsAtOnceGiveTheSameBits) {
-  const RbfEvaluator evaluator(random_function(KernelKind::cubic, 4, 3000, 3));
+  const RbfCorrection evaluator(random_function(KernelKind::cubic, 4, 3000, 3));
   const Eigen::MatrixXd queries = random_points(4, 1001, 8);
   Eigen::VectorXd out;
   evaluator.evaluate_many(queries, out);
