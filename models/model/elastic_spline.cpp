@@ -7,24 +7,13 @@ namespace {
 
 constexpr double kPieces = kElasticPieces;
 
-// The knots of the quadratic B-splines in units of a piece; those at the ends are threefold.
-double knot_at(std::size_t i) { return static_cast<double>(std::clamp<std::size_t>(i, 2, kElasticPieces + 2) - 2); }
+using Quadratic = std::array<double, 3>;  // coefficients of t^0 to t^2 of a piece
 
-// N_i of a degree at x, in units of a piece (Cox-de Boor recursion), continuous from the left at the end.
-double b_spline(std::size_t i, int degree, double x) {
-  const double first = knot_at(i);
-  if (degree == 0) {
-    const double next = knot_at(i + 1);
-    return (x >= first && x < next) || (x >= kPieces && first < next && next >= kPieces) ? 1.0 : 0.0;
-  }
-  const auto width = static_cast<std::size_t>(degree);
-  const double end = knot_at(i + width + 1);
-  double value = 0.0;
-  if (const double rise = knot_at(i + width) - first; rise > 0.0) {
-    value += (x - first) / rise * b_spline(i, degree - 1, x);
-  }
-  if (const double fall = end - knot_at(i + 1); fall > 0.0) value += (end - x) / fall * b_spline(i + 1, degree - 1, x);
-  return value;
+// The three quadratic B-splines that are not 0 on a piece, N_piece to N_piece+2. The knots at the ends are threefold.
+std::array<Quadratic, 3> b_splines(std::size_t piece) {
+  const double first = piece == 0 ? 1.0 : 0.5;
+  const double last = piece + 1 == kElasticPieces ? 1.0 : 0.5;
+  return {{{first, -2.0 * first, first}, {1.0 - first, 2.0 * first, -first - last}, {0.0, 0.0, last}}};
 }
 
 }  // namespace
@@ -44,18 +33,14 @@ std::vector<ElasticSpline> spline_basis() {
   for (std::size_t i = 0; i < kElasticTerms; ++i) {
     double sum = 0.0;
     for (std::size_t piece = 0; piece < kElasticPieces; ++piece) {
-      // The quadratic on this piece from three of its values, and its integral over u.
-      const auto begin = static_cast<double>(piece);
-      const double at_begin = b_spline(i, 2, begin);
-      const double at_middle = b_spline(i, 2, begin + 0.5);
-      // Continuous from the left, because the last piece ends at a repeated knot.
-      const double square = 2.0 * (b_spline(i, 2, begin + 1.0) - 2.0 * at_middle + at_begin);
-      const double slope = 2.0 * (at_middle - at_begin) - 0.5 * square;
       double* c = basis[i].pieces_N.data() + piece * kElasticCoefficients;
       c[0] = sum;
-      c[1] = at_begin / kPieces;
-      c[2] = slope / (2.0 * kPieces);
-      c[3] = square / (3.0 * kPieces);
+      if (i < piece || i > piece + 2) continue;
+      const Quadratic spline = b_splines(piece)[i - piece];
+      // The integral over u.
+      for (std::size_t k = 0; k < spline.size(); ++k) {
+        c[k + 1] = spline[k] / (static_cast<double>(k + 1) * kPieces);
+      }
       sum += c[1] + c[2] + c[3];
     }
   }
