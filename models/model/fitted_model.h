@@ -14,6 +14,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +27,6 @@
 #include "engine/tick/jnd.h"
 #include "models/model/correction.h"
 #include "models/model/domain_guard.h"
-#include "models/model/error_bound.h"
 #include "models/model/trend.h"
 
 namespace palpate {
@@ -66,6 +66,24 @@ struct Provenance {
   std::string relaxation;  // scene, auto, given
   std::vector<RelaxationTime> relaxation_times;
   double training_within_jnd = 0.0;
+};
+
+// The bound on the error of a model's force where no force is measured, at 95 %:
+//   b(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
+// distance: to the nearest training data in the normalised feature space (domain_guard.h). The coefficients are fitted
+// to cross-validated errors and scaled by split-conformal prediction, with the quantile of the normalised errors
+// (models/fit/select_strength.h).
+// Sources: Vovk, Gammerman & Shafer (2005), "Algorithmic learning in a random world";
+// Lei, G'Sell, Rinaldo, Tibshirani & Wasserman (2018), section 5.2 (locally weighted).
+struct ErrorBound {
+  double floor_N = 0.0;
+  double per_force = 0.0;
+  double per_distance_N = 0.0;
+
+  // `force_N`: absolute; `beyond`: distance - inner radius. An infinite distance gives an infinite bound.
+  double at(double force_N, double beyond) const noexcept {
+    return floor_N + per_force * force_N + per_distance_N * std::max(0.0, beyond);
+  }
 };
 
 struct ModelData {
