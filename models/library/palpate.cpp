@@ -95,9 +95,8 @@ SensorSpec sensor_of_samples(size_t n, const double* time_s, const double* posit
 Status export_to(const FittedModel& model, double encoder_step_m, bool single_precision, const std::string& path,
                  bool overwrite) {
   if (Status status = check_at_least_zero("encoder_step_m", encoder_step_m); !status) return status;
-  const auto file = export_c(model.data(), {single_precision, sensor_with_step(model.data(), encoder_step_m)});
-  if (!file) return file.error();
-  return write_file_atomically(path, file->text, overwrite);
+  const ExportRequest request{single_precision, sensor_with_step(model.data(), encoder_step_m)};
+  return write_file_atomically(path, export_c(model.data(), request).text, overwrite);
 }
 
 Result<ForceLimits> force_limits(const palpate_limits& limits) {
