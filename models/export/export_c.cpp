@@ -178,9 +178,8 @@ void emit_grid(CText& out, const VoxelGrid& grid) {
   out.add("\n/* ---- correction: a grid, the last axis fastest ---- */\n\n#define CORNERS " + std::to_string(corners) +
           "\nstatic const int axis_begin[FEATURES] = {" + begins + "};\nstatic const int axis_size[FEATURES] = {" +
           sizes + "};\nstatic const int axis_stride[FEATURES] = {" + strides + "};\n");
-  out.list("axes", Eigen::Map<const Eigen::VectorXd>(nodes.data(), static_cast<Eigen::Index>(nodes.size())));
-  out.list("grid_values",
-           Eigen::Map<const Eigen::VectorXd>(grid.values_N.data(), static_cast<Eigen::Index>(grid.values_N.size())));
+  out.list("axes", nodes);
+  out.list("grid_values", grid.values_N);
   out.add(kGridC);
 }
 
@@ -290,27 +289,20 @@ real palpate_force(real time_s, real position_m) {
 }
 )C";
 
-// The C condition for a press deeper than the recorded ones, as in the library.
-std::string too_deep(const CText& out, const ModelData& data) {
-  std::size_t feature = 0;
-  const double deepest_m = deepest_in_domain_m(data, feature);
-  if (!std::isfinite(deepest_m)) return "0";
-  return std::string("(value[")
-      .append(std::to_string(feature))
-      .append("] > ")
-      .append(out.number(deepest_m))
-      .append(")");
-}
-
 void write_constants(CText& out, const ModelData& data) {
   out.add("\n/* ---- the force ---- */\n\n#define CORRECTED_SHARE " +
           std::string(data.corrects_trend || data.correction->is_none() ? "R(0.0)" : "R(1.0)") +
           "\n#define CORRECTION_LIMIT_N " + out.number(data.correction_limit_N) + "\n#define LARGEST_FORCE_N " +
           out.number(kForceMargin * data.largest_force_N) + "\n#define LOWEST_FORCE_N " +
           out.number(data.lowest_force_N) + "\n");
-  out.add("#define IS_TOO_DEEP " + too_deep(out, data) + "\n");
+  // A press deeper than the recorded ones, as in the library.
+  std::size_t depth = 0;
+  const double deepest_m = deepest_in_domain_m(data, depth);
+  out.add("#define IS_TOO_DEEP " +
+          (std::isfinite(deepest_m) ? "(value[" + std::to_string(depth) + "] > " + out.number(deepest_m) + ")" : "0") +
+          "\n");
   out.list("offset", data.offset);
-  out.list("inverse_scale", data.scale.cwiseInverse());
+  out.list("inverse_scale", Eigen::VectorXd(data.scale.cwiseInverse()));
 }
 
 }  // namespace
