@@ -43,19 +43,10 @@ Status import_to(const std::string& table, const std::string& recording, bool ov
   return write_recording(recording, imported->recording, imported->notes, overwrite);
 }
 
-palpate_check_result result_of(const RecordingCheck& check) {
-  const std::string verdict = check.verdict();
-  return {verdict == "usable" ? 2
-          : verdict == "care" ? 1
-                              : 0,
-          check.noise_floor_within_jnd, check.surface_offset_m, check.force_zero_N};
-}
-
 std::string findings_of(const RecordingCheck& check) {
   std::string text;
   for (const Finding& finding : check.findings) {
-    text += std::string(severity_name(finding.severity)) + " " + finding.code + ": " + finding.text +
-            (finding.advice.empty() ? "" : "; " + finding.advice) + "\n";
+    text += std::string(severity_name(finding.severity)) + " " + finding_text(finding) + "\n";
   }
   return text;
 }
@@ -101,13 +92,6 @@ palpate_fit_options or_default(const palpate_fit_options* options) {
   return options == nullptr ? chosen : *options;
 }
 
-CheckRequest check_of(const TrainingRequest& scene) {
-  CheckRequest request{scene.jnd, {}};
-  for (const FeatureSpec& feature : scene.features)
-    if (feature.kind == FeatureKind::lowpass_velocity) request.relaxation_times_s.push_back(feature.relaxation_time_s);
-  return request;
-}
-
 // `check`: returns the checked recordings for a request.
 template <typename Check>
 Result<RecordingsFit> fit_checked(const palpate_fit_options& given, const Check& check) {
@@ -116,7 +100,7 @@ Result<RecordingsFit> fit_checked(const palpate_fit_options& given, const Check&
   if (Status status = check_fit_options(options); !status) return status.error();
   const auto scene = scene_of(given);
   if (!scene) return scene.error();
-  Result<std::vector<CheckedFile>> checked = check(check_of(*scene));
+  Result<std::vector<CheckedFile>> checked = check(check_request(scene->jnd, scene->features));
   if (!checked) return checked.error();
   if (Status status = refuse_unusable(*checked); !status) return status.error();
   std::function<bool(double)> progress;
@@ -251,11 +235,13 @@ int palpate_check(const char* recording, palpate_check_result* result, char* fin
     if (recording == nullptr || result == nullptr) {
       return buffer.report(palpate::Error{"found no path or no result, expected both"});
     }
-    const auto file = palpate::check_recording_file(
-        recording, palpate::library::check_of(*palpate::library::scene_of(palpate::library::or_default(nullptr))));
+    const auto features = palpate::parse_scene_features(palpate::library::kSceneFeatures);
+    const auto file = palpate::check_recording_file(recording, palpate::check_request({}, *features));
     if (!file) return buffer.report(file.error());
-    *result = palpate::library::result_of(file->check);
-    ErrorBuffer{findings, findings_size}.fail(palpate::library::findings_of(file->check));
+    const palpate::RecordingCheck& check = file->check;
+    *result = {2 - static_cast<int>(check.gravest()), check.noise_floor_within_jnd, check.surface_offset_m,
+               check.force_zero_N};
+    ErrorBuffer{findings, findings_size}.fail(palpate::library::findings_of(check));
     return 0;
   });
 }
