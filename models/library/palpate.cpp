@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,8 +18,7 @@
 #include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/export/export_c.h"
-#include "models/library/error_text.h"
-#include "models/library/handles.h"
+#include "models/library/c_interface.h"
 #include "models/model/file/model_io.h"
 
 struct palpate_stream {
@@ -43,14 +42,21 @@ struct palpate_limiter {
 namespace palpate::library {
 namespace {
 
-Status check_at_least_zero(const char* name, double value) {
-  if (value >= 0.0 && std::isfinite(value)) return {};
-  return Error{std::string(name) + ": found " + std::to_string(value) + ", expected a finite number of 0 or more"};
-}
+// A number from the caller, and whether it may be 0 or infinite.
+struct GivenNumber {
+  const char* name;
+  double value;
+  bool zero = false;
+  bool infinite = false;
+};
 
-Status check_positive(const char* name, double value) {
-  if (value > 0.0) return {};
-  return Error{std::string(name) + ": found " + std::to_string(value) + ", expected more than 0"};
+Status check_numbers(std::initializer_list<GivenNumber> numbers) {
+  for (const auto& [name, value, zero, infinite] : numbers) {
+    if ((value > 0.0 || (zero && value == 0.0)) && (infinite || std::isfinite(value))) continue;
+    return Error{std::string(name) + ": found " + std::to_string(value) + ", expected a " +
+                 (infinite ? "" : "finite ") + "number " + (zero ? "of 0 or more" : "above 0")};
+  }
+  return {};
 }
 
 Result<SensorSpec> sensor_spec(const palpate_sensor& sensor) {
@@ -61,15 +67,12 @@ Result<SensorSpec> sensor_spec(const palpate_sensor& sensor) {
   spec.has_acceleration = sensor.has_acceleration != 0;
   if (spec.has_velocity) spec.velocity_noise_m_per_s = sensor.velocity_noise_m_per_s;
   if (spec.has_acceleration) spec.acceleration_noise_m_per_s2 = sensor.acceleration_noise_m_per_s2;
-  if (Status status = check_at_least_zero("encoder_step_m", spec.encoder_step_m); !status) return status.error();
-  if (Status status = check_at_least_zero("position_noise_m", spec.position_noise_m); !status) return status.error();
-  for (const auto& [has, name, value] :
-       {std::tuple{spec.has_velocity, "velocity_noise_m_per_s", spec.velocity_noise_m_per_s},
-        std::tuple{spec.has_acceleration, "acceleration_noise_m_per_s2", spec.acceleration_noise_m_per_s2}}) {
-    if (!has) continue;
-    if (Status status = check_at_least_zero(name, value); !status) return status.error();
-    if (Status status = check_positive(name, value); !status) return status.error();
-  }
+  const Status status =
+      check_numbers({{"encoder_step_m", spec.encoder_step_m, true},
+                     {"position_noise_m", spec.position_noise_m, true},
+                     {"velocity_noise_m_per_s", spec.velocity_noise_m_per_s, !spec.has_velocity},
+                     {"acceleration_noise_m_per_s2", spec.acceleration_noise_m_per_s2, !spec.has_acceleration}});
+  if (!status) return status.error();
   return spec;
 }
 
@@ -94,24 +97,20 @@ SensorSpec sensor_of_samples(size_t n, const double* time_s, const double* posit
 
 Status export_to(const FittedModel& model, double encoder_step_m, bool single_precision, const std::string& path,
                  bool overwrite) {
-  if (Status status = check_at_least_zero("encoder_step_m", encoder_step_m); !status) return status;
+  if (Status status = check_numbers({{"encoder_step_m", encoder_step_m, true}}); !status) return status;
   const ExportRequest request{single_precision, sensor_with_step(model.data(), encoder_step_m)};
   return write_file_atomically(path, export_c(model.data(), request).text, overwrite);
 }
 
 Result<ForceLimits> force_limits(const palpate_limits& limits) {
-  for (const auto& [name, value] :
-       {std::pair{"largest_N", limits.largest_N}, std::pair{"fastest_N_per_s", limits.fastest_N_per_s},
-        std::pair{"continuous_N", limits.continuous_N}, std::pair{"thermal_time_s", limits.thermal_time_s},
-        std::pair{"stale_after_s", limits.stale_after_s}}) {
-    if (Status status = check_positive(name, value); !status) return status.error();
-  }
-  for (const auto& [name, value] :
-       {std::pair{"largest_N", limits.largest_N}, std::pair{"fastest_N_per_s", limits.fastest_N_per_s},
-        std::pair{"ramp_s", limits.ramp_s}, std::pair{"thermal_time_s", limits.thermal_time_s},
-        std::pair{"stop_s", limits.stop_s}}) {
-    if (Status status = check_at_least_zero(name, value); !status) return status.error();
-  }
+  const Status status = check_numbers({{"largest_N", limits.largest_N},
+                                       {"fastest_N_per_s", limits.fastest_N_per_s},
+                                       {"ramp_s", limits.ramp_s, true},
+                                       {"continuous_N", limits.continuous_N, false, true},
+                                       {"thermal_time_s", limits.thermal_time_s},
+                                       {"stale_after_s", limits.stale_after_s, false, true},
+                                       {"stop_s", limits.stop_s, true}});
+  if (!status) return status.error();
   return ForceLimits{limits.largest_N,      limits.fastest_N_per_s, limits.ramp_s, limits.continuous_N,
                      limits.thermal_time_s, limits.stale_after_s,   limits.stop_s};
 }

@@ -1,13 +1,30 @@
-// Error reports of the C interface: text in the caller's buffer, never an exception.
+// The model handle of the C interface, and its error reports: text in the caller's buffer, never an exception.
 // Thread guarantee: pure functions, any thread.
 #pragma once
 
 #include <cstddef>
 #include <exception>
+#include <memory>
 #include <new>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "engine/base/result.h"
+#include "models/library/palpate/palpate.h"
+#include "models/model/fitted_model.h"
+
+struct palpate_model {
+  explicit palpate_model(std::shared_ptr<const palpate::FittedModel> fitted, std::string report_json = {})
+      : model(std::move(fitted)), report(std::move(report_json)) {
+    for (const palpate::FeatureSpec& spec : model->features()) feature_names.push_back(palpate::feature_name(spec));
+  }
+
+  std::shared_ptr<const palpate::FittedModel> model;
+  std::string report;
+  std::vector<std::string> feature_names;
+};
 
 namespace palpate::library {
 
