@@ -164,23 +164,27 @@ Status ModelWorker::prepare_recordings() {
   return {};
 }
 
-Status ModelWorker::prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request) {
-  if (prepared) return {};
+Status ModelWorker::prepare(Recipe& recipe, const SlotPlan& plan) {
   if (Status status = prepare_recordings(); !status) return status;
+  TrainingRequest request = training_request(scene_);
+  if (plan.paper) request = recipe_2009_request(request);
+  if (plan.origin == ModelOrigin::position) {
+    request.features = {FeatureSpec{}};
+    request.choice = FeatureChoice::scene;
+  }
   MotionSource source(recordings_);
   Result<PreparedTraining> made = prepare_training(source, request, control(kRecorded, kPrepared));
   if (!made) return made.error();
-  prepared.emplace(std::move(*made));
+  recipe.prepared.emplace(std::move(*made));
   return {};
 }
 
-Result<MethodFit> ModelWorker::fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
-                                          const FitControl& control) {
-  std::optional<NestedFit>& nested = nested_[{request.method, paper}];
+Result<MethodFit> ModelWorker::fit_nested(Recipe& recipe, const MethodRequest& request, const FitControl& control) {
+  std::optional<NestedFit>& nested = recipe.nested[request.method];
   if (!nested) {
     MethodRequest largest = request;
     largest.centres = kMostCentres;
-    auto made = NestedFit::make(prepared, largest, control);
+    auto made = NestedFit::make(*recipe.prepared, largest, control);
     if (!made) return made.error();
     nested.emplace(std::move(*made));
   }
@@ -188,31 +192,26 @@ Result<MethodFit> ModelWorker::fit_nested(const PreparedTraining& prepared, cons
 }
 
 Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
-  std::optional<PreparedTraining> of_position;
+  Recipe of_position;
   const bool position = plan.origin == ModelOrigin::position;
-  std::optional<PreparedTraining>& prepared = position ? of_position : plan.paper ? prepared_as_paper_ : prepared_;
-  const bool prepared_before = prepared.has_value();
-  TrainingRequest training = training_request(scene_);
-  if (plan.paper) training = recipe_2009_request(training);
-  if (position) {
-    training.features = {FeatureSpec{}};
-    training.choice = FeatureChoice::scene;
+  Recipe& recipe = position ? of_position : plan.paper ? of_paper_ : own_;
+  const double prepared = recipe.prepared ? 0.0 : kPrepared;
+  if (!recipe.prepared) {
+    if (const Status status = prepare(recipe, plan); !status) return status.error();
   }
-  if (const Status status = prepare(prepared, training); !status) return status.error();
   MethodRequest request;
   request.method = plan.method;
   request.seed = seed_;
   if (plan.centres > 0) request.centres = plan.centres;
-  const bool own = position || plan.paper;  // its preparation differs from that of the bases
-  const auto base = own ? bases_.end() : bases_.find(plan.method->base);
-  const FitControl rest = control(prepared_before ? 0.0 : kPrepared, 1.0);
-  const bool nested = !position && prepared->corrects() && plan.method->choose != nullptr &&
-                      request.centres <= kMostCentres && !nested_.try_emplace({plan.method, plan.paper}).second;
-  Result<MethodFit> fitted = nested
-                                 ? fit_nested(*prepared, request, plan.paper, rest)
-                                 : fit_method(*prepared, request, rest, base == bases_.end() ? nullptr : &base->second);
+  const bool nested = !position && recipe.prepared->corrects() && plan.method->choose != nullptr &&
+                      request.centres <= kMostCentres && !recipe.nested.try_emplace(plan.method).second;
+  const auto base = recipe.bases.find(plan.method->base);
+  const FitControl rest = control(prepared, 1.0);
+  Result<MethodFit> fitted =
+      nested ? fit_nested(recipe, request, rest)
+             : fit_method(*recipe.prepared, request, rest, base == recipe.bases.end() ? nullptr : &base->second);
   if (!fitted) return fitted.error();
-  if (!own && plan.centres == 0) bases_.insert_or_assign(plan.method, *fitted);
+  if (plan.centres == 0) recipe.bases.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);
 }
 
