@@ -134,11 +134,11 @@ class MaxwellBlock final : public Block {
     Inner inner;
     for (std::size_t b = 0; b < material_.branch_count; ++b) {
       const double change_N =
-          material_.unrelaxed_force_N(b, surface_m) - material_.unrelaxed_force_N(b, last_surface_m());
+          material_.unrelaxed_force_N(b, surface_m) - material_.unrelaxed_force_N(b, surface_depth_m());
       inner.branch_N[b] = inner_.branch_N[b] * steps_[b].decay + change_N * steps_[b].gain;
     }
     const double limit_N = material_.friction_fraction * material_.elastic_force_N(surface_m);
-    const double dragged_N = inner_.friction_N + material_.friction_stiffness_N_per_m * (surface_m - last_surface_m());
+    const double dragged_N = inner_.friction_N + material_.friction_stiffness_N_per_m * (surface_m - surface_depth_m());
     inner.friction_N = std::clamp(dragged_N, -limit_N, limit_N);
     return inner;
   }
