@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -51,16 +50,16 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
   return cover;
 }
 
-DomainGuard::DomainGuard(DomainCover cover)
-    : cover_(std::move(cover)),
-      inner_squared_(cover_.inner_radius * cover_.inner_radius),
-      near_(cover_.points, cover_.inner_radius),
-      nearest_(cover_.points) {}
+DomainGuard::DomainGuard(const DomainCover& cover)
+    : inner_radius_(cover.inner_radius),
+      outer_radius_(cover.outer_radius),
+      near_(cover.points, cover.inner_radius),
+      nearest_(cover.points) {}
 
 double DomainGuard::trust_at(double squared) const noexcept {
-  if (squared <= inner_squared_) return 1.0;
-  if (!(squared < cover_.outer_radius * cover_.outer_radius)) return 0.0;
-  const double t = (cover_.outer_radius - std::sqrt(squared)) / (cover_.outer_radius - cover_.inner_radius);
+  if (squared <= inner_radius_ * inner_radius_) return 1.0;
+  if (!(squared < outer_radius_ * outer_radius_)) return 0.0;
+  const double t = (outer_radius_ - std::sqrt(squared)) / (outer_radius_ - inner_radius_);
   return t * t * (3.0 - 2.0 * t);
 }
 

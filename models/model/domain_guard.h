@@ -33,26 +33,22 @@ DomainCover make_cover(const Eigen::MatrixXd& sites);
 
 class DomainGuard {
  public:
-  explicit DomainGuard(DomainCover cover);
+  explicit DomainGuard(const DomainCover& cover);
 
   // `x`: d normalised values. Returns g in [0, 1]; 0 when x is not finite.
-  double trust(const double* x) const noexcept { return trust_at(squared_distance(x)); }
+  double trust(const double* x) const noexcept { return trust_at(squared_distance(x, leaf(x))); }
 
   // The squared distance to the cover; infinite when x is not finite. Within the inner radius, where the trust is 1
-  // and the error bound does not grow, it may be 0 instead.
-  double squared_distance(const double* x) const noexcept { return squared_distance(x, leaf(x)); }
-  // The same in two steps, so that the tick can interleave other work.
+  // and the error bound does not grow, it may be 0 instead. In two steps, so that the tick can interleave other work.
   const float* leaf(const double* x) const noexcept { return near_.leaf(x); }
   double squared_distance(const double* x, const float* leaf_of_x) const noexcept {
     return near_.found(x, leaf_of_x) ? 0.0 : nearest_.nearest_squared(x);
   }
   double trust_at(double squared_distance) const noexcept;
 
-  const DomainCover& cover() const noexcept { return cover_; }
-
  private:
-  DomainCover cover_;
-  double inner_squared_ = 0.0;
+  double inner_radius_ = 0.0;
+  double outer_radius_ = 0.0;
   NearPoints near_;
   NearestDistance nearest_;
 };

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "engine/tick/features.h"
-#include "models/model/aligned_array.h"
 
 namespace palpate {
 namespace {
@@ -22,51 +21,38 @@ std::size_t whole_vectors(std::size_t count) {
   return (count + simd::kSimdPadFloat - 1) / simd::kSimdPadFloat * simd::kSimdPadFloat;
 }
 
-// Writes the points `order`, one row for each coordinate, and repeats the last point up to `stride`.
-void fill_rows(const Eigen::MatrixXd& points, const std::vector<Eigen::Index>& order, std::size_t stride, float* to) {
-  for (Eigen::Index k = 0; k < points.rows(); ++k)
-    for (std::size_t i = 0; i < stride; ++i)
-      *to++ = simd::nearest_float(points(k, order[std::min(i, order.size() - 1)]));
+// The points `order`, one column for each coordinate; the last point is repeated up to `stride`.
+Eigen::MatrixXf padded(const Eigen::MatrixXd& points, std::vector<Eigen::Index> order, std::size_t stride) {
+  order.resize(stride, order.back());
+  return points(Eigen::all, order).transpose().unaryExpr(&simd::nearest_float);
 }
 
 std::vector<Eigen::Index> all_of(const Eigen::MatrixXd& points) {
   std::vector<Eigen::Index> all(static_cast<std::size_t>(points.cols()));
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Eigen::Index>(i);
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
   return all;
 }
 
 Eigen::Index widest_dimension(const Eigen::MatrixXd& points, const std::vector<Eigen::Index>& part) {
+  const Eigen::MatrixXd some = points(Eigen::all, part);
   Eigen::Index widest = 0;
-  double width = -1.0;
-  for (Eigen::Index k = 0; k < points.rows(); ++k) {
-    const auto [low, high] = std::minmax_element(
-        part.begin(), part.end(), [&](Eigen::Index a, Eigen::Index b) { return points(k, a) < points(k, b); });
-    if (points(k, *high) - points(k, *low) <= width) continue;
-    width = points(k, *high) - points(k, *low);
-    widest = k;
-  }
+  (some.rowwise().maxCoeff() - some.rowwise().minCoeff()).maxCoeff(&widest);
   return widest;
 }
 
 }  // namespace
 
 NearestDistance::NearestDistance(const Eigen::MatrixXd& points)
-    : stride_(whole_vectors(static_cast<std::size_t>(points.cols()))),
-      dimension_(static_cast<int>(points.rows())),
-      nearest_(simd::nearest_loops(dimension_).nearest) {
-  assert(points.cols() >= 1);
-  auto memory = aligned_array<float>(stride_ * static_cast<std::size_t>(points.rows()));
-  fill_rows(points, all_of(points), stride_, memory.get());
-  memory_ = std::move(memory);
-}
+    : rows_(padded(points, all_of(points), whole_vectors(static_cast<std::size_t>(points.cols())))),
+      nearest_(simd::nearest_loops(static_cast<int>(points.rows())).nearest) {}
 
 double NearestDistance::nearest_squared(const double* x) const noexcept {
   std::array<float, kMaxFeatures> query;
-  for (int k = 0; k < dimension_; ++k) {
+  for (Eigen::Index k = 0; k < rows_.cols(); ++k) {
     if (!simd::in_nearest_range(x[k])) return std::numeric_limits<double>::infinity();
     query[static_cast<std::size_t>(k)] = simd::nearest_float(x[k]);
   }
-  const float squared = nearest_(memory_.get(), stride_, stride_, query.data());
+  const float squared = nearest_(rows_.data(), static_cast<std::size_t>(rows_.rows()), query.data());
   return squared < std::numeric_limits<float>::max() ? static_cast<double>(squared)
                                                      : std::numeric_limits<double>::infinity();
 }
@@ -83,11 +69,12 @@ NearPoints::NearPoints(const Eigen::MatrixXd& points, double radius)
 
   Eigen::MatrixXd rows(points.rows() + 1, points.cols());
   rows << about, -0.5 * about.colwise().squaredNorm();
-  const std::size_t floats = tree_.leaf_size * static_cast<std::size_t>(rows.rows());
-  leaves_ = aligned_array<float>(leaves.size() * floats);
+  const auto floats = static_cast<Eigen::Index>(tree_.leaf_size) * rows.rows();
+  Eigen::MatrixXf memory(floats, static_cast<Eigen::Index>(leaves.size()));
   for (std::size_t i = 0; i < leaves.size(); ++i)
-    fill_rows(rows, leaves[i], tree_.leaf_size, leaves_.get() + i * floats);
-  tree_.leaves = leaves_.get();
+    memory.col(static_cast<Eigen::Index>(i)) = padded(rows, leaves[i], tree_.leaf_size).reshaped();
+  leaves_ = std::make_shared<const Eigen::MatrixXf>(std::move(memory));
+  tree_.leaves = leaves_->data();
   set_limit(radius, points.colwise().norm().maxCoeff(), about.colwise().squaredNorm().maxCoeff());
 }
 

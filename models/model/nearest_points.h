@@ -24,9 +24,7 @@ class NearestDistance {
   double nearest_squared(const double* x) const noexcept;
 
  private:
-  std::shared_ptr<const float[]> memory_;
-  std::size_t stride_ = 0;
-  int dimension_ = 0;
+  Eigen::MatrixXf rows_;  // padded
   simd::NearestFunction nearest_ = nullptr;
 };
 
@@ -48,7 +46,7 @@ class NearPoints {
              std::vector<std::vector<Eigen::Index>>& leaves);
   void set_limit(double radius, double largest, double about_squared);
 
-  std::shared_ptr<float[]> leaves_;
+  std::shared_ptr<const Eigen::MatrixXf> leaves_;  // one a column; shared by copies, because tree_ points to it
   simd::NearTree tree_;
   simd::NearestLoops loops_;
 };

@@ -5,30 +5,20 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
-#include "models/model/aligned_array.h"
 
 namespace palpate {
-namespace {
-
-std::size_t round_up(Eigen::Index count, std::size_t multiple) {
-  return (static_cast<std::size_t>(count) + multiple - 1) / multiple * multiple;
-}
-
-}  // namespace
-
 PointArrays::PointArrays(const Eigen::MatrixXd& points) : count_(points.cols()) {
   assert(points.rows() >= 1 && points.rows() <= static_cast<Eigen::Index>(kMaxFeatures));
   view_.dimension = static_cast<int>(points.rows());
-  view_.padded = round_up(points.cols(), simd::kSimdPad);
+  const auto count = static_cast<std::size_t>(points.cols());
+  view_.padded = (count + simd::kSimdPad - 1) / simd::kSimdPad * simd::kSimdPad;
   // An odd number of cache lines between rows, so that the same index of
   // different rows does not fall into the same cache set.
   view_.stride = view_.padded + (view_.padded / simd::kSimdPad % 2 == 0 ? simd::kSimdPad : 0);
-  auto memory = aligned_array<double>(view_.stride * static_cast<std::size_t>(points.rows()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    for (Eigen::Index k = 0; k < points.rows(); ++k)
-      memory[static_cast<std::ptrdiff_t>(view_.stride) * k + i] = simd::without_denormals(points(k, i));
-  view_.coordinates = memory.get();
-  memory_ = std::move(memory);
+  Eigen::MatrixXd memory = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(view_.stride), points.rows());
+  memory.topRows(points.cols()) = points.transpose().unaryExpr(&simd::without_denormals);
+  memory_ = std::make_shared<const Eigen::MatrixXd>(std::move(memory));
+  view_.coordinates = memory_->data();
 }
 
 RbfCorrection::RbfCorrection(RbfFunction function)
@@ -37,10 +27,8 @@ RbfCorrection::RbfCorrection(RbfFunction function)
       evaluate_(simd::kernel_loops(function_.kernel, function_.dimension()).evaluate) {
   assert(function_.weights.size() == function_.centre_count());
   assert(function_.tail.size() == tail_size(tail_degree(function_.kernel), function_.dimension()));
-  auto weights = aligned_array<double>(centres_.view().padded);
-  for (Eigen::Index j = 0; j < function_.weights.size(); ++j)
-    weights[j] = simd::without_denormals(function_.weights[j]);
-  weights_ = std::move(weights);
+  weights_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(centres_.view().padded));
+  weights_.head(function_.weights.size()) = function_.weights.unaryExpr(&simd::without_denormals);
 }
 
 void RbfCorrection::evaluate_many(const Eigen::MatrixXd& points, Eigen::VectorXd& out) const {

@@ -35,7 +35,7 @@ struct RbfFunction {
   Eigen::Index centre_count() const { return centres.cols(); }
 };
 
-// Points as structure-of-arrays, 64-byte aligned, padded with points at the origin. Immutable.
+// Points as structure-of-arrays, padded with points at the origin. Immutable.
 class PointArrays {
  public:
   PointArrays() = default;
@@ -46,7 +46,7 @@ class PointArrays {
   Eigen::Index count() const noexcept { return count_; }
 
  private:
-  std::shared_ptr<const double[]> memory_;  // shared by copies
+  std::shared_ptr<const Eigen::MatrixXd> memory_;  // shared by copies
   simd::Points view_;
   Eigen::Index count_ = 0;
 };
@@ -59,7 +59,7 @@ class RbfCorrection final : public Correction {
 
   // h(x) in newtons. `x`: d values, normalised. Haptics thread, wait-free, O(n), no allocation.
   double evaluate(const double* x) const noexcept override {
-    return evaluate_(centres_.view(), weights_.get(), function_.tail.data(), x);
+    return evaluate_(centres_.view(), weights_.data(), function_.tail.data(), x);
   }
   int size() const noexcept override { return static_cast<int>(function_.centre_count()); }
 
@@ -71,8 +71,8 @@ class RbfCorrection final : public Correction {
 
  private:
   RbfFunction function_;
-  PointArrays centres_;  // with the weights, as evaluate_ needs them
-  std::shared_ptr<const double[]> weights_;
+  PointArrays centres_;
+  Eigen::VectorXd weights_;  // padded
   simd::EvaluateFunction evaluate_ = nullptr;
 };
 
