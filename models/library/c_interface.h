@@ -28,47 +28,56 @@ struct palpate_model {
 
 namespace palpate::library {
 
-// The caller's buffer for one error message; `text` may be null.
-struct ErrorBuffer {
+// The caller's buffer for one text; `text` may be null.
+struct TextBuffer {
   char* text = nullptr;
   std::size_t size = 0;
 
-  // Returns 0, or -1 after writing the error's text, for functions that return a status.
-  int report(const Status& status) const noexcept {
-    if (status) return 0;
-    fail(status.error().message);
-    return -1;
-  }
-
-  // Writes as much of `message` as fits, in whole UTF-8 characters, with a terminating zero. Returns null, for
-  // functions that return handles.
-  std::nullptr_t fail(std::string_view message) const noexcept {
-    if (text == nullptr || size == 0) return nullptr;
+  // Writes as much of `message` as fits, in whole UTF-8 characters, with a terminating zero.
+  void write(std::string_view message) const noexcept {
+    if (text == nullptr || size == 0) return;
     std::size_t count = message.size() < size ? message.size() : size - 1;
     if (count < message.size()) {
       while (count > 0 && (static_cast<unsigned char>(message[count]) & 0xC0U) == 0x80U) --count;
     }
     message.copy(text, count);
     text[count] = '\0';
-    return nullptr;
   }
 };
 
-// Returns the result of `work`, or `failed` if it throws, with the text at `buffer`. Without an error the text is
-// empty.
+// Returns the value of the Result that `work` returns, or `failed` if it has an error or `work` throws, with the text
+// of the error at `buffer`. Without an error the text is empty.
 template <typename T, typename Work>
-T guarded(T failed, ErrorBuffer buffer, Work&& work) noexcept {
-  buffer.fail("");
+T guarded(T failed, TextBuffer buffer, Work&& work) noexcept {
+  buffer.write("");
   try {
-    return work(buffer);
+    const Result<T> done = work();
+    if (done) return *done;
+    buffer.write(done.error().message);
   } catch (const std::bad_alloc&) {
-    buffer.fail("out of memory");
+    buffer.write("out of memory");
   } catch (const std::exception& error) {
-    buffer.fail(error.what());
+    buffer.write(error.what());
   } catch (...) {
-    buffer.fail("unexpected: an exception that is not a std::exception");
+    buffer.write("unexpected: an exception that is not a std::exception");
   }
   return failed;
+}
+
+// For functions that return a handle, or null after an error.
+template <typename T, typename Work>
+T* made(char* error, std::size_t error_size, Work&& work) noexcept {
+  return guarded<T*>(nullptr, {error, error_size}, std::forward<Work>(work));
+}
+
+// For functions that return 0, or -1 after an error. `work` returns a Status.
+template <typename Work>
+int status_of(char* error, std::size_t error_size, Work&& work) noexcept {
+  return guarded<int>(-1, {error, error_size}, [&]() -> Result<int> {
+    const Status status = work();
+    if (!status) return status.error();
+    return 0;
+  });
 }
 
 }  // namespace palpate::library
