@@ -30,9 +30,6 @@ TEST(FittedModel, ANumberFarBeyondTheLimitsOfTheFileIsRefused) {
       [](ModelData& d) { d.trend.reference_depth_m = kNan; },
       [](ModelData& d) { test::change_rbf(d, [](RbfFunction& f) { f.weights(3) = kNan; }); },
       [](ModelData& d) { d.trend.viscosity_Ns_per_m[0] = -1e300; },
-      [](ModelData& d) {
-        d.trend.elastic = spline_from_powers({1e5, 0.0, 0.0}, {});
-      },
       [](ModelData& d) { d.scale(0) = 1e300; },
       [](ModelData& d) { test::change_rbf(d, [](RbfFunction& f) { f.weights *= 1e12; }); },
       [](ModelData& d) { test::change_rbf(d, [](RbfFunction& f) { f.tail(0) = 1e300; }); },

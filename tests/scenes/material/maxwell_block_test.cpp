@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "engine/base/csv_scanner.h"
-#include "engine/base/random_stream.h"
 #include "scenes/material/material.h"
 #include "tests/support/wandering.h"
 
@@ -60,17 +58,6 @@ TEST(MaxwellBlock, BranchFollowsTheClosedFormOfARamp) {
     const double t = tick * 1e-3;
     block.step(v * t, v, 1e-3);
     ASSERT_NEAR(block.force_N() - 100.0 * v * t, -300.0 * v * 0.2 * std::expm1(-t / 0.2), 1e-10);
-  }
-}
-
-TEST(MaxwellBlock, ElasticHasNoMemory) {
-  MaxwellBlock block(kElastic);
-  RandomStream random(3, 0);
-  for (int tick = 0; tick < 2000; ++tick) {
-    const double position_m = random.uniform(-0.005, 0.01);
-    const double velocity_m_per_s = random.uniform(-0.3, 0.3);
-    EXPECT_DOUBLE_EQ(block.step(position_m, velocity_m_per_s, 1e-3),
-                     kElastic.elastic_force_N(std::max(0.0, position_m)));
   }
 }
 
