@@ -237,11 +237,11 @@ TEST(Rig, RefusesInvalidSettings) {
   };
   const double nan = std::nan("");
   for (const auto& [setting, value, parts] :
-       std::vector<Case>{{&RigSettings::rate_Hz, 9.9, {"rate", "10", "20000"}},
-                         {&RigSettings::rate_Hz, 20001.0, {"rate", "10", "20000"}},
-                         {&RigSettings::rate_Hz, nan, {"rate", "10", "20000"}},
-                         {&RigSettings::seconds, -1.0, {"seconds", "0"}},
-                         {&RigSettings::seconds, nan, {"seconds", "0"}},
+       std::vector<Case>{{&RigSettings::rate_Hz, 9.9, {"rate", "10 to 20000"}},
+                         {&RigSettings::rate_Hz, 20001.0, {"rate", "10 to 20000"}},
+                         {&RigSettings::rate_Hz, nan, {"rate", "10 to 20000"}},
+                         {&RigSettings::seconds, -1.0, {"seconds", "above 0"}},
+                         {&RigSettings::seconds, nan, {"seconds", "above 0"}},
                          {&RigSettings::seconds, 0.005, {"seconds", "10 rows"}},
                          {&RigSettings::seconds, 1e9, {"seconds", "50 million"}}}) {
     RigSettings settings;
