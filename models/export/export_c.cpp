@@ -25,7 +25,7 @@ std::string in_comment(const std::string& text) {
 }
 
 // Describes the sensor that the file assumes.
-std::string sensor_text(const CText& exact, const PositionSensor& sensor) {
+std::string sensor_text(const CText& exact, const SensorSpec& sensor) {
   const std::string step =
       sensor.encoder_step_m > 0.0 ? "in steps of " + exact.number(sensor.encoder_step_m) + " m" : "";
   const std::string noise =

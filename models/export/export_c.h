@@ -23,7 +23,7 @@ namespace palpate {
 struct ExportRequest {
   bool single_precision = false;
   // Defaults of two macros of the file; both 0: exact positions.
-  PositionSensor sensor;
+  SensorSpec sensor;
 };
 
 struct ExportedC {

@@ -193,9 +193,7 @@ double palpate_jnd_N(const palpate_model* model, double force_N) {
 palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_step_m, char* error, size_t error_size) {
   palpate_sensor sensor{};
   if (model != nullptr) {
-    const palpate::PositionSensor known = palpate::sensor_with_step(model->model->data(), encoder_step_m);
-    sensor.encoder_step_m = known.encoder_step_m;
-    sensor.position_noise_m = known.position_noise_m;
+    sensor = palpate::library::sensor_from(palpate::sensor_with_step(model->model->data(), encoder_step_m));
   }
   return palpate_stream_new_with_sensor(model, &sensor, error, error_size);
 }

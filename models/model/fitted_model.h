@@ -25,6 +25,7 @@
 #include "engine/base/result.h"
 #include "engine/tick/force_model.h"
 #include "engine/tick/jnd.h"
+#include "engine/tick/tool_sample.h"
 #include "models/model/correction.h"
 #include "models/model/domain_guard.h"
 #include "models/model/trend.h"
@@ -44,12 +45,6 @@ struct RecordingSurface {
   double force_zero_N = 0.0;
   double lag_s = 0.0;              // the forces were shifted to earlier times by this
   std::uint64_t content_hash = 0;  // of its rows as recorded; not stored in files
-};
-
-// The position sensor of the training recordings; the coarsest of them.
-struct PositionSensor {
-  double encoder_step_m = 0.0;    // 0: not quantised
-  double position_noise_m = 0.0;  // standard deviation in addition to the quantisation
 };
 
 // The origin of a model; it has no effect on the forces.
@@ -101,9 +96,9 @@ struct ModelData {
   double lowest_force_N = 0.0;   // of the training data if the material pulls, else 0; <= 0
   DomainCover cover;
   std::optional<ErrorBound> error_bound;  // none in earlier files and in the paper's recipe
-  // The default sensor of streams and exported files; no effect on the force of a feature vector. None in earlier
-  // files.
-  std::optional<PositionSensor> sensor;
+  // The position sensor of the training recordings, the coarsest of them: the default sensor of streams and exported
+  // files; no effect on the force of a feature vector. None in earlier files.
+  std::optional<SensorSpec> sensor;
   JndLine jnd;
   CorrectionPtr correction;  // h; shared by copies
   Provenance provenance;
@@ -117,7 +112,7 @@ Status check_forces(const ModelData& data);
 
 // The sensor of a tool with this encoder step: the sensor of the training recordings if the step is theirs or 0 (not
 // known), else one with this step and no noise.
-PositionSensor sensor_with_step(const ModelData& data, double encoder_step_m);
+SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m);
 
 // Greater depths are out of the domain at any distance from the data; infinite without a depth feature. `feature`: the
 // index of the depth feature, or 0.

@@ -1,4 +1,4 @@
-// The vectorised loops of nearest_points.h, one variant per instruction set as in models/model/rbf/rbf_simd.h, whose
+// The vectorised loops of domain_guard.h, one variant per instruction set as in models/model/rbf/rbf_simd.h, whose
 // choose_target applies here, too.
 #pragma once
 

@@ -157,7 +157,7 @@ void describe_rest(auto& file, ModelData& data) {
   });
   describe_unless_0(file, "lowest_force_N", data.lowest_force_N, {-kMaximumForce_N, 0.0});
   if (file.has("sensor", data.sensor.has_value())) {
-    PositionSensor& sensor = data.sensor ? *data.sensor : data.sensor.emplace();
+    SensorSpec& sensor = data.sensor ? *data.sensor : data.sensor.emplace();
     file.object("sensor", "an object", Layout::one_line, [&] {
       file.number("encoder_step_m", sensor.encoder_step_m, kNotNegative);
       file.number("position_noise_m", sensor.position_noise_m, kNotNegative);

@@ -123,7 +123,7 @@ TEST_F(LibraryC, AnEncoderStepAloneIsEnoughWhenPositionsHaveNoOtherNoise) {
 
 TEST_F(LibraryC, WithNoStepTheSensorIsThatOfTheModelsRecordings) {
   ModelData data = test::example_models().front();
-  data.sensor = PositionSensor{30e-6, 0.0};
+  data.sensor = SensorSpec{30e-6, 0.0};
   const ModelHandle model = load(save(data));
   const Recording recording = test::example_recording(1500, 1000.0, 30e-6);
   const StreamPtr one(palpate_stream_new(model.get(), 0.0, error_, sizeof error_), &palpate_stream_free);

@@ -56,7 +56,7 @@ TEST(ModelIo, FeaturesWithPartsSplinesSofteningAndTheErrorBoundAreKept) {
   ModelData data = example_model("greedy", KernelKind::cubic, {FeatureSpec{}, spectrum, stops, creep, lag}, 11);
   data.trend.elastic = spline_from_powers({0.1, 1.0 / 3.0, 0.2}, lag.drive.knot_N);
   data.error_bound = ErrorBound{0.01, 0.02, 0.3};
-  data.sensor = PositionSensor{30e-6, 1e-6};
+  data.sensor = SensorSpec{30e-6, 1e-6};
   const ModelData back = read_back(data);
   EXPECT_EQ(back.features, data.features);
   ASSERT_TRUE(back.error_bound.has_value() && back.sensor.has_value());
