@@ -90,10 +90,8 @@ Status ModelWorker::start() {
 
 void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan, bool at_once) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(jobs_, [&](const Job& other) { return other.job_id == job_id; });
-  const double cost_s = at_once ? -1.0 : expected_cost_s(plan);
-  const auto slower = std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& other) { return other.cost_s > cost_s; });
-  jobs_.insert(slower, {job_id, plan, cost_s});
+  std::erase_if(jobs_, [&](const auto& other) { return other.second.job_id == job_id; });
+  jobs_.emplace(at_once ? -1.0 : expected_cost_s(plan), Job{job_id, plan});
   wake_.notify_all();
 }
 
@@ -113,8 +111,7 @@ void ModelWorker::work() {
     working_on_.reset();
     wake_.wait(lock, [&] { return !jobs_.empty() || cancelled_.load(std::memory_order_relaxed); });
     if (cancelled_.load(std::memory_order_relaxed)) return;
-    const Job job = std::move(jobs_.front());
-    jobs_.pop_front();
+    const Job job = std::move(jobs_.extract(jobs_.begin()).mapped());
     working_on_ = job.job_id;
     share_.store(0.0, std::memory_order_relaxed);
     lock.unlock();

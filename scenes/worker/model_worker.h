@@ -11,7 +11,6 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -78,7 +77,6 @@ class ModelWorker {
   struct Job {
     std::size_t job_id = 0;
     SlotPlan plan;
-    double cost_s = 0.0;  // expected time; below 0: at once
   };
   // What the fits by one recipe share.
   struct Recipe {
@@ -106,7 +104,7 @@ class ModelWorker {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   // Guarded by mutex_.
-  std::deque<Job> jobs_;
+  std::multimap<double, Job> jobs_;  // by expected time, s; below 0: at once
   std::vector<FinishedModel> finished_;
   std::optional<std::size_t> working_on_;
 };
