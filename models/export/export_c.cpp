@@ -1,5 +1,6 @@
 #include "models/export/export_c.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -15,13 +16,10 @@ namespace {
 constexpr std::size_t kMotionNumbers = 2 * (3 + 9 + 1) + 2 + 6;
 
 // Replaces characters that are not safe in a C comment.
-std::string in_comment(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    const bool plain = c >= ' ' && c <= '~' && c != '*' && c != '?' && c != '\\';
-    safe += plain ? c : '_';
-  }
-  return safe;
+std::string in_comment(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return c < ' ' || c > '~' || c == '*' || c == '?' || c == '\\'; }, '_');
+  return text;
 }
 
 // Describes the sensor that the file assumes.

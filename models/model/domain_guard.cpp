@@ -71,11 +71,8 @@ Eigen::Index widest_dimension(const Eigen::MatrixXd& points, const std::vector<E
 
 DomainCover make_cover(const Eigen::MatrixXd& sites) {
   double radius = kFirstCoverRadius;
-  std::vector<Eigen::Index> kept = thinned(sites, radius);
-  while (kept.empty()) {
-    radius *= kCoverGrowth;
-    kept = thinned(sites, radius);
-  }
+  std::vector<Eigen::Index> kept;
+  while ((kept = thinned(sites, radius)).empty()) radius *= kCoverGrowth;
   DomainCover cover;
   cover.points = sites(Eigen::all, kept);
   // Every site has full trust, however much the cover was thinned.
