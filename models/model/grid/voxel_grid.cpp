@@ -26,19 +26,19 @@ GridCorrection::GridCorrection(VoxelGrid grid) : grid_(std::move(grid)), interpo
   std::size_t stride = 1;
   for (std::size_t k = grid_.nodes.size(); k-- > 0; stride *= grid_.nodes[k].size()) {
     const std::vector<double>& nodes = grid_.nodes[k];
-    axes_[k].stride = stride;
+    axes_[k] = {nodes, {}, stride};
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
       axes_[k].reciprocal_width.push_back(1.0 / (nodes[i + 1] - nodes[i]));
     }
   }
 }
 
-GridCorrection::Cell GridCorrection::locate(std::size_t axis, double x) const noexcept {
-  const std::vector<double>& nodes = grid_.nodes[axis];
+GridCorrection::Cell GridCorrection::locate(const Axis& axis, double x) noexcept {
+  const std::span<const double> nodes = axis.nodes;
   const double inside = x > nodes.front() ? std::min(x, nodes.back()) : nodes.front();  // NaN: the lower edge
   const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, inside);
   const auto cell = static_cast<std::size_t>(above - nodes.begin()) - 1;
-  return {cell * axes_[axis].stride, (inside - nodes[cell]) * axes_[axis].reciprocal_width[cell]};
+  return {cell * axis.stride, (inside - nodes[cell]) * axis.reciprocal_width[cell]};
 }
 
 template <int kDimension>
@@ -47,7 +47,7 @@ double GridCorrection::interpolate(const double* x) const noexcept {
   std::array<std::size_t, kDimension> stride;
   const double* corner = grid_.values_N.data();
   for (std::size_t k = 0; k < kDimension; ++k) {
-    const Cell cell = locate(k, x[k]);
+    const Cell cell = locate(axes_[k], x[k]);
     corner += cell.offset;
     fraction[k] = cell.fraction;
     stride[k] = axes_[k].stride;

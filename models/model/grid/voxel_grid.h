@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "engine/tick/features.h"
@@ -25,6 +26,7 @@ class GridCorrection final : public Correction {
  public:
   // `grid`: 1 to kMaxFeatures dimensions, one value for each node.
   explicit GridCorrection(VoxelGrid grid);
+  GridCorrection(const GridCorrection&) = delete;  // axes_ refers to grid_
 
   // The grid's value at x, d values. Coordinates outside the box are clamped to it; NaN counts as the lower edge.
   // Haptics thread, wait-free, no allocation, O(2^d + d log nodes).
@@ -35,6 +37,7 @@ class GridCorrection final : public Correction {
 
  private:
   struct Axis {
+    std::span<const double> nodes;
     std::vector<double> reciprocal_width;  // of the cell that begins at each node but the last
     std::size_t stride = 0;                // in values_N
   };
@@ -43,7 +46,7 @@ class GridCorrection final : public Correction {
     double fraction = 0.0;
   };
 
-  Cell locate(std::size_t axis, double x) const noexcept;
+  static Cell locate(const Axis& axis, double x) noexcept;
   template <int kDimension>
   double interpolate(const double* x) const noexcept;
 
