@@ -14,7 +14,7 @@ struct ForceEstimate {
   // The feature vector is outside the domain of the training data, where the force is mainly that of the trend
   // (models/model/domain_guard.h).
   bool out_of_domain = false;
-  // 95 % bound on the error of the force, N; NaN if the model has none (models/model/error_bound.h).
+  // 95 % bound on the error of the force, N; NaN if the model has none (models/model/fitted_model.h).
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -47,29 +47,295 @@ class Checker {
         noise_N_(prepared.force_noise_N),
         request_(request),
         faults_(faults) {}
-  RecordingCheck run();
+
+  RecordingCheck run() {
+    measures_ = measure_recording(recording_, 0.0);
+    check_faults();
+    check_sampling();
+    if (check_signal()) {
+      check_signs();
+      const bool right_way = check_.findings.back().severity != Severity::fatal;
+      // With the wrong sign of position or force there is no surface to estimate.
+      if (right_way) {
+        check_lag();
+        check_surface();
+        if (check_.surface_offset_m != 0.0) measures_ = measure_recording(recording_, check_.surface_offset_m);
+        check_zero();
+        check_exploration();
+        check_memory();
+      }
+      check_units();
+      check_clipping();
+      check_sensors();
+    }
+    find_noise_floor();
+    std::stable_sort(check_.findings.begin(), check_.findings.end(),
+                     [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+    return std::move(check_);
+  }
 
  private:
   void add(const char* code, Severity severity, double value, std::string text, std::string advice) {
     check_.findings.push_back({code, severity, value, std::move(text), std::move(advice)});
   }
-  bool check_signal();
-  void check_faults();
-  void check_signs();
-  void check_units();
-  void check_sampling();
-  void check_sensors();
-  void check_zero();
-  void check_clipping();
-  void check_lag();
-  void check_surface();
-  void check_exploration();
-  void check_memory();
-  void find_noise_floor();
-
   double force_range_N() const { return measures_.highest_force_N - measures_.lowest_force_N; }
   double travel_m() const { return measures_.highest_position_m - measures_.lowest_position_m; }
   double depth_m() const { return measures_.highest_position_m - check_.surface_offset_m; }
+
+  // Without force or motion all other checks are meaningless.
+  bool check_signal() {
+    const bool force = force_range_N() > std::max(kForceFloor_N, 5.0 * noise_N_);
+    const bool motion = travel_m() > kLeastTravel_m;
+    if (!force) {
+      add("no_force", Severity::fatal, force_range_N(),
+          words("the force changes by only %.3g N over the whole recording, and its noise is %.3g N", force_range_N(),
+                noise_N_),
+          "check the sensor's cable, and check that force_N has the right column");
+    }
+    if (!motion) {
+      add("no_motion", Severity::fatal, travel_m(),
+          words("the position changes by only %.3g mm over the whole recording", 1e3 * travel_m()),
+          "check the encoder, and check that position_m has the right column");
+    }
+    return force && motion;
+  }
+
+  void check_faults() {
+    const std::size_t dropouts = faults_.position_dropouts + faults_.force_dropouts;
+    if (dropouts > 0) {
+      const double share = static_cast<double>(dropouts) / static_cast<double>(faults_.rows);
+      add("dropouts", Severity::warning, share,
+          words("the position jumps away and back in %zu single rows and the force in %zu, %.2g %% of the rows: these "
+                "rows are left out",
+                faults_.position_dropouts, faults_.force_dropouts, 100.0 * share),
+          "check cables, connectors and the interface of the sensor");
+    }
+    if (faults_.update_step_s > 0.0) {
+      add("repeated_positions", Severity::warning, faults_.update_step_s,
+          words("the position changes only every %.3g ms and is repeated in the rows between: only the %zu rows with a "
+                "new position are used",
+                1e3 * faults_.update_step_s, faults_.updates),
+          "read the position as often as the force");
+    }
+  }
+
+  void check_signs() {
+    const PressDirection direction = find_press_direction(recording_.rows);
+    const double change_N = direction.deep_force_N - direction.shallow_force_N;
+    if (!direction.known || std::abs(change_N) < std::max(2.0 * kForceFloor_N, 5.0 * noise_N_)) return;
+    const bool flipped = direction.position_flipped || direction.force_flipped;
+    if (flipped && !direction.certain) {
+      add("signs", Severity::warning, change_N,
+          words("the force is %.3g N at the %s end of the positions and %.3g N at the other end: either the material "
+                "softens or drags, or a sign is wrong",
+                direction.deep_force_N, direction.position_flipped ? "low" : "high", direction.shallow_force_N),
+          "if pressing decreases position_m or force_N, reverse its sign (palpate import --flip)");
+      return;
+    }
+    if (direction.position_flipped) {
+      add("position_sign", Severity::fatal, change_N,
+          words("the force is %.3g N at the lowest positions and %.3g N at the highest positions, as in free air",
+                direction.deep_force_N, direction.shallow_force_N),
+          "position_m must be positive inside the block: reverse its sign (palpate import --flip position)");
+    }
+    if (direction.force_flipped) {
+      add("force_sign", Severity::fatal, change_N,
+          words("the force falls from %.3g N at the surface to %.3g N at the deepest position",
+                direction.shallow_force_N, direction.deep_force_N),
+          "force_N must be positive when the block pushes the tool out: reverse its sign (palpate import --flip "
+          "force)");
+    }
+  }
+
+  void check_units() {
+    const double peak_N = std::max(std::abs(measures_.highest_force_N), std::abs(measures_.lowest_force_N));
+    if (travel_m() > kStrangeDepth_m && depth_m() > kStrangeDepth_m) {
+      add("position_unit", Severity::warning, depth_m(), words("the tool goes %.3g m deep", depth_m()),
+          "position_m must be in metres: if it is in millimetres, divide it by 1000 (palpate import --units mm,N)");
+    }
+    const double stiffness_N_per_m = force_range_N() / std::max(travel_m(), kLeastTravel_m);
+    if (peak_N <= kLargestForce_N && stiffness_N_per_m <= kHardRubber_N_per_m) return;
+    add("force_unit", Severity::warning, peak_N,
+        words("the force reaches %.4g N over %.3g mm: this stiffness of %.3g kN/m is above that of hard rubber under a "
+              "punch of 20 mm",
+              peak_N, 1e3 * travel_m(), 1e-3 * stiffness_N_per_m),
+        "if the file is not in newtons and metres, import it with its units (palpate import --units)");
+  }
+
+  void check_sampling() {
+    const double rate_Hz = 1.0 / measures_.median_step_s;
+    add("rate", Severity::note, rate_Hz,
+        words("the recording has %.4g rows per second and lasts %.3g s", rate_Hz, measures_.duration_s),
+        rate_Hz < kSlowRate_Hz ? "this rate suits only slow motion: record presses by hand at 500 Hz or more" : "");
+    if (measures_.largest_step_s <= std::max(kGap_s, kGapSteps * measures_.median_step_s)) return;
+    add("gap", Severity::warning, measures_.largest_step_s,
+        words("nothing was recorded for %.3g s from %.4g s on", measures_.largest_step_s, measures_.largest_step_at_s),
+        "the state of the material after the gap is unknown: split the recording there");
+  }
+
+  void check_sensors() {
+    const SensorSpec& sensor = prepared_.sensor;
+    if (sensor.encoder_step_m > 0.0) {
+      const bool coarse = sensor.encoder_step_m > 0.02 * std::max(depth_m(), kLeastTravel_m);
+      add("encoder_step", coarse ? Severity::warning : Severity::note, sensor.encoder_step_m,
+          words("the position has steps of %.3g um", 1e6 * sensor.encoder_step_m),
+          coarse ? "the depth spans fewer than 50 steps: use a finer encoder or press deeper" : "");
+    }
+    const bool loud = noise_N_ > 0.5 * request_.jnd.offset_N;
+    add("force_noise", loud ? Severity::warning : Severity::note, noise_N_,
+        words("the force noise is %.3g mN RMS", 1e3 * noise_N_),
+        loud ? "the noise hides small forces: shield or filter the sensor, and compare errors with the noise floor"
+             : "");
+  }
+
+  void check_zero() {
+    check_.force_zero_N = surface_.force_zero_N;
+    const double half_jnd_N = 0.5 * request_.jnd.offset_N;
+    if (surface_.force_zero_N != 0.0) {
+      const bool large = std::abs(surface_.force_zero_N) > half_jnd_N;
+      add("force_zero", large ? Severity::warning : Severity::note, surface_.force_zero_N,
+          words("the force is %.3g N in free air", surface_.force_zero_N),
+          large ? "tare the sensor before recording, or subtract this from force_N" : "");
+    }
+    if (std::abs(surface_.force_zero_drift_N) > std::max(half_jnd_N, 3.0 * surface_.force_zero_error_N) &&
+        std::isfinite(surface_.force_zero_error_N)) {
+      add("force_zero_drift", Severity::warning, surface_.force_zero_drift_N,
+          words("the force in free air drifts by %.3g N over the %s", surface_.force_zero_drift_N,
+                recording_.rows.size() > kOnsetRows ? "beginning of the recording" : "recording"),
+          "let the sensor warm up, tare it again, and record in shorter parts");
+    }
+  }
+
+  void check_clipping() {
+    // Zero force is no limit.
+    if (!(measures_.highest_force_N > 0.0)) return;
+    if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < kClippedTravelShare * travel_m()) return;
+    add("clipping", Severity::warning, measures_.highest_force_N,
+        words("the force stays at exactly %.5g N for %zu rows while the tool moves by %.3g mm",
+              measures_.highest_force_N, measures_.flat_rows, 1e3 * measures_.flat_travel_m),
+        "the sensor or its amplifier is at its limit: press less or choose a larger range");
+  }
+
+  void check_lag() {
+    const OffsetEstimate& lag = prepared_.offsets.lag;
+    if (lag.not_zero && !lag.identified) {
+      add("lag_unknown", Severity::note, 0.0,
+          "the force may lag or lead the position, but neither this lag nor the surface can be identified",
+          "record both with the same clock");
+    }
+    if (lag.at == 0.0) return;
+    add("lag", Severity::warning, lag.at,
+        words("the force %s the position by %.3g ms (+- %.2g)", lag.at > 0.0 ? "lags" : "leads", 1e3 * std::abs(lag.at),
+              1e3 * lag.standard_error),
+        "record both with the same clock; palpate fit corrects this lag");
+  }
+
+  void check_surface() {
+    check_.surface_identified = surface_.identified();
+    check_.surface_offset_m = surface_.offset_m;
+    if (!surface_.identified()) {
+      add("surface_unknown", Severity::note, 0.0,
+          surface_.free_air
+              ? "the position where the force begins cannot be identified: depth is measured from position 0"
+              : "the tool may never leave the material, so the surface cannot be identified: depth is measured from "
+                "position 0",
+          "begin the recording 1 mm or more outside of the material, and pause there for 5 s before another touch");
+    }
+    if (surface_.offset_m != 0.0) {
+      add("surface_offset", Severity::note, surface_.offset_m,
+          words("the force begins at %+.3g mm (+- %.2g), not at 0", 1e3 * surface_.offset_m,
+                1e3 * surface_.standard_error_m),
+          "a model fitted to this recording has its surface there; to test another model, move the surface");
+    }
+    if (surface_.tool_mass_kg > 0.0) {
+      add("tool_mass", Severity::note, surface_.tool_mass_kg,
+          words("the force sensor carries a mass of %.3g g: in free air the force follows the acceleration",
+                1e3 * surface_.tool_mass_kg),
+          "");
+    }
+    const double pull_N = surface_.force_zero_N - measures_.lowest_force_N;
+    if (surface_.free_air && !(surface_.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
+      add("adhesion", Severity::note, pull_N,
+          words("the material pulls the tool with up to %.3g N: a fitted model renders this adhesion", pull_N), "");
+    }
+    if (std::isfinite(surface_.offset_drift_error_m) &&
+        std::abs(surface_.offset_drift_m) > std::max(kSurfaceDrift_m, 3.0 * surface_.offset_drift_error_m)) {
+      add("surface_drift", Severity::warning, surface_.offset_drift_m,
+          words("the surface moves by %+.3g mm between the first touch and the last", 1e3 * surface_.offset_drift_m),
+          "the specimen creeps or slips: fasten it, and let it recover between strokes");
+    }
+    if (measures_.contact_rows == 0) {  // as recorded, the surface at 0
+      add("no_contact", Severity::fatal, measures_.highest_position_m,
+          words("the highest position is %.3g mm, so the tool never touches the surface at 0",
+                1e3 * measures_.highest_position_m),
+          "set position_m to 0 where force begins (palpate import FILE --zero contact), and check its sign");
+    }
+  }
+
+  void check_exploration() {
+    const double from_m = measures_.outermost_contact_m;
+    add("strokes", Severity::note, measures_.strokes,
+        words("the recording has %d %s with %.3g s in contact, from %.4g to %.4g mm", measures_.strokes,
+              measures_.strokes == 1 ? "stroke" : "strokes",
+              static_cast<double>(measures_.contact_rows) * measures_.median_step_s, 1e3 * from_m,
+              1e3 * measures_.highest_position_m),
+        measures_.strokes < kFewStrokes ? "record more strokes of different depths and speeds" : "");
+    const double pressed_m = measures_.highest_position_m - from_m;
+    if (!(pressed_m > 0.0)) return;
+    int empty = 0;
+    std::string where;
+    const auto bands = speed_band_names(measures_);
+    for (std::size_t band = 0; band < kSpeedBands; ++band) {
+      std::string quarters;
+      for (std::size_t quarter = 0; quarter < kDepthQuarters; ++quarter) {
+        if (measures_.seconds[quarter][band] >= kLeastCell_s) continue;
+        ++empty;
+        const auto edge_mm = [&](std::size_t i) { return 1e3 * (from_m + 0.25 * static_cast<double>(i) * pressed_m); };
+        quarters += words("%s%.4g-%.4g", quarters.empty() ? "" : ", ", edge_mm(quarter), edge_mm(quarter + 1));
+      }
+      if (!quarters.empty()) where += (where.empty() ? "" : "; ") + bands[band] + " at " + quarters + " mm";
+    }
+    const int cells = static_cast<int>(kDepthQuarters * kSpeedBands);
+    add("explored", Severity::note, static_cast<double>(cells - empty) / cells,
+        words("the strokes cover %d of %d cells of depth and speed", cells - empty, cells),
+        where.empty() ? "" : std::string("record next: ").append(where));
+  }
+
+  // Checks whether the recording can show the scene's relaxation times.
+  void check_memory() {
+    const double longest_s = request_.longest_relaxation_s;
+    if (longest_s == 0.0) return;
+    if (measures_.outward_travel_m < kMonotonicShare * measures_.inward_travel_m) {
+      add("monotonic", Severity::warning,
+          measures_.outward_travel_m / std::max(measures_.inward_travel_m, kLeastTravel_m),
+          "the tool moves in and hardly out, so the effects of depth and memory cannot be separated",
+          "record releases and holds");
+    }
+    if (measures_.duration_s < kRelaxationsToSee * longest_s) {
+      add("too_short", Severity::warning, measures_.duration_s,
+          words("the recording lasts %.3g s, which is too short for a relaxation time of %.3g s", measures_.duration_s,
+                longest_s),
+          words("record at least %.2g s", kRelaxationsToSee * longest_s));
+    } else if (measures_.longest_hold_s < longest_s) {
+      add("no_hold", Severity::note, measures_.longest_hold_s,
+          words("the longest hold in contact is %.2g s, and the scene's longest relaxation time is %.3g s",
+                measures_.longest_hold_s, longest_s),
+          words("hold still for %.2g s at two or three depths", 2.0 * longest_s));
+    }
+  }
+
+  void find_noise_floor() {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const RecordingRow& row : recording_.rows) {
+      if (!(row.position_m > check_.surface_offset_m)) continue;
+      const double jnd_N = request_.jnd.at(row.force_N - check_.force_zero_N);
+      // Above six standard deviations the share is 1 to nine digits, and erf is slow.
+      sum += jnd_N > 6.0 * noise_N_ ? 1.0 : std::erf(jnd_N / (std::sqrt(2.0) * noise_N_));
+      ++count;
+    }
+    check_.noise_floor_within_jnd = count > 0 ? sum / static_cast<double>(count) : 1.0;
+  }
 
   const PreparedRecording& prepared_;
   const Recording& recording_;
@@ -78,288 +344,8 @@ class Checker {
   const CheckRequest& request_;
   const RecordingFaults& faults_;
   RecordingCheck check_;
-  RecordingMeasures measures_;
+  RecordingMeasures& measures_ = check_.measures;
 };
-
-// Without force or motion all other checks are meaningless.
-bool Checker::check_signal() {
-  const bool force = force_range_N() > std::max(kForceFloor_N, 5.0 * noise_N_);
-  const bool motion = travel_m() > kLeastTravel_m;
-  if (!force) {
-    add("no_force", Severity::fatal, force_range_N(),
-        words("the force changes by only %.3g N over the whole recording, and its noise is %.3g N", force_range_N(),
-              noise_N_),
-        "check the sensor's cable, and check that force_N has the right column");
-  }
-  if (!motion) {
-    add("no_motion", Severity::fatal, travel_m(),
-        words("the position changes by only %.3g mm over the whole recording", 1e3 * travel_m()),
-        "check the encoder, and check that position_m has the right column");
-  }
-  return force && motion;
-}
-
-void Checker::check_faults() {
-  const std::size_t dropouts = faults_.position_dropouts + faults_.force_dropouts;
-  if (dropouts > 0) {
-    const double share = static_cast<double>(dropouts) / static_cast<double>(faults_.rows);
-    add("dropouts", Severity::warning, share,
-        words("the position jumps away and back in %zu single rows and the force in %zu, %.2g %% of the rows: these "
-              "rows are left out",
-              faults_.position_dropouts, faults_.force_dropouts, 100.0 * share),
-        "check cables, connectors and the interface of the sensor");
-  }
-  if (faults_.update_step_s > 0.0) {
-    add("repeated_positions", Severity::warning, faults_.update_step_s,
-        words("the position changes only every %.3g ms and is repeated in the rows between: only the %zu rows with a "
-              "new position are used",
-              1e3 * faults_.update_step_s, faults_.updates),
-        "read the position as often as the force");
-  }
-}
-
-void Checker::check_signs() {
-  const PressDirection direction = find_press_direction(recording_.rows);
-  const double change_N = direction.deep_force_N - direction.shallow_force_N;
-  if (!direction.known || std::abs(change_N) < std::max(2.0 * kForceFloor_N, 5.0 * noise_N_)) return;
-  const bool flipped = direction.position_flipped || direction.force_flipped;
-  if (flipped && !direction.certain) {
-    add("signs", Severity::warning, change_N,
-        words("the force is %.3g N at the %s end of the positions and %.3g N at the other end: either the material "
-              "softens or drags, or a sign is wrong",
-              direction.deep_force_N, direction.position_flipped ? "low" : "high", direction.shallow_force_N),
-        "if pressing decreases position_m or force_N, reverse its sign (palpate import --flip)");
-    return;
-  }
-  if (direction.position_flipped) {
-    add("position_sign", Severity::fatal, change_N,
-        words("the force is %.3g N at the lowest positions and %.3g N at the highest positions, as in free air",
-              direction.deep_force_N, direction.shallow_force_N),
-        "position_m must be positive inside the block: reverse its sign (palpate import --flip position)");
-  }
-  if (direction.force_flipped) {
-    add("force_sign", Severity::fatal, change_N,
-        words("the force falls from %.3g N at the surface to %.3g N at the deepest position", direction.shallow_force_N,
-              direction.deep_force_N),
-        "force_N must be positive when the block pushes the tool out: reverse its sign (palpate import --flip force)");
-  }
-}
-
-void Checker::check_units() {
-  const double peak_N = std::max(std::abs(measures_.highest_force_N), std::abs(measures_.lowest_force_N));
-  if (travel_m() > kStrangeDepth_m && depth_m() > kStrangeDepth_m) {
-    add("position_unit", Severity::warning, depth_m(), words("the tool goes %.3g m deep", depth_m()),
-        "position_m must be in metres: if it is in millimetres, divide it by 1000 (palpate import --units mm,N)");
-  }
-  const double stiffness_N_per_m = force_range_N() / std::max(travel_m(), kLeastTravel_m);
-  if (peak_N <= kLargestForce_N && stiffness_N_per_m <= kHardRubber_N_per_m) return;
-  add("force_unit", Severity::warning, peak_N,
-      words("the force reaches %.4g N over %.3g mm: this stiffness of %.3g kN/m is above that of hard rubber under a "
-            "punch of 20 mm",
-            peak_N, 1e3 * travel_m(), 1e-3 * stiffness_N_per_m),
-      "if the file is not in newtons and metres, import it with its units (palpate import --units)");
-}
-
-void Checker::check_sampling() {
-  const double rate_Hz = 1.0 / measures_.median_step_s;
-  add("rate", Severity::note, rate_Hz,
-      words("the recording has %.4g rows per second and lasts %.3g s", rate_Hz, measures_.duration_s),
-      rate_Hz < kSlowRate_Hz ? "this rate suits only slow motion: record presses by hand at 500 Hz or more" : "");
-  if (measures_.largest_step_s <= std::max(kGap_s, kGapSteps * measures_.median_step_s)) return;
-  add("gap", Severity::warning, measures_.largest_step_s,
-      words("nothing was recorded for %.3g s from %.4g s on", measures_.largest_step_s, measures_.largest_step_at_s),
-      "the state of the material after the gap is unknown: split the recording there");
-}
-
-void Checker::check_sensors() {
-  const SensorSpec& sensor = prepared_.sensor;
-  if (sensor.encoder_step_m > 0.0) {
-    const bool coarse = sensor.encoder_step_m > 0.02 * std::max(depth_m(), kLeastTravel_m);
-    add("encoder_step", coarse ? Severity::warning : Severity::note, sensor.encoder_step_m,
-        words("the position has steps of %.3g um", 1e6 * sensor.encoder_step_m),
-        coarse ? "the depth spans fewer than 50 steps: use a finer encoder or press deeper" : "");
-  }
-  const bool loud = noise_N_ > 0.5 * request_.jnd.offset_N;
-  add("force_noise", loud ? Severity::warning : Severity::note, noise_N_,
-      words("the force noise is %.3g mN RMS", 1e3 * noise_N_),
-      loud ? "the noise hides small forces: shield or filter the sensor, and compare errors with the noise floor" : "");
-}
-
-void Checker::check_zero() {
-  check_.force_zero_N = surface_.force_zero_N;
-  const double half_jnd_N = 0.5 * request_.jnd.offset_N;
-  if (surface_.force_zero_N != 0.0) {
-    const bool large = std::abs(surface_.force_zero_N) > half_jnd_N;
-    add("force_zero", large ? Severity::warning : Severity::note, surface_.force_zero_N,
-        words("the force is %.3g N in free air", surface_.force_zero_N),
-        large ? "tare the sensor before recording, or subtract this from force_N" : "");
-  }
-  if (std::abs(surface_.force_zero_drift_N) > std::max(half_jnd_N, 3.0 * surface_.force_zero_error_N) &&
-      std::isfinite(surface_.force_zero_error_N)) {
-    add("force_zero_drift", Severity::warning, surface_.force_zero_drift_N,
-        words("the force in free air drifts by %.3g N over the %s", surface_.force_zero_drift_N,
-              recording_.rows.size() > kOnsetRows ? "beginning of the recording" : "recording"),
-        "let the sensor warm up, tare it again, and record in shorter parts");
-  }
-}
-
-void Checker::check_clipping() {
-  // Zero force is no limit.
-  if (!(measures_.highest_force_N > 0.0)) return;
-  if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < kClippedTravelShare * travel_m()) return;
-  add("clipping", Severity::warning, measures_.highest_force_N,
-      words("the force stays at exactly %.5g N for %zu rows while the tool moves by %.3g mm", measures_.highest_force_N,
-            measures_.flat_rows, 1e3 * measures_.flat_travel_m),
-      "the sensor or its amplifier is at its limit: press less or choose a larger range");
-}
-
-void Checker::check_lag() {
-  const OffsetEstimate& lag = prepared_.offsets.lag;
-  if (lag.not_zero && !lag.identified) {
-    add("lag_unknown", Severity::note, 0.0,
-        "the force may lag or lead the position, but neither this lag nor the surface can be identified",
-        "record both with the same clock");
-  }
-  if (lag.at == 0.0) return;
-  add("lag", Severity::warning, lag.at,
-      words("the force %s the position by %.3g ms (+- %.2g)", lag.at > 0.0 ? "lags" : "leads", 1e3 * std::abs(lag.at),
-            1e3 * lag.standard_error),
-      "record both with the same clock; palpate fit corrects this lag");
-}
-
-void Checker::check_surface() {
-  check_.surface_identified = surface_.identified();
-  check_.surface_offset_m = surface_.offset_m;
-  if (!surface_.identified()) {
-    add("surface_unknown", Severity::note, 0.0,
-        surface_.free_air
-            ? "the position where the force begins cannot be identified: depth is measured from position 0"
-            : "the tool may never leave the material, so the surface cannot be identified: depth is measured from "
-              "position 0",
-        "begin the recording 1 mm or more outside of the material, and pause there for 5 s before another touch");
-  }
-  if (surface_.offset_m != 0.0) {
-    add("surface_offset", Severity::note, surface_.offset_m,
-        words("the force begins at %+.3g mm (+- %.2g), not at 0", 1e3 * surface_.offset_m,
-              1e3 * surface_.standard_error_m),
-        "a model fitted to this recording has its surface there; to test another model, move the surface");
-  }
-  if (surface_.tool_mass_kg > 0.0) {
-    add("tool_mass", Severity::note, surface_.tool_mass_kg,
-        words("the force sensor carries a mass of %.3g g: in free air the force follows the acceleration",
-              1e3 * surface_.tool_mass_kg),
-        "");
-  }
-  const double pull_N = surface_.force_zero_N - measures_.lowest_force_N;
-  if (surface_.free_air && !(surface_.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
-    add("adhesion", Severity::note, pull_N,
-        words("the material pulls the tool with up to %.3g N: a fitted model renders this adhesion", pull_N), "");
-  }
-  if (std::isfinite(surface_.offset_drift_error_m) &&
-      std::abs(surface_.offset_drift_m) > std::max(kSurfaceDrift_m, 3.0 * surface_.offset_drift_error_m)) {
-    add("surface_drift", Severity::warning, surface_.offset_drift_m,
-        words("the surface moves by %+.3g mm between the first touch and the last", 1e3 * surface_.offset_drift_m),
-        "the specimen creeps or slips: fasten it, and let it recover between strokes");
-  }
-  if (measures_.contact_rows == 0) {  // as recorded, the surface at 0
-    add("no_contact", Severity::fatal, measures_.highest_position_m,
-        words("the highest position is %.3g mm, so the tool never touches the surface at 0",
-              1e3 * measures_.highest_position_m),
-        "set position_m to 0 where force begins (palpate import FILE --zero contact), and check its sign");
-  }
-}
-
-void Checker::check_exploration() {
-  const double from_m = measures_.outermost_contact_m;
-  add("strokes", Severity::note, measures_.strokes,
-      words("the recording has %d %s with %.3g s in contact, from %.4g to %.4g mm", measures_.strokes,
-            measures_.strokes == 1 ? "stroke" : "strokes",
-            static_cast<double>(measures_.contact_rows) * measures_.median_step_s, 1e3 * from_m,
-            1e3 * measures_.highest_position_m),
-      measures_.strokes < kFewStrokes ? "record more strokes of different depths and speeds" : "");
-  const double pressed_m = measures_.highest_position_m - from_m;
-  if (!(pressed_m > 0.0)) return;
-  int empty = 0;
-  std::string where;
-  const auto bands = speed_band_names(measures_);
-  for (std::size_t band = 0; band < kSpeedBands; ++band) {
-    std::string quarters;
-    for (std::size_t quarter = 0; quarter < kDepthQuarters; ++quarter) {
-      if (measures_.seconds[quarter][band] >= kLeastCell_s) continue;
-      ++empty;
-      const auto edge_mm = [&](std::size_t i) { return 1e3 * (from_m + 0.25 * static_cast<double>(i) * pressed_m); };
-      quarters += words("%s%.4g-%.4g", quarters.empty() ? "" : ", ", edge_mm(quarter), edge_mm(quarter + 1));
-    }
-    if (!quarters.empty()) where += (where.empty() ? "" : "; ") + bands[band] + " at " + quarters + " mm";
-  }
-  const int cells = static_cast<int>(kDepthQuarters * kSpeedBands);
-  add("explored", Severity::note, static_cast<double>(cells - empty) / cells,
-      words("the strokes cover %d of %d cells of depth and speed", cells - empty, cells),
-      where.empty() ? "" : std::string("record next: ").append(where));
-}
-
-// Checks whether the recording can show the scene's relaxation times.
-void Checker::check_memory() {
-  if (request_.relaxation_times_s.empty()) return;
-  const double longest_s = *std::max_element(request_.relaxation_times_s.begin(), request_.relaxation_times_s.end());
-  if (measures_.outward_travel_m < kMonotonicShare * measures_.inward_travel_m) {
-    add("monotonic", Severity::warning,
-        measures_.outward_travel_m / std::max(measures_.inward_travel_m, kLeastTravel_m),
-        "the tool moves in and hardly out, so the effects of depth and memory cannot be separated",
-        "record releases and holds");
-  }
-  if (measures_.duration_s < kRelaxationsToSee * longest_s) {
-    add("too_short", Severity::warning, measures_.duration_s,
-        words("the recording lasts %.3g s, which is too short for a relaxation time of %.3g s", measures_.duration_s,
-              longest_s),
-        words("record at least %.2g s", kRelaxationsToSee * longest_s));
-  } else if (measures_.longest_hold_s < longest_s) {
-    add("no_hold", Severity::note, measures_.longest_hold_s,
-        words("the longest hold in contact is %.2g s, and the scene's longest relaxation time is %.3g s",
-              measures_.longest_hold_s, longest_s),
-        words("hold still for %.2g s at two or three depths", 2.0 * longest_s));
-  }
-}
-
-void Checker::find_noise_floor() {
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const RecordingRow& row : recording_.rows) {
-    if (!(row.position_m > check_.surface_offset_m)) continue;
-    const double jnd_N = request_.jnd.at(row.force_N - check_.force_zero_N);
-    // Above six standard deviations the share is 1 to nine digits, and erf is slow.
-    sum += jnd_N > 6.0 * noise_N_ ? 1.0 : std::erf(jnd_N / (std::sqrt(2.0) * noise_N_));
-    ++count;
-  }
-  check_.noise_floor_within_jnd = count > 0 ? sum / static_cast<double>(count) : 1.0;
-}
-
-RecordingCheck Checker::run() {
-  measures_ = measure_recording(recording_, 0.0);
-  check_faults();
-  check_sampling();
-  if (check_signal()) {
-    check_signs();
-    const bool right_way = check_.findings.back().severity != Severity::fatal;
-    // With the wrong sign of position or force there is no surface to estimate.
-    if (right_way) {
-      check_lag();
-      check_surface();
-      if (check_.surface_offset_m != 0.0) measures_ = measure_recording(recording_, check_.surface_offset_m);
-      check_zero();
-      check_exploration();
-      check_memory();
-    }
-    check_units();
-    check_clipping();
-    check_sensors();
-  }
-  find_noise_floor();
-  std::stable_sort(check_.findings.begin(), check_.findings.end(),
-                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
-  check_.measures = measures_;
-  return std::move(check_);
-}
 
 }  // namespace
 
@@ -368,11 +354,22 @@ const char* severity_name(Severity severity) {
   return kNames[static_cast<std::size_t>(severity)];
 }
 
+std::string finding_text(const Finding& finding) {
+  return finding.code + ": " + finding.text + (finding.advice.empty() ? "" : "; " + finding.advice);
+}
+
+CheckRequest check_request(const JndLine& jnd, const std::vector<FeatureSpec>& features) {
+  CheckRequest request{jnd};
+  for (const FeatureSpec& feature : features)
+    request.longest_relaxation_s = std::max(request.longest_relaxation_s, feature.relaxation_time_s);
+  return request;
+}
+
+Severity RecordingCheck::gravest() const { return findings.empty() ? Severity::note : findings.front().severity; }
+
 const char* RecordingCheck::verdict() const {
-  Severity gravest = Severity::note;
-  for (const Finding& finding : findings) gravest = std::max(gravest, finding.severity);
   constexpr const char* kVerdicts[] = {"usable", "care", "unusable"};
-  return kVerdicts[static_cast<std::size_t>(gravest)];
+  return kVerdicts[static_cast<std::size_t>(gravest())];
 }
 
 RecordingCheck check_recording(const PreparedRecording& prepared, const CheckRequest& request,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
 #include "models/check/recording_measures.h"
 #include "models/recordings/prepared_recording.h"
@@ -29,11 +30,16 @@ struct Finding {
   std::string advice;  // may be empty
 };
 
+// "code: text; advice".
+std::string finding_text(const Finding& finding);
+
 // The intended use of the recording.
 struct CheckRequest {
   JndLine jnd;
-  std::vector<double> relaxation_times_s;  // of the scene; empty: no memory
+  double longest_relaxation_s = 0.0;  // of the scene; 0: no memory
 };
+// `features`: of the scene.
+CheckRequest check_request(const JndLine& jnd, const std::vector<FeatureSpec>& features);
 
 struct RecordingCheck {
   std::vector<Finding> findings;  // in order of severity, fatal first
@@ -45,6 +51,7 @@ struct RecordingCheck {
   double force_zero_N = 0.0;      // to be subtracted from force_N
   RecordingMeasures measures;
 
+  Severity gravest() const;
   // "usable", "care" (at least one warning) or "unusable" (at least one fatal finding).
   const char* verdict() const;
 };

@@ -52,10 +52,6 @@ void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
   }
 }
 
-std::string finding_line(const CheckedFile& file, const Finding& finding) {
-  return file.path + ": " + finding.code + ": " + finding.text + (finding.advice.empty() ? "" : "; " + finding.advice);
-}
-
 }  // namespace
 
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request) {
@@ -92,7 +88,7 @@ std::vector<MotionSource::Input> training_inputs(std::vector<CheckedFile> files)
 Status refuse_unusable(const std::vector<CheckedFile>& files) {
   for (const CheckedFile& file : files) {
     for (const Finding& finding : file.check.findings) {
-      if (finding.severity == Severity::fatal) return Error{finding_line(file, finding)};
+      if (finding.severity == Severity::fatal) return Error{file.path + ": " + finding_text(finding)};
     }
   }
   return {};
@@ -102,7 +98,7 @@ std::vector<std::string> warning_lines(const std::vector<CheckedFile>& files) {
   std::vector<std::string> lines;
   for (const CheckedFile& file : files) {
     for (const Finding& finding : file.check.findings) {
-      if (finding.severity == Severity::warning) lines.push_back(finding_line(file, finding));
+      if (finding.severity == Severity::warning) lines.push_back(file.path + ": " + finding_text(finding));
     }
   }
   return lines;

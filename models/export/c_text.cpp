@@ -41,8 +41,4 @@ void CText::table(const std::string& name, const Eigen::MatrixXd& values, const 
   rows("static const " + type + " " + name + sizes, values, single_ || type == "float");
 }
 
-void CText::list(const std::string& name, const Eigen::VectorXd& values) {
-  rows("static const real " + name + "[" + std::to_string(values.size()) + "]", values.transpose(), single_);
-}
-
 }  // namespace palpate

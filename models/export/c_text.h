@@ -21,8 +21,12 @@ class CText {
   // "static const TYPE NAME[ROWS][COLUMNS] = {...};": each column of `values` is one row of the table. `type`: real, or
   // float for single precision in any file.
   void table(const std::string& name, const Eigen::MatrixXd& values, const std::string& type = "real");
-  // "static const real NAME[SIZE] = {...};"
-  void list(const std::string& name, const Eigen::VectorXd& values);
+  // "static const real NAME[SIZE] = {...};" `values`: a vector or an array of doubles.
+  void list(const std::string& name, const auto& values) {
+    const auto size = static_cast<Eigen::Index>(values.size());
+    rows("static const real " + name + "[" + std::to_string(size) + "]",
+         Eigen::Map<const Eigen::RowVectorXd>(values.data(), size), single_);
+  }
 
   bool single() const { return single_; }
   const std::string& text() const { return text_; }

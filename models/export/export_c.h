@@ -15,7 +15,6 @@
 #include <cstddef>
 #include <string>
 
-#include "engine/base/result.h"
 #include "models/export/c_text.h"
 #include "models/model/fitted_model.h"
 
@@ -24,7 +23,7 @@ namespace palpate {
 struct ExportRequest {
   bool single_precision = false;
   // Defaults of two macros of the file; both 0: exact positions.
-  PositionSensor sensor;
+  SensorSpec sensor;
 };
 
 struct ExportedC {
@@ -33,7 +32,6 @@ struct ExportedC {
   std::size_t state_bytes = 0;  // size of the variables
 };
 
-// Errors: a kind of correction that cannot be exported.
-Result<ExportedC> export_c(const ModelData& data, const ExportRequest& request);
+ExportedC export_c(const ModelData& data, const ExportRequest& request);
 
 }  // namespace palpate

@@ -92,19 +92,13 @@ static real filtered(real state, real change, real step_s, real time_s, real gai
 }
 )C";
 
-// Writes the tables of a curve; returns the C expression of its value at `u`.
-template <std::size_t n>
-std::string write_curve(CText& out, const std::string& name, const std::array<double, n>& coefficients, bool has_knots,
-                        const std::array<double, kDriveKnots>& knots, const std::string& u) {
-  out.list(name, Eigen::Map<const Eigen::VectorXd>(coefficients.data(), n));
-  if (has_knots) out.list(name + "_knot", Eigen::Map<const Eigen::VectorXd>(knots.data(), kDriveKnots));
-  return "rising_curve(" + name + ", " + std::to_string(n) + ", " +
-         (has_knots ? name + "_knot, " + std::to_string(kDriveKnots) : "0, 0") + ", " + u + ")";
-}
-
+// Writes the tables of a curve; returns the C expression of its value at `depth`.
 std::string write_drive(CText& out, const std::string& name, const DriveCurve& curve, const std::string& depth) {
-  return write_curve(out, name, curve.coefficient_N, curve.has_knots, curve.knot_N,
-                     depth + " / " + out.number(curve.reference_depth_m));
+  out.list(name, curve.coefficient_N);
+  if (curve.has_knots) out.list(name + "_knot", curve.knot_N);
+  return "rising_curve(" + name + ", " + std::to_string(kDriveCoefficients) + ", " +
+         (curve.has_knots ? name + "_knot, " + std::to_string(kDriveKnots) : "0, 0") + ", " + depth + " / " +
+         out.number(curve.reference_depth_m) + ")";
 }
 
 // Emits one feature: writes its tables and state to `out`, and returns its statements in update_features.
@@ -208,19 +202,7 @@ constexpr FeatureEmitter kEmitters[] = {emit_depth,    emit_velocity, emit_lowpa
                                         emit_bristles, emit_bristles, emit_surface_lag};
 static_assert(std::size(kEmitters) == kFeatureKinds.size());
 
-// The C text of the last feature of a kind; 0 if there is none.
-std::string feature_of(const std::vector<FeatureSpec>& features, FeatureKind kind) {
-  std::string text = "R(0.0)";
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    if (features[i].kind == kind) text = "value" + index_text(i);
-  }
-  return text;
-}
-
 bool has_filter(FeatureKind kind) { return kind == FeatureKind::lowpass_velocity || is_branch(kind); }
-
-// Features whose value is a force by itself.
-bool is_force(FeatureKind kind) { return is_branch(kind) || is_bristle(kind); }
 
 }  // namespace
 
@@ -251,12 +233,15 @@ void write_features(CText& out, const std::vector<FeatureSpec>& features) {
 
 void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>& features) {
   out.add("\n/* ---- trend: a nonlinear viscoelastic solid ---- */\n\n");
-  out.list("elastic", Eigen::Map<const Eigen::VectorXd>(trend.elastic.pieces_N.data(),
-                                                        static_cast<Eigen::Index>(trend.elastic.pieces_N.size())));
+  out.list("elastic", trend.elastic.pieces_N);
   const std::string pieces = out.number(static_cast<double>(kElasticPieces));
-  out.list("viscosity", Eigen::Map<const Eigen::VectorXd>(trend.viscosity_Ns_per_m.data(), kViscosityCoefficients));
-  out.list("thinning", Eigen::Map<const Eigen::VectorXd>(trend.thinning_Ns_per_m.data(), kViscosityCoefficients));
+  out.list("viscosity", trend.viscosity_Ns_per_m);
+  out.list("thinning", trend.thinning_Ns_per_m);
   const std::string limit = out.number(trend.velocity_limit_m_per_s);
+  const TrendInputs inputs(features);
+  const auto input = [](std::uint8_t index) {
+    return index == TrendInputs::kNone ? "R(0.0)" : "value" + index_text(index);
+  };
   std::string text =
       "\n/* A cubic on each of equal pieces, beyond u = 1 along its tangent. */\n"
       "static real elastic_at(real u) {\n  const real x = u * " +
@@ -268,16 +253,14 @@ void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>&
       "\n}\n\n"
       "static real quadratic(const real *c, real u) { return (c[2] * u + c[1]) * u + c[0]; }\n\n"
       "static real trend_of(void) {\n  const real u = " +
-      feature_of(features, FeatureKind::depth) + " / " + out.number(trend.reference_depth_m) +
-      ";\n  const real inside = smaller(u, R(1.0));\n  const real v = clamped(" +
-      feature_of(features, FeatureKind::velocity) + ", -" + limit + ", " + limit +
-      ");\n  const real thinned = v / (R(1.0) + absolute(v) / " + out.number(trend.thinning_velocity_m_per_s) +
+      input(inputs.depth) + " / " + out.number(trend.reference_depth_m) +
+      ";\n  const real inside = smaller(u, R(1.0));\n  const real v = clamped(" + input(inputs.velocity) + ", -" +
+      limit + ", " + limit + ");\n  const real thinned = v / (R(1.0) + absolute(v) / " +
+      out.number(trend.thinning_velocity_m_per_s) +
       ");\n  real force_N = elastic_at(u);\n  force_N += quadratic(viscosity, inside) * v + quadratic(thinning, "
       "inside) * thinned;\n";
   static_assert(kViscosityCoefficients == 3, "quadratic() has three");
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    if (is_force(features[i].kind)) text += "  force_N += value" + index_text(i) + ";\n";
-  }
+  for (std::size_t i = 0; i < inputs.force_count; ++i) text += "  force_N += " + input(inputs.force[i]) + ";\n";
   out.add(text + "  return force_N;\n}\n");
 }
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "models/model/rbf/rbf_correction.h"
+#include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/solve_weights.h"
 
 namespace palpate {

@@ -9,7 +9,7 @@
 #include "engine/base/parallel.h"
 #include "engine/base/random_stream.h"
 #include "models/linear/lapack.h"
-#include "models/model/nearest_points.h"
+#include "models/model/domain_guard.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/penalised_weights.h"

@@ -8,7 +8,7 @@
 #include "engine/base/parallel.h"
 #include "models/fit/methods.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/rbf_correction.h"
+#include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/choose_smoothing.h"
 #include "models/solve/projected_kernel.h"
 #include "models/solve/truncated_svd.h"

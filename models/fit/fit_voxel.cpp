@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "models/fit/methods.h"
-#include "models/model/grid/grid_correction.h"
-#include "models/model/rbf/rbf_correction.h"
+#include "models/model/grid/voxel_grid.h"
+#include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/fill_grid.h"
 
 namespace palpate {
@@ -82,7 +82,7 @@ Result<VoxelGrid> make_grid(const Sites& sites, const RbfFunction& function, std
       return Error{"a grid needs at least 2 nodes along every feature, found " + std::to_string(sizes[k])};
     grid.nodes.push_back(axis_nodes(sites.points.row(static_cast<Eigen::Index>(k)), sizes[k], sites.as_2009));
   }
-  const RbfEvaluator evaluator(function);
+  const RbfCorrection evaluator(function);
   const Status filled = fill_grid(
       grid, [&](const Eigen::MatrixXd& points, Eigen::VectorXd& out) { evaluator.evaluate_many(points, out); },
       control);

@@ -7,7 +7,7 @@
 #include "models/fit/methods.h"
 #include "models/fit/select_strength.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/rbf_correction.h"
+#include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/penalised_weights.h"
 
 namespace palpate {

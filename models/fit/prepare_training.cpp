@@ -331,7 +331,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   for (FeatureSpec& spec : prepared.common.features) {
     if (spec.kind == FeatureKind::depth) spec.surface_position_m = corrected->surface_m;
   }
-  prepared.common.sensor = PositionSensor{source.encoder_step_m(), source.position_noise_m()};
+  prepared.common.sensor = SensorSpec{source.encoder_step_m(), source.position_noise_m()};
   Provenance& provenance = prepared.common.provenance;
   if (everything || request.choice == FeatureChoice::given)
     provenance.relaxation_times = times_of(prepared.common.features);

@@ -1,5 +1,5 @@
 // Applies the cross-validation of the correction (correction_strength.h) to a prepared training, and computes the
-// cross-validated errors of each fitted method and its error bound (models/model/error_bound.h).
+// cross-validated errors of each fitted method and its error bound (models/model/fitted_model.h).
 // Thread guarantee: slow side.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-// Calibrates the error bound of a model (models/model/error_bound.h) with cross-validated errors.
+// Calibrates the error bound of a model (models/model/fitted_model.h) with cross-validated errors.
 //
 // The non-negative coefficients are fitted to the absolute errors by least squares, with rows scaled by 1 / JND. Then
 // all are multiplied by the quantile of error over bound that gives a coverage of 97.5 % of the rows: more than 95 %,

@@ -37,7 +37,6 @@ nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
 Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingRequest& scene,
                                      const FitOptions& options, std::chrono::steady_clock::time_point began,
                                      const std::function<bool(double)>& progress) {
-  if (Status status = check_fit_options(options); !status) return status.error();
   MotionSource source(training_inputs(std::move(recordings)));
   const TrainingRequest training = training_request(options, scene);
   auto prepared = prepare_training(source, training, part_of(progress, 0.0, kPrepared));

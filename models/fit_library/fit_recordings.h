@@ -21,9 +21,8 @@ struct RecordingsFit {
   double seconds = 0.0;
 };
 
-// `scene`: as training_request. `began`: the time from which `seconds` are counted. `progress`: called with the
-// finished fraction, returns false to interrupt; may be empty. Errors: an option; those of recordings and fit;
-// interrupted.
+// `scene`, `options`: as training_request. `began`: the time from which `seconds` are counted. `progress`: called with
+// the finished fraction, returns false to interrupt; may be empty. Errors: those of the fit; interrupted.
 Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingRequest& scene,
                                      const FitOptions& options, std::chrono::steady_clock::time_point began,
                                      const std::function<bool(double)>& progress);

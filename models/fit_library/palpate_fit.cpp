@@ -1,12 +1,14 @@
 // The C interface of models/library/palpate/palpate_fit.h.
 #include "models/library/palpate/palpate_fit.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,8 +18,7 @@
 #include "engine/recording/recording_rules.h"
 #include "models/check/check_recording.h"
 #include "models/fit_library/fit_recordings.h"
-#include "models/library/error_text.h"
-#include "models/library/handles.h"
+#include "models/library/c_interface.h"
 #include "models/model/file/model_io.h"
 #include "models/training/fold_assignment.h"
 #include "models/training/training_extent.h"
@@ -37,25 +38,10 @@ namespace {
 // The scene of fits without a scene file: the features of Hoever & Harders (2009).
 constexpr const char* kSceneFeatures = "depth,velocity,lowpass_velocity:0.17,lowpass_velocity:1.27";
 
-Status import_to(const std::string& table, const std::string& recording, bool overwrite) {
-  const auto imported = import_table(table, {});
-  if (!imported) return imported.error();
-  return write_recording(recording, imported->recording, imported->notes, overwrite);
-}
-
-palpate_check_result result_of(const RecordingCheck& check) {
-  const std::string verdict = check.verdict();
-  return {verdict == "usable" ? 2
-          : verdict == "care" ? 1
-                              : 0,
-          check.noise_floor_within_jnd, check.surface_offset_m, check.force_zero_N};
-}
-
 std::string findings_of(const RecordingCheck& check) {
   std::string text;
   for (const Finding& finding : check.findings) {
-    text += std::string(severity_name(finding.severity)) + " " + finding.code + ": " + finding.text +
-            (finding.advice.empty() ? "" : "; " + finding.advice) + "\n";
+    text += std::string(severity_name(finding.severity)) + " " + finding_text(finding) + "\n";
   }
   return text;
 }
@@ -101,13 +87,6 @@ palpate_fit_options or_default(const palpate_fit_options* options) {
   return options == nullptr ? chosen : *options;
 }
 
-CheckRequest check_of(const TrainingRequest& scene) {
-  CheckRequest request{scene.jnd, {}};
-  for (const FeatureSpec& feature : scene.features)
-    if (feature.kind == FeatureKind::lowpass_velocity) request.relaxation_times_s.push_back(feature.relaxation_time_s);
-  return request;
-}
-
 // `check`: returns the checked recordings for a request.
 template <typename Check>
 Result<RecordingsFit> fit_checked(const palpate_fit_options& given, const Check& check) {
@@ -116,7 +95,7 @@ Result<RecordingsFit> fit_checked(const palpate_fit_options& given, const Check&
   if (Status status = check_fit_options(options); !status) return status.error();
   const auto scene = scene_of(given);
   if (!scene) return scene.error();
-  Result<std::vector<CheckedFile>> checked = check(check_of(*scene));
+  Result<std::vector<CheckedFile>> checked = check(check_request(scene->jnd, scene->features));
   if (!checked) return checked.error();
   if (Status status = refuse_unusable(*checked); !status) return status.error();
   std::function<bool(double)> progress;
@@ -125,20 +104,9 @@ Result<RecordingsFit> fit_checked(const palpate_fit_options& given, const Check&
   return fit_recordings(std::move(*checked), *scene, options, began, progress);
 }
 
-Result<RecordingsFit> fit_files(const std::vector<std::string>& paths, const palpate_fit_options& options) {
-  return fit_checked(options, [&](const CheckRequest& request) { return check_recording_files(paths, request); });
-}
-
-Result<RecordingsFit> fit_memory(const std::vector<const palpate_recording*>& recordings,
-                                 const palpate_fit_options& options) {
-  return fit_checked(options, [&](const CheckRequest& request) -> Result<std::vector<CheckedFile>> {
-    std::vector<CheckedFile> checked;
-    for (const palpate_recording* one : recordings) {
-      const PreparedRecordingPointer prepared = prepare_recording(one->recording, one->left_out);
-      checked.push_back({one->recording.name, prepared, true, check_recording(*prepared, request)});
-    }
-    return checked;
-  });
+template <typename Item>
+bool all_given(const Item* const* items, std::size_t count) {
+  return items != nullptr && count > 0 && std::find(items, items + count, nullptr) == items + count;
 }
 
 Result<Recording> recording_of(std::string name, std::size_t n, const double* time_s, const double* position_m,
@@ -187,14 +155,17 @@ int assign_folds(std::size_t n, const double* depth_m, const int* recording, int
 }  // namespace
 }  // namespace palpate::library
 
-using palpate::library::ErrorBuffer;
-using palpate::library::guarded;
+using palpate::Error;
+using palpate::Result;
+using palpate::Status;
+using palpate::library::made;
+using palpate::library::status_of;
 
 palpate_recording* palpate_recording_load(const char* path, char* error, size_t error_size) {
-  return guarded<palpate_recording*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_recording* {
-    if (path == nullptr) return buffer.fail("found no path, expected that of a recording");
+  return made<palpate_recording>(error, error_size, [&]() -> Result<palpate_recording*> {
+    if (path == nullptr) return Error{"found no path, expected that of a recording"};
     auto recording = palpate::read_recording(path);
-    if (!recording) return buffer.fail(recording.error().message);
+    if (!recording) return recording.error();
     return new palpate_recording{std::move(*recording)};
   });
 }
@@ -203,12 +174,12 @@ palpate_recording* palpate_recording_new(const char* name, size_t n, const doubl
                                          const double* force_N, const double* velocity_m_per_s,
                                          const double* acceleration_m_per_s2, const unsigned char* left_out,
                                          char* error, size_t error_size) {
-  return guarded<palpate_recording*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_recording* {
+  return made<palpate_recording>(error, error_size, [&]() -> Result<palpate_recording*> {
     if (name == nullptr || time_s == nullptr || position_m == nullptr || force_N == nullptr)
-      return buffer.fail("found no name, time, position or force, expected all of them");
+      return Error{"found no name, time, position or force, expected all of them"};
     auto recording =
         palpate::library::recording_of(name, n, time_s, position_m, force_N, velocity_m_per_s, acceleration_m_per_s2);
-    if (!recording) return buffer.fail(recording.error().message);
+    if (!recording) return recording.error();
     std::vector<bool> left(left_out, left_out == nullptr ? nullptr : left_out + n);
     return new palpate_recording{std::move(*recording), std::move(left)};
   });
@@ -237,26 +208,26 @@ const palpate_row* palpate_recording_rows(const palpate_recording* recording) {
 }
 
 int palpate_import(const char* table, const char* recording, int overwrite, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
-    if (table == nullptr || recording == nullptr) {
-      return buffer.report(palpate::Error{"found no path, expected a table and a recording"});
-    }
-    return buffer.report(palpate::library::import_to(table, recording, overwrite != 0));
+  return status_of(error, error_size, [&]() -> Status {
+    if (table == nullptr || recording == nullptr) return Error{"found no path, expected a table and a recording"};
+    const auto imported = palpate::import_table(table, {});
+    if (!imported) return imported.error();
+    return palpate::write_recording(recording, imported->recording, imported->notes, overwrite != 0);
   });
 }
 
 int palpate_check(const char* recording, palpate_check_result* result, char* findings, size_t findings_size,
                   char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
-    if (recording == nullptr || result == nullptr) {
-      return buffer.report(palpate::Error{"found no path or no result, expected both"});
-    }
-    const auto file = palpate::check_recording_file(
-        recording, palpate::library::check_of(*palpate::library::scene_of(palpate::library::or_default(nullptr))));
-    if (!file) return buffer.report(file.error());
-    *result = palpate::library::result_of(file->check);
-    ErrorBuffer{findings, findings_size}.fail(palpate::library::findings_of(file->check));
-    return 0;
+  return status_of(error, error_size, [&]() -> Status {
+    if (recording == nullptr || result == nullptr) return Error{"found no path or no result, expected both"};
+    const auto features = palpate::parse_scene_features(palpate::library::kSceneFeatures);
+    const auto file = palpate::check_recording_file(recording, palpate::check_request({}, *features));
+    if (!file) return file.error();
+    const palpate::RecordingCheck& check = file->check;
+    *result = {2 - static_cast<int>(check.gravest()), check.noise_floor_within_jnd, check.surface_offset_m,
+               check.force_zero_N};
+    palpate::library::TextBuffer{findings, findings_size}.write(palpate::library::findings_of(check));
+    return {};
   });
 }
 
@@ -272,15 +243,19 @@ void palpate_fit_options_default(palpate_fit_options* options) {
 
 palpate_model* palpate_fit_recordings(const palpate_recording* const* recordings, size_t recording_count,
                                       const palpate_fit_options* options, char* error, size_t error_size) {
-  return guarded<palpate_model*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_model* {
-    std::vector<const palpate_recording*> some;
-    for (size_t i = 0; recordings != nullptr && i < recording_count; ++i) {
-      if (recordings[i] != nullptr) some.push_back(recordings[i]);
-    }
-    if (some.empty() || some.size() != recording_count) return buffer.fail("found no recording, expected one or more");
+  return made<palpate_model>(error, error_size, [&]() -> Result<palpate_model*> {
+    if (!palpate::library::all_given(recordings, recording_count))
+      return Error{"found no recording, expected one or more"};
     const palpate_fit_options chosen = palpate::library::or_default(options);
-    auto fitted = palpate::library::fit_memory(some, chosen);
-    if (!fitted) return buffer.fail(fitted.error().message);
+    auto fitted = palpate::library::fit_checked(chosen, [&](const palpate::CheckRequest& request) {
+      std::vector<palpate::CheckedFile> checked;
+      for (const palpate_recording* one : std::span(recordings, recording_count)) {
+        const auto prepared = palpate::prepare_recording(one->recording, one->left_out);
+        checked.push_back({one->recording.name, prepared, true, palpate::check_recording(*prepared, request)});
+      }
+      return Result<std::vector<palpate::CheckedFile>>(std::move(checked));
+    });
+    if (!fitted) return fitted.error();
     const std::string report = palpate::fit_json(*fitted, palpate::library::options_of(chosen)).dump();
     return new palpate_model(std::make_shared<const palpate::FittedModel>(std::move(fitted->fit.data)), report);
   });
@@ -288,21 +263,20 @@ palpate_model* palpate_fit_recordings(const palpate_recording* const* recordings
 
 int palpate_fit(const char* const* recordings, size_t recording_count, const palpate_fit_options* options,
                 const char* model, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
-    std::vector<std::string> paths;
-    for (size_t i = 0; recordings != nullptr && i < recording_count; ++i) {
-      if (recordings[i] != nullptr) paths.emplace_back(recordings[i]);
-    }
-    if (paths.empty() || paths.size() != recording_count || model == nullptr)
-      return buffer.report(palpate::Error{"found no path, expected recordings and a model to write"});
+  return status_of(error, error_size, [&]() -> Status {
+    if (!palpate::library::all_given(recordings, recording_count) || model == nullptr)
+      return Error{"found no path, expected recordings and a model to write"};
+    const std::vector<std::string> paths(recordings, recordings + recording_count);
     const palpate_fit_options chosen = palpate::library::or_default(options);
-    const auto fitted = palpate::library::fit_files(paths, chosen);
-    if (!fitted) return buffer.report(fitted.error());
-    return buffer.report(palpate::save_model(model, fitted->fit.data, chosen.overwrite != 0));
+    const auto fitted = palpate::library::fit_checked(
+        chosen, [&](const palpate::CheckRequest& request) { return palpate::check_recording_files(paths, request); });
+    if (!fitted) return fitted.error();
+    return palpate::save_model(model, fitted->fit.data, chosen.overwrite != 0);
   });
 }
 
 int palpate_folds(size_t n, const double* depth_m, const int* recording, int* fold) {
   if (depth_m == nullptr || fold == nullptr) return -1;
-  return guarded<int>(-1, {}, [&](ErrorBuffer) { return palpate::library::assign_folds(n, depth_m, recording, fold); });
+  return palpate::library::guarded<int>(
+      -1, {}, [&]() -> Result<int> { return palpate::library::assign_folds(n, depth_m, recording, fold); });
 }

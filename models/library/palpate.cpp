@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,8 +18,7 @@
 #include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/export/export_c.h"
-#include "models/library/error_text.h"
-#include "models/library/handles.h"
+#include "models/library/c_interface.h"
 #include "models/model/file/model_io.h"
 
 struct palpate_stream {
@@ -43,14 +42,21 @@ struct palpate_limiter {
 namespace palpate::library {
 namespace {
 
-Status check_at_least_zero(const char* name, double value) {
-  if (value >= 0.0 && std::isfinite(value)) return {};
-  return Error{std::string(name) + ": found " + std::to_string(value) + ", expected a finite number of 0 or more"};
-}
+// A number from the caller, and whether it may be 0 or infinite.
+struct GivenNumber {
+  const char* name;
+  double value;
+  bool zero = false;
+  bool infinite = false;
+};
 
-Status check_positive(const char* name, double value) {
-  if (value > 0.0) return {};
-  return Error{std::string(name) + ": found " + std::to_string(value) + ", expected more than 0"};
+Status check_numbers(std::initializer_list<GivenNumber> numbers) {
+  for (const auto& [name, value, zero, infinite] : numbers) {
+    if ((value > 0.0 || (zero && value == 0.0)) && (infinite || std::isfinite(value))) continue;
+    return Error{std::string(name) + ": found " + std::to_string(value) + ", expected a " +
+                 (infinite ? "" : "finite ") + "number " + (zero ? "of 0 or more" : "above 0")};
+  }
+  return {};
 }
 
 Result<SensorSpec> sensor_spec(const palpate_sensor& sensor) {
@@ -61,15 +67,12 @@ Result<SensorSpec> sensor_spec(const palpate_sensor& sensor) {
   spec.has_acceleration = sensor.has_acceleration != 0;
   if (spec.has_velocity) spec.velocity_noise_m_per_s = sensor.velocity_noise_m_per_s;
   if (spec.has_acceleration) spec.acceleration_noise_m_per_s2 = sensor.acceleration_noise_m_per_s2;
-  if (Status status = check_at_least_zero("encoder_step_m", spec.encoder_step_m); !status) return status.error();
-  if (Status status = check_at_least_zero("position_noise_m", spec.position_noise_m); !status) return status.error();
-  for (const auto& [has, name, value] :
-       {std::tuple{spec.has_velocity, "velocity_noise_m_per_s", spec.velocity_noise_m_per_s},
-        std::tuple{spec.has_acceleration, "acceleration_noise_m_per_s2", spec.acceleration_noise_m_per_s2}}) {
-    if (!has) continue;
-    if (Status status = check_at_least_zero(name, value); !status) return status.error();
-    if (Status status = check_positive(name, value); !status) return status.error();
-  }
+  const Status status =
+      check_numbers({{"encoder_step_m", spec.encoder_step_m, true},
+                     {"position_noise_m", spec.position_noise_m, true},
+                     {"velocity_noise_m_per_s", spec.velocity_noise_m_per_s, !spec.has_velocity},
+                     {"acceleration_noise_m_per_s2", spec.acceleration_noise_m_per_s2, !spec.has_acceleration}});
+  if (!status) return status.error();
   return spec;
 }
 
@@ -92,27 +95,15 @@ SensorSpec sensor_of_samples(size_t n, const double* time_s, const double* posit
   return identify_sensor(rows.data(), rows.size(), {velocity_m_per_s != nullptr, acceleration_m_per_s2 != nullptr});
 }
 
-Status export_to(const FittedModel& model, double encoder_step_m, bool single_precision, const std::string& path,
-                 bool overwrite) {
-  if (Status status = check_at_least_zero("encoder_step_m", encoder_step_m); !status) return status;
-  const auto file = export_c(model.data(), {single_precision, sensor_with_step(model.data(), encoder_step_m)});
-  if (!file) return file.error();
-  return write_file_atomically(path, file->text, overwrite);
-}
-
 Result<ForceLimits> force_limits(const palpate_limits& limits) {
-  for (const auto& [name, value] :
-       {std::pair{"largest_N", limits.largest_N}, std::pair{"fastest_N_per_s", limits.fastest_N_per_s},
-        std::pair{"continuous_N", limits.continuous_N}, std::pair{"thermal_time_s", limits.thermal_time_s},
-        std::pair{"stale_after_s", limits.stale_after_s}}) {
-    if (Status status = check_positive(name, value); !status) return status.error();
-  }
-  for (const auto& [name, value] :
-       {std::pair{"largest_N", limits.largest_N}, std::pair{"fastest_N_per_s", limits.fastest_N_per_s},
-        std::pair{"ramp_s", limits.ramp_s}, std::pair{"thermal_time_s", limits.thermal_time_s},
-        std::pair{"stop_s", limits.stop_s}}) {
-    if (Status status = check_at_least_zero(name, value); !status) return status.error();
-  }
+  const Status status = check_numbers({{"largest_N", limits.largest_N},
+                                       {"fastest_N_per_s", limits.fastest_N_per_s},
+                                       {"ramp_s", limits.ramp_s, true},
+                                       {"continuous_N", limits.continuous_N, false, true},
+                                       {"thermal_time_s", limits.thermal_time_s},
+                                       {"stale_after_s", limits.stale_after_s, false, true},
+                                       {"stop_s", limits.stop_s, true}});
+  if (!status) return status.error();
   return ForceLimits{limits.largest_N,      limits.fastest_N_per_s, limits.ramp_s, limits.continuous_N,
                      limits.thermal_time_s, limits.stale_after_s,   limits.stop_s};
 }
@@ -128,16 +119,19 @@ double step(palpate_stream& stream, const ToolSample& sample) noexcept {
 }  // namespace
 }  // namespace palpate::library
 
-using palpate::library::ErrorBuffer;
-using palpate::library::guarded;
+using palpate::Error;
+using palpate::Result;
+using palpate::Status;
+using palpate::library::made;
+using palpate::library::status_of;
 
 int palpate_abi_version(void) { return PALPATE_ABI_VERSION; }
 
 palpate_model* palpate_model_load(const char* path, char* error, size_t error_size) {
-  return guarded<palpate_model*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_model* {
-    if (path == nullptr) return buffer.fail("found no path, expected that of a model file");
+  return made<palpate_model>(error, error_size, [&]() -> Result<palpate_model*> {
+    if (path == nullptr) return Error{"found no path, expected that of a model file"};
     auto model = palpate::load_model(path);
-    if (!model) return buffer.fail(model.error().message);
+    if (!model) return model.error();
     return new palpate_model(std::move(*model));
   });
 }
@@ -151,20 +145,21 @@ const char* palpate_model_name(const palpate_model* model) {
 const char* palpate_model_report(const palpate_model* model) { return model == nullptr ? "" : model->report.c_str(); }
 
 int palpate_model_save(const palpate_model* model, const char* path, int overwrite, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
-    if (model == nullptr || path == nullptr)
-      return buffer.report(palpate::Error{"found no model or no path, expected both"});
-    return buffer.report(palpate::save_model(path, model->model->data(), overwrite != 0));
+  return status_of(error, error_size, [&]() -> Status {
+    if (model == nullptr || path == nullptr) return Error{"found no model or no path, expected both"};
+    return palpate::save_model(path, model->model->data(), overwrite != 0);
   });
 }
 
 int palpate_model_export_c(const palpate_model* model, double encoder_step_m, int single_precision, const char* path,
                            int overwrite, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) {
-    if (model == nullptr || path == nullptr)
-      return buffer.report(palpate::Error{"found no model or no path, expected both"});
-    return buffer.report(
-        palpate::library::export_to(*model->model, encoder_step_m, single_precision != 0, path, overwrite != 0));
+  return status_of(error, error_size, [&]() -> Status {
+    if (model == nullptr || path == nullptr) return Error{"found no model or no path, expected both"};
+    const Status valid = palpate::library::check_numbers({{"encoder_step_m", encoder_step_m, true}});
+    if (!valid) return valid;
+    const palpate::ModelData& data = model->model->data();
+    const auto file = palpate::export_c(data, {single_precision != 0, sensor_with_step(data, encoder_step_m)});
+    return palpate::write_file_atomically(path, file.text, overwrite != 0);
   });
 }
 
@@ -198,55 +193,52 @@ double palpate_jnd_N(const palpate_model* model, double force_N) {
 palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_step_m, char* error, size_t error_size) {
   palpate_sensor sensor{};
   if (model != nullptr) {
-    const palpate::PositionSensor known = palpate::sensor_with_step(model->model->data(), encoder_step_m);
-    sensor.encoder_step_m = known.encoder_step_m;
-    sensor.position_noise_m = known.position_noise_m;
+    sensor = palpate::library::sensor_from(palpate::sensor_with_step(model->model->data(), encoder_step_m));
   }
   return palpate_stream_new_with_sensor(model, &sensor, error, error_size);
 }
 
 palpate_stream* palpate_stream_new_with_sensor(const palpate_model* model, const palpate_sensor* sensor, char* error,
                                                size_t error_size) {
-  return guarded<palpate_stream*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_stream* {
-    if (model == nullptr) return buffer.fail("found no model, expected one that palpate_model_load gave");
-    if (sensor == nullptr) return buffer.fail("found no sensor, expected a palpate_sensor");
+  return made<palpate_stream>(error, error_size, [&]() -> Result<palpate_stream*> {
+    if (model == nullptr) return Error{"found no model, expected one that palpate_model_load gave"};
+    if (sensor == nullptr) return Error{"found no sensor, expected a palpate_sensor"};
     const auto spec = palpate::library::sensor_spec(*sensor);
-    if (!spec) return buffer.fail(spec.error().message);
+    if (!spec) return spec.error();
     return new palpate_stream(*spec, model->model);
   });
 }
 
 int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* error, size_t error_size) {
-  return guarded<int>(-1, {error, error_size}, [&](ErrorBuffer buffer) -> int {
-    if (path == nullptr || sensor == nullptr)
-      return buffer.report(palpate::Error{"found no path or no sensor to fill, expected both"});
+  return status_of(error, error_size, [&]() -> Status {
+    if (path == nullptr || sensor == nullptr) return Error{"found no path or no sensor to fill, expected both"};
     auto reader = palpate::RecordingReader::open(path);
-    if (!reader) return buffer.report(reader.error());
+    if (!reader) return reader.error();
     const auto spec = palpate::identify_sensor(*reader);
-    if (!spec) return buffer.report(spec.error());
+    if (!spec) return spec.error();
     *sensor = palpate::library::sensor_from(*spec);
-    return 0;
+    return {};
   });
 }
 
 int palpate_sensor_of_samples(size_t n, const double* time_s, const double* position_m, const double* velocity_m_per_s,
                               const double* acceleration_m_per_s2, palpate_sensor* sensor) {
   if (time_s == nullptr || position_m == nullptr || sensor == nullptr) return -1;
-  return guarded<int>(-1, {}, [&](ErrorBuffer) {
+  return status_of(nullptr, 0, [&]() -> Status {
     *sensor = palpate::library::sensor_from(
         palpate::library::sensor_of_samples(n, time_s, position_m, velocity_m_per_s, acceleration_m_per_s2));
-    return 0;
+    return {};
   });
 }
 
 int palpate_in_contact(size_t n, const double* position_m, const double* force_N, unsigned char* in_contact) {
   if (position_m == nullptr || force_N == nullptr || in_contact == nullptr) return -1;
-  return guarded<int>(-1, {}, [&](ErrorBuffer) {
+  return status_of(nullptr, 0, [&]() -> Status {
     std::vector<palpate::RecordingRow> rows(std::min(n, palpate::kSensorIdentificationRows));
     for (size_t i = 0; i < rows.size(); ++i) rows[i] = {0.0, position_m[i], force_N[i]};
     const double least_N = palpate::least_contact_N(rows.data(), rows.size(), 0.0);
     for (size_t i = 0; i < n; ++i) in_contact[i] = position_m[i] > 0.0 || std::abs(force_N[i]) > least_N ? 1 : 0;
-    return 0;
+    return {};
   });
 }
 
@@ -307,12 +299,12 @@ void palpate_limits_default(palpate_limits* limits) {
 }
 
 palpate_limiter* palpate_limiter_new(const palpate_limits* limits, char* error, size_t error_size) {
-  return guarded<palpate_limiter*>(nullptr, {error, error_size}, [&](ErrorBuffer buffer) -> palpate_limiter* {
+  return made<palpate_limiter>(error, error_size, [&]() -> Result<palpate_limiter*> {
     palpate_limits chosen;
     palpate_limits_default(&chosen);
     if (limits != nullptr) chosen = *limits;
     const auto checked = palpate::library::force_limits(chosen);
-    if (!checked) return buffer.fail(checked.error().message);
+    if (!checked) return checked.error();
     return new palpate_limiter(*checked);
   });
 }

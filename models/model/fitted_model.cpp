@@ -42,9 +42,9 @@ Status check_forces(const ModelData& data) {
   return {};
 }
 
-PositionSensor sensor_with_step(const ModelData& data, double encoder_step_m) {
+SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m) {
   const bool theirs = data.sensor && (encoder_step_m == 0.0 || encoder_step_m == data.sensor->encoder_step_m);
-  return theirs ? *data.sensor : PositionSensor{encoder_step_m, 0.0};
+  return theirs ? *data.sensor : SensorSpec{encoder_step_m, 0.0};
 }
 
 double deepest_in_domain_m(const ModelData& data, std::size_t& feature) {

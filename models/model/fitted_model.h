@@ -14,6 +14,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,9 +25,9 @@
 #include "engine/base/result.h"
 #include "engine/tick/force_model.h"
 #include "engine/tick/jnd.h"
+#include "engine/tick/tool_sample.h"
 #include "models/model/correction.h"
 #include "models/model/domain_guard.h"
-#include "models/model/error_bound.h"
 #include "models/model/trend.h"
 
 namespace palpate {
@@ -46,12 +47,6 @@ struct RecordingSurface {
   std::uint64_t content_hash = 0;  // of its rows as recorded; not stored in files
 };
 
-// The position sensor of the training recordings; the coarsest of them.
-struct PositionSensor {
-  double encoder_step_m = 0.0;    // 0: not quantised
-  double position_noise_m = 0.0;  // standard deviation in addition to the quantisation
-};
-
 // The origin of a model; it has no effect on the forces.
 struct Provenance {
   std::vector<std::string> recordings;
@@ -66,6 +61,24 @@ struct Provenance {
   std::string relaxation;  // scene, auto, given
   std::vector<RelaxationTime> relaxation_times;
   double training_within_jnd = 0.0;
+};
+
+// The bound on the error of a model's force where no force is measured, at 95 %:
+//   b(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
+// distance: to the nearest training data in the normalised feature space (domain_guard.h). The coefficients are fitted
+// to cross-validated errors and scaled by split-conformal prediction, with the quantile of the normalised errors
+// (models/fit/select_strength.h).
+// Sources: Vovk, Gammerman & Shafer (2005), "Algorithmic learning in a random world";
+// Lei, G'Sell, Rinaldo, Tibshirani & Wasserman (2018), section 5.2 (locally weighted).
+struct ErrorBound {
+  double floor_N = 0.0;
+  double per_force = 0.0;
+  double per_distance_N = 0.0;
+
+  // `force_N`: absolute; `beyond`: distance - inner radius. An infinite distance gives an infinite bound.
+  double at(double force_N, double beyond) const noexcept {
+    return floor_N + per_force * force_N + per_distance_N * std::max(0.0, beyond);
+  }
 };
 
 struct ModelData {
@@ -83,9 +96,9 @@ struct ModelData {
   double lowest_force_N = 0.0;   // of the training data if the material pulls, else 0; <= 0
   DomainCover cover;
   std::optional<ErrorBound> error_bound;  // none in earlier files and in the paper's recipe
-  // The default sensor of streams and exported files; no effect on the force of a feature vector. None in earlier
-  // files.
-  std::optional<PositionSensor> sensor;
+  // The position sensor of the training recordings, the coarsest of them: the default sensor of streams and exported
+  // files; no effect on the force of a feature vector. None in earlier files.
+  std::optional<SensorSpec> sensor;
   JndLine jnd;
   CorrectionPtr correction;  // h; shared by copies
   Provenance provenance;
@@ -99,7 +112,7 @@ Status check_forces(const ModelData& data);
 
 // The sensor of a tool with this encoder step: the sensor of the training recordings if the step is theirs or 0 (not
 // known), else one with this step and no noise.
-PositionSensor sensor_with_step(const ModelData& data, double encoder_step_m);
+SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m);
 
 // Greater depths are out of the domain at any distance from the data; infinite without a depth feature. `feature`: the
 // index of the depth feature, or 0.

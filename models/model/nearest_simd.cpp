@@ -26,18 +26,18 @@ HWY_INLINE FloatVector float_squares(const float* coordinates, size_t stride, co
   FloatVector sum = hn::Zero(d);
   for (int k = 0; k < kDimension; ++k) {
     const FloatVector difference =
-        hn::Sub(hn::Set(d, x[k]), hn::Load(d, coordinates + static_cast<size_t>(k) * stride));
+        hn::Sub(hn::Set(d, x[k]), hn::LoadU(d, coordinates + static_cast<size_t>(k) * stride));
     sum = hn::MulAdd(difference, difference, sum);
   }
   return sum;
 }
 
 template <int kDimension>
-float nearest(const float* coordinates, size_t stride, size_t count, const float* x) noexcept {
+float nearest(const float* coordinates, size_t count, const float* x) noexcept {
   const Floats d;
   FloatVector smallest = hn::Set(d, std::numeric_limits<float>::max());
   for (size_t i = 0; i < count; i += hn::Lanes(d))
-    smallest = hn::Min(float_squares<kDimension>(coordinates + i, stride, x), smallest);
+    smallest = hn::Min(float_squares<kDimension>(coordinates + i, count, x), smallest);
   return hn::GetLane(hn::MinOfLanes(d, smallest));
 }
 
@@ -103,9 +103,9 @@ bool near_point(const NearTree& tree, const float* leaf_of_x, const double* x) n
   }
   const FloatVector limit = hn::MulSub(hn::Set(d, tree.half), squared, hn::Set(d, tree.half_squared));
   const auto products = [&](size_t i) HWY_ATTR {
-    FloatVector sum = hn::Load(d, leaf_of_x + kDimension * tree.leaf_size + i);
+    FloatVector sum = hn::LoadU(d, leaf_of_x + kDimension * tree.leaf_size + i);
     for (int k = 0; k < kDimension; ++k)
-      sum = hn::MulAdd(coordinate[k], hn::Load(d, leaf_of_x + static_cast<size_t>(k) * tree.leaf_size + i), sum);
+      sum = hn::MulAdd(coordinate[k], hn::LoadU(d, leaf_of_x + static_cast<size_t>(k) * tree.leaf_size + i), sum);
     return sum;
   };
   FloatVector largest = limit;

@@ -1,4 +1,4 @@
-// The vectorised loops of nearest_points.h, one variant per instruction set as in models/model/rbf/rbf_simd.h, whose
+// The vectorised loops of domain_guard.h, one variant per instruction set as in models/model/rbf/rbf_simd.h, whose
 // choose_target applies here, too.
 #pragma once
 
@@ -22,10 +22,9 @@ inline float nearest_float(double value) noexcept {
 // Whether the square of a value fits a float; false for NaN.
 inline bool in_nearest_range(double value) noexcept { return value < 1e19 && value > -1e19; }
 
-// min_i |x - point_i|^2; coordinate k of point i is coordinates[k * stride + i], `count` a
-// multiple of kSimdPadFloat.
-using NearestFunction = float (*)(const float* coordinates, std::size_t stride, std::size_t count,
-                                  const float* x) noexcept;
+// min_i |x - point_i|^2 of `count` points, a multiple of kSimdPadFloat; coordinate k of point i is
+// coordinates[k * count + i].
+using NearestFunction = float (*)(const float* coordinates, std::size_t count, const float* x) noexcept;
 // Points relative to a centre c, in the leaves of a tree. For a query q = x - c,
 //   |q - p|^2 <= r^2   if   q p - |p|^2 / 2 > (|q|^2 - r^2) / 2,
 // which takes one multiplication and addition a coordinate.

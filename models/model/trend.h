@@ -12,7 +12,7 @@
 // Beyond the data: E continues along its tangent beyond the greatest recorded depth, and v is clamped to
 // velocity_limit, so that the value is bounded; the model clamps the rest.
 //
-// Thread guarantee: value type, `at` is wait-free and allocates nothing.
+// Thread guarantee: value types; `at` is wait-free and allocates nothing.
 #pragma once
 
 #include <array>
@@ -22,9 +22,35 @@
 #include <vector>
 
 #include "engine/tick/features.h"
-#include "models/model/elastic_spline.h"
 
 namespace palpate {
+
+// Enough for a force that grows thirty-fold over the last tenth of the depth; the penalty determines the smoothness.
+inline constexpr std::size_t kElasticPieces = 32;
+inline constexpr std::size_t kElasticCoefficients = 4;  // of a piece
+
+// The elastic response, a cubic spline on equal pieces of the recorded depth,
+//   E(u) = sum_j c_ij t^j,  i = floor(n u),  t = n u - i,  n = kElasticPieces,
+// with u = depth / reference depth >= 0. Beyond u = 1 it continues along its tangent there. An evaluation takes one
+// look-up and one polynomial, independent of the number of pieces.
+struct ElasticSpline {
+  // The coefficients of t^0 to t^3 of every piece, N.
+  std::array<double, kElasticPieces * kElasticCoefficients> pieces_N{};
+
+  double at(double u) const noexcept;
+  bool operator==(const ElasticSpline&) const = default;
+};
+
+// The kElasticTerms basis splines: the integrals from 0 to u of the quadratic B-splines on the pieces, so that E
+// increases if all weights, in newtons, are non-negative. With a penalty on the differences of neighbouring weights E
+// is a P-spline (Eilers & Marx 1996).
+inline constexpr std::size_t kElasticTerms = kElasticPieces + 2;
+std::vector<ElasticSpline> spline_basis();
+ElasticSpline combined_spline(const std::vector<ElasticSpline>& basis, const double* weights);
+
+// The spline of an earlier model file, given in truncated powers:
+//   sum_k power_N[k] u^(k+1) + sum_k knot_N[k] max(0, u - (k + 1) / 8)^3.
+ElasticSpline spline_from_powers(const std::array<double, 3>& power_N, const std::array<double, 7>& knot_N);
 
 inline constexpr std::size_t kViscosityCoefficients = 3;
 

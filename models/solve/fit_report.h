@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "models/model/rbf/rbf_function.h"
+#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
 

@@ -11,7 +11,7 @@
 // viscosity, branch and friction dissipate.
 //
 // The elastic response is a P-spline, whose penalty approximates the integral of its squared second derivative (Eilers
-// & Marx 1996; elastic_spline.h). lambda is selected by cross-validation and the common rule (selection.h).
+// & Marx 1996; models/model/trend.h). lambda is selected by cross-validation and the common rule (selection.h).
 // alpha is the relative error of all other columns: repeated measurements of each agree to about a tenth, and the
 // expected square of such errors is the penalty (errors in variables; Golub & Van Loan 1980). Columns that the
 // recording cannot separate then share their effect.

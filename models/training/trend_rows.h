@@ -1,7 +1,7 @@
 // The rows of the regression of the trend, gathered from recordings in one pass and bounded memory.
 //
 // Each row holds the basis functions of the trend at one sample in contact, u = depth / reference depth:
-//   elastic    int_0^u of the quadratic B-splines (models/model/elastic_spline.h)
+//   elastic    int_0^u of the quadratic B-splines (models/model/trend.h)
 //   viscous    v B_k,2(min(u, 1))      k = 0..2, if the model has velocity,
 //              then the same with v / (1 + |v| / v_0)
 //   branch     Maxwell branch driven by int_0^u B_k,2, k = 0..2, for each relaxation time

@@ -79,14 +79,7 @@ std::string check_text(const CheckedFile& file) {
   return text.str();
 }
 
-CheckRequest check_request(const Scene& scene) {
-  CheckRequest request;
-  request.jnd = scene.jnd;
-  for (const FeatureSpec& feature : scene.features) {
-    if (feature.relaxation_time_s > 0.0) request.relaxation_times_s.push_back(feature.relaxation_time_s);
-  }
-  return request;
-}
+CheckRequest check_request(const Scene& scene) { return check_request(scene.jnd, scene.features); }
 
 Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request) {
   auto files = check_recording_files(paths, request);

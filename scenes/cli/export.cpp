@@ -41,10 +41,9 @@ Status run_export(const ExportArguments& arguments) {
   if (!model) return model.error();
   const ModelData& data = (*model)->data();
   const ExportRequest request{arguments.single_precision, sensor_with_step(data, arguments.encoder_step_m)};
-  const Result<ExportedC> file = export_c(data, request);
-  if (!file) return Error{arguments.model + ": " + file.error().message};
-  if (Status status = write_file_atomically(arguments.out, file->text, arguments.force); !status) return status;
-  print_summary(arguments, data, request, *file);
+  const ExportedC file = export_c(data, request);
+  if (Status status = write_file_atomically(arguments.out, file.text, arguments.force); !status) return status;
+  print_summary(arguments, data, request, file);
   return {};
 }
 

@@ -59,10 +59,7 @@ std::vector<std::string> guide_cells(const RecordingMeasures& measures, double s
   return lines;
 }
 
-RecordGuide::RecordGuide(std::string path, const CheckRequest& request) : path_(std::move(path)), request_(request) {
-  for (const double time_s : request.relaxation_times_s)
-    longest_relaxation_s_ = std::max(longest_relaxation_s_, time_s);
-}
+RecordGuide::RecordGuide(std::string path, const CheckRequest& request) : path_(std::move(path)), request_(request) {}
 
 std::vector<std::string> RecordGuide::update(double now_s) {
   if (now_s < next_s_) return {};
@@ -76,7 +73,7 @@ std::vector<std::string> RecordGuide::update(double now_s) {
     return telling(touch) ? std::vector<std::string>{touch} : std::vector<std::string>{};
   }
   const RecordingMeasures& measures = file->check.measures;
-  const std::string advice = guide_advice(measures, longest_relaxation_s_);
+  const std::string advice = guide_advice(measures, request_.longest_relaxation_s);
   std::string cells;
   for (const auto& quarter : measures.seconds) {
     for (const double seconds : quarter) cells += seconds >= kLeastCell_s ? '+' : '-';

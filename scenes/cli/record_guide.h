@@ -28,7 +28,6 @@ class RecordGuide {
  private:
   std::string path_;
   CheckRequest request_;
-  double longest_relaxation_s_ = 0.0;
   double next_s_ = 0.0;
   std::string printed_;  // the last advice and cells
 };

@@ -40,7 +40,8 @@ class Block {
   void reset(double position_m = 0.0) noexcept;
 
   double force_N() const noexcept { return force_N_; }
-  // The depth of the tool in contact; larger than it while a free surface recovers.
+  // The depth of the surface at the end of the last sub-step: that of the tool in contact, larger while a free surface
+  // recovers.
   double surface_depth_m() const noexcept { return surface_m_; }
 
   // The force of a short press to `depth_m`, when the material is about half relaxed; rises with the depth. The
@@ -54,8 +55,6 @@ class Block {
   Block(const Block&) = default;
   Block& operator=(const Block&) = default;
 
-  // The depth of the surface at the end of the last sub-step.
-  double last_surface_m() const noexcept { return surface_m_; }
   double substep_s() const noexcept { return substep_s_; }
 
   // Smaller forces are set to 0, because denormal numbers are slow.
@@ -72,7 +71,7 @@ class Block {
   virtual double free_force_N(double surface_m, double rate_m_per_s) const noexcept {
     return contact_force_N(surface_m, rate_m_per_s);
   }
-  // Updates the state for a move of the surface from last_surface_m() to `surface_m`.
+  // Updates the state for a move of the surface from surface_depth_m() to `surface_m`.
   virtual void update_state(double surface_m, bool touching) noexcept = 0;
   // Sets the state to fully relaxed at `surface_m`.
   virtual void reset_state(double surface_m) noexcept = 0;

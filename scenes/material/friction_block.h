@@ -54,12 +54,12 @@ class FrictionBlock final : public HereditaryBlock {
   }
   // F_c(s) z after the probe has moved to `surface_m`, exact for each bristle.
   double friction_after_N(double surface_m) const noexcept {
-    const double travel_m = surface_m - last_surface_m();
+    const double travel_m = surface_m - surface_depth_m();
     const double side = travel_m < 0.0 ? -1.0 : 1.0;
     const double slipped = -std::expm1(-std::abs(travel_m) / kPresliding_m);
     const double bend = bend_ + (side - bend_) * slipped;
     // Bristles that are added in this sub-step are unbent.
-    return bend * friction_limit_N(std::min(surface_m, last_surface_m()));
+    return bend * friction_limit_N(std::min(surface_m, surface_depth_m()));
   }
 
   double bend_ = 0.0;  // z, -1 .. 1

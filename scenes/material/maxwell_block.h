@@ -41,8 +41,7 @@ struct MaxwellParameters {
   double thinning_speed_m_per_s = 1.0;      // v0 > 0
   double friction_fraction = 0.0;           // mu >= 0, of the elastic force
   double friction_stiffness_N_per_m = 0.0;  // K_h >= 0
-  std::size_t branch_count = 0;
-  std::array<RelaxationBranch, kMaximumBranches> branches{};
+  std::array<RelaxationBranch, kMaximumBranches> branches{};  // those of stiffness 0 have no force
 
   // E(depth), newtons; depth_m >= 0.
   double elastic_force_N(double depth_m) const noexcept {
@@ -67,7 +66,6 @@ inline constexpr MaxwellParameters kMaxwell = {.elastic_linear_N_per_m = 330.0,
                                                .viscosity_Ns_per_m2 = 800.0,
                                                .thick_fraction = 0.5,
                                                .thinning_speed_m_per_s = 0.15,
-                                               .branch_count = 2,
                                                .branches = {{{0.17, 70.0, 9.0e3}, {1.27, 50.0, 6.0e3}}}};
 
 inline constexpr MaxwellParameters kFoam = {.elastic_linear_N_per_m = 520.0,
@@ -78,7 +76,6 @@ inline constexpr MaxwellParameters kFoam = {.elastic_linear_N_per_m = 520.0,
                                             .thinning_speed_m_per_s = 0.1,
                                             .friction_fraction = 0.025,
                                             .friction_stiffness_N_per_m = 60.0,
-                                            .branch_count = 2,
                                             .branches = {{{0.08, 60.0, 5.0e3}, {0.9, 45.0, 3.0e3}}}};
 
 inline constexpr MaxwellParameters kElastic = {
@@ -92,7 +89,6 @@ inline constexpr MaxwellParameters kGel = {.elastic_linear_N_per_m = 170.0,
                                            .viscosity_Ns_per_m2 = 500.0,
                                            .thick_fraction = 0.4,
                                            .thinning_speed_m_per_s = 0.1,
-                                           .branch_count = 3,
                                            .branches = {{{0.05, 60.0, 5.0e3}, {0.4, 60.0, 5.0e3}, {2.5, 50.0, 4.0e3}}}};
 
 class MaxwellBlock final : public Block {
@@ -101,7 +97,7 @@ class MaxwellBlock final : public Block {
 
   double half_relaxed_force_N(double depth_m) const noexcept override {
     double held_N = material_.elastic_force_N(depth_m);
-    for (std::size_t b = 0; b < material_.branch_count; ++b) held_N += 0.5 * material_.unrelaxed_force_N(b, depth_m);
+    for (std::size_t b = 0; b < kMaximumBranches; ++b) held_N += 0.5 * material_.unrelaxed_force_N(b, depth_m);
     return held_N;
   }
   double relaxed_force_N(double depth_m) const noexcept override { return material_.elastic_force_N(depth_m); }
@@ -113,14 +109,14 @@ class MaxwellBlock final : public Block {
     double friction_N = 0.0;
   };
   void prepare() noexcept override {
-    for (std::size_t b = 0; b < material_.branch_count; ++b) {
+    for (std::size_t b = 0; b < kMaximumBranches; ++b) {
       steps_[b] = MaxwellStep(substep_s(), material_.branches[b].relaxation_time_s);
     }
   }
   double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override {
     const Inner inner = inner_at(surface_m);
     double static_N = material_.elastic_force_N(surface_m);
-    for (std::size_t b = 0; b < material_.branch_count; ++b) static_N += inner.branch_N[b];
+    for (std::size_t b = 0; b < kMaximumBranches; ++b) static_N += inner.branch_N[b];
     return static_N + inner.friction_N + material_.viscous_force_N(surface_m, rate_m_per_s);
   }
   void update_state(double surface_m, bool) noexcept override {
@@ -132,13 +128,13 @@ class MaxwellBlock final : public Block {
   // The state after a move of the surface to `surface_m` within one sub-step, exact for a constant rate of g_b.
   Inner inner_at(double surface_m) const noexcept {
     Inner inner;
-    for (std::size_t b = 0; b < material_.branch_count; ++b) {
+    for (std::size_t b = 0; b < kMaximumBranches; ++b) {
       const double change_N =
-          material_.unrelaxed_force_N(b, surface_m) - material_.unrelaxed_force_N(b, last_surface_m());
+          material_.unrelaxed_force_N(b, surface_m) - material_.unrelaxed_force_N(b, surface_depth_m());
       inner.branch_N[b] = inner_.branch_N[b] * steps_[b].decay + change_N * steps_[b].gain;
     }
     const double limit_N = material_.friction_fraction * material_.elastic_force_N(surface_m);
-    const double dragged_N = inner_.friction_N + material_.friction_stiffness_N_per_m * (surface_m - last_surface_m());
+    const double dragged_N = inner_.friction_N + material_.friction_stiffness_N_per_m * (surface_m - surface_depth_m());
     inner.friction_N = std::clamp(dragged_N, -limit_N, limit_N);
     return inner;
   }

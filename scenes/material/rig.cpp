@@ -49,6 +49,15 @@ RigSettings suited(RigSettings settings, const Material& material) {
 
 }  // namespace
 
+double Hand::held_depth_m(double force_N) const noexcept {
+  double low_m = 0.0, high_m = 0.1;
+  for (int i = 0; i < 40; ++i) {
+    const double depth_m = 0.5 * (low_m + high_m);
+    (block_->half_relaxed_force_N(depth_m) < force_N ? low_m : high_m) = depth_m;
+  }
+  return low_m;
+}
+
 Result<Rig> Rig::create(const RigSettings& settings) {
   const Result<Material> material = find_material(settings.material);
   if (!material) return material.error();
@@ -68,7 +77,6 @@ Result<Rig> Rig::create(const RigSettings& settings) {
 Rig::Rig(const RigSettings& settings, const Material& material, std::size_t row_count)
     : settings_(suited(settings, material)),
       hand_(material, *settings_.hand, settings.seed),
-      material_(material),
       block_(material.make_block()),
       force_noise_(settings.seed, kForceStream),
       acceleration_noise_(settings.seed, kAccelerationStream),

@@ -20,10 +20,23 @@
 #include "engine/base/random_stream.h"
 #include "engine/base/result.h"
 #include "engine/recording/recording.h"
-#include "scenes/material/hand.h"
 #include "scenes/material/material.h"
 
 namespace palpate {
+
+// The simulated hand that presses a known material: it converts a target force to a depth by
+// Block::half_relaxed_force_N.
+class Hand final : public HandMotion {
+ public:
+  Hand(const Material& material, const HandSettings& settings, std::uint64_t seed)
+      : HandMotion(settings, seed), block_(material.make_block()) {}
+
+ protected:
+  double held_depth_m(double force_N) const noexcept override;
+
+ private:
+  std::unique_ptr<const Block> block_;  // for half_relaxed_force_N only
+};
 
 struct SensorSettings {
   double encoder_step_m = 30e-6;
@@ -80,7 +93,6 @@ class Rig {
 
   RigSettings settings_;
   Hand hand_;
-  Material material_;
   std::unique_ptr<Block> block_;
   RandomStream force_noise_, acceleration_noise_, bias_noise_;
   std::size_t row_count_ = 0, row_ = 0;

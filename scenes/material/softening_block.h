@@ -42,7 +42,7 @@ class SofteningBlock final : public HereditaryBlock {
   }
   void begin_substep() noexcept override {
     HereditaryBlock::begin_substep();
-    deepest_m_ = last_surface_m() + (deepest_m_ - last_surface_m()) * fade_;
+    deepest_m_ = surface_depth_m() + (deepest_m_ - surface_depth_m()) * fade_;
     if (deepest_m_ < 1e-12) deepest_m_ = 0.0;  // healed
     deepest_J_ = elastic_energy_J(deepest_m_);
   }

@@ -63,7 +63,7 @@ class SpongeBlock final : public Block {
   }
   // Solves (I - h D) p = p_old + M de for any de: one elimination with two right-hand sides.
   void begin_substep() noexcept override {
-    const double strain = last_surface_m() / kHeight_m;
+    const double strain = surface_depth_m() / kHeight_m;
     const double width_m = kRadius_m / kRingCount;
     const double flow =
         substep_s() * kDiffusivity_m2_per_s * std::exp(-kPermeabilityFall * strain) / (width_m * width_m);
@@ -88,7 +88,7 @@ class SpongeBlock final : public Block {
       mean_squeezed_Pa_ += ring_share(i) * squeezed_Pa_[i];
     }
   }
-  double strained(double surface_m) const noexcept { return (surface_m - last_surface_m()) / kHeight_m; }
+  double strained(double surface_m) const noexcept { return (surface_m - surface_depth_m()) / kHeight_m; }
   double contact_force_N(double surface_m, double) const noexcept override {
     return relaxed_force_N(surface_m) + kArea_m2 * (mean_drained_Pa_ + mean_squeezed_Pa_ * strained(surface_m));
   }

@@ -90,10 +90,8 @@ Status ModelWorker::start() {
 
 void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan, bool at_once) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(jobs_, [&](const Job& other) { return other.job_id == job_id; });
-  const double cost_s = at_once ? -1.0 : expected_cost_s(plan);
-  const auto slower = std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& other) { return other.cost_s > cost_s; });
-  jobs_.insert(slower, {job_id, plan, cost_s});
+  std::erase_if(jobs_, [&](const auto& other) { return other.second.job_id == job_id; });
+  jobs_.emplace(at_once ? -1.0 : expected_cost_s(plan), Job{job_id, plan});
   wake_.notify_all();
 }
 
@@ -113,8 +111,7 @@ void ModelWorker::work() {
     working_on_.reset();
     wake_.wait(lock, [&] { return !jobs_.empty() || cancelled_.load(std::memory_order_relaxed); });
     if (cancelled_.load(std::memory_order_relaxed)) return;
-    const Job job = std::move(jobs_.front());
-    jobs_.pop_front();
+    const Job job = std::move(jobs_.extract(jobs_.begin()).mapped());
     working_on_ = job.job_id;
     share_.store(0.0, std::memory_order_relaxed);
     lock.unlock();
@@ -164,23 +161,27 @@ Status ModelWorker::prepare_recordings() {
   return {};
 }
 
-Status ModelWorker::prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request) {
-  if (prepared) return {};
+Status ModelWorker::prepare(Recipe& recipe, const SlotPlan& plan) {
   if (Status status = prepare_recordings(); !status) return status;
+  TrainingRequest request = training_request(scene_);
+  if (plan.paper) request = recipe_2009_request(request);
+  if (plan.origin == ModelOrigin::position) {
+    request.features = {FeatureSpec{}};
+    request.choice = FeatureChoice::scene;
+  }
   MotionSource source(recordings_);
   Result<PreparedTraining> made = prepare_training(source, request, control(kRecorded, kPrepared));
   if (!made) return made.error();
-  prepared.emplace(std::move(*made));
+  recipe.prepared.emplace(std::move(*made));
   return {};
 }
 
-Result<MethodFit> ModelWorker::fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
-                                          const FitControl& control) {
-  std::optional<NestedFit>& nested = nested_[{request.method, paper}];
+Result<MethodFit> ModelWorker::fit_nested(Recipe& recipe, const MethodRequest& request, const FitControl& control) {
+  std::optional<NestedFit>& nested = recipe.nested[request.method];
   if (!nested) {
     MethodRequest largest = request;
     largest.centres = kMostCentres;
-    auto made = NestedFit::make(prepared, largest, control);
+    auto made = NestedFit::make(*recipe.prepared, largest, control);
     if (!made) return made.error();
     nested.emplace(std::move(*made));
   }
@@ -188,31 +189,26 @@ Result<MethodFit> ModelWorker::fit_nested(const PreparedTraining& prepared, cons
 }
 
 Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
-  std::optional<PreparedTraining> of_position;
+  Recipe of_position;
   const bool position = plan.origin == ModelOrigin::position;
-  std::optional<PreparedTraining>& prepared = position ? of_position : plan.paper ? prepared_as_paper_ : prepared_;
-  const bool prepared_before = prepared.has_value();
-  TrainingRequest training = training_request(scene_);
-  if (plan.paper) training = recipe_2009_request(training);
-  if (position) {
-    training.features = {FeatureSpec{}};
-    training.choice = FeatureChoice::scene;
+  Recipe& recipe = position ? of_position : plan.paper ? of_paper_ : own_;
+  const double prepared = recipe.prepared ? 0.0 : kPrepared;
+  if (!recipe.prepared) {
+    if (const Status status = prepare(recipe, plan); !status) return status.error();
   }
-  if (const Status status = prepare(prepared, training); !status) return status.error();
   MethodRequest request;
   request.method = plan.method;
   request.seed = seed_;
   if (plan.centres > 0) request.centres = plan.centres;
-  const bool own = position || plan.paper;  // its preparation differs from that of the bases
-  const auto base = own ? bases_.end() : bases_.find(plan.method->base);
-  const FitControl rest = control(prepared_before ? 0.0 : kPrepared, 1.0);
-  const bool nested = !position && prepared->corrects() && plan.method->choose != nullptr &&
-                      request.centres <= kMostCentres && !nested_.try_emplace({plan.method, plan.paper}).second;
-  Result<MethodFit> fitted = nested
-                                 ? fit_nested(*prepared, request, plan.paper, rest)
-                                 : fit_method(*prepared, request, rest, base == bases_.end() ? nullptr : &base->second);
+  const bool nested = !position && recipe.prepared->corrects() && plan.method->choose != nullptr &&
+                      request.centres <= kMostCentres && !recipe.nested.try_emplace(plan.method).second;
+  const auto base = recipe.bases.find(plan.method->base);
+  const FitControl rest = control(prepared, 1.0);
+  Result<MethodFit> fitted =
+      nested ? fit_nested(recipe, request, rest)
+             : fit_method(*recipe.prepared, request, rest, base == recipe.bases.end() ? nullptr : &base->second);
   if (!fitted) return fitted.error();
-  if (!own && plan.centres == 0) bases_.insert_or_assign(plan.method, *fitted);
+  if (plan.centres == 0) recipe.bases.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);
 }
 

@@ -11,7 +11,6 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -78,25 +77,26 @@ class ModelWorker {
   struct Job {
     std::size_t job_id = 0;
     SlotPlan plan;
-    double cost_s = 0.0;  // expected time; below 0: at once
+  };
+  // What the fits by one recipe share.
+  struct Recipe {
+    std::optional<PreparedTraining> prepared;
+    std::map<const Method*, MethodFit> bases;  // finished fits, from which other methods start
+    // The first fit of a method adds an empty entry, the second one fills it.
+    std::map<const Method*, std::optional<NestedFit>> nested;
   };
   void work();  // until cancelled
   Result<ModelData> fit(const SlotPlan& plan);
-  Result<MethodFit> fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
-                               const FitControl& control);
+  Result<MethodFit> fit_nested(Recipe& recipe, const MethodRequest& request, const FitControl& control);
   Status prepare_recordings();
-  Status prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request);
+  Status prepare(Recipe& recipe, const SlotPlan& plan);
   FitControl control(double from, double to);
 
   Scene scene_;
   std::uint64_t seed_;
   // Used by the worker's thread only.
   std::vector<MotionSource::Input> recordings_;
-  std::optional<PreparedTraining> prepared_;
-  std::optional<PreparedTraining> prepared_as_paper_;
-  std::map<const Method*, MethodFit> bases_;  // finished fits, from which other methods start
-  // By method and recipe. The first fit adds an empty entry, the second one fills it.
-  std::map<std::pair<const Method*, bool>, std::optional<NestedFit>> nested_;
+  Recipe own_, of_paper_;
 
   std::thread thread_;
   std::atomic<bool> cancelled_{false};
@@ -104,7 +104,7 @@ class ModelWorker {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   // Guarded by mutex_.
-  std::deque<Job> jobs_;
+  std::multimap<double, Job> jobs_;  // by expected time, s; below 0: at once
   std::vector<FinishedModel> finished_;
   std::optional<std::size_t> working_on_;
 };

@@ -78,10 +78,8 @@ const std::vector<LineUp>& line_ups() {
 }
 
 const LineUp* find_line_up(const std::string& name) {
-  for (const LineUp& one : line_ups()) {
-    if (name == one.name) return &one;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(line_ups(), name, &LineUp::name);
+  return found == line_ups().end() ? nullptr : &*found;
 }
 
 std::string plan_method(const SlotPlan& plan) {
@@ -100,11 +98,10 @@ Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<s
     plans.push_back(std::move(*plan));
   }
   if (position_only && scene.has_material()) plans.push_back({ModelOrigin::position, &kGreedyMethod, "", nullptr});
-  const bool has_direct = std::any_of(plans.begin(), plans.end(), [](const SlotPlan& plan) {
+  const bool has_direct = std::ranges::any_of(plans, [](const SlotPlan& plan) {
     return plan.origin == ModelOrigin::method && plan.method == &kDirectMethod && !plan.paper;
   });
-  const bool fits =
-      std::any_of(plans.begin(), plans.end(), [](const SlotPlan& plan) { return plan.origin != ModelOrigin::file; });
+  const bool fits = std::ranges::any_of(plans, [](const SlotPlan& plan) { return plan.origin != ModelOrigin::file; });
   if ((scene.material || fits) && !has_direct) plans.push_back({ModelOrigin::method, &kDirectMethod, "", nullptr});
   if (plans.size() <= kMaxModels) return plans;
   return Error{"found " + std::to_string(plans.size()) + " models, the direct reference included, expected at most " +

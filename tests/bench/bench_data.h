@@ -8,7 +8,7 @@
 
 #include "models/fit/fit.h"
 #include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_function.h"
+#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate::bench {
 

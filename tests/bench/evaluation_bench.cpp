@@ -29,13 +29,13 @@ void scalar_loop(benchmark::State& state) {
 }
 
 void rbf(benchmark::State& state) {
-  const RbfEvaluator evaluator(recorded_function(state.range(0)));
+  const RbfCorrection evaluator(recorded_function(state.range(0)));
   run_queries(state, recorded_sites().points, [&](const double* x) { return evaluator.evaluate(x); });
 }
 
 void rbf_on_target(benchmark::State& state, const std::string& target) {
   simd::choose_target(target);
-  const RbfEvaluator evaluator(recorded_function(state.range(0)));
+  const RbfCorrection evaluator(recorded_function(state.range(0)));
   simd::choose_target("");
   run_queries(state, recorded_sites().points, [&](const double* x) { return evaluator.evaluate(x); });
 }
@@ -44,7 +44,7 @@ void rbf_of_kernel(benchmark::State& state, KernelKind kernel) {
   RbfFunction function = recorded_function(100);
   function.kernel = kernel;
   function.tail = Eigen::VectorXd::Ones(tail_size(tail_degree(kernel), 4));
-  const RbfEvaluator evaluator(function);
+  const RbfCorrection evaluator(function);
   run_queries(state, recorded_sites().points, [&](const double* x) { return evaluator.evaluate(x); });
 }
 
@@ -53,16 +53,16 @@ void rbf_denormal(benchmark::State& state) {
   RbfFunction function = recorded_function(100);
   function.weights *= 1e-310;
   function.centres *= 1e-310;
-  const RbfEvaluator evaluator(function);
+  const RbfCorrection evaluator(function);
   const Eigen::MatrixXd points = 1e-310 * recorded_sites().points;
   run_queries(state, points, [&](const double* x) { return evaluator.evaluate(x); });
 }
 
 void voxel(benchmark::State& state) {
   VoxelGrid grid = even_grid(recorded_sites(), {25, 11, 11, 11});
-  const RbfEvaluator evaluator(recorded_function(100));
+  const RbfCorrection evaluator(recorded_function(100));
   (void)fill_grid(grid, [&](const Eigen::MatrixXd& p, Eigen::VectorXd& out) { evaluator.evaluate_many(p, out); });
-  const VoxelLookup lookup(grid);
+  const GridCorrection lookup(grid);
   run_queries(state, recorded_sites().points, [&](const double* x) { return lookup.evaluate(x); });
 }
 

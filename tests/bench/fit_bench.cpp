@@ -60,7 +60,7 @@ void slider_step(benchmark::State& state, const Method* method, bool papers) {
 Result<FittedRbf> direct_fit(const Sites& sites, const Eigen::VectorXd&) { return fit_direct(sites, {}); }
 
 Status fill(VoxelGrid& grid, const RbfFunction& function) {
-  const RbfEvaluator evaluator(function);
+  const RbfCorrection evaluator(function);
   return fill_grid(grid, [&](const Eigen::MatrixXd& p, Eigen::VectorXd& out) { evaluator.evaluate_many(p, out); });
 }
 
@@ -151,7 +151,7 @@ void grid_against_dimension() {
 void evaluate_rbf_in(benchmark::State& state) {
   const auto d = static_cast<int>(state.range(0));
   const Sites sites = made_sites(d, kCentres);
-  const RbfEvaluator evaluator({KernelKind::cubic, sites.points, sites.target_N, Eigen::VectorXd::Ones(1 + d)});
+  const RbfCorrection evaluator({KernelKind::cubic, sites.points, sites.target_N, Eigen::VectorXd::Ones(1 + d)});
   run_queries(state, sites.points, [&](const double* x) { return evaluator.evaluate(x); });
 }
 
@@ -162,7 +162,7 @@ void evaluate_grid_in(benchmark::State& state) {
   const int side[] = {1000, 100, 25, 11, 8, 6, 5, 4};
   VoxelGrid grid = even_grid(sites, std::vector<int>(static_cast<std::size_t>(d), side[d - 1]));
   (void)fill_grid(grid, [](const Eigen::MatrixXd& p, Eigen::VectorXd& out) { out = p.colwise().sum().transpose(); });
-  const VoxelLookup lookup(grid);
+  const GridCorrection lookup(grid);
   run_queries(state, sites.points, [&](const double* x) { return lookup.evaluate(x); });
 }
 

@@ -8,8 +8,8 @@
 
 #include "engine/recording/recording.h"
 #include "models/model/fitted_model.h"
-#include "models/model/grid/grid_correction.h"
-#include "models/model/rbf/rbf_correction.h"
+#include "models/model/grid/voxel_grid.h"
+#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate::test {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_function.h"
+#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_function.h"
+#include "models/model/rbf/rbf_evaluate.h"
 #include "models/training/sites.h"
 
 namespace palpate::test {

@@ -1,15 +1,375 @@
 #include "models/model/file/model_io.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/csv_scanner.h"
 #include "engine/base/whole_file.h"
-#include "models/model/file/model_json.h"
+#include "engine/json/json_fields.h"
+#include "models/model/file/model_description.h"
+#include "models/model/grid/voxel_grid.h"
+#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
+namespace {
+
+using namespace model_file;
+
+constexpr int kModelVersion = 1;
+constexpr int kModelNesting = 16;  // limit of lists and objects inside each other; the format needs four
+constexpr const char* kFitAgain = "; fit the model again";
+constexpr const char* kDamaged = "; the file is damaged: copy it again or fit the model again";
+
+// What is wrong with the name of a model or a method, empty if nothing. The name is the header of a column of a CSV
+// file, so it must not contain characters that separate columns.
+std::string name_fault(const std::string& name) {
+  if (name.empty()) return "an empty text";
+  if (name.size() > kModelNameBytes) return std::to_string(name.size()) + " bytes";
+  const bool plain = std::none_of(name.begin(), name.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"';
+  });
+  return plain ? "" : "a control character, comma or quote";
+}
+
+// `items` between brackets.
+std::string joined(const char* open, const std::vector<std::string>& items, const char* between, const char* close) {
+  std::string text = open;
+  for (std::size_t i = 0; i < items.size(); ++i) text.append(i == 0 ? "" : between).append(items[i]);
+  return text.append(close);
+}
+
+// Reads untrusted text: every value is checked.
+class ModelReader {
+ public:
+  ModelReader(const nlohmann::json& document, std::string_view text, const std::string& path)
+      : fields_(text, path, kFitAgain), top_{&document, ""}, at_(top_) {}
+
+  std::optional<Error> read(ModelData& data) {
+    if (!read_format()) return fields_.error();
+    describe_names(*this, data);
+    const std::size_t named = fields_.error_count();
+    describe_features(*this, data);
+    if (fields_.error_count() > named) return fields_.error();  // every size below depends on the features
+    describe_rest(*this, data);
+    // After another error some known members were not read and would seem unknown.
+    if (fields_.error_count() == 0) fields_.refuse_unknown(top_);
+    return fields_.error();
+  }
+
+  // The members of the object that is being read. `has`: whether there is such a member.
+  bool has(const char* key, bool) { return fields_.optional_member(at_, key).value != nullptr; }
+  void text(const char* key, std::string& value) { value = fields_.text(at_, key); }
+  void name(const char* key, std::string& value) {
+    text(key, value);
+    const std::string fault = name_fault(value);
+    if (fault.empty()) return;
+    fields_.complain(std::string("/") + key, "found " + fault + ", expected 1 to " + std::to_string(kModelNameBytes) +
+                                                 " bytes without control characters, commas and quotes");
+  }
+  void flag(const char* key, bool& value) { value = fields_.boolean(at_, key); }
+  void count(const char* key, std::uint64_t& value) { value = fields_.count(at_, key); }
+  void number(const char* key, double& value, NumberRange range = {}) { value = fields_.number(at_, key, range); }
+  template <std::size_t n>
+  void list(const char* key, std::array<double, n>& values, NumberRange range = {}) {
+    fields_.fill(fields_.member(at_, key, "a list of numbers"), n, "coefficients", values.data(), range);
+  }
+  // Exactly `size` numbers, which error messages call `words`.
+  void numbers(const char* key, Eigen::VectorXd& values, Eigen::Index size, const char* words, NumberRange range = {},
+               Layout = {}) {
+    values = Eigen::VectorXd::Zero(size);
+    fields_.fill(fields_.member(at_, key, "a list of numbers"), static_cast<std::size_t>(size), words, values.data(),
+                 range);
+  }
+
+  // One column for each point.
+  void points(const char* key, Eigen::MatrixXd& values, Eigen::Index dimension) {
+    const std::string expected = "a list of at least one point";
+    const JsonNode node = fields_.list(at_, key, expected);
+    if (node.value == nullptr) return;
+    if (node.value->empty()) fields_.complain(node.pointer, "found an empty list, expected " + expected);
+    // The parsed list was in memory, so a matrix of as many points fits, too.
+    values.resize(dimension, static_cast<Eigen::Index>(node.value->size()));
+    for (Eigen::Index j = 0; j < values.cols(); ++j) {
+      const JsonNode point = JsonFields::entry(node, static_cast<std::size_t>(j));
+      if (!fields_.fill(point, static_cast<std::size_t>(dimension), kOnePerFeature, values.col(j).data())) return;
+    }
+  }
+
+  void names(const char* key, std::vector<std::string>& values) {
+    const JsonNode list = fields_.list(at_, key, "a list of names");
+    for (std::size_t i = 0; list.value != nullptr && i < list.value->size(); ++i) {
+      const JsonNode name = JsonFields::entry(list, i);
+      if (!name.value->is_string()) return fields_.complain(name.pointer, found(*name.value) + ", expected a text");
+      values.push_back(name.value->get<std::string>());
+    }
+  }
+
+  // `names`: those of the enumerators, in their order.
+  template <typename Enum>
+  bool choice(const char* key, Enum& value, const std::vector<std::string>& names) {
+    const auto known = fields_.choice(fields_.member(at_, key, "a text"), names);
+    if (known) value = static_cast<Enum>(*known);
+    return known.has_value();
+  }
+
+  void kind(FeatureKind& value) {
+    const JsonNode node = fields_.optional_member(at_, "kind");
+    if (node.value != nullptr && *node.value == "maxwell_branch") {  // of earlier files
+      value = FeatureKind::maxwell_spectrum;
+      return;
+    }
+    std::vector<std::string> names;
+    for (const FeatureKindFacts& one : kFeatureKinds) names.emplace_back(one.name);
+    choice("kind", value, names);
+  }
+
+  void object(const char* key, const char* expected, Layout, const auto& body) {
+    inside(fields_.member(at_, key, expected), body);
+  }
+
+  // `most`: the largest number of items; 0: any number, or none.
+  void each(const char* key, std::size_t& count, std::size_t most, Layout, const auto& body) {
+    const std::string expected = most == 0 ? "a list" : "a list of 1 to " + std::to_string(most) + " " + key;
+    const JsonNode list = fields_.list(at_, key, expected);
+    count = list.value != nullptr ? list.value->size() : 0;
+    if (list.value != nullptr && most > 0 && (count == 0 || count > most)) {
+      fields_.complain(list.pointer, found(*list.value) + ", expected " + expected);
+      count = 0;
+    }
+    for (std::size_t i = 0; i < count; ++i) inside(JsonFields::entry(list, i), [&] { body(i); });
+  }
+
+  // Reads the correction from the one member that identifies its kind; leaves it null after an error.
+  void correction(CorrectionPtr& value, Eigen::Index dimension) {
+    std::vector<std::string> present;
+    for (const char* key : {"centres", "grid", "trend_alone"}) {
+      if (at_.value->contains(key)) present.emplace_back(key);
+    }
+    if (present.size() != 1) {
+      const std::string given = present.empty() ? "none" : joined("\"", present, "\" and \"", "\"");
+      fields_.complain("", "found " + given + R"(, expected one of "centres", "grid", "trend_alone")");
+    } else if (present[0] == "centres") {
+      RbfFunction function;
+      describe_rbf(*this, function, dimension);
+      if (!fields_.error()) value = std::make_shared<const RbfCorrection>(std::move(function));
+    } else if (present[0] == "grid") {
+      VoxelGrid grid;
+      if (read_grid(grid, static_cast<std::size_t>(dimension)))
+        value = std::make_shared<const GridCorrection>(std::move(grid));
+    } else {
+      if (!fields_.boolean(at_, "trend_alone"))
+        fields_.complain("/trend_alone", "found false, expected true, or another correction");
+      value = std::make_shared<const NoCorrection>();
+    }
+  }
+
+ private:
+  void inside(const JsonNode& node, const auto& body) {
+    const JsonNode outer = std::exchange(at_, node);
+    body();
+    at_ = outer;
+  }
+
+  bool read_format() {
+    const JsonNode format = fields_.optional_member(top_, "format");
+    const bool none = format.value == nullptr;
+    if (none || *format.value != "palpate-model") {
+      fields_.complain(none ? "" : format.pointer,
+                       (none ? "found no \"format\"" : found(*format.value)) + ", expected \"palpate-model\"",
+                       "; name a file that palpate fit wrote");
+      return false;
+    }
+    const JsonNode version = fields_.member(top_, "version", std::to_string(kModelVersion));
+    if (version.value != nullptr && *version.value != kModelVersion) {
+      fields_.complain(version.pointer, found(*version.value) + ", expected " + std::to_string(kModelVersion),
+                       "; fit the model again with this program, or read it with the one that wrote it");
+    }
+    return !fields_.error();
+  }
+
+  // False after an error.
+  bool read_grid(VoxelGrid& grid, std::size_t dimension) {
+    const JsonNode node = fields_.member(at_, "grid", "an object");
+    const JsonNode axes = fields_.list(node, "nodes", "a list of axes");
+    if (axes.value == nullptr) return false;
+    if (axes.value->size() != dimension) {
+      fields_.complain(axes.pointer,
+                       found(*axes.value) + " axes, expected " + std::to_string(dimension) + ", one per feature");
+      return false;
+    }
+    const JsonNode values = fields_.list(node, "values_N", "a list of numbers");
+    if (values.value == nullptr) return false;
+    std::size_t product = 1;
+    // Compared at every step, because the product of eight sizes may overflow.
+    for (std::size_t k = 0; k < dimension && product <= values.value->size(); ++k) {
+      if (!read_axis(JsonFields::entry(axes, k), grid.nodes.emplace_back())) return false;
+      product *= grid.nodes.back().size();
+    }
+    if (product != values.value->size()) {
+      fields_.complain(values.pointer, found(*values.value) + ", expected as many as the grid has nodes");
+      return false;
+    }
+    grid.values_N.resize(product);
+    return fields_.fill(values, product, "numbers", grid.values_N.data());
+  }
+
+  bool read_axis(const JsonNode& node, std::vector<double>& axis) {
+    const std::string expected = ", expected at least 2 numbers, each above the last";
+    if (!node.value->is_array() || node.value->size() < 2) {
+      fields_.complain(node.pointer, found(*node.value) + expected);
+      return false;
+    }
+    axis.resize(node.value->size());
+    if (!fields_.fill(node, axis.size(), "numbers", axis.data())) return false;
+    const auto falls = std::adjacent_find(axis.begin(), axis.end(), std::greater_equal<>());
+    if (falls == axis.end()) return true;
+    const JsonNode wrong = JsonFields::entry(node, static_cast<std::size_t>(falls - axis.begin()) + 1);
+    fields_.complain(wrong.pointer, found(*wrong.value) + expected);
+    return false;
+  }
+
+  JsonFields fields_;
+  JsonNode top_;
+  JsonNode at_;
+};
+
+// Writes numbers as the shortest decimals that read back as the same double.
+class ModelWriter {
+ public:
+  bool has(const char*, bool there) { return there; }
+  void text(const char* key, const std::string& value) { add(key, quoted(value)); }
+  void name(const char* key, const std::string& value) { text(key, value); }
+  void flag(const char* key, bool value) { add(key, value ? "true" : "false"); }
+  void count(const char* key, std::uint64_t value) { add(key, std::to_string(value)); }
+  void number(const char* key, double value, NumberRange = {}) { add(key, number_text(value)); }
+  void list(const char* key, const auto& values, NumberRange = {}) { add(key, list_text(values)); }
+  void numbers(const char* key, const Eigen::VectorXd& values, Eigen::Index, const char*, NumberRange = {},
+               Layout layout = Layout::one_line) {
+    add(key, layout == Layout::lines ? lines(number_texts(values)) : list_text(values));
+  }
+  void points(const char* key, const Eigen::MatrixXd& values, Eigen::Index) {
+    std::vector<std::string> items;
+    for (const auto& point : values.colwise()) items.push_back(list_text(point));
+    add(key, lines(items));
+  }
+  void names(const char* key, const std::vector<std::string>& values) {
+    std::vector<std::string> items;
+    for (const std::string& value : values) items.push_back(quoted(value));
+    add(key, joined("[", items, ", ", "]"));
+  }
+  template <typename Enum>
+  bool choice(const char* key, Enum value, const std::vector<std::string>& names) {
+    text(key, names[static_cast<std::size_t>(value)]);
+    return true;
+  }
+  void kind(FeatureKind value) { text("kind", std::string(facts_of(value).name)); }
+
+  void object(const char* key, const char*, Layout layout, const auto& body) {
+    add(key, layout == Layout::lines ? members("{\n    ", ",\n    ", "\n  }", body) : members("{", ", ", "}", body));
+  }
+  void each(const char* key, std::size_t count, std::size_t, Layout layout, const auto& body) {
+    std::vector<std::string> items;
+    for (std::size_t i = 0; i < count; ++i) items.push_back(members("{", ", ", "}", [&] { body(i); }));
+    add(key, layout == Layout::lines ? lines(items) : joined("[", items, ", ", "]"));
+  }
+
+  void correction(const CorrectionPtr& value, Eigen::Index dimension) {
+    if (const RbfFunction* rbf = rbf_of(value)) {
+      RbfFunction function = *rbf;
+      describe_rbf(*this, function, dimension);
+    } else if (const VoxelGrid* grid = grid_of(value)) {
+      add("grid", grid_text(*grid));
+    } else {
+      flag("trend_alone", true);
+    }
+  }
+
+  void add(const std::string& key, const std::string& value) {
+    members_.push_back(std::string("\"").append(key).append("\": ").append(value));
+  }
+  // The text of the object whose members `body` adds.
+  std::string members(const char* open, const char* between, const char* close, const auto& body) {
+    std::vector<std::string> outer = std::exchange(members_, {});
+    body();
+    std::swap(members_, outer);
+    return joined(open, outer, between, close);
+  }
+
+ private:
+  static std::string quoted(const std::string& text) {
+    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
+  // "-0.0" for -0, because the JSON integer "-0" would lose the sign.
+  static std::string number_text(double value) {
+    std::string text = shortest(value);
+    return text == "-0" ? "-0.0" : text;
+  }
+  static std::vector<std::string> number_texts(const auto& values) {
+    std::vector<std::string> texts;
+    for (const double value : values) texts.push_back(number_text(value));
+    return texts;
+  }
+  static std::string list_text(const auto& values) { return joined("[", number_texts(values), ", ", "]"); }
+  // One item a line, so that models can be compared by lines.
+  static std::string lines(const std::vector<std::string>& items) {
+    return items.empty() ? "[]" : joined("[\n    ", items, ",\n    ", "\n  ]");
+  }
+  // The values have one line for each run along the last axis.
+  static std::string grid_text(const VoxelGrid& grid) {
+    std::vector<std::string> axes;
+    for (const std::vector<double>& axis : grid.nodes) axes.push_back(list_text(axis));
+    std::string values;
+    const std::size_t run = grid.nodes.back().size();
+    for (std::size_t i = 0; i < grid.values_N.size(); ++i) {
+      values += i == 0 ? "\n    " : (i % run == 0 ? ",\n    " : ", ");
+      values += number_text(grid.values_N[i]);
+    }
+    return "{\n    \"nodes\": " + joined("[", axes, ", ", "]") + ",\n    \"values_N\": [" + values + "\n  ]}";
+  }
+
+  std::vector<std::string> members_;  // of the object that is being written
+};
+
+// File name without its folders.
+std::string stem_of(const std::string& name) { return name.substr(name.find_last_of("/\\") + 1); }
+
+}  // namespace
+
+Result<ModelData> read_model_text(std::string_view text, const std::string& path) {
+  const Result<nlohmann::json> document = parse_json(text, path, kModelNesting, {kFitAgain, kDamaged});
+  if (!document) return document.error();
+  ModelData data;
+  if (const auto error = ModelReader(*document, text, path).read(data)) return *error;
+  if (const Status forces = check_forces(data); !forces) return Error{path + ": " + forces.error().message + kFitAgain};
+  return data;
+}
+
+Result<std::string> write_model_text(const ModelData& data) {
+  if (const Status status = check_forces(data); !status) return status.error();
+  ModelData written = data;
+  for (std::string& name : written.provenance.recordings) name = stem_of(name);
+  for (RecordingSurface& surface : written.provenance.surfaces) surface.name = stem_of(surface.name);
+  ModelWriter file;
+  std::string text = file.members("{\n  ", ",\n  ", "\n}\n", [&] {
+    file.text("format", "palpate-model");
+    file.add("version", std::to_string(kModelVersion));
+    describe_names(file, written);
+    describe_features(file, written);
+    describe_rest(file, written);
+  });
+  // What cannot be read is not written.
+  if (const auto back = read_model_text(text, "its text"); !back) return back.error();
+  return text;
+}
+
 Status save_model(const std::string& path, const ModelData& data, bool overwrite) {
   const Result<std::string> text = write_model_text(data);
   if (!text) return Error{"cannot write " + path + ": " + text.error().message};

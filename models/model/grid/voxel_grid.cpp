@@ -1,6 +1,8 @@
 #include "models/model/grid/voxel_grid.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -20,11 +22,10 @@ inline Eigen::Array2d between(const double* corner, const std::size_t* stride, c
 
 }  // namespace
 
-VoxelLookup::VoxelLookup(const VoxelGrid& grid)
-    : values_(grid.values_N), interpolate_(pick(static_cast<int>(grid.nodes.size()))) {
+GridCorrection::GridCorrection(VoxelGrid grid) : grid_(std::move(grid)), interpolate_(pick(grid_.nodes.size())) {
   std::size_t stride = 1;
-  for (std::size_t k = grid.nodes.size(); k-- > 0; stride *= grid.nodes[k].size()) {
-    const std::vector<double>& nodes = grid.nodes[k];
+  for (std::size_t k = grid_.nodes.size(); k-- > 0; stride *= grid_.nodes[k].size()) {
+    const std::vector<double>& nodes = grid_.nodes[k];
     axes_[k] = {nodes, {}, stride};
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
       axes_[k].reciprocal_width.push_back(1.0 / (nodes[i + 1] - nodes[i]));
@@ -32,8 +33,8 @@ VoxelLookup::VoxelLookup(const VoxelGrid& grid)
   }
 }
 
-VoxelLookup::Cell VoxelLookup::locate(const Axis& axis, double x) noexcept {
-  const std::vector<double>& nodes = axis.nodes;
+GridCorrection::Cell GridCorrection::locate(const Axis& axis, double x) noexcept {
+  const std::span<const double> nodes = axis.nodes;
   const double inside = x > nodes.front() ? std::min(x, nodes.back()) : nodes.front();  // NaN: the lower edge
   const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, inside);
   const auto cell = static_cast<std::size_t>(above - nodes.begin()) - 1;
@@ -41,10 +42,10 @@ VoxelLookup::Cell VoxelLookup::locate(const Axis& axis, double x) noexcept {
 }
 
 template <int kDimension>
-double VoxelLookup::interpolate(const double* x) const noexcept {
+double GridCorrection::interpolate(const double* x) const noexcept {
   std::array<double, kDimension> fraction;
   std::array<std::size_t, kDimension> stride;
-  const double* corner = values_.data();
+  const double* corner = grid_.values_N.data();
   for (std::size_t k = 0; k < kDimension; ++k) {
     const Cell cell = locate(axes_[k], x[k]);
     corner += cell.offset;
@@ -55,12 +56,17 @@ double VoxelLookup::interpolate(const double* x) const noexcept {
   return ends[0] + fraction[kDimension - 1] * (ends[1] - ends[0]);
 }
 
-VoxelLookup::Interpolate VoxelLookup::pick(int dimension) {
-  static constexpr Interpolate kTable[] = {&VoxelLookup::interpolate<1>, &VoxelLookup::interpolate<2>,
-                                           &VoxelLookup::interpolate<3>, &VoxelLookup::interpolate<4>,
-                                           &VoxelLookup::interpolate<5>, &VoxelLookup::interpolate<6>,
-                                           &VoxelLookup::interpolate<7>, &VoxelLookup::interpolate<8>};
+GridCorrection::Interpolate GridCorrection::pick(std::size_t dimension) {
+  static constexpr Interpolate kTable[] = {&GridCorrection::interpolate<1>, &GridCorrection::interpolate<2>,
+                                           &GridCorrection::interpolate<3>, &GridCorrection::interpolate<4>,
+                                           &GridCorrection::interpolate<5>, &GridCorrection::interpolate<6>,
+                                           &GridCorrection::interpolate<7>, &GridCorrection::interpolate<8>};
   return kTable[dimension - 1];
+}
+
+const VoxelGrid* grid_of(const CorrectionPtr& correction) {
+  const auto* grid = dynamic_cast<const GridCorrection*>(correction.get());
+  return grid == nullptr ? nullptr : &grid->grid();
 }
 
 }  // namespace palpate

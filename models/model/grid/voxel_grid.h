@@ -4,12 +4,13 @@
 // Source: Hoever & Harders (2009), section 3.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "engine/tick/features.h"
+#include "models/model/correction.h"
 
 namespace palpate {
 
@@ -18,24 +19,27 @@ struct VoxelGrid {
   std::vector<std::vector<double>> nodes;
   // Values at the nodes, the last dimension fastest.
   std::vector<double> values_N;
-
-  std::size_t node_count() const noexcept { return values_N.size(); }
 };
 
-class VoxelLookup {
+// The grid as the correction of a model. Immutable.
+class GridCorrection final : public Correction {
  public:
-  // `grid`: 1 to kMaxFeatures dimensions, one value for each node; it is copied.
-  explicit VoxelLookup(const VoxelGrid& grid);
+  // `grid`: 1 to kMaxFeatures dimensions, one value for each node.
+  explicit GridCorrection(VoxelGrid grid);
+  GridCorrection(const GridCorrection&) = delete;  // axes_ refers to grid_
 
   // The grid's value at x, d values. Coordinates outside the box are clamped to it; NaN counts as the lower edge.
   // Haptics thread, wait-free, no allocation, O(2^d + d log nodes).
-  double evaluate(const double* x) const noexcept { return (this->*interpolate_)(x); }
+  double evaluate(const double* x) const noexcept override { return (this->*interpolate_)(x); }
+  int size() const noexcept override { return static_cast<int>(grid_.values_N.size()); }
+
+  const VoxelGrid& grid() const noexcept { return grid_; }
 
  private:
   struct Axis {
-    std::vector<double> nodes;
+    std::span<const double> nodes;
     std::vector<double> reciprocal_width;  // of the cell that begins at each node but the last
-    std::size_t stride = 0;                // in values_
+    std::size_t stride = 0;                // in values_N
   };
   struct Cell {
     std::size_t offset = 0;
@@ -46,12 +50,15 @@ class VoxelLookup {
   template <int kDimension>
   double interpolate(const double* x) const noexcept;
 
-  using Interpolate = double (VoxelLookup::*)(const double*) const noexcept;
-  static Interpolate pick(int dimension);
+  using Interpolate = double (GridCorrection::*)(const double*) const noexcept;
+  static Interpolate pick(std::size_t dimension);
 
-  std::vector<double> values_;
+  VoxelGrid grid_;
   std::array<Axis, kMaxFeatures> axes_;
   Interpolate interpolate_ = nullptr;
 };
+
+// The grid of a correction of this kind, else null.
+const VoxelGrid* grid_of(const CorrectionPtr& correction);
 
 }  // namespace palpate

@@ -2,56 +2,50 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "engine/base/parallel.h"
-#include "models/model/aligned_array.h"
 
 namespace palpate {
-namespace {
-
-std::size_t round_up(Eigen::Index count, std::size_t multiple) {
-  return (static_cast<std::size_t>(count) + multiple - 1) / multiple * multiple;
-}
-
-}  // namespace
-
 PointArrays::PointArrays(const Eigen::MatrixXd& points) : count_(points.cols()) {
   assert(points.rows() >= 1 && points.rows() <= static_cast<Eigen::Index>(kMaxFeatures));
   view_.dimension = static_cast<int>(points.rows());
-  view_.padded = round_up(points.cols(), simd::kSimdPad);
+  const auto count = static_cast<std::size_t>(points.cols());
+  view_.padded = (count + simd::kSimdPad - 1) / simd::kSimdPad * simd::kSimdPad;
   // An odd number of cache lines between rows, so that the same index of
   // different rows does not fall into the same cache set.
   view_.stride = view_.padded + (view_.padded / simd::kSimdPad % 2 == 0 ? simd::kSimdPad : 0);
-  auto memory = aligned_array<double>(view_.stride * static_cast<std::size_t>(points.rows()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    for (Eigen::Index k = 0; k < points.rows(); ++k)
-      memory[static_cast<std::ptrdiff_t>(view_.stride) * k + i] = simd::without_denormals(points(k, i));
-  view_.coordinates = memory.get();
-  memory_ = std::move(memory);
+  Eigen::MatrixXd memory = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(view_.stride), points.rows());
+  memory.topRows(points.cols()) = points.transpose().unaryExpr(&simd::without_denormals);
+  memory_ = std::make_shared<const Eigen::MatrixXd>(std::move(memory));
+  view_.coordinates = memory_->data();
 }
 
-RbfEvaluator::RbfEvaluator(const RbfFunction& function)
-    : centres_(function.centres),
-      tail_(function.tail.begin(), function.tail.end()),
-      dimension_(function.dimension()),
-      evaluate_(simd::kernel_loops(function.kernel, function.dimension()).evaluate) {
-  assert(function.weights.size() == function.centre_count());
-  assert(function.tail.size() == tail_size(tail_degree(function.kernel), dimension_));
-  auto weights = aligned_array<double>(centres_.view().padded);
-  for (Eigen::Index j = 0; j < function.weights.size(); ++j) weights[j] = simd::without_denormals(function.weights[j]);
-  weights_ = std::move(weights);
+RbfCorrection::RbfCorrection(RbfFunction function)
+    : function_(std::move(function)),
+      centres_(function_.centres),
+      evaluate_(simd::kernel_loops(function_.kernel, function_.dimension()).evaluate) {
+  assert(function_.weights.size() == function_.centre_count());
+  assert(function_.tail.size() == tail_size(tail_degree(function_.kernel), function_.dimension()));
+  weights_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(centres_.view().padded));
+  weights_.head(function_.weights.size()) = function_.weights.unaryExpr(&simd::without_denormals);
 }
 
-void RbfEvaluator::evaluate_many(const Eigen::MatrixXd& points, Eigen::VectorXd& out) const {
-  assert(points.rows() == dimension_);
+void RbfCorrection::evaluate_many(const Eigen::MatrixXd& points, Eigen::VectorXd& out) const {
+  assert(points.rows() == function_.dimension());
   out.resize(points.cols());
   // A part of about 1e6 kernels takes half a millisecond, enough for a thread.
-  const Eigen::Index chunk = std::max<Eigen::Index>(1, 1000000 / std::max<Eigen::Index>(1, centre_count()));
+  const Eigen::Index chunk = std::max<Eigen::Index>(1, 1000000 / std::max<Eigen::Index>(1, function_.centre_count()));
   const auto parts = static_cast<int>((points.cols() + chunk - 1) / chunk);
   parallel_for(parts, [&](int part) {
     const Eigen::Index end = std::min(points.cols(), (part + 1) * chunk);
     for (Eigen::Index i = part * chunk; i < end; ++i) out[i] = evaluate(points.col(i).data());
   });
+}
+
+const RbfFunction* rbf_of(const CorrectionPtr& correction) {
+  const auto* rbf = dynamic_cast<const RbfCorrection*>(correction.get());
+  return rbf == nullptr ? nullptr : &rbf->function();
 }
 
 void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<const Eigen::MatrixXd>& centres,
@@ -68,7 +62,7 @@ void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<
 Eigen::VectorXd kernel_product(KernelKind kind, const Eigen::MatrixXd& points, const Eigen::VectorXd& v) {
   const auto tail = tail_size(tail_degree(kind), static_cast<int>(points.rows()));
   Eigen::VectorXd product;
-  RbfEvaluator({kind, points, v, Eigen::VectorXd::Zero(tail)}).evaluate_many(points, product);
+  RbfCorrection({kind, points, v, Eigen::VectorXd::Zero(tail)}).evaluate_many(points, product);
   return product;
 }
 

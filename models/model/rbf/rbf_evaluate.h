@@ -14,17 +14,28 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
-#include <vector>
 
 #include "engine/tick/features.h"
+#include "models/model/correction.h"
+#include "models/model/rbf/kernels.h"
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_function.h"
 #include "models/model/rbf/rbf_simd.h"
 
 namespace palpate {
 
-// Points as structure-of-arrays, 64-byte aligned, padded with points at the
-// origin. Immutable.
+// The data of h(x) = sum_j w_j phi(|x - q_j|) + sum_k d_k g_k(x).
+// Source: Hoever & Harders (2009), eq. 2.
+struct RbfFunction {
+  KernelKind kernel = KernelKind::cubic;
+  Eigen::MatrixXd centres;  // q, d x n
+  Eigen::VectorXd weights;  // w, n
+  Eigen::VectorXd tail;     // d_k: tail_size(tail_degree(kernel), d) values, see polynomial_tail.h
+
+  int dimension() const { return static_cast<int>(centres.rows()); }
+  Eigen::Index centre_count() const { return centres.cols(); }
+};
+
+// Points as structure-of-arrays, padded with points at the origin. Immutable.
 class PointArrays {
  public:
   PointArrays() = default;
@@ -35,36 +46,38 @@ class PointArrays {
   Eigen::Index count() const noexcept { return count_; }
 
  private:
-  std::shared_ptr<const double[]> memory_;  // shared by copies
+  std::shared_ptr<const Eigen::MatrixXd> memory_;  // shared by copies
   simd::Points view_;
   Eigen::Index count_ = 0;
 };
 
-// h(x) of eq. 2. Immutable; may be used by several threads at once.
-class RbfEvaluator {
+// h(x) as the correction of a model, and for fits. Immutable; may be used by several threads at once.
+class RbfCorrection final : public Correction {
  public:
   // `function`: one weight for each centre, and the tail of its kernel.
-  explicit RbfEvaluator(const RbfFunction& function);
+  explicit RbfCorrection(RbfFunction function);
 
   // h(x) in newtons. `x`: d values, normalised. Haptics thread, wait-free, O(n), no allocation.
-  double evaluate(const double* x) const noexcept {
-    return evaluate_(centres_.view(), weights_.get(), tail_.data(), x);
+  double evaluate(const double* x) const noexcept override {
+    return evaluate_(centres_.view(), weights_.data(), function_.tail.data(), x);
   }
+  int size() const noexcept override { return static_cast<int>(function_.centre_count()); }
 
   // out[i] = h(points.col(i)). `points`: d x M. Slow side; uses all cores for large M. Values are bit-identical to
   // those of evaluate().
   void evaluate_many(const Eigen::MatrixXd& points, Eigen::VectorXd& out) const;
 
-  int dimension() const noexcept { return dimension_; }
-  Eigen::Index centre_count() const noexcept { return centres_.count(); }
+  const RbfFunction& function() const noexcept { return function_; }
 
  private:
+  RbfFunction function_;
   PointArrays centres_;
-  std::shared_ptr<const double[]> weights_;
-  std::vector<double> tail_;
-  int dimension_ = 0;
+  Eigen::VectorXd weights_;  // padded
   simd::EvaluateFunction evaluate_ = nullptr;
 };
+
+// The function of a correction of this kind, else null.
+const RbfFunction* rbf_of(const CorrectionPtr& correction);
 
 // Rows of the matrix Phi of eq. 5,
 //   out(i, j) = phi(|points.col(first_row + i) - centres.col(j)|)

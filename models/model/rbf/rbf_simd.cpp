@@ -76,11 +76,11 @@ HWY_INLINE Broadcast<kDimension> broadcast(const double* x) {
 template <int kDimension>
 HWY_INLINE Vector squared_distance(const Points& points, size_t i, const Broadcast<kDimension>& x) {
   const Doubles d;
-  Vector difference = hn::Sub(x.coordinate[0], hn::Load(d, points.coordinates + i));
+  Vector difference = hn::Sub(x.coordinate[0], hn::LoadU(d, points.coordinates + i));
   Vector sum = hn::Mul(difference, difference);
   for (int k = 1; k < kDimension; ++k) {
     const double* row = points.coordinates + static_cast<size_t>(k) * points.stride;
-    difference = hn::Sub(x.coordinate[k], hn::Load(d, row + i));
+    difference = hn::Sub(x.coordinate[k], hn::LoadU(d, row + i));
     sum = hn::MulAdd(difference, difference, sum);
   }
   return hn::Max(sum, hn::Set(d, kSmallestSquared));
@@ -103,12 +103,12 @@ double evaluate(const Points& points, const double* weights, const double* tail,
   Vector more = hn::Zero(d);
   size_t i = 0;
   for (; i + 2 * lanes <= points.padded; i += 2 * lanes) {
-    sum = hn::MulAdd(hn::Load(d, weights + i), kernel_at<kKind, kDimension>(points, i, query), sum);
+    sum = hn::MulAdd(hn::LoadU(d, weights + i), kernel_at<kKind, kDimension>(points, i, query), sum);
     const Vector by_series = kernel_at<kKind, kDimension, true>(points, i + lanes, query);
-    more = hn::MulAdd(hn::Load(d, weights + i + lanes), by_series, more);
+    more = hn::MulAdd(hn::LoadU(d, weights + i + lanes), by_series, more);
   }
   if (i < points.padded)
-    sum = hn::MulAdd(hn::Load(d, weights + i), kernel_at<kKind, kDimension>(points, i, query), sum);
+    sum = hn::MulAdd(hn::LoadU(d, weights + i), kernel_at<kKind, kDimension>(points, i, query), sum);
   return hn::GetLane(hn::SumOfLanes(d, hn::Add(sum, more)));
 }
 

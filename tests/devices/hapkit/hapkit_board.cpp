@@ -32,8 +32,7 @@
 #include "engine/base/random_stream.h"
 #include "engine/live/pacer.h"
 #include "engine/live/rt_thread.h"
-#include "scenes/material/hand.h"
-#include "scenes/material/material.h"
+#include "scenes/material/rig.h"
 
 namespace {
 

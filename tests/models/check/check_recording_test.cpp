@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-const CheckRequest kSilicone{JndLine{}, {0.17, 1.27}};
+const CheckRequest kSilicone{JndLine{}, 1.27};
 
 Recording silicone() {
   static const Recording made = *test::rig_recording(test::train_settings("silicone"));

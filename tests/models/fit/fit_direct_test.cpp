@@ -21,7 +21,7 @@ using test::smooth_sites;
 
 double rms_error(const RbfFunction& function, const Sites& truth) {
   Eigen::VectorXd values;
-  RbfEvaluator(function).evaluate_many(truth.points, values);
+  RbfCorrection(function).evaluate_many(truth.points, values);
   return std::sqrt((values - truth.target_N).squaredNorm() / static_cast<double>(truth.count()));
 }
 
@@ -88,7 +88,7 @@ TEST(FitDirect, ReportsTheResidualsInClosedForm) {
   const auto fitted = fit_direct(sites, {.smoothing = 0.3});
   ASSERT_TRUE(fitted.ok());
   Eigen::VectorXd values;
-  RbfEvaluator(fitted->function).evaluate_many(sites.points, values);
+  RbfCorrection(fitted->function).evaluate_many(sites.points, values);
   const double rms = (values - sites.target_N).cwiseProduct(sites.row_scale).norm() / std::sqrt(200.0);
   EXPECT_NEAR(fitted->report.residual_rms, rms, 1e-9);
 }
@@ -150,7 +150,7 @@ TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
       // At the sites the force is at most twice the largest target.
       const double range = sites.target_N.cwiseAbs().maxCoeff();
       Eigen::VectorXd values;
-      RbfEvaluator(fitted->function).evaluate_many(sites.points, values);
+      RbfCorrection(fitted->function).evaluate_many(sites.points, values);
       EXPECT_LE(values.cwiseAbs().maxCoeff(), 2.0 * range + 1e-9) << kernel_name(kernel);
     }
     const Sites one = smooth_sites(4, 1, 0.0, 1);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/model/file/model_json.h"
+#include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"

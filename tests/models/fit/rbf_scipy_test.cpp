@@ -44,7 +44,7 @@ TEST_F(AgainstScipy, EvaluatesScipysWeightsToScipysValues) {
     const RbfFunction function{*kernel_from_name(item.at("kernel").get<std::string>()), columns_of(item.at("points")),
                                vector_of(item.at("weights")), tail};
     Eigen::VectorXd values;
-    RbfEvaluator(function).evaluate_many(columns_of(item.at("queries")), values);
+    RbfCorrection(function).evaluate_many(columns_of(item.at("queries")), values);
     // 32 eps of the sum of absolute terms; distances are below 4.4, so a kernel is below 86.
     const double terms = function.weights.cwiseAbs().sum() * 86.0 + tail.cwiseAbs().sum();
     EXPECT_LE((values - vector_of(item.at("values"))).cwiseAbs().maxCoeff(), 64 * 0x1p-53 * terms);
@@ -75,7 +75,7 @@ TEST_F(AgainstScipy, FitsTheSameWeightsTailAndValues) {
       EXPECT_LE((fitted->function.tail - tail).cwiseAbs().maxCoeff(), tolerance * (1.0 + size));
     }
     Eigen::VectorXd values;
-    RbfEvaluator(fitted->function).evaluate_many(columns_of(item.at("queries")), values);
+    RbfCorrection(fitted->function).evaluate_many(columns_of(item.at("queries")), values);
     const Eigen::VectorXd expected = vector_of(item.at("values"));
     EXPECT_LE((values - expected).cwiseAbs().maxCoeff(), tolerance * expected.cwiseAbs().maxCoeff());
   }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "models/fit/fit.h"
-#include "models/model/file/model_json.h"
+#include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 
 namespace palpate {

@@ -123,29 +123,11 @@ TEST_F(LibraryC, AnEncoderStepAloneIsEnoughWhenPositionsHaveNoOtherNoise) {
 
 TEST_F(LibraryC, WithNoStepTheSensorIsThatOfTheModelsRecordings) {
   ModelData data = test::example_models().front();
-  data.sensor = PositionSensor{30e-6, 0.0};
+  data.sensor = SensorSpec{30e-6, 0.0};
   const ModelHandle model = load(save(data));
   const Recording recording = test::example_recording(1500, 1000.0, 30e-6);
   const StreamPtr one(palpate_stream_new(model.get(), 0.0, error_, sizeof error_), &palpate_stream_free);
   compare(recording, model, one.get());
-}
-
-TEST_F(LibraryC, ASampleThatIsNoneGivesNoForceAndChangesNothing) {
-  const Recording recording = test::example_recording(1200, 1000.0, 30e-6);
-  const ModelHandle model = load(save(test::example_models().front()));
-  const palpate_sensor sensor = sensor_of(recording);
-  const StreamPtr plain = stream(model, sensor);
-  const StreamPtr disturbed = stream(model, sensor);
-  for (const RecordingRow& row : recording.rows) {
-    const double expected_N = palpate_stream_force(plain.get(), row.time_s, row.position_m);
-    ASSERT_EQ(palpate_stream_force(disturbed.get(), row.time_s, row.position_m), expected_N);
-    const int out_of_domain = palpate_stream_out_of_domain(plain.get());
-    EXPECT_EQ(palpate_stream_force(disturbed.get(), NAN, row.position_m), 0.0);
-    EXPECT_EQ(palpate_stream_force(disturbed.get(), row.time_s + 1.0, NAN), 0.0);
-    EXPECT_EQ(palpate_stream_force(disturbed.get(), row.time_s, row.position_m), 0.0);
-    EXPECT_EQ(palpate_stream_force(disturbed.get(), row.time_s - 1.0, 1.0), 0.0);
-    EXPECT_EQ(palpate_stream_out_of_domain(disturbed.get()), out_of_domain);
-  }
 }
 
 TEST_F(LibraryC, AResetBeginsANewStream) {
@@ -190,7 +172,7 @@ TEST_F(LibraryC, TheLimiterIsTheProgramsOwn) {
   }
   limits.fastest_N_per_s = -1.0;
   EXPECT_EQ(palpate_limiter_new(&limits, error_, sizeof error_), nullptr);
-  EXPECT_TRUE(test::has_parts(error_, {"fastest_N_per_s", "-1.000000", "0"}));
+  EXPECT_TRUE(test::has_parts(error_, {"fastest_N_per_s", "found -1.000000", "above 0"}));
 }
 
 TEST_F(LibraryC, AnErrorIsCutBetweenCharacters) {

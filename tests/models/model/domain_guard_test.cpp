@@ -4,11 +4,16 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
+#include "engine/tick/features.h"
+#include "models/model/rbf/rbf_simd.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
 namespace {
+
+using test::random_points;
 
 double nearest(const Eigen::MatrixXd& points, const Eigen::VectorXd& x) {
   return (points.colwise() - x).colwise().norm().minCoeff();
@@ -17,7 +22,7 @@ double nearest(const Eigen::MatrixXd& points, const Eigen::VectorXd& x) {
 TEST(DomainGuard, EverySiteIsCoveredAndTrusted) {
   for (const int dimension : {1, 2, 4, 8}) {
     for (const int count : {1, 50, 4000}) {
-      const Eigen::MatrixXd sites = test::random_points(dimension, count, 3);
+      const Eigen::MatrixXd sites = random_points(dimension, count, 3);
       const DomainCover cover = make_cover(sites);
       ASSERT_LE(cover.points.cols(), kMaximumCoverPoints);
       ASSERT_GT(cover.outer_radius, cover.inner_radius);
@@ -33,7 +38,7 @@ TEST(DomainGuard, EverySiteIsCoveredAndTrusted) {
 // Sites near a point of the cover are left out, wherever that point is in its block.
 TEST(DomainGuard, NoTwoPointsOfACoverAreNearEachOther) {
   for (const int dimension : {1, 2, 4, 8}) {
-    const DomainCover cover = make_cover(test::random_points(dimension, 4000, 3));
+    const DomainCover cover = make_cover(random_points(dimension, 4000, 3));
     // The inner radius is 1.5 times the radius of the cover, at least 0.08; the latter is at least 0.03.
     const double radius = cover.inner_radius > 0.08 ? cover.inner_radius / 1.5 : 0.03;
     for (Eigen::Index i = 1; i < cover.points.cols(); ++i) {
@@ -44,7 +49,7 @@ TEST(DomainGuard, NoTwoPointsOfACoverAreNearEachOther) {
 }
 
 TEST(DomainGuard, FarAwayThereIsNoTrust) {
-  const Eigen::MatrixXd sites = test::random_points(3, 500, 4);
+  const Eigen::MatrixXd sites = random_points(3, 500, 4);
   const DomainGuard guard(make_cover(sites));
   for (const double far : {10.0, 1e6, 1e300}) {
     EXPECT_EQ(guard.trust(Eigen::Vector3d(far, -far, 0.0).eval().data()), 0.0);
@@ -66,6 +71,80 @@ TEST(DomainGuard, IsTheSmoothstepBetweenTheRadii) {
 }
 
 TEST(DomainGuard, IdenticalSitesMakeOnePoint) { EXPECT_EQ(make_cover(Eigen::MatrixXd::Ones(4, 300)).points.cols(), 1); }
+
+bool is_near(const NearPoints& points, const double* x) { return points.found(x, points.leaf(x)); }
+
+class NearestPointsOnTarget : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override { ASSERT_TRUE(simd::choose_target(GetParam())); }
+  void TearDown() override { simd::choose_target(""); }
+};
+
+TEST_P(NearestPointsOnTarget, TheDistanceIsThatOfABruteForceSearch) {
+  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
+    for (const int count : {1, 15, 16, 17, 200}) {
+      const Eigen::MatrixXd points = random_points(d, count, 1);
+      const NearestDistance nearest(points);
+      const Eigen::MatrixXd queries = random_points(d, 20, 9);
+      for (int i = 0; i < 20; ++i) {
+        const double expected = (points.colwise() - queries.col(i)).colwise().norm().minCoeff();
+        const double scale = queries.col(i).norm() + points.colwise().norm().maxCoeff();
+        EXPECT_NEAR(std::sqrt(nearest.nearest_squared(queries.col(i).data())), expected, 3e-7 * scale + 1e-10);
+      }
+    }
+}
+
+// Must be exact, because a force must not depend on the algorithm that found its trust. Also far
+// from the origin, where single precision has few digits.
+TEST_P(NearestPointsOnTarget, OneFoundNearIsNoFurther) {
+  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
+    for (const int count : {1, 2, 16, 63, 65, 500, 768, 5000})
+      for (const double shift : {0.0, 300.0}) {
+        const Eigen::MatrixXd points = random_points(d, count, 1).array() + shift;
+        const NearestDistance nearest(points);
+        const Eigen::MatrixXd queries = random_points(d, 4, 9).array() + shift;
+        for (int i = 0; i < 4; ++i) {
+          const double* query = queries.col(i).data();
+          const double exact = std::sqrt(nearest.nearest_squared(query));
+          for (const double radius : {0.0, 0.5 * exact, 0.999999 * exact})
+            EXPECT_FALSE(is_near(NearPoints(points, radius), query)) << d << "-D, " << count << " points";
+          EXPECT_TRUE(is_near(NearPoints(points, 100.0), query)) << d << "-D, " << count << " points";
+        }
+      }
+}
+
+// Leaves overlap, so that few queries have their near points only in another leaf.
+TEST_P(NearestPointsOnTarget, HardlyOneThatIsNearIsMissed) {
+  const double radius = 0.3;
+  const Eigen::MatrixXd points = random_points(3, 768, 1);
+  const NearestDistance nearest(points);
+  const NearPoints near(points, radius);
+  const Eigen::MatrixXd queries = random_points(3, 5000, 9);
+  int inside = 0;
+  int found = 0;
+  for (int i = 0; i < 5000; ++i) {
+    inside += nearest.nearest_squared(queries.col(i).data()) <= radius * radius ? 1 : 0;
+    found += is_near(near, queries.col(i).data()) ? 1 : 0;
+  }
+  EXPECT_GT(inside, 4000);
+  EXPECT_LE(found, inside);
+  EXPECT_GT(found, inside - inside / 20);
+}
+
+TEST_P(NearestPointsOnTarget, NothingIsNearFarAwayOrToWhatIsNoNumber) {
+  const Eigen::MatrixXd points = random_points(2, 5, 1);
+  const NearestDistance nearest(points);
+  const NearPoints near(points, 1e15);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double bad[][2] = {{1e30, 0}, {infinity, 0}, {0, std::numeric_limits<double>::quiet_NaN()}};
+  for (const auto& x : bad) {
+    EXPECT_EQ(nearest.nearest_squared(x), infinity);
+    EXPECT_FALSE(is_near(near, x));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, NearestPointsOnTarget, testing::ValuesIn(simd::target_names()),
+                         [](const auto& instance) { return instance.param; });
 
 }  // namespace
 }  // namespace palpate

@@ -31,8 +31,8 @@ Sites wavy_sites(Eigen::Index count) {
 }
 
 double largest_difference(const RbfFunction& a, const RbfFunction& b, const Sites& sites) {
-  const RbfEvaluator one(a);
-  const RbfEvaluator other(b);
+  const RbfCorrection one(a);
+  const RbfCorrection other(b);
   double largest = 0.0;
   for (Eigen::Index i = 0; i < sites.count(); ++i) {
     const double* x = sites.points.col(i).data();

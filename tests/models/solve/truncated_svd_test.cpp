@@ -27,7 +27,7 @@ Sites example_sites(Eigen::Index count) {
 
 double largest_error(const Sites& sites, const RbfFunction& function) {
   Eigen::VectorXd values;
-  RbfEvaluator(function).evaluate_many(sites.points, values);
+  RbfCorrection(function).evaluate_many(sites.points, values);
   return (values - sites.target_N).cwiseAbs().maxCoeff();
 }
 

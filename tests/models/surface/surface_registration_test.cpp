@@ -10,7 +10,6 @@
 #include "engine/recording/content_hash.h"
 #include "engine/tick/replay.h"
 #include "models/model/file/model_io.h"
-#include "models/model/file/model_json.h"
 #include "models/recordings/force_lag.h"
 #include "models/recordings/surface_estimate.h"
 #include "scenes/evaluation/model_errors.h"

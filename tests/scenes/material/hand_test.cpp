@@ -1,4 +1,4 @@
-#include "scenes/material/hand.h"
+#include "scenes/material/rig.h"
 
 #include <gtest/gtest.h>
 

@@ -28,12 +28,5 @@ TEST(LayeredBlock, RelaxedIsAContactOnASpring) {
   EXPECT_NEAR(block.force_N(), block.relaxed_force_N(8e-3), 1e-9);
 }
 
-TEST(LayeredBlock, InclusionComesBackWhenTheToolHasLeft) {
-  LayeredBlock block;
-  for (int i = 1; i <= 800; ++i) block.step(1e-5 * i, 1e-2, 1e-3);
-  for (int i = 0; i < 10000; ++i) block.step(-1e-3, 0.0, 1e-3);
-  EXPECT_NEAR(block.inclusion_depth_m(), 0.0, 1e-9);
-}
-
 }  // namespace
 }  // namespace palpate

@@ -17,19 +17,13 @@ TEST(Material, HeldForceRisesWithDepthForEveryMaterial) {
   for (const Material& material : materials()) {
     const auto block = material.make_block();
     EXPECT_EQ(block->half_relaxed_force_N(0.0), 0.0) << material.name;
-    for (double depth_m = 0.0; depth_m < 0.05; depth_m += 1e-4) {
-      ASSERT_LT(block->half_relaxed_force_N(depth_m), block->half_relaxed_force_N(depth_m + 1e-4))
-          << material.name << " at " << depth_m;
-      ASSERT_LT(block->relaxed_force_N(depth_m), block->relaxed_force_N(depth_m + 1e-4))
-          << material.name << " at " << depth_m;
+    const double step_m = 2e-4;
+    for (double depth_m = 0.0; depth_m < 0.5; depth_m += step_m) {  // beyond where a sphere's stretch ends
+      SCOPED_TRACE(std::string(material.name) + " at " + std::to_string(depth_m));
+      ASSERT_LT(block->half_relaxed_force_N(depth_m), block->half_relaxed_force_N(depth_m + step_m));
+      ASSERT_LT(block->relaxed_force_N(depth_m), block->relaxed_force_N(depth_m + step_m));
     }
   }
-}
-
-TEST(Material, StatesItsRelaxationTimes) {
-  EXPECT_EQ(find_material("maxwell").value().relaxation_times, "0.17 s, 1.27 s");
-  EXPECT_EQ(find_material("silicone").value().relaxation_times, "continuous, 0.001 s to 30 s");
-  for (const Material& material : materials()) EXPECT_FALSE(material.relaxation_times.empty()) << material.name;
 }
 
 }  // namespace

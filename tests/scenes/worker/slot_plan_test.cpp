@@ -46,7 +46,7 @@ TEST(SlotPlan, RefusesUnknownModels) {
   EXPECT_TRUE(
       test::has_parts(names(plan_slots(scene("silicone_block"), {"gredy"}, false)), {"\"gredy\"", "trend", "greedy"}));
   EXPECT_TRUE(test::has_parts(names(plan_slots(scene("silicone_block"), std::vector<std::string>(16, "random"), false)),
-                              {"17", "16", "; "}));
+                              {"17 models", "at most 16", "; "}));
 }
 
 TEST(SlotPlan, CentresAndThePapersRecipeCanBeAskedFor) {

@@ -1,5 +1,4 @@
-// Model files: writing and reading lose nothing, and broken files are
-// refused.
+// Model files: writing and reading lose nothing.
 #include "models/model/file/model_io.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "models/model/file/model_json.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
@@ -58,7 +56,7 @@ TEST(ModelIo, FeaturesWithPartsSplinesSofteningAndTheErrorBoundAreKept) {
   ModelData data = example_model("greedy", KernelKind::cubic, {FeatureSpec{}, spectrum, stops, creep, lag}, 11);
   data.trend.elastic = spline_from_powers({0.1, 1.0 / 3.0, 0.2}, lag.drive.knot_N);
   data.error_bound = ErrorBound{0.01, 0.02, 0.3};
-  data.sensor = PositionSensor{30e-6, 1e-6};
+  data.sensor = SensorSpec{30e-6, 1e-6};
   const ModelData back = read_back(data);
   EXPECT_EQ(back.features, data.features);
   ASSERT_TRUE(back.error_bound.has_value() && back.sensor.has_value());
@@ -92,6 +90,7 @@ TEST(ModelIo, ForcesAreBitIdenticalAfterLoading) {
     ASSERT_TRUE(save_model(folder.file(data.name), data, false).ok());
     const auto loaded = load_model(folder.file(data.name));
     ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    EXPECT_EQ(text_of((*loaded)->data()), text_of(data));  // with all fields
     const FittedModel original(data);
     test::Numbers numbers(99);
     int inside = 0;
@@ -111,73 +110,41 @@ TEST(ModelIo, ForcesAreBitIdenticalAfterLoading) {
   }
 }
 
-TEST(ModelIo, EveryFieldComesBack) {
-  for (const ModelData& data : example_models()) {
-    SCOPED_TRACE(data.name);
-    const ModelData back = read_back(data);
-    EXPECT_EQ(back.name, data.name);
-    EXPECT_EQ(back.method, data.method);
-    EXPECT_EQ(back.features, data.features);
-    EXPECT_EQ(back.corrects_trend, data.corrects_trend);
-    EXPECT_EQ(back.lower, data.lower);
-    EXPECT_EQ(back.upper, data.upper);
-    EXPECT_EQ(back.cover.points, data.cover.points);
-    EXPECT_EQ(back.provenance.recordings, data.provenance.recordings);
-    EXPECT_EQ(back.provenance.seed, data.provenance.seed);
-    EXPECT_EQ(back.provenance.relaxation_times.size(), 2u);
-    EXPECT_EQ(back.provenance.training_within_jnd, data.provenance.training_within_jnd);
-    // The text contains all fields, including those not compared above.
-    EXPECT_EQ(text_of(back), text_of(data));
-  }
-}
-
 TEST(ModelIo, AwkwardNumbersRoundTripBitForBit) {
   ModelData data = example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
-  const std::vector<double> awkward = {-0.0,
-                                       0.1,
-                                       1.0 / 3.0,
-                                       5e-324,
-                                       -2.2250738585072014e-308,
-                                       1.7976931348623157e308,
-                                       9007199254740993.0,
-                                       1e22,
-                                       123456789012345678.0,
-                                       -1e-7,
-                                       3.0,
-                                       std::nextafter(1.0, 2.0)};
+  const double awkward[] = {-0.0,
+                            0.1,
+                            1.0 / 3.0,
+                            5e-324,
+                            -2.2250738585072014e-308,
+                            1.7976931348623157e308,
+                            9007199254740993.0,
+                            1e22,
+                            123456789012345678.0,
+                            -1e-7,
+                            3.0,
+                            std::nextafter(1.0, 2.0)};
   // This field accepts any number.
   for (const double offset_m : awkward) data.provenance.surfaces.push_back({"press-1", offset_m, 0.0, 0.0});
   const ModelData back = read_back(data);
-  ASSERT_EQ(back.provenance.surfaces.size(), awkward.size());
-  for (std::size_t i = 0; i < awkward.size(); ++i) {
+  ASSERT_EQ(back.provenance.surfaces.size(), std::size(awkward));
+  for (std::size_t i = 0; i < std::size(awkward); ++i) {
     EXPECT_EQ(bits(back.provenance.surfaces[i].offset_m), bits(awkward[i])) << awkward[i];
   }
 }
 
-TEST(ModelIo, CentresStandOneToALine) {
-  const ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
-  const std::string text = text_of(data);
-  const std::size_t begin = text.find("\"centres\"");
-  const std::string centres = text.substr(begin, text.find("\n  ]", begin) - begin);
-  EXPECT_EQ(std::count(centres.begin(), centres.end(), '\n'), 40);
-}
-
 // Older files contain the seconds of the fit.
-TEST(ModelIo, NoTimeIsStoredAndThatOfAnOlderFileIsIgnored) {
-  const ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
+TEST(ModelIo, StoresNeitherTimesNorFolders) {
+  ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
   const std::string text = text_of(data);
+  data.provenance.recordings[0].insert(0, "/home/someone/rec/");  // folders are not stored, either
+  EXPECT_EQ(text_of(data), text);
   EXPECT_EQ(text.find("seconds"), std::string::npos);
   std::string older = text;
   older.insert(older.find("\"weighting\""), "\"fit_seconds\": 5,\n    ");
   const Result<ModelData> back = read_model_text(older, "m.json");
   ASSERT_TRUE(back.ok()) << back.error().message;
   EXPECT_EQ(text_of(*back), text);
-}
-
-TEST(ModelIo, RecordingNamesLoseTheirFolders) {
-  ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
-  data.provenance.recordings = {"/home/someone/rec/press-1"};
-  EXPECT_EQ(read_back(data).provenance.recordings, std::vector<std::string>{"press-1"});
 }
 
 TEST(ModelIo, WhatCannotBeReadIsNotWritten) {
@@ -189,9 +156,9 @@ TEST(ModelIo, WhatCannotBeReadIsNotWritten) {
     return status ? "" : status.error().message;
   };
   EXPECT_TRUE(test::has_parts(message([](ModelData& data) { data.name = "a,b"; }),
-                              {"m.json", "control character", "1", "100 bytes"}));
+                              {"m.json", "control character", "1 to 100 bytes"}));
   EXPECT_TRUE(
-      test::has_parts(message([](ModelData& data) { data.method = ""; }), {"m.json", "empty", "1", "100 bytes"}));
+      test::has_parts(message([](ModelData& data) { data.method = ""; }), {"m.json", "empty", "1 to 100 bytes"}));
   EXPECT_TRUE(test::has_parts(message([](ModelData& data) {
                                 test::change_rbf(data, [](RbfFunction& f) {
                                   f.weights(3) = std::numeric_limits<double>::quiet_NaN();
@@ -199,7 +166,7 @@ TEST(ModelIo, WhatCannotBeReadIsNotWritten) {
                               }),
                               {"m.json", "correction", "nan"}));
   EXPECT_TRUE(test::has_parts(message([](ModelData& data) { data.provenance.training_within_jnd = -1.0; }),
-                              {"m.json", "provenance.training_within_jnd", "-1", "from 0 up to 1"}));
+                              {"m.json", "provenance.training_within_jnd", "found -1", "from 0 up to 1"}));
 }
 
 }  // namespace

@@ -70,31 +70,31 @@ double plain_value(const VoxelGrid& grid, const double* x) {
 
 // Both interpolate between the same values of size 1. The tolerance is the rounding
 // error of a coordinate relative to the narrowest cell: 1e-16 / 1e-4.
-TEST(VoxelLookup, AgreesWithThePlainGridInsideAndOutsideTheBox) {
+TEST(GridCorrection, AgreesWithThePlainGridInsideAndOutsideTheBox) {
   for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d) {
     const VoxelGrid grid = uneven_grid(d, d <= 4 ? 9 : 3, 5);
-    const VoxelLookup lookup(grid);
+    const GridCorrection lookup(grid);
     const Eigen::MatrixXd queries = 1.3 * random_points(d, 300, 2);
     for (Eigen::Index i = 0; i < queries.cols(); ++i)
       EXPECT_NEAR(lookup.evaluate(queries.col(i).data()), plain_value(grid, queries.col(i).data()), 1e-11) << d;
   }
 }
 
-TEST(VoxelLookup, ReproducesAMultilinearFunction) {
+TEST(GridCorrection, ReproducesAMultilinearFunction) {
   VoxelGrid grid = even_grid(-1.0, 2.0, {4, 2, 7});
   const auto value = [](const auto& x) { return 1.0 + x[0] - 2.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2]; };
   ASSERT_TRUE(fill_grid(grid, [&](const Eigen::MatrixXd& points, Eigen::VectorXd& out) {
                 for (Eigen::Index i = 0; i < points.cols(); ++i) out[i] = value(points.col(i));
               }).ok());
-  const VoxelLookup lookup(grid);
+  const GridCorrection lookup(grid);
   const Eigen::MatrixXd queries = random_points(3, 100, 2);
   for (Eigen::Index i = 0; i < queries.cols(); ++i)
     EXPECT_NEAR(lookup.evaluate(queries.col(i).data()), value(queries.col(i)), 1e-14);
 }
 
-TEST(VoxelLookup, ClampsInfinitiesAndTakesNanAsTheLowerEdge) {
+TEST(GridCorrection, ClampsInfinitiesAndTakesNanAsTheLowerEdge) {
   const VoxelGrid grid = uneven_grid(1, 5, 3);
-  const VoxelLookup lookup(grid);
+  const GridCorrection lookup(grid);
   const double infinity = std::numeric_limits<double>::infinity();
   const double below = -infinity;
   const double nan = std::numeric_limits<double>::quiet_NaN();

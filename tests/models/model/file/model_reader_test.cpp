@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "models/model/file/model_io.h"
-#include "models/model/file/model_json.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
@@ -57,41 +56,36 @@ void expect_all(const std::string& text, const std::vector<test::BrokenText>& ta
 }
 
 TEST(ModelReader, RefusesWhatIsNoModelOfThisVersion) {
-  expect_all(small_text(),
-             {
-                 {"\"palpate-model\"",
-                  "\"palpate\"",
-                  {"m.json:2:13:", "format", "\"palpate\"", "\"palpate-model\"", "palpate fit"}},
-                 {"\"format\"", "\"Format\"", {"m.json:1:1:", "\"format\"", "\"palpate-model\"", "palpate fit"}},
-                 {"\"version\": 1", "\"version\": 2", {"m.json:3:14:", "version", "2", "1", "; "}},
-                 {"\"version\": 1", "\"version\": \"1\"", {"m.json:3:14:", "version", "\"1\"", "1", "; "}},
-                 {"  \"version\": 1,\n", "", {"m.json:1:1:", "version", "no such field", "1", "; "}},
-             });
+  expect_all(
+      small_text(),
+      {
+          {"\"palpate-model\"",
+           "\"palpate\"",
+           {"m.json:2:13:", "format", "\"palpate\"", "\"palpate-model\"", "palpate fit"}},
+          {"\"format\"", "\"Format\"", {"m.json:1:1:", "\"format\"", "\"palpate-model\"", "palpate fit"}},
+          {"\"version\": 1", "\"version\": 2", {"m.json:3:14:", "version", "found 2", "expected 1", "; "}},
+          {"\"version\": 1", "\"version\": \"1\"", {"m.json:3:14:", "version", "found \"1\"", "expected 1", "; "}},
+          {"  \"version\": 1,\n", "", {"m.json:1:1:", "version", "no such field", "expected 1", "; "}},
+      });
 }
 
 TEST(ModelReader, RefusesWrongNamesAndFeatures) {
   expect_all(small_text(),
              {
-                 {"\"small\"", "\"\"", {"m.json:4:11:", "name", "empty", "1", "100 bytes", "; "}},
-                 {"\"small\"", "\"a,b\"", {"m.json:4:11:", "name", "control character", "1", "100 bytes", "; "}},
-                 {"\"small\"", "7", {"m.json:4:11:", "name", "7", "; "}},
-                 {"\"greedy\"", "\"\"", {"m.json:5:13:", "method", "empty", "1", "100 bytes", "; "}},
+                 {"\"small\"", "\"\"", {"m.json:4:11:", "name", "empty", "1 to 100 bytes", "; "}},
+                 {"\"small\"", "\"a,b\"", {"m.json:4:11:", "name", "control character", "1 to 100 bytes", "; "}},
+                 {"\"small\"", "7", {"m.json:4:11:", "name", "found 7", "; "}},
+                 {"\"greedy\"", "\"\"", {"m.json:5:13:", "method", "empty", "1 to 100 bytes", "; "}},
                  {"\"kind\": \"velocity\"",
                   "\"kind\": \"speed\"",
                   {"m.json:8:14:", "features[1].kind", "\"speed\"", "depth", "surface_lag", "; "}},
-                 {"{\"kind\": \"velocity\"}", "7", {"m.json:8:5:", "features[1]", "7", "\"kind\"", "; "}},
+                 {"{\"kind\": \"velocity\"}", "7", {"m.json:8:5:", "features[1]", "found 7", "\"kind\"", "; "}},
                  {"\"relaxation_time_s\": 0.1",
                   "\"relaxation_time_s\": 0",
-                  {"m.json:9:66:", "features[2].parts[0].relaxation_time_s", "0", "0", "; "}},
-                 {"\"relaxation_time_s\": 0.1",
-                  "\"relaxation_time_s\": \"0.1\"",
-                  {"m.json:9:66:", "features[2].parts[0].relaxation_time_s", "\"0.1\"", "0", "; "}},
+                  {"m.json:9:66:", "features[2].parts[0].relaxation_time_s", "found 0", "above 0", "; "}},
                  {"[0.4, 0.3, 0.2, 0.1]",
                   "[0.4, 0.3, 0.2, 1e300]",
                   {"m.json", "features[2].parts[0].drive.coefficient_N[3]", "1e+300", "from -1e+09 up to 1e+09", "; "}},
-                 {"[0.4, 0.3, 0.2, 0.1]",
-                  "[0.4, 0.3, 0.2]",
-                  {"m.json:9:126:", "features[2].parts[0].drive.coefficient_N", "3", "4", "; "}},
                  {"{\"kind\": \"depth\"},",
                   "",
                   {"m.json:12:15:", "offset", "m.json:13:14:", "scale", "m.json:41:14:", "lower",
@@ -114,36 +108,35 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
       {
           {"\"scale\": [0.003, 0.05, 1]",
            "\"scale\": [0.003, 0, 1]",
-           {"m.json:13:22:", "normalisation.scale[1]", "0", "above 0", "; "}},
+           {"m.json:13:22:", "normalisation.scale[1]", "found 0", "above 0", "; "}},
           {"\"scale\": [0.003, 0.05, 1]",
            "\"scale\": [0.003, 0.05]",
-           {"m.json:13:14:", "normalisation.scale", "2", "3", "; "}},
+           {"m.json:13:14:", "normalisation.scale", "list of 2", "expected 3", "; "}},
           {"\"scale\": [0.003, 0.05, 1]",
            "\"scale\": [0.003, null, 1]",
-           {"m.json:13:22:", "normalisation.scale", "1", "; "}},
-          {"\"scale\": [0.003, 0.05, 1]", "\"scale\": 1", {"m.json:13:14:", "normalisation.scale", "1", "3", "; "}},
-          {"\"offset_N\": 0.065", "\"offset_N\": 0", {"m.json:26:23:", "jnd.offset_N", "0", "0", "; "}},
-          {"\"jnd\": {", "\"jnd\": 3, \"was\": {", {"m.json:26:10:", "jnd", "3", "\"offset_N\"", "; "}},
-          {"\"corrects_trend\": true", "\"corrects_trend\": 1", {"m.json:23:21:", "corrects_trend", "1", "; "}},
-          {"\"largest_force_N\": 2.5",
-           "\"largest_force_N\": -2.5",
-           {"m.json:25:22:", "largest_force_N", "-2.5", "0", "; "}},
+           {"m.json:13:22:", "normalisation.scale[1]", "found null", "; "}},
+          {"\"scale\": [0.003, 0.05, 1]",
+           "\"scale\": 1",
+           {"m.json:13:14:", "normalisation.scale", "found 1", "expected 3", "; "}},
+          {"\"offset_N\": 0.065", "\"offset_N\": 0", {"m.json:26:23:", "jnd.offset_N", "found 0", "above 0", "; "}},
+          {"\"jnd\": {", "\"jnd\": 3, \"was\": {", {"m.json:26:10:", "jnd", "found 3", "\"offset_N\"", "; "}},
+          {"\"corrects_trend\": true", "\"corrects_trend\": 1", {"m.json:23:21:", "corrects_trend", "found 1", "; "}},
           {"\"largest_force_N\": 2.5",
            "\"largest_force_N\": 1.7e308",
            {"m.json:25:22:", "largest_force_N", "1.7e+308", "from 0 up to 1e+06", "; "}},
           {"\"outer_radius\": 0.9", "\"outer_radius\": 0.2", {"domain.outer_radius", "0.2", "above 0.3", "; "}},
-          {"\"seed\": 18446744073709551615", "\"seed\": -1", {"m.json:33:13:", "provenance.seed", "-1", "0", "; "}},
-          {"\"press-2\"", "2", {"m.json:28:31:", "provenance.recordings", "1", "2", "; "}},
+          {"\"seed\": 18446744073709551615",
+           "\"seed\": -1",
+           {"m.json:33:13:", "provenance.seed", "found -1", "0 or more", "; "}},
+          {"\"press-2\"", "2", {"m.json:28:31:", "provenance.recordings[1]", "found 2", "; "}},
           {"\"standard_error_s\": 0.01",
            "\"standard_error\": 0.01",
-           {"m.json:37:26:", "provenance.relaxation_times", "0", "standard_error_s", "no such field", "0", "; "}},
+           {"m.json:37:26:", "provenance.relaxation_times[0].standard_error_s", "no such field", "0 or more", "; "}},
           {"[0.25, 0.25, 0.25]", "", {"m.json:45:15:", "domain.points", "empty", "; "}},
           {"\"linear\"", "\"gauss\"", {"m.json:49:13:", "kernel", "\"gauss\"", "cubic", "; "}},
-          {"\"tail\": [1.5]", "\"tail\": [1.5, 2]", {"m.json:50:11:", "tail", "2", "1", "; "}},
-          {"[0.5, 0.5, 0.5],", "[0.5, 0.5],", {"m.json:52:5:", "centres[0]", "2", "3", "; "}},
-          {"[0.5, 0.5, 0.5],", "[0.5, \"x\", 0.5],", {"m.json:52:11:", "centres[0]", "1", "\"x\"", "; "}},
-          {"[0.5, 0.5, 0.5],", "", {"m.json:55:14:", "weights", "2", "1", "; "}},
-          {"0.125,", "", {"m.json:55:14:", "weights", "1", "2", "; "}},
+          {"\"tail\": [1.5]", "\"tail\": [1.5, 2]", {"m.json:50:11:", "tail", "list of 2", "expected 1", "; "}},
+          {"[0.5, 0.5, 0.5],", "[0.5, 0.5],", {"m.json:52:5:", "centres[0]", "list of 2", "expected 3", "; "}},
+          {"[0.5, 0.5, 0.5],", "", {"m.json:55:14:", "weights", "list of 2", "expected 1", "; "}},
           {"\"centres\"", "\"centers\"", {"m.json:1:1:", "\"centres\"", "\"grid\"", "\"trend_alone\"", "; "}},
           {"\"centres\"", "\"grid\": {}, \"centres\"", {"m.json:1:1:", "\"centres\"", "\"grid\"", "; "}},
       });
@@ -163,26 +156,26 @@ TEST(ModelReader, RefusesWhatTheTickCannotCompute) {
     return text.substr(at, text.find_first_of(",}\n", at) - at);
   };
   expect_all(text, {
-                       {feature, features, {"m.json:6:15:", "features", "9", "1 to 8", "; "}},
-                       {part, parts, {"m.json", "features[2].parts", "9", "1 to 8", "; "}},
+                       {feature, features, {"m.json:6:15:", "features", "list of 9", "1 to 8", "; "}},
+                       {part, parts, {"m.json", "features[2].parts", "list of 9", "1 to 8", "; "}},
                        {number("thinning_velocity_m_per_s"),
                         "\"thinning_velocity_m_per_s\": 0",
-                        {"m.json", "trend.thinning_velocity_m_per_s", "0", "above 0", "; "}},
+                        {"m.json", "trend.thinning_velocity_m_per_s", "found 0", "above 0", "; "}},
                        {number("velocity_limit_m_per_s"),
                         "\"velocity_limit_m_per_s\": -1",
-                        {"m.json", "trend.velocity_limit_m_per_s", "-1", "0 or more", "; "}},
+                        {"m.json", "trend.velocity_limit_m_per_s", "found -1", "0 or more", "; "}},
                        {number("correction_limit_N"),
                         "\"correction_limit_N\": -1",
-                        {"m.json", "correction_limit_N", "-1", "0", "; "}},
+                        {"m.json", "correction_limit_N", "found -1", "from 0", "; "}},
                    });
   for (const char* const group : {"\"drive\": {", "\"trend\": {"}) {
     const std::size_t at = text.find("\"reference_depth_m\": ", text.find(group));
     const std::string spoiled = std::string(text).replace(at, text.find(',', at) - at, "\"reference_depth_m\": 0");
-    EXPECT_TRUE(test::has_parts(complaint(spoiled), {"reference_depth_m", "0", "above 0", "; "}));
+    EXPECT_TRUE(test::has_parts(complaint(spoiled), {"reference_depth_m", "found 0", "above 0", "; "}));
   }
   const std::size_t list = text.find("\"features\": [");
   const std::string none = std::string(text).replace(list, text.find("\n  ]", list) - list, "\"features\": [");
-  EXPECT_TRUE(test::has_parts(complaint(none), {"features", "0", "1 to 8", "; "}));
+  EXPECT_TRUE(test::has_parts(complaint(none), {"features", "list of 0", "1 to 8", "; "}));
 }
 
 TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
@@ -201,11 +194,11 @@ TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
 TEST(ModelReader, RefusesWrongGrids) {
   expect_all(small_grid_text(),
              {
-                 {"[[-1, 0, 1]]", "[[-1, 0, 0]]", {"m.json:48:23:", "grid.nodes", "0", "2", "0", "2", "; "}},
-                 {"[[-1, 0, 1]]", "[[-1]]", {"m.json:48:15:", "grid.nodes", "0", "1", "2", "; "}},
-                 {"[[-1, 0, 1]]", "[]", {"m.json:48:14:", "grid.nodes", "0", "1", "; "}},
-                 {"[[-1, 0, 1]]", "[[-1, 1]]", {"m.json:49:17:", "grid.values_N", "3", "; "}},
-                 {"1.5, 2.5, 3.5", "1.5, 2.5, {}", {"m.json:50:15:", "grid.values_N", "2", "; "}},
+                 {"[[-1, 0, 1]]", "[[-1, 0, 0]]", {"m.json:48:23:", "grid.nodes[0][2]", "found 0", "at least 2", "; "}},
+                 {"[[-1, 0, 1]]", "[[-1]]", {"m.json:48:15:", "grid.nodes[0]", "list of 1", "at least 2", "; "}},
+                 {"[[-1, 0, 1]]", "[]", {"m.json:48:14:", "grid.nodes", "list of 0", "expected 1", "; "}},
+                 {"[[-1, 0, 1]]", "[[-1, 1]]", {"m.json:49:17:", "grid.values_N", "list of 3", "; "}},
+                 {"1.5, 2.5, 3.5", "1.5, 2.5, {}", {"m.json:50:15:", "grid.values_N[2]", "found an object", "; "}},
              });
 }
 
@@ -213,7 +206,7 @@ TEST(ModelReader, RefusesTextThatIsNoModel) {
   expect_all(small_text(), {{"\"largest_force_N\": 2.5", "\"largest_force_N\": 2,5", {"m.json:25:24:", "; "}}});
   EXPECT_TRUE(test::has_parts(complaint("[1, 2]"), {"m.json:1:1:", "\"format\"", "\"palpate-model\"", "palpate fit"}));
   const std::string deep(10'000'000, '[');
-  EXPECT_TRUE(test::has_parts(complaint(deep), {"m.json:1:17:", "16", {"; "}}));
+  EXPECT_TRUE(test::has_parts(complaint(deep), {"m.json:1:17:", "more than 16", "; "}));
 }
 
 // Every truncated file is refused without a crash.
@@ -248,7 +241,7 @@ TEST(ModelReader, RefusesAGridThatOverflows) {
   text = text.substr(0, text.find("\"grid\"")) + "\"grid\": {\"nodes\": [" + axis + "," + axis + "," + axis + "," +
          axis + "],\n\"values_N\": []}}";
   const std::string message = complaint(text);
-  EXPECT_TRUE(test::has_parts(message, {"grid.values_N", "0"})) << message.substr(0, 200);
+  EXPECT_TRUE(test::has_parts(message, {"grid.values_N", "list of 0"})) << message.substr(0, 200);
 }
 
 TEST(ModelReader, ExplainsFilesThatCannotBeRead) {
@@ -260,7 +253,7 @@ TEST(ModelReader, ExplainsFilesThatCannotBeRead) {
   EXPECT_TRUE(
       test::has_parts(message(folder.file("none.json")), {folder.file("none.json"), "no such file", "palpate fit"}));
   EXPECT_TRUE(test::has_parts(message(folder.path()), {folder.path(), "folder", "; "}));
-  EXPECT_TRUE(test::has_parts(message("/dev/null"), {"/dev/null", "pipe", {"; "}}));
+  EXPECT_TRUE(test::has_parts(message("/dev/null"), {"/dev/null", "pipe", "; "}));
   // A sparse file, which occupies almost no disk space.
   const std::string huge = folder.with_file("huge.json", "");
   std::filesystem::resize_file(huge, kMaximumModelFileBytes + 1);

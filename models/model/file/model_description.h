@@ -1,0 +1,186 @@
+// The description of a model file, which names every member once, in the order of the file. `file` is a reader or a
+// writer (model_io.cpp), which reads the values from the file or writes them to it.
+// Thread guarantee: slow side.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "engine/json/json_fields.h"
+#include "engine/recording/recording_rules.h"
+#include "models/model/fitted_model.h"
+#include "models/model/rbf/rbf_evaluate.h"
+
+namespace palpate::model_file {
+
+// The curve of a branch with a short relaxation time may be large, but it is a force.
+inline constexpr NumberRange kDriveForce_N{-1e9, 1e9};
+// Relaxation times that grow by more than exp(20), or 5e8, with the depth indicate a damaged file.
+inline constexpr NumberRange kSlowing{-20.0, 20.0};
+inline constexpr const char* kOnePerFeature = "numbers, one per feature";
+
+// Whether members, or items, are written on a line each or all on one.
+enum class Layout { lines, one_line };
+
+void describe_each(auto& file, const char* key, auto& items, std::size_t most, Layout layout, const auto& body) {
+  std::size_t count = items.size();
+  file.each(key, count, most, layout, [&](std::size_t i) {
+    if (i == items.size()) items.emplace_back();
+    body(items[i]);
+  });
+}
+
+// A number that is written only if it is not 0.
+void describe_unless_0(auto& file, const char* key, double& value, NumberRange range = {}) {
+  if (file.has(key, value != 0.0)) file.number(key, value, range);
+}
+
+void describe_drive(auto& file, DriveCurve& curve) {
+  file.object("drive", "an object with reference_depth_m and coefficient_N", Layout::one_line, [&] {
+    file.number("reference_depth_m", curve.reference_depth_m, kPositive);
+    file.list("coefficient_N", curve.coefficient_N, kDriveForce_N);
+    curve.has_knots = file.has("knot_N", curve.has_knots);
+    if (curve.has_knots) file.list("knot_N", curve.knot_N, kDriveForce_N);
+  });
+}
+
+void describe_feature(auto& file, FeatureSpec& spec) {
+  file.kind(spec.kind);
+  if (has_time(spec.kind)) file.number("relaxation_time_s", spec.relaxation_time_s, kPositive);
+  if (spec.kind == FeatureKind::depth) describe_unless_0(file, "surface_position_m", spec.surface_position_m);
+  if (is_branch(spec.kind)) describe_unless_0(file, "slowing", spec.slowing, kSlowing);
+  if (has_drive(spec.kind)) describe_drive(file, spec.drive);
+  if (!has_parts(spec.kind)) return;
+  const auto describe_part = [&](std::size_t p) {
+    FeaturePart& part = spec.parts[p];
+    if (is_bristle(spec.kind)) file.number("threshold_m", part.threshold_m, kPositive);
+    if (spec.kind != FeatureKind::stops) file.number("relaxation_time_s", part.relaxation_time_s, kPositive);
+    describe_drive(file, part.drive);
+  };
+  if (is_branch(spec.kind) && file.has("drive", false)) {  // the only branch, in earlier files
+    spec.part_count = 1;
+    return describe_part(0);
+  }
+  file.each("parts", spec.part_count, kMaxFeatureParts, Layout::one_line, describe_part);
+}
+
+void describe_trend(auto& file, Trend& trend) {
+  file.object("trend", "an object", Layout::lines, [&] {
+    file.number("reference_depth_m", trend.reference_depth_m, kPositive);
+    if (file.has("elastic_N", false)) {  // of earlier files: powers of u, of which fits used three, and knots
+      std::array<double, 6> power_N{};
+      std::array<double, 7> knot_N{};
+      file.list("elastic_N", power_N);
+      if (file.has("elastic_knot_N", false)) file.list("elastic_knot_N", knot_N);
+      trend.elastic = spline_from_powers({power_N[0], power_N[1], power_N[2]}, knot_N);
+    } else {
+      file.list("elastic_pieces_N", trend.elastic.pieces_N);
+    }
+    file.list("viscosity_Ns_per_m", trend.viscosity_Ns_per_m);
+    file.list("thinning_Ns_per_m", trend.thinning_Ns_per_m);
+    file.number("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, kPositive);
+    file.number("velocity_limit_m_per_s", trend.velocity_limit_m_per_s, kNotNegative);
+  });
+}
+
+void describe_surface(auto& file, RecordingSurface& surface) {
+  file.text("name", surface.name);
+  file.number("surface_offset_m", surface.offset_m);
+  if (file.has("standard_error_m", std::isfinite(surface.standard_error_m))) {
+    file.number("standard_error_m", surface.standard_error_m, kNotNegative);
+  } else {
+    surface.standard_error_m = HUGE_VAL;
+  }
+  file.number("force_zero_N", surface.force_zero_N);
+  describe_unless_0(file, "force_lag_s", surface.lag_s);
+}
+
+void describe_provenance(auto& file, Provenance& from) {
+  file.object("provenance", "an object", Layout::lines, [&] {
+    file.names("recordings", from.recordings);
+    // Models fitted to positions as recorded have no such list.
+    if (file.has("surfaces", !from.surfaces.empty())) {
+      describe_each(file, "surfaces", from.surfaces, 0, Layout::lines,
+                    [&](RecordingSurface& surface) { describe_surface(file, surface); });
+    }
+    file.text("scene", from.scene);
+    file.count("samples", from.samples);
+    file.count("contact_samples", from.contact_samples);
+    file.count("samples_after_reduction", from.samples_after_reduction);
+    file.count("seed", from.seed);
+    file.has("fit_seconds", false);  // older files
+    file.text("weighting", from.weighting);
+    file.text("reduction", from.reduction);
+    file.text("relaxation", from.relaxation);
+    describe_each(file, "relaxation_times", from.relaxation_times, 0, Layout::one_line, [&](RelaxationTime& time) {
+      file.number("time_s", time.time_s, kPositive);
+      file.number("standard_error_s", time.standard_error_s, kNotNegative);
+    });
+    file.number("training_within_jnd", from.training_within_jnd, {0.0, 1.0});
+  });
+}
+
+void describe_names(auto& file, ModelData& data) {
+  file.name("name", data.name);
+  file.name("method", data.method);
+}
+
+void describe_features(auto& file, ModelData& data) {
+  describe_each(file, "features", data.features, kMaxFeatures, Layout::lines,
+                [&](FeatureSpec& spec) { describe_feature(file, spec); });
+}
+
+// All other members; the size of some depends on the features.
+void describe_rest(auto& file, ModelData& data) {
+  const auto dimension = static_cast<Eigen::Index>(data.features.size());
+  file.object("normalisation", "an object with offset and scale", Layout::lines, [&] {
+    file.numbers("offset", data.offset, dimension, kOnePerFeature);
+    file.numbers("scale", data.scale, dimension, kOnePerFeature, kPositive);
+  });
+  describe_trend(file, data.trend);
+  file.flag("corrects_trend", data.corrects_trend);
+  file.number("correction_limit_N", data.correction_limit_N, {0.0, kMaximumForce_N});
+  file.number("largest_force_N", data.largest_force_N, {0.0, kMaximumForce_N});
+  file.object("jnd", "an object with offset_N and weber_fraction", Layout::one_line, [&] {
+    file.number("offset_N", data.jnd.offset_N, kPositive);
+    file.number("weber_fraction", data.jnd.weber_fraction, kNotNegative);
+  });
+  describe_provenance(file, data.provenance);
+  file.object("domain", "an object", Layout::lines, [&] {
+    file.numbers("lower", data.lower, dimension, kOnePerFeature);
+    file.numbers("upper", data.upper, dimension, kOnePerFeature);
+    file.number("inner_radius", data.cover.inner_radius, kNotNegative);
+    file.number("outer_radius", data.cover.outer_radius, {data.cover.inner_radius, kLargestNumber, true});
+    file.points("points", data.cover.points, dimension);
+  });
+  describe_unless_0(file, "lowest_force_N", data.lowest_force_N, {-kMaximumForce_N, 0.0});
+  if (file.has("sensor", data.sensor.has_value())) {
+    SensorSpec& sensor = data.sensor ? *data.sensor : data.sensor.emplace();
+    file.object("sensor", "an object", Layout::one_line, [&] {
+      file.number("encoder_step_m", sensor.encoder_step_m, kNotNegative);
+      file.number("position_noise_m", sensor.position_noise_m, kNotNegative);
+    });
+  }
+  if (file.has("error_bound", data.error_bound.has_value())) {
+    ErrorBound& bound = data.error_bound ? *data.error_bound : data.error_bound.emplace();
+    file.object("error_bound", "an object", Layout::one_line, [&] {
+      file.number("floor_N", bound.floor_N, kNotNegative);
+      file.number("per_force", bound.per_force, kNotNegative);
+      file.number("per_distance_N", bound.per_distance_N, kNotNegative);
+    });
+  }
+  file.correction(data.correction, dimension);
+}
+
+// The members of a correction by radial basis functions.
+void describe_rbf(auto& file, RbfFunction& function, Eigen::Index dimension) {
+  if (!file.choice("kernel", function.kernel, kernel_names())) return;
+  const int tail = tail_size(tail_degree(function.kernel), static_cast<int>(dimension));
+  file.numbers("tail", function.tail, tail, "coefficients");
+  file.points("centres", function.centres, dimension);
+  file.numbers("weights", function.weights, function.centre_count(), "numbers, one per centre", {}, Layout::lines);
+}
+
+}  // namespace palpate::model_file
