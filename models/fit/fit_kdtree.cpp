@@ -1,14 +1,20 @@
-#include "models/fit/choose_centres.h"
-
+// The kD-tree method. The sites are split into two leaves, whose barycentres are the centres. Then, in each step, the
+// function is fitted, the sample with the largest error over the JND is found, and its leaf is split at the median of
+// its widest dimension, which replaces one centre by two.
+//
+// A refit costs one new pair of columns, not a new matrix: the polynomial tail is projected out of the columns, and
+// their Gram matrix is updated and factorised (Cholesky, with a relative ridge of 1e-13). Duplicate sites stay in one
+// leaf. A leaf with a single point cannot be split; the sample with the next largest error is taken. O(N centres) a
+// step.
+// Source: Hoever & Harders (2009), section 4.2.2.
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "models/fit/methods.h"
 #include "models/linear/lapack.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/orthogonal_basis.h"
@@ -34,7 +40,7 @@ class GrowingFit {
     for (const Eigen::Index index : at) size_ = std::max(size_, index + 1);
     Eigen::MatrixXd fresh(sites_.count(), count);
     std::array<Eigen::MatrixXd, kParts> shares;
-    for_parts([&](int part) {
+    parallel_for(kParts, [&](int part) {
       const auto [first, rows] = rows_of(part);
       auto mine = fresh.middleRows(first, rows);
       kernel_matrix(kernel_, points_, centres, mine, first);
@@ -46,7 +52,7 @@ class GrowingFit {
     const Eigen::MatrixXd tail_shares = shares[0] + shares[1];
     std::array<Eigen::MatrixXd, kParts> products;
     std::array<Eigen::VectorXd, kParts> right;
-    for_parts([&](int part) {
+    parallel_for(kParts, [&](int part) {
       const auto [first, rows] = rows_of(part);
       auto mine = fresh.middleRows(first, rows);
       multiply(tail_.columns().middleRows(first, rows), false, tail_shares, false, -1.0, 1.0, mine);
@@ -91,7 +97,7 @@ class GrowingFit {
     }
     Eigen::VectorXd rest = tail_.residual();
     const Eigen::VectorXd scaled_weights = weights.cwiseProduct(scale);
-    for_parts([&](int part) {
+    parallel_for(kParts, [&](int part) {
       const auto [first, rows] = rows_of(part);
       multiply(columns_.block(first, 0, rows, size_), false, scaled_weights, false, -1.0, 1.0,
                rest.segment(first, rows));
@@ -109,12 +115,6 @@ class GrowingFit {
   }
 
   static constexpr Eigen::Index kRows = 512;
-  // The number of products, about 0.3 ms, above which a step is faster with threads.
-  static constexpr Eigen::Index kWorthThreads = 1000000;
-  void for_parts(const std::function<void(int part)>& work) const {
-    if (sites_.count() * size_ >= kWorthThreads) return parallel_for(kParts, work);
-    for (int part = 0; part < kParts; ++part) work(part);
-  }
 
   const Sites& sites_;
   KernelKind kernel_;
@@ -147,27 +147,19 @@ Eigen::VectorXd excess_of(const GrowingFit& fit, const Sites& sites, const Eigen
       .select(residual.array().abs() / (sites.row_scale.array() * jnd_N.array()), 0.0);
 }
 
-}  // namespace
-
-Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const MethodRequest& request,
-                                     const FitControl& control) {
-  if (const Status status = validate_sites(sites); !status) return status.error();
-  if (jnd_N.size() != sites.count() || !jnd_N.allFinite() || !(jnd_N.minCoeff() > 0.0))
-    return Error{"jnd_N has " + std::to_string(jnd_N.size()) + " entries or one that is not positive, expected " +
-                 std::to_string(sites.count()) + " thresholds above 0 N"};
+Result<CentreSequence> choose_kdtree(const MethodTask& task, const FitControl& control) {
+  const Sites& sites = task.sites;
+  const MethodRequest& request = task.request;
+  CentreSequence sequence{Eigen::MatrixXd(sites.dimension(), 0), {}, 2, ""};
+  if (request.centres <= 0) return sequence;
   const BlasThreads one_thread(1);
   SiteTree tree(sites.points);
-  const Eigen::Index most = std::max<Eigen::Index>(1, std::min<Eigen::Index>(request.centres, sites.count()));
+  const Eigen::Index most = std::min<Eigen::Index>(request.centres, sites.count());
   GrowingFit fit(sites, request.kernel, most);
-  CentreSequence sequence;
   sequence.pool.resize(sites.dimension(), 2 * most - 1);
-  std::vector<std::size_t> of_leaf;  // the column of each leaf
   const auto add = [&](Eigen::Index leaf) {
-    const auto index = static_cast<std::size_t>(leaf);
-    of_leaf.resize(std::max(of_leaf.size(), index + 1));
-    of_leaf[index] = sequence.memberships.size();
-    sequence.memberships.push_back({leaf, tree.leaf_count(), 0});
-    sequence.pool.col(static_cast<Eigen::Index>(of_leaf[index])) = tree.barycentre(leaf);
+    sequence.pool.col(static_cast<Eigen::Index>(sequence.places.size())) = tree.barycentre(leaf);
+    sequence.places.push_back(leaf);
   };
   add(0);
   fit.set(sequence.pool.leftCols(1), {0});
@@ -176,20 +168,20 @@ Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& 
     if (!control.may_continue(0.95 * static_cast<double>(tree.leaf_count()) / static_cast<double>(most)))
       return interrupted();
     // The first split does not depend on errors: there is one leaf.
-    const Eigen::Index lower = split_worst(tree, excess_of(fit, sites, jnd_N), whole);
+    const Eigen::Index lower = split_worst(tree, excess_of(fit, sites, task.jnd_N), whole);
     if (lower < 0) break;
     const Eigen::Index upper = tree.leaf_count() - 1;
-    sequence.memberships[of_leaf[static_cast<std::size_t>(lower)]].until = tree.leaf_count();
-    const auto before = static_cast<Eigen::Index>(sequence.memberships.size());
+    const auto before = static_cast<Eigen::Index>(sequence.places.size());
     add(lower);
     add(upper);
     fit.set(sequence.pool.middleCols(before, 2), {lower, upper});
   }
-  sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.memberships.size()));
-  sequence.most = request.centres > 0 ? tree.leaf_count() : 0;
-  if (sequence.most < request.centres) sequence.shortage = "no leaf can be split further";
+  sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.places.size()));
+  if (sequence.most() < request.centres) sequence.shortage = "no leaf can be split further";
   return sequence;
 }
+
+}  // namespace
 
 const Method kKdTreeMethod{
     .name = "kdtree",
@@ -201,9 +193,7 @@ const Method kKdTreeMethod{
           const double hundreds = 0.01 * request.centres;
           return 0.1 + 0.01 * hundreds * hundreds * hundreds;
         },
-    .fit = fit_chosen,
-    .choose = [](const MethodTask& task,
-                 const FitControl& control) { return choose_kdtree(task.sites, task.jnd_N, task.request, control); },
+    .choose = choose_kdtree,
 };
 
 }  // namespace palpate

@@ -14,7 +14,6 @@
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
-#include "engine/tick/features.h"
 #include "models/model/correction.h"
 #include "models/model/rbf/kernels.h"
 #include "models/solve/centre_sequence.h"
@@ -54,11 +53,12 @@ struct FittedCorrection {
   std::string size;  // follows the method in the name of the model: "100"; or empty
 };
 
+FittedCorrection rbf_correction(FittedRbf fitted, std::string size);
+
 // The input of a method. References must be valid during the call.
 struct MethodTask {
-  const Sites& sites;                        // normalised
-  const std::vector<FeatureSpec>& features;  // of the rows of sites.points
-  const Eigen::VectorXd& jnd_N;              // threshold at each site, > 0
+  const Sites& sites;            // normalised
+  const Eigen::VectorXd& jnd_N;  // threshold at each site, > 0
   const MethodRequest& request;
   const FittedCorrection* base = nullptr;  // fit of the row's base; null: none
 };
@@ -84,10 +84,11 @@ struct Method {
   // Approximate time of the fit without the base, on one core of 2023 with 7,000 sites: for progress lines, and to fit
   // the fastest method first.
   double (*expected_seconds)(const MethodRequest& request) = nullptr;
-  // Errors: the sites cannot be fitted (says why); interrupted. Deterministic. To be called by fit_correction.
+  // One of two functions, to be called by fit_correction. Errors: the sites cannot be fitted (says why); interrupted.
+  // Deterministic.
   Result<FittedCorrection> (*fit)(const MethodTask& task, const FitControl& control) = nullptr;
-  // Selects the centres for every number up to request.centres (nested_fit.h). Null for methods whose selections are
-  // not nested.
+  // Selects the centres for every number up to request.centres (nested_fit.h), whose weights are then solved for. Fewer
+  // are returned, with the reason, if no further one lowers the error.
   Result<CentreSequence> (*choose)(const MethodTask& task, const FitControl& control) = nullptr;
 
   bool can_take(MethodOption option) const { return (takes & option) != 0; }
@@ -102,7 +103,7 @@ std::string method_names();
 // "random, kdtree, greedy": the methods that use this option.
 std::string methods_that_take(MethodOption option);
 
-// Fits request.method, and before it its base if the task has none.
+// Fits request.method, and before it its base if the task has none. Errors: those of validate_sites and of the method.
 Result<FittedCorrection> fit_correction(const MethodTask& task, const FitControl& control = {});
 // The sum for the method and its base.
 double expected_seconds(const MethodRequest& request);

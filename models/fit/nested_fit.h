@@ -27,10 +27,9 @@ namespace palpate {
 class NestedWeights {
  public:
   // Factorises the rows. Errors: those of solve_weights. Takes about as long as solve_weights for all centres.
-  static Result<NestedWeights> factorise(const Sites& sites, KernelKind kernel, CentreSequence sequence,
-                                         const FitControl& control = {});
+  static Result<NestedWeights> factorise(const Sites& sites, KernelKind kernel, CentreSequence sequence);
 
-  Eigen::Index most() const { return sequence_.most; }
+  Eigen::Index most() const { return sequence_.most(); }
   // The result of solve_weights for `count` centres, clamped to 0 to most().
   FittedRbf solve(Eigen::Index count) const;
 

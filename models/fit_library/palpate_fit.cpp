@@ -19,7 +19,7 @@
 #include "models/library/error_text.h"
 #include "models/library/handles.h"
 #include "models/model/file/model_io.h"
-#include "models/training/fold_assignment.h"
+#include "models/training/cross_validation.h"
 #include "models/training/training_extent.h"
 
 struct palpate_recording {

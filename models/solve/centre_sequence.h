@@ -4,32 +4,28 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate {
 
 struct CentreSequence {
-  // The index of a centre within a selection, and the numbers of centres whose selection contains it.
-  struct Membership {
-    Eigen::Index place = 0;
-    Eigen::Index from = 1;
-    Eigen::Index until = 0;  // first number of centres without it; 0: none
-  };
+  Eigen::MatrixXd pool;  // d x m, the centres of all selections in order of appearance
+  // The index of each column of `pool` within a selection. A later column replaces an earlier one with the same index.
+  std::vector<Eigen::Index> places;
+  Eigen::Index columns_a_step = 1;  // by which each centre after the first enlarges the pool
+  std::string shortage;             // why most() is less than requested; else empty
 
-  Eigen::MatrixXd pool;                 // d x m, the centres of all selections, each once, in order of appearance
-  std::vector<Membership> memberships;  // one for each column of `pool`
-  Eigen::Index most = 0;                // maximum number of centres
-  std::string shortage;                 // why `most` is less than requested; else empty
-
-  // The columns of `pool` of the selection of `count` centres (0 to `most`), in the order of their indices.
+  // The maximum number of centres.
+  Eigen::Index most() const { return pool.cols() > 0 ? 1 + (pool.cols() - 1) / columns_a_step : 0; }
+  // The columns of `pool` of the selection of `count` centres (0 to most()), in the order of their indices.
   std::vector<Eigen::Index> columns_of(Eigen::Index count) const {
     std::vector<Eigen::Index> columns(static_cast<std::size_t>(count));
-    for (std::size_t j = 0; j < memberships.size(); ++j) {
-      const Membership& membership = memberships[j];
-      if (membership.from <= count && (membership.until == 0 || count < membership.until)) {
-        columns[static_cast<std::size_t>(membership.place)] = static_cast<Eigen::Index>(j);
-      }
+    const Eigen::Index used = count > 0 ? 1 + columns_a_step * (count - 1) : 0;
+    for (Eigen::Index j = 0; j < used; ++j) {
+      columns[static_cast<std::size_t>(places[static_cast<std::size_t>(j)])] = j;
     }
     return columns;
   }
@@ -37,9 +33,9 @@ struct CentreSequence {
 
   // A sequence in which each centre is added after those before it and stays.
   static CentreSequence growing(Eigen::MatrixXd centres) {
-    CentreSequence sequence{std::move(centres), {}, 0, ""};
-    sequence.most = sequence.pool.cols();
-    for (Eigen::Index j = 0; j < sequence.most; ++j) sequence.memberships.push_back({j, j + 1, 0});
+    CentreSequence sequence{std::move(centres), {}, 1, ""};
+    sequence.places.resize(static_cast<std::size_t>(sequence.pool.cols()));
+    std::iota(sequence.places.begin(), sequence.places.end(), Eigen::Index{0});
     return sequence;
   }
 };

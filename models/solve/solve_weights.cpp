@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
-#include <utility>
 
 #include "engine/base/parallel.h"
 #include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/choose_smoothing.h"
 #include "models/solve/penalised_weights.h"
+#include "models/solve/projected_kernel.h"
 
 namespace palpate {
 namespace {
@@ -44,8 +42,8 @@ void factorise(Eigen::MatrixXd& rows, Eigen::VectorXd& data, HalfOfRows& half) {
 
 }  // namespace
 
-Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                      const FitControl& control) {
+Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  const BlasThreads one_thread(1);
   FactorisedRows factorised{{}, sites.count(), 0, 0.0, sites.strength, sites.as_2009};
   const PointArrays points(sites.points);
   const Eigen::Index tail = tail_size(tail_degree(kernel), sites.dimension());
@@ -77,7 +75,6 @@ Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, con
       factorise(stack, data, mine);
     }
   });
-  if (!control.may_continue(0.7)) return interrupted();
   Eigen::MatrixXd stack(2 * columns, columns);
   stack << halves[0].triangle, halves[1].triangle;
   Eigen::VectorXd data(2 * columns);
@@ -93,23 +90,10 @@ Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, con
   return factorised;
 }
 
-Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres) {
-  if (const Status status = validate_sites(sites); !status) return status;
-  if (centres.rows() == sites.points.rows() && centres.allFinite()) return {};
-  return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +
-               std::to_string(sites.points.rows()) + " finite ones, as the sites have"};
-}
-
-Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                const FitControl& control) {
-  if (const Status status = validate_centres(sites, centres); !status) return status.error();
-  if (!control.may_continue(0.0)) return interrupted();
-  const BlasThreads one_thread(1);
-  const auto factorised = factorise_rows(sites, kernel, centres, control);
+Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  const auto factorised = factorise_rows(sites, kernel, centres);
   if (!factorised) return factorised.error();
-  FittedRbf fitted = penalised_weights(*factorised, kernel, centres);
-  if (!control.may_continue(1.0)) return interrupted();
-  return fitted;
+  return penalised_weights(*factorised, kernel, centres);
 }
 
 }  // namespace palpate

@@ -1,15 +1,15 @@
 // Weights and tail for given centres, by weighted least squares with a smoothing penalty (penalised_weights.h).
 //
-// The smoothing is that of the sites, or otherwise the most likely one (choose_smoothing.h): plain least squares is
+// The smoothing is that of the sites, or otherwise the most likely one (projected_kernel.h): plain least squares is
 // ill-posed where the sites (clusters, noise) do not determine the unknowns, and the values between the sites then
 // have no bound. With ten sites to an unknown and no selected smoothing, plain least squares is used.
 //
 // A QR factorisation reduces the N rows block by block to a small triangle, to which the penalty is added: the accuracy
 // of a QR factorisation of the whole matrix, with memory O(columns^2 + block) for any N.
 // Source: Hoever & Harders (2009), eq. 8 and section 4.2.1.
+// Thread guarantee: slow side. The sites must pass validate_sites.
 #pragma once
 
-#include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "models/solve/fit_report.h"
 #include "models/training/sites.h"
@@ -28,15 +28,11 @@ struct FactorisedRows {
   bool as_2009 = false;  // weights by truncated singular values
 };
 
-// Factorises the rows. `centres` must have the dimension of the sites. Errors: those of choose_smoothing; interrupted.
-Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                      const FitControl& control);
-// Errors: those of validate_sites; centres of another dimension than the sites, or not finite.
-Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres);
+// Factorises the rows. `centres`: d x n, any points, n may be 0. Errors: those of choose_smoothing. Deterministic; uses
+// two threads.
+Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres);
 
-// `centres`: d x n, any points, n may be 0. Errors: those of validate_centres and choose_smoothing; interrupted.
-// Deterministic; uses two threads. Slow side.
-Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                const FitControl& control = {});
+// The same with the weights of penalised_weights.
+Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres);
 
 }  // namespace palpate

@@ -148,7 +148,7 @@ double common_shift_m(const std::vector<Member>& members) {
 
 // The weighted mean of the onsets of the recordings after their offsets; 0 if no onset is identified, or if the mean
 // does not differ significantly from 0.
-double common_surface_m(const std::vector<Member>& members, const std::vector<RegisteredSurface>& surfaces) {
+double common_surface_m(const std::vector<Member>& members, const std::vector<RecordingSurface>& surfaces) {
   double sum = 0.0;
   double weights = 0.0;
   for (std::size_t r = 0; r < members.size(); ++r) {
@@ -165,7 +165,7 @@ double common_surface_m(const std::vector<Member>& members, const std::vector<Re
 
 // The outermost position with a certain force, after the offsets, if more than kOuterShare of these rows are outside
 // of `surface_m`; otherwise `surface_m`.
-double outermost_contact_m(const std::vector<Member>& members, const std::vector<RegisteredSurface>& surfaces,
+double outermost_contact_m(const std::vector<Member>& members, const std::vector<RecordingSurface>& surfaces,
                            double force_noise_N, double surface_m) {
   double largest_N = 0.0;
   for (const Member& member : members) {
@@ -197,7 +197,7 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
   if (members.size() > 1) estimate_offsets_of_all(members, force_noise_N, control);
   const double shift_m = members.size() > 1 ? common_shift_m(members) : 0.0;
   for (const Member& member : members) {
-    RegisteredSurface one{0.0, kUnknownError, member.own.force_zero_N};
+    RecordingSurface one{"", 0.0, kUnknownError, member.own.force_zero_N};
     if (members.size() == 1) one.standard_error_m = member.own.standard_error_m;
     if (member.offset.identified) {
       one.standard_error_m = member.offset.standard_error;
@@ -232,7 +232,7 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
   recordings.push_back(kept.rows());
   std::vector<RecordingOffsets> offsets;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
-    const PreparedRecording* prepared = source.prepared(r);
+    const PreparedRecording* prepared = source.recordings()[r].prepared;
     offsets.push_back(prepared != nullptr ? prepared->offsets
                                           : estimate_offsets(recordings[r], source.force_noise_N()));
     if (!control.may_continue(fraction)) return interrupted();
@@ -248,7 +248,12 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
   }
   if (!control.may_continue(fraction)) return interrupted();
   RegisteredSurfaces result = registered(std::move(members), source.force_noise_N(), control);
-  result.lag_s = lag_s;
+  for (std::size_t r = 0; r < result.recordings.size(); ++r) {
+    RecordingSurface& one = result.recordings[r];
+    one.name = source.recordings()[r].name;
+    one.lag_s = lag_s;
+    one.content_hash = source.recordings()[r].hash;
+  }
   if (!control.may_continue(fraction)) return interrupted();
   return result;
 }

@@ -1,9 +1,8 @@
 #include "models/training/sites.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
+#include <numeric>
 #include <string>
 
 namespace palpate {
@@ -53,25 +52,24 @@ Sites even_subset(const Sites& sites, Eigen::Index most) {
 }
 
 std::vector<Eigen::Index> distinct_sites(const Sites& sites) {
-  const auto count = static_cast<std::size_t>(sites.count());
-  std::vector<Eigen::Index> distinct;
-  distinct.reserve(count);
-  // A hash table with open addressing: index + 1 of a point, 0: free. At least twice as many slots as points.
-  std::vector<Eigen::Index> slots(std::bit_ceil(2 * count + 1), 0);
-  for (Eigen::Index i = 0; i < sites.count(); ++i) {
-    const auto point = sites.points.col(i);
-    std::uint64_t hash = 0xCBF29CE484222325ULL;
-    for (const double value : point) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(value + 0.0)) * 0x9E3779B97F4A7C15ULL;  // -0 is 0
-      hash ^= hash >> 29;
-    }
-    std::size_t slot = hash & (slots.size() - 1);
-    while (slots[slot] != 0 && sites.points.col(slots[slot] - 1) != point) slot = (slot + 1) & (slots.size() - 1);
-    if (slots[slot] != 0) continue;
-    slots[slot] = i + 1;
-    distinct.push_back(i);
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(sites.count()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const auto point = [&](Eigen::Index i) { return sites.points.col(i); };
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::lexicographical_compare(point(a).begin(), point(a).end(), point(b).begin(), point(b).end());
+  });
+  const auto same = [&](Eigen::Index a, Eigen::Index b) { return point(a) == point(b); };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+std::size_t draw_first(std::vector<Eigen::Index>& indices, Eigen::Index most, SplitMix64& random) {
+  const std::size_t count = std::min(static_cast<std::size_t>(most), indices.size());
+  for (std::size_t j = 0; j < count; ++j) {
+    std::swap(indices[j], indices[j + static_cast<std::size_t>(random.below(indices.size() - j))]);
   }
-  return distinct;
+  return count;
 }
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/random_stream.h"
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
 
@@ -38,5 +39,9 @@ Sites even_subset(const Sites& sites, Eigen::Index most);
 
 // Indices, ascending, of the sites without duplicates: of sites at exactly the same point the first is kept.
 std::vector<Eigen::Index> distinct_sites(const Sites& sites);
+
+// Draws up to `most` of the indices without replacement and brings them to the front (Fisher & Yates). Returns how many
+// were drawn.
+std::size_t draw_first(std::vector<Eigen::Index>& indices, Eigen::Index most, SplitMix64& random);
 
 }  // namespace palpate

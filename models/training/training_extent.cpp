@@ -1,26 +1,15 @@
 #include "models/training/training_extent.h"
 
-#include "engine/tick/sensor_identification.h"
-
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "engine/tick/sensor_identification.h"
 
 namespace palpate {
 namespace {
 
 // An unloading path below this share of the loading path counts as none.
 constexpr double kLeastUnloading = 0.1;
-
-}  // namespace
-
-bool TrainingExtent::has_unloading() const { return unloading_path_m > kLeastUnloading * loading_path_m; }
-
-FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent) {
-  return {source.names().size(), extent.strokes, extent.contact_samples, extent.has_unloading()};
-}
-
-namespace {
 
 // The material pulls if at least kLeastPulls samples and a share of kPullShare have a force below -JND(0), and the
 // lowest force is certain (certain_force_N).
@@ -30,6 +19,12 @@ constexpr double kPullShare = 1e-3;
 constexpr double kShallow = 0.01;
 
 }  // namespace
+
+bool TrainingExtent::has_unloading() const { return unloading_path_m > kLeastUnloading * loading_path_m; }
+
+FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent) {
+  return {source.recordings().size(), extent.strokes, extent.contact_samples, extent.has_unloading()};
+}
 
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control) {
   TrainingExtent extent;
