@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/recordings/surface_numbers.h"
-
 namespace palpate {
 namespace {
 

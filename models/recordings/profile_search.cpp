@@ -4,9 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "models/recordings/paired_costs.h"
-#include "models/recordings/surface_numbers.h"
-
 namespace palpate {
 namespace {
 
@@ -20,6 +17,34 @@ constexpr double kWorstCost = 1e100;
 
 double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
 
+// Whether the sum of `one` exceeds the sum of `best` by at most one standard error of their paired differences.
+bool is_within_one_standard_error(const std::vector<double>& one, const std::vector<double>& best) {
+  const auto count = static_cast<double>(one.size());
+  const double sum = std::accumulate(one.begin(), one.end(), 0.0) - std::accumulate(best.begin(), best.end(), 0.0);
+  if (count < 2.0) return sum <= 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k) squares += std::pow(one[k] - best[k] - sum / count, 2);
+  return sum <= std::sqrt(squares * count / (count - 1.0));
+}
+
+// Whether `one` is significantly worse than `best` (profile_search.h). The tenth of the mean block damps blocks with
+// small costs, whose relative differences are noise.
+bool is_significantly_worse(const std::vector<double>& one, const std::vector<double>& best) {
+  constexpr double kLeastBlock = 0.1;
+  const auto count = static_cast<double>(one.size());
+  const double least = kLeastBlock * std::accumulate(best.begin(), best.end(), 0.0) / count;
+  double mean = 0.0;
+  double squares = 0.0;
+  for (std::size_t b = 0; b < one.size(); ++b) {
+    const double whole = one[b] + best[b] + least;
+    const double share = whole > 0.0 ? (one[b] - best[b]) / whole : 0.0;
+    mean += share / count;
+    squares += share * share;
+  }
+  const double variance = std::max(0.0, squares / count - mean * mean) / std::max(1.0, count - 1.0);
+  return mean > 2.0 * std::sqrt(variance);
+}
+
 struct Candidate {
   double at = 0.0;
   BlockCosts costs;
@@ -30,31 +55,30 @@ class Search {
   Search(const std::function<BlockCosts(double)>& cost, const SearchRange& range) : cost_(cost), range_(range) {}
 
   OffsetEstimate run() {
-    if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans))
-      return {0.0, false, kUnknownError};
+    if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans)) return {};
     scan();
     const Candidate zero = candidate(0.0);
-    if (range_.systematic_effect > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Candidate& one) {
-          return !is_significantly_worse(zero.costs, one.costs);
-        })) {
-      return {0.0, false, kUnknownError, false, sum(zero.costs), sum(zero.costs)};
-    }
+    const double effect = range_.systematic_effect.value_or(0.0);
+    const bool any_better = std::any_of(scanned_.begin(), scanned_.end(), [&](const Candidate& one) {
+      return is_significantly_worse(zero.costs, one.costs);
+    });
+    if (effect > 0.0 && !any_better) return {};
     refine_valleys();
     look_around();
-    OffsetEstimate found{0.0, false, jackknife_error(), false, sum(best_.costs), sum(zero.costs)};
+    OffsetEstimate found;
+    found.standard_error = jackknife_error();
     // If 0 is outside of the range, recordings do not overlap there and the cost at 0 has no meaning.
     const bool zero_counts = range_.low <= 0.0 && range_.high >= 0.0;
     double half = kSignificantErrors * found.standard_error;
     found.identified = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
-    if (range_.systematic_effect > 0.0) {
-      found.identified = found.identified && significantly_worse(best_.at - range_.systematic_effect) &&
-                         significantly_worse(best_.at + range_.systematic_effect);
-      half += range_.systematic_effect;
-      found.standard_error = std::max(found.standard_error, range_.systematic_effect / kSignificantErrors);
+    if (effect > 0.0) {
+      found.identified =
+          found.identified && significantly_worse(best_.at - effect) && significantly_worse(best_.at + effect);
+      half += effect;
+      found.standard_error = std::max(found.standard_error, effect / kSignificantErrors);
     }
     found.not_zero = !zero_counts || std::abs(best_.at) > half;
-    if (found.not_zero && zero_counts && range_.has_systematic_effect &&
-        !is_significantly_worse(zero.costs, best_.costs))
+    if (found.not_zero && zero_counts && range_.systematic_effect && !is_significantly_worse(zero.costs, best_.costs))
       found.identified = false;
     if (!found.identified) found.standard_error = kUnknownError;
     if (found.identified && found.not_zero) found.at = best_.at;

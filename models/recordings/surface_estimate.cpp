@@ -5,7 +5,7 @@
 
 #include "engine/tick/sensor_identification.h"
 #include "models/recordings/free_air.h"
-#include "models/recordings/surface_numbers.h"
+#include "models/recordings/profile_search.h"
 #include "models/recordings/surface_onset.h"
 
 namespace palpate {

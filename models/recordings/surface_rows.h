@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/recording/recording.h"
@@ -41,9 +42,13 @@ class GrowingStride {
 
 // Every n-th row, with the smallest n that leaves at most `most`.
 std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::size_t most);
-// The rows of a recording with their motion estimates: all, or at most `most`.
-std::vector<SurfaceRow> all_rows(const Recording& recording);
+// The same of a recording, with the motion estimates.
 std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
+
+// The smallest and the largest position of at least one row.
+std::pair<double, double> position_range_m(const std::vector<SurfaceRow>& rows);
+// The median (the upper one of an even number); 0 for no values.
+double median_of(std::vector<double> values);
 
 // The block of each row, of `blocks` blocks of equal path length of the tool.
 std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows, std::size_t blocks);

@@ -27,9 +27,7 @@ struct RegisteredSurfaces {
   double surface_position_m = 0.0;           // in positions corrected by the offsets
 };
 
-// `source` must have no corrections. `fraction`: passed to `control` as progress. Errors: those of the source;
-// interrupted.
-Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control = {},
-                                             double fraction = 0.0);
+// `source` must have no corrections. Errors: those of the source; interrupted.
+Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control = {});
 
 }  // namespace palpate

@@ -103,6 +103,7 @@ Status MotionSource::read(const Input& input, const Thinning& thinning, OneRecor
 }
 
 Status MotionSource::load(const FitControl& control, double fraction) {
+  if (!recordings_.empty()) return {};
   std::vector<OneRecording> read_so_far(inputs_.size());
   rows_ = 0;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
@@ -131,9 +132,7 @@ Status MotionSource::load(const FitControl& control, double fraction) {
 
 Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control,
                               double fraction) {
-  if (recordings_.empty()) {
-    if (Status status = load(control, fraction); !status) return status;
-  }
+  if (Status status = load(control, fraction); !status) return status;
   std::size_t seen = 0;
   int stroke = 0;
   std::optional<FoldAssignment> assignment = assignment_;

@@ -62,9 +62,12 @@ class MotionSource {
   explicit MotionSource(std::vector<Input> inputs, std::size_t most_rows = kMaximumRows)
       : inputs_(std::move(inputs)), most_rows_(most_rows) {}
 
+  // Reads the recordings unless they are in memory. Errors: those of RecordingReader; interrupted.
+  Status load(const FitControl& control = {}, double fraction = 0.0);
+
   // Calls `visit` for every kept row in order, the longest recording first. The pass ends with "interrupted" when
   // `visit` returns false or `control`, called every kRowsPerQuestion rows with `fraction`, asks for it.
-  // Errors: also those of RecordingReader.
+  // Errors: also those of load.
   Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
                   double fraction = 0.0);
 
@@ -107,7 +110,6 @@ class MotionSource {
     bool is_run_up(std::size_t row) const { return row >= beginning && row % (sparse * stretch) >= stretch; }
   };
 
-  Status load(const FitControl& control, double fraction);
   Status read(const Input& input, const Thinning& thinning, OneRecording& one, const FitControl& control,
               double fraction);
 
