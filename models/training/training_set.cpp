@@ -184,7 +184,7 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
       set.evaluation_features.push_back(vector.values);
       set.evaluation_force_N.push_back(row.force_N);
     }
-    const TrainingSite site{vector.values, row.force_N, 1.0, row.fold, row.force_N <= force_noise_floor_N};
+    const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, row.fold, row.force_N <= force_noise_floor_N};
     switch (reduction) {
       case Reduction::coverage:
         coverage.add(site);

@@ -51,6 +51,7 @@ struct TrainingSite {
   std::array<double, kMaxFeatures> features{};  // SI
   double force_N = 0.0;
   double count = 1.0;  // number of samples merged into it
+  int stroke = 0;
   int fold = 0;
   bool no_force = false;  // force at or below the noise floor: one-sided, known only not to be positive
 };

@@ -1,5 +1,3 @@
-#include "models/fit/choose_centres.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -9,7 +7,6 @@
 
 #include "models/solve/site_tree.h"
 #include "tests/support/fit_centres.h"
-#include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -62,38 +59,6 @@ TEST(FitKdTree, EqualsAFullRefitAfterEverySplit) {
     ASSERT_TRUE(fitted.ok());
     EXPECT_EQ(fitted->function.centres, plain_centres(sites, jnd_N, kernel, 25)) << kernel_name(kernel);
   }
-}
-
-TEST(FitKdTree, SameDataSameBits) {
-  const Sites sites = smooth_sites(4, 2000, 0.01, 1);
-  const auto a = fit_kdtree(sites, jnd_of(sites), {.centres = 50});
-  const auto b = fit_kdtree(sites, jnd_of(sites), {.centres = 50});
-  ASSERT_TRUE(a.ok() && b.ok());
-  EXPECT_EQ(a->function.centres, b->function.centres);
-  EXPECT_EQ(a->function.weights, b->function.weights);
-}
-
-TEST(FitKdTree, DegenerateDataHaveADefinedOutcome) {
-  for (const Sites& sites : test::degenerate_sites())
-    for (const int centres : {0, 1, 2, 40, 1000}) {
-      const auto fitted = fit_kdtree(sites, jnd_of(sites), {.centres = centres});
-      ASSERT_TRUE(fitted.ok());
-      EXPECT_TRUE(fitted->function.weights.allFinite());
-      EXPECT_LE(fitted->report.centres_used,
-                std::min<Eigen::Index>(centres, static_cast<Eigen::Index>(distinct_sites(sites).size())));
-    }
-  const Sites duplicates = test::degenerate_sites()[2];
-  const auto cut = fit_kdtree(duplicates, jnd_of(duplicates), {.centres = 1000});
-  EXPECT_EQ(cut->report.centres_used, 40);
-  ASSERT_FALSE(cut->report.notes.empty());
-  EXPECT_TRUE(test::has_parts(cut->report.notes.back(), {"40 centres"}));
-}
-
-TEST(FitKdTree, RefusesThresholdsOfZeroAndCanBeInterrupted) {
-  const Sites sites = smooth_sites(2, 30, 0.0, 1);
-  EXPECT_TRUE(
-      test::has_parts(fit_kdtree(sites, Eigen::VectorXd::Zero(30), {}).error().message, {"jnd_N", "30", "30", "0 N"}));
-  EXPECT_EQ(fit_kdtree(sites, jnd_of(sites), {}, {[](double) { return false; }}).error().message, "interrupted");
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
 // 0.05 +- 0.02, but the cost is not significantly lower than at 0.
 TEST(ProfileSearch, WhatTheMaterialImitatesIsNotTold) {
   SearchRange with_effect = kRange;
-  with_effect.has_systematic_effect = true;
+  with_effect.systematic_effect = 0.0;
   const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 0.05, 1.0); }, with_effect);
   EXPECT_FALSE(found.identified);
   EXPECT_EQ(found.at, 0.0);
@@ -44,7 +44,6 @@ TEST(ProfileSearch, WhatTheMaterialImitatesIsNotTold) {
 
 TEST(ProfileSearch, ABlurIsPartOfTheError) {
   SearchRange with_effect = kRange;
-  with_effect.has_systematic_effect = true;
   with_effect.systematic_effect = 1.0;
   const auto at = [&](double place) {
     return estimate_offset([=](double x) { return bowl(x, place, 0.01); }, with_effect);

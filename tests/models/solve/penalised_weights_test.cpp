@@ -42,7 +42,7 @@ double largest_difference(const RbfFunction& a, const RbfFunction& b, const Site
 }
 
 FittedRbf penalised(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
-  auto factorised = factorise_rows(sites, kernel, centres, {});
+  auto factorised = factorise_rows(sites, kernel, centres);
   EXPECT_TRUE(factorised.ok());
   factorised->plain_unknowns_limit = 0;
   factorised->smoothing = *sites.smoothing;
@@ -72,7 +72,7 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
     for (const double smoothing : {1e-2, 1.0}) {
       sites.smoothing = smoothing;
       const auto some = penalised(sites, kernel, sites.points);
-      const auto all = fit_direct(sites, {kernel, smoothing});
+      const auto all = fit_direct(sites, kernel, smoothing);
       ASSERT_TRUE(all.ok());
       // Two algorithms for systems with condition numbers up to some 1e6.
       EXPECT_LT(largest_difference(some.function, all->function, sites), 1e-7) << kernel_name(kernel);
