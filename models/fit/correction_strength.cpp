@@ -12,7 +12,7 @@
 #include "models/model/nearest_points.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/penalised_weights.h"
+#include "models/solve/solve_weights.h"
 #include "models/training/cross_validation.h"
 #include "models/training/sites.h"
 
@@ -59,7 +59,9 @@ class LeftOutFits {
     Eigen::VectorXd values(design_.rows());
     for (const Fold& fold : folds_) {
       if (fold.count == 0) continue;
-      const Eigen::VectorXd coefficients = solve(fold.gram, smoothing, fold.right);
+      Eigen::MatrixXd penalised = fold.gram;
+      penalised.topLeftCorner(space_.free, space_.free) += smoothing * space_.penalty;
+      const Eigen::VectorXd coefficients = solve_with_ridge(penalised, fold.right, 1e-14);
       Eigen::VectorXd of_fold(fold.count);
       multiply(design_.middleRows(fold.first, fold.count), false, coefficients, false, 1.0, 0.0, of_fold);
       values.segment(fold.first, fold.count) = of_fold;
@@ -112,30 +114,6 @@ class LeftOutFits {
     left.array() *= rows_.row_scale.array().square();
     left.segment(mine.first, mine.count).setZero();
     multiply(design_, true, left, false, 1.0, 0.0, mine.right);
-  }
-
-  // (`gram` + smoothing * penalty) x = right, scaled to a diagonal of ones.
-  Eigen::VectorXd solve(const Eigen::MatrixXd& gram, double smoothing, Eigen::VectorXd right) const {
-    const Eigen::Index n = gram.cols();
-    const Eigen::Index free = space_.penalty.cols();
-    Eigen::VectorXd scale = gram.diagonal();
-    scale.head(free) += smoothing * space_.penalty.diagonal();
-    for (double& value : scale) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
-    right = right.cwiseProduct(scale).eval();
-    Eigen::MatrixXd factor(n, n);
-    for (double lift = 1e-14; lift < 1.0; lift *= 100.0) {
-      for (Eigen::Index j = 0; j < n; ++j) {  // below the diagonal
-        auto column = factor.col(j).tail(n - j);
-        column = gram.col(j).tail(n - j);
-        if (j < free) column.head(free - j) += smoothing * space_.penalty.col(j).tail(free - j);
-        column = (column.cwiseProduct(scale.tail(n - j)) * scale(j)).eval();
-      }
-      factor.diagonal().array() += lift;
-      if (!cholesky_in_place(factor)) continue;
-      cholesky_solve(factor, right);
-      return right.cwiseProduct(scale);
-    }
-    return Eigen::VectorXd::Zero(n);
   }
 
   const CrossValidationRows& rows_;

@@ -81,26 +81,11 @@ class GrowingFit {
 
   // row_scale (f - h) at every site for the best weights.
   Eigen::VectorXd residual() const {
-    // Columns are scaled to length 1; columns near 0 get the weight 0.
-    Eigen::VectorXd scale = gram_.diagonal().head(size_).cwiseSqrt();
-    const double tiny = 1e-20 * scale.maxCoeff();
-    scale = (scale.array() > tiny).select(scale.cwiseInverse(), 0.0);
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * gram_.topLeftCorner(size_, size_) * scale.asDiagonal();
-    Eigen::VectorXd weights;
-    for (double ridge = 1e-13; ridge < 1.0; ridge *= 100.0) {
-      Eigen::MatrixXd factor = scaled;
-      factor.diagonal().array() += ridge;
-      if (!cholesky_in_place(factor)) continue;
-      weights = scale.cwiseProduct(right_.head(size_));
-      cholesky_solve(factor, weights);
-      break;
-    }
+    const Eigen::VectorXd weights = solve_with_ridge(gram_.topLeftCorner(size_, size_), right_.head(size_), 1e-13);
     Eigen::VectorXd rest = tail_.residual();
-    const Eigen::VectorXd scaled_weights = weights.cwiseProduct(scale);
     parallel_for(kParts, [&](int part) {
       const auto [first, rows] = rows_of(part);
-      multiply(columns_.block(first, 0, rows, size_), false, scaled_weights, false, -1.0, 1.0,
-               rest.segment(first, rows));
+      multiply(columns_.block(first, 0, rows, size_), false, weights, false, -1.0, 1.0, rest.segment(first, rows));
     });
     return rest;
   }

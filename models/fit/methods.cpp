@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "models/model/rbf/rbf_correction.h"
-#include "models/solve/solve_weights.h"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "models/fit/bound_calibration.h"
 #include "models/linear/lapack.h"
-#include "models/solve/penalised_weights.h"
 
 namespace palpate {
 

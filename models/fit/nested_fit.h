@@ -19,8 +19,6 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "models/fit/fit.h"
-#include "models/solve/centre_sequence.h"
-#include "models/solve/solve_weights.h"
 
 namespace palpate {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdlib>
 #include <string_view>
 #include <vector>
@@ -221,6 +222,21 @@ void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) {
   int info = 0;
   dpotrs_("L", &n, &one, factor.data(), &lda, b.data(), &ldb, &info);
   assert(info == 0);
+}
+
+Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double ridge) {
+  Eigen::VectorXd scale = a.diagonal();
+  for (double& value : scale) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
+  for (; ridge < 1.0; ridge *= 100.0) {
+    Eigen::MatrixXd factor = scaled;
+    factor.diagonal().array() += ridge;
+    if (!cholesky_in_place(factor)) continue;
+    Eigen::VectorXd x = b.cwiseProduct(scale);
+    cholesky_solve(factor, x);
+    return x.cwiseProduct(scale);
+  }
+  return Eigen::VectorXd::Zero(b.size());
 }
 
 double cholesky_condition(const ConstMatrixRef& factor, double norm) {

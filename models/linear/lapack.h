@@ -59,6 +59,10 @@ bool singular_values(Eigen::MatrixXd& a, Eigen::VectorXd& values, Eigen::MatrixX
 bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue = {});
 // Solves a x = b in place, `factor` from cholesky_in_place.
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
+// Solves a x = b for a positive semidefinite `a`, given by its lower triangle: its rows and columns are scaled to a
+// diagonal of ones, and `ridge`, multiplied by 100 until a Cholesky factor exists, is added to the diagonal. Unknowns
+// whose diagonal is 0 are 0.
+Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double ridge);
 // Estimated condition number in the 1-norm. `norm`: the 1-norm of the matrix.
 double cholesky_condition(const ConstMatrixRef& factor, double norm);
 // The 1-norm of a symmetric matrix given by its lower triangle.

@@ -82,12 +82,10 @@ constexpr std::size_t kMostTimes = 3;
 
 // The columns of elastic response, viscosity and the branches with the chosen times.
 ColumnList columns_of(const TrendRows& rows, const std::vector<std::size_t>& chosen) {
-  ColumnList columns;
-  for (std::size_t i = 0; i < rows.first_branch(); ++i) columns.push_back(static_cast<Eigen::Index>(i));
+  ColumnList columns = columns_from(0, rows.first_branch());
   for (const std::size_t time : chosen) {
-    for (std::size_t k = 0; k < kCurveTerms; ++k) {
-      columns.push_back(static_cast<Eigen::Index>(rows.first_branch() + time * kCurveTerms + k));
-    }
+    const ColumnList branch = columns_from(rows.first_branch() + time * kCurveTerms, kCurveTerms);
+    columns.insert(columns.end(), branch.begin(), branch.end());
   }
   return columns;
 }

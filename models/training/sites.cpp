@@ -6,23 +6,16 @@
 #include <string>
 
 namespace palpate {
-namespace {
-
-Error wrong_size(const std::string& name, Eigen::Index found, Eigen::Index expected) {
-  return Error{"sites: " + name + " has " + std::to_string(found) + " entries, expected " + std::to_string(expected) +
-               ", one per point"};
-}
-
-}  // namespace
-
 Status validate_sites(const Sites& sites) {
   const Eigen::Index count = sites.count();
   if (count == 0) return Error{"sites: there are no points to fit; give at least one sample in contact"};
   if (sites.dimension() < 1 || sites.dimension() > kMaxDimension)
     return Error{"sites: points have " + std::to_string(sites.dimension()) + " coordinates, expected 1 to " +
                  std::to_string(kMaxDimension)};
-  if (sites.target_N.size() != count) return wrong_size("target_N", sites.target_N.size(), count);
-  if (sites.row_scale.size() != count) return wrong_size("row_scale", sites.row_scale.size(), count);
+  if (sites.target_N.size() != count || sites.row_scale.size() != count)
+    return Error{"sites: found " + std::to_string(sites.target_N.size()) + " entries of target_N and " +
+                 std::to_string(sites.row_scale.size()) + " of row_scale, expected " + std::to_string(count) +
+                 " of each, one per point"};
   for (Eigen::Index i = 0; i < count; ++i) {
     const bool finite = sites.points.col(i).allFinite() && std::isfinite(sites.target_N[i]) &&
                         std::isfinite(sites.row_scale[i]) && sites.row_scale[i] >= 0.0;
@@ -35,19 +28,12 @@ Status validate_sites(const Sites& sites) {
 
 Sites even_subset(const Sites& sites, Eigen::Index most) {
   const Eigen::Index count = std::min(sites.count(), most);
-  Sites subset;
-  subset.smoothing = sites.smoothing;
-  subset.strength = sites.strength;
-  subset.as_2009 = sites.as_2009;
-  subset.points.resize(sites.dimension(), count);
-  subset.target_N.resize(count);
-  subset.row_scale.resize(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index i = k * sites.count() / count;
-    subset.points.col(k) = sites.points.col(i);
-    subset.target_N[k] = sites.target_N[i];
-    subset.row_scale[k] = sites.row_scale[i];
-  }
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < count; ++k) kept.push_back(k * sites.count() / count);
+  Sites subset = sites;
+  subset.points = sites.points(Eigen::all, kept);
+  subset.target_N = sites.target_N(kept);
+  subset.row_scale = sites.row_scale(kept);
   return subset;
 }
 

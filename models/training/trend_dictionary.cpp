@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "engine/base/text.h"
 #include "models/model/bernstein.h"
 
 namespace palpate {
@@ -33,19 +33,8 @@ std::vector<double> ladder(double shortest_s, double longest_s, double per_decad
 }
 
 std::string range_text(const char* words, const std::vector<double>& values, double unit, const char* unit_name) {
-  char text[96];
-  if (values.size() == 1) {
-    std::snprintf(text, sizeof text, "%s %.3g %s", words, unit * values.front(), unit_name);
-  } else {
-    std::snprintf(text, sizeof text, "%s %.3g-%.3g %s", words, unit * values.front(), unit * values.back(), unit_name);
-  }
-  return text;
-}
-
-ColumnList columns_from(std::size_t first, std::size_t count) {
-  ColumnList columns;
-  for (std::size_t i = 0; i < count; ++i) columns.push_back(static_cast<Eigen::Index>(first + i));
-  return columns;
+  const std::string last = values.size() > 1 ? "-" + general(unit * values.back(), 3) : "";
+  return std::string(words) + " " + general(unit * values.front(), 3) + last + " " + unit_name;
 }
 
 Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {

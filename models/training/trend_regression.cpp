@@ -22,6 +22,12 @@ constexpr Eigen::Index kBlock = 512;  // rows of a product
 
 }  // namespace
 
+ColumnList columns_from(std::size_t first, std::size_t count) {
+  ColumnList columns(count);
+  std::iota(columns.begin(), columns.end(), static_cast<Eigen::Index>(first));
+  return columns;
+}
+
 TrendRegression::TrendRegression(const TrendRows& rows, Smoothness smoothness)
     : rows_(rows),
       part_error_(rows.list().creep_times_s.empty() ? kPartErrorOfFew : kPartError),
@@ -99,12 +105,6 @@ TrendRegression::Equations TrendRegression::sum(int left_out, const std::vector<
   flush();
   equations.gram.triangularView<Eigen::StrictlyUpper>() = equations.gram.transpose();
   return equations;
-}
-
-ColumnList TrendRegression::all_columns() const {
-  ColumnList all(rows_.columns());
-  std::iota(all.begin(), all.end(), Eigen::Index{0});
-  return all;
 }
 
 // The penalised solution on these columns, 0 in all others. The columns of the elastic response come first.

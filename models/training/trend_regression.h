@@ -29,6 +29,8 @@
 namespace palpate {
 
 using ColumnList = std::vector<Eigen::Index>;
+// `count` consecutive columns.
+ColumnList columns_from(std::size_t first, std::size_t count);
 
 // alpha; the second without creep, in models with few features: there, 0.1 leaves the trend too little damping to come
 // to rest (tests/accuracy/closed_loop_test.cpp).
@@ -52,7 +54,7 @@ class TrendRegression {
   CrossValidated cross_validate(const ColumnList& columns) const { return cross_validate(columns, smoothness_); }
   // The weights fitted to all rows, one for each column of the rows; 0 outside `columns`.
   Eigen::VectorXd solve(const ColumnList& columns) const { return weights(all_, columns, smoothness_); }
-  ColumnList all_columns() const;
+  ColumnList all_columns() const { return columns_from(0, rows_.columns()); }
   double smoothness() const { return smoothness_; }
 
  private:

@@ -110,7 +110,7 @@ TEST(Methods, RefuseWrongSitesAndCanBeInterrupted) {
                                 {"site 7 ", "finite", "row_scale"}));
     sites.target_N.resize(3);
     EXPECT_TRUE(test::has_parts(test::fit_centres(method, sites, jnd_N, request).error().message,
-                                {"target_N has 3 ", "expected 30"}));
+                                {"3 entries of target_N", "expected 30"}));
     EXPECT_FALSE(test::fit_centres(method, {}, jnd_N, request).ok());
   });
 }

@@ -1,5 +1,3 @@
-#include "models/solve/penalised_weights.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,7 +1,5 @@
 #include "models/solve/solve_weights.h"
 
-#include "models/solve/penalised_weights.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
