@@ -161,9 +161,9 @@ double outermost_contact_m(const std::vector<Member>& members, double force_nois
   const double least_N = std::max(certain_force_N(force_noise_N), kOuterRange * largest_N);
   std::vector<double> positions_m;
   for (const Member& member : members) {
-    if (member.own.tool_mass_kg > 0.0) return surface_m;
+    if (member.own.air.tool_mass_kg > 0.0) return surface_m;
     for (const SurfaceRow& row : member.rows) {
-      const bool air = member.own.free_air && row.motion.position_m < member.own.air_end_m;
+      const bool air = member.own.air.found && row.motion.position_m < member.own.air.inner_end_m;
       if (air || std::abs(row.force_N) <= least_N) continue;
       positions_m.push_back(row.motion.position_m - member.result.offset_m);
     }
@@ -176,7 +176,7 @@ double outermost_contact_m(const std::vector<Member>& members, double force_nois
 }
 
 RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N, const FitControl& control) {
-  const bool zeros = std::all_of(members.begin(), members.end(), [](const Member& one) { return one.own.free_air; });
+  const bool zeros = std::all_of(members.begin(), members.end(), [](const Member& one) { return one.own.air.found; });
   for (Member& member : members) {
     if (!zeros) member.own.force_zero_N = 0.0;
     for (SurfaceRow& row : member.rows) row.force_N -= member.own.force_zero_N;
