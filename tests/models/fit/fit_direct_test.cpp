@@ -71,17 +71,6 @@ TEST(FitDirect, InterpolatesWithoutSmoothing) {
   }
 }
 
-TEST(FitDirect, ReproducesAPolynomialOfTheTail) {
-  for (const KernelKind kernel : kKernelKinds) {
-    Sites sites = smooth_sites(2, 150, 0.0, 1);
-    const Eigen::VectorXd tail = random_points(1, tail_size(tail_degree(kernel), 2), 3).transpose();
-    sites.target_N = tail_matrix(tail_degree(kernel), sites.points) * tail;
-    const auto fitted = fit_direct(sites, kernel, 1e-2);
-    ASSERT_TRUE(fitted.ok());
-    EXPECT_LE((fitted->function.tail - tail).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
-  }
-}
-
 TEST(FitDirect, ReportsTheResidualsInClosedForm) {
   const Sites sites = smooth_sites(3, 200, 0.05, 1);
   const auto fitted = fit_direct(sites, KernelKind::cubic, 0.3);

@@ -16,15 +16,6 @@ namespace {
 
 using test::smooth_sites;
 
-// The largest difference of two functions at the sites.
-double difference(const RbfFunction& a, const RbfFunction& b, const Sites& sites) {
-  double worst = 0.0;
-  for (Eigen::Index i = 0; i < sites.count(); ++i)
-    worst =
-        std::max(worst, std::abs(rbf_value(a, sites.points.col(i).data()) - rbf_value(b, sites.points.col(i).data())));
-  return worst;
-}
-
 Sites penalised_sites() {
   Sites sites = smooth_sites(4, 900, 0.02, 3);
   sites.smoothing = 1e-3;
@@ -41,7 +32,7 @@ void expect_direct(const NestedWeights& nested, Eigen::Index count, const Result
   const auto fitted = nested.solve(count);
   ASSERT_TRUE(direct.ok());
   EXPECT_EQ(fitted.function.centres, direct->function.centres) << count;
-  EXPECT_LE(difference(fitted.function, direct->function, sites), kRounding_N) << count;
+  EXPECT_LE(test::largest_difference(fitted.function, direct->function, sites.points), kRounding_N) << count;
   EXPECT_NEAR(fitted.report.residual_rms, direct->report.residual_rms, 1e-9) << count;
 }
 
