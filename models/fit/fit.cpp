@@ -12,29 +12,21 @@
 namespace palpate {
 namespace {
 
-// Returns no value when interrupted.
-std::optional<double> share_within_jnd(const PreparedTraining& prepared, const ModelData& data,
-                                       const FitControl& control) {
-  constexpr std::size_t kBetweenQuestions = 16384;
+double share_within_jnd(const PreparedTraining& prepared, const ModelData& data) {
   constexpr std::size_t kParts = 4;
   const FittedModel model(data);
   const std::vector<double>& measured_N = prepared.set.evaluation_force_N;
   const std::size_t count = measured_N.size();
-  std::size_t within = 0;
-  for (std::size_t first = 0; first < count; first += kBetweenQuestions) {
-    if (!control.may_continue(0.99)) return std::nullopt;
-    const std::size_t some = std::min(kBetweenQuestions, count - first);
-    std::array<std::size_t, kParts> of_part{};
-    parallel_for(kParts, [&](int part) {
-      const auto p = static_cast<std::size_t>(part);
-      for (std::size_t i = first + some * p / kParts; i < first + some * (p + 1) / kParts; ++i) {
-        const double force_N = model.evaluate(prepared.set.evaluation_features[i].data()).force_N;
-        if (data.jnd.error_over_jnd(force_N, measured_N[i]) <= 1.0) ++of_part[p];
-      }
-    });
-    within = std::accumulate(of_part.begin(), of_part.end(), within);
-  }
-  return static_cast<double>(within) / static_cast<double>(count);
+  std::array<std::size_t, kParts> within{};
+  parallel_for(kParts, [&](int part) {
+    const auto p = static_cast<std::size_t>(part);
+    for (std::size_t i = count * p / kParts; i < count * (p + 1) / kParts; ++i) {
+      const double force_N = model.evaluate(prepared.set.evaluation_features[i].data()).force_N;
+      if (data.jnd.error_over_jnd(force_N, measured_N[i]) <= 1.0) ++within[p];
+    }
+  });
+  return static_cast<double>(std::accumulate(within.begin(), within.end(), std::size_t{0})) /
+         static_cast<double>(count);
 }
 
 // The correction without a fold; none if no other fold has rows.
@@ -116,9 +108,9 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   }
   auto fit = model_of(prepared, request, std::move(*fitted), of_folds);
   if (!fit) return fit;
-  const std::optional<double> within_jnd = share_within_jnd(prepared, fit->data, control);
-  if (!within_jnd || !control.may_continue(1.0)) return interrupted();
-  fit->data.provenance.training_within_jnd = *within_jnd;
+  if (!control.may_continue(0.99)) return interrupted();
+  fit->data.provenance.training_within_jnd = share_within_jnd(prepared, fit->data);
+  if (!control.may_continue(1.0)) return interrupted();
   return fit;
 }
 
