@@ -40,11 +40,8 @@ void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b
 // The lower triangle of c = a^T a; the rest of c stays as it is.
 void gram(const ConstMatrixRef& a, MatrixRef c);
 
-// Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation and the rest by the reflectors.
-// Returns the factors of the block reflectors.
-Eigen::MatrixXd qr_in_place(MatrixRef a);
-// c = Q^T c, with `a` and `factors` from qr_in_place.
-void apply_transposed_q(const ConstMatrixRef& a, const Eigen::MatrixXd& factors, Eigen::VectorXd& c);
+// Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation; the rest has no meaning then.
+void qr_in_place(MatrixRef a);
 
 // Eigenvalues in ascending order in `values`, eigenvectors in the columns of `a`, of which only the lower triangle is
 // read. False if the iteration did not converge.

@@ -24,21 +24,12 @@ constexpr Eigen::Index kSitesEach = 10;
 // number of cores.
 constexpr int kHalves = 2;
 
-// The reduced form of the rows so far.
-struct HalfOfRows {
-  Eigen::MatrixXd triangle;
-  Eigen::VectorXd data;       // Q^T f along the triangle's rows
-  double rest_squared = 0.0;  // of Q^T f, outside of them
-};
-
-// Replaces triangle and data by those of `rows`, which contain the triangle so far as their first rows.
-void factorise(Eigen::MatrixXd& rows, Eigen::VectorXd& data, HalfOfRows& half) {
-  const Eigen::Index columns = rows.cols();
-  const Eigen::MatrixXd factors = qr_in_place(rows);
-  apply_transposed_q(rows, factors, data);
-  half.triangle = rows.topRows(columns).triangularView<Eigen::Upper>();
-  half.data = data.head(columns);
-  half.rest_squared += data.tail(data.size() - columns).squaredNorm();
+// The R factor of two blocks of rows.
+Eigen::MatrixXd triangle_of(const Eigen::MatrixXd& above, const Eigen::MatrixXd& below) {
+  Eigen::MatrixXd stack(above.rows() + below.rows(), above.cols());
+  stack << above, below;
+  qr_in_place(stack);
+  return stack.topRows(stack.cols()).triangularView<Eigen::Upper>();
 }
 
 // Eigenvalues below this share of the largest are rounding.
@@ -141,36 +132,23 @@ Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, con
   }
   const Eigen::Index block_rows = std::max<Eigen::Index>(1024, (2 * columns + 9) / 8 * 8);
   const Eigen::Index blocks = (sites.count() + block_rows - 1) / block_rows;
-  std::array<HalfOfRows, kHalves> halves;
+  std::array<Eigen::MatrixXd, kHalves> halves;
   parallel_for(kHalves, [&](int half) {
-    HalfOfRows& mine = halves[static_cast<std::size_t>(half)];
-    mine = {Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns)};
+    Eigen::MatrixXd& triangle = halves[static_cast<std::size_t>(half)];
+    triangle = Eigen::MatrixXd::Zero(columns + 1, columns + 1);
     for (Eigen::Index block = blocks * half / kHalves; block < blocks * (half + 1) / kHalves; ++block) {
       const Eigen::Index first = block * block_rows;
       const Eigen::Index rows = std::min(block_rows, sites.count() - first);
-      Eigen::MatrixXd rows_of_block(rows, columns);
+      Eigen::MatrixXd rows_of_block(rows, columns + 1);
       kernel_matrix(kernel, points, centres, rows_of_block.leftCols(centres.cols()), first);
-      rows_of_block.rightCols(tail) = tail_matrix(tail_degree(kernel), sites.points.middleCols(first, rows));
+      rows_of_block.middleCols(centres.cols(), tail) =
+          tail_matrix(tail_degree(kernel), sites.points.middleCols(first, rows));
+      rows_of_block.col(columns) = sites.target_N.segment(first, rows);
       rows_of_block.array().colwise() *= sites.row_scale.segment(first, rows).array();
-      Eigen::MatrixXd stack(columns + rows, columns);
-      stack << mine.triangle, rows_of_block;
-      Eigen::VectorXd data(columns + rows);
-      data << mine.data, sites.target_N.segment(first, rows).cwiseProduct(sites.row_scale.segment(first, rows));
-      factorise(stack, data, mine);
+      triangle = triangle_of(triangle, rows_of_block);
     }
   });
-  Eigen::MatrixXd stack(2 * columns, columns);
-  stack << halves[0].triangle, halves[1].triangle;
-  Eigen::VectorXd data(2 * columns);
-  data << halves[0].data, halves[1].data;
-  HalfOfRows both;
-  both.rest_squared = halves[0].rest_squared + halves[1].rest_squared;
-  factorise(stack, data, both);
-  Eigen::MatrixXd& triangle = factorised.triangle;
-  triangle = Eigen::MatrixXd::Zero(columns + 1, columns + 1);
-  triangle.topLeftCorner(columns, columns) = both.triangle;
-  triangle.col(columns).head(columns) = both.data;
-  triangle(columns, columns) = std::sqrt(both.rest_squared);
+  factorised.triangle = triangle_of(halves[0], halves[1]);
   return factorised;
 }
 
