@@ -55,7 +55,6 @@ class TrendRegression {
   // The weights fitted to all rows, one for each column of the rows; 0 outside `columns`.
   Eigen::VectorXd solve(const ColumnList& columns) const { return weights(all_, columns, smoothness_); }
   ColumnList all_columns() const { return columns_from(0, rows_.columns()); }
-  double smoothness() const { return smoothness_; }
 
  private:
   // The normal equations of the rows outside one fold; -1: of all rows.
