@@ -23,8 +23,7 @@ namespace {
 constexpr std::size_t kLeftOutRows = 5000;
 constexpr KernelKind kKernel = KernelKind::cubic;
 constexpr Eigen::Index kCentres = 200;
-constexpr Eigen::Index kBlockRows = 512;  // of the design at a time
-constexpr int kLowestDecade = -9;         // of the smoothing, relative to the mean eigenvalue
+constexpr int kLowestDecade = -9;  // of the smoothing, relative to the mean eigenvalue
 constexpr int kHighestDecade = 1;
 constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};

@@ -63,8 +63,8 @@ class GrowingFit {
       product.setZero();
       // One column at a time, because dgemm would spend its time copying; by blocks of rows, which stay in the cache
       // for the next column.
-      for (Eigen::Index row = 0; row < rows; row += kRows) {
-        const Eigen::Index some = std::min(kRows, rows - row);
+      for (Eigen::Index row = 0; row < rows; row += kBlockRows) {
+        const Eigen::Index some = std::min(kBlockRows, rows - row);
         for (Eigen::Index k = 0; k < count; ++k)
           multiply(columns_.block(first + row, 0, some, size_), true, mine.block(row, k, some, 1), false, 1.0, 1.0,
                    product.col(k));
@@ -98,8 +98,6 @@ class GrowingFit {
     const Eigen::Index half = sites_.count() / 16 * 8;
     return part == 0 ? std::pair{Eigen::Index{0}, half} : std::pair{half, sites_.count() - half};
   }
-
-  static constexpr Eigen::Index kRows = 512;
 
   const Sites& sites_;
   KernelKind kernel_;

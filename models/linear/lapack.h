@@ -33,6 +33,9 @@ class BlasThreads {
 // 30 ms. From then on products use one thread, except within BlasThreads.
 void prepare_blas();
 
+// Rows of a matrix at a time where several products use them: the block stays in the second-level cache.
+inline constexpr Eigen::Index kBlockRows = 512;
+
 // c = alpha op(a) op(b) + beta c, where op is the transpose or nothing.
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
               double beta, MatrixRef c);

@@ -57,7 +57,7 @@ class LawSearch {
 
  private:
   Result<TrendRows> rows_of(const FeatureList& law) const {
-    return gather_rows(source_, law, problem_, kSearchedRows, kSearchStep_s, control_, fraction_);
+    return gather_rows(source_, law, problem_, kSearchRows, kSearchStep_s, control_, fraction_);
   }
 
   static std::vector<FeatureSpec> surface_of(const TrendRows& rows, const Eigen::VectorXd& x) {
@@ -168,7 +168,7 @@ Result<std::vector<double>> identify_relaxation(MotionSource& source, const Tren
   list.velocity = velocity;
   list.stop_thresholds_m.clear();
   list.creep_times_s.clear();
-  const auto rows = gather_rows(source, list, problem, kSearchedRows, 0.0, control, fraction);
+  const auto rows = gather_rows(source, list, problem, kSearchRows, 0.0, control, fraction);
   if (!rows) return rows.error();
   const std::vector<double> ladder_s = rows->list().all_times_s();
   if (ladder_s.empty()) {

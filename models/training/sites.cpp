@@ -9,9 +9,9 @@ namespace palpate {
 Status validate_sites(const Sites& sites) {
   const Eigen::Index count = sites.count();
   if (count == 0) return Error{"sites: there are no points to fit; give at least one sample in contact"};
-  if (sites.dimension() < 1 || sites.dimension() > kMaxDimension)
+  if (sites.dimension() < 1 || sites.dimension() > static_cast<int>(kMaxFeatures))
     return Error{"sites: points have " + std::to_string(sites.dimension()) + " coordinates, expected 1 to " +
-                 std::to_string(kMaxDimension)};
+                 std::to_string(kMaxFeatures)};
   if (sites.target_N.size() != count || sites.row_scale.size() != count)
     return Error{"sites: found " + std::to_string(sites.target_N.size()) + " entries of target_N and " +
                  std::to_string(sites.row_scale.size()) + " of row_scale, expected " + std::to_string(count) +

@@ -13,10 +13,8 @@
 
 namespace palpate {
 
-inline constexpr int kMaxDimension = static_cast<int>(kMaxFeatures);
-
 struct Sites {
-  Eigen::MatrixXd points;    // d x N, normalised, one column a site, 1 <= d <= kMaxDimension
+  Eigen::MatrixXd points;    // d x N, normalised, one column a site, 1 <= d <= kMaxFeatures
   Eigen::VectorXd target_N;  // N forces
   // N factors >= 0 that multiply the residuals, e.g. 1 / JND(force). With factor 0 a site has no influence.
   Eigen::VectorXd row_scale;

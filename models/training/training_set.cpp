@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "models/training/weighting.h"
+
 namespace palpate {
 namespace {
 

@@ -35,7 +35,6 @@ inline constexpr std::array<const char*, 3> kReductionNames{"coverage", "force",
 inline const char* reduction_name(Reduction reduction) { return kReductionNames[static_cast<std::size_t>(reduction)]; }
 
 inline constexpr std::size_t kMaximumSites = 10000;
-inline constexpr double kReductionForce_N = 0.05;    // threshold at the start, the paper's 50 mN
 inline constexpr std::size_t kCoverageSites = 7500;  // the paper worked with 6,850
 inline constexpr double kCoverageStep = 0.005;       // at the start, in normalised feature space
 inline constexpr std::size_t kMaximumEvaluationSamples = 100000;

@@ -16,8 +16,6 @@ constexpr double kTimesPerDecade = 4.0;
 constexpr double kShortest_s = 1e-3;
 constexpr double kLongest_s = 100.0;
 constexpr std::size_t kBands = 3;
-constexpr std::size_t kStops = 8;
-static_assert(kStops <= kMaxFeatureParts);
 // The trend limits velocities to this multiple of the greatest recorded one.
 constexpr double kVelocityMargin = 1.5;
 
@@ -88,8 +86,8 @@ FeatureList dictionary(double sample_s, double longest_s, double depth_m, double
     const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
     if (from != to) list.relaxation_times_s.emplace_back(from, to);
   }
-  for (double threshold_m = 0.5 * depth_m; list.stop_thresholds_m.size() < kStops && threshold_m >= encoder_step_m;
-       threshold_m *= 0.5) {
+  for (double threshold_m = 0.5 * depth_m;
+       list.stop_thresholds_m.size() < kMaxFeatureParts && threshold_m >= encoder_step_m; threshold_m *= 0.5) {
     list.stop_thresholds_m.insert(list.stop_thresholds_m.begin(), threshold_m);
   }
   list.creep_times_s = ladder(kShortest_s, longest_time_s, 1.0);

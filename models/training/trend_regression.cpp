@@ -18,7 +18,6 @@ constexpr int kPasses = 4;
 // The candidates for lambda: 1e-6 smooths over a third of the depth, 1e-9 over two pieces.
 constexpr std::array kSmoothness{1e-6, 1e-7, 1e-8, 1e-9};
 constexpr double kFirstSmoothness = 1e-8;
-constexpr Eigen::Index kBlock = 512;  // rows of a product
 
 }  // namespace
 
@@ -85,8 +84,8 @@ TrendRegression::Equations TrendRegression::gather(int left_out) const {
 TrendRegression::Equations TrendRegression::sum(int left_out, const std::vector<double>& scale) const {
   const auto n = static_cast<Eigen::Index>(rows_.columns());
   Equations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0, {}};
-  Eigen::MatrixXd block(kBlock, n);
-  Eigen::VectorXd force_N(kBlock);
+  Eigen::MatrixXd block(kBlockRows, n);
+  Eigen::VectorXd force_N(kBlockRows);
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(n, n);
   Eigen::Index filled = 0;
   const auto flush = [&] {
@@ -100,7 +99,7 @@ TrendRegression::Equations TrendRegression::sum(int left_out, const std::vector<
     block.row(filled) = scale[i] * rows_.terms().row(static_cast<Eigen::Index>(i));
     force_N(filled) = scale[i] * rows_[i].force_N;
     equations.scale_squares += scale[i] * scale[i];
-    if (++filled == kBlock) flush();
+    if (++filled == kBlockRows) flush();
   }
   flush();
   equations.gram.triangularView<Eigen::StrictlyUpper>() = equations.gram.transpose();

@@ -26,9 +26,6 @@
 
 namespace palpate {
 
-inline constexpr std::size_t kMaximumTrendRows = 100000;
-// The limit where many regressions are compared.
-inline constexpr std::size_t kSearchedRows = 4000;
 // The basis functions of depth of each branch, stop and creeping bristle.
 inline constexpr std::size_t kCurveTerms = 3;
 
@@ -105,7 +102,7 @@ struct TrendRow {
 
 class TrendRows {
  public:
-  TrendRows(FeatureList list, const TrendProblem& problem, std::size_t most_rows = kMaximumTrendRows);
+  TrendRows(FeatureList list, const TrendProblem& problem, std::size_t most_rows);
 
   // Resets the filters for a new recording.
   void begin_recording();

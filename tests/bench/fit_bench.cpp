@@ -128,7 +128,7 @@ void against_size(const std::string& name, const Fit& fit) {
 
 // The cost over the dimension, as in figures 2 and 8 of the paper.
 void against_dimension(const std::string& name, const Fit& fit) {
-  for (int d = 1; d <= kMaxDimension; ++d)
+  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
     add_made("dimension/" + name + "/" + std::to_string(d), 3, fit, d, kPaperSites);
 }
 
@@ -199,7 +199,7 @@ const int registered = [] {
   for (const auto& [name, function] :
        {std::pair{"dimension/evaluate_rbf", &evaluate_rbf_in}, std::pair{"dimension/evaluate_grid", &evaluate_grid_in}})
     benchmark::RegisterBenchmark(name, function)
-        ->DenseRange(1, kMaxDimension)
+        ->DenseRange(1, static_cast<int>(kMaxFeatures))
         ->Repetitions(5)
         ->MinTime(0.02)
         ->ReportAggregatesOnly();

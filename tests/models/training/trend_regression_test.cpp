@@ -19,10 +19,12 @@ constexpr int kFolds = 5;
 // Strokes of growing depth and speed, a second each, measured at 500 Hz.
 template <typename Force>
 TrendRows rows_of(const FeatureList& list, double force_noise_floor_N, Force force_N) {
-  TrendRows rows(list, {.reference_depth_m = kDepth_m,
-                        .rms_velocity_m_per_s = 0.02,
-                        .force_noise_floor_N = force_noise_floor_N,
-                        .folds = kFolds});
+  TrendRows rows(list,
+                 {.reference_depth_m = kDepth_m,
+                  .rms_velocity_m_per_s = 0.02,
+                  .force_noise_floor_N = force_noise_floor_N,
+                  .folds = kFolds},
+                 10000);
   rows.begin_recording();
   for (int i = 0; i < 10000; ++i) {
     const double t = 2e-3 * i;

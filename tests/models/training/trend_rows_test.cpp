@@ -41,7 +41,7 @@ TEST(TrendRows, ColumnsAreTheTrendsTerms) {
   FeatureList list;
   list.velocity = true;
   list.relaxation_times_s = {{0.17}, {1.27}};
-  TrendRows rows(list, {kDepth_m, kThinning_m_per_s});
+  TrendRows rows(list, {kDepth_m, kThinning_m_per_s}, 4000);
   const std::vector<ElasticSpline> elastic = spline_basis();
   ASSERT_EQ(rows.columns(), kElasticTerms + 2 * kViscosityCoefficients + 2 * kCurveTerms);
   FeatureFilter first(branch_basis(0.17));
@@ -125,21 +125,21 @@ TEST(TrendRows, ALadderIsItsBranches) {
 }
 
 TEST(TrendRows, WithoutVelocityOrTimesOnlyTheElasticColumnsAreLeft) {
-  TrendRows rows({}, {kDepth_m});
+  TrendRows rows({}, {kDepth_m}, 1000);
   EXPECT_EQ(rows.columns(), kElasticTerms);
   EXPECT_EQ(rows.viscous_columns(), 0u);
 }
 
 TEST(TrendRows, HalvingBoundsTheRowsAndKeepsEvenOnesInOrder) {
-  TrendRows rows({}, {1.0});
+  TrendRows rows({}, {1.0}, 1000);
   rows.begin_recording();
-  const int count = 450000;
+  const int count = 4800;
   for (int i = 0; i < count; ++i) {
     rows.add({1e-3 * i, 0.5, 0.0, 0.0}, {0.5, 0.0}, static_cast<double>(i), i);
-    ASSERT_LE(rows.count(), kMaximumTrendRows);
+    ASSERT_LE(rows.count(), 1000u);
   }
-  // 450,000 rows are more than four times the maximum, so every eighth row is kept.
-  ASSERT_EQ(rows.count(), 56250u);
+  // 4,800 rows are more than four times the maximum, so every eighth row is kept.
+  ASSERT_EQ(rows.count(), 600u);
   for (std::size_t i = 0; i < rows.count(); ++i) {
     ASSERT_EQ(rows[i].force_N, 8.0 * static_cast<double>(i));
     ASSERT_EQ(rows[i].fold, 8 * static_cast<int>(i));
