@@ -49,14 +49,10 @@ std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double 
   std::vector<SurfaceRow> moved;
   std::size_t at = 0;
   for (const SurfaceRow& row : rows) {
-    const double wanted_s = row.sample.time_s + lag_s;
-    while (at + 1 < rows.size() && rows[at + 1].sample.time_s < wanted_s) ++at;
-    if (wanted_s < rows.front().sample.time_s || at + 1 >= rows.size()) continue;
-    const SurfaceRow& a = rows[at];
-    const SurfaceRow& b = rows[at + 1];
-    const double share = (wanted_s - a.sample.time_s) / (b.sample.time_s - a.sample.time_s);
+    const auto force_N = force_at(rows, row.sample.time_s + lag_s, at);
+    if (!force_N) continue;
     moved.push_back(row);
-    moved.back().force_N = a.force_N + share * (b.force_N - a.force_N);
+    moved.back().force_N = *force_N;
   }
   return moved;
 }

@@ -204,7 +204,7 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
     GrowingStride kept(kOnsetRows, kCoarsestOnset_s);
     for (const MotionRow& row : recording.rows) {
       if (row.run_up && !kept.rows().empty()) break;
-      kept.add({row.sample, row.motion, row.force_N});
+      kept.add(row);
     }
     recordings.push_back(kept.rows());
     offsets.push_back(recording.prepared != nullptr ? recording.prepared->offsets

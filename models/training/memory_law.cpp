@@ -92,7 +92,7 @@ ColumnList columns_of(const TrendRows& rows, const std::vector<std::size_t>& cho
 
 struct Choice {
   std::vector<std::size_t> times;  // of the ladder, ascending
-  CrossValidated error;
+  FoldErrors errors;
 };
 
 // Adds the time with the lowest RMS error, then moves single times by one step of the ladder while the error falls.
@@ -102,9 +102,8 @@ Choice with_one_more(const TrendRegression& regression, const TrendRows& rows, c
   const auto attempt = [&](std::vector<std::size_t> times) {
     std::sort(times.begin(), times.end());
     if (std::adjacent_find(times.begin(), times.end()) != times.end() || times.back() >= ladder) return;
-    Choice one{std::move(times), CrossValidated{}};
-    one.error = regression.cross_validate(columns_of(rows, one.times));
-    if (best.times.empty() || one.error.errors.rms() < best.error.errors.rms()) best = std::move(one);
+    const FoldErrors errors = regression.cross_validate(columns_of(rows, times)).errors;
+    if (best.times.empty() || errors.rms() < best.errors.rms()) best = {std::move(times), errors};
   };
   for (std::size_t added = 0; added < ladder; ++added) {
     std::vector<std::size_t> times = last.times;
@@ -176,11 +175,11 @@ Result<std::vector<double>> identify_relaxation(MotionSource& source, const Tren
         "the recordings are too short to identify a relaxation time; record for longer, or pass --relaxation scene"};
   }
   const TrendRegression regression(*rows, TrendRegression::Smoothness::fixed);
-  Choice best = with_one_more(regression, *rows, {{}, regression.cross_validate(columns_of(*rows, {}))});
+  Choice best = with_one_more(regression, *rows, {{}, regression.cross_validate(columns_of(*rows, {})).errors});
   while (best.times.size() < std::min(count > 0 ? count : kMostTimes, ladder_s.size())) {
     if (!control.may_continue(fraction)) return interrupted();
     Choice more = with_one_more(regression, *rows, best);
-    const FoldErrors candidates[] = {best.error.errors, more.error.errors};
+    const FoldErrors candidates[] = {best.errors, more.errors};
     if (count == 0 && simplest_adequate(candidates) == 0) break;
     best = std::move(more);
   }

@@ -17,21 +17,6 @@ constexpr std::size_t kStretches = 4;
 constexpr std::size_t kShortestStretch = 256;
 constexpr std::size_t kLongestStretch = 16384;
 
-// Sets the force of `row` to the one recorded `lag_s` later, interpolated between two of `rows`. `at`: the first of the
-// two; it moves on from call to call. Returns false if no force was recorded there.
-bool take_later_force(const std::vector<MotionRow>& rows, double lag_s, std::size_t& at, MotionRow& row) {
-  if (lag_s == 0.0) return true;
-  const double wanted_s = row.sample.time_s + lag_s;
-  while (at + 2 < rows.size() && rows[at + 1].sample.time_s < wanted_s) ++at;
-  if (at + 1 >= rows.size()) return false;
-  const MotionRow& before = rows[at];
-  const MotionRow& after = rows[at + 1];
-  if (wanted_s < before.sample.time_s || wanted_s > after.sample.time_s) return false;
-  row.force_N = before.force_N + (after.force_N - before.force_N) * (wanted_s - before.sample.time_s) /
-                                     (after.sample.time_s - before.sample.time_s);
-  return true;
-}
-
 }  // namespace
 
 Status MotionSource::read(const Input& input, const Thinning& thinning, OneRecording& one, const FitControl& control,
@@ -144,7 +129,11 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
     for (MotionRow row : recordings_[r].rows) {
       if (seen > 0 && seen % kRowsPerQuestion == 0 && !control.may_continue(fraction)) return interrupted();
       ++seen;
-      if (!take_later_force(recordings_[r].rows, correction.lag_s, at, row)) continue;
+      if (correction.lag_s != 0.0) {
+        const auto force_N = force_at(recordings_[r].rows, row.sample.time_s + correction.lag_s, at);
+        if (!force_N) continue;
+        row.force_N = *force_N;
+      }
       row.sample.position_m -= correction.offset_m;
       row.motion.position_m -= correction.offset_m;
       row.force_N -= correction.force_zero_N;

@@ -18,8 +18,6 @@
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
-#include "engine/tick/motion_estimator.h"
-#include "engine/tick/tool_sample.h"
 #include "models/recordings/prepared_recording.h"
 #include "models/training/cross_validation.h"
 
@@ -31,10 +29,7 @@ inline constexpr std::size_t kMaximumRows = 2000000;
 // Rows between two calls of FitControl, some 20 ms of reading.
 inline constexpr std::size_t kRowsPerQuestion = 65536;
 
-struct MotionRow {
-  ToolSample sample;
-  MotionEstimate motion;
-  double force_N = 0.0;
+struct MotionRow : SurfaceRow {
   int recording = 0;
   int stroke = 0;       // number of the contact, counted over all recordings
   int fold = 0;         // of the cross-validation (cross_validation.h); 0 before `assign_folds`
