@@ -46,6 +46,8 @@ inline double huber(double error, double limit) {
 }
 
 using BlockCosts = std::vector<double>;
+// The cost J, by blocks, of an offset.
+using CostFunction = std::function<BlockCosts(double)>;
 
 struct OffsetEstimate {
   double at = 0.0;                        // the offset; 0 if not identified or not significantly different from 0
@@ -69,11 +71,11 @@ struct SearchRange {
 };
 
 // The minimum of `cost` in `range`. Not identified where the range is empty.
-OffsetEstimate estimate_offset(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
+OffsetEstimate estimate_offset(const CostFunction& cost, const SearchRange& range);
 
 // Tests whether a force offset explains the data as well as `shift`: whether the lowest cost over force offsets of
 // -most_N to most_N exceeds that of the shift by at most one standard error of their paired differences. If so, the
 // shift is not identified. `cost`: J by blocks for a force offset in N.
-OffsetEstimate unless_force_offset(OffsetEstimate shift, const std::function<BlockCosts(double)>& cost, double most_N);
+OffsetEstimate unless_force_offset(OffsetEstimate shift, const CostFunction& cost, double most_N);
 
 }  // namespace palpate
