@@ -29,7 +29,6 @@ FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExt
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control) {
   TrainingExtent extent;
   double squares = 0.0;
-  double count = 0.0;
   double last_m = 0.0;
   double lowest_N = 0.0;
   double pulls = 0.0;
@@ -46,7 +45,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
           if (row.force_N < -JndLine{}.at(0.0)) ++pulls;
           lowest_N = std::min(lowest_N, row.force_N);
           squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
-          count += 1.0;
+          ++extent.contact_samples;
           extent.strokes = static_cast<std::size_t>(row.stroke);
           const double travel_m = row.motion.position_m - last_m;
           if (!row.first) (travel_m > 0.0 ? extent.loading_path_m : extent.unloading_path_m) += std::abs(travel_m);
@@ -64,8 +63,8 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
         return true;
       },
       control, 0.0);
-  extent.contact_samples = static_cast<std::size_t>(count);
   if (!status) return status.error();
+  const auto count = static_cast<double>(extent.contact_samples);
   const bool pulling = pulls >= std::max(kLeastPulls, kPullShare * count);
   if (pulling && lowest_N < -certain_force_N(source.force_noise_N())) extent.lowest_force_N = lowest_N;
   extent.sample_s = duration_s / std::max(1.0, steps);

@@ -115,23 +115,12 @@ TEST(ChooseSmoothing, IsNeverFarBelowTheMostLikely) {
   }
 }
 
+// The stability tests have more cases, with the cubic kernel.
 TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
-  Sites identical = smooth_sites(3, 50, 0.0, 1);
-  identical.points.colwise() = identical.points.col(0).eval();
-  Sites duplicates = smooth_sites(3, 60, 0.0, 1);
-  duplicates.points.rightCols(30) = duplicates.points.leftCols(30).eval();
-  Sites clusters = smooth_sites(3, 60, 0.0, 1);
-  clusters.points.rightCols(30) = clusters.points.leftCols(30).array() + 1e-9;
-  Sites constant = smooth_sites(3, 50, 0.0, 1);
-  constant.points.row(1).setConstant(-0.3);
-  Sites zero = smooth_sites(3, 50, 0.0, 1);
-  zero.target_N.setZero();
-  Sites line = smooth_sites(3, 50, 0.0, 1);
-  line.points.row(1) = line.points.row(0);
-  line.points.row(2) = 2.0 * line.points.row(0);
+  std::vector<Sites> all = test::degenerate_sites();
+  for (const int count : {1, 2, 5, 6}) all.push_back(smooth_sites(4, count, 0.0, 1));
   for (const KernelKind kernel : kKernelKinds) {
-    for (const Sites& sites : {identical, duplicates, clusters, constant, zero, line, smooth_sites(4, 1, 0, 1),
-                               smooth_sites(4, 2, 0, 1), smooth_sites(4, 5, 0, 1), smooth_sites(4, 6, 0, 1)}) {
+    for (const Sites& sites : all) {
       const auto fitted = fit_direct(sites, kernel);
       ASSERT_TRUE(fitted.ok());
       EXPECT_TRUE(fitted->function.weights.allFinite());
@@ -142,8 +131,7 @@ TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
       EXPECT_LE(values.cwiseAbs().maxCoeff(), 2.0 * range + 1e-9) << kernel_name(kernel);
     }
     const Sites one = smooth_sites(4, 1, 0.0, 1);
-    const auto fitted = fit_direct(one, kernel);
-    EXPECT_NEAR(rbf_value(fitted->function, one.points.data()), one.target_N[0], 1e-12);
+    EXPECT_NEAR(rbf_value(fit_direct(one, kernel)->function, one.points.data()), one.target_N[0], 1e-12);
   }
 }
 
