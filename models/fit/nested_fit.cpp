@@ -1,6 +1,7 @@
 #include "models/fit/nested_fit.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 #include "models/fit/bound_calibration.h"
@@ -8,44 +9,31 @@
 
 namespace palpate {
 
-NestedWeights::NestedWeights(KernelKind kernel, CentreSequence sequence, FactorisedRows factorised)
-    : kernel_(kernel), sequence_(std::move(sequence)), factorised_(std::move(factorised)) {
-  const Eigen::MatrixXd& as_factorised = factorised_.triangle;
-  const Eigen::Index n = sequence_.pool.cols();
-  const Eigen::Index tail = as_factorised.cols() - 1 - n;
-  Eigen::MatrixXd reordered(as_factorised.rows(), as_factorised.cols());
-  reordered << as_factorised.middleCols(n, tail), as_factorised.leftCols(n), as_factorised.rightCols(1);
-  const BlasThreads one_thread(1);
-  qr_in_place(reordered);
-  factorised_.triangle = reordered.triangularView<Eigen::Upper>();
-}
-
 Result<NestedWeights> NestedWeights::factorise(const Sites& sites, KernelKind kernel, CentreSequence sequence) {
   auto factorised = factorise_rows(sites, kernel, sequence.pool);
   if (!factorised) return factorised.error();
   return NestedWeights(kernel, std::move(sequence), std::move(*factorised));
 }
 
-// The triangle of these columns, in the order of solve_weights: Phi, G, f.
+// The triangle of the tail, these kernel columns and the data.
 FactorisedRows NestedWeights::factorised_for(const std::vector<Eigen::Index>& columns) const {
   const Eigen::MatrixXd& all = factorised_.triangle;
   const Eigen::Index last = all.cols() - 1;
   const Eigen::Index tail = last - sequence_.pool.cols();
-  const auto k = static_cast<Eigen::Index>(columns.size());
-  const Eigen::Index newest = k > 0 ? *std::max_element(columns.begin(), columns.end()) + 1 : 0;
-  const Eigen::Index rows = tail + newest;
+  std::vector<Eigen::Index> kept(static_cast<std::size_t>(tail));
+  std::iota(kept.begin(), kept.end(), Eigen::Index{0});
+  for (const Eigen::Index column : columns) kept.push_back(tail + column);
+  const Eigen::Index rows = kept.empty() ? 0 : *std::max_element(kept.begin(), kept.end()) + 1;
+  kept.push_back(last);
   FactorisedRows factorised = factorised_;
-  factorised.triangle = Eigen::MatrixXd::Zero(rows + 1, k + tail + 1);
-  for (Eigen::Index j = 0; j < k; ++j) {
-    factorised.triangle.col(j).head(rows) = all.col(tail + columns[static_cast<std::size_t>(j)]).head(rows);
-  }
-  factorised.triangle.block(0, k, rows, tail) = all.topLeftCorner(rows, tail);
-  factorised.triangle.col(k + tail).head(rows) = all.col(last).head(rows);
+  Eigen::MatrixXd& triangle = factorised.triangle;
+  triangle = Eigen::MatrixXd::Zero(rows + 1, static_cast<Eigen::Index>(kept.size()));
+  triangle.topRows(rows) = all(Eigen::seqN(0, rows), kept);
   // The norm of the data outside of the span of these columns.
-  factorised.triangle(rows, k + tail) = all.col(last).tail(last + 1 - rows).norm();
-  if (factorised.triangle.rows() > factorised.triangle.cols()) {
-    qr_in_place(factorised.triangle);
-    factorised.triangle = factorised.triangle.topRows(k + tail + 1).triangularView<Eigen::Upper>().toDenseMatrix();
+  triangle(rows, triangle.cols() - 1) = all.col(last).tail(last + 1 - rows).norm();
+  if (triangle.rows() > triangle.cols()) {
+    qr_in_place(triangle);
+    triangle = triangle.topRows(triangle.cols()).triangularView<Eigen::Upper>().toDenseMatrix();
   }
   return factorised;
 }

@@ -32,12 +32,13 @@ class NestedWeights {
   FittedRbf solve(Eigen::Index count) const;
 
  private:
-  NestedWeights(KernelKind kernel, CentreSequence sequence, FactorisedRows factorised);
+  NestedWeights(KernelKind kernel, CentreSequence sequence, FactorisedRows factorised)
+      : kernel_(kernel), sequence_(std::move(sequence)), factorised_(std::move(factorised)) {}
   FactorisedRows factorised_for(const std::vector<Eigen::Index>& columns) const;
 
   KernelKind kernel_;
   CentreSequence sequence_;
-  FactorisedRows factorised_;  // with columns in the order G, Phi, f
+  FactorisedRows factorised_;
 };
 
 // The same for whole models.

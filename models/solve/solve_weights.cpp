@@ -140,9 +140,8 @@ Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, con
       const Eigen::Index first = block * block_rows;
       const Eigen::Index rows = std::min(block_rows, sites.count() - first);
       Eigen::MatrixXd rows_of_block(rows, columns + 1);
-      kernel_matrix(kernel, points, centres, rows_of_block.leftCols(centres.cols()), first);
-      rows_of_block.middleCols(centres.cols(), tail) =
-          tail_matrix(tail_degree(kernel), sites.points.middleCols(first, rows));
+      rows_of_block.leftCols(tail) = tail_matrix(tail_degree(kernel), sites.points.middleCols(first, rows));
+      kernel_matrix(kernel, points, centres, rows_of_block.middleCols(tail, centres.cols()), first);
       rows_of_block.col(columns) = sites.target_N.segment(first, rows);
       rows_of_block.array().colwise() *= sites.row_scale.segment(first, rows).array();
       triangle = triangle_of(triangle, rows_of_block);
@@ -182,6 +181,7 @@ FittedRbf penalised_weights(const FactorisedRows& factorised, KernelKind kernel,
   const Eigen::MatrixXd& triangle = factorised.triangle;
   const Eigen::Index n = centres.cols();
   const Eigen::Index tail = triangle.cols() - 1 - n;
+  const auto kernels = triangle.middleCols(tail, n);
   PenaltySpace space;
   Root root;
   const bool plain = n + tail <= factorised.plain_unknowns_limit;
@@ -191,21 +191,22 @@ FittedRbf penalised_weights(const FactorisedRows& factorised, KernelKind kernel,
     root.upper *= std::sqrt(factorised.smoothing);
   } else if (n > 0) {
     space = {n, {}, Eigen::MatrixXd(n, 0), Eigen::MatrixXd(n, 0)};
-    root.upper = (kRidge * triangle.leftCols(n).colwise().norm()).asDiagonal();
+    root.upper = (kRidge * kernels.colwise().norm()).asDiagonal();
   }
   const Eigen::Index free = root.upper.cols();
   const Eigen::Index columns = free + tail + 1;
   // [K Z, G, f] of the sites above, the root of the penalty below.
   Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(triangle.rows() + free, columns);
   if (free > 0) {
-    Eigen::MatrixXd product = triangle.leftCols(n);
+    Eigen::MatrixXd product = kernels;
     multiply_by_basis(product, space);
-    const auto kernels = product.leftCols(space.free);
+    const auto projected = product.leftCols(space.free);
     stack.topLeftCorner(triangle.rows(), free) =
-        root.directions ? Eigen::MatrixXd(kernels * *root.directions) : kernels;
+        root.directions ? Eigen::MatrixXd(projected * *root.directions) : projected;
     stack.bottomLeftCorner(free, free) = root.upper;
   }
-  stack.block(0, free, triangle.rows(), tail + 1) = triangle.rightCols(tail + 1);
+  stack.block(0, free, triangle.rows(), tail) = triangle.leftCols(tail);
+  stack.block(0, free + tail, triangle.rows(), 1) = triangle.rightCols(1);
   if (stack.rows() > columns) {
     qr_in_place(stack);
   }
@@ -220,8 +221,8 @@ FittedRbf penalised_weights(const FactorisedRows& factorised, KernelKind kernel,
   report.centres_used = n;
   report.condition = solution.condition;
   report.smoothing = plain ? 0.0 : factorised.smoothing;
-  const Eigen::VectorXd rest = triangle.rightCols(1) - triangle.leftCols(n) * fitted.function.weights -
-                               triangle.middleCols(n, tail) * fitted.function.tail;
+  const Eigen::VectorXd rest =
+      triangle.rightCols(1) - kernels * fitted.function.weights - triangle.leftCols(tail) * fitted.function.tail;
   report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(factorised.sites));
   fitted.function.weights *= factorised.strength;
   fitted.function.tail *= factorised.strength;

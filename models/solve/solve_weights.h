@@ -47,7 +47,7 @@ struct FittedRbf {
 
 // The rows of the sites after a QR factorisation, sufficient to compute the weights.
 struct FactorisedRows {
-  // The R factor of row_scale * (Phi G f), n + tail + 1 columns: the kernel at the n centres, the tail and the data.
+  // The R factor of row_scale * (G Phi f), tail + n + 1 columns: the tail, the kernel at the n centres and the data.
   // Square; the last row is 0 except for its last value.
   Eigen::MatrixXd triangle;
   Eigen::Index sites = 0;
