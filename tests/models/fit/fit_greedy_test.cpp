@@ -50,14 +50,6 @@ TEST(FitGreedy, AllSitesEqualsBruteForceForwardSelection) {
   }
 }
 
-TEST(FitGreedy, SubsetsOfAllSitesAreAllSites) {
-  const Sites sites = smooth_sites(3, 200, 0.05, 1);
-  const auto all = fit_greedy(sites, {.centres = 20, .candidates = 0});
-  const auto subsets = fit_greedy(sites, {.centres = 20, .candidates = 200});
-  ASSERT_TRUE(all.ok() && subsets.ok());
-  EXPECT_EQ(all->function.weights, subsets->function.weights);
-}
-
 TEST(FitGreedy, MoreCandidatesFitBetterAndAllFitBetterThanRandomCentres) {
   const Sites sites = smooth_sites(4, 1500, 0.01, 1);
   const double random = fit_random(sites, {.centres = 40})->report.residual_rms;

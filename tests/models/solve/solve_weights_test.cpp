@@ -184,15 +184,6 @@ TEST(PenalisedWeights, TheStrengthMultipliesTheFunction) {
   EXPECT_LT((0.25 * full.function.tail - quarter.function.tail).norm(), 1e-12);
 }
 
-TEST(PenalisedWeights, WeightsAreOrthogonalToTheTail) {
-  Sites sites = smooth_sites(2, 150, 0.1, 7);
-  sites.smoothing = 0.01;
-  const auto fitted = penalised(sites, KernelKind::cubic, sites.points.leftCols(40));
-  const Eigen::VectorXd& w = fitted.function.weights;
-  EXPECT_LT(std::abs(w.sum()), 1e-9 * w.cwiseAbs().sum());
-  EXPECT_LT((fitted.function.centres * w).norm(), 1e-9 * w.cwiseAbs().sum());
-}
-
 TEST(DistinctSites, KeepsTheFirstOfEachPoint) {
   Sites sites;
   sites.points.resize(2, 5);
