@@ -197,10 +197,10 @@ class Checker {
           words("the force is %.3g N in free air", surface_.force_zero_N),
           large ? "tare the sensor before recording, or subtract this from force_N" : "");
     }
-    if (std::abs(surface_.force_zero_drift_N) > std::max(half_jnd_N, 3.0 * surface_.force_zero_error_N) &&
-        std::isfinite(surface_.force_zero_error_N)) {
-      add("force_zero_drift", Severity::warning, surface_.force_zero_drift_N,
-          words("the force in free air drifts by %.3g N over the %s", surface_.force_zero_drift_N,
+    if (std::abs(surface_.air.drift_N) > std::max(half_jnd_N, 3.0 * surface_.air.zero_error_N) &&
+        std::isfinite(surface_.air.zero_error_N)) {
+      add("force_zero_drift", Severity::warning, surface_.air.drift_N,
+          words("the force in free air drifts by %.3g N over the %s", surface_.air.drift_N,
                 recording_.rows.size() > kOnsetRows ? "beginning of the recording" : "recording"),
           "let the sensor warm up, tare it again, and record in shorter parts");
     }
@@ -235,7 +235,7 @@ class Checker {
     check_.surface_offset_m = surface_.offset_m;
     if (!surface_.identified()) {
       add("surface_unknown", Severity::note, 0.0,
-          surface_.free_air
+          surface_.air.found
               ? "the position where the force begins cannot be identified: depth is measured from position 0"
               : "the tool may never leave the material, so the surface cannot be identified: depth is measured from "
                 "position 0",
@@ -247,14 +247,14 @@ class Checker {
                 1e3 * surface_.standard_error_m),
           "a model fitted to this recording has its surface there; to test another model, move the surface");
     }
-    if (surface_.tool_mass_kg > 0.0) {
-      add("tool_mass", Severity::note, surface_.tool_mass_kg,
+    if (surface_.air.tool_mass_kg > 0.0) {
+      add("tool_mass", Severity::note, surface_.air.tool_mass_kg,
           words("the force sensor carries a mass of %.3g g: in free air the force follows the acceleration",
-                1e3 * surface_.tool_mass_kg),
+                1e3 * surface_.air.tool_mass_kg),
           "");
     }
     const double pull_N = surface_.force_zero_N - measures_.lowest_force_N;
-    if (surface_.free_air && !(surface_.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
+    if (surface_.air.found && !(surface_.air.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
       add("adhesion", Severity::note, pull_N,
           words("the material pulls the tool with up to %.3g N: a fitted model renders this adhesion", pull_N), "");
     }

@@ -12,16 +12,18 @@
 #include "models/model/domain_guard.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/penalised_weights.h"
-#include "models/training/selection.h"
-#include "models/training/weighting.h"
+#include "models/solve/solve_weights.h"
+#include "models/training/cross_validation.h"
+#include "models/training/sites.h"
 
 namespace palpate {
 namespace {
 
+// More rows give the same selection.
+constexpr std::size_t kLeftOutRows = 5000;
+constexpr KernelKind kKernel = KernelKind::cubic;
 constexpr Eigen::Index kCentres = 200;
-constexpr Eigen::Index kBlockRows = 512;  // of the design at a time
-constexpr int kLowestDecade = -9;         // of the smoothing, relative to the mean eigenvalue
+constexpr int kLowestDecade = -9;  // of the smoothing, relative to the mean eigenvalue
 constexpr int kHighestDecade = 1;
 constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
@@ -29,30 +31,36 @@ constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
 // The fits without each fold, for any smoothing. The rows are sorted by fold.
 class LeftOutFits {
  public:
-  explicit LeftOutFits(const StrengthInput& input)
-      : input_(input),
-        centres_(random_centres(input.rows.points)),
-        space_(penalty_space(input.kernel, centres_)),
-        columns_(space_.free + tail_size(tail_degree(input.kernel), static_cast<int>(input.rows.points.rows()))),
-        unit_(mean_eigenvalue()),
-        design_(input.rows.points.cols(), columns_),
-        folds_(static_cast<std::size_t>(input.folds)) {
+  explicit LeftOutFits(const CrossValidationRows& rows)
+      : rows_(rows),
+        centres_(random_centres(rows.points)),
+        space_(penalty_space(kKernel, centres_)),
+        columns_(space_.free + tail_size(tail_degree(kKernel), static_cast<int>(rows.points.rows()))),
+        design_(rows.points.cols(), columns_),
+        folds_(static_cast<std::size_t>(rows.folds())) {
     const auto blocks = static_cast<int>((design_.rows() + kBlockRows - 1) / kBlockRows);
     parallel_for(blocks, [&](int block) { fill_design(block); });
-    parallel_for(input_.folds, [&](int fold) { gather(fold); });
+    parallel_for(rows.folds(), [&](int fold) { gather(fold); });
     Eigen::MatrixXd total = Eigen::MatrixXd::Zero(columns_, columns_);
     for (const Fold& fold : folds_) total += fold.gram;
     for (Fold& fold : folds_) fold.gram = total - fold.gram;
   }
 
-  double unit() const { return unit_; }
+  // The mean eigenvalue of the kernel between all scaled rows, estimated at the centres: the unit of the smoothing.
+  double unit() const {
+    const double mean_scale = rows_.row_scale.squaredNorm() / static_cast<double>(rows_.row_scale.size());
+    const double value = space_.penalty.trace() / static_cast<double>(centres_.cols()) * mean_scale;
+    return value > 0.0 ? value : 1.0;
+  }
 
   // Predicts the correction at every row from the rows of the other folds.
   Eigen::VectorXd predictions(double smoothing) const {
     Eigen::VectorXd values(design_.rows());
     for (const Fold& fold : folds_) {
       if (fold.count == 0) continue;
-      const Eigen::VectorXd coefficients = solve(fold.gram, smoothing, fold.right);
+      Eigen::MatrixXd penalised = fold.gram;
+      penalised.topLeftCorner(space_.free, space_.free) += smoothing * space_.penalty;
+      const Eigen::VectorXd coefficients = solve_with_ridge(penalised, fold.right, 1e-14);
       Eigen::VectorXd of_fold(fold.count);
       multiply(design_.middleRows(fold.first, fold.count), false, coefficients, false, 1.0, 0.0, of_fold);
       values.segment(fold.first, fold.count) = of_fold;
@@ -69,44 +77,28 @@ class LeftOutFits {
   };
 
   static Eigen::MatrixXd random_centres(const Eigen::MatrixXd& points) {
-    const Eigen::Index count = std::clamp<Eigen::Index>(points.cols() / 4, 1, kCentres);
-    Eigen::MatrixXd centres(points.rows(), count);
     std::vector<Eigen::Index> order(static_cast<std::size_t>(points.cols()));
     std::iota(order.begin(), order.end(), Eigen::Index{0});
     SplitMix64 random(1);
-    for (Eigen::Index j = 0; j < count; ++j) {
-      const auto left = static_cast<std::uint64_t>(points.cols() - j);
-      std::swap(order[static_cast<std::size_t>(j)],
-                order[static_cast<std::size_t>(j) + static_cast<std::size_t>(random.below(left))]);
-      centres.col(j) = points.col(order[static_cast<std::size_t>(j)]);
-    }
-    return centres;
-  }
-
-  // The mean eigenvalue of the kernel between all scaled rows, estimated at the centres: the unit of the smoothing.
-  double mean_eigenvalue() const {
-    const double trace = space_.penalty.trace();
-    const double rows = std::max(1.0, static_cast<double>(centres_.cols()));
-    const double mean_scale = input_.rows.row_scale.squaredNorm() / static_cast<double>(input_.rows.row_scale.size());
-    const double value = trace / rows * mean_scale;
-    return value > 0.0 ? value : 1.0;
+    order.resize(draw_first(order, std::clamp<Eigen::Index>(points.cols() / 4, 1, kCentres), random));
+    return points(Eigen::all, order);
   }
 
   // Fills a block of rows of [K Z, G].
   void fill_design(int block) {
     const Eigen::Index first = block * kBlockRows;
     const Eigen::Index rows = std::min(kBlockRows, design_.rows() - first);
-    const Eigen::MatrixXd some = input_.rows.points.middleCols(first, rows);
+    const Eigen::MatrixXd some = rows_.points.middleCols(first, rows);
     Eigen::MatrixXd kernel(rows, centres_.cols());
-    kernel_matrix(input_.kernel, PointArrays(some), centres_, kernel);
+    kernel_matrix(kKernel, PointArrays(some), centres_, kernel);
     multiply_by_basis(kernel, space_);
     design_.block(first, 0, rows, space_.free) = kernel.leftCols(space_.free);
-    design_.block(first, space_.free, rows, columns_ - space_.free) = tail_matrix(tail_degree(input_.kernel), some);
+    design_.block(first, space_.free, rows, columns_ - space_.free) = tail_matrix(tail_degree(kKernel), some);
   }
 
   void gather(int fold) {
     Fold& mine = folds_[static_cast<std::size_t>(fold)];
-    const auto& of = input_.rows.fold;
+    const auto& of = rows_.fold;
     const auto [from, to] = std::equal_range(of.begin(), of.end(), fold);
     mine.first = from - of.begin();
     mine.count = to - from;
@@ -114,77 +106,28 @@ class LeftOutFits {
     mine.right = Eigen::VectorXd::Zero(columns_);
     if (mine.count > 0) {
       Eigen::MatrixXd part = design_.middleRows(mine.first, mine.count);
-      part.array().colwise() *= input_.rows.row_scale.segment(mine.first, mine.count).array();
+      part.array().colwise() *= rows_.row_scale.segment(mine.first, mine.count).array();
       gram(part, mine.gram);
     }
-    Eigen::VectorXd left = input_.rows.force_N - input_.rows.trend_N.col(fold);
-    for (Eigen::Index i = 0; i < left.size(); ++i) {
-      // Where no force is measured, a trend below 0 needs no correction.
-      if (input_.rows.no_force[static_cast<std::size_t>(i)] && left(i) > 0.0) left(i) = 0.0;
-    }
-    left.array() *= input_.rows.row_scale.array().square();
+    Eigen::VectorXd left = rows_.residual_N(fold);
+    left.array() *= rows_.row_scale.array().square();
     left.segment(mine.first, mine.count).setZero();
     multiply(design_, true, left, false, 1.0, 0.0, mine.right);
   }
 
-  // (`gram` + smoothing * penalty) x = right, scaled to a diagonal of ones.
-  Eigen::VectorXd solve(const Eigen::MatrixXd& gram, double smoothing, Eigen::VectorXd right) const {
-    const Eigen::Index n = gram.cols();
-    const Eigen::Index free = space_.penalty.cols();
-    Eigen::VectorXd scale = gram.diagonal();
-    scale.head(free) += smoothing * space_.penalty.diagonal();
-    for (double& value : scale) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
-    right = right.cwiseProduct(scale).eval();
-    Eigen::MatrixXd factor(n, n);
-    for (double lift = 1e-14; lift < 1.0; lift *= 100.0) {
-      for (Eigen::Index j = 0; j < n; ++j) {  // below the diagonal
-        auto column = factor.col(j).tail(n - j);
-        column = gram.col(j).tail(n - j);
-        if (j < free) column.head(free - j) += smoothing * space_.penalty.col(j).tail(free - j);
-        column = (column.cwiseProduct(scale.tail(n - j)) * scale(j)).eval();
-      }
-      factor.diagonal().array() += lift;
-      if (!cholesky_in_place(factor)) continue;
-      cholesky_solve(factor, right);
-      return right.cwiseProduct(scale);
-    }
-    return Eigen::VectorXd::Zero(n);
-  }
-
-  const StrengthInput& input_;
+  const CrossValidationRows& rows_;
   Eigen::MatrixXd centres_;
   PenaltySpace space_;
   Eigen::Index columns_;
-  double unit_;
   Eigen::MatrixXd design_;  // [K Z, G]
   std::vector<Fold> folds_;
 };
-
-// Marks the rows that count: those not deeper than all rows of the other folds.
-std::vector<char> inside_depth(const StrengthInput& input) {
-  const CrossValidationRows& rows = input.rows;
-  std::vector<double> deepest_m(static_cast<std::size_t>(input.folds), 0.0);
-  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
-    double& deepest = deepest_m[static_cast<std::size_t>(rows.fold[i])];
-    deepest = std::max(deepest, rows.depth_m(static_cast<Eigen::Index>(i)));
-  }
-  std::vector<char> counts;
-  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
-    double elsewhere_m = 0.0;
-    for (std::size_t k = 0; k < deepest_m.size(); ++k) {
-      if (static_cast<int>(k) != rows.fold[i]) elsewhere_m = std::max(elsewhere_m, deepest_m[k]);
-    }
-    counts.push_back(rows.depth_m(static_cast<Eigen::Index>(i)) <= elsewhere_m ? 1 : 0);
-  }
-  return counts;
-}
 
 struct Variant {
   double smoothing = 0.0;
   double strength = 0.0;
   double inner_radius = 0.0;
   FoldErrors errors;
-  const Eigen::VectorXd* correction_N = nullptr;
 };
 
 std::vector<FoldErrors> errors_of(const std::vector<Variant>& variants) {
@@ -195,11 +138,26 @@ std::vector<FoldErrors> errors_of(const std::vector<Variant>& variants) {
 
 }  // namespace
 
-double cross_validated_force_N(const StrengthInput& input, std::size_t i, double trust, double h) {
-  const double limit = input.correction_limit_N;
-  const auto row = static_cast<Eigen::Index>(i);
-  const double force_N = input.rows.trend_N(row, input.rows.fold[i]) + trust * std::clamp(h, -limit, limit);
-  return std::max(input.lowest_force_N, force_N);
+std::vector<Eigen::Index> CrossValidationRows::outside(int without) const {
+  std::vector<Eigen::Index> others;
+  for (std::size_t i = 0; i < fold.size(); ++i) {
+    if (fold[i] != without) others.push_back(static_cast<Eigen::Index>(i));
+  }
+  return others;
+}
+
+Eigen::VectorXd CrossValidationRows::residual_N(int without) const {
+  Eigen::VectorXd residual_N = force_N - trend_N.col(without);
+  for (Eigen::Index i = 0; i < residual_N.size(); ++i) {
+    if (no_force[static_cast<std::size_t>(i)]) residual_N(i) = std::min(0.0, residual_N(i));
+  }
+  return residual_N;
+}
+
+double CrossValidationRows::predicted_N(const ModelData& common, std::size_t i, double trust, double h) const {
+  const double limit_N = common.correction_limit_N;
+  const double trend = trend_N(static_cast<Eigen::Index>(i), fold[i]);
+  return std::max(common.lowest_force_N, trend + trust * std::clamp(h, -limit_N, limit_N));
 }
 
 double trust_at_distance(double distance, double inner_radius, double outer_radius) {
@@ -209,13 +167,10 @@ double trust_at_distance(double distance, double inner_radius, double outer_radi
   return t * t * (3.0 - 2.0 * t);
 }
 
-void find_distances(CrossValidationRows& rows, int folds) {
+void find_distances(CrossValidationRows& rows) {
   rows.distance.assign(rows.fold.size(), std::numeric_limits<double>::infinity());
-  parallel_for(folds, [&](int fold) {
-    std::vector<Eigen::Index> others;
-    for (std::size_t i = 0; i < rows.fold.size(); ++i) {
-      if (rows.fold[i] != fold) others.push_back(static_cast<Eigen::Index>(i));
-    }
+  parallel_for(rows.folds(), [&](int fold) {
+    const std::vector<Eigen::Index> others = rows.outside(fold);
     if (others.empty()) return;
     const NearestDistance nearest(rows.points(Eigen::all, others));
     for (std::size_t i = 0; i < rows.fold.size(); ++i) {
@@ -226,25 +181,54 @@ void find_distances(CrossValidationRows& rows, int folds) {
   });
 }
 
-StrengthChoice choose_strength(const StrengthInput& input) {
+CrossValidationRows cross_validation_rows(const ModelData& common, const TrendRows& rows,
+                                          const Eigen::MatrixXd& row_features, const Eigen::MatrixXd& left_out_trends) {
+  const TrendProblem& problem = rows.problem();
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < rows.count(); i += rows.count() / kLeftOutRows + 1) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rows[a].fold < rows[b].fold; });
+  const auto n = static_cast<Eigen::Index>(order.size());
+  CrossValidationRows out;
+  out.points.resize(row_features.rows(), n);
+  for (Eigen::VectorXd* values : {&out.force_N, &out.depth_m, &out.row_scale}) values->resize(n);
+  out.trend_N.resize(n, left_out_trends.cols());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const TrendRow& row = rows[order[static_cast<std::size_t>(k)]];
+    const auto at = static_cast<Eigen::Index>(order[static_cast<std::size_t>(k)]);
+    out.points.col(k) = (row_features.col(at) - common.offset).cwiseQuotient(common.scale);
+    out.force_N(k) = row.force_N;
+    out.depth_m(k) = row.depth_m;
+    out.row_scale(k) = row_scale(problem.weighting, problem.jnd, row.force_N);
+    out.trend_N.row(k) = rows.terms().row(at) * left_out_trends;
+    out.fold.push_back(row.fold);
+    out.no_force.push_back(std::abs(row.force_N) <= problem.force_noise_floor_N ? 1 : 0);
+  }
+  find_distances(out);
+  return out;
+}
+
+StrengthChoice choose_strength(const CrossValidationRows& rows, const ModelData& common) {
+  const double least_radius = common.cover.inner_radius;
+  const double outer_to_inner = common.cover.outer_radius / least_radius;
   StrengthChoice choice;
-  choice.inner_radius = input.least_radius;
+  choice.inner_radius = least_radius;
   choice.strength = 0.0;
-  const CrossValidationRows& rows = input.rows;
-  if (rows.fold.size() < 2 || input.folds < 2) return choice;
+  const int folds = rows.folds();
+  if (rows.fold.size() < 2 || folds < 2) return choice;
   const BlasThreads one_thread(1);
-  const LeftOutFits fits(input);
-  const std::vector<char> counts = inside_depth(input);
+  const LeftOutFits fits(rows);
+  const std::vector<double> deepest_m = deepest_elsewhere_m(rows.fold, {rows.depth_m.data(), rows.fold.size()}, folds);
   const auto score = [&](double smoothing, double strength, double radius, const Eigen::VectorXd& h) {
-    Variant variant{smoothing, strength, radius, FoldErrors(static_cast<std::size_t>(input.folds)), &h};
+    Variant variant{smoothing, strength, radius, FoldErrors(static_cast<std::size_t>(folds))};
     for (std::size_t i = 0; i < rows.fold.size(); ++i) {
-      if (!counts[i]) continue;
       const auto row = static_cast<Eigen::Index>(i);
-      const double trust =
-          strength > 0.0 ? trust_at_distance(rows.distance[i], radius, input.outer_to_inner * radius) : 0.0;
-      const double force_N = cross_validated_force_N(input, i, trust, strength * h(row));
-      const double error = input.jnd.error_over_jnd(force_N, rows.force_N(row));
-      variant.errors.add(static_cast<std::size_t>(rows.fold[i]), error * robust_scale(error));
+      const auto fold = static_cast<std::size_t>(rows.fold[i]);
+      if (rows.depth_m(row) > deepest_m[fold]) continue;
+      const double trust = strength > 0.0 ? trust_at_distance(rows.distance[i], radius, outer_to_inner * radius) : 0.0;
+      const double force_N = rows.predicted_N(common, i, trust, strength * h(row));
+      const double error = common.jnd.error_over_jnd(force_N, rows.force_N(row));
+      variant.errors.add(fold, error * robust_scale(error));
     }
     return variant;
   };
@@ -258,11 +242,11 @@ StrengthChoice choose_strength(const StrengthInput& input) {
     predictions[at] = fits.predictions(smoothing);
     for (const double factor : kRadiusFactors) {
       for (const double strength : kStrengths) {
-        of_decade[at].push_back(score(smoothing, strength, factor * input.least_radius, predictions[at]));
+        of_decade[at].push_back(score(smoothing, strength, factor * least_radius, predictions[at]));
       }
     }
   });
-  const Variant none = score(fits.unit(), 0.0, input.least_radius, nothing);
+  const Variant none = score(fits.unit(), 0.0, least_radius, nothing);
   std::vector<Variant> variants{none};
   for (const auto& some : of_decade) variants.insert(variants.end(), some.begin(), some.end());
   const double strength = variants[best_score(errors_of(variants))].strength;

@@ -2,41 +2,31 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
 #include <numeric>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "engine/base/parallel.h"
-#include "models/fit/select_strength.h"
+#include "models/fit/bound_calibration.h"
 
 namespace palpate {
 namespace {
 
-// Returns no value when interrupted.
-std::optional<double> share_within_jnd(const PreparedTraining& prepared, const ModelData& data,
-                                       const FitControl& control) {
-  constexpr std::size_t kBetweenQuestions = 16384;
+double share_within_jnd(const PreparedTraining& prepared, const ModelData& data) {
   constexpr std::size_t kParts = 4;
   const FittedModel model(data);
-  const std::size_t count = prepared.evaluation_force_N.size();
-  std::size_t within = 0;
-  for (std::size_t first = 0; first < count; first += kBetweenQuestions) {
-    if (!control.may_continue(0.99)) return std::nullopt;
-    const std::size_t some = std::min(kBetweenQuestions, count - first);
-    std::array<std::size_t, kParts> of_part{};
-    parallel_for(kParts, [&](int part) {
-      const auto p = static_cast<std::size_t>(part);
-      for (std::size_t i = first + some * p / kParts; i < first + some * (p + 1) / kParts; ++i) {
-        const double force_N = model.evaluate(prepared.evaluation_features[i].data()).force_N;
-        if (data.jnd.error_over_jnd(force_N, prepared.evaluation_force_N[i]) <= 1.0) ++of_part[p];
-      }
-    });
-    within = std::accumulate(of_part.begin(), of_part.end(), within);
-  }
-  return static_cast<double>(within) / static_cast<double>(count);
+  const std::vector<double>& measured_N = prepared.set.evaluation_force_N;
+  const std::size_t count = measured_N.size();
+  std::array<std::size_t, kParts> within{};
+  parallel_for(kParts, [&](int part) {
+    const auto p = static_cast<std::size_t>(part);
+    for (std::size_t i = count * p / kParts; i < count * (p + 1) / kParts; ++i) {
+      const double force_N = model.evaluate(prepared.set.evaluation_features[i].data()).force_N;
+      if (data.jnd.error_over_jnd(force_N, measured_N[i]) <= 1.0) ++within[p];
+    }
+  });
+  return static_cast<double>(std::accumulate(within.begin(), within.end(), std::size_t{0})) /
+         static_cast<double>(count);
 }
 
 // The correction without a fold; none if no other fold has rows.
@@ -45,12 +35,27 @@ Result<CorrectionPtr> fit_without(const PreparedTraining& prepared, int fold, co
   const Sites sites = sites_without(prepared, fold);
   if (sites.count() == 0) return CorrectionPtr{};
   const Eigen::VectorXd jnd_N = sites.row_scale.cwiseInverse();
-  auto fitted = fit_correction({sites, prepared.common.features, jnd_N, request, nullptr}, control);
+  auto fitted = fit_correction({sites, jnd_N, request}, control);
   if (!fitted) return fitted.error();
   return std::move(fitted->correction);
 }
 
 }  // namespace
+
+TrainingRequest recipe_2009_request(TrainingRequest request) {
+  request.recipe = FitRecipe::paper_2009;
+  request.surface = Surface::recorded;
+  request.reduction = Reduction::force;
+  request.weighting = Weighting::relative;
+  request.choice = FeatureChoice::scene;
+  const bool relaxes = std::any_of(request.features.begin(), request.features.end(),
+                                   [](const FeatureSpec& spec) { return spec.kind == FeatureKind::lowpass_velocity; });
+  if (relaxes) {
+    request.relaxation = Relaxation::automatic;
+    request.relaxation_count = 2;
+  }
+  return request;
+}
 
 Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
   Eigen::VectorXd jnd_N(prepared.sites.count());
@@ -58,6 +63,22 @@ Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
     jnd_N(i) = prepared.common.jnd.at(prepared.set.sites[static_cast<std::size_t>(i)].force_N);
   }
   return jnd_N;
+}
+
+Result<MethodFit> model_of(const PreparedTraining& prepared, const MethodRequest& request, FittedCorrection fitted,
+                           const std::vector<CorrectionPtr>& of_folds) {
+  MethodFit fit{prepared.common, std::move(fitted.report)};
+  ModelData& data = fit.data;
+  data.method = request.method->name;
+  data.name = data.method + (fitted.size.empty() ? "" : "-" + fitted.size);
+  data.provenance.seed = request.seed;
+  data.correction = std::move(fitted.correction);
+  if (prepared.left_out) data.error_bound = bound_of(prepared, of_folds);
+  if (const Status valid = check_forces(data); !valid) {
+    return Error{"the " + data.name + " fit did not give a usable model (" + valid.error().message +
+                 "); try more smoothing or fewer centres"};
+  }
+  return fit;
 }
 
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request, const FitControl& control,
@@ -70,37 +91,26 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   // If cross-validation rejected the correction, every method returns the trend, a model without centres.
   MethodRequest of_trend;
   of_trend.method = &kTrendMethod;
-  const MethodTask task{prepared.sites, prepared.common.features, jnd_N, corrects ? request : of_trend,
-                        from && corrects ? &*from : nullptr};
-  auto fitted = fit_correction(task, control);
+  auto fitted = fit_correction(
+      {prepared.sites, jnd_N, corrects ? request : of_trend, from && corrects ? &*from : nullptr}, control);
   if (!fitted) return fitted.error();
   if (!corrects && method.can_take(kTakesCentres)) fitted->size = "0";
-  MethodFit fit{prepared.common, std::move(fitted->report)};
   if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
-    fit.report.notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
-                               " samples were used: the beginnings and some sections of the recordings");
+    fitted->report.notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
+                                   " samples were used: the beginnings and some sections of the recordings");
   }
-  fit.data.method = method.name;
-  fit.data.provenance.seed = request.seed;
-  fit.data.correction = std::move(fitted->correction);
-  if (prepared.left_out) {
-    std::vector<CorrectionPtr> of_folds;
-    for (int fold = 0; fold < prepared.folds && !fit.data.correction->is_none(); ++fold) {
-      auto of_fold = fit_without(prepared, fold, request, control);
-      if (!of_fold) return of_fold.error();
-      of_folds.push_back(std::move(*of_fold));
-    }
-    fit.data.error_bound = bound_of(prepared, cross_validate(prepared, of_folds));
+  std::vector<CorrectionPtr> of_folds;
+  const int folds = prepared.left_out && !fitted->correction->is_none() ? prepared.left_out->folds() : 0;
+  for (int fold = 0; fold < folds; ++fold) {
+    auto of_fold = fit_without(prepared, fold, request, control);
+    if (!of_fold) return of_fold.error();
+    of_folds.push_back(std::move(*of_fold));
   }
-  fit.data.name = method.name;
-  if (!fitted->size.empty()) fit.data.name.append("-").append(fitted->size);
-  if (const Status valid = check_forces(fit.data); !valid) {
-    return Error{"the " + fit.data.name + " fit did not give a usable model (" + valid.error().message +
-                 "); try more smoothing or fewer centres"};
-  }
-  const std::optional<double> within_jnd = share_within_jnd(prepared, fit.data, control);
-  if (!within_jnd || !control.may_continue(1.0)) return interrupted();
-  fit.data.provenance.training_within_jnd = *within_jnd;
+  auto fit = model_of(prepared, request, std::move(*fitted), of_folds);
+  if (!fit) return fit;
+  if (!control.may_continue(0.99)) return interrupted();
+  fit->data.provenance.training_within_jnd = share_within_jnd(prepared, fit->data);
+  if (!control.may_continue(1.0)) return interrupted();
   return fit;
 }
 

@@ -5,8 +5,8 @@
 //                      one-sided contact, domain cover, strength of the correction
 //   fit_method         one of the methods of models/fit/methods.h on the prepared sites
 //
-// The methods fit the residual of the trend. In the paper's recipe (recipe_2009.h) they fit the force itself, without
-// trend, trust and surface search.
+// The methods fit the residual of the trend. In the paper's recipe (recipe_2009_request) they fit the force itself,
+// without trend, trust and surface search.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -22,10 +22,8 @@
 #include "models/fit/methods.h"
 #include "models/model/fitted_model.h"
 #include "models/training/memory_law.h"
-#include "models/training/motion_source.h"
 #include "models/training/sites.h"
 #include "models/training/training_set.h"
-#include "models/training/trend_dictionary.h"
 #include "models/training/weighting.h"
 
 namespace palpate {
@@ -54,6 +52,14 @@ struct TrainingRequest {
   Surface surface = Surface::automatic;
 };
 
+// The request of a scene with the recipe of Hoever & Harders (2009), for comparison: 50 mN reduction; rows scaled by
+// 1/f; depth, velocity and low-pass velocities as features, with two relaxation times identified from these recordings,
+// as the paper identifies its two from the transients of its own (none for a scene without low-pass velocities); the
+// force itself as target; weights by truncated singular values (truncated_svd.h); positions as recorded, no trust, an
+// even grid. Forces are limited as in every model, to 1.2 times the largest measured one and to 0, or to the lowest one
+// of a material that pulls. Pure.
+TrainingRequest recipe_2009_request(TrainingRequest request);
+
 struct PreparedTraining {
   TrainingSet set;
   Sites sites;                                  // normalised; target: residual of the trend, or the force
@@ -61,11 +67,7 @@ struct PreparedTraining {
   std::vector<PartGain> gains;                  // of each term of the dictionary; empty unless FeatureChoice::automatic
   std::optional<StrengthChoice> strength;       // none in the paper's recipe
   std::optional<CrossValidationRows> left_out;  // rows for cross-validation; none in the paper's recipe
-  int folds = 0;                                // of the cross-validation
   std::size_t strokes = 0;
-  // Feature vectors in contact and their forces, for training_within_jnd; at most 100,000.
-  std::vector<std::array<double, kMaxFeatures>> evaluation_features;
-  std::vector<double> evaluation_force_N;
 
   // False if cross-validation rejected the correction; every method then returns the trend.
   bool corrects() const { return !strength || strength->strength > 0.0; }
@@ -75,6 +77,11 @@ struct MethodFit {
   ModelData data;
   FitReport report;
 };
+
+// Makes the model of a fitted correction. `of_folds`: the corrections without each fold, for its error bound; empty for
+// a trend alone. Errors: the forces are not finite.
+Result<MethodFit> model_of(const PreparedTraining& prepared, const MethodRequest& request, FittedCorrection fitted,
+                           const std::vector<CorrectionPtr>& of_folds);
 
 // Errors: those of the recordings; no sample in contact; the request does not suit the scene; interrupted.
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,

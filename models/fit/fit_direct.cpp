@@ -6,10 +6,7 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
-#include "models/fit/methods.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/choose_smoothing.h"
 #include "models/solve/projected_kernel.h"
 #include "models/solve/truncated_svd.h"
 
@@ -54,35 +51,25 @@ Result<FittedRbf> solve(const Sites& sites, const ProjectedKernel& kernel, doubl
 
 }  // namespace
 
-Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, const FitControl& control) {
-  if (const Status status = validate_sites(sites); !status) return status.error();
+Result<FittedRbf> fit_direct(const Sites& sites, KernelKind kind, std::optional<double> smoothing,
+                             const FitControl& control) {
   if (sites.count() > kMostDirectSites)
     return Error{"a direct fit of " + std::to_string(sites.count()) + " sites is too large, at most " +
                  std::to_string(kMostDirectSites) + "; reduce the recording further or use greedy"};
-  if (sites.as_2009) return truncated_interpolant(sites, options.kernel, control);
+  if (sites.as_2009) return truncated_interpolant(sites, kind, control);
   if (!control.may_continue(0.0)) return interrupted();
-  const ProjectedKernel kernel(sites, options.kernel);
+  const ProjectedKernel kernel(sites, kind);
   if (!control.may_continue(0.1)) return interrupted();
-  const Result<double> smoothing = options.smoothing ? *options.smoothing : smoothing_of(sites, options.kernel);
-  if (!smoothing) return smoothing.error();
+  if (!smoothing) {
+    const auto found = smoothing_of(sites, kind);
+    if (!found) return found.error();
+    smoothing = *found;
+  }
   if (!control.may_continue(0.2)) return interrupted();
   auto fitted = solve(sites, kernel, std::max(*smoothing, kernel.smallest_smoothing()), control);
   if (!control.may_continue(kFactorised)) return interrupted();
   return fitted;
 }
-
-namespace {
-
-Result<FittedCorrection> direct_correction(const MethodTask& task, const FitControl& control) {
-  DirectOptions options;
-  options.kernel = task.request.kernel;
-  auto fitted = fit_direct(task.sites, options, control);
-  if (!fitted) return fitted.error();
-  return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(fitted->function)), std::move(fitted->report),
-                          ""};
-}
-
-}  // namespace
 
 const Method kDirectMethod{
     .name = "direct",
@@ -90,7 +77,11 @@ const Method kDirectMethod{
     .colour = kNeutralColour,
     .takes = kTakesKernel,
     .expected_seconds = [](const MethodRequest&) { return 3.0; },
-    .fit = direct_correction,
+    .fit = [](const MethodTask& task, const FitControl& control) -> Result<FittedCorrection> {
+      auto fitted = fit_direct(task.sites, task.request.kernel, {}, control);
+      if (!fitted) return fitted.error();
+      return rbf_correction(std::move(*fitted), "");
+    },
 };
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // Direct interpolation: every site is a centre, with the side condition of eq. 3. The smoothing is selected by
-// cross-validation (select_strength.h), otherwise by maximum likelihood (choose_smoothing.h).
+// cross-validation (correction_strength.h), otherwise by maximum likelihood (projected_kernel.h).
 //
 // The projected system (projected_kernel.h) is solved by a Cholesky factorisation; with Sites::as_2009, by the paper's
 // truncated SVD (truncated_svd.h), which takes some thirty times longer.
@@ -8,25 +8,16 @@
 
 #include <optional>
 
-#include "engine/base/fit_control.h"
-#include "engine/base/result.h"
 #include "models/fit/methods.h"
-#include "models/solve/fit_report.h"
-#include "models/training/sites.h"
 
 namespace palpate {
-
-struct DirectOptions {
-  KernelKind kernel = KernelKind::cubic;
-  // Default: as above. 0 interpolates, with the smallest smoothing at which the matrix can be factorised.
-  std::optional<double> smoothing = std::nullopt;
-};
 
 // The limit of the number of sites; more would take over 4 GiB and minutes.
 inline constexpr Eigen::Index kMostDirectSites = 20000;
 
-// Errors: those of validate_sites; too many sites; no factorisation; interrupted. Deterministic on one machine. Slow
-// side; O(N^3), N^2 doubles.
-Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, const FitControl& control = {});
+// `smoothing`: default as above; 0 interpolates, with the smallest smoothing at which the matrix can be factorised.
+// Errors: too many sites; no factorisation; interrupted. Deterministic on one machine. Slow side; O(N^3), N^2 doubles.
+Result<FittedRbf> fit_direct(const Sites& sites, KernelKind kernel = KernelKind::cubic,
+                             std::optional<double> smoothing = {}, const FitControl& control = {});
 
 }  // namespace palpate

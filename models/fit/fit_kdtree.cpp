@@ -1,21 +1,92 @@
-#include "models/fit/choose_centres.h"
-
+// The kD-tree method. The sites are split into two leaves, whose barycentres are the centres. Then, in each step, the
+// function is fitted, the sample with the largest error over the JND is found, and its leaf is split at the median of
+// its widest dimension, which replaces one centre by two.
+//
+// A refit costs one new pair of columns, not a new matrix: the polynomial tail is projected out of the columns, and
+// their Gram matrix is updated and factorised (Cholesky, with a relative ridge of 1e-13). Duplicate sites stay in one
+// leaf. A leaf with a single point cannot be split; the sample with the next largest error is taken. O(N centres) a
+// step.
+// Source: Hoever & Harders (2009), section 4.2.2.
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <numeric>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "models/fit/methods.h"
 #include "models/linear/lapack.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/orthogonal_basis.h"
-#include "models/solve/site_tree.h"
 
 namespace palpate {
 namespace {
+
+// The leaves of a kD-tree over sites: disjoint sets, each of which can be split at the median of its widest dimension.
+class SiteTree {
+ public:
+  // One leaf with all points. `points`: d x N, N >= 1; must outlive this.
+  explicit SiteTree(const Eigen::MatrixXd& points)
+      : points_(points),
+        order_(static_cast<std::size_t>(points.cols())),
+        leaves_{{0, static_cast<std::size_t>(points.cols())}},
+        leaf_of_(static_cast<std::size_t>(points.cols()), 0) {
+    std::iota(order_.begin(), order_.end(), Eigen::Index{0});
+  }
+
+  Eigen::Index leaf_count() const { return static_cast<Eigen::Index>(leaves_.size()); }
+  Eigen::Index leaf_of(Eigen::Index site) const { return leaf_of_[static_cast<std::size_t>(site)]; }
+
+  Eigen::VectorXd barycentre(Eigen::Index leaf) const {
+    const Leaf& range = leaves_[static_cast<std::size_t>(leaf)];
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(points_.rows());
+    for (std::size_t i = range.begin; i < range.end; ++i) sum += points_.col(order_[i]);
+    return sum / static_cast<double>(range.end - range.begin);
+  }
+
+  // Splits a leaf at the boundary between different coordinates nearest to the median. The lower part keeps the index,
+  // the upper one gets leaf_count(). Returns false, without a change, if all points of the leaf are equal.
+  bool split(Eigen::Index leaf) {
+    const Leaf range = leaves_[static_cast<std::size_t>(leaf)];
+    Eigen::VectorXd low = points_.col(order_[range.begin]);
+    Eigen::VectorXd high = low;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      low = low.cwiseMin(points_.col(order_[i]));
+      high = high.cwiseMax(points_.col(order_[i]));
+    }
+    Eigen::Index widest = 0;
+    if (!((high - low).maxCoeff(&widest) > 0.0)) return false;
+    const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(range.begin);
+    const auto end = order_.begin() + static_cast<std::ptrdiff_t>(range.end);
+    const auto value = [&](Eigen::Index site) { return points_(widest, site); };
+    std::sort(begin, end,
+              [&](Eigen::Index a, Eigen::Index b) { return value(a) != value(b) ? value(a) < value(b) : a < b; });
+    // Splits between different values, as near to the middle as possible.
+    const auto middle = begin + (end - begin) / 2;
+    const double median = value(*middle);
+    const auto first_equal = std::partition_point(begin, end, [&](Eigen::Index s) { return value(s) < median; });
+    const auto first_above = std::partition_point(begin, end, [&](Eigen::Index s) { return value(s) <= median; });
+    const bool lower_is_nearer = middle - first_equal <= first_above - middle;
+    auto boundary = lower_is_nearer ? first_equal : first_above;
+    if (boundary == begin) boundary = first_above;
+    if (boundary == end) boundary = first_equal;
+    const auto at = static_cast<std::size_t>(boundary - order_.begin());
+    leaves_[static_cast<std::size_t>(leaf)].end = at;
+    for (std::size_t i = at; i < range.end; ++i) leaf_of_[static_cast<std::size_t>(order_[i])] = leaf_count();
+    leaves_.push_back({at, range.end});
+    return true;
+  }
+
+ private:
+  struct Leaf {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+  };
+  const Eigen::MatrixXd& points_;
+  std::vector<Eigen::Index> order_;  // sites, leaf by leaf
+  std::vector<Leaf> leaves_;
+  std::vector<Eigen::Index> leaf_of_;
+};
 
 // The least squares problem of the growing tree: columns with the tail
 // projected out, and their Gram matrix.
@@ -34,7 +105,7 @@ class GrowingFit {
     for (const Eigen::Index index : at) size_ = std::max(size_, index + 1);
     Eigen::MatrixXd fresh(sites_.count(), count);
     std::array<Eigen::MatrixXd, kParts> shares;
-    for_parts([&](int part) {
+    parallel_for(kParts, [&](int part) {
       const auto [first, rows] = rows_of(part);
       auto mine = fresh.middleRows(first, rows);
       kernel_matrix(kernel_, points_, centres, mine, first);
@@ -46,7 +117,7 @@ class GrowingFit {
     const Eigen::MatrixXd tail_shares = shares[0] + shares[1];
     std::array<Eigen::MatrixXd, kParts> products;
     std::array<Eigen::VectorXd, kParts> right;
-    for_parts([&](int part) {
+    parallel_for(kParts, [&](int part) {
       const auto [first, rows] = rows_of(part);
       auto mine = fresh.middleRows(first, rows);
       multiply(tail_.columns().middleRows(first, rows), false, tail_shares, false, -1.0, 1.0, mine);
@@ -57,8 +128,8 @@ class GrowingFit {
       product.setZero();
       // One column at a time, because dgemm would spend its time copying; by blocks of rows, which stay in the cache
       // for the next column.
-      for (Eigen::Index row = 0; row < rows; row += kRows) {
-        const Eigen::Index some = std::min(kRows, rows - row);
+      for (Eigen::Index row = 0; row < rows; row += kBlockRows) {
+        const Eigen::Index some = std::min(kBlockRows, rows - row);
         for (Eigen::Index k = 0; k < count; ++k)
           multiply(columns_.block(first + row, 0, some, size_), true, mine.block(row, k, some, 1), false, 1.0, 1.0,
                    product.col(k));
@@ -75,26 +146,11 @@ class GrowingFit {
 
   // row_scale (f - h) at every site for the best weights.
   Eigen::VectorXd residual() const {
-    // Columns are scaled to length 1; columns near 0 get the weight 0.
-    Eigen::VectorXd scale = gram_.diagonal().head(size_).cwiseSqrt();
-    const double tiny = 1e-20 * scale.maxCoeff();
-    scale = (scale.array() > tiny).select(scale.cwiseInverse(), 0.0);
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * gram_.topLeftCorner(size_, size_) * scale.asDiagonal();
-    Eigen::VectorXd weights;
-    for (double ridge = 1e-13; ridge < 1.0; ridge *= 100.0) {
-      Eigen::MatrixXd factor = scaled;
-      factor.diagonal().array() += ridge;
-      if (!cholesky_in_place(factor)) continue;
-      weights = scale.cwiseProduct(right_.head(size_));
-      cholesky_solve(factor, weights);
-      break;
-    }
+    const Eigen::VectorXd weights = solve_with_ridge(gram_.topLeftCorner(size_, size_), right_.head(size_), 1e-13);
     Eigen::VectorXd rest = tail_.residual();
-    const Eigen::VectorXd scaled_weights = weights.cwiseProduct(scale);
-    for_parts([&](int part) {
+    parallel_for(kParts, [&](int part) {
       const auto [first, rows] = rows_of(part);
-      multiply(columns_.block(first, 0, rows, size_), false, scaled_weights, false, -1.0, 1.0,
-               rest.segment(first, rows));
+      multiply(columns_.block(first, 0, rows, size_), false, weights, false, -1.0, 1.0, rest.segment(first, rows));
     });
     return rest;
   }
@@ -106,14 +162,6 @@ class GrowingFit {
   std::pair<Eigen::Index, Eigen::Index> rows_of(int part) const {
     const Eigen::Index half = sites_.count() / 16 * 8;
     return part == 0 ? std::pair{Eigen::Index{0}, half} : std::pair{half, sites_.count() - half};
-  }
-
-  static constexpr Eigen::Index kRows = 512;
-  // The number of products, about 0.3 ms, above which a step is faster with threads.
-  static constexpr Eigen::Index kWorthThreads = 1000000;
-  void for_parts(const std::function<void(int part)>& work) const {
-    if (sites_.count() * size_ >= kWorthThreads) return parallel_for(kParts, work);
-    for (int part = 0; part < kParts; ++part) work(part);
   }
 
   const Sites& sites_;
@@ -147,27 +195,19 @@ Eigen::VectorXd excess_of(const GrowingFit& fit, const Sites& sites, const Eigen
       .select(residual.array().abs() / (sites.row_scale.array() * jnd_N.array()), 0.0);
 }
 
-}  // namespace
-
-Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const MethodRequest& request,
-                                     const FitControl& control) {
-  if (const Status status = validate_sites(sites); !status) return status.error();
-  if (jnd_N.size() != sites.count() || !jnd_N.allFinite() || !(jnd_N.minCoeff() > 0.0))
-    return Error{"jnd_N has " + std::to_string(jnd_N.size()) + " entries or one that is not positive, expected " +
-                 std::to_string(sites.count()) + " thresholds above 0 N"};
+Result<CentreSequence> choose_kdtree(const MethodTask& task, const FitControl& control) {
+  const Sites& sites = task.sites;
+  const MethodRequest& request = task.request;
+  CentreSequence sequence{Eigen::MatrixXd(sites.dimension(), 0), {}, 2, ""};
+  if (request.centres <= 0) return sequence;
   const BlasThreads one_thread(1);
   SiteTree tree(sites.points);
-  const Eigen::Index most = std::max<Eigen::Index>(1, std::min<Eigen::Index>(request.centres, sites.count()));
+  const Eigen::Index most = std::min<Eigen::Index>(request.centres, sites.count());
   GrowingFit fit(sites, request.kernel, most);
-  CentreSequence sequence;
   sequence.pool.resize(sites.dimension(), 2 * most - 1);
-  std::vector<std::size_t> of_leaf;  // the column of each leaf
   const auto add = [&](Eigen::Index leaf) {
-    const auto index = static_cast<std::size_t>(leaf);
-    of_leaf.resize(std::max(of_leaf.size(), index + 1));
-    of_leaf[index] = sequence.memberships.size();
-    sequence.memberships.push_back({leaf, tree.leaf_count(), 0});
-    sequence.pool.col(static_cast<Eigen::Index>(of_leaf[index])) = tree.barycentre(leaf);
+    sequence.pool.col(static_cast<Eigen::Index>(sequence.places.size())) = tree.barycentre(leaf);
+    sequence.places.push_back(leaf);
   };
   add(0);
   fit.set(sequence.pool.leftCols(1), {0});
@@ -176,20 +216,20 @@ Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& 
     if (!control.may_continue(0.95 * static_cast<double>(tree.leaf_count()) / static_cast<double>(most)))
       return interrupted();
     // The first split does not depend on errors: there is one leaf.
-    const Eigen::Index lower = split_worst(tree, excess_of(fit, sites, jnd_N), whole);
+    const Eigen::Index lower = split_worst(tree, excess_of(fit, sites, task.jnd_N), whole);
     if (lower < 0) break;
     const Eigen::Index upper = tree.leaf_count() - 1;
-    sequence.memberships[of_leaf[static_cast<std::size_t>(lower)]].until = tree.leaf_count();
-    const auto before = static_cast<Eigen::Index>(sequence.memberships.size());
+    const auto before = static_cast<Eigen::Index>(sequence.places.size());
     add(lower);
     add(upper);
     fit.set(sequence.pool.middleCols(before, 2), {lower, upper});
   }
-  sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.memberships.size()));
-  sequence.most = request.centres > 0 ? tree.leaf_count() : 0;
-  if (sequence.most < request.centres) sequence.shortage = "no leaf can be split further";
+  sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.places.size()));
+  if (sequence.most() < request.centres) sequence.shortage = "no leaf can be split further";
   return sequence;
 }
+
+}  // namespace
 
 const Method kKdTreeMethod{
     .name = "kdtree",
@@ -201,9 +241,7 @@ const Method kKdTreeMethod{
           const double hundreds = 0.01 * request.centres;
           return 0.1 + 0.01 * hundreds * hundreds * hundreds;
         },
-    .fit = fit_chosen,
-    .choose = [](const MethodTask& task,
-                 const FitControl& control) { return choose_kdtree(task.sites, task.jnd_N, task.request, control); },
+    .choose = choose_kdtree,
 };
 
 }  // namespace palpate

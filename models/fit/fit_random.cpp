@@ -1,30 +1,24 @@
-#include "models/fit/choose_centres.h"
-
-#include <algorithm>
-#include <utility>
+// The random method: distinct sites drawn without replacement, the first of one permutation. It is the fastest method
+// and the least accurate.
+// Source: Hoever & Harders (2009), section 4.2.1.
 #include <vector>
 
-#include "engine/base/random_stream.h"
+#include "models/fit/methods.h"
 
 namespace palpate {
+namespace {
 
-Result<CentreSequence> choose_random(const Sites& sites, const MethodRequest& request) {
-  if (const Status status = validate_sites(sites); !status) return status.error();
-  std::vector<Eigen::Index> order = distinct_sites(sites);
-  const auto distinct = static_cast<Eigen::Index>(order.size());
-  const Eigen::Index count = std::clamp<Eigen::Index>(request.centres, 0, distinct);
+Result<CentreSequence> choose_random(const MethodTask& task, const FitControl&) {
+  const MethodRequest& request = task.request;
+  std::vector<Eigen::Index> order = distinct_sites(task.sites);
   SplitMix64 random(request.seed);
-  Eigen::MatrixXd centres(sites.dimension(), count);
-  for (Eigen::Index j = 0; j < count; ++j) {  // Fisher-Yates, the first `count` of it
-    const auto left = static_cast<std::uint64_t>(distinct - j);
-    const auto pick = static_cast<std::size_t>(j) + static_cast<std::size_t>(random.below(left));
-    std::swap(order[static_cast<std::size_t>(j)], order[pick]);
-    centres.col(j) = sites.points.col(order[static_cast<std::size_t>(j)]);
-  }
-  CentreSequence sequence = CentreSequence::growing(std::move(centres));
-  if (count < request.centres) sequence.shortage = "there are no more distinct sites";
+  order.resize(draw_first(order, request.centres, random));
+  CentreSequence sequence = CentreSequence::growing(task.sites.points(Eigen::all, order));
+  if (sequence.most() < request.centres) sequence.shortage = "there are no more distinct sites";
   return sequence;
 }
+
+}  // namespace
 
 const Method kRandomMethod{
     .name = "random",
@@ -33,8 +27,7 @@ const Method kRandomMethod{
     .takes = kTakesCentres | kTakesKernel | kTakesSeed,
     .expected_seconds =
         [](const MethodRequest& request) { return 0.08 + 0.02 * (0.01 * request.centres) * (0.01 * request.centres); },
-    .fit = fit_chosen,
-    .choose = [](const MethodTask& task, const FitControl&) { return choose_random(task.sites, task.request); },
+    .choose = choose_random,
 };
 
 }  // namespace palpate

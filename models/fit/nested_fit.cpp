@@ -1,61 +1,39 @@
 #include "models/fit/nested_fit.h"
 
 #include <algorithm>
-#include <memory>
+#include <numeric>
 #include <string>
 
-#include "models/fit/methods.h"
-#include "models/fit/select_strength.h"
+#include "models/fit/bound_calibration.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/penalised_weights.h"
 
 namespace palpate {
 
-NestedWeights::NestedWeights(KernelKind kernel, CentreSequence sequence, FactorisedRows factorised)
-    : kernel_(kernel), sequence_(std::move(sequence)), factorised_(std::move(factorised)) {
-  const Eigen::MatrixXd& as_factorised = factorised_.triangle;
-  const Eigen::Index n = sequence_.pool.cols();
-  const Eigen::Index tail = as_factorised.cols() - 1 - n;
-  Eigen::MatrixXd reordered(as_factorised.rows(), as_factorised.cols());
-  reordered << as_factorised.middleCols(n, tail), as_factorised.leftCols(n), as_factorised.rightCols(1);
-  qr_in_place(reordered);
-  factorised_.triangle = reordered.triangularView<Eigen::Upper>();
-}
-
-Result<NestedWeights> NestedWeights::factorise(const Sites& sites, KernelKind kernel, CentreSequence sequence,
-                                               const FitControl& control) {
-  if (const Status status = validate_centres(sites, sequence.pool); !status) return status.error();
-  const BlasThreads one_thread(1);
-  auto factorised = factorise_rows(sites, kernel, sequence.pool, control);
+Result<NestedWeights> NestedWeights::factorise(const Sites& sites, KernelKind kernel, CentreSequence sequence) {
+  auto factorised = factorise_rows(sites, kernel, sequence.pool);
   if (!factorised) return factorised.error();
   return NestedWeights(kernel, std::move(sequence), std::move(*factorised));
 }
 
-// The triangle of these columns, in the order of solve_weights: Phi, G, f.
+// The triangle of the tail, these kernel columns and the data.
 FactorisedRows NestedWeights::factorised_for(const std::vector<Eigen::Index>& columns) const {
   const Eigen::MatrixXd& all = factorised_.triangle;
   const Eigen::Index last = all.cols() - 1;
   const Eigen::Index tail = last - sequence_.pool.cols();
-  const auto k = static_cast<Eigen::Index>(columns.size());
-  const Eigen::Index newest = k > 0 ? *std::max_element(columns.begin(), columns.end()) + 1 : 0;
-  const Eigen::Index rows = tail + newest;
-  FactorisedRows factorised{Eigen::MatrixXd::Zero(rows + 1, k + tail + 1),
-                            factorised_.sites,
-                            factorised_.plain_unknowns_limit,
-                            factorised_.smoothing,
-                            factorised_.strength,
-                            factorised_.as_2009};
-  for (Eigen::Index j = 0; j < k; ++j) {
-    factorised.triangle.col(j).head(rows) = all.col(tail + columns[static_cast<std::size_t>(j)]).head(rows);
-  }
-  factorised.triangle.block(0, k, rows, tail) = all.topLeftCorner(rows, tail);
-  factorised.triangle.col(k + tail).head(rows) = all.col(last).head(rows);
+  std::vector<Eigen::Index> kept(static_cast<std::size_t>(tail));
+  std::iota(kept.begin(), kept.end(), Eigen::Index{0});
+  for (const Eigen::Index column : columns) kept.push_back(tail + column);
+  const Eigen::Index rows = kept.empty() ? 0 : *std::max_element(kept.begin(), kept.end()) + 1;
+  kept.push_back(last);
+  FactorisedRows factorised = factorised_;
+  Eigen::MatrixXd& triangle = factorised.triangle;
+  triangle = Eigen::MatrixXd::Zero(rows + 1, static_cast<Eigen::Index>(kept.size()));
+  triangle.topRows(rows) = all(Eigen::seqN(0, rows), kept);
   // The norm of the data outside of the span of these columns.
-  factorised.triangle(rows, k + tail) = all.col(last).tail(last + 1 - rows).norm();
-  if (factorised.triangle.rows() > factorised.triangle.cols()) {
-    qr_in_place(factorised.triangle);
-    factorised.triangle = factorised.triangle.topRows(k + tail + 1).triangularView<Eigen::Upper>().toDenseMatrix();
+  triangle(rows, triangle.cols() - 1) = all.col(last).tail(last + 1 - rows).norm();
+  if (triangle.rows() > triangle.cols()) {
+    qr_in_place(triangle);
+    triangle = triangle.topRows(triangle.cols()).triangularView<Eigen::Upper>().toDenseMatrix();
   }
   return factorised;
 }
@@ -72,14 +50,15 @@ Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const Method
     return Error{std::string("the method \"") + request.method->name + "\" cannot continue from fewer centres"};
   }
   const auto factorised = [&](const Sites& sites, const Eigen::VectorXd& jnd_N) -> Result<NestedWeights> {
-    auto sequence = request.method->choose({sites, prepared.common.features, jnd_N, request, nullptr}, control);
+    if (const Status status = validate_sites(sites); !status) return status.error();
+    auto sequence = request.method->choose({sites, jnd_N, request}, control);
     if (!sequence) return sequence.error();
     return NestedWeights::factorise(sites, request.kernel, std::move(*sequence));
   };
   auto weights = factorised(prepared.sites, site_thresholds(prepared));
   if (!weights) return weights.error();
   NestedFit made(prepared, request, std::move(*weights));
-  for (int fold = 0; prepared.left_out && fold < prepared.folds; ++fold) {
+  for (int fold = 0; prepared.left_out && fold < prepared.left_out->folds(); ++fold) {
     const Sites sites = sites_without(prepared, fold);
     made.without_fold_.emplace_back();
     if (sites.count() == 0) continue;
@@ -91,21 +70,13 @@ Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const Method
 }
 
 Result<MethodFit> NestedFit::fit(Eigen::Index count) const {
-  FittedRbf fitted = weights_.solve(count);
-  MethodFit fit{prepared_->common, std::move(fitted.report)};
-  fit.data.method = request_.method->name;
-  fit.data.provenance.seed = request_.seed;
-  fit.data.correction = std::make_shared<const RbfCorrection>(std::move(fitted.function));
-  if (prepared_->left_out) {
-    std::vector<CorrectionPtr> of_folds;
-    for (const std::optional<NestedWeights>& one : without_fold_) {
-      of_folds.push_back(one ? std::make_shared<const RbfCorrection>(one->solve(count).function) : nullptr);
-    }
-    fit.data.error_bound = bound_of(*prepared_, cross_validate(*prepared_, of_folds));
+  std::vector<CorrectionPtr> of_folds;
+  for (const std::optional<NestedWeights>& one : without_fold_) {
+    of_folds.push_back(one ? rbf_correction(one->solve(count), "").correction : nullptr);
   }
-  fit.data.name = fit.data.method + "-" + std::to_string(fit.report.centres_used);
-  if (const Status valid = check_forces(fit.data); !valid) return valid.error();
-  return fit;
+  FittedRbf fitted = weights_.solve(count);
+  const std::string size = std::to_string(fitted.report.centres_used);
+  return model_of(*prepared_, request_, rbf_correction(std::move(fitted), size), of_folds);
 }
 
 }  // namespace palpate

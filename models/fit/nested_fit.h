@@ -19,28 +19,26 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "models/fit/fit.h"
-#include "models/solve/centre_sequence.h"
-#include "models/solve/solve_weights.h"
 
 namespace palpate {
 
 class NestedWeights {
  public:
   // Factorises the rows. Errors: those of solve_weights. Takes about as long as solve_weights for all centres.
-  static Result<NestedWeights> factorise(const Sites& sites, KernelKind kernel, CentreSequence sequence,
-                                         const FitControl& control = {});
+  static Result<NestedWeights> factorise(const Sites& sites, KernelKind kernel, CentreSequence sequence);
 
-  Eigen::Index most() const { return sequence_.most; }
+  Eigen::Index most() const { return sequence_.most(); }
   // The result of solve_weights for `count` centres, clamped to 0 to most().
   FittedRbf solve(Eigen::Index count) const;
 
  private:
-  NestedWeights(KernelKind kernel, CentreSequence sequence, FactorisedRows factorised);
+  NestedWeights(KernelKind kernel, CentreSequence sequence, FactorisedRows factorised)
+      : kernel_(kernel), sequence_(std::move(sequence)), factorised_(std::move(factorised)) {}
   FactorisedRows factorised_for(const std::vector<Eigen::Index>& columns) const;
 
   KernelKind kernel_;
   CentreSequence sequence_;
-  FactorisedRows factorised_;  // with columns in the order G, Phi, f
+  FactorisedRows factorised_;
 };
 
 // The same for whole models.

@@ -1,21 +1,17 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
 #include "models/fit/fit.h"
-#include "models/fit/select_strength.h"
 #include "models/surface/surface_registration.h"
-#include "models/training/relaxation_times.h"
-#include "models/training/training_extent.h"
-#include "models/training/trend_dictionary.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kCorrectionMargin = 1.1;
-constexpr std::size_t kMaximumEvaluationSamples = 100000;
 // Rows of the trend's regression, enough to average out the noise.
 constexpr std::size_t kTrendRows = 8000;
 // A dwell of many samples counts as at most this many.
@@ -27,17 +23,14 @@ constexpr double kUnlimited = 100.0;
 
 bool is_papers_recipe(const TrainingRequest& request) { return request.recipe == FitRecipe::paper_2009; }
 
+// The paper's recipe never uses the dictionary.
+bool is_automatic(const TrainingRequest& request) {
+  return request.choice == FeatureChoice::automatic && !is_papers_recipe(request);
+}
+
 bool has_velocity(const std::vector<FeatureSpec>& features) {
   return std::any_of(features.begin(), features.end(),
                      [](const FeatureSpec& spec) { return spec.kind == FeatureKind::velocity; });
-}
-
-std::vector<double> filter_times(const std::vector<FeatureSpec>& features) {
-  std::vector<double> times;
-  for (const FeatureSpec& spec : features) {
-    if (spec.kind == FeatureKind::lowpass_velocity) times.push_back(spec.relaxation_time_s);
-  }
-  return times;
 }
 
 // The scene's features as a list; each relaxation time is a feature.
@@ -48,13 +41,10 @@ FeatureList scene_list(const std::vector<FeatureSpec>& scene, const std::vector<
   return list;
 }
 
-// The scene's features with its low-passes replaced by `filters`.
-std::vector<FeatureSpec> with_filters(const std::vector<FeatureSpec>& scene, const std::vector<FeatureSpec>& filters) {
-  std::vector<FeatureSpec> features;
-  for (const FeatureSpec& spec : scene) {
-    if (spec.kind != FeatureKind::lowpass_velocity) features.push_back(spec);
-  }
-  features.insert(features.end(), filters.begin(), filters.end());
+// The features of the recipe of 2009: the scene's, with low-passes of these times.
+std::vector<FeatureSpec> with_filters(std::vector<FeatureSpec> features, const std::vector<double>& times_s) {
+  std::erase_if(features, [](const FeatureSpec& spec) { return spec.kind == FeatureKind::lowpass_velocity; });
+  for (const double time_s : times_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
   return features;
 }
 
@@ -69,19 +59,11 @@ std::vector<RelaxationTime> times_of(const std::vector<FeatureSpec>& features) {
   return times;
 }
 
-// The paper uses its function everywhere, within the limits of the output only, with even grids and with
-// pseudo-inverses by truncated singular values.
-void without_guard(PreparedTraining& prepared) {
-  prepared.sites.as_2009 = true;
-  prepared.common.cover.inner_radius = kEverywhere;
-  prepared.common.cover.outer_radius = 2.0 * kEverywhere;
-  prepared.common.correction_limit_N *= kUnlimited;
-}
-
 void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   const TrainingSet& set = prepared.set;
   const auto n = static_cast<Eigen::Index>(set.sites.size());
-  const auto d = static_cast<Eigen::Index>(set.features.size());
+  const std::vector<FeatureSpec>& features = prepared.common.features;
+  const auto d = static_cast<Eigen::Index>(features.size());
   Sites& sites = prepared.sites;
   sites.points.resize(d, n);
   sites.target_N.resize(n);
@@ -92,7 +74,7 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     const auto k = static_cast<Eigen::Index>(i);
     const Eigen::Map<const Eigen::VectorXd> x(site.features.data(), d);
     sites.points.col(k) = (x - set.normalisation.offset).cwiseQuotient(set.normalisation.scale);
-    base_N(k) = prepared.common.trend.at(site.features.data(), set.features);
+    base_N(k) = prepared.common.trend.at(site.features.data(), features);
     const double residual_N = site.force_N - base_N(k);
     sites.target_N(k) = prepared.common.corrects_trend ? residual_N : site.force_N;
     // Where no force is measured and the trend is below 0, no correction is needed.
@@ -107,7 +89,13 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     largest_N = std::max(largest_N, std::abs(correction_N));
   }
   prepared.common.correction_limit_N = kCorrectionMargin * largest_N;
-  if (is_papers_recipe(request)) without_guard(prepared);
+  if (!is_papers_recipe(request)) return;
+  // The paper uses its function everywhere, within the limits of the output only, with even grids and with
+  // pseudo-inverses by truncated singular values.
+  sites.as_2009 = true;
+  prepared.common.cover.inner_radius = kEverywhere;
+  prepared.common.cover.outer_radius = 2.0 * kEverywhere;
+  prepared.common.correction_limit_N *= kUnlimited;
 }
 
 // The recordings with one set of corrections.
@@ -141,8 +129,9 @@ TrendProblem problem_of(const MotionSource& source, const TrainingExtent& extent
   // Contact with a material that pulls is not one-sided: a force of 0 counts like any other.
   const double force_noise_floor_N =
       extent.lowest_force_N < 0.0 ? -std::numeric_limits<double>::infinity() : no_force_N(source.force_noise_N());
-  return {extent.depth_m, extent.rms_velocity_m_per_s, force_noise_floor_N,
-          is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
+  return {extent.depth_m,      extent.rms_velocity_m_per_s,
+          force_noise_floor_N, is_papers_recipe(request) ? Weighting::jnd : request.weighting,
+          request.jnd,         source.folds()};
 }
 
 FeatureList dictionary_of(const MotionSource& source, const TrainingExtent& extent) {
@@ -166,13 +155,13 @@ Result<CorrectedRecordings> correct_recordings(MotionSource& source, const Train
     return recorded;
   }
   source.correct({});
-  const auto found = register_surfaces(source, control);
+  auto found = register_surfaces(source, control);
   if (!found) return found.error();
   CorrectedRecordings corrected;
   corrected.surface_m = found->surface_position_m;
   recorded.surface_m = found->recorded_surface_position_m;
-  for (const RegisteredSurface& one : found->recordings) {
-    corrected.corrections.push_back({one.offset_m + corrected.surface_m, one.force_zero_N, found->lag_s});
+  for (const RecordingSurface& one : found->recordings) {
+    corrected.corrections.push_back({one.offset_m + corrected.surface_m, one.force_zero_N, one.lag_s});
     recorded.corrections.push_back({recorded.surface_m, 0.0, 0.0});
   }
   bool as_recorded = false;
@@ -189,13 +178,12 @@ Result<CorrectedRecordings> correct_recordings(MotionSource& source, const Train
   } else if (Status status = apply(corrected, source, request, control); !status) {
     return status.error();
   }
-  for (std::size_t i = 0; i < found->recordings.size(); ++i) {
-    const RegisteredSurface& one = found->recordings[i];
-    provenance.surfaces.push_back({source.names()[i], as_recorded ? 0.0 : one.offset_m,
-                                   as_recorded ? std::numeric_limits<double>::infinity() : one.standard_error_m,
-                                   as_recorded ? 0.0 : one.force_zero_N, as_recorded ? 0.0 : found->lag_s,
-                                   source.hashes()[i]});
+  for (RecordingSurface& one : found->recordings) {
+    if (!as_recorded) break;
+    one.offset_m = one.force_zero_N = one.lag_s = 0.0;
+    one.standard_error_m = std::numeric_limits<double>::infinity();
   }
+  provenance.surfaces = std::move(found->recordings);
   return as_recorded ? recorded : corrected;
 }
 
@@ -210,7 +198,10 @@ struct Given {
 // The relaxation times: those of the scene, of the request, or identified ones.
 Result<std::vector<double>> scene_times(const Given& given, Provenance& provenance, const FitControl& control) {
   const TrainingRequest& request = given.request;
-  std::vector<double> times_s = filter_times(request.features);
+  std::vector<double> times_s;
+  for (const FeatureSpec& spec : request.features) {
+    if (spec.kind == FeatureKind::lowpass_velocity) times_s.push_back(spec.relaxation_time_s);
+  }
   if (request.relaxation != Relaxation::scene && times_s.empty()) {
     return Error{"scene \"" + request.scene +
                  "\" has no relaxation features; leave out --relaxation, or use a scene "
@@ -234,13 +225,11 @@ Result<FeatureList> automatic_list(PreparedTraining& prepared, const Given& give
 }
 
 // The gain of each part of the list: the cross-validated error with it and without it.
-void add_gains(PreparedTraining& prepared, const FeatureList& list, const TrendRows& rows,
-               const TrendRegression& regression, const CrossValidated& with_all, const Eigen::VectorXd& x) {
-  for (const FeatureColumns& group : feature_columns(list, rows)) {
+void add_gains(PreparedTraining& prepared, const TrendRows& rows, const TrendRegression& regression,
+               const CrossValidated& with_all, const Eigen::VectorXd& x) {
+  for (const FeatureColumns& group : feature_columns(rows)) {
     ColumnList others;
-    for (const Eigen::Index column : regression.all_columns()) {
-      if (!std::binary_search(group.columns.begin(), group.columns.end(), column)) others.push_back(column);
-    }
+    std::ranges::set_difference(regression.all_columns(), group.columns, std::back_inserter(others));
     const bool taken = (x(group.columns).array() > 0.0).any();
     prepared.gains.push_back({group.name, taken, with_all.errors.rms_at_mean_score(),
                               regression.cross_validate(others).errors.rms_at_mean_score()});
@@ -248,39 +237,38 @@ void add_gains(PreparedTraining& prepared, const FeatureList& list, const TrendR
   std::stable_partition(prepared.gains.begin(), prepared.gains.end(), [](const PartGain& one) { return one.taken; });
 }
 
+// Selects smoothing, strength and reach of the correction by cross-validation.
+void select_strength(PreparedTraining& prepared) {
+  ModelData& common = prepared.common;
+  const StrengthChoice choice = choose_strength(*prepared.left_out, common);
+  const double outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
+  prepared.strength = choice;
+  prepared.sites.smoothing = choice.smoothing;
+  prepared.sites.strength = choice.strength;
+  common.cover.inner_radius = choice.inner_radius;
+  common.cover.outer_radius = outer_to_inner * choice.inner_radius;
+}
+
 // Trend, sites and correction strength of one list of features.
 Status prepare_list(PreparedTraining& prepared, const Given& given, const FeatureList& list,
                     const FitControl& control) {
   const TrainingRequest& request = given.request;
   const bool papers = is_papers_recipe(request);
-  const bool automatic = request.choice == FeatureChoice::automatic && !papers;
+  const bool automatic = is_automatic(request);
   ModelData& common = prepared.common;
   common.corrects_trend = !papers;
-  const FeatureList terms = papers ? FeatureList{} : list;
-  const auto rows = gather_rows(given.source, terms, given.problem, kTrendRows, 0.0, control, 0.2);
+  const auto rows =
+      gather_rows(given.source, papers ? FeatureList{} : list, given.problem, kTrendRows, 0.0, control, 0.2);
   if (!rows) return rows.error();
-  const TrendRegression regression(*rows, given.source.folds(), given.problem);
+  const TrendRegression regression(*rows);
   const CrossValidated left_out = regression.cross_validate(regression.all_columns());
   const Eigen::VectorXd x = regression.solve(regression.all_columns());
-  if (automatic) add_gains(prepared, list, *rows, regression, left_out, x);
-  FittedTrend fitted = fitted_trend(terms, *rows, x, !automatic);
+  if (automatic) add_gains(prepared, *rows, regression, left_out, x);
+  const FittedTrend fitted = fitted_trend(*rows, x, !automatic);
   common.trend = fitted.trend;
-  common.features = fitted.features;
-  if (papers) {
-    std::vector<FeatureSpec> filters;
-    for (const double time_s : all_times(list)) filters.push_back({FeatureKind::lowpass_velocity, time_s, {}});
-    common.features = with_filters(request.features, filters);
-  }
-  const std::size_t stride = given.extent.contact_samples / kMaximumEvaluationSamples + 1;
-  std::size_t seen = 0;
-  TrainingSetOptions options{0.25, {}};
-  options.also = [&](const MotionRow& row, const FeatureVector& vector) {
-    if (seen++ % stride != 0) return;
-    prepared.evaluation_features.push_back(vector.values);
-    prepared.evaluation_force_N.push_back(row.force_N);
-  };
-  auto set = make_training_set(given.source, common.features, request.reduction, given.problem.force_noise_floor_N,
-                               control, options);
+  common.features = papers ? with_filters(request.features, list.all_times_s()) : fitted.features;
+  auto set =
+      make_training_set(given.source, common.features, request.reduction, given.problem.force_noise_floor_N, control);
   if (!set) return set.error();
   prepared.set = std::move(*set);
   if (!control.may_continue(0.3)) return interrupted();
@@ -292,7 +280,10 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
   common.upper = prepared.set.normalisation.upper;
   common.jnd = request.jnd;
   make_sites(prepared, request);
-  if (!papers) select_strength(prepared, *rows, fitted.row_features, left_out, given.problem, given.extent.strokes);
+  if (papers) return {};
+  prepared.left_out = cross_validation_rows(common, *rows, fitted.row_features, left_out.solutions);
+  prepared.strokes = given.extent.strokes;
+  select_strength(prepared);
   return {};
 }
 
@@ -310,13 +301,11 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
         "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; "
         "record a press, check the sign of position_m, or set its zero (palpate import FILE --zero contact)"};
   }
-  const TrendProblem problem = problem_of(source, extent, request);
   source.assign_folds(fold_assignment_for(source, extent));
+  const TrendProblem problem = problem_of(source, extent, request);
   const Given given{source, request, extent, problem};
   FeatureList list = request.list;
-  // The paper's recipe always uses the features of the scene.
-  const bool everything = request.choice == FeatureChoice::automatic && !is_papers_recipe(request);
-  if (everything) {
+  if (is_automatic(request)) {
     auto found = automatic_list(prepared, given, control);
     if (!found) return found.error();
     list = std::move(*found);
@@ -333,9 +322,10 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   }
   prepared.common.sensor = SensorSpec{source.encoder_step_m(), source.position_noise_m()};
   Provenance& provenance = prepared.common.provenance;
-  if (everything || request.choice == FeatureChoice::given)
+  if (is_automatic(request) || request.choice == FeatureChoice::given) {
     provenance.relaxation_times = times_of(prepared.common.features);
-  provenance.recordings = source.names();
+  }
+  for (const auto& recording : source.recordings()) provenance.recordings.push_back(recording.name);
   provenance.scene = request.scene;
   provenance.samples = source.rows();
   provenance.contact_samples = prepared.set.contact_samples;

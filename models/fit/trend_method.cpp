@@ -8,7 +8,6 @@ namespace palpate {
 namespace {
 
 Result<FittedCorrection> fit_nothing(const MethodTask& task, const FitControl& control) {
-  if (const Status status = validate_sites(task.sites); !status) return status.error();
   if (!control.may_continue(0.0)) return interrupted();
   FitReport report;
   const double squares = task.sites.row_scale.cwiseProduct(task.sites.target_N).squaredNorm();

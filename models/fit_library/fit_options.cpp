@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "models/fit/recipe_2009.h"
 #include "models/model/rbf/kernels.h"
 
 namespace palpate {

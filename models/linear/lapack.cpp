@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdlib>
 #include <string_view>
 #include <vector>
@@ -12,8 +13,6 @@ void dgemm_(const char*, const char*, const int*, const int*, const int*, const 
 void dgemv_(const char*, const int*, const int*, const double*, const double*, const int*, const double*, const int*,
             const double*, double*, const int*);
 void dgeqrt_(const int*, const int*, const int*, double*, const int*, double*, const int*, double*, int*);
-void dgemqrt_(const char*, const char*, const int*, const int*, const int*, const int*, const double*, const int*,
-              const double*, const int*, double*, const int*, double*, int*);
 void dtrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
             const int*, double*, const int*);
 void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
@@ -124,32 +123,17 @@ void gram(const ConstMatrixRef& a, MatrixRef c) {
 
 // Uses the recursive panels of dgeqrt: dgeqrf factorises up to 128 columns one by one, which takes 2.5 times as long
 // with 106 columns.
-Eigen::MatrixXd qr_in_place(MatrixRef a) {
+void qr_in_place(MatrixRef a) {
   assert(a.rows() >= a.cols());
   const int m = to_int(a.rows());
   const int n = to_int(a.cols());
-  if (n == 0) return {};
+  if (n == 0) return;
   const int lda = leading(a);
   const int block = std::min(32, n);
   Eigen::MatrixXd factors(block, n);
   Eigen::VectorXd work(block * n);
   int info = 0;
   dgeqrt_(&m, &n, &block, a.data(), &lda, factors.data(), &block, work.data(), &info);
-  assert(info == 0);
-  return factors;
-}
-
-void apply_transposed_q(const ConstMatrixRef& a, const Eigen::MatrixXd& factors, Eigen::VectorXd& c) {
-  assert(a.rows() == c.size() && factors.cols() == a.cols());
-  const int m = to_int(a.rows());
-  const int n = to_int(a.cols());
-  if (n == 0) return;
-  const int one = 1;
-  const int lda = leading(a);
-  const int block = to_int(factors.rows());
-  Eigen::VectorXd work(block);
-  int info = 0;
-  dgemqrt_("L", "T", &m, &one, &n, &block, a.data(), &lda, factors.data(), &block, c.data(), &m, work.data(), &info);
   assert(info == 0);
 }
 
@@ -221,6 +205,21 @@ void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) {
   int info = 0;
   dpotrs_("L", &n, &one, factor.data(), &lda, b.data(), &ldb, &info);
   assert(info == 0);
+}
+
+Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double ridge) {
+  Eigen::VectorXd scale = a.diagonal();
+  for (double& value : scale) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
+  for (; ridge < 1.0; ridge *= 100.0) {
+    Eigen::MatrixXd factor = scaled;
+    factor.diagonal().array() += ridge;
+    if (!cholesky_in_place(factor)) continue;
+    Eigen::VectorXd x = b.cwiseProduct(scale);
+    cholesky_solve(factor, x);
+    return x.cwiseProduct(scale);
+  }
+  return Eigen::VectorXd::Zero(b.size());
 }
 
 double cholesky_condition(const ConstMatrixRef& factor, double norm) {

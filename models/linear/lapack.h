@@ -33,6 +33,9 @@ class BlasThreads {
 // 30 ms. From then on products use one thread, except within BlasThreads.
 void prepare_blas();
 
+// Rows of a matrix at a time where several products use them: the block stays in the second-level cache.
+inline constexpr Eigen::Index kBlockRows = 512;
+
 // c = alpha op(a) op(b) + beta c, where op is the transpose or nothing.
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
               double beta, MatrixRef c);
@@ -40,11 +43,8 @@ void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b
 // The lower triangle of c = a^T a; the rest of c stays as it is.
 void gram(const ConstMatrixRef& a, MatrixRef c);
 
-// Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation and the rest by the reflectors.
-// Returns the factors of the block reflectors.
-Eigen::MatrixXd qr_in_place(MatrixRef a);
-// c = Q^T c, with `a` and `factors` from qr_in_place.
-void apply_transposed_q(const ConstMatrixRef& a, const Eigen::MatrixXd& factors, Eigen::VectorXd& c);
+// Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation; the rest has no meaning then.
+void qr_in_place(MatrixRef a);
 
 // Eigenvalues in ascending order in `values`, eigenvectors in the columns of `a`, of which only the lower triangle is
 // read. False if the iteration did not converge.
@@ -59,6 +59,10 @@ bool singular_values(Eigen::MatrixXd& a, Eigen::VectorXd& values, Eigen::MatrixX
 bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue = {});
 // Solves a x = b in place, `factor` from cholesky_in_place.
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
+// Solves a x = b for a positive semidefinite `a`, given by its lower triangle: its rows and columns are scaled to a
+// diagonal of ones, and `ridge`, multiplied by 100 until a Cholesky factor exists, is added to the diagonal. Unknowns
+// whose diagonal is 0 are 0.
+Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double ridge);
 // Estimated condition number in the 1-norm. `norm`: the 1-norm of the matrix.
 double cholesky_condition(const ConstMatrixRef& factor, double norm);
 // The 1-norm of a symmetric matrix given by its lower triangle.

@@ -6,7 +6,6 @@
 
 #include "engine/tick/sensor_identification.h"
 #include "models/linear/non_negative.h"
-#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {

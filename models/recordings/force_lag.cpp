@@ -1,8 +1,5 @@
 #include "models/recordings/force_lag.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "models/recordings/common_fit.h"
 
 namespace palpate {
@@ -38,33 +35,24 @@ std::vector<SurfaceRow> first_rows(const std::vector<SurfaceRow>& rows) {
 
 OffsetEstimate find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N) {
   const std::vector<SurfaceRow> some = first_rows(rows);
-  OffsetEstimate none;
-  none.standard_error = std::numeric_limits<double>::infinity();
-  if (some.size() < 100) return none;
+  if (some.size() < 100) return {};
   const double step_s = (some.back().sample.time_s - some.front().sample.time_s) / static_cast<double>(some.size() - 1);
-  if (step_s > 10.0 * kLagAccuracy_s) return none;
-  const auto [low, high] = std::minmax_element(some.begin(), some.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
-    return a.motion.position_m < b.motion.position_m;
-  });
-  if (!(high->motion.position_m > low->motion.position_m)) return none;
-  if (strokes_of(some, 0.5 * (low->motion.position_m + high->motion.position_m)) < kLeastStrokes) return none;
-  const CommonFit fit(low->motion.position_m, high->motion.position_m, force_noise_N);
+  if (step_s > 10.0 * kLagAccuracy_s) return {};
+  const auto [low_m, high_m] = position_range_m(some);
+  if (!(high_m > low_m) || strokes_of(some, 0.5 * (low_m + high_m)) < kLeastStrokes) return {};
+  const CommonFit fit(low_m, high_m, force_noise_N);
   return estimate_offset([&](double lag_s) { return fit.residual(some, 0.0, lag_s); },
-                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kLagAccuracy_s, true, kLagAccuracy_s});
+                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kLagAccuracy_s, kLagAccuracy_s});
 }
 
 std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double lag_s) {
   std::vector<SurfaceRow> moved;
   std::size_t at = 0;
   for (const SurfaceRow& row : rows) {
-    const double wanted_s = row.sample.time_s + lag_s;
-    while (at + 1 < rows.size() && rows[at + 1].sample.time_s < wanted_s) ++at;
-    if (wanted_s < rows.front().sample.time_s || at + 1 >= rows.size()) continue;
-    const SurfaceRow& a = rows[at];
-    const SurfaceRow& b = rows[at + 1];
-    const double share = (wanted_s - a.sample.time_s) / (b.sample.time_s - a.sample.time_s);
+    const auto force_N = force_at(rows, row.sample.time_s + lag_s, at);
+    if (!force_N) continue;
     moved.push_back(row);
-    moved.back().force_N = a.force_N + share * (b.force_N - a.force_N);
+    moved.back().force_N = *force_N;
   }
   return moved;
 }

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "models/recordings/surface_numbers.h"
+#include <tuple>
 
 namespace palpate {
 namespace {
@@ -51,16 +50,10 @@ class AirSearch {
  public:
   AirSearch(const std::vector<SurfaceRow>& rows, double force_noise_N)
       : rows_(rows), noise_N_(force_noise_N), acceleration_m_per_s2_(accelerations(rows)), slices_(kSlices) {
-    low_m_ = high_m_ = rows.front().motion.position_m;
-    double low_N = rows.front().force_N;
-    double high_N = low_N;
-    for (const SurfaceRow& row : rows) {
-      low_m_ = std::min(low_m_, row.motion.position_m);
-      high_m_ = std::max(high_m_, row.motion.position_m);
-      low_N = std::min(low_N, row.force_N);
-      high_N = std::max(high_N, row.force_N);
-    }
-    range_N_ = high_N - low_N;
+    std::tie(low_m_, high_m_) = position_range_m(rows);
+    const auto [low, high] = std::minmax_element(
+        rows.begin(), rows.end(), [](const SurfaceRow& a, const SurfaceRow& b) { return a.force_N < b.force_N; });
+    range_N_ = high->force_N - low->force_N;
     flat_N_ = std::max({kFlatNoises * force_noise_N, kFlatShare * range_N_, kFlatFloor_N});
     for (std::size_t i = 0; i < rows.size() && high_m_ > low_m_; ++i) {
       const double share = (rows[i].motion.position_m - low_m_) / (high_m_ - low_m_);

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "models/recordings/profile_search.h"
 #include "models/recordings/surface_rows.h"
 
 namespace palpate {
@@ -12,8 +13,8 @@ struct FreeAir {
   bool found = false;
   double inner_end_m = 0.0;  // free air is certain for positions below
   double zero_N = 0.0;
-  double zero_error_N = 0.0;  // standard error
-  double drift_N = 0.0;       // of the zero: median of the last third minus the first
+  double zero_error_N = kUnknownError;  // standard error
+  double drift_N = 0.0;       // of the zero: median of the last third of the rows in air minus that of the first
   double tool_mass_kg = 0.0;  // mass carried by the force sensor; 0 if not identified
 };
 

@@ -13,7 +13,7 @@ namespace palpate {
 RecordingOffsets estimate_offsets(const std::vector<SurfaceRow>& rows, double force_noise_N) {
   RecordingOffsets offsets{{}, estimate_surface(rows, force_noise_N)};
   SurfaceEstimate& surface = offsets.surface;
-  if (!surface.free_air) return offsets;
+  if (!surface.air.found) return offsets;
   offsets.lag = find_force_lag(rows, force_noise_N);
   const OffsetEstimate& lag = offsets.lag;
   if (lag.not_zero && !lag.identified) {

@@ -4,15 +4,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "models/recordings/paired_costs.h"
-#include "models/recordings/surface_numbers.h"
-
 namespace palpate {
 namespace {
 
 constexpr std::size_t kMostValleys = 4;
 constexpr double kMostScans = 1e6;
-constexpr int kForceSteps = 16;  // resolve a thousandth of the largest
+constexpr double kForceResolution = 1e-3;  // of the largest force
 constexpr double kGolden = 0.6180339887498949;
 constexpr int kMostGoldenSteps = 100;  // an interval shrinks by 1e-21: beyond the digits of any number
 // Replaces a cost that is not finite: worse than any other, and sums of it stay finite.
@@ -20,41 +17,92 @@ constexpr double kWorstCost = 1e100;
 
 double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
 
+// Whether the sum of `one` exceeds the sum of `best` by at most one standard error of their paired differences.
+bool is_within_one_standard_error(const std::vector<double>& one, const std::vector<double>& best) {
+  const auto count = static_cast<double>(one.size());
+  const double sum = std::accumulate(one.begin(), one.end(), 0.0) - std::accumulate(best.begin(), best.end(), 0.0);
+  if (count < 2.0) return sum <= 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k) squares += std::pow(one[k] - best[k] - sum / count, 2);
+  return sum <= std::sqrt(squares * count / (count - 1.0));
+}
+
+// Whether `one` is significantly worse than `best` (profile_search.h). The tenth of the mean block damps blocks with
+// small costs, whose relative differences are noise.
+bool is_significantly_worse(const std::vector<double>& one, const std::vector<double>& best) {
+  constexpr double kLeastBlock = 0.1;
+  const auto count = static_cast<double>(one.size());
+  const double least = kLeastBlock * std::accumulate(best.begin(), best.end(), 0.0) / count;
+  double mean = 0.0;
+  double squares = 0.0;
+  for (std::size_t b = 0; b < one.size(); ++b) {
+    const double whole = one[b] + best[b] + least;
+    const double share = whole > 0.0 ? (one[b] - best[b]) / whole : 0.0;
+    mean += share / count;
+    squares += share * share;
+  }
+  const double variance = std::max(0.0, squares / count - mean * mean) / std::max(1.0, count - 1.0);
+  return mean > 2.0 * std::sqrt(variance);
+}
+
 struct Candidate {
   double at = 0.0;
   BlockCosts costs;
 };
 
+Candidate candidate_at(const CostFunction& cost, double at) {
+  Candidate made{at, cost(at)};
+  for (double& one : made.costs) one = std::abs(one) < kWorstCost ? one : kWorstCost;
+  return made;
+}
+
+// The minimum between `low` and `high` by golden sections.
+Candidate golden(const CostFunction& cost, double low, double high, double fine_step) {
+  Candidate a = candidate_at(cost, high - kGolden * (high - low));
+  Candidate b = candidate_at(cost, low + kGolden * (high - low));
+  for (int step = 0; step < kMostGoldenSteps && high - low > fine_step; ++step) {
+    if (sum(a.costs) < sum(b.costs)) {
+      high = b.at;
+      b = std::move(a);
+      a = candidate_at(cost, high - kGolden * (high - low));
+    } else {
+      low = a.at;
+      a = std::move(b);
+      b = candidate_at(cost, low + kGolden * (high - low));
+    }
+  }
+  return sum(a.costs) < sum(b.costs) ? a : b;
+}
+
 class Search {
  public:
-  Search(const std::function<BlockCosts(double)>& cost, const SearchRange& range) : cost_(cost), range_(range) {}
+  Search(const CostFunction& cost, const SearchRange& range) : cost_(cost), range_(range) {}
 
   OffsetEstimate run() {
-    if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans))
-      return {0.0, false, kUnknownError};
+    if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans)) return {};
     scan();
-    const Candidate zero = candidate(0.0);
-    if (range_.systematic_effect > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Candidate& one) {
-          return !is_significantly_worse(zero.costs, one.costs);
-        })) {
-      return {0.0, false, kUnknownError, false, sum(zero.costs), sum(zero.costs)};
-    }
+    const Candidate zero = candidate_at(cost_, 0.0);
+    const double effect = range_.systematic_effect.value_or(0.0);
+    const bool any_better = std::any_of(scanned_.begin(), scanned_.end(), [&](const Candidate& one) {
+      return is_significantly_worse(zero.costs, one.costs);
+    });
+    if (effect > 0.0 && !any_better) return {};
     refine_valleys();
     look_around();
-    OffsetEstimate found{0.0, false, jackknife_error(), false, sum(best_.costs), sum(zero.costs)};
+    OffsetEstimate found;
+    found.standard_error = jackknife_error();
     // If 0 is outside of the range, recordings do not overlap there and the cost at 0 has no meaning.
     const bool zero_counts = range_.low <= 0.0 && range_.high >= 0.0;
     double half = kSignificantErrors * found.standard_error;
     found.identified = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
-    if (range_.systematic_effect > 0.0) {
-      found.identified = found.identified && significantly_worse(best_.at - range_.systematic_effect) &&
-                         significantly_worse(best_.at + range_.systematic_effect);
-      half += range_.systematic_effect;
-      found.standard_error = std::max(found.standard_error, range_.systematic_effect / kSignificantErrors);
+    if (effect > 0.0) {
+      found.identified =
+          found.identified && significantly_worse(best_.at - effect) && significantly_worse(best_.at + effect);
+      half += effect;
+      found.standard_error = std::max(found.standard_error, effect / kSignificantErrors);
     }
     found.not_zero = !zero_counts || std::abs(best_.at) > half;
-    if (found.not_zero && zero_counts && range_.has_systematic_effect &&
-        !is_significantly_worse(zero.costs, best_.costs))
+    if (found.not_zero && zero_counts && range_.systematic_effect && !is_significantly_worse(zero.costs, best_.costs))
       found.identified = false;
     if (!found.identified) found.standard_error = kUnknownError;
     if (found.identified && found.not_zero) found.at = best_.at;
@@ -64,15 +112,10 @@ class Search {
   }
 
  private:
-  Candidate candidate(double at) const {
-    Candidate made{at, cost_(at)};
-    for (double& cost : made.costs) cost = std::abs(cost) < kWorstCost ? cost : kWorstCost;
-    return made;
-  }
-
   void scan() {
     const auto steps = static_cast<int>((range_.high - range_.low) / range_.coarse_step) + 1;
-    for (int i = 0; i <= steps; ++i) scanned_.push_back(candidate(range_.low + (range_.high - range_.low) * i / steps));
+    for (int i = 0; i <= steps; ++i)
+      scanned_.push_back(candidate_at(cost_, range_.low + (range_.high - range_.low) * i / steps));
   }
 
   void refine_valleys() {
@@ -89,8 +132,8 @@ class Search {
     std::vector<Candidate> bottoms;
     for (const std::size_t valley : valleys) {
       const double around = scanned_[valley].at;
-      bottoms.push_back(golden(std::max(range_.low, around - range_.coarse_step),
-                               std::min(range_.high, around + range_.coarse_step)));
+      bottoms.push_back(golden(cost_, std::max(range_.low, around - range_.coarse_step),
+                               std::min(range_.high, around + range_.coarse_step), range_.fine_step));
       scanned_.push_back(bottoms.back());
     }
     best_ = *std::min_element(bottoms.begin(), bottoms.end(),
@@ -104,7 +147,7 @@ class Search {
   void look_around() {
     for (double step = range_.fine_step; step < range_.coarse_step; step *= 2.0) {
       for (const double at : {best_.at - step, best_.at + step}) {
-        if (at > range_.low && at < range_.high) scanned_.push_back(candidate(at));
+        if (at > range_.low && at < range_.high) scanned_.push_back(candidate_at(cost_, at));
       }
     }
     std::sort(scanned_.begin(), scanned_.end(), [](const Candidate& a, const Candidate& b) { return a.at < b.at; });
@@ -126,7 +169,9 @@ class Search {
     return bend > 0.0 ? at + 0.5 * (fall * right - climb * left) / bend : at;
   }
 
-  bool significantly_worse(double at) const { return is_significantly_worse(candidate(at).costs, best_.costs); }
+  bool significantly_worse(double at) const {
+    return is_significantly_worse(candidate_at(cost_, at).costs, best_.costs);
+  }
 
   // The jackknife of Quenouille (1956) and Tukey (1958), with one block left out at a time.
   double jackknife_error() const {
@@ -139,24 +184,7 @@ class Search {
     return std::max(std::sqrt(squares * static_cast<double>(count - 1) / static_cast<double>(count)), range_.fine_step);
   }
 
-  Candidate golden(double low, double high) const {
-    Candidate a = candidate(high - kGolden * (high - low));
-    Candidate b = candidate(low + kGolden * (high - low));
-    for (int step = 0; step < kMostGoldenSteps && high - low > range_.fine_step; ++step) {
-      if (sum(a.costs) < sum(b.costs)) {
-        high = b.at;
-        b = std::move(a);
-        a = candidate(high - kGolden * (high - low));
-      } else {
-        low = a.at;
-        a = std::move(b);
-        b = candidate(low + kGolden * (high - low));
-      }
-    }
-    return sum(a.costs) < sum(b.costs) ? a : b;
-  }
-
-  const std::function<BlockCosts(double)>& cost_;
+  const CostFunction& cost_;
   SearchRange range_;
   std::vector<Candidate> scanned_;
   Candidate best_;
@@ -165,31 +193,17 @@ class Search {
 
 }  // namespace
 
-OffsetEstimate estimate_offset(const std::function<BlockCosts(double)>& cost, const SearchRange& range) {
-  return Search(cost, range).run();
-}
+OffsetEstimate estimate_offset(const CostFunction& cost, const SearchRange& range) { return Search(cost, range).run(); }
 
-OffsetEstimate unless_force_offset(OffsetEstimate shift, const std::function<BlockCosts(double)>& cost, double most_N) {
+OffsetEstimate unless_force_offset(OffsetEstimate shift, const CostFunction& cost, double most_N) {
   if (!shift.identified || !shift.not_zero || !(most_N > 0.0)) return shift;
   // J, a sum of Huber's losses, has one minimum over the force offset.
-  double low_N = -most_N;
-  double high_N = most_N;
-  const auto total = [&](double offset_N) { return sum(cost(offset_N)); };
-  for (int step = 0; step < kForceSteps; ++step) {
-    const double a_N = high_N - kGolden * (high_N - low_N);
-    const double b_N = low_N + kGolden * (high_N - low_N);
-    if (total(a_N) < total(b_N)) {
-      high_N = b_N;
-    } else {
-      low_N = a_N;
-    }
-  }
-  const double offset_N = 0.5 * (low_N + high_N);
-  if (!is_within_one_standard_error(cost(offset_N), shift.minimum)) return shift;
+  const Candidate best = golden(cost, -most_N, most_N, kForceResolution * most_N);
+  if (!is_within_one_standard_error(best.costs, shift.minimum)) return shift;
   shift.identified = false;
   shift.at = 0.0;
   shift.standard_error = kUnknownError;
-  shift.force_offset_N = offset_N;
+  shift.force_offset_N = best.at;
   return shift;
 }
 

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "engine/tick/sensor_identification.h"
-#include "models/recordings/free_air.h"
-#include "models/recordings/surface_numbers.h"
+#include "models/recordings/profile_search.h"
 #include "models/recordings/surface_onset.h"
 
 namespace palpate {
@@ -34,14 +33,8 @@ void estimate_drift(SurfaceEstimate& estimate, const std::vector<SurfaceRow>& ro
 
 SurfaceEstimate estimate_surface(const std::vector<SurfaceRow>& rows, double force_noise_N, double lag_error_s) {
   SurfaceEstimate estimate;
-  estimate.standard_error_m = estimate.force_zero_error_N = estimate.offset_drift_error_m = kUnknownError;
-  const FreeAir air = find_free_air(rows, force_noise_N);
-  estimate.free_air = air.found;
+  const FreeAir& air = estimate.air = find_free_air(rows, force_noise_N);
   if (!air.found) return estimate;
-  estimate.air_end_m = air.inner_end_m;
-  estimate.force_zero_error_N = air.zero_error_N;
-  estimate.force_zero_drift_N = air.drift_N;
-  estimate.tool_mass_kg = air.tool_mass_kg;
   // A force zero that drifts by more than its size is not identified.
   const double least_N = std::max({kLeastZero_N, kSignificantErrors * air.zero_error_N, std::abs(air.drift_N)});
   if (std::abs(air.zero_N) >= least_N) estimate.force_zero_N = air.zero_N;

@@ -20,29 +20,23 @@
 #include <vector>
 
 #include "engine/recording/recording.h"
-#include "models/recordings/surface_rows.h"
+#include "models/recordings/free_air.h"
 
 namespace palpate {
 
 inline constexpr double kRestBeforeTouch_s = 5.0;
 
 struct SurfaceEstimate {
-  bool free_air = false;   // found; if false, all below is unknown
-  double air_end_m = 0.0;  // free air is certain for positions below
+  FreeAir air;  // if not found, all below is unknown
   // To be subtracted from position_m so that 0 is the surface. `raw_offset_m`: the minimum before the test against 0.
   double offset_m = 0.0;
   double raw_offset_m = 0.0;
-  double standard_error_m = 0.0;  // infinite if the surface is not identified
-  double law_error_m = 0.0;       // the part of it that is independent between similar touches
-  // To be subtracted from force_N.
-  double force_zero_N = 0.0;
-  double force_zero_error_N = 0.0;  // standard error; infinite without free air
-  // Median force zero of the last third of the rows in air minus that of the first; 0 without free air.
-  double force_zero_drift_N = 0.0;
-  double tool_mass_kg = 0.0;  // carried by the force sensor
+  double standard_error_m = kUnknownError;  // infinite if the surface is not identified
+  double law_error_m = 0.0;                 // the part of it that is independent between similar touches
+  double force_zero_N = 0.0;                // to be subtracted from force_N; 0 where that of the air is not significant
   // The surface at the last touch at rest minus that at the first; the error is infinite with fewer than two.
   double offset_drift_m = 0.0;
-  double offset_drift_error_m = 0.0;
+  double offset_drift_error_m = kUnknownError;
 
   bool identified() const { return std::isfinite(standard_error_m); }
 };

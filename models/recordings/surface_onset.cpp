@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "models/linear/non_negative.h"
+#include "models/recordings/profile_search.h"
 #include "models/recordings/surface_estimate.h"
-#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {

@@ -39,8 +39,18 @@ std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t mos
   return rows;
 }
 
-std::vector<SurfaceRow> all_rows(const Recording& recording) {
-  return thinned_rows(recording, recording.rows.size() + 1);
+std::pair<double, double> position_range_m(const std::vector<SurfaceRow>& rows) {
+  const auto [low, high] = std::minmax_element(rows.begin(), rows.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
+    return a.motion.position_m < b.motion.position_m;
+  });
+  return {low->motion.position_m, high->motion.position_m};
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows, std::size_t blocks) {

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/recording/recording.h"
@@ -41,9 +43,26 @@ class GrowingStride {
 
 // Every n-th row, with the smallest n that leaves at most `most`.
 std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::size_t most);
-// The rows of a recording with their motion estimates: all, or at most `most`.
-std::vector<SurfaceRow> all_rows(const Recording& recording);
+// The same of a recording, with the motion estimates.
 std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
+
+// The force at `time_s`, interpolated between two of the rows; none before the first and after the last. `rows`: in
+// time order, SurfaceRow or derived from it. `at`: the index of the first of the two; it moves on from call to call.
+template <typename Row>
+std::optional<double> force_at(const std::vector<Row>& rows, double time_s, std::size_t& at) {
+  while (at + 2 < rows.size() && rows[at + 1].sample.time_s < time_s) ++at;
+  if (at + 1 >= rows.size()) return std::nullopt;
+  const SurfaceRow& before = rows[at];
+  const SurfaceRow& after = rows[at + 1];
+  if (time_s < before.sample.time_s || time_s > after.sample.time_s) return std::nullopt;
+  const double share = (time_s - before.sample.time_s) / (after.sample.time_s - before.sample.time_s);
+  return before.force_N + share * (after.force_N - before.force_N);
+}
+
+// The smallest and the largest position of at least one row.
+std::pair<double, double> position_range_m(const std::vector<SurfaceRow>& rows);
+// The median (the upper one of an even number); 0 for no values.
+double median_of(std::vector<double> values);
 
 // The block of each row, of `blocks` blocks of equal path length of the tool.
 std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows, std::size_t blocks);

@@ -11,8 +11,6 @@ namespace {
 
 // Sites at a time: they share the products with all directions that one of them lacks.
 constexpr Eigen::Index kGroup = 4;
-// Rows at a time: the columns of a group stay in the first-level cache, the block of the directions in the second.
-constexpr Eigen::Index kRows = 512;
 // Columns that are orthogonalised at once, 7 MB at 6,850 sites.
 constexpr std::size_t kRecompute = 128;
 // Each part is summed by itself, then the parts in order: the result does not depend on the number of cores.
@@ -80,10 +78,10 @@ void CandidateGains::add_shares(std::span<const Eigen::Index> sites, const Ortho
           {Eigen::MatrixXd::Zero(kGroup, basis.size() + 1 - known_to(group)), Eigen::VectorXd::Zero(kGroup)});
     }
     Eigen::MatrixXd centres(sites_.dimension(), kGroup);
-    Eigen::MatrixXd memory = Eigen::MatrixXd::Zero(kRows, kGroup);
+    Eigen::MatrixXd memory = Eigen::MatrixXd::Zero(kBlockRows, kGroup);
     const Eigen::Index end = first_row(part + 1);
-    for (Eigen::Index row = first_row(part); row < end; row += kRows) {
-      const Eigen::Index rows = std::min(kRows, end - row);
+    for (Eigen::Index row = first_row(part); row < end; row += kBlockRows) {
+      const Eigen::Index rows = std::min(kBlockRows, end - row);
       for (Eigen::Index group = 0; group < groups; ++group) {
         const Eigen::Index size = group_size(group);
         for (Eigen::Index j = 0; j < size; ++j)

@@ -38,7 +38,7 @@ FittedRbf truncated_weights(const FactorisedRows& factorised, KernelKind kernel,
   // The rows of the sites in reduced form, above those of the side condition.
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(triangle.rows() + tail, columns);
   matrix.topRows(triangle.rows()) = triangle.leftCols(columns);
-  if (n > 0) matrix.bottomLeftCorner(tail, n) = tail_matrix(tail_degree(kernel), centres).transpose();
+  if (n > 0) matrix.bottomRightCorner(tail, n) = tail_matrix(tail_degree(kernel), centres).transpose();
   Eigen::VectorXd right = Eigen::VectorXd::Zero(matrix.rows());
   right.head(triangle.rows()) = triangle.col(columns);
   const Eigen::Index rows = matrix.rows();
@@ -48,7 +48,7 @@ FittedRbf truncated_weights(const FactorisedRows& factorised, KernelKind kernel,
   if (!singular_values(matrix, values, v_transposed)) values.setZero();
   const Eigen::VectorXd inverse = inverted(values, rows, fitted.report.condition);
   const Eigen::VectorXd unknowns = v_transposed.transpose() * inverse.cwiseProduct(matrix.transpose() * right);
-  fitted.function = {kernel, centres, unknowns.head(n), unknowns.tail(tail)};
+  fitted.function = {kernel, centres, unknowns.tail(n), unknowns.head(tail)};
   fitted.report.centres_used = n;
   fitted.report.residual_rms = (triangle.col(columns) - triangle.leftCols(columns) * unknowns).norm() /
                                std::sqrt(static_cast<double>(factorised.sites));

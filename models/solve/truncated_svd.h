@@ -6,7 +6,6 @@
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
-#include "models/solve/fit_report.h"
 #include "models/solve/solve_weights.h"
 
 namespace palpate {

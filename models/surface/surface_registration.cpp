@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
 #include "models/recordings/common_fit.h"
 #include "models/recordings/force_lag.h"
 #include "models/recordings/surface_estimate.h"
-#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {
@@ -29,7 +29,8 @@ struct Member {
   SurfaceEstimate own;
   double low_m = 0.0;
   double high_m = 0.0;
-  OffsetEstimate offset;
+  OffsetEstimate offset;    // as estimated
+  RecordingSurface result;  // with the offset from the common surface
 
   double range_m() const { return high_m - low_m; }
 };
@@ -47,18 +48,6 @@ double common_lag_s(const std::vector<RecordingOffsets>& recordings) {
   return agree ? lag_s : 0.0;
 }
 
-Member member_of(const std::vector<SurfaceRow>& rows, const SurfaceEstimate& own, std::size_t common_rows) {
-  Member member;
-  member.own = own;
-  member.rows = thinned_rows(rows, common_rows);
-  const auto [low, high] = std::minmax_element(rows.begin(), rows.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
-    return a.motion.position_m < b.motion.position_m;
-  });
-  member.low_m = low->motion.position_m;
-  member.high_m = high->motion.position_m;
-  return member;
-}
-
 double largest_force_N(const std::vector<SurfaceRow>& rows) {
   double largest_N = 0.0;
   for (const SurfaceRow& row : rows) largest_N = std::max(largest_N, std::abs(row.force_N));
@@ -70,7 +59,7 @@ OffsetEstimate offset_of(const CommonFit& fit, const Member& member, double low_
   const double overlap_m = kLeastOverlap * std::min(member.range_m(), high_m - low_m);
   const double from_m = member.low_m - high_m + overlap_m;
   const double to_m = member.high_m - low_m - overlap_m;
-  const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFinest_m, kWidestSurface_m, true};
+  const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFinest_m, kWidestSurface_m, 0.0};
   const OffsetEstimate offset =
       estimate_offset([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
   // Recordings that do not overlap as recorded are consistent with any force offset.
@@ -110,6 +99,7 @@ void estimate_offsets_of_all(std::vector<Member>& members, double force_noise_N,
                    [&](std::size_t a, std::size_t b) { return members[a].range_m() > members[b].range_m(); });
   Member& first = members[order.front()];
   first.offset.identified = true;
+  first.offset.standard_error = 0.0;
   double low_m = first.low_m;
   double high_m = first.high_m;
   CommonFit fit(low_m, high_m, force_noise_N);
@@ -148,14 +138,14 @@ double common_shift_m(const std::vector<Member>& members) {
 
 // The weighted mean of the onsets of the recordings after their offsets; 0 if no onset is identified, or if the mean
 // does not differ significantly from 0.
-double common_surface_m(const std::vector<Member>& members, const std::vector<RegisteredSurface>& surfaces) {
+double common_surface_m(const std::vector<Member>& members) {
   double sum = 0.0;
   double weights = 0.0;
-  for (std::size_t r = 0; r < members.size(); ++r) {
-    const SurfaceEstimate& own = members[r].own;
+  for (const Member& member : members) {
+    const SurfaceEstimate& own = member.own;
     if (!own.identified()) continue;
     const double weight = 1.0 / (own.standard_error_m * own.standard_error_m);
-    sum += weight * (own.raw_offset_m - surfaces[r].offset_m);
+    sum += weight * (own.raw_offset_m - member.result.offset_m);
     weights += weight;
   }
   if (!(weights > 0.0)) return 0.0;
@@ -165,19 +155,17 @@ double common_surface_m(const std::vector<Member>& members, const std::vector<Re
 
 // The outermost position with a certain force, after the offsets, if more than kOuterShare of these rows are outside
 // of `surface_m`; otherwise `surface_m`.
-double outermost_contact_m(const std::vector<Member>& members, const std::vector<RegisteredSurface>& surfaces,
-                           double force_noise_N, double surface_m) {
+double outermost_contact_m(const std::vector<Member>& members, double force_noise_N, double surface_m) {
   double largest_N = 0.0;
-  for (const Member& member : members) {
-    for (const SurfaceRow& row : member.rows) largest_N = std::max(largest_N, std::abs(row.force_N));
-  }
+  for (const Member& member : members) largest_N = std::max(largest_N, largest_force_N(member.rows));
   const double least_N = std::max(certain_force_N(force_noise_N), kOuterRange * largest_N);
   std::vector<double> positions_m;
-  for (std::size_t r = 0; r < members.size(); ++r) {
-    if (members[r].own.tool_mass_kg > 0.0) return surface_m;
-    for (const SurfaceRow& row : members[r].rows) {
-      const bool air = members[r].own.free_air && row.motion.position_m < members[r].own.air_end_m;
-      if (!air && std::abs(row.force_N) > least_N) positions_m.push_back(row.motion.position_m - surfaces[r].offset_m);
+  for (const Member& member : members) {
+    if (member.own.air.tool_mass_kg > 0.0) return surface_m;
+    for (const SurfaceRow& row : member.rows) {
+      const bool air = member.own.air.found && row.motion.position_m < member.own.air.inner_end_m;
+      if (air || std::abs(row.force_N) <= least_N) continue;
+      positions_m.push_back(row.motion.position_m - member.result.offset_m);
     }
   }
   const auto few = static_cast<std::size_t>(kOuterShare * static_cast<double>(positions_m.size()));
@@ -188,7 +176,7 @@ double outermost_contact_m(const std::vector<Member>& members, const std::vector
 }
 
 RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N, const FitControl& control) {
-  const bool zeros = std::all_of(members.begin(), members.end(), [](const Member& one) { return one.own.free_air; });
+  const bool zeros = std::all_of(members.begin(), members.end(), [](const Member& one) { return one.own.air.found; });
   for (Member& member : members) {
     if (!zeros) member.own.force_zero_N = 0.0;
     for (SurfaceRow& row : member.rows) row.force_N -= member.own.force_zero_N;
@@ -196,69 +184,59 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
   RegisteredSurfaces result;
   if (members.size() > 1) estimate_offsets_of_all(members, force_noise_N, control);
   const double shift_m = members.size() > 1 ? common_shift_m(members) : 0.0;
-  for (const Member& member : members) {
-    RegisteredSurface one{0.0, kUnknownError, member.own.force_zero_N};
-    if (members.size() == 1) one.standard_error_m = member.own.standard_error_m;
-    if (member.offset.identified) {
-      one.standard_error_m = member.offset.standard_error;
-      if (!unmoved(member, shift_m)) one.offset_m = member.offset.at - shift_m;
-    }
-    result.recordings.push_back(one);
+  for (Member& member : members) {
+    member.result.force_zero_N = member.own.force_zero_N;
+    member.result.standard_error_m = members.size() == 1 ? member.own.standard_error_m : member.offset.standard_error;
+    if (member.offset.identified && !unmoved(member, shift_m)) member.result.offset_m = member.offset.at - shift_m;
+    result.recordings.push_back(member.result);
   }
-  const auto surface_m = [&](const std::vector<RegisteredSurface>& recordings) {
-    return outermost_contact_m(members, recordings, force_noise_N, common_surface_m(members, recordings));
-  };
-  result.surface_position_m = surface_m(result.recordings);
-  result.recorded_surface_position_m = surface_m(std::vector<RegisteredSurface>(members.size()));
+  result.surface_position_m = outermost_contact_m(members, force_noise_N, common_surface_m(members));
+  for (Member& member : members) member.result.offset_m = 0.0;
+  result.recorded_surface_position_m = outermost_contact_m(members, force_noise_N, common_surface_m(members));
   return result;
 }
 
 }  // namespace
 
 bool RegisteredSurfaces::corrects() const {
-  return lag_s != 0.0 || std::any_of(recordings.begin(), recordings.end(), [](const RegisteredSurface& one) {
-           return one.offset_m != 0.0 || one.force_zero_N != 0.0;
-         });
+  return std::any_of(recordings.begin(), recordings.end(), [](const RecordingSurface& one) {
+    return one.offset_m != 0.0 || one.force_zero_N != 0.0 || one.lag_s != 0.0;
+  });
 }
 
-Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control, double fraction) {
-  std::vector<Member> members;
-  GrowingStride kept(kOnsetRows, kCoarsestOnset_s);
+Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control) {
+  if (const Status status = source.load(control); !status) return status.error();
   std::vector<std::vector<SurfaceRow>> recordings;
-  bool beginning = true;
-  const Status status = source.for_each(
-      [&](const MotionRow& row) {
-        if (row.first && row.recording > 0) {
-          recordings.push_back(kept.rows());
-          kept = GrowingStride(kOnsetRows, kCoarsestOnset_s);
-        }
-        beginning = row.first || (beginning && !row.run_up);
-        if (beginning) kept.add({row.sample, row.motion, row.force_N});
-        return true;
-      },
-      control, fraction);
-  if (!status) return status.error();
-  recordings.push_back(kept.rows());
   std::vector<RecordingOffsets> offsets;
-  for (std::size_t r = 0; r < recordings.size(); ++r) {
-    const PreparedRecording* prepared = source.prepared(r);
-    offsets.push_back(prepared != nullptr ? prepared->offsets
-                                          : estimate_offsets(recordings[r], source.force_noise_N()));
-    if (!control.may_continue(fraction)) return interrupted();
+  for (const auto& recording : source.recordings()) {
+    GrowingStride kept(kOnsetRows, kCoarsestOnset_s);
+    for (const MotionRow& row : recording.rows) {
+      if (row.run_up && !kept.rows().empty()) break;
+      kept.add(row);
+    }
+    recordings.push_back(kept.rows());
+    offsets.push_back(recording.prepared != nullptr ? recording.prepared->offsets
+                                                    : estimate_offsets(kept.rows(), source.force_noise_N()));
+    if (!control.may_continue(0.0)) return interrupted();
   }
   const double lag_s = common_lag_s(offsets);
   const std::size_t share = std::max(kLeastMemberRows, kSearchRows / recordings.size());
+  std::vector<Member> members;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     std::vector<SurfaceRow>& rows = recordings[r];
     if (lag_s != 0.0) rows = without_lag(rows, lag_s);
     const bool same_lag = offsets[r].lag.at == lag_s;
-    members.push_back(
-        member_of(rows, same_lag ? offsets[r].surface : estimate_surface(rows, source.force_noise_N()), share));
+    Member& member = members.emplace_back();
+    member.own = same_lag ? offsets[r].surface : estimate_surface(rows, source.force_noise_N());
+    member.rows = thinned_rows(rows, share);
+    std::tie(member.low_m, member.high_m) = position_range_m(rows);
+    member.result.name = source.recordings()[r].name;
+    member.result.lag_s = lag_s;
+    member.result.content_hash = source.recordings()[r].hash;
   }
-  if (!control.may_continue(fraction)) return interrupted();
+  if (!control.may_continue(0.0)) return interrupted();
   RegisteredSurfaces result = registered(std::move(members), source.force_noise_N(), control);
-  result.lag_s = lag_s;
-  if (!control.may_continue(fraction)) return interrupted();
+  if (!control.may_continue(0.0)) return interrupted();
   return result;
 }
 

@@ -13,35 +13,25 @@
 // Thread guarantee: slow side.
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
+#include "models/model/fitted_model.h"
 #include "models/training/motion_source.h"
 
 namespace palpate {
 
-struct RegisteredSurface {
-  double offset_m = 0.0;          // to be subtracted from the positions
-  double standard_error_m = 0.0;  // infinite if not identified
-  double force_zero_N = 0.0;
-  bool identified() const { return std::isfinite(standard_error_m); }
-};
-
 struct RegisteredSurfaces {
-  std::vector<RegisteredSurface> recordings;  // in the order of `source.names()`
-  double surface_position_m = 0.0;            // in positions corrected by the offsets
-  double lag_s = 0.0;                         // of the force, one for all recordings; 0: none, or not identified
-  double recorded_surface_position_m = 0.0;   // in positions as recorded, without any correction
+  std::vector<RecordingSurface> recordings;  // in the order of `source.recordings()`; the lag is one for all
+  double surface_position_m = 0.0;           // in positions corrected by the offsets
+  double recorded_surface_position_m = 0.0;  // in positions as recorded, without any correction
 
-  // Whether an offset, a force zero or the lag corrects a recording.
+  // Whether an offset, a force zero or a lag corrects a recording.
   bool corrects() const;
 };
 
-// `source` must have no corrections. `fraction`: passed to `control` as progress. Errors: those of the source;
-// interrupted.
-Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control = {},
-                                             double fraction = 0.0);
+// `source` must have no corrections. Errors: those of the source; interrupted.
+Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control = {});
 
 }  // namespace palpate

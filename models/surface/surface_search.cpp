@@ -5,7 +5,6 @@
 
 #include "engine/tick/features.h"
 #include "models/recordings/common_fit.h"
-#include "models/recordings/surface_numbers.h"
 
 namespace palpate {
 namespace {
@@ -42,15 +41,10 @@ void add_costs(const ForceErrors& errors, double force_offset_N, const std::vect
 
 OffsetEstimate locate_surface(const std::vector<SurfaceRow>& rows,
                               const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd) {
-  OffsetEstimate nowhere;
-  nowhere.standard_error = kUnknownError;
-  if (rows.empty() || models.empty()) return nowhere;
-  const auto [low, high] = std::minmax_element(rows.begin(), rows.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
-    return a.motion.position_m < b.motion.position_m;
-  });
+  if (rows.empty() || models.empty()) return {};
+  const auto [low_m, high_m] = position_range_m(rows);
   // The range reaches from a recording that is all in air to one that begins at the greatest depth of this one.
-  const double range_m = high->motion.position_m - low->motion.position_m;
-  const double reach_m = std::max({range_m, std::abs(low->motion.position_m), std::abs(high->motion.position_m)});
+  const double reach_m = std::max({high_m - low_m, std::abs(low_m), std::abs(high_m)});
   const std::vector<std::size_t> blocks = blocks_by_path(rows, CommonFit::kBlocks);
   const OffsetEstimate shift = estimate_offset(
       [&](double offset_m) {

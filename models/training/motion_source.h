@@ -18,10 +18,8 @@
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
-#include "engine/tick/motion_estimator.h"
-#include "engine/tick/tool_sample.h"
 #include "models/recordings/prepared_recording.h"
-#include "models/training/fold_assignment.h"
+#include "models/training/cross_validation.h"
 
 namespace palpate {
 
@@ -31,13 +29,10 @@ inline constexpr std::size_t kMaximumRows = 2000000;
 // Rows between two calls of FitControl, some 20 ms of reading.
 inline constexpr std::size_t kRowsPerQuestion = 65536;
 
-struct MotionRow {
-  ToolSample sample;
-  MotionEstimate motion;
-  double force_N = 0.0;
+struct MotionRow : SurfaceRow {
   int recording = 0;
   int stroke = 0;       // number of the contact, counted over all recordings
-  int fold = 0;         // of the cross-validation (fold_assignment.h); 0 before `assign_folds`
+  int fold = 0;         // of the cross-validation (cross_validation.h); 0 before `assign_folds`
   bool first = false;   // of its recording: filters are reset
   bool run_up = false;  // only updates filters, is not a training sample
 };
@@ -62,29 +57,32 @@ class MotionSource {
   explicit MotionSource(std::vector<Input> inputs, std::size_t most_rows = kMaximumRows)
       : inputs_(std::move(inputs)), most_rows_(most_rows) {}
 
+  // Reads the recordings unless they are in memory. Errors: those of RecordingReader; interrupted.
+  Status load(const FitControl& control = {}, double fraction = 0.0);
+
   // Calls `visit` for every kept row in order, the longest recording first. The pass ends with "interrupted" when
   // `visit` returns false or `control`, called every kRowsPerQuestion rows with `fraction`, asks for it.
-  // Errors: also those of RecordingReader.
+  // Errors: also those of load.
   Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
                   double fraction = 0.0);
 
-  // Sets the corrections of all later passes, one for each recording in the order of `names`. Contact and strokes are
+  // Sets the corrections of all later passes, one for each of `recordings`. Contact and strokes are
   // determined from the corrected position.
   void correct(std::vector<RowCorrection> corrections) { corrections_ = std::move(corrections); }
-  // Adds `offset_m` to the offsets of all recordings.
-  void shift(double offset_m) {
-    for (RowCorrection& one : corrections_) one.offset_m += offset_m;
-  }
 
   // Assigns the rows of all later passes to the folds of `assignment`.
   void assign_folds(const FoldAssignment& assignment) { assignment_ = assignment; }
   int folds() const { return assignment_ ? assignment_->folds() : 1; }
 
+  struct OneRecording {
+    std::string name;
+    const PreparedRecording* prepared = nullptr;  // null: a file
+    std::size_t recorded = 0;                     // number of rows
+    std::uint64_t hash = 0;                       // engine/recording/content_hash.h
+    std::vector<MotionRow> rows;                  // those that are kept, without corrections
+  };
   // Valid after the first pass, as all below.
-  const std::vector<std::string>& names() const { return names_; }
-  // The recording of that number; null: a file.
-  const PreparedRecording* prepared(std::size_t recording) const { return recordings_[recording].prepared; }
-  const std::vector<std::uint64_t>& hashes() const { return hashes_; }  // engine/recording/content_hash.h
+  const std::vector<OneRecording>& recordings() const { return recordings_; }
   // The number of recorded rows, of which about `most_rows` are kept.
   std::size_t rows() const { return rows_; }
   // The largest force noise and encoder step of the recordings, and the position noise of the recording with the
@@ -94,13 +92,6 @@ class MotionSource {
   double position_noise_m() const { return position_noise_m_; }
 
  private:
-  struct OneRecording {
-    std::string name;
-    const PreparedRecording* prepared = nullptr;
-    std::size_t recorded = 0;
-    std::uint64_t hash = 0;       // of its content
-    std::vector<MotionRow> rows;  // without corrections
-  };
   // Keeps all rows before `beginning`, then the first `stretch` rows of every `sparse` * `stretch`; of the others
   // every `sparse`-th is kept as a run-up.
   struct Thinning {
@@ -110,15 +101,12 @@ class MotionSource {
     bool is_run_up(std::size_t row) const { return row >= beginning && row % (sparse * stretch) >= stretch; }
   };
 
-  Status load(const FitControl& control, double fraction);
   Status read(const Input& input, const Thinning& thinning, OneRecording& one, const FitControl& control,
               double fraction);
 
   std::vector<Input> inputs_;
   std::size_t most_rows_;
-  std::vector<std::string> names_;  // empty before loading
-  std::vector<std::uint64_t> hashes_;
-  std::vector<OneRecording> recordings_;
+  std::vector<OneRecording> recordings_;  // empty before loading
   std::vector<RowCorrection> corrections_;
   std::optional<FoldAssignment> assignment_;
   std::size_t rows_ = 0;

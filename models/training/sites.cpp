@@ -1,29 +1,21 @@
 #include "models/training/sites.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
+#include <numeric>
 #include <string>
 
 namespace palpate {
-namespace {
-
-Error wrong_size(const std::string& name, Eigen::Index found, Eigen::Index expected) {
-  return Error{"sites: " + name + " has " + std::to_string(found) + " entries, expected " + std::to_string(expected) +
-               ", one per point"};
-}
-
-}  // namespace
-
 Status validate_sites(const Sites& sites) {
   const Eigen::Index count = sites.count();
   if (count == 0) return Error{"sites: there are no points to fit; give at least one sample in contact"};
-  if (sites.dimension() < 1 || sites.dimension() > kMaxDimension)
+  if (sites.dimension() < 1 || sites.dimension() > static_cast<int>(kMaxFeatures))
     return Error{"sites: points have " + std::to_string(sites.dimension()) + " coordinates, expected 1 to " +
-                 std::to_string(kMaxDimension)};
-  if (sites.target_N.size() != count) return wrong_size("target_N", sites.target_N.size(), count);
-  if (sites.row_scale.size() != count) return wrong_size("row_scale", sites.row_scale.size(), count);
+                 std::to_string(kMaxFeatures)};
+  if (sites.target_N.size() != count || sites.row_scale.size() != count)
+    return Error{"sites: found " + std::to_string(sites.target_N.size()) + " entries of target_N and " +
+                 std::to_string(sites.row_scale.size()) + " of row_scale, expected " + std::to_string(count) +
+                 " of each, one per point"};
   for (Eigen::Index i = 0; i < count; ++i) {
     const bool finite = sites.points.col(i).allFinite() && std::isfinite(sites.target_N[i]) &&
                         std::isfinite(sites.row_scale[i]) && sites.row_scale[i] >= 0.0;
@@ -36,42 +28,34 @@ Status validate_sites(const Sites& sites) {
 
 Sites even_subset(const Sites& sites, Eigen::Index most) {
   const Eigen::Index count = std::min(sites.count(), most);
-  Sites subset;
-  subset.smoothing = sites.smoothing;
-  subset.strength = sites.strength;
-  subset.as_2009 = sites.as_2009;
-  subset.points.resize(sites.dimension(), count);
-  subset.target_N.resize(count);
-  subset.row_scale.resize(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index i = k * sites.count() / count;
-    subset.points.col(k) = sites.points.col(i);
-    subset.target_N[k] = sites.target_N[i];
-    subset.row_scale[k] = sites.row_scale[i];
-  }
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < count; ++k) kept.push_back(k * sites.count() / count);
+  Sites subset = sites;
+  subset.points = sites.points(Eigen::all, kept);
+  subset.target_N = sites.target_N(kept);
+  subset.row_scale = sites.row_scale(kept);
   return subset;
 }
 
 std::vector<Eigen::Index> distinct_sites(const Sites& sites) {
-  const auto count = static_cast<std::size_t>(sites.count());
-  std::vector<Eigen::Index> distinct;
-  distinct.reserve(count);
-  // A hash table with open addressing: index + 1 of a point, 0: free. At least twice as many slots as points.
-  std::vector<Eigen::Index> slots(std::bit_ceil(2 * count + 1), 0);
-  for (Eigen::Index i = 0; i < sites.count(); ++i) {
-    const auto point = sites.points.col(i);
-    std::uint64_t hash = 0xCBF29CE484222325ULL;
-    for (const double value : point) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(value + 0.0)) * 0x9E3779B97F4A7C15ULL;  // -0 is 0
-      hash ^= hash >> 29;
-    }
-    std::size_t slot = hash & (slots.size() - 1);
-    while (slots[slot] != 0 && sites.points.col(slots[slot] - 1) != point) slot = (slot + 1) & (slots.size() - 1);
-    if (slots[slot] != 0) continue;
-    slots[slot] = i + 1;
-    distinct.push_back(i);
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(sites.count()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const auto point = [&](Eigen::Index i) { return sites.points.col(i); };
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::lexicographical_compare(point(a).begin(), point(a).end(), point(b).begin(), point(b).end());
+  });
+  const auto same = [&](Eigen::Index a, Eigen::Index b) { return point(a) == point(b); };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+std::size_t draw_first(std::vector<Eigen::Index>& indices, Eigen::Index most, SplitMix64& random) {
+  const std::size_t count = std::min(static_cast<std::size_t>(most), indices.size());
+  for (std::size_t j = 0; j < count; ++j) {
+    std::swap(indices[j], indices[j + static_cast<std::size_t>(random.below(indices.size() - j))]);
   }
-  return distinct;
+  return count;
 }
 
 }  // namespace palpate

@@ -7,15 +7,14 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/random_stream.h"
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
 
 namespace palpate {
 
-inline constexpr int kMaxDimension = static_cast<int>(kMaxFeatures);
-
 struct Sites {
-  Eigen::MatrixXd points;    // d x N, normalised, one column a site, 1 <= d <= kMaxDimension
+  Eigen::MatrixXd points;    // d x N, normalised, one column a site, 1 <= d <= kMaxFeatures
   Eigen::VectorXd target_N;  // N forces
   // N factors >= 0 that multiply the residuals, e.g. 1 / JND(force). With factor 0 a site has no influence.
   Eigen::VectorXd row_scale;
@@ -38,5 +37,9 @@ Sites even_subset(const Sites& sites, Eigen::Index most);
 
 // Indices, ascending, of the sites without duplicates: of sites at exactly the same point the first is kept.
 std::vector<Eigen::Index> distinct_sites(const Sites& sites);
+
+// Draws up to `most` of the indices without replacement and brings them to the front (Fisher & Yates). Returns how many
+// were drawn.
+std::size_t draw_first(std::vector<Eigen::Index>& indices, Eigen::Index most, SplitMix64& random);
 
 }  // namespace palpate

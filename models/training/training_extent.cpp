@@ -1,26 +1,15 @@
 #include "models/training/training_extent.h"
 
-#include "engine/tick/sensor_identification.h"
-
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "engine/tick/sensor_identification.h"
 
 namespace palpate {
 namespace {
 
 // An unloading path below this share of the loading path counts as none.
 constexpr double kLeastUnloading = 0.1;
-
-}  // namespace
-
-bool TrainingExtent::has_unloading() const { return unloading_path_m > kLeastUnloading * loading_path_m; }
-
-FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent) {
-  return {source.names().size(), extent.strokes, extent.contact_samples, extent.has_unloading()};
-}
-
-namespace {
 
 // The material pulls if at least kLeastPulls samples and a share of kPullShare have a force below -JND(0), and the
 // lowest force is certain (certain_force_N).
@@ -31,10 +20,15 @@ constexpr double kShallow = 0.01;
 
 }  // namespace
 
+bool TrainingExtent::has_unloading() const { return unloading_path_m > kLeastUnloading * loading_path_m; }
+
+FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent) {
+  return {source.recordings().size(), extent.strokes, extent.contact_samples, extent.has_unloading()};
+}
+
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control) {
   TrainingExtent extent;
   double squares = 0.0;
-  double count = 0.0;
   double last_m = 0.0;
   double lowest_N = 0.0;
   double pulls = 0.0;
@@ -51,7 +45,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
           if (row.force_N < -JndLine{}.at(0.0)) ++pulls;
           lowest_N = std::min(lowest_N, row.force_N);
           squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
-          count += 1.0;
+          ++extent.contact_samples;
           extent.strokes = static_cast<std::size_t>(row.stroke);
           const double travel_m = row.motion.position_m - last_m;
           if (!row.first) (travel_m > 0.0 ? extent.loading_path_m : extent.unloading_path_m) += std::abs(travel_m);
@@ -69,8 +63,8 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
         return true;
       },
       control, 0.0);
-  extent.contact_samples = static_cast<std::size_t>(count);
   if (!status) return status.error();
+  const auto count = static_cast<double>(extent.contact_samples);
   const bool pulling = pulls >= std::max(kLeastPulls, kPullShare * count);
   if (pulling && lowest_N < -certain_force_N(source.force_noise_N())) extent.lowest_force_N = lowest_N;
   extent.sample_s = duration_s / std::max(1.0, steps);

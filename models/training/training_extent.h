@@ -7,7 +7,7 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
-#include "models/training/fold_assignment.h"
+#include "models/training/cross_validation.h"
 #include "models/training/motion_source.h"
 
 namespace palpate {

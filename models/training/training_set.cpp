@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
+#include <unordered_map>
 #include <utility>
-#include <vector>
+
+#include "models/training/weighting.h"
 
 namespace palpate {
 namespace {
@@ -46,31 +48,8 @@ struct FeatureMoments {
 };
 
 using CellKey = std::array<std::int32_t, kMaxFeatures + 1>;
-// Numbers the visited cells in order of appearance, at most kCoverageSites + 1. Unlike std::unordered_map it does not
-// allocate memory for each cell.
-class CellTable {
- public:
-  // Returns the number of the cell and whether the cell is new.
-  std::pair<std::size_t, bool> index_of(const CellKey& key) {
-    std::size_t slot = hash(key) % kSlots;
-    for (; slots_[slot] != 0; slot = (slot + 1) % kSlots) {
-      if (keys_[slots_[slot] - 1] == key) return {slots_[slot] - 1, false};
-    }
-    keys_.push_back(key);
-    slots_[slot] = static_cast<std::uint32_t>(keys_.size());
-    return {keys_.size() - 1, true};
-  }
-
-  void clear() {
-    keys_.clear();
-    std::fill(slots_.begin(), slots_.end(), 0);
-  }
-
- private:
-  static constexpr std::size_t kSlots = 32768;  // at most half of them occupied: few probes
-  static_assert(kSlots > 2 * (kCoverageSites + 1));
-
-  static std::size_t hash(const CellKey& key) {
+struct CellHash {
+  std::size_t operator()(const CellKey& key) const {
     std::uint64_t value = 0x9E3779B97F4A7C15ULL;
     for (const std::int32_t one : key) {
       value ^= static_cast<std::uint32_t>(one);
@@ -79,22 +58,18 @@ class CellTable {
     }
     return value;
   }
-
-  std::vector<CellKey> keys_;
-  std::vector<std::uint32_t> slots_ = std::vector<std::uint32_t>(kSlots, 0);  // number + 1; 0: free
 };
 
 // Replaces the samples in each visited cube of the feature space by their mean.
 class CoverageReduction {
  public:
-  explicit CoverageReduction(const Normalisation& normalisation) : normalisation_(normalisation) {}
+  CoverageReduction(const Normalisation& normalisation, std::vector<TrainingSite>& sites)
+      : normalisation_(normalisation), sites_(sites) {}
 
   void add(const TrainingSite& site) {
     add_to_cell(site);
-    if (sites_.size() > kCoverageSites) coarsen();
+    while (sites_.size() > kCoverageSites) coarsen();
   }
-
-  std::vector<TrainingSite> take() { return std::move(sites_); }
 
  private:
   CellKey key(const TrainingSite& site) const {
@@ -110,11 +85,11 @@ class CoverageReduction {
   }
 
   void add_to_cell(const TrainingSite& site) {
-    const auto [number, fresh] = cells_.index_of(key(site));
+    const auto [cell, fresh] = cells_.try_emplace(key(site), sites_.size());
     if (fresh)
       sites_.push_back(site);
     else
-      merge(sites_[number], site);
+      merge(sites_[cell->second], site);
   }
 
   static void merge(TrainingSite& into, const TrainingSite& site) {
@@ -125,18 +100,16 @@ class CoverageReduction {
   }
 
   void coarsen() {
-    while (sites_.size() > kCoverageSites) {
-      step_ *= kGrowth;
-      const std::vector<TrainingSite> old = std::move(sites_);
-      sites_.clear();
-      cells_.clear();
-      for (const TrainingSite& site : old) add_to_cell(site);
-    }
+    step_ *= kGrowth;
+    const std::vector<TrainingSite> old = std::move(sites_);
+    sites_.clear();
+    cells_.clear();
+    for (const TrainingSite& site : old) add_to_cell(site);
   }
 
   const Normalisation& normalisation_;
-  CellTable cells_;
-  std::vector<TrainingSite> sites_;
+  std::vector<TrainingSite>& sites_;
+  std::unordered_map<CellKey, std::size_t, CellHash> cells_;  // index of the site of each visited cube
   double step_ = kCoverageStep;
 };
 
@@ -144,6 +117,8 @@ class CoverageReduction {
 // threshold grows when too many samples are kept.
 class ForceReduction {
  public:
+  explicit ForceReduction(std::vector<TrainingSite>& sites) : sites_(sites) {}
+
   void add(const TrainingSite& site, bool first_of_recording) {
     if (first_of_recording) last_N_ = std::nan("");
     if (std::abs(site.force_N - last_N_) < threshold_N_) return;
@@ -152,7 +127,6 @@ class ForceReduction {
     while (sites_.size() > kMaximumSites) thin();
   }
 
-  std::vector<TrainingSite> take() { return std::move(sites_); }
   double threshold_N() const { return threshold_N_; }
 
  private:
@@ -165,42 +139,16 @@ class ForceReduction {
     sites_ = std::move(kept);
   }
 
-  std::vector<TrainingSite> sites_;
+  std::vector<TrainingSite>& sites_;
   double threshold_N_ = kReductionForce_N;
   double last_N_ = std::nan("");
-};
-
-class NoReduction {
- public:
-  // The limit for the memory of a fit; above it every other sample is dropped.
-  static constexpr std::size_t kMaximum = 1000000;
-
-  void add(const TrainingSite& site) {
-    if (seen_++ % stride_ != 0) return;
-    sites_.push_back(site);
-    if (sites_.size() <= kMaximum) return;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < sites_.size(); i += 2) sites_[kept++] = sites_[i];
-    sites_.resize(kept);
-    stride_ *= 2;
-    seen_ = 1;
-  }
-
-  std::vector<TrainingSite> take() { return std::move(sites_); }
-
- private:
-  std::vector<TrainingSite> sites_;
-  std::size_t stride_ = 1;
-  std::size_t seen_ = 0;
 };
 
 }  // namespace
 
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
-                                      Reduction reduction, double force_noise_floor_N, const FitControl& control,
-                                      const TrainingSetOptions& options) {
+                                      Reduction reduction, double force_noise_floor_N, const FitControl& control) {
   TrainingSet set;
-  set.features = features;
   const auto n = static_cast<Eigen::Index>(features.size());
   // Calls `handle` for every sample in contact, with its features.
   const auto pass = [&](const auto& handle) {
@@ -212,19 +160,15 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
           if (vector.in_contact && !row.run_up) handle(row, vector);
           return true;
         },
-        control, options.fraction);
-  };
-  const auto values_of = [n](const FeatureVector& vector) {
-    return Eigen::Map<const Eigen::VectorXd>(vector.values.data(), n);
+        control, 0.25);
   };
 
   FeatureMoments moments(features.size());
-  Status status = pass([&](const MotionRow& row, const FeatureVector& vector) {
-    moments.add(values_of(vector));
-    if (options.also) options.also(row, vector);
+  Status status = pass([&](const MotionRow&, const FeatureVector& vector) {
+    moments.add(Eigen::Map<const Eigen::VectorXd>(vector.values.data(), n));
   });
   if (!status) return status.error();
-  set.contact_samples = static_cast<std::uint64_t>(moments.count);
+  set.contact_samples = static_cast<std::size_t>(moments.count);
   if (set.contact_samples == 0) {
     return Error{
         "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; "
@@ -232,11 +176,16 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   }
   set.normalisation = moments.normalisation();
 
-  CoverageReduction coverage(set.normalisation);
-  ForceReduction force;
-  NoReduction none;
+  CoverageReduction coverage(set.normalisation, set.sites);
+  ForceReduction force(set.sites);
+  const std::size_t stride = set.contact_samples / kMaximumEvaluationSamples + 1;
+  std::size_t seen = 0;
   int recording = -1;
   status = pass([&](const MotionRow& row, const FeatureVector& vector) {
+    if (seen++ % stride == 0) {
+      set.evaluation_features.push_back(vector.values);
+      set.evaluation_force_N.push_back(row.force_N);
+    }
     const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, row.fold, row.force_N <= force_noise_floor_N};
     switch (reduction) {
       case Reduction::coverage:
@@ -246,24 +195,13 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
         force.add(site, row.recording != recording);
         break;
       case Reduction::none:
-        none.add(site);
+        set.sites.push_back(site);
         break;
     }
     recording = row.recording;
   });
   if (!status) return status.error();
-  switch (reduction) {
-    case Reduction::coverage:
-      set.sites = coverage.take();
-      break;
-    case Reduction::force:
-      set.reduction_force_N = force.threshold_N();
-      set.sites = force.take();
-      break;
-    case Reduction::none:
-      set.sites = none.take();
-      break;
-  }
+  if (reduction == Reduction::force) set.reduction_force_N = force.threshold_N();
   return set;
 }
 

@@ -10,18 +10,17 @@
 //             noise. The step starts at kCoverageStep and grows by a quarter while there are more than kCoverageSites.
 //   force     the paper's rule (section 2.1): a sample is kept when the force has changed by 50 mN since the last kept
 //             one. The 50 mN grow by a quarter while there are more than kMaximumSites.
-//   none      every sample in contact; beyond a million every other one is dropped.
+//   none      every sample in contact.
 // Recordings stream through in bounded memory.
 //
-// In `coverage`, a site has samples of one fold only (fold_assignment.h), so that cross-validation has no leakage, and
+// In `coverage`, a site has samples of one fold only (cross_validation.h), so that cross-validation has no leakage, and
 // samples without measured force (contact is one-sided) form sites of their own, which are marked.
 // Thread guarantee: slow side.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdint>
-#include <functional>
+#include <cstddef>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -36,9 +35,9 @@ inline constexpr std::array<const char*, 3> kReductionNames{"coverage", "force",
 inline const char* reduction_name(Reduction reduction) { return kReductionNames[static_cast<std::size_t>(reduction)]; }
 
 inline constexpr std::size_t kMaximumSites = 10000;
-inline constexpr double kReductionForce_N = 0.05;    // threshold at the start, the paper's 50 mN
 inline constexpr std::size_t kCoverageSites = 7500;  // the paper worked with 6,850
 inline constexpr double kCoverageStep = 0.005;       // at the start, in normalised feature space
+inline constexpr std::size_t kMaximumEvaluationSamples = 100000;
 
 struct Normalisation {
   Eigen::VectorXd offset;  // SI
@@ -57,23 +56,18 @@ struct TrainingSite {
 };
 
 struct TrainingSet {
-  std::vector<FeatureSpec> features;
   Normalisation normalisation;
   std::vector<TrainingSite> sites;
-  std::uint64_t contact_samples = 0;
+  std::size_t contact_samples = 0;
   double reduction_force_N = 0.0;  // final step of Reduction::force
-};
-
-struct TrainingSetOptions {
-  double fraction = 0.0;  // passed to FitControl as progress
-  // Called for every training sample in contact, with its features.
-  std::function<void(const MotionRow&, const FeatureVector&)> also{};
+  // Evenly spaced samples in contact, to evaluate a model on its training data: at most kMaximumEvaluationSamples.
+  std::vector<std::array<double, kMaxFeatures>> evaluation_features;
+  std::vector<double> evaluation_force_N;
 };
 
 // `force_noise_floor_N`: at or below it a sample has no measured force. Errors: those of the source; no sample in
 // contact; interrupted.
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
-                                      Reduction reduction, double force_noise_floor_N, const FitControl& control = {},
-                                      const TrainingSetOptions& options = {});
+                                      Reduction reduction, double force_noise_floor_N, const FitControl& control = {});
 
 }  // namespace palpate

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "engine/base/text.h"
 #include "models/model/bernstein.h"
 
 namespace palpate {
@@ -16,8 +16,6 @@ constexpr double kTimesPerDecade = 4.0;
 constexpr double kShortest_s = 1e-3;
 constexpr double kLongest_s = 100.0;
 constexpr std::size_t kBands = 3;
-constexpr std::size_t kStops = 8;
-static_assert(kStops <= kMaxFeatureParts);
 // The trend limits velocities to this multiple of the greatest recorded one.
 constexpr double kVelocityMargin = 1.5;
 
@@ -33,28 +31,17 @@ std::vector<double> ladder(double shortest_s, double longest_s, double per_decad
 }
 
 std::string range_text(const char* words, const std::vector<double>& values, double unit, const char* unit_name) {
-  char text[96];
-  if (values.size() == 1) {
-    std::snprintf(text, sizeof text, "%s %.3g %s", words, unit * values.front(), unit_name);
-  } else {
-    std::snprintf(text, sizeof text, "%s %.3g-%.3g %s", words, unit * values.front(), unit * values.back(), unit_name);
-  }
-  return text;
-}
-
-ColumnList columns_from(std::size_t first, std::size_t count) {
-  ColumnList columns;
-  for (std::size_t i = 0; i < count; ++i) columns.push_back(static_cast<Eigen::Index>(first + i));
-  return columns;
+  const std::string last = values.size() > 1 ? "-" + general(unit * values.back(), 3) : "";
+  return std::string(words) + " " + general(unit * values.front(), 3) + last + " " + unit_name;
 }
 
 Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
   Trend trend;
-  trend.reference_depth_m = rows.reference_depth_m();
+  trend.reference_depth_m = rows.problem().reference_depth_m;
   trend.elastic = combined_spline(spline_basis(), x.data());
   auto column = static_cast<Eigen::Index>(kElasticTerms);
   if (rows.viscous_columns() > 0) {
-    trend.thinning_velocity_m_per_s = rows.thinning_velocity_m_per_s();
+    trend.thinning_velocity_m_per_s = rows.problem().rms_velocity_m_per_s;
     for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
       for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column) {
         const auto power = bernstein<kViscosityCoefficients - 1>(k);
@@ -64,31 +51,26 @@ Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
   }
   for (std::size_t i = 0; i < rows.count(); ++i) {
     trend.velocity_limit_m_per_s =
-        std::max(trend.velocity_limit_m_per_s, kVelocityMargin * std::abs(rows.velocity_m_per_s(i)));
+        std::max(trend.velocity_limit_m_per_s, kVelocityMargin * std::abs(rows[i].velocity_m_per_s));
   }
   return trend;
 }
 
-// Makes a part. `constant`: its relaxation time, threshold or creep time.
-FeaturePart part_of(FeatureKind kind, double constant, const double* weights, double depth_m) {
-  if (kind == FeatureKind::stops) return {0.0, constant, combined_friction(weights, depth_m)};
-  if (kind == FeatureKind::creep) return {constant, depth_m, combined_friction(weights, depth_m)};
-  return {constant, 0.0, combined_drive(weights, depth_m)};
-}
-
 // Makes one feature of the parts with a weight above 0, or of all parts if `all`.
-FeatureSpec parts_feature(const FeatureColumns& group, const std::vector<double>& constants, const Eigen::VectorXd& x,
-                          const TrendRows& rows, bool all) {
-  static_assert(kBranchTerms == kBristleTerms);
+FeatureSpec parts_feature(const FeatureColumns& group, const Eigen::VectorXd& x, const TrendRows& rows, bool all) {
+  const double depth_m = rows.problem().reference_depth_m;
   FeatureSpec spec;
   spec.kind = group.kind;
-  for (std::size_t p = 0; p < constants.size(); ++p) {
-    const double* weights = x.data() + group.columns[p * kBranchTerms];
-    const bool carries = std::any_of(weights, weights + kBranchTerms, [](double weight) { return weight > 0.0; });
+  for (std::size_t p = 0; p < group.constants.size(); ++p) {
+    const double* weights = x.data() + group.columns[p * kCurveTerms];
+    const bool carries = std::any_of(weights, weights + kCurveTerms, [](double weight) { return weight > 0.0; });
     if (!carries && !all) continue;
-    spec.parts[spec.part_count++] = part_of(group.kind, constants[p], weights, rows.reference_depth_m());
+    FeaturePart& part = spec.parts[spec.part_count++];
+    part.drive = combined_curve(group.kind, weights, depth_m);
+    (group.kind == FeatureKind::stops ? part.threshold_m : part.relaxation_time_s) = group.constants[p];
+    if (group.kind == FeatureKind::creep) part.threshold_m = depth_m;
   }
-  if (group.kind == FeatureKind::maxwell_spectrum) spec.slowing = rows.terms().slowing;
+  if (group.kind == FeatureKind::maxwell_spectrum) spec.slowing = rows.list().slowing;
   return spec;
 }
 
@@ -104,23 +86,17 @@ FeatureList dictionary(double sample_s, double longest_s, double depth_m, double
     const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
     if (from != to) list.relaxation_times_s.emplace_back(from, to);
   }
-  for (double threshold_m = 0.5 * depth_m; list.stop_thresholds_m.size() < kStops && threshold_m >= encoder_step_m;
-       threshold_m *= 0.5) {
+  for (double threshold_m = 0.5 * depth_m;
+       list.stop_thresholds_m.size() < kMaxFeatureParts && threshold_m >= encoder_step_m; threshold_m *= 0.5) {
     list.stop_thresholds_m.insert(list.stop_thresholds_m.begin(), threshold_m);
   }
   list.creep_times_s = ladder(kShortest_s, longest_time_s, 1.0);
   return list;
 }
 
-std::vector<double> all_times(const FeatureList& list) {
-  std::vector<double> times_s;
-  for (const auto& group : list.relaxation_times_s) times_s.insert(times_s.end(), group.begin(), group.end());
-  return times_s;
-}
-
 Result<TrendRows> gather_rows(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
                               std::size_t most_rows, double least_step_s, const FitControl& control, double fraction) {
-  TrendRows rows(terms_of(list, problem.reference_depth_m, problem.rms_velocity_m_per_s), most_rows);
+  TrendRows rows(list, problem, most_rows);
   double last_s = 0.0;
   const Status status = source.for_each(
       [&](const MotionRow& row) {
@@ -138,75 +114,61 @@ Result<TrendRows> gather_rows(MotionSource& source, const FeatureList& list, con
   return rows;
 }
 
-TrendTerms terms_of(const FeatureList& list, double reference_depth_m, double rms_velocity_m_per_s) {
-  return {reference_depth_m,  list.velocity ? rms_velocity_m_per_s : 0.0,
-          all_times(list),    list.stop_thresholds_m,
-          list.creep_times_s, list.slowing,
-          list.surface};
-}
-
-std::vector<FeatureColumns> feature_columns(const FeatureList& list, const TrendRows& rows) {
+std::vector<FeatureColumns> feature_columns(const TrendRows& rows) {
+  const FeatureList& list = rows.list();
   std::vector<FeatureColumns> groups;
   if (list.velocity) {
-    groups.push_back({FeatureKind::velocity, "velocity", columns_from(kElasticTerms, rows.viscous_columns())});
+    groups.push_back({FeatureKind::velocity, "velocity", {}, columns_from(kElasticTerms, rows.viscous_columns())});
   }
   std::size_t first = rows.first_branch();
-  const auto add = [&](FeatureKind kind, std::string name, std::size_t parts) {
-    groups.push_back({kind, std::move(name), columns_from(first, kBranchTerms * parts)});
-    first += kBranchTerms * parts;
+  const auto add = [&](FeatureKind kind, const char* words, const std::vector<double>& constants, double unit,
+                       const char* unit_name) {
+    if (constants.empty()) return;
+    const std::size_t count = kCurveTerms * constants.size();
+    groups.push_back({kind, range_text(words, constants, unit, unit_name), constants, columns_from(first, count)});
+    first += count;
   };
   for (const auto& times_s : list.relaxation_times_s) {
-    add(FeatureKind::maxwell_spectrum, range_text("relaxation", times_s, 1.0, "s"), times_s.size());
+    add(FeatureKind::maxwell_spectrum, "relaxation", times_s, 1.0, "s");
   }
-  if (const auto& thresholds_m = list.stop_thresholds_m; !thresholds_m.empty()) {
-    add(FeatureKind::stops, range_text("stops", thresholds_m, 1e3, "mm"), thresholds_m.size());
-  }
-  if (!list.creep_times_s.empty()) {
-    add(FeatureKind::creep, range_text("creep", list.creep_times_s, 1.0, "s"), list.creep_times_s.size());
-  }
+  add(FeatureKind::stops, "stops", list.stop_thresholds_m, 1e3, "mm");
+  add(FeatureKind::creep, "creep", list.creep_times_s, 1.0, "s");
   return groups;
 }
 
-FittedTrend fitted_trend(const FeatureList& list, const TrendRows& rows, const Eigen::VectorXd& x, bool all) {
+FittedTrend fitted_trend(const TrendRows& rows, const Eigen::VectorXd& x, bool all) {
   FittedTrend fitted{trend_from(rows, x), {FeatureSpec{}}, {}};
-  if (!list.surface.empty()) {
+  if (!rows.list().surface.empty()) {
     FeatureSpec lag{FeatureKind::surface_lag};
-    lag.drive = coarse_curve(fitted.trend.elastic, rows.reference_depth_m());
+    lag.drive = coarse_curve(fitted.trend.elastic, rows.problem().reference_depth_m);
     fitted.features.push_back(lag);
   }
   std::vector<ColumnList> sums;  // the columns of each feature that is a sum of columns
-  std::size_t band = 0;
-  for (const FeatureColumns& group : feature_columns(list, rows)) {
-    const bool relaxes = group.kind == FeatureKind::maxwell_spectrum;
-    const std::vector<double>& constants = relaxes                            ? list.relaxation_times_s[band++]
-                                           : group.kind == FeatureKind::stops ? list.stop_thresholds_m
-                                                                              : list.creep_times_s;
-    const bool carries =
-        std::any_of(group.columns.begin(), group.columns.end(), [&](Eigen::Index j) { return x(j) > 0.0; });
-    if (!carries && !all && group.kind != FeatureKind::velocity) continue;
+  for (const FeatureColumns& group : feature_columns(rows)) {
     if (group.kind == FeatureKind::velocity) {
       fitted.features.push_back({FeatureKind::velocity});
-    } else {
-      fitted.features.push_back(parts_feature(group, constants, x, rows, all));
+    } else if (all || (x(group.columns).array() > 0.0).any()) {
+      fitted.features.push_back(parts_feature(group, x, rows, all));
       sums.push_back(group.columns);
     }
   }
   fitted.row_features.resize(static_cast<Eigen::Index>(fitted.features.size()),
                              static_cast<Eigen::Index>(rows.count()));
   for (std::size_t i = 0; i < rows.count(); ++i) {
-    const Eigen::Map<const Eigen::VectorXd> row(rows.row(i), x.size());
+    const auto at = static_cast<Eigen::Index>(i);
+    const Eigen::VectorXd row = rows.terms().row(at).transpose();
     std::size_t sum = 0;
     for (std::size_t f = 0; f < fitted.features.size(); ++f) {
-      double& value = fitted.row_features(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(i));
+      double& value = fitted.row_features(static_cast<Eigen::Index>(f), at);
       switch (fitted.features[f].kind) {
         case FeatureKind::depth:
-          value = rows.depth_m(i);
+          value = rows[i].depth_m;
           break;
         case FeatureKind::velocity:
-          value = rows.velocity_m_per_s(i);
+          value = rows[i].velocity_m_per_s;
           break;
         case FeatureKind::surface_lag:
-          value = rows.lag_m(i);
+          value = rows[i].lag_m;
           break;
         default:
           value = row(sums[sum]).dot(x(sums[sum]));

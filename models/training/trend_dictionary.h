@@ -1,5 +1,4 @@
-// The candidate terms of a trend: a list of features with their constants, the terms of the regression for them, and
-// the features and trend made from the weights of the regression.
+// The candidate terms of a trend, and the features and trend made from the weights of their regression.
 //
 // The dictionary is the list of all terms that a recording of this length and rate can identify:
 //   velocity    viscosity
@@ -26,39 +25,24 @@
 
 namespace palpate {
 
-struct FeatureList {
-  bool velocity = false;
-  // One inner list per feature: the times (seconds) whose branches it sums.
-  std::vector<std::vector<double>> relaxation_times_s;
-  std::vector<double> stop_thresholds_m;  // of one feature, the sum of the stops
-  std::vector<double> creep_times_s;      // of one feature, the sum of the bristles
-  double slowing = 0.0;                   // growth of the relaxation times with depth
-  std::vector<FeatureSpec> surface{};     // TrendTerms::surface
-};
-
 // `sample_s`: mean sampling period; `longest_s`: duration of the longest recording; `depth_m`: greatest depth;
 // `encoder_step_m`: 0 where positions are not quantised.
 FeatureList dictionary(double sample_s, double longest_s, double depth_m, double encoder_step_m);
-
-// The relaxation times of all features, in order.
-std::vector<double> all_times(const FeatureList& list);
 
 // The rows of the regression with the list's terms, at most `most_rows`, with their folds. Samples that follow the
 // last used one by less than `least_step_s` are skipped. Errors: those of the source; interrupted.
 Result<TrendRows> gather_rows(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
                               std::size_t most_rows, double least_step_s, const FitControl& control, double fraction);
 
-// The terms of the regression for the list; without velocity the RMS velocity is not used.
-TrendTerms terms_of(const FeatureList& list, double reference_depth_m, double rms_velocity_m_per_s);
-
 // A feature and the columns of the regression whose weighted sum it is.
 struct FeatureColumns {
   FeatureKind kind = FeatureKind::depth;
-  std::string name;  // for reports, with the range of its constants
+  std::string name;               // for reports, with the range of its constants
+  std::vector<double> constants;  // relaxation times, thresholds or creep times
   ColumnList columns;
 };
-// All features of the list that have columns, in the order of the model's features.
-std::vector<FeatureColumns> feature_columns(const FeatureList& list, const TrendRows& rows);
+// All features of the rows' list that have columns, in the order of the model's features.
+std::vector<FeatureColumns> feature_columns(const TrendRows& rows);
 
 struct FittedTrend {
   Trend trend;
@@ -67,6 +51,6 @@ struct FittedTrend {
   Eigen::MatrixXd row_features;
 };
 // The trend and features for the weights `x` of the regression on `rows`. `all`: keep features whose weights are 0.
-FittedTrend fitted_trend(const FeatureList& list, const TrendRows& rows, const Eigen::VectorXd& x, bool all);
+FittedTrend fitted_trend(const TrendRows& rows, const Eigen::VectorXd& x, bool all);
 
 }  // namespace palpate

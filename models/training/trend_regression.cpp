@@ -1,6 +1,5 @@
 #include "models/training/trend_regression.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "engine/base/parallel.h"
 #include "models/linear/lapack.h"
+#include "models/linear/non_negative.h"
 
 namespace palpate {
 namespace {
@@ -18,38 +18,28 @@ constexpr int kPasses = 4;
 // The candidates for lambda: 1e-6 smooths over a third of the depth, 1e-9 over two pieces.
 constexpr std::array kSmoothness{1e-6, 1e-7, 1e-8, 1e-9};
 constexpr double kFirstSmoothness = 1e-8;
-constexpr Eigen::Index kBlock = 512;  // rows of a product
-
-using RowMatrix = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
-
-RowMatrix matrix_of(const TrendRows& rows) {
-  return {rows.row(0), static_cast<Eigen::Index>(rows.count()), static_cast<Eigen::Index>(rows.columns())};
-}
-
-// The greatest depth outside each fold.
-std::vector<double> deepest_elsewhere(const TrendRows& rows, int folds) {
-  std::vector<double> deepest_m(static_cast<std::size_t>(folds), 0.0);
-  for (std::size_t i = 0; i < rows.count(); ++i) {
-    double& deepest = deepest_m[static_cast<std::size_t>(rows.fold(i))];
-    deepest = std::max(deepest, rows.depth_m(i));
-  }
-  std::vector<double> elsewhere_m(deepest_m.size(), 0.0);
-  for (std::size_t k = 0; k < deepest_m.size(); ++k) {
-    for (std::size_t other = 0; other < deepest_m.size(); ++other) {
-      if (other != k) elsewhere_m[k] = std::max(elsewhere_m[k], deepest_m[other]);
-    }
-  }
-  return elsewhere_m;
-}
 
 }  // namespace
 
-TrendRegression::TrendRegression(const TrendRows& rows, int folds, const TrendProblem& problem, Smoothness smoothness)
+ColumnList columns_from(std::size_t first, std::size_t count) {
+  ColumnList columns(count);
+  std::iota(columns.begin(), columns.end(), static_cast<Eigen::Index>(first));
+  return columns;
+}
+
+TrendRegression::TrendRegression(const TrendRows& rows, Smoothness smoothness)
     : rows_(rows),
-      problem_(problem),
-      part_error_(rows.terms().creep_times_s.empty() ? kPartErrorOfFew : kPartError),
+      part_error_(rows.list().creep_times_s.empty() ? kPartErrorOfFew : kPartError),
       smoothness_(kFirstSmoothness),
-      folds_(static_cast<std::size_t>(folds)) {
+      folds_(static_cast<std::size_t>(rows.problem().folds)) {
+  std::vector<int> fold;
+  std::vector<double> depth_m;
+  for (std::size_t i = 0; i < rows.count(); ++i) {
+    fold.push_back(rows[i].fold);
+    depth_m.push_back(rows[i].depth_m);
+  }
+  const int folds = rows.problem().folds;
+  deepest_elsewhere_m_ = deepest_elsewhere_m(fold, depth_m, folds);
   const BlasThreads one_thread(1);
   parallel_for(folds + 1,
                [&](int k) { (k < folds ? folds_[static_cast<std::size_t>(k)] : all_) = gather(k < folds ? k : -1); });
@@ -64,20 +54,21 @@ TrendRegression::TrendRegression(const TrendRows& rows, int folds, const TrendPr
 
 // Iterates weights and active set on the rows outside the fold `left_out` (-1: all rows).
 TrendRegression::Equations TrendRegression::gather(int left_out) const {
+  const TrendProblem& problem = rows_.problem();
   std::vector<double> plain(rows_.count());
   for (std::size_t i = 0; i < plain.size(); ++i) {
-    plain[i] = rows_.fold(i) == left_out ? 0.0 : row_scale(problem_.weighting, problem_.jnd, rows_.force_N(i));
+    plain[i] = rows_[i].fold == left_out ? 0.0 : row_scale(problem.weighting, problem.jnd, rows_[i].force_N);
   }
   std::vector<double> scale = plain;
   Equations equations = sum(left_out, scale);
   for (int pass = 0; pass < kPasses; ++pass) {
     equations.near_solution = weights(equations, all_columns(), kFirstSmoothness);
-    const Eigen::VectorXd trend_N = matrix_of(rows_) * equations.near_solution;
+    const Eigen::VectorXd trend_N = rows_.terms() * equations.near_solution;
     bool changed = false;
     for (std::size_t i = 0; i < scale.size(); ++i) {
       const double force_N = trend_N(static_cast<Eigen::Index>(i));
-      const bool idle = std::abs(rows_.force_N(i)) <= problem_.force_noise_floor_N && force_N <= 0.0;
-      const double robust = robust_scale(problem_.jnd.error_over_jnd(force_N, rows_.force_N(i)));
+      const bool idle = std::abs(rows_[i].force_N) <= problem.force_noise_floor_N && force_N <= 0.0;
+      const double robust = robust_scale(problem.jnd.error_over_jnd(force_N, rows_[i].force_N));
       const double now = idle ? 0.0 : plain[i] * robust;
       changed = changed || std::abs(now - scale[i]) > 0.1 * plain[i];
       scale[i] = now;
@@ -93,8 +84,8 @@ TrendRegression::Equations TrendRegression::gather(int left_out) const {
 TrendRegression::Equations TrendRegression::sum(int left_out, const std::vector<double>& scale) const {
   const auto n = static_cast<Eigen::Index>(rows_.columns());
   Equations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0, {}};
-  Eigen::MatrixXd block(kBlock, n);
-  Eigen::VectorXd force_N(kBlock);
+  Eigen::MatrixXd block(kBlockRows, n);
+  Eigen::VectorXd force_N(kBlockRows);
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(n, n);
   Eigen::Index filled = 0;
   const auto flush = [&] {
@@ -104,21 +95,15 @@ TrendRegression::Equations TrendRegression::sum(int left_out, const std::vector<
     filled = 0;
   };
   for (std::size_t i = 0; i < rows_.count(); ++i) {
-    if (rows_.fold(i) == left_out || scale[i] == 0.0) continue;
-    block.row(filled) = scale[i] * Eigen::Map<const Eigen::RowVectorXd>(rows_.row(i), n);
-    force_N(filled) = scale[i] * rows_.force_N(i);
+    if (rows_[i].fold == left_out || scale[i] == 0.0) continue;
+    block.row(filled) = scale[i] * rows_.terms().row(static_cast<Eigen::Index>(i));
+    force_N(filled) = scale[i] * rows_[i].force_N;
     equations.scale_squares += scale[i] * scale[i];
-    if (++filled == kBlock) flush();
+    if (++filled == kBlockRows) flush();
   }
   flush();
   equations.gram.triangularView<Eigen::StrictlyUpper>() = equations.gram.transpose();
   return equations;
-}
-
-ColumnList TrendRegression::all_columns() const {
-  ColumnList all(rows_.columns());
-  std::iota(all.begin(), all.end(), Eigen::Index{0});
-  return all;
 }
 
 // The penalised solution on these columns, 0 in all others. The columns of the elastic response come first.
@@ -149,19 +134,16 @@ CrossValidated TrendRegression::cross_validate(const ColumnList& columns, double
   for (std::size_t k = 0; k < folds_.size(); ++k) {
     result.solutions.col(static_cast<Eigen::Index>(k)) = weights(folds_[k], columns, smoothness);
   }
-  const std::vector<double> elsewhere_m = deepest_elsewhere(rows_, static_cast<int>(folds_.size()));
-  const Eigen::MatrixXd trend_N = matrix_of(rows_) * result.solutions;
+  const TrendProblem& problem = rows_.problem();
+  const bool one_sided = std::isfinite(problem.force_noise_floor_N);
+  const Eigen::MatrixXd trend_N = rows_.terms() * result.solutions;
   for (std::size_t i = 0; i < rows_.count(); ++i) {
-    const auto fold = static_cast<std::size_t>(rows_.fold(i));
-    if (rows_.depth_m(i) > elsewhere_m[fold]) continue;
+    const auto fold = static_cast<std::size_t>(rows_[i].fold);
+    if (rows_[i].depth_m > deepest_elsewhere_m_[fold]) continue;
     const double force_N = trend_N(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(fold));
-    const bool one_sided = std::isfinite(problem_.force_noise_floor_N);
-    result.errors.add(fold,
-                      problem_.jnd.error_over_jnd(one_sided ? std::max(0.0, force_N) : force_N, rows_.force_N(i)));
+    result.errors.add(fold, problem.jnd.error_over_jnd(one_sided ? std::max(0.0, force_N) : force_N, rows_[i].force_N));
   }
   return result;
 }
-
-Eigen::VectorXd TrendRegression::solve(const ColumnList& columns) const { return weights(all_, columns, smoothness_); }
 
 }  // namespace palpate

@@ -11,7 +11,7 @@
 // viscosity, branch and friction dissipate.
 //
 // The elastic response is a P-spline, whose penalty approximates the integral of its squared second derivative (Eilers
-// & Marx 1996; models/model/trend.h). lambda is selected by cross-validation and the common rule (selection.h).
+// & Marx 1996; models/model/trend.h). lambda is selected by cross-validation and the common rule (cross_validation.h).
 // alpha is the relative error of all other columns: repeated measurements of each agree to about a tenth, and the
 // expected square of such errors is the penalty (errors in variables; Golub & Van Loan 1980). Columns that the
 // recording cannot separate then share their effect.
@@ -23,29 +23,19 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "engine/tick/jnd.h"
-#include "models/linear/non_negative.h"
-#include "models/training/selection.h"
+#include "models/training/cross_validation.h"
 #include "models/training/trend_rows.h"
-#include "models/training/weighting.h"
 
 namespace palpate {
 
 using ColumnList = std::vector<Eigen::Index>;
+// `count` consecutive columns.
+ColumnList columns_from(std::size_t first, std::size_t count);
 
 // alpha; the second without creep, in models with few features: there, 0.1 leaves the trend too little damping to come
 // to rest (tests/accuracy/closed_loop_test.cpp).
 inline constexpr double kPartError = 0.1;
 inline constexpr double kPartErrorOfFew = 0.03;
-
-// The parameters of a regression besides its rows.
-struct TrendProblem {
-  double reference_depth_m = 0.0;
-  double rms_velocity_m_per_s = 0.0;
-  double force_noise_floor_N = 0.0;  // at or below it a sample has no measured force
-  Weighting weighting = Weighting::jnd;
-  JndLine jnd{};
-};
 
 struct CrossValidated {
   FoldErrors errors;
@@ -56,17 +46,15 @@ class TrendRegression {
  public:
   enum class Smoothness { selected, fixed };
 
-  // `folds`: number of folds of the rows, at least 1. `fixed`: lambda is 1e-8, for comparisons of many regressions.
-  TrendRegression(const TrendRows& rows, int folds, const TrendProblem& problem,
-                  Smoothness smoothness = Smoothness::selected);
+  // `fixed`: lambda is 1e-8, for comparisons of many regressions.
+  explicit TrendRegression(const TrendRows& rows, Smoothness smoothness = Smoothness::selected);
 
   // Errors of the trend with these columns (ascending). Rows deeper than all rows of the other folds do not count:
   // they would be extrapolated.
   CrossValidated cross_validate(const ColumnList& columns) const { return cross_validate(columns, smoothness_); }
   // The weights fitted to all rows, one for each column of the rows; 0 outside `columns`.
-  Eigen::VectorXd solve(const ColumnList& columns) const;
-  ColumnList all_columns() const;
-  double smoothness() const { return smoothness_; }
+  Eigen::VectorXd solve(const ColumnList& columns) const { return weights(all_, columns, smoothness_); }
+  ColumnList all_columns() const { return columns_from(0, rows_.columns()); }
 
  private:
   // The normal equations of the rows outside one fold; -1: of all rows.
@@ -82,10 +70,10 @@ class TrendRegression {
   CrossValidated cross_validate(const ColumnList& columns, double smoothness) const;
 
   const TrendRows& rows_;
-  const TrendProblem& problem_;
   double part_error_;
   double smoothness_;
-  std::vector<Equations> folds_;  // index: the fold that is left out
+  std::vector<double> deepest_elsewhere_m_;  // by fold
+  std::vector<Equations> folds_;             // index: the fold that is left out
   Equations all_;
 };
 

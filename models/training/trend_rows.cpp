@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "models/model/bernstein.h"
-#include "models/model/trend.h"
 
 namespace palpate {
 namespace {
 
+// Keeps the first, third, ... of the groups of `width` values.
 template <typename T>
 void keep_every_other(std::vector<T>& values, std::size_t width) {
   std::size_t kept = 0;
@@ -27,50 +28,55 @@ constexpr auto kViscousBasis = [] {
   return basis;
 }();
 
-// Makes one feature for each term of a bristle.
-std::vector<FeatureSpec> bristle_basis(FeatureKind kind, double threshold_m, double time_s, double reference_depth_m) {
-  std::vector<FeatureSpec> specs(kBristleTerms);
-  for (std::size_t k = 0; k < kBristleTerms; ++k) {
-    std::array<double, kBristleTerms> one{};
-    one[k] = 1.0;
-    specs[k].kind = kind;
-    specs[k].part_count = 1;
-    specs[k].parts[0] = {time_s, threshold_m, combined_friction(one.data(), reference_depth_m)};
+// Coefficients of u^1 .. u^4: the integrals of the Bernstein polynomials, and the friction of a bristle.
+constexpr std::array kDrives{bernstein_integral<kCurveTerms - 1>(0), bernstein_integral<kCurveTerms - 1>(1),
+                             bernstein_integral<kCurveTerms - 1>(2)};
+constexpr std::array<std::array<double, kDriveCoefficients>, kCurveTerms> kFrictions{
+    {{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
+
+template <typename Shapes>
+DriveCurve weighted_sum(const Shapes& shapes, const double* weights, double reference_depth_m) {
+  DriveCurve curve;
+  curve.reference_depth_m = reference_depth_m;
+  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+    for (std::size_t j = 0; j < shapes[k].size(); ++j) curve.coefficient_N[j] += weights[k] * shapes[k][j];
   }
-  return specs;
+  return curve;
+}
+
+// One feature for each term of a bristle.
+FeatureFilter bristle(FeatureKind kind, double threshold_m, double time_s, double reference_depth_m) {
+  std::vector<FeatureSpec> specs;
+  for (const DriveCurve& curve : curve_basis(kind, reference_depth_m)) {
+    FeatureSpec& spec = specs.emplace_back();
+    spec.kind = kind;
+    spec.part_count = 1;
+    spec.parts[0] = {time_s, threshold_m, curve};
+  }
+  return FeatureFilter(specs);
 }
 
 }  // namespace
 
-std::vector<DriveCurve> branch_curves(double reference_depth_m) {
+std::vector<double> FeatureList::all_times_s() const {
+  std::vector<double> times_s;
+  for (const auto& group : relaxation_times_s) times_s.insert(times_s.end(), group.begin(), group.end());
+  return times_s;
+}
+
+DriveCurve combined_curve(FeatureKind kind, const double* weights, double reference_depth_m) {
+  return is_bristle(kind) ? weighted_sum(kFrictions, weights, reference_depth_m)
+                          : weighted_sum(kDrives, weights, reference_depth_m);
+}
+
+std::vector<DriveCurve> curve_basis(FeatureKind kind, double reference_depth_m) {
   std::vector<DriveCurve> curves;
-  for (std::size_t k = 0; k < kBranchTerms; ++k) {
-    std::array<double, kBranchTerms> one{};
+  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+    std::array<double, kCurveTerms> one{};
     one[k] = 1.0;
-    curves.push_back(combined_drive(one.data(), reference_depth_m));
+    curves.push_back(combined_curve(kind, one.data(), reference_depth_m));
   }
   return curves;
-}
-
-DriveCurve combined_drive(const double* weights, double reference_depth_m) {
-  DriveCurve drive;
-  drive.reference_depth_m = reference_depth_m;
-  for (std::size_t k = 0; k < kBranchTerms; ++k) {
-    const auto power = bernstein_integral<kBranchTerms - 1>(k);
-    for (std::size_t j = 0; j < power.size(); ++j) drive.coefficient_N[j] += weights[k] * power[j];
-  }
-  return drive;
-}
-
-DriveCurve combined_friction(const double* weights, double reference_depth_m) {
-  constexpr std::array<std::array<double, kDriveCoefficients>, kBristleTerms> kShapes{
-      {{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
-  DriveCurve drive;
-  drive.reference_depth_m = reference_depth_m;
-  for (std::size_t k = 0; k < kBristleTerms; ++k) {
-    for (std::size_t j = 0; j < kDriveCoefficients; ++j) drive.coefficient_N[j] += weights[k] * kShapes[k][j];
-  }
-  return drive;
 }
 
 DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m) {
@@ -101,24 +107,56 @@ DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m) 
   return curve;
 }
 
-TrendRows::TrendRows(TrendTerms terms, std::size_t most_rows)
-    : terms_(std::move(terms)),
-      most_rows_(most_rows),
-      ladder_(terms_.relaxation_times_s, branch_curves(terms_.reference_depth_m), terms_.slowing),
-      elastic_basis_(spline_basis()) {
-  if (!terms_.surface.empty()) surface_.emplace_back(terms_.surface);
-  for (const double threshold_m : terms_.stop_thresholds_m) {
-    bristles_.emplace_back(bristle_basis(FeatureKind::stops, threshold_m, 0.0, terms_.reference_depth_m));
+BranchLadder::BranchLadder(std::vector<double> times_s, double reference_depth_m, double slowing)
+    : times_s_(std::move(times_s)),
+      curves_(curve_basis(FeatureKind::maxwell_spectrum, reference_depth_m)),
+      slowing_(slowing),
+      values_(times_s_.size() * kCurveTerms, 0.0) {}
+
+void BranchLadder::update(double time_s, double depth_m, double surface_m) {
+  if (times_s_.empty()) return;
+  std::array<double, kCurveTerms> change{};
+  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+    const double drive = curves_[k].at(surface_m);
+    change[k] = drive - drive_[k];
+    drive_[k] = drive;
   }
-  for (const double time_s : terms_.creep_times_s) {
-    bristles_.emplace_back(
-        bristle_basis(FeatureKind::creep, terms_.reference_depth_m, time_s, terms_.reference_depth_m));
+  const double step_s = time_s - time_s_;
+  if (!started_) {
+    std::fill(values_.begin(), values_.end(), 0.0);
+  } else if (step_s > 0.0) {
+    const double halfway_m = surface_halfway(surface_m_, depth_m_, depth_m);
+    const double factor = relaxation_time_factor(slowing_, halfway_m, curves_.front().reference_depth_m);
+    double* value = values_.data();
+    for (const double relaxation_time_s : times_s_) {
+      const BranchStep step = branch_step(factor * relaxation_time_s, step_s);
+      for (std::size_t k = 0; k < kCurveTerms; ++k, ++value) {
+        *value = step.keep * *value + step.gain * change[k];
+        if (std::abs(*value) < 1e-30) *value = 0.0;
+      }
+    }
   }
-  columns_ = first_creep() + kBristleTerms * terms_.creep_times_s.size();
+  started_ = true;
+  time_s_ = time_s;
+  depth_m_ = depth_m;
+  surface_m_ = surface_m;
 }
 
-std::size_t TrendRows::viscous_columns() const {
-  return terms_.thinning_velocity_m_per_s > 0.0 ? 2 * kViscosityCoefficients : 0;
+TrendRows::TrendRows(FeatureList list, const TrendProblem& problem, std::size_t most_rows)
+    : list_(std::move(list)),
+      problem_(problem),
+      most_rows_(most_rows),
+      ladder_(list_.all_times_s(), problem.reference_depth_m, list_.slowing),
+      elastic_basis_(spline_basis()) {
+  const double depth_m = problem_.reference_depth_m;
+  if (!list_.surface.empty()) surface_.emplace_back(list_.surface);
+  for (const double threshold_m : list_.stop_thresholds_m) {
+    bristles_.push_back(bristle(FeatureKind::stops, threshold_m, 0.0, depth_m));
+  }
+  for (const double time_s : list_.creep_times_s) {
+    bristles_.push_back(bristle(FeatureKind::creep, depth_m, time_s, depth_m));
+  }
+  columns_ = first_stop() + kCurveTerms * bristles_.size();
 }
 
 void TrendRows::begin_recording() {
@@ -142,32 +180,25 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   if (phase_++ % stride_ != 0) return;
   const double depth_m = std::max(0.0, motion.position_m);
   const double velocity_m_per_s = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
-  const double u = std::min(depth_m / terms_.reference_depth_m, 1.0);
+  const double u = std::min(depth_m / problem_.reference_depth_m, 1.0);
   values_.resize(values_.size() + columns_);
   double* to = values_.data() + (values_.size() - columns_);
   for (const ElasticSpline& curve : elastic_basis_) *to++ = curve.at(u);
-  if (viscous_columns() > 0) {
-    for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, terms_.thinning_velocity_m_per_s)}) {
+  if (list_.velocity) {
+    for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, problem_.rms_velocity_m_per_s)}) {
       for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
     }
   }
   to = std::copy(ladder_.values().begin(), ladder_.values().end(), to);
-  for (const FeatureFilter& bristle : bristles_) to = std::copy_n(bristle.vector().values.begin(), kBristleTerms, to);
-  force_N_.push_back(force_N);
-  velocity_m_per_s_.push_back(velocity_m_per_s);
-  depth_m_.push_back(depth_m);
-  lag_m_.push_back(surface_.empty() ? 0.0 : surface_.front().surface_m() - depth_m);
-  fold_.push_back(fold);
+  for (const FeatureFilter& filter : bristles_) to = std::copy_n(filter.vector().values.begin(), kCurveTerms, to);
+  const double lag_m = surface_.empty() ? 0.0 : surface_.front().surface_m() - depth_m;
+  rows_.push_back({force_N, velocity_m_per_s, depth_m, lag_m, fold});
   if (count() > most_rows_) halve();
 }
 
 void TrendRows::halve() {
   keep_every_other(values_, columns_);
-  keep_every_other(force_N_, 1);
-  keep_every_other(velocity_m_per_s_, 1);
-  keep_every_other(depth_m_, 1);
-  keep_every_other(lag_m_, 1);
-  keep_every_other(fold_, 1);
+  keep_every_other(rows_, 1);
   stride_ *= 2;
   phase_ = 1;  // the newest row was kept
 }

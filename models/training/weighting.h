@@ -13,7 +13,7 @@ namespace palpate {
 
 enum class Weighting {
   jnd,       // 1 / JND(f), errors relative to perception (default)
-  relative,  // 1 / max(|f|, kRelativeWeightFloor_N), eq. (8) of the paper
+  relative,  // 1 / max(|f|, kReductionForce_N), eq. (8) of the paper
   none,      // 1
 };
 
@@ -21,16 +21,15 @@ enum class Weighting {
 inline constexpr std::array<const char*, 3> kWeightingNames{"jnd", "relative", "none"};
 inline const char* weighting_name(Weighting weighting) { return kWeightingNames[static_cast<std::size_t>(weighting)]; }
 
-// Below this force the paper's 1 / |f| is constant: 50 mN is the step of its reduction, which separates no smaller
-// forces.
-inline constexpr double kRelativeWeightFloor_N = 0.05;
+// The step of the paper's reduction (training_set.h). It separates no smaller forces, so its 1 / |f| is constant below.
+inline constexpr double kReductionForce_N = 0.05;
 
 inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N) noexcept {
   switch (weighting) {
     case Weighting::jnd:
       return 1.0 / jnd.at(force_N);
     case Weighting::relative:
-      return 1.0 / std::max(std::abs(force_N), kRelativeWeightFloor_N);
+      return 1.0 / std::max(std::abs(force_N), kReductionForce_N);
     case Weighting::none:
       return 1.0;
   }

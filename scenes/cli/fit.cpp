@@ -117,7 +117,7 @@ std::string relaxation_text(const std::vector<RelaxationTime>& times) {
 }
 
 // One row for each feature: the cross-validated error of the trend with it and without it. The rule that selects
-// (models/training/selection.h) compares these errors and their standard errors.
+// (models/training/cross_validation.h) compares these errors and their standard errors.
 void print_gains(const std::vector<PartGain>& gains) {
   if (gains.empty()) return;
   std::printf("%-32s %-5s %12s %12s   cross-validated error [JND]\n", "FEATURE", "TAKEN", "WITH", "WITHOUT");

@@ -83,7 +83,7 @@ Status move_zero(const std::string& zero, Recording& recording) {
     const SurfaceEstimate surface = estimate_surface(recording);
     if (!surface.identified()) {
       return Error{std::string("the position where the force begins cannot be identified") +
-                   (surface.free_air ? "" : ", because there is no free air") +
+                   (surface.air.found ? "" : ", because there is no free air") +
                    "; give --zero first or a position in metres"};
     }
     at_m = surface.raw_offset_m;

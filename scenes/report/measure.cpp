@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "models/fit/recipe_2009.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/scene/scene.h"
 

@@ -6,7 +6,6 @@
 #include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/fit/fit.h"
-#include "models/fit/recipe_2009.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/report/paper.h"
 #include "scenes/report/recordings.h"
@@ -181,7 +180,7 @@ Status PaperMeasurement::time_sites(const PreparedTraining& prepared) {
     FitTimes times{static_cast<std::size_t>(some.count()), {}};
     for (std::size_t which = 0; which < kPaperMethods; ++which) {
       const auto start = std::chrono::steady_clock::now();
-      const auto fit = fit_correction({some, prepared.common.features, jnd_N, request_of(which)}, part());
+      const auto fit = fit_correction({some, jnd_N, request_of(which)}, part());
       if (!fit) return fit.error();
       times.seconds.push_back(seconds_since(start));
     }
@@ -206,13 +205,13 @@ Status PaperMeasurement::time_dimensions() {
     MethodRequest asked = request_of(kGridOfAll);
     asked.method = &kDirectMethod;
     auto start = std::chrono::steady_clock::now();
-    const auto solved = fit_correction({prepared->sites, prepared->common.features, jnd_N, asked}, part());
+    const auto solved = fit_correction({prepared->sites, jnd_N, asked}, part());
     if (!solved) return solved.error();
     DimensionTimes times{d, seconds_since(start), 0.0};
     asked.method = &kVoxelMethod;
     asked.grid.assign(d, kNodesOfFigure2);
     start = std::chrono::steady_clock::now();
-    const auto grid = fit_correction({prepared->sites, prepared->common.features, jnd_N, asked, &*solved}, part());
+    const auto grid = fit_correction({prepared->sites, jnd_N, asked, &*solved}, part());
     if (!grid) return grid.error();
     times.grid_s = seconds_since(start);
     data_.by_dimension.push_back(times);

@@ -9,7 +9,6 @@
 #include <system_error>
 #include <utility>
 
-#include "models/fit/recipe_2009.h"
 #include "models/linear/lapack.h"
 #include "models/recordings/recording_faults.h"
 #include "scenes/evaluation/model_timing.h"

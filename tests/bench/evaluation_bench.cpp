@@ -72,7 +72,7 @@ void whole_model(benchmark::State& state, const Method* method) {
   const Result<MethodFit> fit = fit_method(recorded(), request);
   if (!fit) return state.SkipWithError(fit.error().message.c_str());
   const FittedModel model(fit->data);
-  const auto& judged = recorded().evaluation_features;
+  const auto& judged = recorded().set.evaluation_features;
   std::size_t at = 0;
   double last = 0.0;
   for (auto _ : state) {

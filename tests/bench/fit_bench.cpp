@@ -43,7 +43,7 @@ constexpr int kMostCentres = 200;
 
 void slider_all(benchmark::State& state) {
   for (auto _ : state) {
-    const auto chosen = choose_greedy(recorded_sites(), {.centres = kMostCentres});
+    const auto chosen = test::choose(kGreedyMethod, recorded_sites(), {}, {.centres = kMostCentres});
     const auto nested = NestedWeights::factorise(recorded_sites(), KernelKind::cubic, *chosen);
     for (Eigen::Index count = 1; count <= nested->most(); ++count) benchmark::DoNotOptimize(nested->solve(count));
   }
@@ -57,7 +57,7 @@ void slider_step(benchmark::State& state, const Method* method, bool papers) {
   for (auto _ : state) benchmark::DoNotOptimize(nested->fit(state.range(0)));
 }
 
-Result<FittedRbf> direct_fit(const Sites& sites, const Eigen::VectorXd&) { return fit_direct(sites, {}); }
+Result<FittedRbf> direct_fit(const Sites& sites, const Eigen::VectorXd&) { return fit_direct(sites); }
 
 Status fill(VoxelGrid& grid, const RbfFunction& function) {
   const RbfCorrection evaluator(function);
@@ -65,7 +65,7 @@ Status fill(VoxelGrid& grid, const RbfFunction& function) {
 }
 
 Result<FittedRbf> direct_and_grid(const Sites& sites, const Eigen::VectorXd&) {
-  Result<FittedRbf> fitted = fit_direct(sites, {});
+  Result<FittedRbf> fitted = fit_direct(sites);
   if (!fitted) return fitted;
   VoxelGrid grid = even_grid(sites, {25, 11, 11, 11});
   if (const Status filled = fill(grid, fitted->function); !filled) return filled.error();
@@ -128,7 +128,7 @@ void against_size(const std::string& name, const Fit& fit) {
 
 // The cost over the dimension, as in figures 2 and 8 of the paper.
 void against_dimension(const std::string& name, const Fit& fit) {
-  for (int d = 1; d <= kMaxDimension; ++d)
+  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
     add_made("dimension/" + name + "/" + std::to_string(d), 3, fit, d, kPaperSites);
 }
 
@@ -199,7 +199,7 @@ const int registered = [] {
   for (const auto& [name, function] :
        {std::pair{"dimension/evaluate_rbf", &evaluate_rbf_in}, std::pair{"dimension/evaluate_grid", &evaluate_grid_in}})
     benchmark::RegisterBenchmark(name, function)
-        ->DenseRange(1, kMaxDimension)
+        ->DenseRange(1, static_cast<int>(kMaxFeatures))
         ->Repetitions(5)
         ->MinTime(0.02)
         ->ReportAggregatesOnly();

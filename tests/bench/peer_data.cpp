@@ -26,8 +26,8 @@ PreparedTraining with_targets(const PreparedTraining& prepared, bool forces) {
       other.sites.target_N[static_cast<Eigen::Index>(i)] = other.set.sites[i].force_N;
   }
   // Skips the share within the JND on the training data, which takes time.
-  other.evaluation_features.resize(1);
-  other.evaluation_force_N.resize(1);
+  other.set.evaluation_features.resize(1);
+  other.set.evaluation_force_N.resize(1);
   return other;
 }
 

@@ -129,12 +129,11 @@ std::vector<SiteCase> site_cases() {
 
 Result<FittedCorrection> fit_site_case(const SiteCase& one, const Method& method) {
   const Eigen::VectorXd jnd_N = one.sites.row_scale.cwiseInverse();
-  const std::vector<FeatureSpec> unnamed(kDimension);
   MethodRequest request;
   request.method = &method;
   request.centres = static_cast<int>(one.centres);
   request.grid.assign(kDimension, kGridNodes);
-  return fit_correction({one.sites, unnamed, jnd_N, request});
+  return fit_correction({one.sites, jnd_N, request});
 }
 
 Eigen::VectorXd values_at(const Points& points, const Correction& correction) {

@@ -1,6 +1,7 @@
 // Kernels and RBF functions in a plain loop: the reference for the vectorised form.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/model/rbf/polynomial_tail.h"
@@ -37,4 +38,17 @@ inline double rbf_value(const RbfFunction& function, const double* x) {
   return sum;
 }
 
+namespace test {
+
+// The largest difference of two functions at points, one a column.
+inline double largest_difference(const RbfFunction& a, const RbfFunction& b, const Eigen::MatrixXd& points) {
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const double* x = points.col(i).data();
+    largest = std::max(largest, std::abs(rbf_value(a, x) - rbf_value(b, x)));
+  }
+  return largest;
+}
+
+}  // namespace test
 }  // namespace palpate

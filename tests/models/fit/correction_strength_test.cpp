@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "models/fit/select_strength.h"
+#include "models/fit/bound_calibration.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -36,15 +36,15 @@ CrossValidationRows make_rows(double shared, double own, double first = 0.0) {
         2.0 + shared * std::sin(3.0 * rows.points(0, i)) + own * std::cos(2.0 * fold) + between(numbers, -0.005, 0.005);
     rows.fold.push_back(fold);
   }
-  find_distances(rows, kFolds);
+  find_distances(rows);
   return rows;
 }
 
 StrengthChoice choose(const CrossValidationRows& rows) {
-  StrengthInput input{rows, kFolds, KernelKind::cubic, JndLine{}};
-  input.correction_limit_N = 1.0;
-  input.least_radius = 0.1;
-  return choose_strength(input);
+  ModelData common;
+  common.correction_limit_N = 1.0;
+  common.cover = {{}, 0.1, 0.3};
+  return choose_strength(rows, common);
 }
 
 TEST(CorrectionStrength, WhatEveryStrokeHasIsCorrected) {
@@ -91,7 +91,7 @@ TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
     // A triangular error that grows with the force.
     const double error_N =
         (0.01 + 0.02 * force_N) * std::abs(between(numbers, -1.0, 1.0) + between(numbers, -1.0, 1.0));
-    (i % 2 == 0 ? past : future).push_back({error_N, force_N, force_N, 0.05});
+    (i % 2 == 0 ? past : future).push_back({error_N, force_N, 0.05});
   }
   const auto bound = calibrate_bound(past, 0.1, JndLine{}, 5.0);
   ASSERT_TRUE(bound.has_value());

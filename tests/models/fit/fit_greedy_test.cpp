@@ -1,11 +1,8 @@
-#include "models/fit/choose_centres.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
 #include <limits>
 
-#include "models/solve/solve_weights.h"
 #include "tests/support/fit_centres.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
@@ -53,14 +50,6 @@ TEST(FitGreedy, AllSitesEqualsBruteForceForwardSelection) {
   }
 }
 
-TEST(FitGreedy, SubsetsOfAllSitesAreAllSites) {
-  const Sites sites = smooth_sites(3, 200, 0.05, 1);
-  const auto all = fit_greedy(sites, {.centres = 20, .candidates = 0});
-  const auto subsets = fit_greedy(sites, {.centres = 20, .candidates = 200});
-  ASSERT_TRUE(all.ok() && subsets.ok());
-  EXPECT_EQ(all->function.weights, subsets->function.weights);
-}
-
 TEST(FitGreedy, MoreCandidatesFitBetterAndAllFitBetterThanRandomCentres) {
   const Sites sites = smooth_sites(4, 1500, 0.01, 1);
   const double random = fit_random(sites, {.centres = 40})->report.residual_rms;
@@ -68,18 +57,6 @@ TEST(FitGreedy, MoreCandidatesFitBetterAndAllFitBetterThanRandomCentres) {
   const double all = fit_greedy(sites, {.centres = 40, .candidates = 0})->report.residual_rms;
   EXPECT_LT(few, random);
   EXPECT_LT(all, few);
-}
-
-TEST(FitGreedy, SameSeedSameBits) {
-  const Sites sites = smooth_sites(4, 1500, 0.01, 1);
-  for (const int candidates : {0, 30}) {
-    const auto a = fit_greedy(sites, {.centres = 25, .candidates = candidates, .seed = 9});
-    const auto b = fit_greedy(sites, {.centres = 25, .candidates = candidates, .seed = 9});
-    ASSERT_TRUE(a.ok() && b.ok());
-    EXPECT_EQ(a->function.centres, b->function.centres);
-    EXPECT_EQ(a->function.weights, b->function.weights);
-    EXPECT_EQ(a->function.tail, b->function.tail);
-  }
 }
 
 // In one dimension a hundred cubic columns are almost linearly dependent. Then
@@ -90,32 +67,6 @@ TEST(FitGreedy, KeepsChoosingWellWhenColumnsAreNearlyDependent) {
   ASSERT_TRUE(fitted.ok());
   EXPECT_LE(fitted->report.residual_rms, 1e-4);  // of the JND
   EXPECT_TRUE(fitted->function.weights.allFinite());
-}
-
-TEST(FitGreedy, DegenerateDataHaveADefinedOutcome) {
-  for (const int candidates : {0, 5}) {
-    const MethodRequest options{.centres = 30, .candidates = candidates};
-    const std::vector<Sites> all = test::degenerate_sites();
-    const Sites& zero = all.front();
-    const Sites& one = all.back();
-    for (const Sites& sites : all) {
-      const auto fitted = fit_greedy(sites, options);
-      ASSERT_TRUE(fitted.ok());
-      EXPECT_TRUE(fitted->function.weights.allFinite());
-      EXPECT_LE(fitted->report.centres_used, 30);
-    }
-    EXPECT_EQ(fit_greedy(zero, options)->function.tail.norm(), 0.0);
-    EXPECT_NEAR(rbf_value(fit_greedy(one, options)->function, one.points.data()), one.target_N[0], 1e-12);
-  }
-}
-
-TEST(FitGreedy, CanBeInterrupted) {
-  const Sites sites = smooth_sites(2, 100, 0.0, 2);
-  int calls = 0;
-  const auto fitted = fit_greedy(sites, {.centres = 20}, FitControl{[&](double) { return ++calls < 5; }});
-  ASSERT_FALSE(fitted.ok());
-  EXPECT_EQ(fitted.error().message, "interrupted");
-  EXPECT_EQ(calls, 5);
 }
 
 }  // namespace

@@ -1,15 +1,12 @@
-#include "models/fit/choose_centres.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <numeric>
 #include <utility>
 #include <vector>
 
-#include "models/solve/site_tree.h"
 #include "tests/support/fit_centres.h"
-#include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -34,23 +31,50 @@ RbfFunction least_squares(const Sites& sites, KernelKind kernel, const Eigen::Ma
   return {kernel, centres, solution.head(centres.cols()), solution.tail(tail.cols())};
 }
 
+using Leaf = std::vector<Eigen::Index>;
+
+// Splits a leaf at the median of its widest dimension, in which no two sites are equal.
+bool split(std::vector<Leaf>& leaves, std::size_t at, const Eigen::MatrixXd& points) {
+  Leaf& leaf = leaves[at];
+  if (leaf.size() < 2) return false;
+  const Eigen::MatrixXd mine = points(Eigen::all, leaf);
+  Eigen::Index widest = 0;
+  (mine.rowwise().maxCoeff() - mine.rowwise().minCoeff()).maxCoeff(&widest);
+  std::sort(leaf.begin(), leaf.end(),
+            [&](Eigen::Index a, Eigen::Index b) { return points(widest, a) < points(widest, b); });
+  Leaf upper(leaf.begin() + static_cast<std::ptrdiff_t>(leaf.size() / 2), leaf.end());
+  leaf.resize(leaf.size() / 2);
+  leaves.push_back(std::move(upper));
+  return true;
+}
+
+Eigen::VectorXd barycentre(const Leaf& leaf, const Eigen::MatrixXd& points) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(points.rows());
+  for (const Eigen::Index site : leaf) sum += points.col(site);
+  return sum / static_cast<double>(leaf.size());
+}
+
 // Section 4.2.2 literally: a full least squares fit after every split.
-Eigen::MatrixXd plain_centres(const Sites& sites, const Eigen::VectorXd& jnd_N, KernelKind kernel, int count) {
-  SiteTree tree(sites.points);
-  tree.split(0);
+Eigen::MatrixXd plain_centres(const Sites& sites, const Eigen::VectorXd& jnd_N, KernelKind kernel, std::size_t count) {
+  std::vector<Leaf> leaves(1, Leaf(static_cast<std::size_t>(sites.count())));
+  std::iota(leaves[0].begin(), leaves[0].end(), Eigen::Index{0});
+  split(leaves, 0, sites.points);
   while (true) {
-    Eigen::MatrixXd centres(sites.dimension(), tree.leaf_count());
-    for (Eigen::Index k = 0; k < tree.leaf_count(); ++k) centres.col(k) = tree.barycentre(k);
-    if (tree.leaf_count() == count) return centres;
+    Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(leaves.size()));
+    for (Eigen::Index k = 0; k < centres.cols(); ++k)
+      centres.col(k) = barycentre(leaves[static_cast<std::size_t>(k)], sites.points);
+    if (leaves.size() == count) return centres;
     const RbfFunction function = least_squares(sites, kernel, centres);
-    std::vector<std::pair<double, Eigen::Index>> worst_first;
-    for (Eigen::Index i = 0; i < sites.count(); ++i) {
-      const double error = std::abs(rbf_value(function, sites.points.col(i).data()) - sites.target_N[i]);
-      worst_first.emplace_back(-error / jnd_N[i], i);
+    std::vector<std::pair<double, std::size_t>> worst_first;  // of the leaf of each site
+    for (std::size_t k = 0; k < leaves.size(); ++k) {
+      for (const Eigen::Index i : leaves[k]) {
+        const double error = std::abs(rbf_value(function, sites.points.col(i).data()) - sites.target_N[i]);
+        worst_first.emplace_back(-error / jnd_N[i], k);
+      }
     }
     std::sort(worst_first.begin(), worst_first.end());
-    for (const auto& [excess, site] : worst_first)
-      if (tree.split(tree.leaf_of(site))) break;
+    for (const auto& [excess, leaf] : worst_first)
+      if (split(leaves, leaf, sites.points)) break;
   }
 }
 
@@ -62,38 +86,6 @@ TEST(FitKdTree, EqualsAFullRefitAfterEverySplit) {
     ASSERT_TRUE(fitted.ok());
     EXPECT_EQ(fitted->function.centres, plain_centres(sites, jnd_N, kernel, 25)) << kernel_name(kernel);
   }
-}
-
-TEST(FitKdTree, SameDataSameBits) {
-  const Sites sites = smooth_sites(4, 2000, 0.01, 1);
-  const auto a = fit_kdtree(sites, jnd_of(sites), {.centres = 50});
-  const auto b = fit_kdtree(sites, jnd_of(sites), {.centres = 50});
-  ASSERT_TRUE(a.ok() && b.ok());
-  EXPECT_EQ(a->function.centres, b->function.centres);
-  EXPECT_EQ(a->function.weights, b->function.weights);
-}
-
-TEST(FitKdTree, DegenerateDataHaveADefinedOutcome) {
-  for (const Sites& sites : test::degenerate_sites())
-    for (const int centres : {0, 1, 2, 40, 1000}) {
-      const auto fitted = fit_kdtree(sites, jnd_of(sites), {.centres = centres});
-      ASSERT_TRUE(fitted.ok());
-      EXPECT_TRUE(fitted->function.weights.allFinite());
-      EXPECT_LE(fitted->report.centres_used,
-                std::min<Eigen::Index>(centres, static_cast<Eigen::Index>(distinct_sites(sites).size())));
-    }
-  const Sites duplicates = test::degenerate_sites()[2];
-  const auto cut = fit_kdtree(duplicates, jnd_of(duplicates), {.centres = 1000});
-  EXPECT_EQ(cut->report.centres_used, 40);
-  ASSERT_FALSE(cut->report.notes.empty());
-  EXPECT_TRUE(test::has_parts(cut->report.notes.back(), {"40 centres"}));
-}
-
-TEST(FitKdTree, RefusesThresholdsOfZeroAndCanBeInterrupted) {
-  const Sites sites = smooth_sites(2, 30, 0.0, 1);
-  EXPECT_TRUE(
-      test::has_parts(fit_kdtree(sites, Eigen::VectorXd::Zero(30), {}).error().message, {"jnd_N", "30", "30", "0 N"}));
-  EXPECT_EQ(fit_kdtree(sites, jnd_of(sites), {}, {[](double) { return false; }}).error().message, "interrupted");
 }
 
 }  // namespace

@@ -78,55 +78,44 @@ Recording constant(int rows, double position_m, double force_N) {
   return recording;
 }
 
-TEST(Fit, AnOrdinaryRecording) {
-  expect_all_methods({test::example_recording(1500, 250.0)}, request_for(test::paper_features()), 0.9);
+// A recording of 1,000 rows at 250 Hz with these forces.
+template <typename Force>
+Recording with_forces(Force force_N) {
+  Recording recording = test::example_recording(1000, 250.0);
+  for (RecordingRow& row : recording.rows) row.force_N = force_N(row.force_N);
+  return recording;
 }
 
-TEST(Fit, PositionAlone) {
-  expect_all_methods({test::example_recording(1500, 250.0)}, request_for(test::position_features()), 0.5);
-}
-
-TEST(Fit, OneSampleInContact) {
-  for (const auto& features : {test::position_features(), test::paper_features()}) {
-    Recording recording = constant(20, -1e-3, 0.0);
-    recording.rows[10].position_m = 1e-3;
-    recording.rows[10].force_N = 0.5;
-    expect_all_methods({recording}, request_for(features), 0.0);
+TEST(Fit, EveryMethodFitsEveryRecording) {
+  Recording one_in_contact = constant(20, -1e-3, 0.0);
+  one_in_contact.rows[10].position_m = 1e-3;
+  one_in_contact.rows[10].force_N = 0.5;
+  Recording even;
+  for (int i = 0; i < 1000; ++i) even.rows.push_back({1e-3 * i, 4e-6 * i, 1.2e-3 * i, 0.0, 0.0});
+  struct Row {
+    const char* name;
+    Recording recording;
+    bool position_alone;
+    double least_within;
+  };
+  const Row rows[] = {
+      {"ordinary", test::example_recording(1500, 250.0), false, 0.9},
+      {"position alone", test::example_recording(1500, 250.0), true, 0.5},
+      {"one sample in contact", one_in_contact, false, 0.0},
+      {"one sample in contact, position alone", one_in_contact, true, 0.0},
+      {"all samples identical", constant(500, 2e-3, 1.0), false, 1.0},
+      {"all samples identical, position alone", constant(500, 2e-3, 1.0), true, 1.0},
+      {"all forces zero", with_forces([](double) { return 0.0; }), false, 1.0},
+      {"all forces equal", with_forces([](double) { return 1.0; }), false, 0.5},
+      {"negative forces", with_forces([](double force_N) { return -std::abs(force_N); }), false, 0.0},
+      {"a constant velocity", even, false, 0.95},
+      {"10 Hz", test::example_recording(400, 10.0), false, 0.3},
+  };
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.name);
+    const auto features = row.position_alone ? test::position_features() : test::paper_features();
+    expect_all_methods({row.recording}, request_for(features), row.least_within);
   }
-}
-
-TEST(Fit, AllSamplesIdentical) {
-  for (const auto& features : {test::position_features(), test::paper_features()}) {
-    expect_all_methods({constant(500, 2e-3, 1.0)}, request_for(features), 1.0);
-  }
-}
-
-TEST(Fit, AllForcesZero) {
-  Recording recording = test::example_recording(1000, 250.0);
-  for (RecordingRow& row : recording.rows) row.force_N = 0.0;
-  expect_all_methods({recording}, request_for(test::paper_features()), 1.0);
-}
-
-TEST(Fit, AllForcesEqual) {
-  Recording recording = test::example_recording(1000, 250.0);
-  for (RecordingRow& row : recording.rows) row.force_N = 1.0;
-  expect_all_methods({recording}, request_for(test::paper_features()), 0.5);
-}
-
-TEST(Fit, NegativeForcesGiveNoPull) {
-  Recording recording = test::example_recording(1000, 250.0);
-  for (RecordingRow& row : recording.rows) row.force_N = -std::abs(row.force_N);
-  expect_all_methods({recording}, request_for(test::paper_features()), 0.0);
-}
-
-TEST(Fit, AConstantVelocity) {
-  Recording recording;
-  for (int i = 0; i < 1000; ++i) recording.rows.push_back({1e-3 * i, 4e-6 * i, 1.2e-3 * i, 0.0, 0.0});
-  expect_all_methods({recording}, request_for(test::paper_features()), 0.95);
-}
-
-TEST(Fit, TenHertzWithFourFeatures) {
-  expect_all_methods({test::example_recording(400, 10.0)}, request_for(test::paper_features()), 0.3);
 }
 
 TEST(Fit, TwentyKilohertz) {

@@ -2,10 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
+
+#include "tests/support/fit_centres.h"
+#include "tests/support/message_parts.h"
+#include "tests/support/random_points.h"
 
 namespace palpate {
 namespace {
+
+using test::smooth_sites;
 
 TEST(Methods, AreFoundByTheirNames) {
   for (const Method* method : methods()) EXPECT_EQ(find_method(method->name), method);
@@ -22,7 +30,7 @@ TEST(Methods, EveryRowIsWhole) {
     EXPECT_NE(std::string(method->label), "");
     ASSERT_NE(method->expected_seconds, nullptr);
     EXPECT_GT(method->expected_seconds({}), 0.0);
-    EXPECT_NE(method->fit, nullptr);
+    EXPECT_NE(method->fit == nullptr, method->choose == nullptr);
     if (method->base == nullptr) continue;
     EXPECT_EQ(find_method(method->base->name), method->base);
   }
@@ -39,6 +47,72 @@ TEST(Methods, AreListedByWhatTheyTake) {
   EXPECT_EQ(methods_that_take(kTakesGrid), "voxel");
   EXPECT_EQ(methods_that_take(kTakesCandidates), "greedy");
   EXPECT_EQ(methods_that_take(kTakesCentres), "random, kdtree, greedy");
+}
+
+// Calls `test` with each method that selects centres; greedy ones with subsets of candidates and with all.
+template <typename Test>
+void for_every_selection(const Test& test) {
+  for (const Method* method : methods()) {
+    if (method->choose == nullptr) continue;
+    for (const int candidates : {0, 30}) {
+      SCOPED_TRACE(std::string(method->name) + ", candidates " + std::to_string(candidates));
+      test(*method, candidates);
+    }
+  }
+}
+
+Eigen::VectorXd jnd_of(const Sites& sites) { return sites.row_scale.cwiseInverse(); }
+
+TEST(Methods, SameDataAndSeedSameBits) {
+  const Sites sites = smooth_sites(4, 1500, 0.01, 1);
+  for_every_selection([&](const Method& method, int candidates) {
+    const MethodRequest request{.centres = 25, .candidates = candidates, .seed = 9};
+    const auto a = test::fit_centres(method, sites, jnd_of(sites), request);
+    const auto b = test::fit_centres(method, sites, jnd_of(sites), request);
+    ASSERT_TRUE(a.ok() && b.ok());
+    EXPECT_EQ(a->function.centres, b->function.centres);
+    EXPECT_EQ(a->function.weights, b->function.weights);
+    EXPECT_EQ(a->function.tail, b->function.tail);
+  });
+}
+
+TEST(Methods, DegenerateDataHaveADefinedOutcome) {
+  for_every_selection([&](const Method& method, int candidates) {
+    for (const Sites& sites : test::degenerate_sites()) {
+      const auto distinct = static_cast<Eigen::Index>(distinct_sites(sites).size());
+      for (const int centres : {0, 1, 2, 30, 1000}) {
+        const auto fitted =
+            test::fit_centres(method, sites, jnd_of(sites), {.centres = centres, .candidates = candidates});
+        ASSERT_TRUE(fitted.ok());
+        EXPECT_TRUE(fitted->function.weights.allFinite());
+        const Eigen::Index used = fitted->report.centres_used;
+        EXPECT_LE(used, std::min<Eigen::Index>(centres, distinct));
+        if (used == centres) continue;
+        ASSERT_FALSE(fitted->report.notes.empty());
+        EXPECT_TRUE(test::has_parts(fitted->report.notes.back(), {"only " + std::to_string(used) + " centres"}));
+      }
+    }
+  });
+  const Sites duplicates = test::degenerate_sites()[2];
+  EXPECT_EQ(test::fit_kdtree(duplicates, jnd_of(duplicates), {.centres = 1000})->report.centres_used, 40);
+  EXPECT_EQ(test::fit_random(duplicates, {.centres = 1000})->report.centres_used, 40);
+}
+
+TEST(Methods, RefuseWrongSitesAndCanBeInterrupted) {
+  for_every_selection([&](const Method& method, int candidates) {
+    Sites sites = smooth_sites(2, 30, 0.0, 1);
+    const Eigen::VectorXd jnd_N = jnd_of(sites);
+    const MethodRequest request{.centres = 20, .candidates = candidates};
+    const auto stopped = test::fit_centres(method, sites, jnd_N, request, {[](double) { return false; }});
+    EXPECT_EQ(stopped.error().message, "interrupted");
+    sites.target_N[7] = std::nan("");
+    EXPECT_TRUE(test::has_parts(test::fit_centres(method, sites, jnd_N, request).error().message,
+                                {"site 7 ", "finite", "row_scale"}));
+    sites.target_N.resize(3);
+    EXPECT_TRUE(test::has_parts(test::fit_centres(method, sites, jnd_N, request).error().message,
+                                {"3 entries of target_N", "expected 30"}));
+    EXPECT_FALSE(test::fit_centres(method, {}, jnd_N, request).ok());
+  });
 }
 
 }  // namespace

@@ -14,19 +14,7 @@
 namespace palpate {
 namespace {
 
-using test::fit_greedy;
-using test::fit_kdtree;
-using test::fit_random;
 using test::smooth_sites;
-
-// The largest difference of two functions at the sites.
-double difference(const RbfFunction& a, const RbfFunction& b, const Sites& sites) {
-  double worst = 0.0;
-  for (Eigen::Index i = 0; i < sites.count(); ++i)
-    worst =
-        std::max(worst, std::abs(rbf_value(a, sites.points.col(i).data()) - rbf_value(b, sites.points.col(i).data())));
-  return worst;
-}
 
 Sites penalised_sites() {
   Sites sites = smooth_sites(4, 900, 0.02, 3);
@@ -44,44 +32,27 @@ void expect_direct(const NestedWeights& nested, Eigen::Index count, const Result
   const auto fitted = nested.solve(count);
   ASSERT_TRUE(direct.ok());
   EXPECT_EQ(fitted.function.centres, direct->function.centres) << count;
-  EXPECT_LE(difference(fitted.function, direct->function, sites), kRounding_N) << count;
+  EXPECT_LE(test::largest_difference(fitted.function, direct->function, sites.points), kRounding_N) << count;
   EXPECT_NEAR(fitted.report.residual_rms, direct->report.residual_rms, 1e-9) << count;
 }
 
-TEST(NestedFit, GivesEveryDirectGreedyFit) {
-  for (const Sites& sites : {penalised_sites(), smooth_sites(3, 400, 0.02, 5)}) {
-    const auto chosen = choose_greedy(sites, {.centres = 40, .candidates = 30});
-    ASSERT_TRUE(chosen.ok());
-    const auto nested = NestedWeights::factorise(sites, KernelKind::cubic, *chosen);
-    ASSERT_TRUE(nested.ok());
-    for (const int count : {0, 1, 4, 7, 25, 40}) {
-      expect_direct(*nested, count, fit_greedy(sites, {.centres = count, .candidates = 30}), sites);
-    }
-  }
-}
-
-TEST(NestedFit, GivesEveryDirectRandomFitForEveryKernel) {
-  const Sites sites = penalised_sites();
-  for (const KernelKind kernel : kKernelKinds) {
-    const auto chosen = choose_random(sites, {.centres = 30, .kernel = kernel, .seed = 2});
-    ASSERT_TRUE(chosen.ok());
-    const auto nested = NestedWeights::factorise(sites, kernel, *chosen);
-    ASSERT_TRUE(nested.ok());
-    for (const int count : {3, 18, 30}) {
-      expect_direct(*nested, count, fit_random(sites, {.centres = count, .kernel = kernel, .seed = 2}), sites);
-    }
-  }
-}
-
-TEST(NestedFit, GivesEveryDirectKdTreeFit) {
-  for (const Sites& sites : {penalised_sites(), smooth_sites(3, 400, 0.02, 5)}) {
-    const Eigen::VectorXd jnd_N = Eigen::VectorXd::Constant(sites.count(), 0.05);
-    const auto chosen = choose_kdtree(sites, jnd_N, {.centres = 40});
-    ASSERT_TRUE(chosen.ok());
-    const auto nested = NestedWeights::factorise(sites, KernelKind::cubic, *chosen);
-    ASSERT_TRUE(nested.ok());
-    for (const int count : {0, 1, 2, 3, 17, 40}) {
-      expect_direct(*nested, count, fit_kdtree(sites, jnd_N, {.centres = count}), sites);
+TEST(NestedFit, GivesEveryDirectFit) {
+  for (const Method* method : {&kRandomMethod, &kKdTreeMethod, &kGreedyMethod}) {
+    for (const Sites& sites : {penalised_sites(), smooth_sites(3, 400, 0.02, 5)}) {
+      const Eigen::VectorXd jnd_N = Eigen::VectorXd::Constant(sites.count(), 0.05);
+      for (const KernelKind kernel : kKernelKinds) {
+        SCOPED_TRACE(std::string(method->name) + ", " + std::string(kernel_name(kernel)));
+        MethodRequest request{.centres = 40, .candidates = 30, .kernel = kernel, .seed = 2};
+        const auto chosen = test::choose(*method, sites, jnd_N, request);
+        ASSERT_TRUE(chosen.ok());
+        const auto nested = NestedWeights::factorise(sites, kernel, *chosen);
+        ASSERT_TRUE(nested.ok());
+        for (const int count : {0, 1, 2, 7, 25, 40}) {
+          if (kernel != KernelKind::cubic && count != 7) continue;
+          request.centres = count;
+          expect_direct(*nested, count, test::fit_centres(*method, sites, jnd_N, request), sites);
+        }
+      }
     }
   }
 }
@@ -97,7 +68,7 @@ TEST(NestedFit, CountsBeyondTheFitAreItsOwn) {
 
 TEST(NestedFit, DegenerateSitesGiveFiniteFunctions) {
   for (const Sites& sites : test::degenerate_sites()) {
-    const auto chosen = choose_random(sites, {.centres = 20});
+    const auto chosen = test::choose(kRandomMethod, sites, {}, {.centres = 20});
     ASSERT_TRUE(chosen.ok());
     const auto nested = NestedWeights::factorise(sites, KernelKind::cubic, *chosen);
     ASSERT_TRUE(nested.ok());
@@ -128,7 +99,7 @@ TEST(NestedFit, GivesTheModelOfTheDirectFit) {
     EXPECT_EQ(fitted->data.method, direct->data.method);
     const FittedModel one(fitted->data);
     const FittedModel other(direct->data);
-    for (const auto& features : prepared.evaluation_features) {
+    for (const auto& features : prepared.set.evaluation_features) {
       const ForceEstimate a = one.evaluate(features.data());
       const ForceEstimate b = other.evaluate(features.data());
       EXPECT_NEAR(a.force_N, b.force_N, kRounding_N);

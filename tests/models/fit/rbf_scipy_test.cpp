@@ -63,7 +63,7 @@ TEST_F(AgainstScipy, FitsTheSameWeightsTailAndValues) {
     sites.row_scale = Eigen::VectorXd::Ones(sites.count());
     const std::string name = item.at("kernel").get<std::string>();
     const double smoothing = item.at("smoothing").get<double>();
-    const auto fitted = fit_direct(sites, {.kernel = *kernel_from_name(name), .smoothing = smoothing});
+    const auto fitted = fit_direct(sites, *kernel_from_name(name), smoothing);
     ASSERT_TRUE(fitted.ok());
     SCOPED_TRACE(name + ", " + std::to_string(sites.dimension()) + "-D, smoothing " + std::to_string(smoothing));
     const double tolerance = 1e-13 * fitted->report.condition;

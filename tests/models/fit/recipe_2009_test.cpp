@@ -1,5 +1,3 @@
-#include "models/fit/recipe_2009.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/support/fitting.h"

@@ -116,7 +116,7 @@ TEST(SurfaceEstimate, MeasuresADriftingForceZero) {
   const double end_s = recording.rows.back().time_s;
   for (RecordingRow& row : recording.rows) row.force_N += 0.03 * row.time_s / end_s;
   // The drift is measured between the middles of the first and the last third.
-  EXPECT_NEAR(estimate_surface(recording).force_zero_drift_N, 0.02, 0.005);
+  EXPECT_NEAR(estimate_surface(recording).air.drift_N, 0.02, 0.005);
 }
 
 // The inertial force of the tool must not be taken for contact.
@@ -124,7 +124,7 @@ TEST(SurfaceEstimate, TellsInertiaFromContact) {
   Recording recording = rig("silicone", 2);
   for (RecordingRow& row : recording.rows) row.force_N += 0.06 * row.acceleration_m_per_s2;
   const SurfaceEstimate estimate = estimate_surface(recording);
-  EXPECT_NEAR(estimate.tool_mass_kg, 0.06, 0.01);
+  EXPECT_NEAR(estimate.air.tool_mass_kg, 0.06, 0.01);
   EXPECT_NEAR(estimate.raw_offset_m, 0.0, 0.1e-3);
   EXPECT_EQ(estimate.force_zero_N, 0.0);
 }
@@ -140,8 +140,8 @@ TEST(SurfaceEstimate, SaysSoWhereThereIsNoAirAndNoForce) {
   std::erase_if(no_air.rows, [](const RecordingRow& row) { return row.position_m < 0.5e-3; });
   const SurfaceEstimate held = estimate_surface(no_air);
   EXPECT_EQ(held.force_zero_N, 0.0);
-  EXPECT_TRUE(std::isinf(held.force_zero_error_N));
-  EXPECT_FALSE(held.free_air);
+  EXPECT_TRUE(std::isinf(held.air.zero_error_N));
+  EXPECT_FALSE(held.air.found);
   EXPECT_FALSE(held.identified());
 }
 

@@ -1,13 +1,11 @@
 #include "models/solve/solve_weights.h"
 
-#include "models/solve/penalised_weights.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "tests/support/message_parts.h"
+#include "models/fit/fit_direct.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -95,20 +93,12 @@ TEST(SolveWeights, ManySitesAreLeftAlone) {
   const Sites sites = smooth_sites(3, 2000, 0.001, 1);
   const Eigen::MatrixXd centres = sites.points.leftCols(100);
   const auto likely = solve_weights(sites, KernelKind::cubic, centres);
-  auto factorised = factorise_rows(sites, KernelKind::cubic, centres, {});
+  auto factorised = factorise_rows(sites, KernelKind::cubic, centres);
   ASSERT_TRUE(likely.ok() && factorised.ok());
   factorised->plain_unknowns_limit = 0;
   factorised->smoothing = 0.0;
   const FittedRbf plain = penalised_weights(*factorised, KernelKind::cubic, centres);
   EXPECT_LT(likely->report.residual_rms, plain.report.residual_rms);
-}
-
-TEST(SolveWeights, AConstantFeatureLeavesAFiniteFit) {
-  Sites sites = smooth_sites(3, 300, 0.0, 2);
-  sites.points.row(1).setConstant(0.25);
-  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(20));
-  ASSERT_TRUE(fitted.ok());
-  EXPECT_LT(worst_error(fitted->function, sites), 1.0);  // of forces up to 5 N
 }
 
 TEST(SolveWeights, OneSiteGivesItsForce) {
@@ -138,24 +128,60 @@ TEST(SolveWeights, ASiteWithScaleZeroDoesNotCount) {
   EXPECT_EQ(without->function.weights, wild->function.weights);
 }
 
-TEST(SolveWeights, RefusesWrongSitesWithAnExplanation) {
-  Sites sites = smooth_sites(2, 20, 0.0, 2);
-  sites.target_N[7] = std::nan("");
-  const Result<FittedRbf> bad = solve_weights(sites, KernelKind::cubic, sites.points);
-  ASSERT_FALSE(bad.ok());
-  EXPECT_TRUE(test::has_parts(bad.error().message, {"7", "finite", "row_scale", "finite"}));
-  sites.target_N.resize(3);
-  EXPECT_TRUE(
-      test::has_parts(solve_weights(sites, KernelKind::cubic, sites.points).error().message, {"target_N", "3", "20"}));
-  EXPECT_FALSE(solve_weights({}, KernelKind::cubic, sites.points).ok());
+FittedRbf penalised(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  auto factorised = factorise_rows(sites, kernel, centres);
+  EXPECT_TRUE(factorised.ok());
+  factorised->plain_unknowns_limit = 0;
+  factorised->smoothing = *sites.smoothing;
+  return penalised_weights(*factorised, kernel, centres);
 }
 
-TEST(SolveWeights, CanBeInterrupted) {
-  const Sites sites = smooth_sites(2, 20, 0.0, 2);
-  const Result<FittedRbf> fitted =
-      solve_weights(sites, KernelKind::cubic, sites.points, FitControl{[](double) { return false; }});
-  ASSERT_FALSE(fitted.ok());
-  EXPECT_EQ(fitted.error().message, "interrupted");
+TEST(PenaltySpace, ItsColumnsAreOrthogonalToTheTailAndMultiplyInPlace) {
+  const Sites sites = smooth_sites(2, 60, 0.1, 7);
+  const PenaltySpace space = penalty_space(KernelKind::cubic, sites.points);
+  const Eigen::MatrixXd tail = tail_matrix(tail_degree(KernelKind::cubic), sites.points);
+  const Eigen::Index free = space.free;
+  EXPECT_EQ(free, sites.count() - tail.cols());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Identity(60, 60);
+  multiply_by_basis(all, space);
+  const Eigen::MatrixXd basis = all.leftCols(free);
+  EXPECT_LT((basis.transpose() * tail).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LT((basis.transpose() * basis - Eigen::MatrixXd::Identity(free, free)).cwiseAbs().maxCoeff(), 1e-13);
+  const Eigen::MatrixXd matrix = random_points(37, 60, 5);
+  Eigen::MatrixXd product = matrix;
+  multiply_by_basis(product, space);
+  EXPECT_LT((product.leftCols(free) - matrix * basis).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
+  Sites sites = smooth_sites(2, 120, 0.1, 7);
+  for (const KernelKind kernel : {KernelKind::cubic, KernelKind::linear, KernelKind::thin_plate}) {
+    for (const double smoothing : {1e-2, 1.0}) {
+      sites.smoothing = smoothing;
+      const auto some = penalised(sites, kernel, sites.points);
+      const auto all = fit_direct(sites, kernel, smoothing);
+      ASSERT_TRUE(all.ok());
+      // Two algorithms for systems with condition numbers up to some 1e6.
+      EXPECT_LT(test::largest_difference(some.function, all->function, sites.points), 1e-7) << kernel_name(kernel);
+    }
+  }
+}
+
+TEST(PenalisedWeights, MuchSmoothingLeavesTheTail) {
+  Sites sites = smooth_sites(2, 200, 0.1, 7);
+  sites.smoothing = 1e14;
+  const auto fitted = penalised(sites, KernelKind::cubic, sites.points.leftCols(30));
+  EXPECT_LT(fitted.function.weights.cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(PenalisedWeights, TheStrengthMultipliesTheFunction) {
+  Sites sites = smooth_sites(2, 150, 0.1, 7);
+  sites.smoothing = 0.1;
+  const auto full = penalised(sites, KernelKind::cubic, sites.points.leftCols(20));
+  sites.strength = 0.25;
+  const auto quarter = penalised(sites, KernelKind::cubic, sites.points.leftCols(20));
+  EXPECT_LT((0.25 * full.function.weights - quarter.function.weights).norm(), 1e-12);
+  EXPECT_LT((0.25 * full.function.tail - quarter.function.tail).norm(), 1e-12);
 }
 
 TEST(DistinctSites, KeepsTheFirstOfEachPoint) {

@@ -4,22 +4,14 @@
 
 #include <cmath>
 
-#include "engine/base/random_stream.h"
 #include "models/model/rbf/rbf_evaluate.h"
+#include "tests/support/random_points.h"
 
 namespace palpate {
 namespace {
 
-// A smooth function of two variables at random points.
-Sites example_sites(Eigen::Index count) {
-  RandomStream random(3, 0);
-  Sites sites;
-  sites.points.resize(2, count);
-  sites.target_N.resize(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    sites.points.col(i) << random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0);
-    sites.target_N(i) = 2.0 + std::sin(2.0 * sites.points(0, i)) * std::cos(sites.points(1, i));
-  }
+Sites example_sites(int count) {
+  Sites sites = test::smooth_sites(2, count, 0.0, 3);
   sites.row_scale = sites.target_N.cwiseInverse();
   sites.as_2009 = true;
   return sites;

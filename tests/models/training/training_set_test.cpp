@@ -124,23 +124,14 @@ TEST(TrainingSet, NoReductionKeepsEverySampleInContact) {
 // u = (x - mean) / sqrt(range 4 sigma), from the samples themselves.
 TEST(TrainingSet, NormalisesByRangeAndDeviation) {
   const TrainingSet set = set_of(test::example_recording(5000, 1000.0), test::paper_features(), Reduction::none);
+  Eigen::ArrayXXd x(4, static_cast<Eigen::Index>(set.sites.size()));
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    x.col(i) = Eigen::Map<const Eigen::Array4d>(set.sites[static_cast<std::size_t>(i)].features.data());
   for (Eigen::Index k = 0; k < 4; ++k) {
-    double mean = 0.0;
-    double low = set.sites[0].features[static_cast<std::size_t>(k)];
-    double high = low;
-    const auto n = static_cast<double>(set.sites.size());
-    for (const TrainingSite& site : set.sites) {
-      const double x = site.features[static_cast<std::size_t>(k)];
-      mean += x / n;
-      low = std::min(low, x);
-      high = std::max(high, x);
-    }
-    double variance = 0.0;
-    for (const TrainingSite& site : set.sites) {
-      const double x = site.features[static_cast<std::size_t>(k)] - mean;
-      variance += x * x / n;
-    }
-    const double scale = std::sqrt((high - low) * 4.0 * std::sqrt(variance));
+    const double mean = x.row(k).mean();
+    const double low = x.row(k).minCoeff();
+    const double high = x.row(k).maxCoeff();
+    const double scale = std::sqrt((high - low) * 4.0 * std::sqrt((x.row(k) - mean).square().mean()));
     EXPECT_NEAR(set.normalisation.offset(k), mean, 1e-9 * scale);  // rounding of 5,000 terms
     EXPECT_NEAR(set.normalisation.scale(k), scale, 1e-9 * scale);
     EXPECT_EQ(set.normalisation.lower(k), low);

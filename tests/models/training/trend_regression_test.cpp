@@ -18,8 +18,13 @@ constexpr int kFolds = 5;
 
 // Strokes of growing depth and speed, a second each, measured at 500 Hz.
 template <typename Force>
-TrendRows rows_of(const FeatureList& list, Force force_N) {
-  TrendRows rows(terms_of(list, kDepth_m, 0.02));
+TrendRows rows_of(const FeatureList& list, double force_noise_floor_N, Force force_N) {
+  TrendRows rows(list,
+                 {.reference_depth_m = kDepth_m,
+                  .rms_velocity_m_per_s = 0.02,
+                  .force_noise_floor_N = force_noise_floor_N,
+                  .folds = kFolds},
+                 10000);
   rows.begin_recording();
   for (int i = 0; i < 10000; ++i) {
     const double t = 2e-3 * i;
@@ -38,7 +43,7 @@ TrendRows rows_of(const FeatureList& list, Force force_N) {
 double rms_of(const TrendRows& rows, const Eigen::VectorXd& x) {
   double sum = 0.0;
   for (std::size_t i = 0; i < rows.count(); ++i) {
-    const double error_N = Eigen::Map<const Eigen::VectorXd>(rows.row(i), x.size()).dot(x) - rows.force_N(i);
+    const double error_N = rows.terms().row(static_cast<Eigen::Index>(i)).dot(x) - rows[i].force_N;
     sum += error_N * error_N;
   }
   return std::sqrt(sum / static_cast<double>(rows.count()));
@@ -49,13 +54,12 @@ TEST(TrendRegression, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
   FeatureList list;
   list.velocity = true;
   list.relaxation_times_s = {{0.01, 0.1, 1.0}};
-  const TrendRows rows = rows_of(list, [&](const ToolSample& sample, const MotionEstimate& motion) {
-    const double u = std::max(0.0, motion.position_m) / kDepth_m;
-    return 2.0 * u + u * u + branch.update(sample, motion).values[0];
-  });
-  const TrendProblem problem{.reference_depth_m = kDepth_m,
-                             .force_noise_floor_N = -std::numeric_limits<double>::infinity()};
-  const TrendRegression regression(rows, kFolds, problem);
+  const TrendRows rows = rows_of(list, -std::numeric_limits<double>::infinity(),
+                                 [&](const ToolSample& sample, const MotionEstimate& motion) {
+                                   const double u = std::max(0.0, motion.position_m) / kDepth_m;
+                                   return 2.0 * u + u * u + branch.update(sample, motion).values[0];
+                                 });
+  const TrendRegression regression(rows);
   const Eigen::VectorXd x = regression.solve(regression.all_columns());
   EXPECT_GE(x.minCoeff(), 0.0);
   // With forces of up to 4.5 N. The error is a bias of the penalty.
@@ -67,13 +71,12 @@ TEST(TrendRegression, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
 // because the tool has left the material.
 TEST(TrendRegression, AForceThatWasNotMeasuredIsNoForceToFollow) {
   int sample_number = 0;
-  const TrendRows rows = rows_of(FeatureList{}, [&](const ToolSample&, const MotionEstimate& motion) {
+  const TrendRows rows = rows_of(FeatureList{}, 0.01, [&](const ToolSample&, const MotionEstimate& motion) {
     const bool left = motion.velocity_m_per_s < 0.0 && ++sample_number % 4 == 0;
     return left ? 0.0 : 3.0 * std::max(0.0, motion.position_m) / kDepth_m;
   });
-  const TrendProblem problem{.reference_depth_m = kDepth_m, .force_noise_floor_N = 0.01};
-  const TrendRegression regression(rows, kFolds, problem);
-  const Trend trend = fitted_trend({}, rows, regression.solve(regression.all_columns()), true).trend;
+  const TrendRegression regression(rows);
+  const Trend trend = fitted_trend(rows, regression.solve(regression.all_columns()), true).trend;
   const double at[] = {kDepth_m};
   // Within a JND: samples that no feature explains get a small weight (weighting.h).
   EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), 3.0, 0.25);
@@ -82,12 +85,11 @@ TEST(TrendRegression, AForceThatWasNotMeasuredIsNoForceToFollow) {
 // A soft layer on a hard plate: the force grows thirty-fold in the last tenth of the depth.
 TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
   const auto layer = [](double u) { return 0.3 * u + 9.0 * std::pow(std::max(0.0, u - 0.9) / 0.1, 2); };
-  const TrendRows rows = rows_of(FeatureList{}, [&](const ToolSample&, const MotionEstimate& motion) {
+  const TrendRows rows = rows_of(FeatureList{}, 1e-3, [&](const ToolSample&, const MotionEstimate& motion) {
     return layer(std::max(0.0, motion.position_m) / kDepth_m);
   });
-  const TrendProblem problem{.reference_depth_m = kDepth_m, .force_noise_floor_N = 1e-3};
-  const TrendRegression regression(rows, kFolds, problem);
-  const Trend trend = fitted_trend({}, rows, regression.solve(regression.all_columns()), true).trend;
+  const TrendRegression regression(rows);
+  const Trend trend = fitted_trend(rows, regression.solve(regression.all_columns()), true).trend;
   // The strokes end at 0.975.
   for (const double u : {0.2, 0.5, 0.85, 0.92, 0.95}) {
     const double at[] = {u * kDepth_m};
@@ -99,21 +101,18 @@ TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
 // A left-out fold does not influence the solution that predicts it, nor the robust row weights.
 TEST(TrendRegression, AFoldThatIsLeftOutHasNoInfluence) {
   const auto rows_with = [](double other_N) {
-    return rows_of(FeatureList{}, [&](const ToolSample& sample, const MotionEstimate& motion) {
+    return rows_of(FeatureList{}, 1e-3, [&](const ToolSample& sample, const MotionEstimate& motion) {
       const bool first_fold = static_cast<int>(sample.time_s) % kFolds == 0;
       return (first_fold ? other_N : 3.0) * std::max(0.0, motion.position_m) / kDepth_m;
     });
   };
-  const TrendProblem problem{.reference_depth_m = kDepth_m, .force_noise_floor_N = 1e-3};
   const TrendRows one = rows_with(3.0);
   const TrendRows other = rows_with(30.0);
-  const TrendRegression first(one, kFolds, problem);
-  const TrendRegression second(other, kFolds, problem);
-  if (first.smoothness() == second.smoothness()) {
-    const CrossValidated a = first.cross_validate(first.all_columns());
-    const CrossValidated b = second.cross_validate(second.all_columns());
-    EXPECT_TRUE(a.solutions.col(0).isApprox(b.solutions.col(0), 1e-9));
-  }
+  const TrendRegression first(one, TrendRegression::Smoothness::fixed);
+  const TrendRegression second(other, TrendRegression::Smoothness::fixed);
+  const CrossValidated a = first.cross_validate(first.all_columns());
+  const CrossValidated b = second.cross_validate(second.all_columns());
+  EXPECT_TRUE(a.solutions.col(0).isApprox(b.solutions.col(0), 1e-9));
 }
 
 }  // namespace

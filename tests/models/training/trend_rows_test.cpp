@@ -31,14 +31,19 @@ Step step_at(int i) {
 // One branch for each drive curve of the basis.
 std::vector<FeatureSpec> branch_basis(double relaxation_time_s) {
   std::vector<FeatureSpec> specs;
-  for (const DriveCurve& drive : branch_curves(kDepth_m)) specs.push_back(test::spectrum({relaxation_time_s}, drive));
+  for (const DriveCurve& drive : curve_basis(FeatureKind::maxwell_spectrum, kDepth_m)) {
+    specs.push_back(test::spectrum({relaxation_time_s}, drive));
+  }
   return specs;
 }
 
 TEST(TrendRows, ColumnsAreTheTrendsTerms) {
-  TrendRows rows({kDepth_m, kThinning_m_per_s, {0.17, 1.27}, {}});
+  FeatureList list;
+  list.velocity = true;
+  list.relaxation_times_s = {{0.17}, {1.27}};
+  TrendRows rows(list, {kDepth_m, kThinning_m_per_s}, 4000);
   const std::vector<ElasticSpline> elastic = spline_basis();
-  ASSERT_EQ(rows.columns(), kElasticTerms + 2 * kViscosityCoefficients + 2 * kBranchTerms);
+  ASSERT_EQ(rows.columns(), kElasticTerms + 2 * kViscosityCoefficients + 2 * kCurveTerms);
   FeatureFilter first(branch_basis(0.17));
   FeatureFilter second(branch_basis(1.27));
   rows.begin_recording();
@@ -50,7 +55,7 @@ TEST(TrendRows, ColumnsAreTheTrendsTerms) {
     const FeatureVector b = second.update(sample, motion);
     if (!(sample.position_m > 0.0)) continue;
     ASSERT_EQ(rows.count(), ++contact);
-    const double* row = rows.row(contact - 1);
+    const double* row = rows.terms().row(static_cast<Eigen::Index>(contact) - 1).data();
     const double u = motion.position_m / kDepth_m;
     const double v = motion.velocity_m_per_s;
     for (std::size_t k = 0; k < kElasticTerms; ++k) ASSERT_EQ(row[k], elastic[k].at(std::min(u, 1.0)));
@@ -60,11 +65,11 @@ TEST(TrendRows, ColumnsAreTheTrendsTerms) {
       ASSERT_NEAR(row[k], v * basis[k], 1e-15);
       ASSERT_NEAR(row[3 + k], v / (1 + std::abs(v) / kThinning_m_per_s) * basis[k], 1e-15);
     }
-    for (std::size_t k = 0; k < kBranchTerms; ++k) {
+    for (std::size_t k = 0; k < kCurveTerms; ++k) {
       ASSERT_EQ(row[6 + k], a.values[k]);
       ASSERT_EQ(row[9 + k], b.values[k]);
     }
-    ASSERT_EQ(rows.fold(contact - 1), 7);
+    ASSERT_EQ(rows[contact - 1].fold, 7);
   }
   EXPECT_GT(contact, 1000u);
 }
@@ -74,7 +79,7 @@ TEST(TrendRows, ColumnsAreTheTrendsTerms) {
 TEST(TrendRows, CombinedDriveIsTheWeightedSumOfTheBasis) {
   const double weights[] = {0.5, 2.0, 0.25};
   FeatureFilter basis(branch_basis(0.3));
-  FeatureFilter one({test::spectrum({0.3}, combined_drive(weights, kDepth_m))});
+  FeatureFilter one({test::spectrum({0.3}, combined_curve(FeatureKind::maxwell_spectrum, weights, kDepth_m))});
   for (int i = 0; i < 2000; ++i) {
     const auto [sample, motion] = step_at(i);
     const FeatureVector& parts = basis.update(sample, motion);
@@ -107,37 +112,37 @@ TEST(TrendRows, ALadderIsItsBranches) {
     std::vector<FeatureSpec> specs = branch_basis(0.3);
     for (FeatureSpec& spec : specs) spec.slowing = slowing;
     FeatureFilter filter(specs);
-    BranchLadder ladder({0.02, 0.3}, branch_curves(kDepth_m), slowing);
+    BranchLadder ladder({0.02, 0.3}, kDepth_m, slowing);
     for (int i = 0; i < 2000; ++i) {
       const auto [sample, motion] = step_at(i);
       const double depth_m = std::max(0.0, motion.position_m);
       ladder.update(sample.time_s, depth_m, depth_m);
       const FeatureVector& vector = filter.update(sample, motion);
-      for (std::size_t k = 0; k < kBranchTerms; ++k)
-        ASSERT_DOUBLE_EQ(ladder.values()[kBranchTerms + k], vector.values[k]);
+      for (std::size_t k = 0; k < kCurveTerms; ++k)
+        ASSERT_DOUBLE_EQ(ladder.values()[kCurveTerms + k], vector.values[k]);
     }
   }
 }
 
 TEST(TrendRows, WithoutVelocityOrTimesOnlyTheElasticColumnsAreLeft) {
-  TrendRows rows({kDepth_m, 0.0, {}, {}});
+  TrendRows rows({}, {kDepth_m}, 1000);
   EXPECT_EQ(rows.columns(), kElasticTerms);
   EXPECT_EQ(rows.viscous_columns(), 0u);
 }
 
 TEST(TrendRows, HalvingBoundsTheRowsAndKeepsEvenOnesInOrder) {
-  TrendRows rows({1.0, 0.0, {}, {}});
+  TrendRows rows({}, {1.0}, 1000);
   rows.begin_recording();
-  const int count = 450000;
+  const int count = 4800;
   for (int i = 0; i < count; ++i) {
     rows.add({1e-3 * i, 0.5, 0.0, 0.0}, {0.5, 0.0}, static_cast<double>(i), i);
-    ASSERT_LE(rows.count(), kMaximumTrendRows);
+    ASSERT_LE(rows.count(), 1000u);
   }
-  // 450,000 rows are more than four times the maximum, so every eighth row is kept.
-  ASSERT_EQ(rows.count(), 56250u);
+  // 4,800 rows are more than four times the maximum, so every eighth row is kept.
+  ASSERT_EQ(rows.count(), 600u);
   for (std::size_t i = 0; i < rows.count(); ++i) {
-    ASSERT_EQ(rows.force_N(i), 8.0 * static_cast<double>(i));
-    ASSERT_EQ(rows.fold(i), 8 * static_cast<int>(i));
+    ASSERT_EQ(rows[i].force_N, 8.0 * static_cast<double>(i));
+    ASSERT_EQ(rows[i].fold, 8 * static_cast<int>(i));
   }
 }
 

@@ -1,5 +1,4 @@
-// Applies the cross-validation of the correction (correction_strength.h) to a prepared training, and computes the
-// cross-validated errors of each fitted method and its error bound (models/model/fitted_model.h).
+// The error bound of a model (models/model/fitted_model.h) from its cross-validated errors.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -9,6 +8,13 @@
 #include "models/fit/fit.h"
 
 namespace palpate {
+
+// The prediction of one row by a model fitted without its fold.
+struct CrossValidationPrediction {
+  double error_N = 0.0;  // absolute error of the force
+  double predicted_N = 0.0;
+  double distance = 0.0;  // to the nearest row of another fold
+};
 
 // Calibrates the error bound of a model (models/model/fitted_model.h) with cross-validated errors.
 //
@@ -21,21 +27,11 @@ namespace palpate {
 std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPrediction>& predictions,
                                           double inner_radius, const JndLine& jnd, double largest_force_N);
 
-// Selects the strength for `prepared`, whose normalisation, sites and cover are set, and stores the rows for
-// `cross_validate`. `row_features`: features x rows, SI. `left_out`: the trends fitted without each fold. `strokes`:
-// number of strokes in all recordings.
-void select_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
-                     const CrossValidated& left_out, const TrendProblem& problem, std::size_t strokes);
-
 // The sites of a correction without a fold, at most 1500. The targets are the residuals of the trend without that fold.
 Sites sites_without(const PreparedTraining& prepared, int fold);
 
-// The cross-validated errors of a model. `corrections`: fitted to `sites_without` each fold; empty: none, the errors
-// are those of the trend. Rows are omitted where there is no other fold.
-std::vector<CrossValidationPrediction> cross_validate(const PreparedTraining& prepared,
-                                                      const std::vector<CorrectionPtr>& corrections);
 // The error bound of a model of `prepared`; with fewer than three strokes it is at least 5 % of the force.
-std::optional<ErrorBound> bound_of(const PreparedTraining& prepared,
-                                   const std::vector<CrossValidationPrediction>& errors);
+// `corrections`: fitted to `sites_without` each fold; empty: none, the errors are those of the trend.
+std::optional<ErrorBound> bound_of(const PreparedTraining& prepared, const std::vector<CorrectionPtr>& corrections);
 
 }  // namespace palpate

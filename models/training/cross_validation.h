@@ -1,6 +1,12 @@
-// Cross-validated errors of candidates and the one rule that selects among them.
+// Cross-validation: the folds of the training recordings, the errors of candidates, and the one rule that selects among
+// them. Every candidate predicts the samples of each fold from the other folds.
 //
-// Each candidate predicts the samples of every fold (fold_assignment.h) from the other folds. The score of a fold is
+// Folds: neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples. With
+// three recordings or more a fold is made of whole recordings, otherwise of whole strokes (contacts). A stroke with
+// more than a tenth of the samples in contact is cut into pieces in time. A recording without unloading visits each
+// depth once and is cut into pieces of a fiftieth.
+//
+// The score of a fold is
 //   l_k = ln(mean_i (e_i / JND_i)^2 + kUnnoticed_jnd^2).
 // The logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below
 // the JND irrelevant. The rule takes the simplest candidate whose mean score exceeds the best by at most two standard
@@ -8,7 +14,7 @@
 // share within the JND falls by up to 1.4 points: tests/bench/README.md.)
 // Source: Breiman, Friedman, Olshen & Stone (1984), section 3.4.3; Hastie, Tibshirani & Friedman
 // (2009), section 7.10.
-// Thread guarantee: pure functions.
+// Thread guarantee: value types and pure functions, slow side.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +22,31 @@
 #include <vector>
 
 namespace palpate {
+
+inline constexpr int kMaximumFolds = 6;
+
+// Assigns the samples to the folds.
+class FoldAssignment {
+ public:
+  // `contact_samples`, `strokes`: totals of all recordings. `has_unloading`: whether the recordings contain unloading.
+  FoldAssignment(std::size_t recordings, std::size_t strokes, std::size_t contact_samples, bool has_unloading = true);
+
+  int folds() const noexcept { return folds_; }
+  // The fold of the next row, 0 to folds() - 1. To be called for every row of every recording in order.
+  int next(int recording, int stroke, bool in_contact) noexcept;
+
+ private:
+  int folds_;
+  bool by_recording_;
+  std::size_t longest_piece_;
+  int stroke_ = -1;
+  std::size_t in_piece_ = 0;
+  int piece_ = -1;
+};
+
+// The greatest depth outside each fold: deeper samples of the fold would be extrapolated, so they do not count.
+// `fold`, `depth_m`: of each sample.
+std::vector<double> deepest_elsewhere_m(std::span<const int> fold, std::span<const double> depth_m, int folds);
 
 // With normal errors of a quarter of a JND (RMS) one sample in 16,000 exceeds the JND.
 inline constexpr double kUnnoticed_jnd = 0.25;

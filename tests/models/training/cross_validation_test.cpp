@@ -1,0 +1,103 @@
+#include "models/training/cross_validation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace palpate {
+namespace {
+
+TEST(FoldAssignment, WholeRecordingsFromThreeOn) {
+  FoldAssignment assignment(4, 9, 900);
+  EXPECT_EQ(assignment.folds(), 4);
+  for (int recording = 0; recording < 4; ++recording) {
+    for (int i = 0; i < 50; ++i) EXPECT_EQ(assignment.next(recording, 2 * recording + i / 25, true), recording);
+  }
+}
+
+TEST(FoldAssignment, ShortStrokesStayWhole) {
+  FoldAssignment assignment(1, 20, 2000);
+  EXPECT_EQ(assignment.folds(), 5);
+  for (int stroke = 1; stroke <= 20; ++stroke) {
+    std::set<int> folds;
+    for (int i = 0; i < 100; ++i) folds.insert(assignment.next(0, stroke, true));
+    EXPECT_EQ(folds.size(), 1U) << stroke;
+    EXPECT_EQ(*folds.begin(), (stroke - 1) % 5);
+  }
+}
+
+TEST(FoldAssignment, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
+  for (const bool has_unloading : {true, false}) {
+    FoldAssignment assignment(1, 1, 1000, has_unloading);
+    std::set<int> folds;
+    int changes = 0;
+    int last = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const int fold = assignment.next(0, 1, true);
+      folds.insert(fold);
+      changes += fold != last ? 1 : 0;
+      last = fold;
+    }
+    EXPECT_EQ(folds.size(), 5U);
+    EXPECT_EQ(changes, has_unloading ? 9 : 47) << "10 pieces, or 48 of 21 samples";
+  }
+}
+
+TEST(FoldAssignment, FreeAirDoesNotChangeTheDeal) {
+  FoldAssignment with_air(1, 8, 80);
+  FoldAssignment without(1, 8, 80);
+  for (int stroke = 1; stroke <= 8; ++stroke) {
+    for (int i = 0; i < 30; ++i) with_air.next(0, stroke, false);
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(with_air.next(0, stroke, true), without.next(0, stroke, true));
+  }
+}
+
+TEST(DeepestElsewhere, IsTheGreatestDepthOfTheOtherFolds) {
+  const std::vector<int> fold{0, 1, 2, 0};
+  const std::vector<double> depth_m{1.0, 5.0, 2.0, 3.0};
+  EXPECT_EQ(deepest_elsewhere_m(fold, depth_m, 3), (std::vector{5.0, 3.0, 5.0}));
+}
+
+// Mean squared errors, in JND^2, of 100 samples in each fold.
+FoldErrors errors_of(std::vector<double> means) {
+  FoldErrors errors(means.size());
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    for (int i = 0; i < 100; ++i) errors.add(k, std::sqrt(means[k]));
+  }
+  return errors;
+}
+
+std::size_t selected(std::vector<FoldErrors> candidates) { return simplest_adequate(candidates); }
+
+TEST(Selection, ASignificantGainInEveryFoldIsTaken) {
+  EXPECT_EQ(selected({errors_of({10, 12, 11, 13, 9}), errors_of({9, 11, 10, 12, 8})}), 1u);
+}
+
+TEST(Selection, AGainInOneFoldAloneIsNot) {
+  EXPECT_EQ(selected({errors_of({10, 12, 11, 13, 9}), errors_of({1, 12, 11, 13, 9})}), 0u);
+}
+
+TEST(Selection, AFoldThatIsHardForEveryCandidateDoesNotOutvoteTheOthers) {
+  EXPECT_EQ(selected({errors_of({470, 102, 51.6, 3.57, 5.5}), errors_of({18.7, 3.07, 0.59, 0.4, 0.37})}), 1u);
+}
+
+TEST(Selection, ErrorsThatAHandCannotNoticeDoNotCount) {
+  EXPECT_EQ(best_score(std::vector{errors_of({4.0, 1e-3}), errors_of({1.0, 2e-3})}), 1u);
+}
+
+TEST(Selection, TheRootMeanSquareIsOverAllSamples) {
+  EXPECT_NEAR(errors_of({4.0, 1.0}).rms(), std::sqrt(2.5), 1e-12);
+  EXPECT_EQ(FoldErrors(3).rms(), 0.0);
+}
+
+// For equal folds it equals their RMS. A fold with large errors counts by its logarithm.
+TEST(Selection, TheTypicalErrorIsThatOfTheMeanScore) {
+  EXPECT_NEAR(errors_of({4.0, 4.0}).rms_at_mean_score(), 2.0, 1e-12);
+  EXPECT_EQ(errors_of({0.0, 0.0}).rms_at_mean_score(), 0.0);
+  EXPECT_LT(errors_of({100.0, 1.0}).rms_at_mean_score(), 0.5 * errors_of({100.0, 1.0}).rms());
+  EXPECT_EQ(FoldErrors(3).rms_at_mean_score(), 0.0);
+}
+
+}  // namespace
+}  // namespace palpate
