@@ -34,7 +34,7 @@ Table broken_headers() {
       {"no header", rows, "1:1", {"numbers", "time_s", "header", "palpate import"}},
       {"missing column", "time_s,position_m\n0,0\n", "1:1", {"time_s,position_m", "force_N", "palpate import"}},
       {"two missing", "# c\ntime_s,x,f\n0,0,0\n", "2:1", {"time_s,x,f", "position_m and force_N", "palpate import"}},
-      {"unknown columns only", "a,b,c\n1,2,3\n", "1:1", {"a,b,c", "time_s, position_m and force_N", "palpate import"}},
+      {"unknown columns only", "a,b,c\n1,2,3\n", "1:1", {"a,b,c", "time_s and position_m and force_N", "palpate import"}},
       {"duplicate column", "time_s,position_m,force_N,position_m\n0,0,0,0\n", "1:27", {"position_m", "once"}},
       {"duplicate optional column",
        "time_s,velocity_m_per_s,position_m,force_N,velocity_m_per_s\n",
