@@ -1,14 +1,10 @@
 #include "engine/recording/recording_writer.h"
 
 #include <algorithm>
-#include <string>
 #include <string_view>
 #include <utility>
 
-#include "engine/base/atomic_file.h"
 #include "engine/base/csv_scanner.h"
-#include "engine/recording/recording.h"
-#include "engine/recording/recording_rules.h"
 
 namespace palpate {
 namespace {
@@ -97,16 +93,6 @@ Status RecordingWriter::commit() {
     return Error{path_ + ": cannot write: " + fault->text};
   }
   return file_.commit();
-}
-
-Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,
-                       bool overwrite) {
-  auto writer = RecordingWriter::create(path, recording.columns, comments, overwrite);
-  if (!writer) return writer.error();
-  for (const RecordingRow& row : recording.rows) {
-    if (Status added = writer->add(row); !added) return added;
-  }
-  return writer->commit();
 }
 
 }  // namespace palpate

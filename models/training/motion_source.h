@@ -84,7 +84,7 @@ class MotionSource {
   const std::vector<std::string>& names() const { return names_; }
   // The recording of that number; null: a file.
   const PreparedRecording* prepared(std::size_t recording) const { return recordings_[recording].prepared; }
-  const std::vector<std::uint64_t>& hashes() const { return hashes_; }  // engine/recording/content_hash.h
+  const std::vector<std::uint64_t>& hashes() const { return hashes_; }  // engine/recording/recording.h
   // The number of recorded rows, of which about `most_rows` are kept.
   std::size_t rows() const { return rows_; }
   // The largest force noise and encoder step of the recordings, and the position noise of the recording with the

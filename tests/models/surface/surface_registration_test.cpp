@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/recording/content_hash.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/replay.h"
 #include "models/model/file/model_io.h"
 #include "models/model/file/model_json.h"
