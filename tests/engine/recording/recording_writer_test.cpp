@@ -116,13 +116,13 @@ TEST(WriteRecording, RefusesWhatTheReaderWouldRefuse) {
   const Recording good = random_recording(12, {});
   Recording bad = good;
   bad.rows[4].force_N = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "5", "finite", "force_N", "; "}));
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "row 5", "force_N nan", "finite", "; "}));
   bad = good;
   bad.rows[4].time_s = bad.rows[3].time_s = 0.25;
-  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "5", "time_s", "0.25", "0.25", "time_s"}));
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "row 5", "time_s 0.25", "0.25", "time_s"}));
   bad = good;
   bad.rows.resize(9);
-  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "9", "10", "; "}));
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "9 rows", "10", "; "}));
 }
 
 TEST(WriteRecording, CutsACommentThatIsTooLongForTheReader) {
