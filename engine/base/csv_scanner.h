@@ -53,6 +53,9 @@ class LineScanner {
   std::optional<Error> error_;
 };
 
+// "path:line:column: ", the beginning of a message about the byte at `offset` of `text`; columns count bytes from 1.
+std::string position_prefix(const std::string& path, std::string_view text, std::size_t offset);
+
 // `text` without blanks (space, tab) at both ends.
 std::string_view trimmed(std::string_view text);
 

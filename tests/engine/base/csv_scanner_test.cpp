@@ -34,6 +34,12 @@ TEST(LineScanner, ReportsAStreamThatFails) {
   EXPECT_TRUE(test::has_parts(scanner.error()->message, {"x.csv: ", "Is a"}));
 }
 
+TEST(PositionPrefix, CountsLinesAndBytes) {
+  EXPECT_EQ(position_prefix("f", "ab\nc", 1), "f:1:2: ");
+  EXPECT_EQ(position_prefix("f", "ab\nc", 3), "f:2:1: ");
+  EXPECT_EQ(position_prefix("f", "ab\nc", 100), "f:2:2: ");
+}
+
 TEST(IsUtf8, FollowsRfc3629) {
   std::size_t bad_offset = 0;
   for (const char* good : {"", "a", "\xC2\xB5", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "\xED\x9F\xBF"}) {
