@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/base/result.h"
 
@@ -58,6 +59,9 @@ std::string position_prefix(const std::string& path, std::string_view text, std:
 
 // `text` without blanks (space, tab) at both ends.
 std::string_view trimmed(std::string_view text);
+
+// "a, b, c"
+std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 
 // `text` with A to Z replaced by a to z.
 std::string lower_ascii(std::string_view text);

@@ -181,8 +181,7 @@ std::string NumberRange::words() const {
 
 std::optional<Error> JsonFields::error() const {
   if (error_count_ == 0) return std::nullopt;
-  std::string all;
-  for (const std::string& line : lines_) all.append(all.empty() ? "" : "\n").append(line);
+  std::string all = joined(lines_, "\n");
   if (error_count_ > lines_.size())
     all += "\n" + path_ + ": and " + std::to_string(error_count_ - lines_.size()) + " more";
   return Error{all};
@@ -269,23 +268,18 @@ double JsonFields::number(const JsonNode& object, const char* key, const NumberR
 
 std::optional<std::size_t> JsonFields::choice(const JsonNode& node, const std::vector<std::string>& names) {
   if (node.value == nullptr) return std::nullopt;
-  std::string known;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (*node.value == names[i]) return i;
-    known.append(known.empty() ? "" : ", ").append(names[i]);
-  }
-  complain(node.pointer, found(*node.value) + ", expected one of " + known);
+  const auto name = std::find(names.begin(), names.end(), *node.value);
+  if (name != names.end()) return static_cast<std::size_t>(name - names.begin());
+  complain(node.pointer, found(*node.value) + ", expected one of " + joined(names));
   return std::nullopt;
 }
 
 void JsonFields::refuse_unknown(const JsonNode& top) {
   for (const auto& [pointer, keys] : requested_) {
     const Json& object = pointer.empty() ? *top.value : top.value->at(Json::json_pointer(pointer));
-    std::string known;
-    for (const std::string& key : keys) known.append(known.empty() ? "" : ", ").append(key);
     for (const auto& one : object.items()) {
       if (std::find(keys.begin(), keys.end(), one.key()) != keys.end()) continue;
-      complain(pointer + "/" + one.key(), "found an unknown field, expected one of " + known);
+      complain(pointer + "/" + one.key(), "found an unknown field, expected one of " + joined(keys));
     }
   }
 }

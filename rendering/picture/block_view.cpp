@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {

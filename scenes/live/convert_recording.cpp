@@ -7,7 +7,7 @@
 #include "engine/base/whole_file.h"
 #include "engine/import/import_words.h"
 #include "engine/recording/recording.h"
-#include "scenes/scene/user_folders.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {

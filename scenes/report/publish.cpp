@@ -8,7 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "scenes/plot/inline_svg.h"
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {
