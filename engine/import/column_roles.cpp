@@ -132,16 +132,6 @@ std::string flag_for(std::size_t role, const std::string& what) {
   return std::string("--columns ") + kRoleNames[role] + "=" + what;
 }
 
-// The name of a column for a shell. A name that needs quotes is replaced by the number of the column.
-std::string shell_name(const std::vector<ForeignColumn>& columns, std::size_t index) {
-  const std::string& header = columns[index].header;
-  const bool plain = header.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") ==
-                     std::string::npos;
-  const auto same =
-      std::count_if(columns.begin(), columns.end(), [&](const ForeignColumn& c) { return c.header == header; });
-  return plain && !header.empty() && same == 1 ? header : std::to_string(index + 1);
-}
-
 Result<std::size_t> find_column(const std::vector<ForeignColumn>& columns, std::size_t role,
                                 const std::string& wanted) {
   const auto with = [&](auto&& name_of) {
@@ -183,22 +173,40 @@ Error no_column(const std::vector<ForeignColumn>& columns, std::size_t role, boo
 
 Error several_columns(const std::vector<ForeignColumn>& columns, std::size_t role,
                       const std::vector<std::size_t>& best) {
-  std::string flags;
-  for (const std::size_t index : best) {
-    flags += (flags.empty() ? "" : index == best.back() ? " or " : ", ") + flag_for(role, shell_name(columns, index));
-  }
+  std::vector<std::string> flags;
+  for (const std::size_t index : best) flags.push_back(flag_for(role, std::to_string(index + 1)));
   return Error{"found " + std::to_string(best.size()) + " columns that can be the " + kRoleNames[role] + "; add " +
-               flags + "; the columns are " + list_columns(columns)};
+               joined(flags, " or ") + "; the columns are " + list_columns(columns)};
 }
 
 }  // namespace
 
-std::string list_columns(const std::vector<ForeignColumn>& columns) {
-  std::string text;
+std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
+                                           const std::vector<std::vector<std::string_view>>& rows) {
+  const auto& first = rows.front();
+  std::vector<ForeignColumn> columns(layout.columns);
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    text += (i == 0 ? "" : ", ") + std::to_string(i + 1) + " \"" + printable(columns[i].header) + "\"";
+    ForeignColumn& column = columns[i];
+    if (!layout.names.empty()) {
+      column.header = layout.names[i];
+      column.parts = split_name_and_unit(column.header);
+    } else if (i < first.size()) {
+      column.header = first[i];
+    }
+    if (i < layout.units.size()) {
+      if (const auto unit = find_unit(layout.units[i])) column.parts.unit = unit;
+    }
+    const auto changes = [&](const auto& row) { return i < std::min(row.size(), first.size()) && row[i] != first[i]; };
+    column.constant = rows.size() > 1 && std::none_of(rows.begin(), rows.end(), changes);
   }
-  return text;
+  return columns;
+}
+
+std::string list_columns(const std::vector<ForeignColumn>& columns) {
+  std::vector<std::string> names;
+  for (const ForeignColumn& column : columns)
+    names.push_back(std::to_string(names.size() + 1) + " \"" + printable(column.header) + "\"");
+  return joined(names);
 }
 
 Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,

@@ -35,23 +35,14 @@ bool RowTimes::parse(std::string_view field, TableTime& time) const {
   return clock_ ? parse_clock_time(field, time) : parse_number_time(field, decimal_, time);
 }
 
-RowTimes::Step RowTimes::add(const TableTime& time) noexcept {
-  if (!std::exchange(started_, true)) {
-    first_ = time;
-    return Step::later;
-  }
-  const bool midnight = clock_ && !has_date_ && last_s_ - seconds(time) > 0.5 * static_cast<double>(kDay_s);
-  if (midnight) ++midnights_;
-  const double now_s = seconds(time);
-  if (now_s == last_s_) return Step::repeated;
-  if (!(now_s > last_s_)) return Step::backward;
-  last_s_ = now_s;
-  return midnight ? Step::after_midnight : Step::later;
-}
-
-double RowTimes::seconds(const TableTime& time) const noexcept {
-  return (static_cast<double>(time.whole - first_.whole + midnights_ * kDay_s) + (time.fraction - first_.fraction)) *
-         to_si_;
+double RowTimes::since_first(const TableTime& time) noexcept {
+  if (!std::exchange(started_, true)) first_ = time;
+  const auto with_midnights = [&] {
+    const std::int64_t whole = time.whole - first_.whole + midnights_ * kDay_s;
+    return static_cast<double>(whole) + (time.fraction - first_.fraction);
+  };
+  if (clock_ && !has_date_ && last_ - with_midnights() > 0.5 * static_cast<double>(kDay_s)) ++midnights_;
+  return last_ = with_midnights();
 }
 
 }  // namespace palpate

@@ -19,29 +19,24 @@ class RowTimes {
   double examine(const std::vector<std::string_view>& fields);
   bool are_of_a_clock() const noexcept { return clock_; }
   bool have_dates() const noexcept { return has_date_; }
-  void use_unit(double to_si) noexcept { to_si_ = to_si; }
 
   bool parse(std::string_view field, TableTime& time) const;
 
-  enum class Step { later, after_midnight, repeated, backward };
-  // Adds the time of the next row. A repeated or earlier time is not added. A clock without dates that goes back by
-  // more than half a day has passed midnight.
-  Step add(const TableTime& time) noexcept;
-  // Since the first time, s.
-  double seconds(const TableTime& time) const noexcept;
-  double last_s() const noexcept { return last_s_; }
-  // The first time itself, s.
-  double first_s() const noexcept { return to_si_ * (static_cast<double>(first_.whole) + first_.fraction); }
+  // The time since that of the first call, in the unit of the file (a clock: s). A clock without dates that goes back
+  // by more than half a day has passed midnight.
+  double since_first(const TableTime& time) noexcept;
+  int midnights() const noexcept { return midnights_; }
+  // The time of the first call itself.
+  double first() const noexcept { return static_cast<double>(first_.whole) + first_.fraction; }
 
  private:
   char decimal_;
   bool clock_ = false;
   bool has_date_ = false;
-  double to_si_ = 1.0;
   bool started_ = false;
   TableTime first_;
-  double last_s_ = 0.0;
-  std::int64_t midnights_ = 0;
+  double last_ = 0.0;
+  int midnights_ = 0;
 };
 
 }  // namespace palpate

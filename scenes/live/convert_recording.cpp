@@ -5,7 +5,7 @@
 
 #include "engine/base/csv_scanner.h"
 #include "engine/base/whole_file.h"
-#include "engine/import/import_words.h"
+#include "engine/import/import_table.h"
 #include "engine/recording/recording.h"
 #include "scenes/scene/folders.h"
 
@@ -45,7 +45,7 @@ Result<ConvertedRecording> convert_recording(const std::string& path, const std:
   if (Status status = write_recording(converted.path, table->recording, import_origin(path, request, *table), true);
       !status)
     return status.error();
-  converted.words.push_back(table_words(*table));
+  converted.words.push_back(table->layout.words(table->encoding));
   for (std::size_t role = 0; role < kRoles; ++role)
     converted.words.push_back(std::string(kRoleNames[role]) + ": " + column_words(table->columns[role]));
   converted.words.insert(converted.words.end(), table->notes.begin(), table->notes.end());
