@@ -131,7 +131,7 @@ TEST(AtomicFile, NamesAMissingFolder) {
                               {path, "folder", folder.file("none"), "; "}));
   const std::string under_a_file = folder.with_file("file", "") + "/out";
   EXPECT_TRUE(test::has_parts(write_file_atomically(under_a_file, "x", false).error().message,
-                              {under_a_file, folder.file("file"), "folder"}));
+                              {under_a_file, "folder", folder.file("file")}));
 }
 
 TEST(AtomicFile, NamesAFolderThatIsNotWritable) {
