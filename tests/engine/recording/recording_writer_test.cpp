@@ -7,7 +7,6 @@
 #include <limits>
 #include <random>
 
-#include "engine/recording/recording.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
@@ -59,9 +58,9 @@ void expect_round_trip(const Recording& recording) {
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"rec.csv"});
 }
 
-std::string message_for(const Recording& recording, const std::vector<std::string>& comments = {}) {
+std::string message_for(const Recording& recording) {
   const TemporaryFolder folder;
-  const Status written = write_recording(folder.file("rec.csv"), recording, comments, false);
+  const Status written = write_recording(folder.file("rec.csv"), recording, {}, false);
   EXPECT_TRUE(folder.entries().empty());
   return written ? "written" : written.error().message.substr(folder.path().size() + 1);
 }
@@ -98,18 +97,6 @@ TEST(WriteRecording, WritesPlainTextWithCommentsFirst) {
                        "0,0.25,-1.5,2\n5e-04,0.25,-1.5,2\n"))
       << text;
   EXPECT_TRUE(text.ends_with("\n"));
-}
-
-TEST(WriteRecording, KeepsAnExistingFileUnlessToldToReplaceIt) {
-  const TemporaryFolder folder;
-  const std::string path = folder.with_file("rec.csv", "precious");
-  const Recording recording = random_recording(12, {});
-  const Status refused = write_recording(path, recording, {}, false);
-  ASSERT_FALSE(refused.ok());
-  EXPECT_TRUE(test::has_parts(refused.error().message, {path, "--force"}));
-  EXPECT_EQ(test::read_text(path), "precious");
-  ASSERT_TRUE(write_recording(path, recording, {}, true).ok());
-  EXPECT_TRUE(read_recording(path).ok());
 }
 
 TEST(WriteRecording, RefusesWhatTheReaderWouldRefuse) {
