@@ -61,19 +61,17 @@ bool LineScanner::check(std::string_view text) {
   const std::size_t nul = text.find('\0');
   if (nul != std::string_view::npos) {
     return fail(nul + 1,
-                "found a NUL byte, expected UTF-8 text; this is a binary or UTF-16 file, "
-                "save it as UTF-8 CSV");
+                "found a NUL byte, expected UTF-8 text; this is a binary or UTF-16 file, save it as UTF-8 CSV");
   }
   const std::size_t carriage_return = text.find('\r');
   if (carriage_return != std::string_view::npos && carriage_return + 1 < text.size()) {
     return fail(carriage_return + 1,
-                "found a carriage return inside a line, expected lines that end in LF or CRLF; "
-                "convert the line ends");
+                "found a carriage return inside a line, expected lines that end in LF or CRLF; convert the line ends");
   }
   if (text.size() > kMaximumLineBytes) {
-    return fail(kMaximumLineBytes + 1, "found a line longer than " + std::to_string(kMaximumLineBytes) +
-                                           " bytes, expected a row of a recording; check that "
-                                           "this is a CSV file with line ends");
+    return fail(kMaximumLineBytes + 1,
+                "found a line longer than " + std::to_string(kMaximumLineBytes) +
+                    " bytes, expected a row of a recording; check that this is a CSV file with line ends");
   }
   return true;
 }

@@ -13,21 +13,19 @@ namespace {
 // The words of each role. The claim of a column to a role is strongest if its whole name is one of the words, weaker if
 // one of its words is, and weakest if a word contains one (German compounds: "Standardkraft").
 constexpr std::string_view kTimeWords =
-    "time t zeit temps timestamp stamp seconds secs elapsed x_value millis micros clock uhrzeit pruefzeit "
-    "testzeit zeitstempel datetime tiempo \xE6\x97\xB6\xE9\x97\xB4";
+    "time t zeit temps timestamp stamp seconds secs elapsed x_value millis micros clock uhrzeit pruefzeit testzeit "
+    "zeitstempel datetime tiempo \xE6\x97\xB6\xE9\x97\xB4";
 constexpr std::string_view kPositionWords =
-    "position pos weg displacement disp depth extension stroke crosshead travel compression indentation "
-    "penetration allongement traversenweg standardweg verschiebung eindringtiefe tiefe hub deplacement enfoncement "
-    "desplazamiento posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height encoder "
-    "x y z";
+    "position pos weg displacement disp depth extension stroke crosshead travel compression indentation penetration "
+    "allongement traversenweg standardweg verschiebung eindringtiefe tiefe hub deplacement enfoncement desplazamiento "
+    "posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height encoder x y z";
 constexpr std::string_view kForceWords =
-    "force f kraft load last fn fx fy fz charge loadcell newton effort fuerza carga "
-    "\xE5\x8A\x9B \xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
+    "force f kraft load last fn fx fy fz charge loadcell newton effort fuerza carga \xE5\x8A\x9B "
+    "\xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
 // Words of columns that have none of these roles, whatever other word is in the name.
 constexpr std::string_view kOtherWords =
-    "torque moment temperature temp voltage current status velocity speed geschwindigkeit acceleration accel "
-    "stress strain spannung dehnung seq index id frame cycle zyklus tx ty tz mx my mz comment rate volt "
-    "orientation";
+    "torque moment temperature temp voltage current status velocity speed geschwindigkeit acceleration accel stress "
+    "strain spannung dehnung seq index id frame cycle zyklus tx ty tz mx my mz comment rate volt orientation";
 // Words of columns that are a second choice: commanded and not measured values, raw values, and times that restart
 // ("Cycle Elapsed Time" beside "Total Time").
 constexpr std::string_view kSecondWords = "target desired setpoint soll sollwert command cmd reference raw cycle";
