@@ -55,10 +55,10 @@ class Importer {
   Status find_columns();
   Status find_unit_of(std::size_t role);
   Status find_time_unit();
-  std::size_t parse_row(TableTime& time, RecordingRow& row) const;
+  std::size_t parse_row(RecordingRow& row);
   Error unreadable(std::size_t column, std::uint64_t line) const;
   Status check_size(const RecordingRow& row, std::uint64_t line) const;
-  Result<bool> set_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
+  Status check_time(const RecordingRow& row, std::uint64_t line);
   Status read_rows();
   void describe_time();
   void check_velocity();
@@ -73,8 +73,9 @@ class Importer {
   std::array<double, kRoles> to_si_{1.0, 1.0, 1.0};
   std::vector<std::string_view> row_;  // the fields of the present row
   RowTimes times_{'.'};
-  bool own_time_ = false;     // the file has times besides a given rate
-  double own_seconds_ = 0.0;  // by these times
+  int midnights_ = 0;         // that a note names
+  bool own_time_ = false;     // the file has times; with a given rate they are only compared with it
+  double own_seconds_ = 0.0;  // the duration by these times
   std::optional<VelocityColumn> velocity_;
 };
 
@@ -169,17 +170,18 @@ Status Importer::find_time_unit() {
 }
 
 // Parses the fields of a row. Returns the first column without a valid value, kNoColumn if there is none.
-std::size_t Importer::parse_row(TableTime& time, RecordingRow& row) const {
+std::size_t Importer::parse_row(RecordingRow& row) {
   const auto is_bad = [&](std::size_t index, double to_si, double& value) {
     if (!parse_table_number(field(index), table_.layout.decimal, value)) return true;
     value *= to_si;
     return false;
   };
-  if (!request_.rate_Hz && !times_.parse(field(index_[0]), time)) return index_[0];
   if (is_bad(index_[1], to_si_[1], row.position_m)) return index_[1];
   if (is_bad(index_[2], to_si_[2], row.force_N)) return index_[2];
   if (velocity_ && is_bad(velocity_->column, velocity_->to_si, row.velocity_m_per_s)) return velocity_->column;
-  return kNoColumn;
+  const auto time = own_time_ ? times_.since_first(field(index_[0])) : std::nullopt;
+  if (time) row.time_s = to_si_[0] * *time;
+  return time || request_.rate_Hz ? kNoColumn : index_[0];
 }
 
 // The error of the present row, whose field of this column could not be read.
@@ -206,16 +208,15 @@ Status Importer::check_size(const RecordingRow& row, std::uint64_t line) const {
                            ", or choose another column");
 }
 
-// Sets the time of a row. Returns false if it repeats the last one.
-Result<bool> Importer::set_time(const TableTime& time, std::uint64_t line, RecordingRow& row) {
-  const auto& rows = table_.recording.rows;
-  const int midnights = times_.midnights();
-  row.time_s = to_si_[0] * times_.since_first(time);
-  if (times_.midnights() > midnights)
+// Refuses a time before that of the last row.
+Status Importer::check_time(const RecordingRow& row, std::uint64_t line) {
+  if (times_.midnights() > midnights_) {
     note("the clock passes midnight in line " + std::to_string(line) + ": a day is added from there");
-  if (rows.empty() || row.time_s > rows.back().time_s) return true;
+    ++midnights_;
+  }
+  const auto& rows = table_.recording.rows;
+  if (rows.empty() || row.time_s >= rows.back().time_s) return {};
   const double last_s = rows.back().time_s;
-  if (row.time_s == last_s) return false;
   // The mean rate of the rows so far.
   const std::string rate =
       rows.size() > 2 ? short_number(std::round(static_cast<double>(rows.size() - 1) / last_s)) : "HZ";
@@ -244,10 +245,9 @@ Status Importer::read_rows() {
   while (!rest.empty()) {
     const std::string_view line = next_line(rest);
     ++number;
-    TableTime time;
     RecordingRow row;
     split_table_fields(line, table_.layout.delimiter, row_);
-    if (const std::size_t bad = parse_row(time, row); bad != kNoColumn) {
+    if (const std::size_t bad = parse_row(row); bad != kNoColumn) {
       const std::string_view bare = trimmed(line);
       if (bare.empty()) continue;
       if (bare.starts_with('#')) {
@@ -274,15 +274,13 @@ Status Importer::read_rows() {
     if (request_.flip_force) row.force_N = -row.force_N;
     if (const Status status = check_size(row, number); !status) return status;
     if (request_.rate_Hz) {
+      if (own_time_) own_seconds_ = row.time_s;
       row.time_s = static_cast<double>(rows.size()) / *request_.rate_Hz;
-      if (own_time_ && times_.parse(field(index_[0]), time)) own_seconds_ = to_si_[0] * times_.since_first(time);
-    } else {
-      const auto is_new = set_time(time, number, row);
-      if (!is_new) return is_new.error();
-      if (!*is_new) {
-        ++repeated;
-        continue;
-      }
+    } else if (const Status status = check_time(row, number); !status) {
+      return status;
+    } else if (!rows.empty() && row.time_s == rows.back().time_s) {
+      ++repeated;
+      continue;
     }
     rows.push_back(row);
   }
@@ -340,13 +338,15 @@ Result<ImportedTable> Importer::run() {
     note("the rows are evenly spaced by the Delta_X above the table");
   }
   if (const Status status = find_columns(); !status) return status.error();
-  if (!request_.rate_Hz) {
-    if (const Status status = find_time_unit(); !status) return status.error();
-  } else if (index_[0] != kNoColumn) {
+  if (index_[0] != kNoColumn) {
     const std::size_t notes = table_.notes.size();
-    own_time_ = find_time_unit().ok();
-    table_.notes.resize(notes);
-    table_.columns[0] = {};
+    const Status status = find_time_unit();
+    own_time_ = status.ok();
+    if (!status && !request_.rate_Hz) return status.error();
+    if (request_.rate_Hz) {
+      table_.notes.resize(notes);
+      table_.columns[0] = {};
+    }
   }
   for (const std::size_t role : {1u, 2u}) {
     if (const Status status = find_unit_of(role); !status) return status.error();

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/import/row_times.h"
 #include "engine/import/table_number.h"
 #include "engine/import/units.h"
 
@@ -47,9 +48,7 @@ std::string_view unquoted(std::string_view field) {
 
 bool is_cell_of_numbers(std::string_view field, char decimal) {
   double value = 0.0;
-  TableTime time;
-  return parse_table_number(field, decimal, value) || is_missing_value(field) || has_date(field) ||
-         parse_clock_time(field, time);
+  return parse_table_number(field, decimal, value) || is_missing_value(field) || is_of_a_clock(field);
 }
 
 // Whether a field begins like a number and is none, which indicates a wrong reading.
