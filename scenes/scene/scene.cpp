@@ -57,17 +57,16 @@ class SceneReader : private JsonFields {
   }
 
  private:
-  Colour colour(const JsonNode& object, const char* key) {
+  std::uint32_t colour(const JsonNode& object, const char* key) {
     const std::string expected = "a colour such as \"#56B4E9\"";
     const JsonNode node = member(object, key, expected);
-    if (node.value == nullptr) return {};
+    if (node.value == nullptr) return 0;
     const std::string code = node.value->is_string() ? node.value->get<std::string>() : "";
     std::uint32_t rgb = 0;
     const char* const end = code.data() + code.size();
     if (code.size() != 7 || code[0] != '#' || std::from_chars(code.data() + 1, end, rgb, 16).ptr != end)
       complain(node.pointer, found(*node.value) + ", expected " + expected);
-    const auto channel = [&](int shift) { return static_cast<std::uint8_t>(rgb >> shift & 0xFF); };
-    return {channel(16), channel(8), channel(0)};
+    return rgb;
   }
 
   void read_name() {

@@ -16,12 +16,6 @@ namespace palpate {
 
 struct TrainingRequest;
 
-struct Colour {
-  std::uint8_t red = 0;
-  std::uint8_t green = 0;
-  std::uint8_t blue = 0;
-};
-
 // The undisturbed surface of the block is at height 0. The tool is a ball.
 struct BlockGeometry {
   double width_m = 0.0;
@@ -42,8 +36,8 @@ struct Scene {
   std::vector<FeatureSpec> features;    // 1 to 8: the depth, velocity and low-pass velocities
   JndLine jnd;
   BlockGeometry block;
-  Colour block_colour;
-  Colour tool_colour;
+  std::uint32_t block_colour = 0;  // 0xRRGGBB
+  std::uint32_t tool_colour = 0;
   Finish finish = Finish::silicone;
   std::vector<std::string> default_models;  // names of methods (models/fit/methods.h)
   // Upper limit of the target force of the simulated hand.

@@ -86,8 +86,7 @@ TEST(SceneReader, ReadsEveryField) {
   EXPECT_DOUBLE_EQ(scene->jnd.offset_N, 0.1);
   EXPECT_DOUBLE_EQ(scene->block.length_m, 0.2);
   EXPECT_DOUBLE_EQ(scene->block.tool_radius_m, 0.004);
-  EXPECT_EQ(scene->block_colour.red, 0x56);
-  EXPECT_EQ(scene->block_colour.blue, 0xE9);
+  EXPECT_EQ(scene->block_colour, 0x56B4E9u);
   EXPECT_EQ(scene->default_models, std::vector<std::string>{"greedy"});
   EXPECT_EQ(scene->strongest_press_N, 5.0) << "may be left out";
 }
