@@ -20,22 +20,12 @@ constexpr std::size_t kHeaderReach = 6;
 constexpr std::array kDelimiters = {Delimiter{"tab", "\t"}, Delimiter{"semicolon", ";"}, Delimiter{"comma", ","},
                                     Delimiter{"blanks", " \t"}};
 
-struct SampleLine {
-  std::string_view text;
-  std::size_t offset = 0;
-};
-
-std::vector<SampleLine> sample_lines(std::string_view text) {
-  std::vector<SampleLine> lines;
-  const char* const begin = text.data();
+std::vector<std::string_view> sample_lines(std::string_view text) {
+  std::vector<std::string_view> lines;
   const bool cut = text.size() > kSampleBytes;
   text = text.substr(0, kSampleBytes);
-  while (!text.empty() && lines.size() < kSampleLines) {
-    const auto offset = static_cast<std::size_t>(text.data() - begin);
-    const std::string_view line = next_line(text);
-    if (text.empty() && cut) break;  // the sample ends inside this line
-    lines.push_back({line, offset});
-  }
+  while (!text.empty() && lines.size() < kSampleLines) lines.push_back(next_line(text));
+  if (cut && text.empty()) lines.pop_back();  // the sample ends inside this line
   return lines;
 }
 
@@ -71,7 +61,7 @@ struct Reading {
   }
 };
 
-Reading read_as(const std::vector<SampleLine>& lines, const Delimiter& delimiter, char decimal) {
+Reading read_as(const std::vector<std::string_view>& lines, const Delimiter& delimiter, char decimal) {
   Reading best;
   std::vector<std::string_view> fields;
   const auto count_if = [&](auto&& accepts) {
@@ -83,8 +73,8 @@ Reading read_as(const std::vector<SampleLine>& lines, const Delimiter& delimiter
     run.first = i;
     std::vector<std::size_t> counts;
     for (; i < lines.size(); ++i) {
-      if (trimmed(lines[i].text).empty()) continue;
-      split_table_fields(lines[i].text, delimiter, fields);
+      if (trimmed(lines[i]).empty()) continue;
+      split_table_fields(lines[i], delimiter, fields);
       const std::size_t numbers = count_if(is_number);
       if (numbers < 2 || 2 * numbers < fields.size()) break;
       if (fields.size() >= counts.size()) counts.resize(fields.size() + 1);
@@ -103,18 +93,16 @@ Reading read_as(const std::vector<SampleLine>& lines, const Delimiter& delimiter
 }
 
 // Skips first lines of a run with fewer fields than the others: they end a preamble ("Rate 1000").
-void skip_short_rows(Reading& reading, const std::vector<SampleLine>& lines) {
+void skip_short_rows(std::string_view text, const std::vector<std::string_view>& lines, Reading& reading) {
   std::vector<std::string_view> fields;
-  const std::size_t end = std::min(lines.size(), reading.first + kHeaderReach);
-  std::size_t first = reading.first;
-  for (std::size_t i = reading.first; i < end; ++i) {
-    split_table_fields(lines[i].text, reading.layout.delimiter, fields);
-    first = i;
-    if (fields.size() >= reading.layout.columns) break;
-  }
-  reading.first = first;
-  reading.layout.data_line = first + 1;
-  reading.layout.data_offset = lines[first].offset;
+  const auto is_short = [&](std::string_view line) {
+    split_table_fields(line, reading.layout.delimiter, fields);
+    return fields.size() < reading.layout.columns;
+  };
+  const std::size_t last = std::min(lines.size(), reading.first + kHeaderReach) - 1;
+  while (reading.first < last && is_short(lines[reading.first])) ++reading.first;
+  reading.layout.data_line = reading.first + 1;
+  reading.layout.data_offset = static_cast<std::size_t>(lines[reading.first].data() - text.data());
 }
 
 // Removes the mark of a comment before the names.
@@ -174,10 +162,10 @@ bool split_header(std::string_view line, const TableLayout& layout, std::vector<
 }
 
 // Splits a header of a table of R: the column of row numbers has no name, so the header has one field less.
-bool split_header_of_row_names(std::string_view line, const Reading& reading, const std::vector<SampleLine>& lines,
-                               std::vector<std::string_view>& fields) {
+bool split_header_of_row_names(std::string_view line, const Reading& reading,
+                               const std::vector<std::string_view>& lines, std::vector<std::string_view>& fields) {
   double number = 0.0;
-  split_table_fields(lines[reading.first].text, reading.layout.delimiter, fields);
+  split_table_fields(lines[reading.first], reading.layout.delimiter, fields);
   if (fields.empty() || !parse_table_number(fields.front(), '.', number) || number != 1.0) return false;
   split_table_fields(line, reading.layout.delimiter, fields);
   if (fields.size() + 1 != reading.layout.columns) return false;
@@ -208,15 +196,14 @@ bool is_names_row(const std::vector<std::string_view>& fields) {
   return names >= 2;
 }
 
-void find_header(Reading& reading, const std::vector<SampleLine>& lines) {
+void find_header(Reading& reading, const std::vector<std::string_view>& lines) {
   TableLayout& layout = reading.layout;
   std::vector<std::string_view> fields;
   std::size_t seen = 0;
   for (std::size_t i = reading.first; i-- > 0 && seen < kHeaderReach;) {
-    if (trimmed(lines[i].text).empty()) continue;
+    if (trimmed(lines[i]).empty()) continue;
     ++seen;
-    if (!split_header(lines[i].text, layout, fields) &&
-        !split_header_of_row_names(lines[i].text, reading, lines, fields)) {
+    if (!split_header(lines[i], layout, fields) && !split_header_of_row_names(lines[i], reading, lines, fields)) {
       continue;
     }
     fields.resize(layout.columns);
@@ -259,11 +246,11 @@ bool proves_decimal_comma(std::string_view field) {
   return end - comma - 1 != 3 || whole.empty() || whole.front() == '0' || whole.size() > 3;
 }
 
-Status check_decimal_comma(const Reading& reading, const std::vector<SampleLine>& lines) {
+Status check_decimal_comma(const Reading& reading, const std::vector<std::string_view>& lines) {
   std::vector<std::string_view> fields;
   std::string_view example;
   for (std::size_t i = reading.first; i < lines.size(); ++i) {
-    split_table_fields(lines[i].text, reading.layout.delimiter, fields);
+    split_table_fields(lines[i], reading.layout.delimiter, fields);
     for (const std::string_view field : fields) {
       double value = 0.0;
       if (!parse_table_number(field, ',', value) || field.find(',') == std::string_view::npos) continue;
@@ -309,7 +296,7 @@ void split_table_fields(std::string_view line, const Delimiter& delimiter, std::
 }
 
 Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> given_decimal) {
-  const std::vector<SampleLine> lines = sample_lines(text);
+  const std::vector<std::string_view> lines = sample_lines(text);
   Reading best;
   for (const Delimiter& delimiter : kDelimiters) {
     for (const char decimal : {'.', ','}) {
@@ -324,7 +311,7 @@ Result<TableLayout> find_table_layout(std::string_view text, std::optional<char>
                  (lines.size() == 1 ? " line" : " lines") +
                  ", expected a table with columns of time, position and force; export the recording as CSV"};
   }
-  skip_short_rows(best, lines);
+  skip_short_rows(text, lines, best);
   find_header(best, lines);
   read_labview_head(text, best.layout);
   if (best.layout.decimal == ',' && !given_decimal) {
