@@ -128,16 +128,10 @@ std::string lower_ascii(std::string_view text) {
   return lower;
 }
 
-bool is_utf8(std::string_view text, std::size_t& bad_offset) {
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t bytes = utf8_sequence_bytes(text.substr(i));
-    if (bytes == 0) {
-      bad_offset = i;
-      return false;
-    }
-    i += bytes;
-  }
-  return true;
+std::size_t utf8_bytes(std::string_view text) {
+  std::string_view rest = text;
+  for (std::size_t bytes = 1; !rest.empty() && bytes > 0; rest.remove_prefix(bytes)) bytes = utf8_sequence_bytes(rest);
+  return text.size() - rest.size();
 }
 
 std::string printable(std::string_view text, std::size_t limit) {

@@ -66,9 +66,8 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
 // `text` with A to Z replaced by a to z.
 std::string lower_ascii(std::string_view text);
 
-// Whether `text` is well-formed UTF-8; if not, `bad_offset` is the first byte that is not.
-// Source: RFC 3629, section 4.
-bool is_utf8(std::string_view text, std::size_t& bad_offset);
+// The number of bytes at the start of `text` that are well-formed UTF-8. Source: RFC 3629, section 4.
+std::size_t utf8_bytes(std::string_view text);
 
 // `text` for a message: bytes that are not printable as \xHH, truncated with "..." after about `limit` bytes.
 std::string printable(std::string_view text, std::size_t limit = 40);

@@ -190,10 +190,9 @@ Status RecordingReader::read_header() {
 }
 
 Status RecordingReader::parse_header(const CsvLine& line) {
-  std::size_t bad_offset = 0;
-  if (!is_utf8(line.text, bad_offset)) {
-    return scanner_.error_at(line.number, bad_offset + 1,
-                             "found byte " + printable(line.text.substr(bad_offset, 1)) +
+  if (const std::size_t good = utf8_bytes(line.text); good < line.text.size()) {
+    return scanner_.error_at(line.number, good + 1,
+                             "found byte " + printable(line.text.substr(good, 1)) +
                                  ", expected UTF-8 text in the header; save the file as UTF-8 CSV");
   }
   const auto names = fields_of(line.text);
