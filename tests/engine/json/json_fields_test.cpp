@@ -92,9 +92,10 @@ TEST(JsonFields, CollectsAllErrorsEachOnce) {
   EXPECT_FALSE(fields.choice(fields.member(top, "g", "a name"), {"one", "two"}));
   fields.refuse_unknown(top);
   EXPECT_EQ(fields.error_count(), 5u);
-  EXPECT_TRUE(test::has_parts(fields.error()->message, {"x.json:1:7:", "a", "1", "empty", "x.json:2:7:", "b", "\"x\"",
-                                                        "2", "3", "x.json:3:7:", "no such field", "x.json:3:30:", "g",
-                                                        "3", "one", "x.json:3:21:", "unknown field", "d", "; "}));
+  EXPECT_TRUE(test::has_parts(
+      fields.error()->message,
+      {"x.json:1:7: a: found 1", "empty", "x.json:2:7: b: found \"x\"", "from 2", "3", "x.json:3:7:", "no such field",
+       "x.json:3:30: g: found 3", "one, two", "x.json:3:21:", "unknown field", "d, e", "; "}));
 }
 
 TEST(JsonFields, TellsOfTwentyErrorsAndCountsTheRest) {
@@ -108,7 +109,7 @@ TEST(JsonFields, TellsOfTwentyErrorsAndCountsTheRest) {
   fields.refuse_unknown(top);
   const std::string message = fields.error()->message;
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 20);
-  EXPECT_TRUE(test::has_parts(message.substr(message.rfind('\n') + 1), {"x.json", "80"}));
+  EXPECT_TRUE(test::has_parts(message.substr(message.rfind('\n') + 1), {"x.json", " 80 "}));
   EXPECT_EQ(message.find('\x1b'), std::string::npos) << "names from the file are made printable";
 }
 
