@@ -33,6 +33,7 @@ template <typename Field>
 std::string line_of(RecordingColumns columns, const Field& field) {
   const std::array present = {true, true, columns.force, columns.velocity, columns.acceleration};
   std::string line;
+  line.reserve(128);  // five doubles of at most 24 characters
   for (std::size_t i = 0; i < present.size(); ++i) {
     if (present[i]) line.append(i > 0 ? "," : "").append(field(i));
   }
