@@ -31,4 +31,4 @@ bars = "using 1:2:3:4:5:6 with xyerrorbars pointtype 7 pointsize 0.8 linewidth 1
 hollow_bars = "using 1:2:3:4:5:6 with xyerrorbars pointtype 6 pointsize 0.8 linewidth 1.3"
 up = "using 1:2 with points pointtype 9 pointsize 0.6"
 down = "using 1:2 with points pointtype 11 pointsize 0.6"
-area = "using 1:3:4 with filledcurves fillcolor rgb band fillstyle solid noborder"
+area = "using 1:5:6 with filledcurves fillcolor rgb band fillstyle solid noborder"

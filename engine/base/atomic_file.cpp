@@ -51,15 +51,9 @@ Status check_target(const std::string& path, bool overwrite) {
 }
 
 Error cannot_create(const std::string& path, const std::string& folder, int error_number) {
-  const std::string start = "cannot write " + path + ": ";
-  if (error_number == ENOENT) {
-    return Error{start + "the folder " + folder + " does not exist; create it first"};
-  }
-  if (error_number == ENOTDIR) return Error{start + folder + " is not a folder"};
-  if (error_number == EACCES || error_number == EPERM || error_number == EROFS) {
-    return Error{start + "the folder " + folder + " is not writable (" + words_for(error_number) + ")"};
-  }
-  return Error{start + words_for(error_number)};
+  const bool missing = error_number == ENOENT;
+  return Error{"cannot write " + path + ": the folder " + folder +
+               (missing ? " does not exist; create it first" : " takes no new file: " + words_for(error_number))};
 }
 
 // Renames without replacing, atomically, so that a file that appears in the last moment survives. On file systems
@@ -137,10 +131,9 @@ void AtomicFile::flush() {
     left -= static_cast<std::size_t>(written);
   }
   buffer_.clear();
-  if (!published_) return;
   if (error_number_ == 0) {
     whole_bytes_ = lseek(descriptor_, 0, SEEK_END);
-  } else if (ftruncate(descriptor_, whole_bytes_) != 0) {
+  } else if (published_ && ftruncate(descriptor_, whole_bytes_) != 0) {
     error_number_ = errno;
   }
 }
@@ -152,9 +145,10 @@ void AtomicFile::write(std::string_view text) {
   if (buffer_.size() >= kFlushBytes && !published_) flush();
 }
 
-Status AtomicFile::failure(int error_number) const {
-  if (error_number == EEXIST) return already_exists(path_);
-  return Error{"cannot write " + path_ + ": " + words_for(error_number)};
+Error AtomicFile::failure() const {
+  if (error_number_ == 0) return Error{"cannot write " + path_ + ": it is closed already"};
+  if (error_number_ == EEXIST) return already_exists(path_);
+  return Error{"cannot write " + path_ + ": " + words_for(error_number_)};
 }
 
 Status AtomicFile::take_name() {
@@ -168,30 +162,21 @@ Status AtomicFile::take_name() {
     error_number_ = overwrite_ ? (rename(temporary_path_.c_str(), path_.c_str()) == 0 ? 0 : errno)
                                : rename_without_replacing(temporary_path_.c_str(), path_.c_str());
   }
-  if (error_number_ != 0) {
-    discard();
-    return failure(error_number_);
-  }
-  return {};
-}
-
-// The reason why nothing can be written any more: an earlier error, otherwise that the file is closed.
-Status AtomicFile::closed() const {
-  if (error_number_ != 0) return failure(error_number_);
-  return Error{"cannot write " + path_ + ": it is closed already"};
+  if (error_number_ == 0) return {};
+  discard();
+  return failure();
 }
 
 Status AtomicFile::publish() {
-  if (descriptor_ < 0) return closed();
+  if (descriptor_ < 0) return failure();
   flush();
-  if (const Status taken = take_name(); !taken || published_) return taken;
-  published_ = true;
-  whole_bytes_ = lseek(descriptor_, 0, SEEK_END);
-  return {};
+  Status taken = take_name();
+  published_ = published_ || taken;
+  return taken;
 }
 
 Status AtomicFile::commit() {
-  if (descriptor_ < 0) return closed();
+  if (descriptor_ < 0) return failure();
   flush();
   if (error_number_ == 0 && fsync(descriptor_) != 0) error_number_ = errno;
   if (const Status taken = take_name(); !taken) return taken;

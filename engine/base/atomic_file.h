@@ -38,8 +38,7 @@ class AtomicFile {
   AtomicFile() = default;
   void discard() noexcept;
   Status take_name();
-  Status failure(int error_number) const;
-  Status closed() const;
+  Error failure() const;  // why nothing can be written any more
   void flush();
   void close_descriptor() noexcept;
 
@@ -50,7 +49,7 @@ class AtomicFile {
   int error_number_ = 0;
   bool overwrite_ = false;
   bool published_ = false;
-  long long whole_bytes_ = 0;  // length that was published
+  long long whole_bytes_ = 0;  // length without the text of a failed write
 };
 
 // Writes `text` to `path` atomically. Errors: those of AtomicFile.

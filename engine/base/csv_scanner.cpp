@@ -16,25 +16,18 @@ constexpr std::size_t kBeyondLimit = 6;
 
 // The length of the well-formed UTF-8 sequence at the start of `text`, or 0.
 std::size_t utf8_sequence_bytes(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char lead = byte(0);
-  if (lead < 0x80) return 1;
-  std::size_t bytes = 0;
-  unsigned char lowest = 0x80;
-  unsigned char highest = 0xBF;
-  if (lead >= 0xC2 && lead <= 0xDF) bytes = 2;
-  if (lead >= 0xE0 && lead <= 0xEF) bytes = 3;
-  if (lead >= 0xF0 && lead <= 0xF4) bytes = 4;
-  if (lead == 0xE0) lowest = 0xA0;   // else overlong
-  if (lead == 0xED) highest = 0x9F;  // else a surrogate
-  if (lead == 0xF0) lowest = 0x90;   // else overlong
-  if (lead == 0xF4) highest = 0x8F;  // else beyond U+10FFFF
+  constexpr unsigned kLeastCode[] = {0, 0x80, 0x800, 0x10000};  // a smaller one has a shorter sequence
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
+  const unsigned lead = byte(0);
+  const std::size_t bytes = lead < 0x80 ? 1 : lead < 0xC0 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF8 ? 4 : 0;
   if (bytes == 0 || text.size() < bytes) return 0;
-  if (byte(1) < lowest || byte(1) > highest) return 0;
-  for (std::size_t i = 2; i < bytes; ++i) {
-    if (byte(i) < 0x80 || byte(i) > 0xBF) return 0;
+  unsigned code = bytes == 1 ? lead : lead & (0x7Fu >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if (byte(i) >> 6 != 0b10) return 0;
+    code = code << 6 | (byte(i) & 0x3F);
   }
-  return bytes;
+  const bool is_surrogate = code >= 0xD800 && code < 0xE000;
+  return code >= kLeastCode[bytes - 1] && code <= 0x10FFFF && !is_surrogate ? bytes : 0;
 }
 
 std::string escaped(unsigned char byte) {
@@ -68,19 +61,17 @@ bool LineScanner::check(std::string_view text) {
   const std::size_t nul = text.find('\0');
   if (nul != std::string_view::npos) {
     return fail(nul + 1,
-                "found a NUL byte, expected UTF-8 text; this is a binary or UTF-16 file, "
-                "save it as UTF-8 CSV");
+                "found a NUL byte, expected UTF-8 text; this is a binary or UTF-16 file, save it as UTF-8 CSV");
   }
   const std::size_t carriage_return = text.find('\r');
   if (carriage_return != std::string_view::npos && carriage_return + 1 < text.size()) {
     return fail(carriage_return + 1,
-                "found a carriage return inside a line, expected lines that end in LF or CRLF; "
-                "convert the line ends");
+                "found a carriage return inside a line, expected lines that end in LF or CRLF; convert the line ends");
   }
   if (text.size() > kMaximumLineBytes) {
-    return fail(kMaximumLineBytes + 1, "found a line longer than " + std::to_string(kMaximumLineBytes) +
-                                           " bytes, expected a row of a recording; check that "
-                                           "this is a CSV file with line ends");
+    return fail(kMaximumLineBytes + 1,
+                "found a line longer than " + std::to_string(kMaximumLineBytes) +
+                    " bytes, expected a row of a recording; check that this is a CSV file with line ends");
   }
   return true;
 }
@@ -110,10 +101,23 @@ bool LineScanner::next(CsvLine& line) {
   return true;
 }
 
+std::string position_prefix(const std::string& path, std::string_view text, std::size_t offset) {
+  const std::string_view before = text.substr(0, offset);
+  const std::size_t line_start = before.rfind('\n') + 1;  // 0 in the first line
+  const auto lines = std::count(before.begin(), before.end(), '\n') + 1;
+  return path + ":" + std::to_string(lines) + ":" + std::to_string(before.size() - line_start + 1) + ": ";
+}
+
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return text.substr(text.size());
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view between) {
+  std::string text;
+  for (const std::string& word : words) text.append(text.empty() ? "" : between).append(word);
+  return text;
 }
 
 std::string lower_ascii(std::string_view text) {
@@ -124,16 +128,10 @@ std::string lower_ascii(std::string_view text) {
   return lower;
 }
 
-bool is_utf8(std::string_view text, std::size_t& bad_offset) {
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t bytes = utf8_sequence_bytes(text.substr(i));
-    if (bytes == 0) {
-      bad_offset = i;
-      return false;
-    }
-    i += bytes;
-  }
-  return true;
+std::size_t utf8_bytes(std::string_view text) {
+  std::string_view rest = text;
+  for (std::size_t bytes = 1; !rest.empty() && bytes > 0; rest.remove_prefix(bytes)) bytes = utf8_sequence_bytes(rest);
+  return text.size() - rest.size();
 }
 
 std::string printable(std::string_view text, std::size_t limit) {

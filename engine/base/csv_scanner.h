@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/base/result.h"
 
@@ -53,15 +54,20 @@ class LineScanner {
   std::optional<Error> error_;
 };
 
+// "path:line:column: ", the beginning of a message about the byte at `offset` of `text`; columns count bytes from 1.
+std::string position_prefix(const std::string& path, std::string_view text, std::size_t offset);
+
 // `text` without blanks (space, tab) at both ends.
 std::string_view trimmed(std::string_view text);
+
+// "a, b, c"
+std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 
 // `text` with A to Z replaced by a to z.
 std::string lower_ascii(std::string_view text);
 
-// Whether `text` is well-formed UTF-8; if not, `bad_offset` is the first byte that is not.
-// Source: RFC 3629, section 4.
-bool is_utf8(std::string_view text, std::size_t& bad_offset);
+// The number of bytes at the start of `text` that are well-formed UTF-8. Source: RFC 3629, section 4.
+std::size_t utf8_bytes(std::string_view text);
 
 // `text` for a message: bytes that are not printable as \xHH, truncated with "..." after about `limit` bytes.
 std::string printable(std::string_view text, std::size_t limit = 40);

@@ -13,21 +13,19 @@ namespace {
 // The words of each role. The claim of a column to a role is strongest if its whole name is one of the words, weaker if
 // one of its words is, and weakest if a word contains one (German compounds: "Standardkraft").
 constexpr std::string_view kTimeWords =
-    "time t zeit temps timestamp stamp seconds secs elapsed x_value millis micros clock uhrzeit pruefzeit "
-    "testzeit zeitstempel datetime tiempo \xE6\x97\xB6\xE9\x97\xB4";
+    "time t zeit temps timestamp stamp seconds secs elapsed x_value millis micros clock uhrzeit pruefzeit testzeit "
+    "zeitstempel datetime tiempo \xE6\x97\xB6\xE9\x97\xB4";
 constexpr std::string_view kPositionWords =
-    "position pos weg displacement disp depth extension stroke crosshead travel compression indentation "
-    "penetration allongement traversenweg standardweg verschiebung eindringtiefe tiefe hub deplacement enfoncement "
-    "desplazamiento posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height encoder "
-    "x y z";
+    "position pos weg displacement disp depth extension stroke crosshead travel compression indentation penetration "
+    "allongement traversenweg standardweg verschiebung eindringtiefe tiefe hub deplacement enfoncement desplazamiento "
+    "posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height encoder x y z";
 constexpr std::string_view kForceWords =
-    "force f kraft load last fn fx fy fz charge loadcell newton effort fuerza carga "
-    "\xE5\x8A\x9B \xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
+    "force f kraft load last fn fx fy fz charge loadcell newton effort fuerza carga \xE5\x8A\x9B "
+    "\xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
 // Words of columns that have none of these roles, whatever other word is in the name.
 constexpr std::string_view kOtherWords =
-    "torque moment temperature temp voltage current status velocity speed geschwindigkeit acceleration accel "
-    "stress strain spannung dehnung seq index id frame cycle zyklus tx ty tz mx my mz comment rate volt "
-    "orientation";
+    "torque moment temperature temp voltage current status velocity speed geschwindigkeit acceleration accel stress "
+    "strain spannung dehnung seq index id frame cycle zyklus tx ty tz mx my mz comment rate volt orientation";
 // Words of columns that are a second choice: commanded and not measured values, raw values, and times that restart
 // ("Cycle Elapsed Time" beside "Total Time").
 constexpr std::string_view kSecondWords = "target desired setpoint soll sollwert command cmd reference raw cycle";
@@ -132,16 +130,6 @@ std::string flag_for(std::size_t role, const std::string& what) {
   return std::string("--columns ") + kRoleNames[role] + "=" + what;
 }
 
-// The name of a column for a shell. A name that needs quotes is replaced by the number of the column.
-std::string shell_name(const std::vector<ForeignColumn>& columns, std::size_t index) {
-  const std::string& header = columns[index].header;
-  const bool plain = header.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") ==
-                     std::string::npos;
-  const auto same =
-      std::count_if(columns.begin(), columns.end(), [&](const ForeignColumn& c) { return c.header == header; });
-  return plain && !header.empty() && same == 1 ? header : std::to_string(index + 1);
-}
-
 Result<std::size_t> find_column(const std::vector<ForeignColumn>& columns, std::size_t role,
                                 const std::string& wanted) {
   const auto with = [&](auto&& name_of) {
@@ -183,22 +171,40 @@ Error no_column(const std::vector<ForeignColumn>& columns, std::size_t role, boo
 
 Error several_columns(const std::vector<ForeignColumn>& columns, std::size_t role,
                       const std::vector<std::size_t>& best) {
-  std::string flags;
-  for (const std::size_t index : best) {
-    flags += (flags.empty() ? "" : index == best.back() ? " or " : ", ") + flag_for(role, shell_name(columns, index));
-  }
+  std::vector<std::string> flags;
+  for (const std::size_t index : best) flags.push_back(flag_for(role, std::to_string(index + 1)));
   return Error{"found " + std::to_string(best.size()) + " columns that can be the " + kRoleNames[role] + "; add " +
-               flags + "; the columns are " + list_columns(columns)};
+               joined(flags, " or ") + "; the columns are " + list_columns(columns)};
 }
 
 }  // namespace
 
-std::string list_columns(const std::vector<ForeignColumn>& columns) {
-  std::string text;
+std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
+                                           const std::vector<std::vector<std::string_view>>& rows) {
+  const auto& first = rows.front();
+  std::vector<ForeignColumn> columns(layout.columns);
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    text += (i == 0 ? "" : ", ") + std::to_string(i + 1) + " \"" + printable(columns[i].header) + "\"";
+    ForeignColumn& column = columns[i];
+    if (!layout.names.empty()) {
+      column.header = layout.names[i];
+      column.parts = split_name_and_unit(column.header);
+    } else if (i < first.size()) {
+      column.header = first[i];
+    }
+    if (i < layout.units.size()) {
+      if (const auto unit = find_unit(layout.units[i])) column.parts.unit = unit;
+    }
+    const auto changes = [&](const auto& row) { return i < std::min(row.size(), first.size()) && row[i] != first[i]; };
+    column.constant = rows.size() > 1 && std::none_of(rows.begin(), rows.end(), changes);
   }
-  return text;
+  return columns;
+}
+
+std::string list_columns(const std::vector<ForeignColumn>& columns) {
+  std::vector<std::string> names;
+  for (const ForeignColumn& column : columns)
+    names.push_back(std::to_string(names.size() + 1) + " \"" + printable(column.header) + "\"");
+  return joined(names);
 }
 
 Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/import/table_layout.h"
 #include "engine/import/units.h"
 
 namespace palpate {
@@ -23,6 +25,10 @@ struct ForeignColumn {
   NameAndUnit parts;
   bool constant = false;  // in the first rows, so that it cannot be the time
 };
+
+// The columns of the table. `rows`: the fields of its first rows.
+std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
+                                           const std::vector<std::vector<std::string_view>>& rows);
 
 // The user's choice for each role: a name or a number from 1; empty: to be determined.
 using RoleRequest = std::array<std::string, kRoles>;

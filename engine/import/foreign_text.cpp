@@ -64,12 +64,11 @@ Result<ForeignText> read_foreign_text(const std::string& path) {
   }
   const std::string_view sample = std::string_view(bytes).substr(0, kEncodingSampleBytes);
   const bool big_endian = bytes.starts_with("\xFE\xFF");
-  std::size_t bad_offset = 0;
   ForeignText foreign;
   if (big_endian || bytes.starts_with("\xFF\xFE")) {
     foreign = {decode_utf16(std::string_view(bytes).substr(2), big_endian), "UTF-16"};
-  } else if (!is_utf8(sample, bad_offset) && (sample.size() == bytes.size() || bad_offset + 4 <= sample.size())) {
-    // A sequence that is cut by the end of the sample is not an error.
+  } else if (utf8_bytes(sample) + (sample.size() < bytes.size() ? 3 : 0) < sample.size()) {
+    // Up to three bytes of a sequence that is cut by the end of the sample are not an error.
     foreign.encoding = "Latin-1";
     for (const char c : bytes) append_utf8(foreign.text, static_cast<unsigned char>(c));
   } else {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/base/csv_scanner.h"
-#include "engine/import/import_words.h"
+#include "engine/base/text.h"
 #include "engine/import/row_times.h"
 #include "engine/import/table_number.h"
 #include "engine/recording/recording_rules.h"
@@ -18,6 +18,13 @@ namespace {
 constexpr std::size_t kFirstRows = 200;
 constexpr double kVelocitySlope = 0.2;
 constexpr auto kNoColumn = static_cast<std::size_t>(-1);
+
+std::string short_number(double value) { return general(value, 6); }
+
+// "3 rows"
+std::string count_of(std::uint64_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
 
 class Importer {
  public:
@@ -33,27 +40,28 @@ class Importer {
   Error fail_at(std::uint64_t line, const std::string& text) const {
     return Error{label_ + ":" + std::to_string(line) + ": " + text};
   }
-  // The quoted name for a message, such as ' "Weg [mm]"'; empty without a header.
-  std::string quoted_name(std::size_t role) const {
-    if (table_.layout.names.empty()) return {};
-    return std::string(" \"").append(printable(header_[index_[role]].header)).append("\"");
+  // The quoted name of a column for a message, such as ' "Weg [mm]"'; empty without a header.
+  std::string quoted_name(std::size_t index) const {
+    return table_.layout.names.empty() ? "" : " \"" + printable(header_[index].header) + "\"";
   }
   void note(const std::string& sentence) { table_.notes.push_back(sentence); }
+  void use_unit(std::size_t role, const Unit& unit) {
+    to_si_[role] = unit.to_si;
+    table_.columns[role].unit = unit.name;
+  }
+  // The field of a column in the present row; empty if it is missing.
+  std::string_view field(std::size_t index) const { return index < row_.size() ? row_[index] : std::string_view(); }
 
-  void read_labview_head();
   Status find_columns();
   Status find_unit_of(std::size_t role);
   Status find_time_unit();
-  void split(std::string_view line);
-  bool parse_row(std::string_view line, TableTime& time, RecordingRow& row);
-  bool is_bad_row(std::string_view line);
-  Error explain_row(std::string_view line, std::uint64_t number);
-  Result<bool> add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
-  void use_unit(std::size_t role, const Unit& unit);
-  void check_rate();
-  void check_velocity();
+  std::size_t parse_row(RecordingRow& row);
+  Error unreadable(std::size_t column, std::uint64_t line) const;
+  Status check_size(const RecordingRow& row, std::uint64_t line) const;
+  Status check_time(const RecordingRow& row, std::uint64_t line);
   Status read_rows();
   void describe_time();
+  void check_velocity();
 
   std::string_view text_;
   std::string label_;
@@ -61,14 +69,13 @@ class Importer {
   ImportedTable table_;
   std::vector<ForeignColumn> header_;
   std::vector<std::vector<std::string_view>> first_rows_;  // their fields
-  std::array<std::size_t, kRoles> index_{};
+  std::array<std::size_t, kRoles> index_{};                // of the column of each role
   std::array<double, kRoles> to_si_{1.0, 1.0, 1.0};
-  std::vector<std::string_view> row_;
-  std::array<std::string_view, kRoles> fields_;
+  std::vector<std::string_view> row_;  // the fields of the present row
   RowTimes times_{'.'};
-  std::uint64_t repeated_ = 0;
-  bool own_time_ = false;     // the file has times besides a given rate
-  double own_seconds_ = 0.0;  // by these times
+  int midnights_ = 0;         // that a note names
+  bool own_time_ = false;     // the file has times; with a given rate they are only compared with it
+  double own_seconds_ = 0.0;  // the duration by these times
   std::optional<VelocityColumn> velocity_;
 };
 
@@ -80,54 +87,19 @@ std::optional<Unit> unit_of(Quantity quantity, const ImportRequest& request, con
   return column.parts.unit;
 }
 
-// Text files of LabVIEW have the units of the columns above the table and, if the table has no times, the interval of
-// the rows.
-void Importer::read_labview_head() {
-  std::string_view head = text_.substr(0, table_.layout.data_offset);
-  std::vector<std::string_view> fields;
-  std::string_view step;
-  bool times = true;
-  while (!head.empty()) {
-    split_table_fields(next_line(head), table_.layout.delimiter, fields);
-    if (fields.size() < 2) continue;
-    if (fields[0] == "Y_Unit_Label") table_.layout.units = fields;
-    if (fields[0] == "X_Columns") times = fields[1] != "No";
-    if (fields[0] == "Delta_X") step = fields[1];
-  }
-  double step_s = 0.0;
-  const bool even = !times && parse_table_number(step, table_.layout.decimal, step_s) && step_s > 0.0;
-  if (!even || request_.rate_Hz) return;
-  request_.rate_Hz = 1.0 / step_s;
-  note("the rows are evenly spaced by the Delta_X above the table");
-}
-
 Status Importer::find_columns() {
   const TableLayout& layout = table_.layout;
   std::string_view rest = text_.substr(layout.data_offset);
   while (first_rows_.size() < kFirstRows && !rest.empty()) {
     split_table_fields(next_line(rest), layout.delimiter, first_rows_.emplace_back());
   }
-  const auto& first_row = first_rows_.front();
+  header_ = foreign_columns(layout, first_rows_);
   const bool has_header = !layout.names.empty();
-  for (std::size_t i = 0; i < layout.columns; ++i) {
-    ForeignColumn column;
-    const std::string_view name = has_header ? layout.names[i] : i < first_row.size() ? first_row[i] : "";
-    column.header = name;
-    if (has_header) column.parts = split_name_and_unit(column.header);
-    if (!layout.units.empty() && i < layout.units.size()) {
-      if (const auto unit = find_unit(layout.units[i])) column.parts.unit = unit;
-    }
-    const auto changes = [&](const auto& row) {
-      return i < std::min(row.size(), first_row.size()) && row[i] != first_row[i];
-    };
-    column.constant = first_rows_.size() > 1 && std::none_of(first_rows_.begin(), first_rows_.end(), changes);
-    header_.push_back(std::move(column));
-  }
   auto choice = choose_columns(header_, request_.columns, has_header, true);
   // With a given rate the times of the file are only compared with it.
   if (request_.rate_Hz && !choice) choice = choose_columns(header_, request_.columns, has_header, false);
   if (!choice) return fail(choice.error().message);
-  velocity_ = has_header ? find_velocity(header_) : std::nullopt;
+  velocity_ = find_velocity(header_);
   for (std::size_t role = 0; role < kRoles; ++role) {
     index_[role] = choice->column[role].value_or(kNoColumn);
     if (!choice->column[role] || (role == 0 && request_.rate_Hz)) continue;
@@ -135,15 +107,6 @@ Status Importer::find_columns() {
                             choice->guessed[role]};
   }
   return {};
-}
-
-void Importer::use_unit(std::size_t role, const Unit& unit) {
-  if (role == 0) {
-    times_.use_unit(unit.to_si);
-  } else {
-    to_si_[role] = unit.to_si;
-  }
-  table_.columns[role].unit = unit.name;
 }
 
 // Finds the unit of position or force.
@@ -159,8 +122,7 @@ Status Importer::find_unit_of(std::size_t role) {
   }
   const double volts = role == 2 ? volts_of(column.parts.foreign_unit) : 0.0;
   if (role == 2 && request_.gain_N_per_V) {
-    to_si_[role] = (volts > 0.0 ? volts : 1.0) * *request_.gain_N_per_V;
-    table_.columns[role].unit = "V";
+    use_unit(role, {"V", quantity, (volts > 0.0 ? volts : 1.0) * *request_.gain_N_per_V});
     return {};
   }
   if (volts > 0.0) {
@@ -168,7 +130,7 @@ Status Importer::find_unit_of(std::size_t role) {
                 "\", expected a force; say how many newtons a volt is: --gain N_PER_V");
   }
   if (!unit) {
-    return fail("found no unit of the " + std::string(kRoleNames[role]) + quoted_name(role) + "; add --units " +
+    return fail("found no unit of the " + std::string(kRoleNames[role]) + quoted_name(index_[role]) + "; add --units " +
                 (role == 1 ? "mm (or m, cm, um, inch)" : "N (or mN, kN, g, kg, lbf)") +
                 ", with a comma between two units: --units mm,N");
   }
@@ -183,11 +145,9 @@ Status Importer::find_time_unit() {
   for (const auto& row : first_rows_) fields.push_back(index < row.size() ? row[index] : std::string_view());
   times_ = RowTimes(table_.layout.decimal);
   const double step = times_.examine(fields);
-  if (times_.are_of_a_clock()) {
-    table_.columns[0].unit = "clock";
-    return {};
-  }
-  if (const auto unit = unit_of(Quantity::time, request_, header_[index]); unit && unit->quantity == Quantity::time) {
+  std::optional<Unit> unit = unit_of(Quantity::time, request_, header_[index]);
+  if (times_.are_of_a_clock()) unit = Unit{"clock", Quantity::time, 1.0};
+  if (unit && unit->quantity == Quantity::time) {
     use_unit(0, *unit);
     return {};
   }
@@ -200,7 +160,7 @@ Status Importer::find_time_unit() {
     const std::string choices = possible.empty()
                                     ? "s, ms, us or ns"
                                     : std::string(possible[0].name) + " or --units " + std::string(possible[1].name);
-    return fail("found no unit of the time" + quoted_name(0) + " and steps of " + short_number(step) +
+    return fail("found no unit of the time" + quoted_name(index) + " and steps of " + short_number(step) +
                 "; add --units " + choices + ", or --rate HZ if the rows are evenly spaced");
   }
   use_unit(0, possible.front());
@@ -209,136 +169,123 @@ Status Importer::find_time_unit() {
   return {};
 }
 
-// Splits off the fields of the roles, empty where they are missing.
-void Importer::split(std::string_view line) {
-  split_table_fields(line, table_.layout.delimiter, row_);
-  for (std::size_t i = 0; i < kRoles; ++i) fields_[i] = index_[i] < row_.size() ? row_[index_[i]] : std::string_view();
-}
-
-bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& row) {
-  split(line);
-  if (!request_.rate_Hz && !times_.parse(fields_[0], time)) return false;
-  const char decimal = table_.layout.decimal;
-  if (!parse_table_number(fields_[1], decimal, row.position_m) ||
-      !parse_table_number(fields_[2], decimal, row.force_N)) {
+// Parses the fields of a row. Returns the first column without a valid value, kNoColumn if there is none.
+std::size_t Importer::parse_row(RecordingRow& row) {
+  const auto is_bad = [&](std::size_t index, double to_si, double& value) {
+    if (!parse_table_number(field(index), table_.layout.decimal, value)) return true;
+    value *= to_si;
     return false;
-  }
-  if (velocity_) {
-    const auto field = velocity_->column < row_.size() ? row_[velocity_->column] : std::string_view();
-    if (!parse_table_number(field, decimal, row.velocity_m_per_s)) return false;
-    row.velocity_m_per_s *= velocity_->to_si;
-  }
-  row.position_m *= to_si_[1];
-  row.force_N *= to_si_[2];
-  return true;
+  };
+  if (is_bad(index_[1], to_si_[1], row.position_m)) return index_[1];
+  if (is_bad(index_[2], to_si_[2], row.force_N)) return index_[2];
+  if (velocity_ && is_bad(velocity_->column, velocity_->to_si, row.velocity_m_per_s)) return velocity_->column;
+  const auto time = own_time_ ? times_.since_first(field(index_[0])) : std::nullopt;
+  if (time) row.time_s = to_si_[0] * *time;
+  return time || request_.rate_Hz ? kNoColumn : index_[0];
 }
 
-// Whether a line is a damaged row: the fields of its numbers contain digits.
-bool Importer::is_bad_row(std::string_view line) {
-  split(line);
-  constexpr const char* kDigits = "0123456789";
-  return fields_[1].find_first_of(kDigits) < fields_[1].size() && fields_[2].find_first_of(kDigits) < fields_[2].size();
+// The error of the present row, whose field of this column could not be read.
+Error Importer::unreadable(std::size_t column, std::uint64_t line) const {
+  const std::string_view text = trimmed(field(column));
+  const auto role = static_cast<std::size_t>(std::find(index_.begin(), index_.end(), column) - index_.begin());
+  return fail_at(line, "found " + (text.empty() ? "an empty field" : '"' + printable(text) + '"') + " in column " +
+                           std::to_string(column + 1) + quoted_name(column) + ", expected the " +
+                           (role < kRoles ? kRoleNames[role] : "velocity") +
+                           "; remove the row, repair the value, or leave up to N such rows out: --skip-bad-rows N");
 }
 
-// The error of a row that could not be read.
-Error Importer::explain_row(std::string_view line, std::uint64_t number) {
-  split(line);
-  for (std::size_t role = 0; role < kRoles; ++role) {
-    if (index_[role] == kNoColumn || (role == 0 && request_.rate_Hz)) continue;
-    TableTime time;
-    double value = 0.0;
-    const bool good =
-        role == 0 ? times_.parse(fields_[0], time) : parse_table_number(fields_[role], table_.layout.decimal, value);
-    if (good) continue;
-    const std::string_view field = trimmed(fields_[role]);
-    const std::string found =
-        field.empty() ? "an empty field" : std::string("\"").append(printable(field)).append("\"");
-    return fail_at(number, "found " + found + " in column " + std::to_string(index_[role] + 1) + quoted_name(role) +
-                               ", expected the " + kRoleNames[role] +
-                               "; remove the row, repair the value, or leave up to N such rows out: --skip-bad-rows N");
-  }
-  return fail_at(number, "found no number in column " + std::to_string(velocity_ ? velocity_->column + 1 : 1) +
-                             ", the velocity; remove the row or repair the value");
+// Refuses a position or a force beyond the limits of recordings.
+Status Importer::check_size(const RecordingRow& row, std::uint64_t line) const {
+  const bool position_fits = std::abs(row.position_m) <= kMaximumPosition_m;
+  if (position_fits && std::abs(row.force_N) <= kMaximumForce_N) return {};
+  const std::size_t role = position_fits ? 2 : 1;
+  return fail_at(line, std::string("found a ") + kRoleNames[role] + " of " +
+                           (role == 2 ? short_number(row.force_N) + " N" : short_number(row.position_m) + " m") +
+                           " (column " + std::to_string(index_[role] + 1) + quoted_name(index_[role]) + " in " +
+                           table_.columns[role].unit + "), expected at most " +
+                           (role == 2 ? "1000000 N; check the unit and give it with --units mN"
+                                      : "1 m; check the unit and give it with --units mm") +
+                           ", or choose another column");
 }
 
-// Sets the time of a row. Returns false if it repeats the last one.
-Result<bool> Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRow& row) {
-  if (request_.rate_Hz) {
-    row.time_s = static_cast<double>(table_.recording.rows.size()) / *request_.rate_Hz;
-    return true;
-  }
-  const double last_s = times_.last_s();
-  const RowTimes::Step step = times_.add(time);
-  row.time_s = times_.seconds(time);
-  if (step == RowTimes::Step::repeated) ++repeated_;
-  if (step == RowTimes::Step::after_midnight) {
+// Refuses a time before that of the last row.
+Status Importer::check_time(const RecordingRow& row, std::uint64_t line) {
+  if (times_.midnights() > midnights_) {
     note("the clock passes midnight in line " + std::to_string(line) + ": a day is added from there");
+    ++midnights_;
   }
-  if (step == RowTimes::Step::backward) {
-    return fail_at(line, time_fault_words(quoted_name(0), row.time_s, last_s, table_.recording.rows.size()));
-  }
-  return step != RowTimes::Step::repeated;
+  const auto& rows = table_.recording.rows;
+  if (rows.empty() || row.time_s >= rows.back().time_s) return {};
+  const double last_s = rows.back().time_s;
+  // The mean rate of the rows so far.
+  const std::string rate =
+      rows.size() > 2 ? short_number(std::round(static_cast<double>(rows.size() - 1) / last_s)) : "HZ";
+  return fail_at(line, "found a time " + short_number(last_s - row.time_s) + " s before that of the row above" +
+                           quoted_name(index_[0]) +
+                           ", expected later times in every row; split the file there, or sort its rows; if the rows "
+                           "are evenly spaced, add --rate " +
+                           rate);
 }
 
 // Reads every row in one pass. Other lines are allowed at the end only, except for the number of bad rows that the
 // request allows.
 Status Importer::read_rows() {
+  constexpr const char* kDigits = "0123456789";
   std::string_view rest = text_.substr(table_.layout.data_offset);
   auto& rows = table_.recording.rows;
   std::uint64_t number = table_.layout.data_line - 1;
   std::uint64_t comments = 0;
-  std::uint64_t footer_line = 0;
-  std::string_view footer;
-  std::uint64_t footer_lines = 0;
+  std::uint64_t repeated = 0;
   std::uint64_t bad_rows = 0;
+  std::uint64_t footer_lines = 0;  // other lines since the last row
+  std::uint64_t footer_line = 0;   // the first of them
+  std::string_view footer;
+  std::optional<Error> footer_fault;
   if (!request_.rate_Hz) table_.columns[0].number = index_[0] + 1;
   while (!rest.empty()) {
     const std::string_view line = next_line(rest);
     ++number;
-    TableTime time;
     RecordingRow row;
-    if (!parse_row(line, time, row)) {
+    split_table_fields(line, table_.layout.delimiter, row_);
+    if (const std::size_t bad = parse_row(row); bad != kNoColumn) {
       const std::string_view bare = trimmed(line);
       if (bare.empty()) continue;
       if (bare.starts_with('#')) {
         ++comments;
-        continue;
-      }
-      if (is_bad_row(line)) {
-        if (++bad_rows > request_.skip_bad_rows) return explain_row(line, number);
-        continue;
-      }
-      if (footer_line == 0) {
+      } else if (field(index_[1]).find_first_of(kDigits) < line.size() &&
+                 field(index_[2]).find_first_of(kDigits) < line.size()) {
+        // The fields of its numbers contain digits: a damaged row.
+        if (++bad_rows > request_.skip_bad_rows) return unreadable(bad, number);
+      } else if (++footer_lines == 1) {
         footer_line = number;
         footer = line;
+        footer_fault = unreadable(bad, number);
       }
-      ++footer_lines;
       continue;
     }
     // Lines that are followed by rows are no footer.
-    bad_rows += std::exchange(footer_lines, 0);
-    if (footer_line > 0 && bad_rows > request_.skip_bad_rows) return explain_row(footer, footer_line);
-    footer_line = 0;
+    bad_rows += footer_lines;
+    if (footer_lines > 0 && bad_rows > request_.skip_bad_rows) return *footer_fault;
+    footer_lines = 0;
     if (request_.flip_position) {
       row.position_m = -row.position_m;
       row.velocity_m_per_s = -row.velocity_m_per_s;
     }
     if (request_.flip_force) row.force_N = -row.force_N;
-    const bool position_fits = std::abs(row.position_m) <= kMaximumPosition_m;
-    if (!position_fits || !(std::abs(row.force_N) <= kMaximumForce_N)) {
-      const std::size_t role = position_fits ? 2 : 1;
-      return fail_at(number, size_fault_words(row, table_.columns[role], role, quoted_name(role)));
+    if (const Status status = check_size(row, number); !status) return status;
+    if (request_.rate_Hz) {
+      if (own_time_) own_seconds_ = row.time_s;
+      row.time_s = static_cast<double>(rows.size()) / *request_.rate_Hz;
+    } else if (const Status status = check_time(row, number); !status) {
+      return status;
+    } else if (!rows.empty() && row.time_s == rows.back().time_s) {
+      ++repeated;
+      continue;
     }
-    const auto added = add_time(time, number, row);
-    if (!added) return added.error();
-    if (*added) rows.push_back(row);
-    if (own_time_ && times_.parse(fields_[0], time)) {
-      times_.add(time);
-      own_seconds_ = times_.seconds(time);
-    }
+    rows.push_back(row);
   }
   if (comments > 0) note("left out " + count_of(comments, "comment line") + " between the rows");
-  if (repeated_ > 0) note("left out " + count_of(repeated_, "row") + " with the time of the previous row");
+  if (repeated > 0) note("left out " + count_of(repeated, "row") + " with the time of the previous row");
   if (bad_rows > 0) note("left out " + count_of(bad_rows, "unreadable row"));
   if (footer_lines > 0) {
     note("left out " + count_of(footer_lines, "line") + " after the table, from line " + std::to_string(footer_line) +
@@ -348,22 +295,18 @@ Status Importer::read_rows() {
 }
 
 void Importer::describe_time() {
-  if (request_.rate_Hz)
-    return note("the rows are evenly spaced at the --rate of " + short_number(*request_.rate_Hz) + " Hz");
-  if (times_.are_of_a_clock())
-    return note(times_.have_dates() ? "the times are dates: time_s is 0 at the first row"
-                                    : "the times are times of day: time_s is 0 at the first row");
-  const double start_s = times_.first_s();
-  if (start_s != 0.0) note("the first time was " + short_number(start_s) + " s: time_s is 0 there");
-}
-
-// Warns if the given rate changes the duration.
-void Importer::check_rate() {
-  if (!own_time_) return;
-  const double seconds = table_.recording.rows.back().time_s;
-  if (std::abs(seconds - own_seconds_) <= kRateTolerance * own_seconds_) return;
-  note("warning: with --rate " + short_number(*request_.rate_Hz) + " the recording is " + short_number(seconds) +
-       " s long, but " + short_number(own_seconds_) + " s by the times in the file");
+  if (request_.rate_Hz) {
+    note("the rows are evenly spaced at the --rate of " + short_number(*request_.rate_Hz) + " Hz");
+    const double seconds = table_.recording.rows.back().time_s;
+    if (!own_time_ || std::abs(seconds - own_seconds_) <= kRateTolerance * own_seconds_) return;
+    note("warning: with --rate " + short_number(*request_.rate_Hz) + " the recording is " + short_number(seconds) +
+         " s long, but " + short_number(own_seconds_) + " s by the times in the file");
+  } else if (times_.are_of_a_clock()) {
+    note(times_.have_dates() ? "the times are dates: time_s is 0 at the first row"
+                             : "the times are times of day: time_s is 0 at the first row");
+  } else if (const double start_s = to_si_[0] * times_.first(); start_s != 0.0) {
+    note("the first time was " + short_number(start_s) + " s: time_s is 0 there");
+  }
 }
 
 // Drops a velocity that is not the derivative of the position (unsigned, a set value): the slope of one over the other
@@ -390,15 +333,20 @@ Result<ImportedTable> Importer::run() {
   auto layout = find_table_layout(text_, request_.decimal);
   if (!layout) return fail(layout.error().message);
   table_.layout = std::move(*layout);
-  read_labview_head();
+  if (table_.layout.step_s > 0.0 && !request_.rate_Hz) {
+    request_.rate_Hz = 1.0 / table_.layout.step_s;
+    note("the rows are evenly spaced by the Delta_X above the table");
+  }
   if (const Status status = find_columns(); !status) return status.error();
-  if (!request_.rate_Hz) {
-    if (const Status status = find_time_unit(); !status) return status.error();
-  } else if (index_[0] != kNoColumn) {
+  if (index_[0] != kNoColumn) {
     const std::size_t notes = table_.notes.size();
-    own_time_ = find_time_unit().ok();
-    table_.notes.resize(notes);
-    table_.columns[0] = {};
+    const Status status = find_time_unit();
+    own_time_ = status.ok();
+    if (!status && !request_.rate_Hz) return status.error();
+    if (request_.rate_Hz) {
+      table_.notes.resize(notes);
+      table_.columns[0] = {};
+    }
   }
   for (const std::size_t role : {1u, 2u}) {
     if (const Status status = find_unit_of(role); !status) return status.error();
@@ -409,7 +357,6 @@ Result<ImportedTable> Importer::run() {
                 std::to_string(kRecordingMinimumRows) + "; record for longer");
   }
   describe_time();
-  check_rate();
   check_velocity();
   table_.layout.names.clear();
   table_.layout.units.clear();
@@ -423,6 +370,30 @@ Result<ImportedTable> import_table(const std::string& path, const ImportRequest&
   const auto text = read_foreign_text(path);
   if (!text) return text.error();
   return Importer(*text, path, request).run();
+}
+
+std::string column_words(const ImportedColumn& column) {
+  if (column.number == 0) return "from --rate";
+  const std::string name = column.header.empty() ? "" : " \"" + printable(column.header) + "\"";
+  return "column " + std::to_string(column.number) + name + " in " + column.unit + (column.guessed ? " (guessed)" : "");
+}
+
+std::vector<std::string> flipped_roles(const ImportRequest& request) {
+  std::vector<std::string> flips;
+  if (request.flip_position) flips.emplace_back("position");
+  if (request.flip_force) flips.emplace_back("force");
+  return flips;
+}
+
+std::vector<std::string> import_origin(const std::string& file, const ImportRequest& request,
+                                       const ImportedTable& table) {
+  std::vector<std::string> comments = {"imported by palpate import from " +
+                                       std::filesystem::path(file).filename().string()};
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    comments.push_back(std::string(kRoleNames[role]) + ": " + column_words(table.columns[role]));
+  }
+  for (const std::string& flip : flipped_roles(request)) comments.push_back(flip + ": sign reversed");
+  return comments;
 }
 
 }  // namespace palpate

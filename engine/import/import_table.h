@@ -3,7 +3,7 @@
 //   foreign_text   bytes to text          table_layout   separator, decimal mark, header
 //   units          units in headers       column_roles   time, position, force
 //   table_number   one cell               row_times      clocks, units of time, midnight
-//   import_table   all rows, units, sign
+//   import_table   all rows, units, sign; descriptions of the result
 //
 // Nothing is repaired without a note: what cannot be determined is an error that shows the header and the option to
 // add.
@@ -54,5 +54,14 @@ struct ImportedTable {
 
 // Reads `path`. Errors: "path: ..." or "path:line: ...".
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request);
+
+// Descriptions for the terminal, the window and the comments of the recording.
+// The source of a role's values: column 2 "Weg [mm]" in mm (guessed).
+std::string column_words(const ImportedColumn& column);
+// The roles whose sign was changed.
+std::vector<std::string> flipped_roles(const ImportRequest& request);
+// The comments of the recording on its origin, without path and date.
+std::vector<std::string> import_origin(const std::string& file, const ImportRequest& request,
+                                       const ImportedTable& table);
 
 }  // namespace palpate

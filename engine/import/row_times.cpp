@@ -1,28 +1,133 @@
 #include "engine/import/row_times.h"
 
 #include <algorithm>
-#include <cstddef>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <string>
 #include <utility>
+
+#include "engine/base/csv_scanner.h"
+#include "engine/import/table_number.h"
 
 namespace palpate {
 namespace {
 
 constexpr std::int64_t kDay_s = 86400;
 
+double since(const TableTime& time, const TableTime& first) {
+  return static_cast<double>(time.whole - first.whole) + (time.fraction - first.fraction);
+}
+
+// Parses and removes up to `most` digits at the start of `text`.
+bool parse_digits(std::string_view& text, std::size_t most, int& value) {
+  const auto parsed = std::from_chars(text.data(), text.data() + std::min(text.size(), most), value);
+  if (text.starts_with('-') || parsed.ec != std::errc()) return false;
+  text.remove_prefix(static_cast<std::size_t>(parsed.ptr - text.data()));
+  return true;
+}
+
+bool skip_one_of(std::string_view& text, std::string_view any_of) {
+  if (text.empty() || any_of.find(text.front()) == std::string_view::npos) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
+// Parses and removes a date at the start of `text`. Only differences between rows count, so that within a day either
+// reading of 3/5/2024 is adequate.
+bool parse_date(std::string_view& text, std::int64_t& days) {
+  std::string_view rest = text;
+  std::array<int, 3> parts{};
+  if (!parse_digits(rest, 4, parts[0])) return false;
+  if (rest.empty() || (rest.front() != '-' && rest.front() != '/' && rest.front() != '.')) return false;
+  const char separator = rest.front();
+  const std::string_view mark(&separator, 1);
+  if (!skip_one_of(rest, mark) || !parse_digits(rest, 2, parts[1]) || !skip_one_of(rest, mark) ||
+      !parse_digits(rest, 4, parts[2])) {
+    return false;
+  }
+  if (parts[0] < 32) std::swap(parts[0], parts[2]);
+  if (parts[1] > 12) std::swap(parts[1], parts[2]);
+  if (parts[0] < 32 || parts[1] < 1 || parts[1] > 12 || parts[2] < 1 || parts[2] > 31) return false;
+  // Days since 1970; the library's calendar takes the 31st of every month.
+  days = (std::chrono::sys_days(std::chrono::year(parts[0]) / parts[1] / 1).time_since_epoch()).count() + parts[2] - 1;
+  text = rest;
+  return true;
+}
+
+bool has_date(std::string_view text) {
+  text = trimmed(text);
+  std::int64_t days = 0;
+  return parse_date(text, days);
+}
+
+// A plain number as a time.
+std::optional<TableTime> parse_number_time(std::string_view text, char decimal) {
+  TableTime time;
+  text = trimmed(text);
+  const auto whole = std::from_chars(text.data(), text.data() + text.size(), time.whole);
+  const std::string_view rest = text.substr(static_cast<std::size_t>(whole.ptr - text.data()));
+  if (whole.ec == std::errc() && rest.empty()) return time;
+  if (whole.ec == std::errc() && time.whole > 0 && rest.front() == decimal &&
+      rest.find_first_not_of("0123456789", 1) == std::string_view::npos) {
+    if (rest.size() > 1) parse_table_number(std::string("0").append(rest), decimal, time.fraction);
+    return time;
+  }
+  double value = 0.0;
+  constexpr double kLargest = 9e18;  // fits in 64 bits
+  if (!parse_table_number(text, decimal, value) || std::abs(value) > kLargest) return std::nullopt;
+  return TableTime{static_cast<std::int64_t>(std::floor(value)), value - std::floor(value)};
+}
+
+std::optional<TableTime> parse_clock_time(std::string_view text) {
+  text = trimmed(text);
+  std::int64_t days = 0;
+  if (parse_date(text, days)) {
+    if (!skip_one_of(text, "T ")) return std::nullopt;
+    text = trimmed(text);
+  }
+  int first = 0;
+  int second = 0;
+  int third = 0;
+  if (!parse_digits(text, 4, first) || !skip_one_of(text, ":") || !parse_digits(text, 2, second) || second > 59)
+    return std::nullopt;
+  const bool has_hours = skip_one_of(text, ":");
+  if (has_hours && (!parse_digits(text, 2, third) || third > 60)) return std::nullopt;
+  TableTime time;
+  if (text.starts_with('.') || text.starts_with(',')) {
+    const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
+    const std::string digits = std::string("0.").append(text.substr(1, end - 1));
+    if (end > 1) std::from_chars(digits.data(), digits.data() + digits.size(), time.fraction);
+    text.remove_prefix(end);
+  }
+  const std::int64_t hours = has_hours ? first : 0;
+  time.whole = days * kDay_s + hours * 3600 + (has_hours ? second : first) * 60 + (has_hours ? third : second);
+  text = trimmed(text);
+  const std::string half = lower_ascii(text.substr(0, 2));
+  if (half == "am" || half == "pm") {
+    if (half == "pm" && first < 12) time.whole += kDay_s / 2;
+    if (half == "am" && first == 12) time.whole -= kDay_s / 2;
+    text.remove_prefix(2);
+  }
+  // The time zone, "Z" or "+01:00", is the same in every row.
+  const bool ends = text.empty() || text == "Z" || text.front() == '+' || text.front() == '-';
+  return ends ? std::optional(time) : std::nullopt;
+}
+
 }  // namespace
 
+bool is_of_a_clock(std::string_view field) { return has_date(field) || parse_clock_time(field); }
+
 double RowTimes::examine(const std::vector<std::string_view>& fields) {
+  clock_ = !fields.empty() && !parse_number_time(fields.front(), decimal_) && parse_clock_time(fields.front());
+  has_date_ = clock_ && has_date(fields.front());
   std::vector<double> steps;
-  TableTime last;
-  for (std::size_t row = 0; row < fields.size(); ++row) {
-    TableTime time;
-    if (row == 0) {
-      clock_ = !parse_number_time(fields[row], decimal_, time) && parse_clock_time(fields[row], time);
-      has_date_ = clock_ && has_date(fields[row]);
-    }
-    if (!parse(fields[row], time)) break;
-    const double step = static_cast<double>(time.whole - last.whole) + (time.fraction - last.fraction);
-    if (row > 0 && step > 0.0) steps.push_back(step);
+  std::optional<TableTime> last;
+  for (const std::string_view field : fields) {
+    const auto time = parse(field);
+    if (!time) break;
+    if (const double step = last ? since(*time, *last) : 0.0; step > 0.0) steps.push_back(step);
     last = time;
   }
   if (steps.empty()) return 0.0;
@@ -31,27 +136,20 @@ double RowTimes::examine(const std::vector<std::string_view>& fields) {
   return *middle;
 }
 
-bool RowTimes::parse(std::string_view field, TableTime& time) const {
-  return clock_ ? parse_clock_time(field, time) : parse_number_time(field, decimal_, time);
+std::optional<TableTime> RowTimes::parse(std::string_view field) const {
+  return clock_ ? parse_clock_time(field) : parse_number_time(field, decimal_);
 }
 
-RowTimes::Step RowTimes::add(const TableTime& time) noexcept {
-  if (!std::exchange(started_, true)) {
-    first_ = time;
-    return Step::later;
+std::optional<double> RowTimes::since_first(std::string_view field) {
+  auto time = parse(field);
+  if (!time) return std::nullopt;
+  if (!first_) first_ = time;
+  time->whole += midnights_ * kDay_s;
+  if (clock_ && !has_date_ && last_ - since(*time, *first_) > 0.5 * static_cast<double>(kDay_s)) {
+    ++midnights_;
+    time->whole += kDay_s;
   }
-  const bool midnight = clock_ && !has_date_ && last_s_ - seconds(time) > 0.5 * static_cast<double>(kDay_s);
-  if (midnight) ++midnights_;
-  const double now_s = seconds(time);
-  if (now_s == last_s_) return Step::repeated;
-  if (!(now_s > last_s_)) return Step::backward;
-  last_s_ = now_s;
-  return midnight ? Step::after_midnight : Step::later;
-}
-
-double RowTimes::seconds(const TableTime& time) const noexcept {
-  return (static_cast<double>(time.whole - first_.whole + midnights_ * kDay_s) + (time.fraction - first_.fraction)) *
-         to_si_;
+  return last_ = since(*time, *first_);
 }
 
 }  // namespace palpate

@@ -3,12 +3,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
-#include "engine/import/table_number.h"
-
 namespace palpate {
+
+// Whether `field` is a date or the time of a clock:
+// "2024-03-05T14:03:22.123Z", "2024-03-05 14:03:22,5", "05.03.2024 14:03:22.1",
+// "3/5/2024 2:03:22.5 PM", "14:03:22.123", "03:22.123".
+bool is_of_a_clock(std::string_view field);
+
+// A time as whole units and a fraction, so that nanoseconds since 1970 keep their digits. Of a clock: seconds since
+// 1970, or since midnight.
+struct TableTime {
+  std::int64_t whole = 0;
+  double fraction = 0.0;
+};
 
 class RowTimes {
  public:
@@ -19,29 +30,23 @@ class RowTimes {
   double examine(const std::vector<std::string_view>& fields);
   bool are_of_a_clock() const noexcept { return clock_; }
   bool have_dates() const noexcept { return has_date_; }
-  void use_unit(double to_si) noexcept { to_si_ = to_si; }
 
-  bool parse(std::string_view field, TableTime& time) const;
-
-  enum class Step { later, after_midnight, repeated, backward };
-  // Adds the time of the next row. A repeated or earlier time is not added. A clock without dates that goes back by
-  // more than half a day has passed midnight.
-  Step add(const TableTime& time) noexcept;
-  // Since the first time, s.
-  double seconds(const TableTime& time) const noexcept;
-  double last_s() const noexcept { return last_s_; }
-  // The first time itself, s.
-  double first_s() const noexcept { return to_si_ * (static_cast<double>(first_.whole) + first_.fraction); }
+  // The time since that of the first call, in the unit of the file (a clock: s); none if `field` is no time. A clock
+  // without dates that goes back by more than half a day has passed midnight.
+  std::optional<double> since_first(std::string_view field);
+  int midnights() const noexcept { return midnights_; }
+  // The time of the first call itself.
+  double first() const noexcept { return first_ ? static_cast<double>(first_->whole) + first_->fraction : 0.0; }
 
  private:
+  std::optional<TableTime> parse(std::string_view field) const;
+
   char decimal_;
   bool clock_ = false;
   bool has_date_ = false;
-  double to_si_ = 1.0;
-  bool started_ = false;
-  TableTime first_;
-  double last_s_ = 0.0;
-  std::int64_t midnights_ = 0;
+  std::optional<TableTime> first_;
+  double last_ = 0.0;
+  int midnights_ = 0;
 };
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/import/row_times.h"
 #include "engine/import/table_number.h"
 #include "engine/import/units.h"
 
@@ -15,26 +16,16 @@ constexpr std::size_t kSampleLines = 2000;
 constexpr std::size_t kSampleBytes = 1024 * 1024;
 // A header is at most this many lines above the numbers: units, a type, a rule may follow it.
 constexpr std::size_t kHeaderReach = 6;
-constexpr std::array<Delimiter, 4> kDelimiters = {Delimiter::tab, Delimiter::semicolon, Delimiter::comma,
-                                                  Delimiter::blanks};
-constexpr std::array<std::string_view, 4> kDelimiterNames = {"comma", "semicolon", "tab", "blanks"};
+// In the order in which they are tried.
+constexpr std::array kDelimiters = {Delimiter{"tab", "\t"}, Delimiter{"semicolon", ";"}, Delimiter{"comma", ","},
+                                    Delimiter{"blanks", " \t"}};
 
-struct SampleLine {
-  std::string_view text;
-  std::size_t offset = 0;
-};
-
-std::vector<SampleLine> sample_lines(std::string_view text) {
-  std::vector<SampleLine> lines;
-  const char* const begin = text.data();
+std::vector<std::string_view> sample_lines(std::string_view text) {
+  std::vector<std::string_view> lines;
   const bool cut = text.size() > kSampleBytes;
   text = text.substr(0, kSampleBytes);
-  while (!text.empty() && lines.size() < kSampleLines) {
-    const auto offset = static_cast<std::size_t>(text.data() - begin);
-    const std::string_view line = next_line(text);
-    if (text.empty() && cut) break;  // the sample ends inside this line
-    lines.push_back({line, offset});
-  }
+  while (!text.empty() && lines.size() < kSampleLines) lines.push_back(next_line(text));
+  if (cut && text.empty()) lines.pop_back();  // the sample ends inside this line
   return lines;
 }
 
@@ -47,36 +38,13 @@ std::string_view unquoted(std::string_view field) {
 
 bool is_cell_of_numbers(std::string_view field, char decimal) {
   double value = 0.0;
-  TableTime time;
-  return parse_table_number(field, decimal, value) || is_missing_value(field) || has_date(field) ||
-         parse_clock_time(field, time);
+  return parse_table_number(field, decimal, value) || is_missing_value(field) || is_of_a_clock(field);
 }
 
 // Whether a field begins like a number and is none, which indicates a wrong reading.
 bool is_mangled(std::string_view field) {
   return field.find_first_of("0123456789") < 2 &&
          field.find_first_not_of("0123456789.,;+-eE \t") == std::string_view::npos;
-}
-
-struct RowLooks {
-  std::size_t fields = 0;
-  std::size_t numbers = 0;
-  std::size_t mangled = 0;
-  bool is_data() const { return numbers >= 2 && 2 * numbers >= fields; }
-};
-
-RowLooks look_at(std::string_view line, Delimiter delimiter, char decimal, std::vector<std::string_view>& fields) {
-  split_table_fields(line, delimiter, fields);
-  RowLooks looks;
-  looks.fields = fields.size();
-  for (const std::string_view field : fields) {
-    if (is_cell_of_numbers(field, decimal)) {
-      ++looks.numbers;
-    } else if (is_mangled(field)) {
-      ++looks.mangled;
-    }
-  }
-  return looks;
 }
 
 // The table for one combination of separator and decimal mark.
@@ -93,22 +61,27 @@ struct Reading {
   }
 };
 
-Reading read_as(const std::vector<SampleLine>& lines, Delimiter delimiter, char decimal) {
+Reading read_as(const std::vector<std::string_view>& lines, const Delimiter& delimiter, char decimal) {
   Reading best;
   std::vector<std::string_view> fields;
+  const auto count_if = [&](auto&& accepts) {
+    return static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), accepts));
+  };
+  const auto is_number = [&](std::string_view field) { return is_cell_of_numbers(field, decimal); };
   for (std::size_t i = 0; i < lines.size();) {
     Reading run;
     run.first = i;
     std::vector<std::size_t> counts;
     for (; i < lines.size(); ++i) {
-      if (trimmed(lines[i].text).empty()) continue;
-      const RowLooks looks = look_at(lines[i].text, delimiter, decimal, fields);
-      if (!looks.is_data()) break;
-      if (looks.fields >= counts.size()) counts.resize(looks.fields + 1);
-      ++counts[looks.fields];
+      if (trimmed(lines[i]).empty()) continue;
+      split_table_fields(lines[i], delimiter, fields);
+      const std::size_t numbers = count_if(is_number);
+      if (numbers < 2 || 2 * numbers < fields.size()) break;
+      if (fields.size() >= counts.size()) counts.resize(fields.size() + 1);
+      ++counts[fields.size()];
       ++run.rows;
-      run.numbers += looks.numbers;
-      run.mangled += looks.mangled;
+      run.numbers += numbers;
+      run.mangled += count_if([&](std::string_view field) { return is_mangled(field) && !is_number(field); });
     }
     run.layout.columns = static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
     if (run.numbers > best.numbers) best = run;
@@ -120,18 +93,16 @@ Reading read_as(const std::vector<SampleLine>& lines, Delimiter delimiter, char 
 }
 
 // Skips first lines of a run with fewer fields than the others: they end a preamble ("Rate 1000").
-void skip_short_rows(Reading& reading, const std::vector<SampleLine>& lines) {
+void skip_short_rows(std::string_view text, const std::vector<std::string_view>& lines, Reading& reading) {
   std::vector<std::string_view> fields;
-  const std::size_t end = std::min(lines.size(), reading.first + kHeaderReach);
-  std::size_t first = reading.first;
-  for (std::size_t i = reading.first; i < end; ++i) {
-    split_table_fields(lines[i].text, reading.layout.delimiter, fields);
-    first = i;
-    if (fields.size() >= reading.layout.columns) break;
-  }
-  reading.first = first;
-  reading.layout.data_line = first + 1;
-  reading.layout.data_offset = lines[first].offset;
+  const auto is_short = [&](std::string_view line) {
+    split_table_fields(line, reading.layout.delimiter, fields);
+    return fields.size() < reading.layout.columns;
+  };
+  const std::size_t last = std::min(lines.size(), reading.first + kHeaderReach) - 1;
+  while (reading.first < last && is_short(lines[reading.first])) ++reading.first;
+  reading.layout.data_line = reading.first + 1;
+  reading.layout.data_offset = static_cast<std::size_t>(lines[reading.first].data() - text.data());
 }
 
 // Removes the mark of a comment before the names.
@@ -173,7 +144,7 @@ bool split_header(std::string_view line, const TableLayout& layout, std::vector<
   const std::string_view bare = without_comment_mark(line);
   for (const std::string_view text : {line, bare}) {
     split_table_fields(text, layout.delimiter, fields);
-    if (layout.delimiter != Delimiter::blanks) {
+    if (!layout.delimiter.is_blanks()) {
       if (fields.size() >= layout.columns) return true;
       continue;
     }
@@ -183,7 +154,7 @@ bool split_header(std::string_view line, const TableLayout& layout, std::vector<
     split_at_wide_gaps(text, fields);
     if (fields.size() == layout.columns) return true;
   }
-  for (const Delimiter other : kDelimiters) {
+  for (const Delimiter& other : kDelimiters) {
     split_table_fields(bare, other, fields);
     if (fields.size() == layout.columns) return true;
   }
@@ -191,10 +162,10 @@ bool split_header(std::string_view line, const TableLayout& layout, std::vector<
 }
 
 // Splits a header of a table of R: the column of row numbers has no name, so the header has one field less.
-bool split_header_of_row_names(std::string_view line, const Reading& reading, const std::vector<SampleLine>& lines,
-                               std::vector<std::string_view>& fields) {
+bool split_header_of_row_names(std::string_view line, const Reading& reading,
+                               const std::vector<std::string_view>& lines, std::vector<std::string_view>& fields) {
   double number = 0.0;
-  split_table_fields(lines[reading.first].text, reading.layout.delimiter, fields);
+  split_table_fields(lines[reading.first], reading.layout.delimiter, fields);
   if (fields.empty() || !parse_table_number(fields.front(), '.', number) || number != 1.0) return false;
   split_table_fields(line, reading.layout.delimiter, fields);
   if (fields.size() + 1 != reading.layout.columns) return false;
@@ -225,15 +196,14 @@ bool is_names_row(const std::vector<std::string_view>& fields) {
   return names >= 2;
 }
 
-void find_header(Reading& reading, const std::vector<SampleLine>& lines) {
+void find_header(Reading& reading, const std::vector<std::string_view>& lines) {
   TableLayout& layout = reading.layout;
   std::vector<std::string_view> fields;
   std::size_t seen = 0;
   for (std::size_t i = reading.first; i-- > 0 && seen < kHeaderReach;) {
-    if (trimmed(lines[i].text).empty()) continue;
+    if (trimmed(lines[i]).empty()) continue;
     ++seen;
-    if (!split_header(lines[i].text, layout, fields) &&
-        !split_header_of_row_names(lines[i].text, reading, lines, fields)) {
+    if (!split_header(lines[i], layout, fields) && !split_header_of_row_names(lines[i], reading, lines, fields)) {
       continue;
     }
     fields.resize(layout.columns);
@@ -247,6 +217,24 @@ void find_header(Reading& reading, const std::vector<SampleLine>& lines) {
   }
 }
 
+// Text files of LabVIEW have the units of the columns above the table and, if the table has no times, the interval of
+// the rows.
+void read_labview_head(std::string_view text, TableLayout& layout) {
+  std::string_view head = text.substr(0, layout.data_offset);
+  std::vector<std::string_view> fields;
+  std::string_view step;
+  bool times = true;
+  while (!head.empty()) {
+    split_table_fields(next_line(head), layout.delimiter, fields);
+    if (fields.size() < 2) continue;
+    if (fields[0] == "Y_Unit_Label") layout.units = fields;
+    if (fields[0] == "X_Columns") times = fields[1] != "No";
+    if (fields[0] == "Delta_X") step = fields[1];
+  }
+  double step_s = 0.0;
+  if (!times && parse_table_number(step, layout.decimal, step_s) && step_s > 0.0) layout.step_s = step_s;
+}
+
 // Whether a comma in the numbers can only be a decimal mark: not followed by exactly three digits, or after a single 0
 // or more than three digits.
 bool proves_decimal_comma(std::string_view field) {
@@ -258,11 +246,11 @@ bool proves_decimal_comma(std::string_view field) {
   return end - comma - 1 != 3 || whole.empty() || whole.front() == '0' || whole.size() > 3;
 }
 
-Status check_decimal_comma(const Reading& reading, const std::vector<SampleLine>& lines) {
+Status check_decimal_comma(const Reading& reading, const std::vector<std::string_view>& lines) {
   std::vector<std::string_view> fields;
   std::string_view example;
   for (std::size_t i = reading.first; i < lines.size(); ++i) {
-    split_table_fields(lines[i].text, reading.layout.delimiter, fields);
+    split_table_fields(lines[i], reading.layout.delimiter, fields);
     for (const std::string_view field : fields) {
       double value = 0.0;
       if (!parse_table_number(field, ',', value) || field.find(',') == std::string_view::npos) continue;
@@ -278,7 +266,11 @@ Status check_decimal_comma(const Reading& reading, const std::vector<SampleLine>
 
 }  // namespace
 
-std::string_view delimiter_name(Delimiter delimiter) { return kDelimiterNames[static_cast<std::size_t>(delimiter)]; }
+std::string TableLayout::words(std::string_view encoding) const {
+  return std::string(delimiter.name) + " between fields, decimal " + decimal_name() + ", " + std::string(encoding) +
+         (header_line > 0 ? ", header in line " + std::to_string(header_line) : ", no header") +
+         ", numbers from line " + std::to_string(data_line);
+}
 
 std::string_view next_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
@@ -288,30 +280,28 @@ std::string_view next_line(std::string_view& text) {
   return line;
 }
 
-void split_table_fields(std::string_view line, Delimiter delimiter, std::vector<std::string_view>& fields) {
-  constexpr std::string_view kMarks[] = {",", ";", "\t", " \t"};
-  const std::string_view marks = kMarks[static_cast<std::size_t>(delimiter)];
+void split_table_fields(std::string_view line, const Delimiter& delimiter, std::vector<std::string_view>& fields) {
   fields.clear();
-  if (delimiter == Delimiter::blanks) line = trimmed(line);
+  if (delimiter.is_blanks()) line = trimmed(line);
   for (std::size_t begin = 0; begin <= line.size();) {
     std::size_t end = begin;
-    const std::size_t text = delimiter == Delimiter::blanks ? begin : line.find_first_not_of(" ", begin);
+    const std::size_t text = delimiter.is_blanks() ? begin : line.find_first_not_of(" ", begin);
     if (text < line.size() && line[text] == '"') end = std::min(line.find('"', text + 1), line.size());
-    end = std::min(line.find_first_of(marks, end), line.size());
+    end = std::min(line.find_first_of(delimiter.marks, end), line.size());
     fields.push_back(unquoted(line.substr(begin, end - begin)));
     begin = end + 1;
-    if (delimiter == Delimiter::blanks) begin = std::min(line.find_first_not_of(marks, begin), line.size() + 1);
+    if (delimiter.is_blanks()) begin = std::min(line.find_first_not_of(delimiter.marks, begin), line.size() + 1);
   }
   while (!fields.empty() && fields.back().empty()) fields.pop_back();
 }
 
 Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> given_decimal) {
-  const std::vector<SampleLine> lines = sample_lines(text);
+  const std::vector<std::string_view> lines = sample_lines(text);
   Reading best;
-  for (const Delimiter delimiter : kDelimiters) {
+  for (const Delimiter& delimiter : kDelimiters) {
     for (const char decimal : {'.', ','}) {
       if (given_decimal && *given_decimal != decimal) continue;
-      if (delimiter == Delimiter::comma && decimal == ',') continue;
+      if (delimiter.name == "comma" && decimal == ',') continue;
       const Reading reading = read_as(lines, delimiter, decimal);
       if (reading.rows > 0 && (best.rows == 0 || reading.better_than(best))) best = reading;
     }
@@ -321,8 +311,9 @@ Result<TableLayout> find_table_layout(std::string_view text, std::optional<char>
                  (lines.size() == 1 ? " line" : " lines") +
                  ", expected a table with columns of time, position and force; export the recording as CSV"};
   }
-  skip_short_rows(best, lines);
+  skip_short_rows(text, lines, best);
   find_header(best, lines);
+  read_labview_head(text, best.layout);
   if (best.layout.decimal == ',' && !given_decimal) {
     if (const Status status = check_decimal_comma(best, lines); !status) return status.error();
   }

@@ -19,11 +19,15 @@
 
 namespace palpate {
 
-enum class Delimiter { comma, semicolon, tab, blanks };
-std::string_view delimiter_name(Delimiter delimiter);
+struct Delimiter {
+  std::string_view name;
+  std::string_view marks;  // characters that separate two fields
+
+  bool is_blanks() const noexcept { return marks.size() > 1; }
+};
 
 struct TableLayout {
-  Delimiter delimiter = Delimiter::comma;
+  Delimiter delimiter;
   char decimal = '.';
   std::size_t columns = 0;              // of a row of numbers
   std::vector<std::string_view> names;  // one a column; empty without a header
@@ -31,6 +35,11 @@ struct TableLayout {
   std::uint64_t header_line = 0;        // from 1; 0 without a header
   std::uint64_t data_line = 0;
   std::size_t data_offset = 0;  // in the text
+  double step_s = 0.0;          // interval of the rows, as text files of LabVIEW have it above a table without times
+
+  const char* decimal_name() const noexcept { return decimal == ',' ? "comma" : "point"; }
+  // "semicolon between fields, decimal comma, UTF-8, ..."
+  std::string words(std::string_view encoding) const;
 };
 
 // `given_decimal`: the decimal mark if the user has given it. Errors (without the file's name): no rows of numbers; a
@@ -39,7 +48,7 @@ Result<TableLayout> find_table_layout(std::string_view text, std::optional<char>
 
 // The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
 // line are omitted.
-void split_table_fields(std::string_view line, Delimiter delimiter, std::vector<std::string_view>& fields);
+void split_table_fields(std::string_view line, const Delimiter& delimiter, std::vector<std::string_view>& fields);
 
 // Removes the first line from `text` and returns it without its line end.
 std::string_view next_line(std::string_view& text);

@@ -1,22 +1,15 @@
 #include "engine/import/table_number.h"
 
-#include <algorithm>
 #include <array>
-#include <charconv>
-#include <chrono>
-#include <cmath>
 #include <string>
-#include <system_error>
 
 #include "engine/base/csv_scanner.h"
-#include "engine/import/units.h"
 
 namespace palpate {
 namespace {
 
 // Longer cells are no numbers; doubles written out take at most 24 characters.
 constexpr std::size_t kLongestNumber = 64;
-constexpr std::int64_t kSecondsPerDay = 86400;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -52,42 +45,6 @@ std::size_t with_decimal_point(std::string_view text, char decimal, char* buffer
   return unmistakable ? length : 0;
 }
 
-// Parses and removes up to `most` digits at the start of `text`.
-bool parse_digits(std::string_view& text, std::size_t most, int& value) {
-  const auto parsed = std::from_chars(text.data(), text.data() + std::min(text.size(), most), value);
-  if (text.empty() || !is_digit(text.front()) || parsed.ec != std::errc()) return false;
-  text.remove_prefix(static_cast<std::size_t>(parsed.ptr - text.data()));
-  return true;
-}
-
-bool skip_one_of(std::string_view& text, std::string_view any_of) {
-  if (text.empty() || any_of.find(text.front()) == std::string_view::npos) return false;
-  text.remove_prefix(1);
-  return true;
-}
-
-// Parses and removes a date at the start of `text`. Only differences between rows count, so that within a day either
-// reading of 3/5/2024 is adequate.
-bool parse_date(std::string_view& text, std::int64_t& days) {
-  std::string_view rest = text;
-  std::array<int, 3> parts{};
-  if (!parse_digits(rest, 4, parts[0])) return false;
-  if (rest.empty() || (rest.front() != '-' && rest.front() != '/' && rest.front() != '.')) return false;
-  const char separator = rest.front();
-  const std::string_view mark(&separator, 1);
-  if (!skip_one_of(rest, mark) || !parse_digits(rest, 2, parts[1]) || !skip_one_of(rest, mark) ||
-      !parse_digits(rest, 4, parts[2])) {
-    return false;
-  }
-  if (parts[0] < 32) std::swap(parts[0], parts[2]);
-  if (parts[1] > 12) std::swap(parts[1], parts[2]);
-  if (parts[0] < 32 || parts[1] < 1 || parts[1] > 12 || parts[2] < 1 || parts[2] > 31) return false;
-  // Days since 1970; the library's calendar takes the 31st of every month.
-  days = (std::chrono::sys_days(std::chrono::year(parts[0]) / parts[1] / 1).time_since_epoch()).count() + parts[2] - 1;
-  text = rest;
-  return true;
-}
-
 }  // namespace
 
 bool parse_table_number(std::string_view text, char decimal, double& value) {
@@ -109,66 +66,6 @@ bool is_missing_value(std::string_view text) {
     if (lower == word) return true;
   }
   return false;
-}
-
-bool parse_number_time(std::string_view text, char decimal, TableTime& time) {
-  text = trimmed(text);
-  const auto whole = std::from_chars(text.data(), text.data() + text.size(), time.whole);
-  const std::string_view rest = text.substr(static_cast<std::size_t>(whole.ptr - text.data()));
-  time.fraction = 0.0;
-  if (whole.ec == std::errc() && rest.empty()) return true;
-  if (whole.ec == std::errc() && time.whole > 0 && rest.front() == decimal &&
-      rest.find_first_not_of("0123456789", 1) == std::string_view::npos) {
-    return rest.size() == 1 || parse_table_number(std::string("0").append(rest), decimal, time.fraction);
-  }
-  double value = 0.0;
-  if (!parse_table_number(text, decimal, value)) return false;
-  constexpr double kLargest = 9e18;
-  if (std::abs(value) > kLargest) return false;
-  time.whole = static_cast<std::int64_t>(std::floor(value));
-  time.fraction = value - std::floor(value);
-  return true;
-}
-
-bool has_date(std::string_view text) {
-  text = trimmed(text);
-  std::int64_t days = 0;
-  return parse_date(text, days);
-}
-
-bool parse_clock_time(std::string_view text, TableTime& time) {
-  text = trimmed(text);
-  std::int64_t days = 0;
-  if (parse_date(text, days)) {
-    if (text.empty()) return false;
-    if (!skip_one_of(text, "T ")) return false;
-    text = trimmed(text);
-  }
-  int first = 0;
-  int second = 0;
-  int third = 0;
-  if (!parse_digits(text, 4, first) || !skip_one_of(text, ":") || !parse_digits(text, 2, second) || second > 59)
-    return false;
-  const bool has_hours = skip_one_of(text, ":");
-  if (has_hours && (!parse_digits(text, 2, third) || third > 60)) return false;
-  time.fraction = 0.0;
-  if (text.starts_with('.') || text.starts_with(',')) {
-    const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
-    const std::string digits = std::string("0.").append(text.substr(1, end - 1));
-    if (end > 1) std::from_chars(digits.data(), digits.data() + digits.size(), time.fraction);
-    text.remove_prefix(end);
-  }
-  const std::int64_t hours = has_hours ? first : 0;
-  time.whole = days * kSecondsPerDay + hours * 3600 + (has_hours ? second : first) * 60 + (has_hours ? third : second);
-  text = trimmed(text);
-  const std::string half = lower_ascii(text.substr(0, 2));
-  if (half == "am" || half == "pm") {
-    if (half == "pm" && first < 12) time.whole += kSecondsPerDay / 2;
-    if (half == "am" && first == 12) time.whole -= kSecondsPerDay / 2;
-    text.remove_prefix(2);
-  }
-  // The time zone, "Z" or "+01:00", is the same in every row.
-  return text.empty() || text == "Z" || text.front() == '+' || text.front() == '-';
 }
 
 }  // namespace palpate

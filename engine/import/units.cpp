@@ -100,23 +100,21 @@ double volts_of(std::string_view text) {
 
 NameAndUnit split_name_and_unit(std::string_view header) {
   header = trimmed(header);
+  // The parts before and after a mark, if the second is a unit.
+  const auto split_at = [&](std::size_t mark, std::size_t length) -> std::optional<NameAndUnit> {
+    if (mark == std::string_view::npos || mark == 0) return std::nullopt;
+    NameAndUnit result = parts(header.substr(0, mark), header.substr(mark + length));
+    return result.unit ? std::optional(result) : std::nullopt;
+  };
   // "Position (z), mm": the unit may follow the brackets.
-  auto found = bracketed(header);
-  const std::size_t comma = header.rfind(',');
-  if ((!found || !found->unit) && comma != std::string_view::npos && comma > 0) {
-    if (NameAndUnit result = parts(header.substr(0, comma), header.substr(comma + 1)); result.unit) return result;
-  }
+  const auto found = bracketed(header);
+  const auto behind_comma = split_at(header.rfind(','), 1);
+  if (behind_comma && (!found || !found->unit)) return *behind_comma;
   if (found) return *found;
   // The most reliable mark first: a slash, the word "in", then a last word after any mark.
-  for (const std::string_view mark : {std::string_view("/"), std::string_view(" in ")}) {
-    const std::size_t at = header.rfind(mark);
-    if (at == std::string_view::npos || at == 0) continue;
-    if (NameAndUnit result = parts(header.substr(0, at), header.substr(at + mark.size())); result.unit) return result;
-  }
-  const std::size_t at = header.find_last_of(" _,;:-.");
-  if (at != std::string_view::npos && at > 0) {
-    if (NameAndUnit result = parts(header.substr(0, at), header.substr(at + 1)); result.unit) return result;
-  }
+  if (const auto result = split_at(header.rfind('/'), 1)) return *result;
+  if (const auto result = split_at(header.rfind(" in "), 4)) return *result;
+  if (const auto result = split_at(header.find_last_of(" _,;:-."), 1)) return *result;
   return {std::string(header), std::nullopt, ""};
 }
 

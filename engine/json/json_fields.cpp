@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "engine/base/csv_scanner.h"
-#include "engine/json/json_position.h"
 
 namespace palpate {
 namespace {
@@ -13,6 +13,88 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kMostLines = 20;
+
+// A bracket, a comma, a colon, a text with its quotes, or another value.
+struct Token {
+  char kind = '\0';  // its first character; 0 at the end
+  std::size_t begin = 0;
+  std::string_view content;
+
+  bool opens() const { return kind == '{' || kind == '['; }
+  bool closes() const { return kind == '}' || kind == ']'; }
+};
+
+// The first token from `at` on. The text need not be valid.
+Token token_at(std::string_view text, std::size_t at) {
+  constexpr std::string_view kMarks = "{}[],:";
+  const std::size_t begin = text.find_first_not_of(" \t\r\n", at);
+  if (begin == std::string_view::npos) return {'\0', text.size(), {}};
+  std::size_t end = begin + 1;
+  if (text[begin] == '"') {
+    while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2u : 1u;
+    ++end;
+  } else if (kMarks.find(text[begin]) == std::string_view::npos) {
+    end = text.find_first_of("{}[],:\" \t\r\n", end);
+  }
+  return {text[begin], begin, text.substr(begin, end - begin)};
+}
+
+Token token_after(std::string_view text, const Token& token) {
+  return token_at(text, token.begin + token.content.size());
+}
+
+// The last token of the value that begins with `token`.
+Token last_of_value(std::string_view text, Token token) {
+  std::size_t open = token.opens() ? 1 : 0;
+  while (open > 0 && token.kind != '\0') {
+    token = token_after(text, token);
+    if (token.opens()) ++open;
+    if (token.closes()) --open;
+  }
+  return token;
+}
+
+// The first token of the member or element `step` of the value that begins with `container`.
+std::optional<Token> enter(std::string_view text, const Token& container, std::string_view step) {
+  if (!container.opens()) return std::nullopt;
+  Token token = token_after(text, container);
+  for (std::size_t index = 0; token.kind != '\0' && !token.closes(); ++index) {
+    std::string name = std::to_string(index);
+    if (container.kind == '{') {
+      name = token.content.substr(1, token.content.size() - 2);  // without quotes
+      token = token_after(text, token_after(text, token));       // behind the colon
+    }
+    if (name == step) return token;
+    token = token_after(text, last_of_value(text, token));
+    if (token.kind == ',') token = token_after(text, token);
+  }
+  return std::nullopt;
+}
+
+// The offset of the value at a JSON pointer such as "/features/2/kind" ("": the whole document) in valid JSON. A
+// missing value has the offset of the deepest existing value on its path. Keys with escapes, '/' or '~' are not found.
+std::size_t offset_of_value(std::string_view text, std::string_view pointer) {
+  Token token = token_at(text, 0);
+  while (!pointer.empty()) {
+    pointer.remove_prefix(1);
+    const std::size_t end = std::min(pointer.find('/'), pointer.size());
+    const std::optional<Token> member = enter(text, token, pointer.substr(0, end));
+    if (!member) break;
+    token = *member;
+    pointer.remove_prefix(end);
+  }
+  return token.begin;
+}
+
+// The first number beyond the range of a double, in text that is valid up to there.
+Token too_large_number(std::string_view text) {
+  Token token = token_at(text, 0);
+  for (; token.kind != '\0'; token = token_after(text, token)) {
+    const bool is_number = token.kind == '-' || (token.kind >= '0' && token.kind <= '9');
+    if (is_number && Json::parse(token.content, nullptr, false).is_discarded()) break;
+  }
+  return token;
+}
 
 // "/centres/3" as "centres[3]", "/domain/points" as "domain.points".
 std::string field_name(std::string_view pointer) {
@@ -41,34 +123,38 @@ bool is_number_of(const Json& value, const NumberRange& range) {
 
 Result<Json> parse_json(std::string_view text, const std::string& path, int nesting, const JsonAdvice& advice) {
   const auto wrong = [&](std::size_t offset, const std::string& words, const std::string& what_to_do) {
-    return Error{position_prefix(path, position_of_offset(text, offset)) + words + what_to_do};
+    return Error{position_prefix(path, text, offset) + words + what_to_do};
   };
-  // Found before the parser runs, which would need memory for each level.
-  if (const auto offset = too_deep_at(text, nesting)) {
-    return wrong(*offset, "found more than " + std::to_string(nesting) + " lists inside each other, expected fewer",
-                 advice.damaged);
+  // Found before the parser runs: it would need memory for each level, and keep the last of two equal names.
+  std::vector<std::set<std::string_view>> open;  // the names in each open object or list
+  for (Token token = token_at(text, 0); token.kind != '\0'; token = token_after(text, token)) {
+    if (token.closes() && !open.empty()) open.pop_back();
+    if (token.opens()) open.emplace_back();
+    if (open.size() > static_cast<std::size_t>(nesting)) {
+      return wrong(token.begin,
+                   "found more than " + std::to_string(nesting) + " lists inside each other, expected fewer",
+                   advice.damaged);
+    }
+    const bool is_name = token.kind == '"' && token_after(text, token).kind == ':';
+    if (is_name && !open.empty() && !open.back().insert(token.content).second) {
+      return wrong(token.begin, "found a name for the second time in one object, expected it once", advice.damaged);
+    }
   }
   // The parser treats a NUL as the end of the text.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     return wrong(nul, "found a NUL byte, expected text", advice.damaged);
   }
-  Json document;
   try {
-    document = Json::parse(text);
+    return Json::parse(text);
   } catch (const Json::out_of_range&) {
-    const std::string_view number = too_large_number(text);
-    return wrong(static_cast<std::size_t>(number.data() - text.data()),
-                 "found " + printable(number) + ", expected a finite number", advice.field);
+    const Token number = too_large_number(text);
+    return wrong(number.begin, "found " + printable(number.content) + ", expected a finite number", advice.field);
   } catch (const Json::parse_error& fault) {
     std::string what = fault.what();
     const std::size_t detail = what.find("syntax error");
     if (detail != std::string::npos) what = what.substr(detail);
     return wrong(fault.byte > 0 ? fault.byte - 1 : 0, printable(what, 200), advice.damaged);
   }
-  if (const auto offset = repeated_name_at(text)) {
-    return wrong(*offset, "found a name for the second time in one object, expected it once", advice.damaged);
-  }
-  return document;
 }
 
 std::string found(const Json& value) {
@@ -95,8 +181,7 @@ std::string NumberRange::words() const {
 
 std::optional<Error> JsonFields::error() const {
   if (error_count_ == 0) return std::nullopt;
-  std::string all;
-  for (const std::string& line : lines_) all.append(all.empty() ? "" : "\n").append(line);
+  std::string all = joined(lines_, "\n");
   if (error_count_ > lines_.size())
     all += "\n" + path_ + ": and " + std::to_string(error_count_ - lines_.size()) + " more";
   return Error{all};
@@ -114,7 +199,7 @@ void JsonFields::complain(const std::string& pointer, const std::string& words, 
   if (lines_.size() == kMostLines) return;
   reported_.push_back(pointer);
   const std::string name = field_name(pointer);
-  lines_.push_back(position_prefix(path_, position_of_value(text_, pointer)) + (name.empty() ? "" : name + ": ") +
+  lines_.push_back(position_prefix(path_, text_, offset_of_value(text_, pointer)) + (name.empty() ? "" : name + ": ") +
                    words + advice);
 }
 
@@ -183,23 +268,18 @@ double JsonFields::number(const JsonNode& object, const char* key, const NumberR
 
 std::optional<std::size_t> JsonFields::choice(const JsonNode& node, const std::vector<std::string>& names) {
   if (node.value == nullptr) return std::nullopt;
-  std::string known;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (*node.value == names[i]) return i;
-    known.append(known.empty() ? "" : ", ").append(names[i]);
-  }
-  complain(node.pointer, found(*node.value) + ", expected one of " + known);
+  const auto name = std::find(names.begin(), names.end(), *node.value);
+  if (name != names.end()) return static_cast<std::size_t>(name - names.begin());
+  complain(node.pointer, found(*node.value) + ", expected one of " + joined(names));
   return std::nullopt;
 }
 
 void JsonFields::refuse_unknown(const JsonNode& top) {
   for (const auto& [pointer, keys] : requested_) {
     const Json& object = pointer.empty() ? *top.value : top.value->at(Json::json_pointer(pointer));
-    std::string known;
-    for (const std::string& key : keys) known.append(known.empty() ? "" : ", ").append(key);
     for (const auto& one : object.items()) {
       if (std::find(keys.begin(), keys.end(), one.key()) != keys.end()) continue;
-      complain(pointer + "/" + one.key(), "found an unknown field, expected one of " + known);
+      complain(pointer + "/" + one.key(), "found an unknown field, expected one of " + joined(keys));
     }
   }
 }

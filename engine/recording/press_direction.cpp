@@ -1,6 +1,7 @@
 #include "engine/recording/press_direction.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace palpate {
@@ -20,28 +21,22 @@ constexpr double kClearRatio = 2.0;
 struct Slice {
   double sum_N = 0.0;
   std::size_t count = 0;
-  double mean_N() const { return sum_N / static_cast<double>(count); }
 };
 
-// The mean of the outermost slice with samples, and the spread of the means of one end.
+// The mean force of the outermost slice, and the spread of the means of one end.
 struct EndForce {
   double outermost_N = 0.0;
   double spread_N = 0.0;
 };
 
 EndForce end_force(const std::array<Slice, kSlices>& slices, bool low) {
-  EndForce end;
-  double lowest = HUGE_VAL;
-  double highest = -HUGE_VAL;
-  for (std::size_t i = kEndSlices; i-- > 0;) {
+  std::vector<double> means_N;
+  for (std::size_t i = 0; i < kEndSlices; ++i) {
     const Slice& slice = slices[low ? i : kSlices - 1 - i];
-    if (slice.count == 0) continue;
-    end.outermost_N = slice.mean_N();
-    lowest = std::min(lowest, slice.mean_N());
-    highest = std::max(highest, slice.mean_N());
+    if (slice.count > 0) means_N.push_back(slice.sum_N / static_cast<double>(slice.count));
   }
-  end.spread_N = highest - lowest;
-  return end;
+  const auto [least_N, largest_N] = std::ranges::minmax(means_N);
+  return {means_N.front(), largest_N - least_N};
 }
 
 }  // namespace
@@ -55,9 +50,10 @@ PressDirection find_press_direction(const std::vector<RecordingRow>& rows) {
   std::array<Slice, kSlices> slices{};
   const double per_metre = static_cast<double>(kSlices) / (highest_m - lowest_m);
   for (const RecordingRow& row : rows) {
-    const auto slice = static_cast<std::size_t>((row.position_m - lowest_m) * per_metre);
-    slices[std::min(slice, kSlices - 1)].sum_N += row.force_N;
-    ++slices[std::min(slice, kSlices - 1)].count;
+    const auto index = static_cast<std::size_t>((row.position_m - lowest_m) * per_metre);
+    Slice& slice = slices[std::min(index, kSlices - 1)];
+    slice.sum_N += row.force_N;
+    ++slice.count;
   }
   const EndForce low = end_force(slices, true);
   const EndForce high = end_force(slices, false);
@@ -66,15 +62,16 @@ PressDirection find_press_direction(const std::vector<RecordingRow>& rows) {
   const bool clear = std::min(low_N, high_N) < kShallowShare * std::max(low_N, high_N);
   const bool by_spread = std::max(low.spread_N, high.spread_N) > kClearRatio * std::min(low.spread_N, high.spread_N);
   if (!clear && !by_spread) return direction;
-  direction.known = true;
-  direction.position_flipped = clear ? high_N < low_N : high.spread_N < low.spread_N;
-  direction.shallow_force_N = (direction.position_flipped ? high : low).outermost_N;
-  direction.deep_force_N = (direction.position_flipped ? low : high).outermost_N;
-  const EndForce& shallow = direction.position_flipped ? high : low;
-  direction.certain =
-      std::max(shallow.spread_N, std::abs(shallow.outermost_N)) < kAirShare * std::abs(direction.deep_force_N);
-  direction.force_flipped = direction.deep_force_N < direction.shallow_force_N;
-  return direction;
+  const bool flipped = clear ? high_N < low_N : high.spread_N < low.spread_N;
+  const EndForce& shallow = flipped ? high : low;
+  const EndForce& deep = flipped ? low : high;
+  const double air_N = std::max(shallow.spread_N, std::abs(shallow.outermost_N));
+  return {true,
+          air_N < kAirShare * std::abs(deep.outermost_N),
+          flipped,
+          deep.outermost_N < shallow.outermost_N,
+          shallow.outermost_N,
+          deep.outermost_N};
 }
 
 }  // namespace palpate

@@ -6,11 +6,9 @@
 // right if the shallow end is the low one, that of the force if the force is larger at the deep end. The result is
 // certain only with free air: a force at the shallow end that is flat, and small relative to the deep end. Without it,
 // a material that softens, drags or yields looks like a flipped sign.
-// Thread guarantee: slow side; one thread per object.
+// Thread guarantee: pure function, slow side.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <vector>
 
 #include "engine/recording/recording.h"

@@ -1,10 +1,12 @@
 #include "engine/recording/recording.h"
 
 #include <algorithm>
+#include <bit>
 #include <filesystem>
 #include <system_error>
 
 #include "engine/recording/recording_reader.h"
+#include "engine/recording/recording_writer.h"
 
 namespace palpate {
 namespace {
@@ -24,6 +26,20 @@ std::size_t rows_to_expect(const std::string& path) {
 
 }  // namespace
 
+void ContentHash::add(const RecordingRow& row) {
+  for (const double value :
+       {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2}) {
+    value_ = (value_ ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3ULL;
+    value_ ^= value_ >> 29;
+  }
+}
+
+std::uint64_t content_hash(const Recording& recording) {
+  ContentHash hash;
+  for (const RecordingRow& row : recording.rows) hash.add(row);
+  return hash.value();
+}
+
 Result<Recording> read_recording(const std::string& path, std::size_t most_rows) {
   auto reader = RecordingReader::open(path);
   if (!reader) return reader.error();
@@ -37,6 +53,16 @@ Result<Recording> read_recording(const std::string& path, std::size_t most_rows)
     recording.rows.insert(recording.rows.end(), batch.begin(), batch.begin() + static_cast<std::ptrdiff_t>(*count));
   }
   return recording;
+}
+
+Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,
+                       bool overwrite) {
+  auto writer = RecordingWriter::create(path, recording.columns, comments, overwrite);
+  if (!writer) return writer.error();
+  for (const RecordingRow& row : recording.rows) {
+    if (Status added = writer->add(row); !added) return added;
+  }
+  return writer->commit();
 }
 
 }  // namespace palpate

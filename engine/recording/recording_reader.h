@@ -17,26 +17,6 @@
 
 namespace palpate {
 
-// The roles of the columns of the file, in its order.
-struct RecordingHeader {
-  std::vector<ColumnRole> roles;
-  bool ends_with_comma = false;  // the last column has no name
-};
-
-// Reads the header row. Errors: not UTF-8, a required column missing, a known column twice, another separator than the
-// comma.
-Result<RecordingHeader> parse_recording_header(const LineScanner& scanner, const CsvLine& line);
-
-// Explains why `RecordingReader` could not read a row: one sentence with its position. Slow; called once per file.
-Error explain_recording_row(const LineScanner& scanner, const CsvLine& line, const RecordingHeader& header);
-
-// Parses one decimal number with blanks around it, '.' as decimal point, correctly rounded. Returns its end (a comma or
-// `end`), or nullptr if there is no finite number.
-const char* parse_recording_number(const char* begin, const char* end, double& value);
-
-// The column (from 1) where field `index` of `text` starts; blanks before a value are skipped.
-std::size_t field_column(std::string_view text, std::size_t index);
-
 // Reads a recording of any length row by row in bounded memory.
 class RecordingReader {
  public:
@@ -56,9 +36,14 @@ class RecordingReader {
   Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
 
  private:
-  RecordingReader(LineScanner scanner, RecordingHeader header);
+  explicit RecordingReader(LineScanner scanner);
+  Status read_header();
+  Status parse_header(const CsvLine& line);
+  std::size_t index_of(ColumnRole role) const;
+  bool has(ColumnRole role) const { return index_of(role) < roles_.size(); }
   bool next(RecordingRow& row);
   bool parse(std::string_view text, RecordingRow& row) const;
+  Error explain(const CsvLine& line) const;
   bool finish();
   bool skip_last_blank_lines(const CsvLine& blank);
   bool fail(Error error);
@@ -66,11 +51,11 @@ class RecordingReader {
 
   std::string name_;
   LineScanner scanner_;
-  RecordingHeader header_;
+  std::vector<ColumnRole> roles_;  // of the columns of the file, in its order
+  bool header_ends_with_comma_ = false;
   RowRules rules_;
   std::uint64_t first_row_line_ = 0;
   std::size_t first_row_time_column_ = 1;
-  std::size_t time_index_ = 0;
   bool ended_ = false;
   std::optional<Error> error_;
 };

@@ -8,10 +8,6 @@
 namespace palpate {
 namespace {
 
-std::array<double, kKnownColumns> values_of(const RecordingRow& row) {
-  return {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
-}
-
 // The advice for a median step outside of the valid range.
 std::string rate_advice(double step_s) {
   struct Unit {
@@ -31,41 +27,36 @@ std::string rate_advice(double step_s) {
   return "record faster, or check that time_s is in seconds";
 }
 
-RowFault time_fault(double time_s, double last_time_s) {
-  const bool still = time_s == last_time_s;
-  return {RowFault::Place::kThisRow, ColumnRole::kTime,
-          "found time_s " + shortest(time_s) + " after " + shortest(last_time_s) +
-              ", expected a later time in every row; " +
-              (still ? "remove the repeated row or write time_s with more digits"
-                     : "sort the rows, or split the file where time starts again")};
-}
-
 }  // namespace
 
 bool rate_in_range(double step_s) {
   return step_s <= (1.0 + kRateTolerance) / kMinimumRate_Hz && step_s >= (1.0 - kRateTolerance) / kMaximumRate_Hz;
 }
 
-RowRules::RowRules() { steps_s_.reserve(kRateRows); }
-
 RowFault RowRules::explain(const RecordingRow& row) const {
-  const auto values = values_of(row);
-  for (std::size_t i = 0; i < kKnownColumns; ++i) {
-    if (std::isfinite(values[i])) continue;
-    return {RowFault::Place::kThisRow, static_cast<ColumnRole>(i),
-            "found " + shortest(values[i]) + ", expected a finite number in " + std::string(kColumnNames[i]) +
-                "; remove the row or repair the value"};
+  const auto fault = [](ColumnRole role, double found, const std::string& words) {
+    const std::string name(kColumnNames[static_cast<std::size_t>(role)]);
+    return RowFault{RowFault::Place::kThisRow, role, "found " + name + " " + shortest(found) + words};
+  };
+  const std::array values = {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
+  const auto wrong = std::ranges::find_if_not(values, [](double value) { return std::isfinite(value); });
+  if (wrong != values.end()) {
+    return fault(static_cast<ColumnRole>(wrong - values.begin()), *wrong,
+                 ", expected a finite number; remove the row or repair the value");
   }
-  if (!(row.time_s > last_time_s_)) return time_fault(row.time_s, last_time_s_);
+  if (!(row.time_s > last_time_s_)) {
+    return fault(ColumnRole::kTime, row.time_s,
+                 " after " + shortest(last_time_s_) + ", expected a later time in every row; " +
+                     (row.time_s == last_time_s_ ? "remove the repeated row or write time_s with more digits"
+                                                 : "sort the rows, or split the file where time starts again"));
+  }
   if (std::abs(row.position_m) > kMaximumPosition_m) {
-    return {RowFault::Place::kThisRow, ColumnRole::kPosition,
-            "found position_m " + shortest(row.position_m) +
-                ", expected metres from the surface, at most 1 either way; if it is in "
-                "millimetres, divide it by 1000"};
+    return fault(
+        ColumnRole::kPosition, row.position_m,
+        ", expected metres from the surface, at most 1 either way; if it is in millimetres, divide it by 1000");
   }
-  return {RowFault::Place::kThisRow, ColumnRole::kForce,
-          "found force_N " + shortest(row.force_N) +
-              ", expected newtons, at most 1000000 either way; check the unit of the column"};
+  return fault(ColumnRole::kForce, row.force_N,
+               ", expected newtons, at most 1000000 either way; check the unit of the column");
 }
 
 // Accepts a row among the first ones, from which the rate is checked.

@@ -48,8 +48,6 @@ struct RowFault {
 // Checks rows in order: `check` for every row, then `finish`.
 class RowRules {
  public:
-  RowRules();
-
   // Returns nothing, or the rule that `row` breaks: a value that is not finite, a position or force beyond the limits
   // above, a time that is not later than that of the row before; for row kRateRows also a rate outside the range.
   std::optional<RowFault> check(const RecordingRow& row) {

@@ -1,20 +1,14 @@
 #include "engine/recording/recording_writer.h"
 
 #include <algorithm>
-#include <string>
+#include <array>
 #include <string_view>
 #include <utility>
 
-#include "engine/base/atomic_file.h"
 #include "engine/base/csv_scanner.h"
-#include "engine/recording/recording.h"
-#include "engine/recording/recording_rules.h"
 
 namespace palpate {
 namespace {
-
-// Text written at a time, so that a long recording is not in memory twice.
-constexpr std::size_t kPieceBytes = 256 * 1024;
 
 // The longest comment: '#', a blank and the text fit in one line.
 constexpr std::size_t kMaximumCommentBytes = kMaximumLineBytes - 2;
@@ -34,79 +28,53 @@ void append_comment(std::string& out, std::string_view comment) {
   }
 }
 
-void append_header(std::string& out, RecordingColumns columns) {
-  out += columns.force ? "time_s,position_m,force_N" : "time_s,position_m";
-  if (columns.velocity) out += ",velocity_m_per_s";
-  if (columns.acceleration) out += ",acceleration_m_per_s2";
-  out += '\n';
-}
-
-void append_row(std::string& out, RecordingColumns columns, const RecordingRow& row) {
-  out += shortest(row.time_s) + ',' + shortest(row.position_m);
-  if (columns.force) out += ',' + shortest(row.force_N);
-  if (columns.velocity) out += ',' + shortest(row.velocity_m_per_s);
-  if (columns.acceleration) out += ',' + shortest(row.acceleration_m_per_s2);
-  out += '\n';
+// A line with a field for each column that the file has.
+template <typename Field>
+std::string line_of(RecordingColumns columns, const Field& field) {
+  const std::array present = {true, true, columns.force, columns.velocity, columns.acceleration};
+  std::string line;
+  line.reserve(128);  // five doubles of at most 24 characters
+  for (std::size_t i = 0; i < present.size(); ++i) {
+    if (present[i]) line.append(i > 0 ? "," : "").append(field(i));
+  }
+  return line + '\n';
 }
 
 }  // namespace
-
-RecordingWriter::RecordingWriter(AtomicFile file, RecordingColumns columns)
-    : file_(std::move(file)), columns_(columns) {
-  piece_.reserve(kPieceBytes + kMaximumLineBytes);
-}
 
 Result<RecordingWriter> RecordingWriter::create(const std::string& path, RecordingColumns columns,
                                                 const std::vector<std::string>& comments, bool overwrite) {
   auto file = AtomicFile::create(path, overwrite);
   if (!file) return file.error();
-  RecordingWriter writer(std::move(*file), columns);
-  writer.path_ = path;
-  for (const std::string& comment : comments) append_comment(writer.piece_, comment);
-  append_header(writer.piece_, columns);
-  return writer;
+  std::string head;
+  for (const std::string& comment : comments) append_comment(head, comment);
+  file->write(head + line_of(columns, [](std::size_t i) { return kColumnNames[i]; }));
+  return RecordingWriter(std::move(*file), path, columns);
 }
 
 Status RecordingWriter::add(const RecordingRow& row) {
   if (const auto fault = rules_.check(row)) {
     return Error{path_ + ": cannot write row " + std::to_string(rules_.rows() + 1) + ": " + fault->text};
   }
-  append_row(piece_, columns_, row);
-  if (piece_.size() >= kPieceBytes) flush();
+  const std::array values = {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
+  file_.write(line_of(columns_, [&](std::size_t i) { return shortest(values[i]); }));
   return {};
-}
-
-void RecordingWriter::flush() {
-  file_.write(piece_);
-  piece_.clear();
 }
 
 Status RecordingWriter::publish() {
   if (rules_.rows() < kRateRows) return {};
-  flush();
   Status published = file_.publish();
   if (published) published_rows_ = rules_.rows();
   return published;
 }
 
 Status RecordingWriter::commit() {
-  flush();
   if (file_.failed()) return file_.commit();
   if (const auto fault = rules_.finish()) {
     const AtomicFile given_up = std::move(file_);
     return Error{path_ + ": cannot write: " + fault->text};
   }
   return file_.commit();
-}
-
-Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,
-                       bool overwrite) {
-  auto writer = RecordingWriter::create(path, recording.columns, comments, overwrite);
-  if (!writer) return writer.error();
-  for (const RecordingRow& row : recording.rows) {
-    if (Status added = writer->add(row); !added) return added;
-  }
-  return writer->commit();
 }
 
 }  // namespace palpate

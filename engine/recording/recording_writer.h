@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/atomic_file.h"
@@ -39,14 +40,13 @@ class RecordingWriter {
   Status commit();
 
  private:
-  RecordingWriter(AtomicFile file, RecordingColumns columns);
-  void flush();
+  RecordingWriter(AtomicFile file, std::string path, RecordingColumns columns)
+      : file_(std::move(file)), path_(std::move(path)), columns_(columns) {}
 
   AtomicFile file_;
+  std::string path_;
   RecordingColumns columns_;
   RowRules rules_;
-  std::string path_;
-  std::string piece_;
   std::uint64_t published_rows_ = 0;
 };
 

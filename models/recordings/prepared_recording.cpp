@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/recording/content_hash.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/recordings/force_lag.h"
 

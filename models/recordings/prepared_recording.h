@@ -35,7 +35,7 @@ struct PreparedRecording {
   Recording recording;
   // True for rows that only update filters, because validation uses them. Empty: none.
   std::vector<bool> left_out;
-  std::uint64_t content_hash = 0;  // engine/recording/content_hash.h
+  std::uint64_t content_hash = 0;  // engine/recording/recording.h
   SensorSpec sensor;
   double force_noise_N = 0.0;          // standard deviation
   std::vector<MotionEstimate> motion;  // of every row; empty for more than kOnsetRows rows

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/recording/content_hash.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {

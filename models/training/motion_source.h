@@ -78,7 +78,7 @@ class MotionSource {
     std::string name;
     const PreparedRecording* prepared = nullptr;  // null: a file
     std::size_t recorded = 0;                     // number of rows
-    std::uint64_t hash = 0;                       // engine/recording/content_hash.h
+    std::uint64_t hash = 0;                       // engine/recording/recording.h
     std::vector<MotionRow> rows;                  // those that are kept, without corrections
   };
   // Valid after the first pass, as all below.

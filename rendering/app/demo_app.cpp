@@ -12,8 +12,7 @@
 
 #include "engine/live/pacer.h"
 #include "rendering/panels/panel_parts.h"
-#include "scenes/scene/assets.h"
-#include "scenes/scene/user_folders.h"
+#include "scenes/scene/folders.h"
 #include "scenes/worker/slot_plan.h"
 
 namespace palpate {

@@ -13,7 +13,7 @@
 #include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
 #include "scenes/plot/draw.h"
-#include "scenes/scene/user_folders.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {

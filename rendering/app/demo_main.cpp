@@ -12,7 +12,7 @@
 #include "rendering/app/demo_app.h"
 #include "rendering/app/stats_file.h"
 #include "rendering/app/study_app.h"
-#include "scenes/scene/user_folders.h"
+#include "scenes/scene/folders.h"
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/worker/model_worker.h"
 #include "scenes/worker/slot_plan.h"

@@ -9,7 +9,7 @@
 #include <cctype>
 #include <utility>
 
-#include "scenes/scene/user_folders.h"
+#include "scenes/scene/folders.h"
 #include "scenes/study/study_analysis.h"
 
 namespace palpate {

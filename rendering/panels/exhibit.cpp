@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/live/pacer.h"
-#include "scenes/scene/user_folders.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "rendering/panels/overlay_parts.h"
 #include "rendering/panels/panel_parts.h"
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/slot_plan.h"
 

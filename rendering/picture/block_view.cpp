@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {
@@ -42,11 +42,6 @@ std::string definitions_of(Finish finish) {
 }
 
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
-
-Rgb rgb(const Colour& colour) {
-  return Rgb(static_cast<float>(colour.red), static_cast<float>(colour.green), static_cast<float>(colour.blue)) /
-         255.0F;
-}
 
 // The tool, in units of the ball's radius, with the tip at y = 0: a polished ball on a stem, the disc of a force
 // sensor, and a dull handle.
@@ -117,8 +112,8 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
     : geometry_(scene.block),
       dome_m_(scene.finish == Finish::dome ? kDomeRise * static_cast<float>(scene.block.tool_radius_m) : 0.0F),
       finish_(scene.finish),
-      block_colour_(rgb(scene.block_colour)),
-      tool_colour_(rgb(scene.tool_colour)),
+      block_colour_(hex(scene.block_colour)),
+      tool_colour_(hex(scene.tool_colour)),
       size_m_(std::max(static_cast<float>(scene.block.width_m),
                        1.3F * kToolLength * static_cast<float>(scene.block.tool_radius_m))),
       arrow_m_per_N_(kStrongestArrow * size_m_ / static_cast<float>(scene.strongest_press_N)),

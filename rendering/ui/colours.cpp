@@ -12,11 +12,6 @@
 namespace palpate {
 namespace {
 
-constexpr Rgb hex(unsigned value) noexcept {
-  return {static_cast<float>((value >> 16) & 255U) / 255.0F, static_cast<float>((value >> 8) & 255U) / 255.0F,
-          static_cast<float>(value & 255U) / 255.0F};
-}
-
 const Palette kLight{hex(0xF3F3F2), hex(0xE9E8E6), hex(0xFFFFFF), hex(0xECEEF1), hex(0x16191D), hex(0x5C6670),
                      hex(0xDDE1E5), hex(0x78818A), hex(0xE9ECEF), hex(0xC4161C), hex(0x44494F), 0.34F};
 const Palette kDark{hex(0x131516), hex(0x222426), hex(0x1B1F23), hex(0x2D343B), hex(0xF1F3F5), hex(0xA3ADB7),

@@ -5,12 +5,18 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <string_view>
 
 namespace palpate {
 
 using Rgb = glm::vec3;  // 0..1, sRGB
+// 0xRRGGBB
+constexpr Rgb hex(unsigned value) noexcept {
+  return {static_cast<float>((value >> 16) & 255U) / 255.0F, static_cast<float>((value >> 8) & 255U) / 255.0F,
+          static_cast<float>(value & 255U) / 255.0F};
+}
 
 enum class Theme { light, dark };
 

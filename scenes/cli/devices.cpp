@@ -12,7 +12,7 @@
 #include "devices/hid/hidapi_bus.h"
 #include "devices/registry/device_registry.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate::cli {
 namespace {

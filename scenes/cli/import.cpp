@@ -10,7 +10,6 @@
 #include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
-#include "engine/import/import_words.h"
 #include "models/recordings/surface_estimate.h"
 #include "scenes/cli/output.h"
 #include "scenes/cli/verbs.h"
@@ -107,7 +106,7 @@ double seconds_of(const ImportedTable& table) {
 }
 
 void print_text(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
-  std::cout << "table      " << table_words(table) << "\n";
+  std::cout << "table      " << table.layout.words(table.encoding) << "\n";
   for (std::size_t role = 0; role < kRoles; ++role) {
     const std::string name = kRoleNames[role];
     std::cout << name << std::string(11 - name.size(), ' ') << column_words(table.columns[role]) << "\n";
@@ -138,8 +137,8 @@ void print_import_json(const ImportOptions& options, const ImportRequest& reques
               {"seconds", seconds},
               {"rate_Hz", static_cast<double>(table.recording.rows.size() - 1) / seconds},
               {"encoding", table.encoding},
-              {"delimiter", delimiter_name(table.layout.delimiter)},
-              {"decimal", decimal_name(table.layout)},
+              {"delimiter", table.layout.delimiter.name},
+              {"decimal", table.layout.decimal_name()},
               {"header_line", table.layout.header_line},
               {"data_line", table.layout.data_line},
               {"columns", columns},

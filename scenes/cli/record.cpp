@@ -19,7 +19,7 @@
 #include "scenes/cli/record_guide.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/live/session_recorder.h"
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate::cli {
 namespace {

@@ -43,57 +43,44 @@ double Moments::deviation() const noexcept {
 void ErrorFigures::add(double model_N, double reference_N, bool out_of_domain, const JndLine& jnd) {
   const double error_N = std::abs(model_N - reference_N);
   const double ratio = jnd.error_over_jnd(model_N, reference_N);
-  ++samples_;
+  ++sum_.samples;
   if (ratio <= 1.0) ++within_;
-  if (out_of_domain) ++out_of_domain_;
+  if (out_of_domain) ++sum_.out_of_domain_samples;
   squares_N2_ += error_N * error_N;
-  max_error_N_ = std::max(max_error_N_, error_N);
   ratios_ += ratio;
-  max_ratio_ = std::max(max_ratio_, ratio);
+  sum_.max_error_N = std::max(sum_.max_error_N, error_N);
+  sum_.max_error_over_jnd = std::max(sum_.max_error_over_jnd, ratio);
 
   const std::size_t index = force_bin(reference_N, jnd);
-  if (bins_.size() <= index) bins_.resize(index + 1);
-  ForceBin& bin = bins_[index];
+  if (sum_.bins.size() <= index) sum_.bins.resize(index + 1);
+  ForceBin& bin = sum_.bins[index];
   bin.force_N.add(reference_N);
   bin.error_N.add(error_N);
   bin.over_jnd.add(ratio);
 }
 
 void ErrorFigures::add(const ErrorFigures& other) {
-  samples_ += other.samples_;
+  sum_.samples += other.sum_.samples;
   within_ += other.within_;
-  out_of_domain_ += other.out_of_domain_;
+  sum_.out_of_domain_samples += other.sum_.out_of_domain_samples;
   squares_N2_ += other.squares_N2_;
-  max_error_N_ = std::max(max_error_N_, other.max_error_N_);
   ratios_ += other.ratios_;
-  max_ratio_ = std::max(max_ratio_, other.max_ratio_);
-  if (bins_.size() < other.bins_.size()) bins_.resize(other.bins_.size());
-  for (std::size_t i = 0; i < other.bins_.size(); ++i) {
-    bins_[i].force_N.add(other.bins_[i].force_N);
-    bins_[i].error_N.add(other.bins_[i].error_N);
-    bins_[i].over_jnd.add(other.bins_[i].over_jnd);
+  sum_.max_error_N = std::max(sum_.max_error_N, other.sum_.max_error_N);
+  sum_.max_error_over_jnd = std::max(sum_.max_error_over_jnd, other.sum_.max_error_over_jnd);
+  const std::vector<ForceBin>& bins = other.sum_.bins;
+  if (sum_.bins.size() < bins.size()) sum_.bins.resize(bins.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    sum_.bins[i].force_N.add(bins[i].force_N);
+    sum_.bins[i].error_N.add(bins[i].error_N);
+    sum_.bins[i].over_jnd.add(bins[i].over_jnd);
   }
 }
 
-double ErrorFigures::within_jnd() const noexcept {
-  return samples_ > 0 ? static_cast<double>(within_) / static_cast<double>(samples_) : 0.0;
-}
-
-double ErrorFigures::mean_error_over_jnd() const noexcept {
-  return samples_ > 0 ? ratios_ / static_cast<double>(samples_) : 0.0;
-}
-
 ErrorSummary ErrorFigures::summary(const JndLine& jnd) const {
-  ErrorSummary summary;
-  if (samples_ == 0) return summary;
-  summary.samples = samples_;
-  summary.rms_error_N = std::sqrt(squares_N2_ / static_cast<double>(samples_));
-  summary.max_error_N = max_error_N_;
+  ErrorSummary summary = sum_;
+  summary.rms_error_N = std::sqrt(share(squares_N2_));
   summary.within_jnd = within_jnd();
-  summary.max_error_over_jnd = max_ratio_;
-  summary.out_of_domain_samples = out_of_domain_;
-  summary.bins = bins_;
-  for (std::size_t i = 0; i < bins_.size(); ++i) {
+  for (std::size_t i = 0; i < summary.bins.size(); ++i) {
     ForceBin& bin = summary.bins[i];
     bin.force_from_N = force_bin_begin_N(i, jnd);
     bin.force_to_N = force_bin_begin_N(i + 1, jnd);

@@ -8,6 +8,7 @@
 // Source: figures 4 to 7 of Hoever & Harders (2009).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -74,23 +75,22 @@ class ErrorFigures {
   // Adds all samples of `other`, which has the same JND line.
   void add(const ErrorFigures& other);
 
-  std::uint64_t samples() const noexcept { return samples_; }
+  std::uint64_t samples() const noexcept { return sum_.samples; }
   // Without samples the following figures are 0.
-  double within_jnd() const noexcept;  // share of the samples with an error up to one JND
-  double mean_error_over_jnd() const noexcept;
-  double max_error_over_jnd() const noexcept { return max_ratio_; }
+  double within_jnd() const noexcept { return share(within_); }  // share of the samples with an error up to one JND
+  double mean_error_over_jnd() const noexcept { return share(ratios_); }
+  double max_error_over_jnd() const noexcept { return sum_.max_error_over_jnd; }
   // All but the 99 % error, which needs every sample.
   ErrorSummary summary(const JndLine& jnd) const;
 
  private:
-  std::uint64_t samples_ = 0;
-  std::uint64_t within_ = 0;
-  std::uint64_t out_of_domain_ = 0;
+  double share(double total) const noexcept { return total / std::max(1.0, static_cast<double>(sum_.samples)); }
+
+  // Counts and largest errors. Of the bins, at most kMaximumForceBins, only the moments are set.
+  ErrorSummary sum_;
+  double within_ = 0.0;
   double squares_N2_ = 0.0;
-  double max_error_N_ = 0.0;
   double ratios_ = 0.0;  // sum
-  double max_ratio_ = 0.0;
-  std::vector<ForceBin> bins_;  // at most kMaximumForceBins; only their moments are set
 };
 
 }  // namespace palpate

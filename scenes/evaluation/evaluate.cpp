@@ -54,7 +54,7 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
       if (first == 0) contact.push_back(snapshot.in_contact);
       const bool in_contact = contact[row_number++];
       const bool begins = strokes.begins_stroke(row.time_s, in_contact);
-      if (!in_contact || row.time_s < request.counted_s.low || row.time_s >= request.counted_s.high) return;
+      if (!in_contact || row.time_s < request.counted_from_s) return;
       const auto add = [&](ModelErrors& errors, double model_N, bool out_of_domain) {
         if (begins) errors.begin_stroke();
         errors.add(model_N, row.force_N, out_of_domain);

@@ -37,8 +37,8 @@ RowSource rows_of_file(const std::string& path);  // reads the file in each repl
 struct EvaluationRequest {
   // Called for every row as recorded, with the first kMaxModels models; may be empty.
   ReplayVisitor also;
-  // Errors are counted for times in [low, high). Earlier rows are replayed because the features have memory.
-  Interval counted_s{-1e300, 1e300};
+  // Errors are counted from this time on. Earlier rows are replayed because the features have memory.
+  double counted_from_s = -std::numeric_limits<double>::infinity();
   bool move_surface = true;
   // The models from which one common surface offset is estimated. Empty: one offset is estimated for each model.
   std::vector<ModelPointer> surface_models;

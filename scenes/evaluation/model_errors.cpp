@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 namespace palpate {
 namespace {
@@ -17,21 +19,73 @@ double percentile_99(std::vector<float>::const_iterator begin, std::vector<float
   return static_cast<double>(*nth);
 }
 
+// P(|T| <= t) of Student's t distribution. Source: Abramowitz & Stegun (1972), 26.7.3 and 26.7.4.
+double central_probability(double t, std::size_t degrees) {
+  const double angle = std::atan(t / std::sqrt(static_cast<double>(degrees)));
+  const double cosine = std::cos(angle);
+  const bool odd = degrees % 2 == 1;
+  double term = odd ? cosine : 1.0;
+  double sum = degrees > 1 ? term : 0.0;
+  for (std::size_t k = odd ? 3 : 2; k + 2 <= degrees; k += 2) {
+    term *= cosine * cosine * static_cast<double>(k - 1) / static_cast<double>(k);
+    sum += term;
+  }
+  return odd ? 2.0 / std::numbers::pi * (angle + std::sin(angle) * sum) : std::sin(angle) * sum;
+}
+
+// The value that Student's t with `degrees` >= 1 degrees of freedom exceeds with probability `above`, 0 to 0.5.
+double student_t(double above, std::size_t degrees) {
+  double low = 0.0;
+  double high = 1e6;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (central_probability(middle, degrees) < 1.0 - 2.0 * above ? low : high) = middle;
+  }
+  return high;
+}
+
+// Standard error of sum(numerators) / sum(denominators), with one of each per unit; NaN with fewer than kLeastUnits.
+double ratio_standard_error(const std::vector<double>& numerators, const std::vector<double>& denominators) {
+  const std::size_t n = numerators.size();
+  if (n < kLeastUnits) return kUnknown;
+  const double whole = std::accumulate(denominators.begin(), denominators.end(), 0.0);
+  const double ratio = std::accumulate(numerators.begin(), numerators.end(), 0.0) / whole;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < n; ++i) squares += std::pow(numerators[i] - ratio * denominators[i], 2);
+  const auto count = static_cast<double>(n);
+  return std::sqrt(count / (count - 1.0) * squares) / whole;
+}
+
+// Standard error of the mean of `values`.
+double standard_error(const std::vector<double>& values) {
+  return ratio_standard_error(values, std::vector<double>(values.size(), 1.0));
+}
+
+// estimate + t error, one-sided, where t is exceeded with probability `above`; a negative error gives the lower bound.
+// NaN with fewer than kLeastUnits.
+double bound(double above, double estimate, double error, std::size_t units) {
+  return units < kLeastUnits ? kUnknown : estimate + student_t(above, units - 1) * error;
+}
+
+Interval interval_95(double estimate, double error, std::size_t units) {
+  return {bound(0.025, estimate, -error, units), bound(0.025, estimate, error, units)};
+}
+
 }  // namespace
 
 Interval UnitErrors::p99_interval() const {
   Interval interval = interval_95(p99_error_over_jnd, standard_error(unit_p99), units());
-  interval.low = interval.known() ? std::max(0.0, interval.low) : interval.low;
+  interval.low = std::max(interval.low, 0.0);  // keeps a NaN
   return interval;
 }
 
-double UnitErrors::p99_at_most() const { return bound_95(p99_error_over_jnd, standard_error(unit_p99), units()); }
+double UnitErrors::p99_at_most() const {
+  return bound(kOneSided, p99_error_over_jnd, standard_error(unit_p99), units());
+}
 
 double UnitErrors::within_at_least() const {
-  if (!has_intervals()) return kUnknown;
-  if (units_above_jnd == 0) return std::pow(kOneSided, 1.0 / static_cast<double>(units()));
-  const double error = ratio_standard_error(unit_within, unit_samples);
-  return std::max(0.0, bound_95(within_jnd, -error, units()));
+  if (has_intervals() && units_above_jnd == 0) return std::pow(kOneSided, 1.0 / static_cast<double>(units()));
+  return std::max(bound(kOneSided, within_jnd, -ratio_standard_error(unit_within, unit_samples), units()), 0.0);
 }
 
 PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
@@ -41,7 +95,7 @@ PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& othe
   const double error = standard_error(differences);
   const double difference = one.p99_error_over_jnd - other.p99_error_over_jnd;
   return {difference, interval_95(difference, error, differences.size()),
-          bound_95(difference, error, differences.size())};
+          bound(kOneSided, difference, error, differences.size())};
 }
 
 bool StrokeCounter::begins_stroke(double time_s, bool in_contact) {

@@ -5,24 +5,37 @@
 //   99 % error       the smallest error over the JND that 99 % of the samples do not exceed
 //                    (nearest rank)
 //   RMS, maximum     of |model - measured|
-// Neighbouring samples are correlated, so intervals come from independent units (unit_statistics.h): whole
-// recordings where there are several, else strokes (from touch to release). With fewer than kLeastUnits units there
-// is no interval. The share has the standard error of a ratio; the 99 % error has the standard error of the mean of
+// Neighbouring samples are correlated, so intervals come from independent units: whole recordings where there are
+// several, else strokes (from touch to release). A mean over n units has the standard error s / sqrt(n) and Student's t
+// with n - 1 degrees of freedom; with fewer than kLeastUnits units there is no interval. The share has the standard
+// error of a ratio; the 99 % error has the standard error of the mean of
 // the units' 99 % errors. Where no unit has a sample beyond one JND, the exact binomial bound applies: at 95 %, at
 // most 1 - 0.05^(1/n) of all units have one. Two models are compared by paired differences of the same units.
 // Source: Cochran (1977), Sampling Techniques, 2.7 and 6.4; Clopper & Pearson (1934).
 // Thread guarantee: slow side; one thread per object.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/tick/jnd.h"
 #include "scenes/evaluation/error_figures.h"
-#include "scenes/evaluation/unit_statistics.h"
 
 namespace palpate {
+
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+
+  bool known() const { return std::isfinite(low) && std::isfinite(high); }
+};
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+// With two units t is 12.7, and the interval would be useless.
+inline constexpr std::size_t kLeastUnits = 3;
 
 // A shorter loss of contact does not end a stroke: noise at the surface causes it.
 inline constexpr double kStrokePause_s = 0.05;

@@ -36,11 +36,10 @@ Ranking rank(const std::vector<Candidate>& candidates) {
     const bool equal = ranking.qualified[i] && !faster(candidates[fastest].tick, candidates[i].tick);
     if (equal && smaller_error(candidates[i], candidates[ranking.recommended])) ranking.recommended = i;
   }
-  // A model whose error is uncertain may fail the test of non-inferiority and yet dominate the recommended one.
+  // A model whose error is uncertain may fail the test of non-inferiority and yet dominate the recommended one. One
+  // pass is enough, because dominance is transitive.
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!dominates(candidates[i], candidates[ranking.recommended])) continue;
-    ranking.recommended = i;
-    i = static_cast<std::size_t>(-1);  // starts again; this ends, because each error is smaller than the last
+    if (dominates(candidates[i], candidates[ranking.recommended])) ranking.recommended = i;
   }
   ranking.qualified[ranking.recommended] = true;
   return ranking;

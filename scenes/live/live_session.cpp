@@ -10,8 +10,7 @@
 #include "models/recordings/recording_faults.h"
 #include "scenes/live/press_range.h"
 #include "scenes/live/true_force.h"
-#include "scenes/scene/assets.h"
-#include "scenes/scene/user_folders.h"
+#include "scenes/scene/folders.h"
 #include "scenes/worker/slot_plan.h"
 
 namespace palpate {

@@ -25,19 +25,13 @@ std::string shell_quoted(const std::string& text) {
   return safe;
 }
 
-struct ShellRun {
-  bool done = false;
-  std::string said;
-};
-
-ShellRun run_in_shell(const std::string& command) {
-  ShellRun run;
+// Whether the command succeeds; its output is appended to `said`.
+bool run_in_shell(const std::string& command, std::string& said) {
   std::FILE* const output = popen(command.c_str(), "r");
-  if (output == nullptr) return run;
+  if (output == nullptr) return false;
   char chunk[4096];
-  while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, output)) run.said.append(chunk, count);
-  run.done = pclose(output) == 0;
-  return run;
+  while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, output)) said.append(chunk, count);
+  return pclose(output) == 0;
 }
 
 // The first line of gnuplot's output that is neither empty nor a warning.
@@ -48,6 +42,17 @@ std::string first_line(const std::string& text) {
     if (says && line.find("warning:") == std::string::npos) return line;
   }
   return "no message";
+}
+
+// Runs gnuplot without the user's settings.
+Status run_gnuplot(const std::string& folder, const std::string& script) {
+  std::string said;
+  if (run_in_shell("cd " + shell_quoted(folder) + " && LC_ALL=C gnuplot -d " + shell_quoted(script) +
+                       " 2>&1 >/dev/null </dev/null",
+                   said))
+    return {};
+  return Error{"gnuplot could not draw " + script + ": " + first_line(said) +
+               "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
 }
 
 }  // namespace
@@ -63,17 +68,9 @@ ScratchFolder::~ScratchFolder() {
 }
 
 Status find_gnuplot() {
-  if (run_in_shell("command -v gnuplot").done) return {};
+  std::string path;
+  if (run_in_shell("command -v gnuplot", path)) return {};
   return Error{"found no gnuplot in PATH, which draws the figures; install it (Debian: apt-get install gnuplot-nox)"};
-}
-
-// Runs gnuplot without the user's settings.
-Status run_gnuplot(const std::string& folder, const std::string& script) {
-  const ShellRun run = run_in_shell("cd " + shell_quoted(folder) + " && LC_ALL=C gnuplot -d " + shell_quoted(script) +
-                                    " 2>&1 >/dev/null </dev/null");
-  if (run.done) return {};
-  return Error{"gnuplot could not draw " + script + ": " + first_line(run.said) +
-               "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
 }
 
 Status draw_plots(const std::string& folder, const std::vector<Plot>& plots) {
@@ -88,20 +85,12 @@ Status draw_plots(const std::string& folder, const std::vector<Plot>& plots) {
   return {};
 }
 
-Result<std::string> read_drawn(const std::string& folder, const std::string& file) {
-  auto text = read_whole_file(folder + "/" + file);
-  if (text && !text->empty()) return std::move(*text);
-  return Error{"gnuplot wrote no " + file + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
-}
-
 Status check_plot_path(const std::string& path, bool overwrite) {
   const std::string ending = fs::path(path).extension().string();
-  if (ending != ".svg" && ending != ".png") {
+  if (ending != ".svg" && ending != ".png")
     return Error{"found --plot " + path + ", expected a file that ends in .svg or .png"};
-  }
-  std::error_code error;
-  if (!overwrite && fs::exists(path, error)) return Error{path + " exists; pass --force to replace it"};
-  return {};
+  const auto trial = AtomicFile::create(path, overwrite);
+  return trial ? Status() : trial.error();
 }
 
 Status draw_plot(const Plot& plot, const std::string& path, bool overwrite) {
@@ -110,8 +99,9 @@ Status draw_plot(const Plot& plot, const std::string& path, bool overwrite) {
   const ScratchFolder scratch(parent.empty() ? "." : parent.string());
   if (scratch.path().empty()) return Error{"cannot write " + path + ": no folder can be made beside it"};
   if (const Status status = draw_plots(scratch.path(), {plot}); !status) return status;
-  const auto drawn = read_drawn(scratch.path(), plot.name + fs::path(path).extension().string());
-  return drawn ? write_file_atomically(path, *drawn, overwrite) : drawn.error();
+  const std::string drawn = scratch.path() + "/" + plot.name + fs::path(path).extension().string();
+  const auto bytes = read_plain_file(drawn, "a drawing of gnuplot");
+  return bytes ? write_file_atomically(path, *bytes, overwrite) : bytes.error();
 }
 
 }  // namespace palpate

@@ -26,21 +26,14 @@ class ScratchFolder {
 // Errors: there is no gnuplot in PATH; says what to install.
 Status find_gnuplot();
 
-// Runs gnuplot on the file `script` in `folder` and waits. Errors: it cannot be started or fails, with the first line
-// of its message.
-Status run_gnuplot(const std::string& folder, const std::string& script);
-
 // Writes NAME.gp, NAME.svg and NAME.png of every plot into `folder`, which exists. Errors: gnuplot is missing or
 // fails; a file cannot be written.
 Status draw_plots(const std::string& folder, const std::vector<Plot>& plots);
 
-// The contents of `file` in `folder`. Errors: gnuplot wrote nothing.
-Result<std::string> read_drawn(const std::string& folder, const std::string& file);
-
 // Draws one plot into the file `path`, which ends in .svg or .png. Writes the whole file or nothing. Errors: those of
-// check_plot_path, draw_plots and read_drawn.
+// check_plot_path and draw_plots.
 Status draw_plot(const Plot& plot, const std::string& path, bool overwrite);
-// Errors: `path` does not end in .svg or .png; it exists and `overwrite` is false.
+// Errors: `path` does not end in .svg or .png; those of AtomicFile::create.
 Status check_plot_path(const std::string& path, bool overwrite);
 
 }  // namespace palpate

@@ -6,8 +6,6 @@
 namespace palpate {
 namespace {
 
-bool is_line(Mark mark) { return mark == Mark::line || mark == Mark::dashed; }
-
 // Mantissas of tics on a logarithmic axis, from coarse to fine.
 const std::vector<std::vector<double>> kLogSteps{
     {1.0}, {1.0, 3.0}, {1.0, 2.0, 5.0}, {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}};
@@ -39,6 +37,12 @@ std::vector<double> even_tics(const AxisRange& range, std::size_t most) {
 
 // Further right a name would leave the panel. Fraction of the panel.
 constexpr double kRightmostName = 0.7;
+
+// The position of `value` on the axis: 0 at its low end, 1 at its high end.
+double fraction_of(const Axis& axis, const AxisRange& range, double value) {
+  if (!axis.logarithmic) return (value - range.low) / (range.high - range.low);
+  return std::log(value / range.low) / std::log(range.high / range.low);
+}
 
 const PlotRow* last_point(const Series& series) {
   for (auto row = series.rows.rbegin(); row != series.rows.rend(); ++row) {
@@ -95,11 +99,6 @@ std::vector<double> tics_of(const Axis& axis, const AxisRange& range, std::size_
   return two;
 }
 
-double fraction_of(const Axis& axis, const AxisRange& range, double value) {
-  if (!axis.logarithmic) return (value - range.low) / (range.high - range.low);
-  return std::log(value / range.low) / std::log(range.high / range.low);
-}
-
 std::vector<NameTag> name_tags(const Panel& panel, double line, double character) {
   const AxisRange x = range_of(panel, false);
   const AxisRange y = range_of(panel, true);
@@ -143,7 +142,7 @@ std::vector<NameTag> name_tags(const Panel& panel, double line, double character
 std::vector<Series> cut_marks(const Panel& panel) {
   std::vector<Series> marks;
   for (const Series& series : panel.series) {
-    if (!is_line(series.mark)) continue;
+    if (series.mark != Mark::line && series.mark != Mark::dashed) continue;
     Series up{"", series.colour, Mark::up, {}};
     Series down{"", series.colour, Mark::down, {}};
     const PlotRow* highest = nullptr;  // of the current stretch beyond the edge

@@ -22,9 +22,6 @@ AxisRange range_of(const Panel& panel, bool vertical);
 // with steps such as 2 and 5 where there are few decades; else multiples of 1, 2 or 5 times a power of ten.
 std::vector<double> tics_of(const Axis& axis, const AxisRange& range, std::size_t most);
 
-// The position of `value` on the axis: 0 at its low end, 1 at its high end.
-double fraction_of(const Axis& axis, const AxisRange& range, double value);
-
 // A name beside a point; x and y are fractions of the panel.
 struct NameTag {
   std::string text;

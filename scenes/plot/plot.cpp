@@ -8,7 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "scenes/plot/layout.h"
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {
@@ -42,21 +42,18 @@ std::string data_name(std::size_t panel, std::size_t series) {
   return "$panel" + std::to_string(panel) + "_" + std::to_string(series);
 }
 
+// Columns: x, y, the ends of the horizontal bar, the ends of the vertical bar or area. A bar that is missing has the
+// length 0, and a row without a y breaks the line.
 std::string data_block(const Series& series, const std::string& name) {
-  const bool bars = series.mark == Mark::bars || series.mark == Mark::hollow_bars;
-  const auto or_else = [](double value, double other) { return number(std::isfinite(value) ? value : other); };
+  const auto or_else = [](double value, double other) { return " " + number(std::isfinite(value) ? value : other); };
   std::string text = name + " << END\n";
   for (const PlotRow& row : series.rows) {
-    // A row without a y breaks the line.
     const bool gap = !std::isfinite(row.y) && !std::isfinite(row.low);
-    if (gap) {
-      text += "\n";
-    } else if (bars) {
-      text += number(row.x) + " " + number(row.y) + " " + or_else(row.left, row.x) + " " + or_else(row.right, row.x) +
-              " " + or_else(row.low, row.y) + " " + or_else(row.high, row.y) + "\n";
-    } else {
-      text += number(row.x) + " " + number(row.y) + " " + number(row.low) + " " + number(row.high) + "\n";
+    if (!gap) {
+      text += number(row.x) + " " + number(row.y) + or_else(row.left, row.x) + or_else(row.right, row.x) +
+              or_else(row.low, row.y) + or_else(row.high, row.y);
     }
+    text += "\n";
   }
   return text + "END\n";
 }
@@ -108,13 +105,6 @@ std::string tag_text(const NameTag& tag) {
          colour_of(tag.colour) + "\n";
 }
 
-// The margin for the names beside the panel, in characters.
-int right_margin(const std::vector<NameTag>& tags) {
-  std::size_t longest = 2;
-  for (const NameTag& tag : tags) longest = std::max(longest, tag.beside_panel ? tag.text.size() : 0);
-  return static_cast<int>(longest + 1);
-}
-
 struct PanelSize {
   double width = 0.0;  // pixels
   double height = 0.0;
@@ -125,7 +115,9 @@ std::string panel_text(const Panel& panel, std::size_t index, const PanelSize& s
   text += axis_text("x", panel.x, range_of(panel, false), static_cast<std::size_t>(size.width / kTicWidth)) +
           axis_text("y", panel.y, range_of(panel, true), static_cast<std::size_t>(size.height / kTicHeight));
   const std::vector<NameTag> tags = name_tags(panel, kTagHeight / size.height, kCharacter / size.width);
-  text += "set rmargin " + std::to_string(right_margin(tags)) + "\n";
+  std::size_t longest = 2;  // characters of the names beside the panel
+  for (const NameTag& tag : tags) longest = std::max(longest, tag.beside_panel ? tag.text.size() : 0);
+  text += "set rmargin " + std::to_string(longest + 1) + "\n";
   for (const Level& level : panel.levels) text += level_text(level);
   for (const NameTag& tag : tags) text += tag_text(tag);
   std::string curves;
@@ -179,9 +171,8 @@ Result<std::string> plot_script(const Plot& asked) {
   }
   const auto assets = find_assets();
   if (!assets) return assets.error();
-  const std::string path = *assets + "/figures/style.gp";
-  const auto style = read_whole_file(path);
-  if (!style) return Error{"cannot read " + path + ", the style of all figures; check the assets folder"};
+  const auto style = read_plain_file(*assets + "/figures/style.gp", "the style of all figures");
+  if (!style) return style.error();
   const Legend legend = legend_of(plot);
   const int rows = (static_cast<int>(plot.panels.size()) + plot.columns - 1) / plot.columns;
   const int height = static_cast<int>(rows * kRowHeight * plot.height) + kLegendLine * legend.lines;
@@ -195,9 +186,8 @@ Result<std::string> plot_script(const Plot& asked) {
     }
   }
   // An empty title reserves the height of the legend.
-  std::string room = legend.lines > 0 ? " title \" " : "";
-  for (int i = 1; i < legend.lines; ++i) room += "\\n ";
-  if (legend.lines > 0) room += '"';
+  const std::vector<std::string> lines(static_cast<std::size_t>(legend.lines), " ");
+  const std::string room = lines.empty() ? "" : " title \"" + joined(lines, "\\n") + "\"";
   for (const char* medium : {"svg", "png"}) {
     text += "eval " + std::string(medium) + "\nset output '" + plot.name + "." + medium + "'\n";
     text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(plot.columns) + room + "\n";

@@ -163,7 +163,7 @@ class Measurement {
   Status evaluate_test(const Recording& recording, double counted_from_s) {
     std::vector<EvaluatedModel> models;
     EvaluationRequest request;
-    request.counted_s.low = counted_from_s;
+    request.counted_from_s = counted_from_s;
     for (const Measured& measured : models_) {
       const ModelResult& one = measured.result;
       if (!one.model) continue;

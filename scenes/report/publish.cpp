@@ -8,7 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "scenes/plot/inline_svg.h"
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {
@@ -117,7 +117,7 @@ Status write_parts(const ReportFolder& folder, const std::vector<Table>& tables,
   if (!control.may_continue(0.99)) return interrupted();
   if (!drawn) return drawn;
   for (Figure& figure : figures) {
-    auto svg = read_drawn(place, figure.plot.name + ".svg");
+    auto svg = read_plain_file(place + "/" + figure.plot.name + ".svg", "a drawing of gnuplot");
     if (!svg) return svg.error();
     figure.svg = std::move(*svg);
   }

@@ -44,7 +44,7 @@ struct Figure {
 };
 
 // Writes tables/NAME.csv, draws the figures into the subfolder figures and sets their `svg`. Errors: those of
-// draw_plots and read_drawn; a file cannot be written; interrupted.
+// draw_plots; a file cannot be read or written; interrupted.
 Status write_parts(const ReportFolder& folder, const std::vector<Table>& tables, std::vector<Figure>& figures,
                    const FitControl& control);
 

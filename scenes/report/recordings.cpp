@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "engine/recording/content_hash.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/sensor_identification.h"
 #include "scenes/material/rig.h"
 

@@ -22,7 +22,7 @@ Result<std::vector<SharedRecording>> virtual_recordings(const std::string& mater
 struct RecordingFacts {
   std::string role;  // "train", "test" or "both"
   std::string name;
-  std::string content_hash;  // engine/recording/content_hash.h, hexadecimal
+  std::string content_hash;  // engine/recording/recording.h, hexadecimal
   std::uint64_t samples = 0;
   std::uint64_t contact_samples = 0;
   double seconds = 0.0;

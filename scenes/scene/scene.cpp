@@ -1,48 +1,222 @@
 #include "scenes/scene/scene.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <filesystem>
-#include <optional>
+#include <nlohmann/json.hpp>
 
+#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
+#include "engine/json/json_fields.h"
 #include "models/fit/fit.h"
-#include "scenes/scene/assets.h"
+#include "scenes/material/material.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::json;
 
-// `folder`, or if it is empty that of the assets.
-Result<std::string> scenes_folder(const std::string& folder) {
-  if (!folder.empty()) return folder;
+constexpr int kNesting = 8;  // at most; the formats need three levels
+constexpr double kLongestRelaxation_s = 100.0;
+constexpr double kLargestLength_m = 10.0;
+constexpr double kLargestJndOffset_N = 100.0;
+constexpr double kStrongestPress_N = 20.0;
+constexpr const char* kJndAdvice = "; write it again with palpate study analyse";
+
+// The members of a JND line.
+JndLine jnd_line(JsonFields& fields, const JsonNode& object) {
+  const double offset_N = fields.number(object, "offset_N", {0.0, kLargestJndOffset_N, true});
+  return {offset_N, fields.number(object, "weber_fraction", {0.0, 1.0})};
+}
+
+class SceneReader : private JsonFields {
+ public:
+  SceneReader(std::string_view text, const std::string& path, const Json& document)
+      : JsonFields(text, path, ""), path_(path), top_{&document, ""} {}
+
+  Result<Scene> read() {
+    read_name();
+    scene_.title = filled_text(top_, "title");
+    scene_.description = filled_text(top_, "description");
+    read_material();
+    read_features();
+    read_jnd();
+    read_block();
+    read_colours();
+    read_default_models();
+    if (optional_member(top_, "strongest_press_N").value != nullptr) {
+      scene_.strongest_press_N = number(top_, "strongest_press_N", {0.0, kStrongestPress_N, true});
+    }
+    refuse_unknown(top_);
+    if (std::optional<Error> wrong = error()) return *wrong;
+    return scene_;
+  }
+
+ private:
+  std::uint32_t colour(const JsonNode& object, const char* key) {
+    const std::string expected = "a colour such as \"#56B4E9\"";
+    const JsonNode node = member(object, key, expected);
+    if (node.value == nullptr) return 0;
+    const std::string code = node.value->is_string() ? node.value->get<std::string>() : "";
+    std::uint32_t rgb = 0;
+    const char* const end = code.data() + code.size();
+    if (code.size() != 7 || code[0] != '#' || std::from_chars(code.data() + 1, end, rgb, 16).ptr != end)
+      complain(node.pointer, found(*node.value) + ", expected " + expected);
+    return rgb;
+  }
+
+  void read_name() {
+    scene_.name = filled_text(top_, "name");
+    const std::string stem = fs::path(path_).stem().string();
+    if (scene_.name != stem) {
+      complain("/name", "found \"" + scene_.name + "\", expected \"" + stem + "\", the name of the file");
+    }
+  }
+
+  void read_material() {
+    const JsonNode node = member(top_, "material", "the name of a virtual material, or null");
+    if (node.value == nullptr || node.value->is_null()) return;
+    std::vector<std::string> names;
+    for (const Material& material : materials()) names.emplace_back(material.name);
+    if (const auto index = choice(node, names)) scene_.material = names[*index];
+  }
+
+  void read_features() {
+    const std::string expected = "a list of 1 to " + std::to_string(kMaxFeatures) + " features";
+    const JsonNode node = list(top_, "features", expected);
+    if (node.value == nullptr) return;
+    if (node.value->empty() || node.value->size() > kMaxFeatures) {
+      complain(node.pointer, found(*node.value) + ", expected " + expected);
+      return;
+    }
+    bool has_depth = false;
+    for (std::size_t i = 0; i < node.value->size(); ++i) {
+      read_feature(entry(node, i));
+      has_depth = has_depth || scene_.features.back().kind == FeatureKind::depth;
+    }
+    if (!has_depth) {
+      complain("/features", "found no feature of kind \"depth\", expected one: every force depends on the depth");
+    }
+  }
+
+  void read_feature(const JsonNode& node) {
+    static const std::vector<std::string> kNames = {"depth", "velocity", "lowpass_velocity"};
+    constexpr std::array kKinds = {FeatureKind::depth, FeatureKind::velocity, FeatureKind::lowpass_velocity};
+    const auto kind = choice(member(node, "kind", "depth, velocity or lowpass_velocity"), kNames);
+    FeatureSpec feature;
+    feature.kind = kind ? kKinds[*kind] : FeatureKind::velocity;
+    const JsonNode time = optional_member(node, "relaxation_time_s");
+    if (feature.kind == FeatureKind::lowpass_velocity) {
+      feature.relaxation_time_s = number(node, "relaxation_time_s", {0.0, kLongestRelaxation_s, true});
+    } else if (kind && time.value != nullptr) {
+      complain(time.pointer, "found a relaxation time, expected none for the kind \"" + kNames[*kind] + "\"");
+    }
+    const bool again = std::any_of(scene_.features.begin(), scene_.features.end(), [&](const FeatureSpec& other) {
+      return other.kind == feature.kind && other.relaxation_time_s == feature.relaxation_time_s;
+    });
+    if (kind && again) complain(node.pointer, "found the same feature twice, expected each once");
+    scene_.features.push_back(feature);
+  }
+
+  void read_jnd() {
+    if (optional_member(top_, "jnd_file").value != nullptr) return read_jnd_file_of_scene();
+    scene_.jnd = jnd_line(*this, member(top_, "jnd", "an object with offset_N and weber_fraction, or a \"jnd_file\""));
+  }
+
+  // Reads the JND line from a file beside the scene, instead of the member "jnd".
+  void read_jnd_file_of_scene() {
+    const std::string name = filled_text(top_, "jnd_file");
+    const JsonNode line = optional_member(top_, "jnd");
+    if (line.value != nullptr) complain(line.pointer, "found a \"jnd\" and a \"jnd_file\", expected one of them");
+    if (name.empty()) return;
+    const Result<JndLine> read = read_jnd_file((fs::path(path_).parent_path() / name).string());
+    if (read) {
+      scene_.jnd = *read;
+    } else {
+      complain("/jnd_file", read.error().message);
+    }
+  }
+
+  void read_block() {
+    const JsonNode node = member(top_, "block", "an object with the lengths of the block");
+    const auto length = [&](const char* key) { return number(node, key, {0.0, kLargestLength_m, true}); };
+    scene_.block = {length("width_m"), length("length_m"), length("height_m"), length("tool_radius_m")};
+  }
+
+  void read_colours() {
+    const JsonNode node = member(top_, "colours", "an object with block and tool");
+    scene_.block_colour = colour(node, "block");
+    scene_.tool_colour = colour(node, "tool");
+    const JsonNode finish = optional_member(top_, "finish");
+    if (finish.value == nullptr) return;
+    static const std::vector<std::string> kFinishes = {"silicone", "foam", "gel", "rubber", "skin", "dome"};
+    if (const auto index = choice(finish, kFinishes)) scene_.finish = static_cast<Finish>(*index);
+  }
+
+  void read_default_models() {
+    const std::string expected = "a list of methods out of " + method_names();
+    std::vector<std::string> names;
+    for (const Method* method : methods()) names.emplace_back(method->name);
+    const JsonNode node = list(top_, "default_models", expected);
+    if (node.value == nullptr) return;
+    if (node.value->empty()) complain(node.pointer, found(*node.value) + ", expected " + expected);
+    for (std::size_t i = 0; i < node.value->size(); ++i) {
+      if (const auto index = choice(entry(node, i), names)) scene_.default_models.push_back(names[*index]);
+    }
+  }
+
+  const std::string& path_;
+  JsonNode top_;
+  Scene scene_;
+};
+
+Result<std::string> scenes_folder() {
   const Result<std::string> assets = find_assets();
   return assets ? *assets + "/scenes" : assets;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 }  // namespace
 
-// Scenes have no other kinds of features; fits identify the others.
-std::string describe_features(const Scene& scene) {
-  std::vector<std::string> words;
-  for (const FeatureSpec& feature : scene.features) {
-    words.push_back(feature.kind == FeatureKind::depth ? "depth"
-                    : feature.kind == FeatureKind::velocity
-                        ? "velocity"
-                        : "relaxation " + general(feature.relaxation_time_s, 6) + " s");
+Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path) {
+  const Result<nlohmann::json> document = parse_json(text, path, kNesting, {kJndAdvice, kJndAdvice});
+  if (!document) return document.error();
+  JsonFields fields(text, path, kJndAdvice);
+  const JsonNode top{&*document, ""};
+  const JsonNode format = fields.optional_member(top, "format");
+  if (format.value == nullptr || *format.value != "palpate-jnd") {
+    fields.complain("", "found no \"format\": \"palpate-jnd\", expected a JND file");
+    return *fields.error();
   }
-  return joined(words);
+  const JsonNode version = fields.member(top, "version", "1");
+  if (version.value != nullptr && *version.value != 1) {
+    fields.complain(version.pointer, found(*version.value) + ", expected version 1");
+    return *fields.error();
+  }
+  const JndLine line = jnd_line(fields, top);
+  for (const char* ignored : {"criterion", "subjects", "fitted", "points"}) fields.optional_member(top, ignored);
+  fields.refuse_unknown(top);
+  if (const std::optional<Error> error = fields.error()) return *error;
+  return line;
 }
 
-Result<std::vector<std::string>> scene_names(const std::string& in_folder) {
-  const Result<std::string> folder = scenes_folder(in_folder);
+Result<JndLine> read_jnd_file(const std::string& path) {
+  const Result<std::string> text = read_plain_file(path, "a JND file", ", or make one with palpate study analyse");
+  if (!text) return text.error();
+  return parse_jnd_file(*text, path);
+}
+
+Result<Scene> parse_scene(std::string_view text, const std::string& path) {
+  const Result<Json> document = parse_json(text, path, kNesting, {});
+  if (!document) return document.error();
+  return SceneReader(text, path, *document).read();
+}
+
+Result<std::vector<std::string>> scene_names() {
+  const Result<std::string> folder = scenes_folder();
   if (!folder) return folder.error();
   std::error_code error;
   std::vector<std::string> names;
@@ -54,18 +228,27 @@ Result<std::vector<std::string>> scene_names(const std::string& in_folder) {
   return names;
 }
 
-Result<Scene> load_scene(const std::string& name, const std::string& in_folder) {
-  const Result<std::string> folder = scenes_folder(in_folder);
-  if (!folder) return folder.error();
-  const Result<std::vector<std::string>> names = scene_names(*folder);
+Result<Scene> load_scene(const std::string& name) {
+  const Result<std::vector<std::string>> names = scene_names();
   if (!names) return names.error();
-  if (std::find(names->begin(), names->end(), name) == names->end()) {
+  if (std::find(names->begin(), names->end(), name) == names->end())
     return Error{"unknown scene \"" + name + "\"; known scenes: " + joined(*names)};
-  }
-  const std::string path = *folder + "/" + name + ".json";
+  const std::string path = *scenes_folder() + "/" + name + ".json";
   const Result<std::string> text = read_plain_file(path, "a scene");
   if (!text) return text.error();
   return parse_scene(*text, path);
+}
+
+// Scenes have no other kinds of features; fits identify the others.
+std::string describe_features(const Scene& scene) {
+  std::vector<std::string> words;
+  for (const FeatureSpec& feature : scene.features) {
+    words.push_back(feature.kind == FeatureKind::depth ? "depth"
+                    : feature.kind == FeatureKind::velocity
+                        ? "velocity"
+                        : "relaxation " + general(feature.relaxation_time_s, 6) + " s");
+  }
+  return joined(words);
 }
 
 TrainingRequest training_request(const Scene& scene) {

@@ -16,12 +16,6 @@ namespace palpate {
 
 struct TrainingRequest;
 
-struct Colour {
-  std::uint8_t red = 0;
-  std::uint8_t green = 0;
-  std::uint8_t blue = 0;
-};
-
 // The undisturbed surface of the block is at height 0. The tool is a ball.
 struct BlockGeometry {
   double width_m = 0.0;
@@ -42,8 +36,8 @@ struct Scene {
   std::vector<FeatureSpec> features;    // 1 to 8: the depth, velocity and low-pass velocities
   JndLine jnd;
   BlockGeometry block;
-  Colour block_colour;
-  Colour tool_colour;
+  std::uint32_t block_colour = 0;  // 0xRRGGBB
+  std::uint32_t tool_colour = 0;
   Finish finish = Finish::silicone;
   std::vector<std::string> default_models;  // names of methods (models/fit/methods.h)
   // Upper limit of the target force of the simulated hand.
@@ -57,15 +51,22 @@ struct Scene {
 std::string describe_features(const Scene& scene);
 
 // Parses the text of a scene file. "name" must equal the file name in `path`. Instead of "jnd", "jnd_file" names a
-// JND file (scenes/scene/jnd_file.h) relative to the scene's folder, which is read. Errors: all that are found, one
+// JND file relative to the scene's folder, which is read. Errors: all that are found, one
 // per line, each as "path:line:column: found ..., expected ...".
 Result<Scene> parse_scene(std::string_view text, const std::string& path);
 
-// The names of all scenes in `folder`, sorted. Empty: that of the assets. Errors: no such folder.
-Result<std::vector<std::string>> scene_names(const std::string& folder = {});
+// Reads the JND line from the result file of a JND study (scenes/study/study_analysis.h).
+// JSON: "format": "palpate-jnd", "version": 1, "offset_N" (above 0, up to 100) and "weber_fraction" (0 to 1) of the
+// conservative line. "criterion", "subjects", "fitted" and "points" are allowed and ignored.
+// Errors: as parse_scene; another format or version; the file is not readable.
+Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path);
+Result<JndLine> read_jnd_file(const std::string& path);
+
+// The names of all scenes in the assets, sorted. Errors: no such folder.
+Result<std::vector<std::string>> scene_names();
 
 // Errors: unknown scene (lists the known ones); those of parse_scene; the file is not readable.
-Result<Scene> load_scene(const std::string& name, const std::string& folder = {});
+Result<Scene> load_scene(const std::string& name);
 
 // The request to fit a model (models/fit/fit.h) with the scene's features and JND line. Everything else is the default
 // of `palpate fit`.

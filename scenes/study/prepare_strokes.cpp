@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/base/csv_scanner.h"
-#include "engine/recording/content_hash.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/replay.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/material/rig.h"

@@ -76,7 +76,7 @@ Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, bool wi
 // One row per subject and reference force, then the means: CSV with a header row.
 std::string analysis_table(const StudyAnalysis& analysis);
 
-// The text of the file that scenes/scene/jnd_file.h reads: the conservative line of `analysis`, which has one, and, for
+// The text of the file that scenes/scene/scene.h reads: the conservative line of `analysis`, which has one, and, for
 // information, criterion, subjects, the fitted line, and the points with their sources. Numbers are in full precision.
 std::string jnd_file_text(const StudyAnalysis& analysis);
 

@@ -12,7 +12,6 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/csv_scanner.h"
 #include "engine/base/whole_file.h"
-#include "engine/json/json_position.h"
 
 namespace palpate {
 
@@ -85,8 +84,8 @@ Error difference(std::string_view found, std::string_view expected, const std::s
   const auto shown = [&](std::string_view text) {
     return '"' + printable(text.substr(field, text.find('\n', field) - field), 60) + '"';
   };
-  return Error{position_prefix(path, position_of_offset(found, field)) + "found " + shown(found) + ", expected " +
-               shown(expected) + " or the like; was the file changed, or made by another version?"};
+  return Error{position_prefix(path, found, field) + "found " + shown(found) + ", expected " + shown(expected) +
+               " or the like; was the file changed, or made by another version?"};
 }
 
 // The procedure and, with strokes, their names and figures, which include a checksum of the forces.

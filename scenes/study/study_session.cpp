@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "devices/registry/device_registry.h"
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 namespace {

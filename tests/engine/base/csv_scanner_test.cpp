@@ -34,16 +34,20 @@ TEST(LineScanner, ReportsAStreamThatFails) {
   EXPECT_TRUE(test::has_parts(scanner.error()->message, {"x.csv: ", "Is a"}));
 }
 
-TEST(IsUtf8, FollowsRfc3629) {
-  std::size_t bad_offset = 0;
-  for (const char* good : {"", "a", "\xC2\xB5", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "\xED\x9F\xBF"}) {
-    EXPECT_TRUE(is_utf8(good, bad_offset)) << good;
+TEST(PositionPrefix, CountsLinesAndBytes) {
+  EXPECT_EQ(position_prefix("f", "ab\nc", 1), "f:1:2: ");
+  EXPECT_EQ(position_prefix("f", "ab\nc", 3), "f:2:1: ");
+  EXPECT_EQ(position_prefix("f", "ab\nc", 100), "f:2:2: ");
+}
+
+TEST(Utf8, FollowsRfc3629) {
+  for (const std::string good : {"", "a", "\xC2\xB5", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "\xED\x9F\xBF"}) {
+    EXPECT_EQ(utf8_bytes(good), good.size()) << good;
   }
   // Invalid UTF-8: lone, overlong, surrogate, beyond U+10FFFF, truncated.
   for (const char* bad : {"a\x80", "a\xC0\x80", "a\xE0\x80\x80", "a\xED\xA0\x80", "a\xF4\x90\x80\x80",
                           "a\xF5\x80\x80\x80", "a\xE2\x82", "a\xF0\x9F\x98z"}) {
-    EXPECT_FALSE(is_utf8(bad, bad_offset));
-    EXPECT_EQ(bad_offset, 1u);
+    EXPECT_EQ(utf8_bytes(bad), 1u);
   }
 }
 

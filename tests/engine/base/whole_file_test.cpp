@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
@@ -26,6 +27,17 @@ TEST(WholeFile, WaitsForNoPipeAndReadsNoDeviceToTheEndOfMemory) {
     const std::string message = read_plain_file(path, "a scene").error().message;
     EXPECT_TRUE(test::has_parts(message, {"pipe", "a scene"})) << message;
   }
+}
+
+TEST(WholeFile, SaysWhyAFileCannotBeRead) {
+  const test::TemporaryFolder folder;
+  const auto message = [](const std::string& path) { return read_plain_file(path, "a scene").error().message; };
+  EXPECT_TRUE(test::has_parts(message(folder.file("none")), {folder.file("none"), "no such file", "; "}));
+  EXPECT_TRUE(test::has_parts(message(folder.path()), {folder.path(), "folder", "; "}));
+  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const std::string path = folder.with_file("secret", "x");
+  ASSERT_EQ(chmod(path.c_str(), 0), 0);
+  EXPECT_TRUE(test::has_parts(message(path), {path, "permission", "; "}));
 }
 
 TEST(WholeFile, RefusesAFileBeyondItsLimit) {

@@ -48,7 +48,9 @@ TEST(JsonFields, SaysWhereAndWhyATextIsNoJson) {
   EXPECT_TRUE(test::has_parts(fault_of("{\"a\": 1e999}"), {"x.json:1:7:", "1e999", "finite", "; "}));
   EXPECT_TRUE(test::has_parts(fault_of("{\"a\": -1e400}"), {"x.json:1:7:", "-1e400", "finite", "; "}));
   EXPECT_TRUE(test::has_parts(fault_of("{\"a\": \"b\xff\"}"), {"x.json:1:", "\\xff", "; "}));
-  EXPECT_TRUE(test::has_parts(fault_of("[[[[[1]]]]]"), {"x.json:1:5:", "4", "; "}));
+  EXPECT_TRUE(test::has_parts(fault_of("[[[[[1]]]]]"), {"x.json:1:5:", "more than 4", "; "}));
+  for (const char* text : {"", "{", "{\"a", "{\"a\\", "{\"a\":", "[[[[", "[1,", "}", "{\"b\":[}"})
+    EXPECT_TRUE(test::has_parts(fault_of(text), {"x.json:1:", "; "})) << text;
 }
 
 TEST(JsonFields, RefusesWhatAParserWouldPassOver) {
@@ -58,6 +60,20 @@ TEST(JsonFields, RefusesWhatAParserWouldPassOver) {
   EXPECT_EQ(fault_of("[{\"a\": \"b\"}, {\"a\": \"\\\":\"}]"), "none");
   const std::string nul = fault_of(std::string("{\"a\": 1}\0\0", 10));
   EXPECT_EQ(nul.rfind("x.json:1:9: found a NUL byte", 0), 0u) << nul;
+}
+
+TEST(JsonFields, NamesThePlaceOfAValue) {
+  const std::string text = "{\n  \"a\": [1, {\"b\": \"x\\\"]\"}, [], 3],\n  \"c\" : {\"d\": {}, \"e\": null}\n}\n";
+  // A value that does not exist has the place of the deepest existing one on its path.
+  const std::pair<const char*, const char*> places[] = {
+      {"", "1:1"},   {"/a", "2:8"},    {"/a/0", "2:9"},    {"/a/1/b", "2:18"}, {"/a/2", "2:27"},  {"/a/3", "2:31"},
+      {"/c", "3:9"}, {"/c/e", "3:24"}, {"/c/none", "3:9"}, {"/a/7/b", "2:8"},  {"/a/0/b", "2:9"},
+  };
+  for (const auto& [pointer, place] : places) {
+    JsonFields fields(text, kPath, "");
+    fields.complain(pointer, "found this");
+    EXPECT_TRUE(test::has_parts(fields.error()->message, {std::string("x.json:") + place + ": "})) << pointer;
+  }
 }
 
 TEST(JsonFields, CollectsAllErrorsEachOnce) {
@@ -76,9 +92,10 @@ TEST(JsonFields, CollectsAllErrorsEachOnce) {
   EXPECT_FALSE(fields.choice(fields.member(top, "g", "a name"), {"one", "two"}));
   fields.refuse_unknown(top);
   EXPECT_EQ(fields.error_count(), 5u);
-  EXPECT_TRUE(test::has_parts(fields.error()->message, {"x.json:1:7:", "a", "1", "empty", "x.json:2:7:", "b", "\"x\"",
-                                                        "2", "3", "x.json:3:7:", "no such field", "x.json:3:30:", "g",
-                                                        "3", "one", "x.json:3:21:", "unknown field", "d", "; "}));
+  EXPECT_TRUE(test::has_parts(
+      fields.error()->message,
+      {"x.json:1:7: a: found 1", "empty", "x.json:2:7: b: found \"x\"", "from 2", "3", "x.json:3:7:", "no such field",
+       "x.json:3:30: g: found 3", "one, two", "x.json:3:21:", "unknown field", "d, e", "; "}));
 }
 
 TEST(JsonFields, TellsOfTwentyErrorsAndCountsTheRest) {
@@ -92,7 +109,7 @@ TEST(JsonFields, TellsOfTwentyErrorsAndCountsTheRest) {
   fields.refuse_unknown(top);
   const std::string message = fields.error()->message;
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 20);
-  EXPECT_TRUE(test::has_parts(message.substr(message.rfind('\n') + 1), {"x.json", "80"}));
+  EXPECT_TRUE(test::has_parts(message.substr(message.rfind('\n') + 1), {"x.json", " 80 "}));
   EXPECT_EQ(message.find('\x1b'), std::string::npos) << "names from the file are made printable";
 }
 

@@ -5,11 +5,11 @@
 namespace palpate {
 namespace {
 
-// The final verdict of the rules on `count` rows, `step_s` apart.
+// The final verdict of the rules on `count` rows, `step_s` apart, with a gap of a minute after the fourth.
 std::optional<RowFault> verdict(int count, double step_s) {
   RowRules rules;
   for (int i = 0; i < count; ++i) {
-    if (auto fault = rules.check({i * step_s, 0.0, 0.0, 0.0, 0.0})) return fault;
+    if (auto fault = rules.check({i * step_s + (i > 3 ? 60.0 : 0.0), 0.0, 0.0, 0.0, 0.0})) return fault;
   }
   return rules.finish();
 }

@@ -7,7 +7,6 @@
 #include <limits>
 #include <random>
 
-#include "engine/recording/recording.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
@@ -59,9 +58,9 @@ void expect_round_trip(const Recording& recording) {
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"rec.csv"});
 }
 
-std::string message_for(const Recording& recording, const std::vector<std::string>& comments = {}) {
+std::string message_for(const Recording& recording) {
   const TemporaryFolder folder;
-  const Status written = write_recording(folder.file("rec.csv"), recording, comments, false);
+  const Status written = write_recording(folder.file("rec.csv"), recording, {}, false);
   EXPECT_TRUE(folder.entries().empty());
   return written ? "written" : written.error().message.substr(folder.path().size() + 1);
 }
@@ -100,29 +99,17 @@ TEST(WriteRecording, WritesPlainTextWithCommentsFirst) {
   EXPECT_TRUE(text.ends_with("\n"));
 }
 
-TEST(WriteRecording, KeepsAnExistingFileUnlessToldToReplaceIt) {
-  const TemporaryFolder folder;
-  const std::string path = folder.with_file("rec.csv", "precious");
-  const Recording recording = random_recording(12, {});
-  const Status refused = write_recording(path, recording, {}, false);
-  ASSERT_FALSE(refused.ok());
-  EXPECT_TRUE(test::has_parts(refused.error().message, {path, "--force"}));
-  EXPECT_EQ(test::read_text(path), "precious");
-  ASSERT_TRUE(write_recording(path, recording, {}, true).ok());
-  EXPECT_TRUE(read_recording(path).ok());
-}
-
 TEST(WriteRecording, RefusesWhatTheReaderWouldRefuse) {
   const Recording good = random_recording(12, {});
   Recording bad = good;
   bad.rows[4].force_N = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "5", "finite", "force_N", "; "}));
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "row 5", "force_N nan", "finite", "; "}));
   bad = good;
   bad.rows[4].time_s = bad.rows[3].time_s = 0.25;
-  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "5", "time_s", "0.25", "0.25", "time_s"}));
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "row 5", "time_s 0.25", "0.25", "time_s"}));
   bad = good;
   bad.rows.resize(9);
-  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "9", "10", "; "}));
+  EXPECT_TRUE(test::has_parts(message_for(bad), {"rec.csv", "9 rows", "10", "; "}));
 }
 
 TEST(WriteRecording, CutsACommentThatIsTooLongForTheReader) {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/recording/content_hash.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/replay.h"
 #include "models/model/file/model_io.h"
 #include "models/recordings/force_lag.h"

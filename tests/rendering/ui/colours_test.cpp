@@ -69,7 +69,7 @@ TEST(Colours, AnOutlineIsSeenOnEveryBlockAndBesideEveryError) {
   for (const std::string& name : *names) {
     const auto scene = load_scene(name);
     ASSERT_TRUE(scene.ok()) << scene.error().message;
-    const Rgb block = Rgb(scene->block_colour.red, scene->block_colour.green, scene->block_colour.blue) / 255.0F;
+    const Rgb block = hex(scene->block_colour);
     EXPECT_GE(contrast(outline_on(block), block), kLeastContrast) << name;
     for (double error = 0.0; error <= 2.0; error += 0.1) {
       const Rgb dent = error_colour(error);

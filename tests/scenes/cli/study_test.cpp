@@ -3,7 +3,6 @@
 
 #include <filesystem>
 
-#include "scenes/scene/jnd_file.h"
 #include "scenes/scene/scene.h"
 #include "scenes/study/study_file.h"
 #include "tests/support/message_parts.h"

@@ -46,6 +46,27 @@ TEST(ModelErrors, ThreeSpotsThatDifferBoundTheShareAsStudentsTHasIt) {
   EXPECT_NEAR(errors.unit_errors().within_at_least(), 0.384, 1e-3);
 }
 
+// Units whose 99 % errors have the standard error 1. Source of t: published tables.
+TEST(UnitErrors, IntervalsHaveStudentsT) {
+  struct Row {
+    std::size_t degrees;
+    double one_sided;  // 5 % beyond
+    double two_sided;  // 2.5 % beyond
+  };
+  for (const Row& row : {Row{2, 2.920, 4.303}, {3, 2.353, 3.182}, {10, 1.812, 2.228}, {29, 1.699, 2.045}}) {
+    SCOPED_TRACE(row.degrees);
+    const auto units = static_cast<double>(row.degrees + 1);
+    UnitErrors errors;
+    errors.p99_error_over_jnd = 10.0;
+    errors.unit_samples.assign(row.degrees + 1, 1.0);
+    errors.unit_p99.assign(row.degrees + 1, 0.0);
+    errors.unit_p99.front() = units;  // the squared deviations from the mean sum to n (n - 1)
+    EXPECT_NEAR(errors.p99_at_most(), 10.0 + row.one_sided, 5e-4);
+    EXPECT_NEAR(errors.p99_interval().low, 10.0 - row.two_sided, 5e-4);
+    EXPECT_NEAR(errors.p99_interval().high, 10.0 + row.two_sided, 5e-4);
+  }
+}
+
 TEST(ModelErrors, TooFewUnitsHaveNoIntervalAnywhere) {
   const UnitErrors unit_errors = strokes_with({3, 5}).unit_errors();
   EXPECT_FALSE(unit_errors.has_intervals());

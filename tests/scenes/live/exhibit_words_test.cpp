@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/scene/assets.h"
+#include "scenes/scene/folders.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 

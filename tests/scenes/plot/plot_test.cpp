@@ -7,6 +7,7 @@
 #include "scenes/plot/inline_svg.h"
 #include "scenes/plot/layout.h"
 #include "tests/support/message_parts.h"
+#include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -145,6 +146,24 @@ TEST(Plot, AGapBreaksTheLine) {
   const auto script = plot_script(plot);
   ASSERT_TRUE(script.ok());
   EXPECT_NE(script->find("\n\n0.6 "), std::string::npos);
+}
+
+TEST(Gnuplot, AnErrorNamesTheScript) {
+  if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
+  const test::TemporaryFolder folder;
+  Plot plot = errors_up_to(1.0);
+  plot.name = "a'";  // ends the name of the output
+  const Status status = draw_plots(folder.path(), {plot});
+  ASSERT_FALSE(status.ok());
+  EXPECT_TRUE(test::has_parts(status.error().message, {"a'.gp", "; "}));
+}
+
+TEST(Gnuplot, IsCheckedBeforeAnyWork) {
+  const test::TemporaryFolder folder;
+  const auto ran = test::run_palpate({"report", "--quick", "--out", folder.file("report")}, {"PATH=" + folder.path()});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", "PATH", "apt-get install gnuplot-nox"}));
+  EXPECT_TRUE(folder.entries().empty());
 }
 
 TEST(DrawPlot, WritesOneFileWholeOrNothing) {

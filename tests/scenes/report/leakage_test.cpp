@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/random_stream.h"
-#include "engine/recording/content_hash.h"
+#include "engine/recording/recording.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 

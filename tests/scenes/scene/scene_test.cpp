@@ -2,14 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "models/fit/fit.h"
+#include "scenes/material/material.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
 
-using test::TemporaryFolder;
+using Json = nlohmann::json;
 
 TEST(Scene, EveryShippedSceneReads) {
   const auto names = scene_names();
@@ -43,20 +46,6 @@ TEST(Scene, UnknownNameListsTheKnownOnes) {
   }
 }
 
-TEST(Scene, MissingFolderIsNamed) {
-  const auto names = scene_names("/none");
-  ASSERT_FALSE(names.ok());
-  EXPECT_TRUE(test::has_parts(names.error().message, {"/none"}));
-}
-
-TEST(Scene, LoadsFromAnyFolder) {
-  const TemporaryFolder folder;
-  folder.with_file("broken.json", "{");
-  folder.with_file("note.txt", "no scene");
-  EXPECT_EQ(*scene_names(folder.path()), std::vector<std::string>{"broken"});
-  EXPECT_FALSE(load_scene("broken", folder.path()).ok());
-}
-
 TEST(Scene, GivesAFitItsFeaturesAndJnd) {
   Scene scene = load_scene("silicone_block").value();
   scene.jnd.offset_N = 0.25;
@@ -64,6 +53,133 @@ TEST(Scene, GivesAFitItsFeaturesAndJnd) {
   EXPECT_EQ(request.scene, "silicone_block");
   EXPECT_EQ(request.features, scene.features);
   EXPECT_EQ(request.jnd.offset_N, 0.25);
+}
+
+const char* const kGood = R"({
+  "name": "x",
+  "title": "X",
+  "description": "An x.",
+  "material": null,
+  "features": [
+    {"kind": "depth"},
+    {"kind": "lowpass_velocity", "relaxation_time_s": 0.5}
+  ],
+  "jnd": {"offset_N": 0.1, "weber_fraction": 0},
+  "block": {"width_m": 0.1, "length_m": 0.2, "height_m": 0.3, "tool_radius_m": 0.004},
+  "colours": {"block": "#56B4E9", "tool": "#000000"},
+  "default_models": ["greedy"]
+})";
+
+std::string complaint(const std::string& text) {
+  const auto scene = parse_scene(text, "x.json");
+  return scene.ok() ? "accepted" : scene.error().message;
+}
+
+TEST(SceneReader, ReadsEveryField) {
+  const auto scene = parse_scene(kGood, "folder/x.json");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_EQ(scene->title, "X");
+  EXPECT_FALSE(scene->material.has_value());
+  ASSERT_EQ(scene->features.size(), 2u);
+  EXPECT_EQ(scene->features[1].kind, FeatureKind::lowpass_velocity);
+  EXPECT_DOUBLE_EQ(scene->features[1].relaxation_time_s, 0.5);
+  EXPECT_DOUBLE_EQ(scene->jnd.offset_N, 0.1);
+  EXPECT_DOUBLE_EQ(scene->block.length_m, 0.2);
+  EXPECT_DOUBLE_EQ(scene->block.tool_radius_m, 0.004);
+  EXPECT_EQ(scene->block_colour, 0x56B4E9u);
+  EXPECT_EQ(scene->default_models, std::vector<std::string>{"greedy"});
+  EXPECT_EQ(scene->strongest_press_N, 5.0) << "may be left out";
+}
+
+TEST(SceneReader, TakesAStrongestPressAndTheJndFromAFile) {
+  const test::TemporaryFolder folder;
+  folder.with_file("own.json", R"({"format": "palpate-jnd", "version": 1, "offset_N": 0.04, "weber_fraction": 0.12})");
+  const std::string line = R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})";
+  const auto scene = parse_scene(test::replaced(kGood, line, R"("jnd_file": "own.json", "strongest_press_N": 0.9)"),
+                                 folder.file("x.json"));
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_EQ(scene->jnd.offset_N, 0.04);
+  EXPECT_EQ(scene->jnd.weber_fraction, 0.12);
+  EXPECT_EQ(scene->strongest_press_N, 0.9);
+}
+
+TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
+  test::expect_messages(
+      kGood, complaint,
+      {{R"("name": "x")", R"("name": "y")", {"x.json:2:11:", "name", "\"y\"", "\"x\""}},
+       {R"("title": "X")", R"("title": 3)", {"x.json:3:12:", "title: found 3"}},
+       {"  \"material\": null,\n", "", {"x.json:1:1:", "material"}},
+       {"null", R"("silicon")", {"x.json:5:15:", "material", "\"silicon\"", std::string(materials()[0].name)}},
+       {"null,", R"(null, "strongest_press_N": 0,)", {"x.json:5:42:", "strongest_press_N: found 0", "20"}},
+       {R"("depth")", R"("dept")", {"x.json:7:14:", "features[0].kind", "dept", "depth", "x.json:6:15:", "depth"}},
+       {"0.5", "-1", {"x.json:8:55:", "features[1].relaxation_time_s: found -1", "above 0", "100"}},
+       {R"(, "relaxation_time_s": 0.5)", "", {"x.json:8:5:", "features[1].relaxation_time_s", "above 0", "100"}},
+       {R"("depth"})", R"("depth", "relaxation_time_s": 1})", {"x.json:7:44:", "features[0]", "depth"}},
+       {R"({"kind": "depth"})", R"({"kind": "depth"}, {"kind": "depth"})", {"x.json:7:24:", "features[1]", "twice"}},
+       {"offset_N", "offset_mN", {"x.json:10:10:", "jnd.offset_N", "x.json:10:24:", "jnd.offset_mN", "offset_N"}},
+       {R"("weber_fraction": 0)",
+        R"("weber_fraction": 7)",
+        {"x.json:10:46:", "jnd.weber_fraction: found 7", "from 0", "1"}},
+       {R"("jnd":)", R"("jnd_file": "none.json", "jnd":)", {"x.json:10:35:", "jnd_file", "x.json:10:15:", "none.json"}},
+       {R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})", R"("jnd_file": 3)", {"x.json:10:15:", "jnd_file: found 3"}},
+       {"  \"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0},\n", "", {"x.json:1:1:", "jnd", "offset_N", "jnd_file"}},
+       {"#56B4E9", "red", {"x.json:12:24:", "colours.block", "\"red\"", "#56B4E9"}},
+       {R"("default_models")",
+        R"("finish": "wood", "default_models")",
+        {"x.json:13:13:", "finish", "wood", "silicone"}},
+       {R"("greedy")", R"("best")", {"x.json:13:22:", "default_models[0]", "best", "trend"}}});
+}
+
+TEST(SceneReader, LimitsTheNumberOfFeatures) {
+  Json document = Json::parse(kGood);
+  for (int i = 2; i < 8; ++i) {
+    document["features"].push_back({{"kind", "lowpass_velocity"}, {"relaxation_time_s", i}});
+  }
+  EXPECT_TRUE(parse_scene(document.dump(), "x.json").ok());
+  document["features"].push_back({{"kind", "velocity"}});
+  const auto nine = parse_scene(document.dump(), "x.json");
+  ASSERT_FALSE(nine.ok());
+  EXPECT_TRUE(test::has_parts(nine.error().message, {"list of 9", "1 to 8"}));
+  document["features"] = Json::array();
+  EXPECT_FALSE(parse_scene(document.dump(), "x.json").ok());
+}
+
+// Every field in turn has a wrong type or is missing: it is refused without a crash.
+TEST(SceneReader, RefusesEveryFieldOfAWrongTypeOrMissing) {
+  const Json good = Json::parse(kGood);
+  for (const auto& [key, ignored] : good.items()) {
+    for (const Json& wrong : {Json(-5), Json(true), Json::array(), Json::array({1}), Json::object(), Json("")}) {
+      Json bad = good;
+      bad[key] = wrong;
+      EXPECT_FALSE(parse_scene(bad.dump(), "x.json").ok()) << key << " as " << wrong;
+    }
+    Json without = good;
+    without.erase(key);
+    EXPECT_FALSE(parse_scene(without.dump(), "x.json").ok()) << "without " << key;
+  }
+}
+
+std::string jnd_complaint(const std::string& text) {
+  const auto line = parse_jnd_file(text, "jnd.json");
+  return line.ok() ? "accepted" : line.error().message;
+}
+
+TEST(JndFile, RefusesWithPlaceFoundAndExpected) {
+  const std::string advice = "palpate study analyse";
+  const std::string start = "{\"format\": \"palpate-jnd\",\n\"version\": 1,\n";
+  const std::string good = start + "\"offset_N\": 0.1, \"weber_fraction\": 0}";
+  EXPECT_EQ(jnd_complaint(good), "accepted");
+  EXPECT_TRUE(test::has_parts(jnd_complaint("[]"), {"jnd.json:1:1:", "\"format\"", "\"palpate-jnd\"", advice}));
+  test::expect_messages(
+      good, jnd_complaint,
+      {{"\"palpate-jnd\"", "3", {"jnd.json:1:1:", "\"format\"", "\"palpate-jnd\"", advice}},
+       {": 1,", ": 2,", {"jnd.json:2:12:", "version: found 2", "version 1", advice}},
+       {"\"offset_N\": 0.1, ", "", {"jnd.json:1:1:", "offset_N", "above 0", "100", advice}},
+       {"0.1", "0", {"jnd.json:3:13:", "offset_N: found 0", "above 0", "100", advice}},
+       {"fraction\": 0", "fraction\": \"6 %\"", {"jnd.json:3:36:", "weber_fraction", "6 %", "from 0", "1", advice}}});
+  const std::string broken = jnd_complaint(start);
+  EXPECT_EQ(broken.substr(0, 14), "jnd.json:3:1: ") << broken;
+  EXPECT_TRUE(test::has_parts(read_jnd_file("/none/jnd.json").error().message, {"/none/jnd.json", advice}));
 }
 
 }  // namespace

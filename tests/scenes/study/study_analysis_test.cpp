@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "scenes/scene/jnd_file.h"
+#include "scenes/scene/scene.h"
 #include "scenes/study/psychometrics.h"
 #include "scenes/study/simulated_subject.h"
 #include "tests/support/message_parts.h"
