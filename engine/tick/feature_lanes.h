@@ -4,21 +4,16 @@
 // Thread guarantee: immutable after the last `add`, which allocates; all else is wait-free.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
+#include "engine/tick/drive_curve.h"
 #include "engine/tick/lanes.h"
-#include "engine/tick/rising_curve.h"
 
 namespace palpate {
 
-inline constexpr std::size_t kDriveCoefficients = 4;
-
-struct DriveCurve;
-
-// Four drive curves g (DriveCurve in features.h). An unused lane has g = 0.
+// Four drive curves. An unused lane has g = 0.
 struct alignas(sizeof(V4)) CurveLanes {
   V4 coefficient_N[kDriveCoefficients]{};
   V4 knot_N[kDriveKnots]{};
@@ -37,6 +32,9 @@ struct BranchStep {
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
 // Groups that suffice for all branches and bristles of a filter: 8 features of 8 parts in fours.
 inline constexpr std::size_t kMaxLaneGroups = 16;
+
+// The sum of the forces of `count` parts from index `first`, N; the groups are `stride` vectors apart.
+double sum_of_parts(const V4* force_N, std::size_t stride, std::size_t first, std::size_t count) noexcept;
 
 class BranchLanes {
  public:
@@ -63,8 +61,6 @@ class BranchLanes {
   void prepare(double step_s, double surface_m, Step* step) const noexcept;
   // Advances all branches to the surface at `surface_m` and returns the sum of their forces, N; `to` may be `from`.
   double advance(const Step* step, double surface_m, const V4* from, V4* to) const noexcept;
-  // The sum of the forces of `count` branches from index `place`, N.
-  static double force_N(const V4* memory, std::size_t place, std::size_t count) noexcept;
 
  private:
   std::vector<Group> groups_;
@@ -92,7 +88,6 @@ class BristleLanes {
   // Advances all bristles from the last depth by `step_s`; with 0 only the forces are computed. Out of contact the
   // deflection of a stop becomes 0. `force_N`: receives the forces.
   void advance(double last_depth_m, double depth_m, double step_s, V4* bend_m, V4* force_N) const noexcept;
-  static double force_N(const V4* force_N, std::size_t place, std::size_t count) noexcept;
 
  private:
   std::vector<Group> groups_;

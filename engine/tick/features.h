@@ -98,18 +98,6 @@ constexpr bool has_parts(FeatureKind kind) noexcept { return facts_of(kind).has_
 constexpr bool is_branch(FeatureKind kind) noexcept { return facts_of(kind).is_branch; }
 constexpr bool is_bristle(FeatureKind kind) noexcept { return facts_of(kind).is_bristle; }
 
-// g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for u <= 1; beyond, g continues along its
-// tangent at u = 1. With knots, g is a cubic spline: the truncated powers of rising_curve.h are added.
-struct DriveCurve {
-  double reference_depth_m = 1.0;
-  std::array<double, kDriveCoefficients> coefficient_N{};
-  bool has_knots = false;
-  std::array<double, kDriveKnots> knot_N{};
-
-  double at(double depth_m) const noexcept;
-  bool operator==(const DriveCurve&) const = default;
-};
-
 // One branch of a maxwell_spectrum, one stop operator or one creeping bristle.
 struct FeaturePart {
   double relaxation_time_s = 0.0;  // maxwell_spectrum; tau of creep
@@ -174,20 +162,19 @@ class FeaturePlan {
   // Advances `state` by a sample and its motion estimate; times increase. Contact is determined from the raw position.
   void update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
   // To be called after an `update`: copies the state that `before`, fed with the same motion, has of equal features of
-  // `plan`, so that a change of models keeps the memory of the material. Bristles are matched by threshold and creep
-  // time, other features by equality; the surface positions must be equal, otherwise nothing is copied.
+  // `plan`, so that a change of models keeps the memory of the material. The surface positions must be equal, otherwise
+  // nothing is copied.
   void adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept;
 
  private:
   double advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept;
-  void take_bristles(FeatureState& state, const V4* bristle_N) const noexcept;
   V4* bends(FeatureState& state) const noexcept { return state.memory + BranchLanes::kMemory * branches_.groups(); }
   const V4* bends(const FeatureState& state) const noexcept {
     return state.memory + BranchLanes::kMemory * branches_.groups();
   }
 
   std::vector<FeatureSpec> specs_;
-  std::array<std::size_t, kMaxFeatures> place_{};  // index of the first part of each feature among the lanes
+  std::array<std::size_t, kMaxFeatures> first_part_{};  // of each feature, index among the lanes
   BranchLanes branches_;
   BristleLanes bristles_;
   std::size_t lag_ = kMaxFeatures;  // index of the surface_lag; kMaxFeatures: none
