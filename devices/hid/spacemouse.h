@@ -13,7 +13,7 @@
 #include "devices/link/device_link.h"
 #include "devices/virtual/mouse_device.h"
 #include "engine/live/device.h"
-#include "engine/live/triple_buffer.h"
+#include "engine/live/handover.h"
 
 namespace palpate {
 

@@ -12,12 +12,11 @@
 #include <thread>
 #include <vector>
 
+#include "engine/live/handover.h"
 #include "engine/live/live_tick.h"
 #include "engine/live/pacer.h"
 #include "engine/live/rt_thread.h"
-#include "engine/live/spsc_ring.h"
 #include "engine/live/time_histogram.h"
-#include "engine/live/triple_buffer.h"
 
 namespace palpate {
 

@@ -13,17 +13,8 @@ namespace {
 
 // Strokes for warming up, in and out of contact.
 constexpr int kWarmUpSamples = 500;
-constexpr double kWarmUpStep_s = 1e-3;
 // A force that is written in a tick acts from the next tick on and is held for one.
 constexpr double kInTick_s = 1.5 * kHapticTick_s;
-
-ToolSample warm_up_sample(int index) noexcept {
-  const double time_s = kWarmUpStep_s * index;
-  ToolSample sample;
-  sample.time_s = time_s;
-  sample.position_m = 2e-3 * std::sin(25.0 * time_s);
-  return sample;
-}
 
 constexpr std::uint32_t fault_bits(TickFault fault) noexcept {
   return fault == TickFault::none ? 0U : 1U << (static_cast<unsigned>(fault) - 1U);
@@ -53,7 +44,7 @@ Impedance impedance_of(const CycleForces& force_N) noexcept {
   return {in_phase_N / kProbe_m, out_of_phase_N / kSpeed_m_per_s};
 }
 
-void measure_impedance(const std::vector<std::shared_ptr<const ForceModel>>& models, LiveModels& set) {
+void measure_impedance(const ForceModels& models, LiveModels& set) {
   HapticsTick tick({}, models);
   std::vector<CycleForces> forces_N(models.size());
   ToolSample sample;
@@ -98,13 +89,10 @@ ForceMixer::Forces forces_of(const TickSnapshot& snapshot) noexcept {
 
 }  // namespace
 
-LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor,
-                       std::vector<std::shared_ptr<const ForceModel>> models,
+LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor, const ForceModels& models,
                        std::shared_ptr<ReferenceForce> true_force)
     : id(set_id), tick(sensor, models), reference(std::move(true_force)) {
   measure_impedance(models, *this);
-  for (int i = 0; i < 2; ++i) tick.step({kWarmUpStep_s * i, 1e-3, 0.0, 0.0});
-  tick.reset();
   tick.time_evaluations(true);
 }
 
@@ -118,37 +106,30 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       passivity_on_(settings.passivity && settings.source == nullptr),
       limiter_(device.limits()),
       source_(settings.source),
+      models_(std::make_unique<LiveModels>(0, device.sensor(), ForceModels{})),
       outgoing_mixer_(settings.jnd),
       recorded_(settings.recorded),
-      ns_per_cycle_(ns_per_cycle()) {
-  mixer_.jump_to(ForceMixer::kOutgoing);
-}
-
-LiveTick::~LiveTick() {
-  delete models_;
-  delete outgoing_;
-}
+      ns_per_cycle_(ns_per_cycle()) {}
 
 void LiveTick::warm_up() noexcept {
   update_models();
-  if (models_ == nullptr) return;
   HapticsTick& tick = models_->tick;
   tick.reset();
-  for (int i = 0; i < kWarmUpSamples; ++i) tick.step(warm_up_sample(i));
+  for (int i = 0; i < kWarmUpSamples; ++i) {
+    const double time_s = kHapticTick_s * i;
+    tick.step({time_s, 2e-3 * std::sin(25.0 * time_s), 0.0, 0.0});
+  }
   tick.reset();
 }
 
 void LiveTick::update_models() noexcept {
   if (outgoing_ != nullptr) return;  // one fade at a time
-  LiveModels* next = slot_.acquire();
+  std::unique_ptr<LiveModels> next = slot_.acquire();
   if (next == nullptr) return;
-  if (models_ != nullptr) {
-    next->tick.continue_from(models_->tick);
-    outgoing_ = models_;
-    outgoing_mixer_ = mixer_;
-  }
+  next->tick.continue_from(models_->tick);
+  outgoing_ = std::exchange(models_, std::move(next));
+  outgoing_mixer_ = mixer_;
   mixer_.jump_to(ForceMixer::kOutgoing);
-  models_ = next;
   snapshot_.models_id = models_->id;
   snapshot_.selected = models_->selected;
   snapshot_.tick = models_->tick.snapshot();
@@ -181,25 +162,16 @@ void LiveTick::publish_sample(const DeviceSample& sample) noexcept {
   recorded.measured_N = sample.measured_force_N;
   recorded.recording = recording_;
   recorded.restart = sample.restart;
-  if (models_ != nullptr) {
-    const TickFault fault = snapshot_.tick.fault;
-    recorded.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
-    if (models_->reference != nullptr) recorded.reference_N = snapshot_.reference_N;
-    if (models_->written_model < models_->tick.model_count()) {
-      recorded.model_N = snapshot_.tick.force_N[models_->written_model];
-    }
+  const TickFault fault = snapshot_.tick.fault;
+  recorded.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
+  if (models_->reference != nullptr) recorded.reference_N = snapshot_.reference_N;
+  if (models_->written_model < models_->tick.model_count()) {
+    recorded.model_N = snapshot_.tick.force_N[models_->written_model];
   }
   recorded_->push(recorded);
 }
 
 void LiveTick::step_models(const DeviceSample& sample) noexcept {
-  if (models_ == nullptr) {
-    snapshot_.tick.time_s = sample.tool.time_s;
-    snapshot_.tick.position_m = sample.tool.position_m;
-    snapshot_.tick.depth_m = std::max(0.0, sample.tool.position_m);
-    snapshot_.tick.in_contact = sample.tool.position_m > 0.0;
-    return;
-  }
   if (outgoing_ != nullptr) {
     if (sample.restart) outgoing_->tick.reset();
     outgoing_->tick.step(sample.tool);
@@ -213,7 +185,6 @@ void LiveTick::step_models(const DeviceSample& sample) noexcept {
 }
 
 double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
-  if (models_ == nullptr) return 0.0;
   const std::size_t count = models_->tick.model_count();
   if (controls.models_id == models_->id && controls.selected < count) snapshot_.selected = controls.selected;
   if (snapshot_.selected >= count) snapshot_.selected = 0;
@@ -223,10 +194,10 @@ double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
   }
   const double force_N = mixer_.mix(forces_N, snapshot_.selected, step_s);
   if (outgoing_ != nullptr && mixer_.weights()[ForceMixer::kOutgoing] == 0.0) {
-    slot_.retire(outgoing_);
-    outgoing_ = nullptr;
+    slot_.retire(std::move(outgoing_));
   }
   snapshot_.fading = !mixer_.settled_on(snapshot_.selected);
+  if (count == 0 && outgoing_ == nullptr) return 0.0;  // without models no damping, either
   return scale(force_N, controls.scale, step_s);
 }
 
@@ -316,11 +287,9 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   render(commanded_N, passive(commanded_N, step_s), step_s, dead_man_released(controls));
   snapshot_.faults_latched |= snapshot_.faults;
   snapshot_.device_faults_latched |= snapshot_.device.faults;
-  if (models_ != nullptr) {
-    for (std::size_t i = 0; i < models_->tick.model_count(); ++i) {
-      snapshot_.evaluation_ns[i] =
-          static_cast<float>(ns_per_cycle_ * static_cast<double>(models_->tick.evaluation_cycles(i)));
-    }
+  for (std::size_t i = 0; i < models_->tick.model_count(); ++i) {
+    snapshot_.evaluation_ns[i] =
+        static_cast<float>(ns_per_cycle_ * static_cast<double>(models_->tick.evaluation_cycles(i)));
   }
   return snapshot_;
 }

@@ -19,9 +19,8 @@
 #include "engine/live/force_limiter.h"
 #include "engine/live/force_mixer.h"
 #include "engine/live/force_scale.h"
-#include "engine/live/model_slot.h"
+#include "engine/live/handover.h"
 #include "engine/live/passivity_controller.h"
-#include "engine/live/spsc_ring.h"
 #include "engine/live/stability_limit.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
@@ -49,7 +48,7 @@ class ForceSource {
 struct LiveModels {
   // Slow side: sizes all workspaces and measures every model's impedance. `id` > 0 identifies this set in snapshots and
   // controls. `reference` may be null; consecutive sets may share one, because only the newest set calls it.
-  LiveModels(std::uint32_t id, const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models,
+  LiveModels(std::uint32_t id, const SensorSpec& sensor, const ForceModels& models,
              std::shared_ptr<ReferenceForce> reference = nullptr);
 
   std::uint32_t id;
@@ -148,16 +147,13 @@ class LiveTick {
   LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSettings& settings = {});
   LiveTick(const LiveTick&) = delete;
   LiveTick& operator=(const LiveTick&) = delete;
-  ~LiveTick();
 
   // Takes the pending set, runs its tick on synthetic strokes and resets it, so that caches and branch predictors are
   // warm.
   void warm_up() noexcept;
 
   // Loads code and data of the next `run` into the caches; no state changes.
-  void rehearse() noexcept {
-    if (models_ != nullptr) models_->tick.rehearse();
-  }
+  void rehearse() noexcept { models_->tick.rehearse(); }
 
   // `now_s`: steady clock. The snapshot is valid until the next call.
   const LoopSnapshot& run(double now_s, const LoopControls& controls) noexcept;
@@ -190,8 +186,8 @@ class LiveTick {
   bool passivity_on_;
   ForceLimiter limiter_;
   ForceSource* source_;
-  LiveModels* models_ = nullptr;
-  LiveModels* outgoing_ = nullptr;  // previous set until its fade ends; then retired
+  std::unique_ptr<LiveModels> models_;    // before the first published set: one without models
+  std::unique_ptr<LiveModels> outgoing_;  // previous set until its fade ends; then retired
   ForceMixer outgoing_mixer_;
   LoopSnapshot snapshot_;
   RecordedRing* recorded_;

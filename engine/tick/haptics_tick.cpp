@@ -22,8 +22,7 @@ bool finite(const ToolSample& sample) noexcept {
 
 }  // namespace
 
-HapticsTick::HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models)
-    : motion_(sensor), models_(std::move(models)) {
+HapticsTick::HapticsTick(const SensorSpec& sensor, ForceModels models) : motion_(sensor), models_(std::move(models)) {
   assert(models_.size() <= kMaxModels);
   for (const auto& model : models_) {
     std::size_t index = 0;

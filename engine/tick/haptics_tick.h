@@ -56,7 +56,7 @@ struct PastMotion {
 class HapticsTick {
  public:
   // `models`: up to kMaxModels.
-  HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models);
+  HapticsTick(const SensorSpec& sensor, ForceModels models);
 
   // Resets the motion estimate and the filters; the next sample starts a new stream.
   void reset() noexcept;
@@ -97,7 +97,7 @@ class HapticsTick {
   void evaluate_models() noexcept;
 
   MotionEstimator motion_;
-  std::vector<std::shared_ptr<const ForceModel>> models_;
+  ForceModels models_;
   std::vector<FeatureFilter> filters_;
   std::vector<std::size_t> filter_of_;  // for each model
   std::array<std::uint64_t, kMaxModels> cycles_{};

@@ -13,13 +13,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <vector>
 
 #include "engine/base/result.h"
 #include "engine/recording/recording_reader.h"
 #include "engine/tick/haptics_tick.h"
-#include "engine/tick/tool_sample.h"
 
 namespace palpate {
 
@@ -27,8 +24,6 @@ namespace palpate {
 // during the call.
 using ReplayVisitor =
     std::function<void(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick)>;
-
-using ForceModels = std::vector<std::shared_ptr<const ForceModel>>;
 
 struct ReplaySummary {
   SensorSpec sensor;
