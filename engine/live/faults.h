@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-// Faults of a tick, bits of LoopSnapshot::faults. The first three are those of TickFault, in its order.
+// Faults of a tick, bits of LoopSnapshot::faults. The first three are the values of TickFault.
 namespace loop_fault {
 inline constexpr std::uint32_t kBadSample = 1;
 inline constexpr std::uint32_t kTimeNotLater = 2;

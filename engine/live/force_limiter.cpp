@@ -37,9 +37,7 @@ bool ForceLimiter::stops(double commanded_N, const ForceConditions& conditions) 
   if (!(conditions.sample_age_s <= limits_.stale_after_s)) flags_ |= force_limit::kStale;
   if (conditions.device_fault) flags_ |= force_limit::kDeviceFault;
   if (conditions.dead_man_released) flags_ |= force_limit::kReleased;
-  const bool stop = flags_ != 0 || stop_asked_;
-  stop_asked_ = false;
-  return stop;
+  return flags_ != 0 || conditions.bad_sample;
 }
 
 double ForceLimiter::ramped(double commanded_N, double step_s) noexcept {

@@ -21,7 +21,6 @@
 namespace palpate {
 
 struct LoopSettings {
-  std::int64_t period_ns = 1'000'000;
   // Time before a deadline at which the thread wakes up, rehearses the tick twice and spins: without it, the first
   // evaluations after a pause have cold caches, and a sleep ends late. 0: the thread sleeps until the deadline.
   std::int64_t rehearse_ns = 0;
@@ -78,10 +77,6 @@ class HapticsLoop {
   // Any thread, wait-free. The number of samples that were dropped because the ring was full.
   std::uint64_t dropped_samples() const noexcept { return recorded_->dropped(); }
 
-  // Any thread, wait-free: those members of `statistics` that take no computation.
-  std::uint64_t dropped_snapshots() const noexcept { return ring_->dropped(); }
-  double age_s() const noexcept;
-
   // Any thread, wait-free.
   LoopStatistics statistics() const noexcept;
 
@@ -110,11 +105,8 @@ class HapticsLoop {
   std::unique_ptr<SpscRing<LoopSnapshot, kSnapshotRing>> ring_;  // 2 MB: too much for a stack
   TimeHistogram lateness_;
   TimeHistogram duration_;
-  std::uint64_t missed_ = 0;
-  float last_tick_us_ = 0.0F;
-  std::atomic<std::uint64_t> published_missed_{0};
-  std::atomic<std::uint64_t> ticks_{0};
-  std::atomic<std::int64_t> last_tick_ns_{0};
+  std::atomic<std::uint64_t> missed_{0};
+  std::atomic<std::int64_t> last_tick_ns_{0};  // 0: no tick yet
   std::atomic<bool> stop_{false};
 };
 

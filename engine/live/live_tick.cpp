@@ -16,12 +16,9 @@ constexpr int kWarmUpSamples = 500;
 // A force that is written in a tick acts from the next tick on and is held for one.
 constexpr double kInTick_s = 1.5 * kHapticTick_s;
 
-constexpr std::uint32_t fault_bits(TickFault fault) noexcept {
-  return fault == TickFault::none ? 0U : 1U << (static_cast<unsigned>(fault) - 1U);
-}
-static_assert(fault_bits(TickFault::bad_sample) == loop_fault::kBadSample &&
-              fault_bits(TickFault::time_not_later) == loop_fault::kTimeNotLater &&
-              fault_bits(TickFault::force_not_finite) == loop_fault::kModelNotFinite);
+static_assert(static_cast<std::uint32_t>(TickFault::bad_sample) == loop_fault::kBadSample &&
+              static_cast<std::uint32_t>(TickFault::time_not_later) == loop_fault::kTimeNotLater &&
+              static_cast<std::uint32_t>(TickFault::force_not_finite) == loop_fault::kModelNotFinite);
 
 // At each depth the tool comes to rest, then makes one cycle. The relaxation of the force is subtracted as a straight
 // line; the first harmonic of the rest gives the impedance.
@@ -71,14 +68,16 @@ void measure_impedance(const ForceModels& models, LiveModels& set) {
   }
 }
 
-std::uint32_t limiter_bits(std::uint32_t flags) noexcept {
-  std::uint32_t bits = 0;
-  if ((flags & force_limit::kNotFinite) != 0) bits |= loop_fault::kForceNotFinite;
-  if ((flags & force_limit::kClamped) != 0) bits |= loop_fault::kForceClamped;
-  if ((flags & force_limit::kSlewed) != 0) bits |= loop_fault::kForceSlewed;
-  if ((flags & force_limit::kThermal) != 0) bits |= loop_fault::kForceThermal;
-  if ((flags & force_limit::kStale) != 0) bits |= loop_fault::kStaleSample;
-  return bits;
+std::uint32_t limiter_faults(std::uint32_t flags) noexcept {
+  constexpr std::pair<std::uint32_t, std::uint32_t> kFaultOfFlag[] = {
+      {force_limit::kNotFinite, loop_fault::kForceNotFinite},
+      {force_limit::kClamped, loop_fault::kForceClamped},
+      {force_limit::kSlewed, loop_fault::kForceSlewed},
+      {force_limit::kThermal, loop_fault::kForceThermal},
+      {force_limit::kStale, loop_fault::kStaleSample}};
+  std::uint32_t faults = 0;
+  for (const auto& [flag, fault] : kFaultOfFlag) faults |= (flags & flag) != 0 ? fault : 0U;
+  return faults;
 }
 
 ForceMixer::Forces forces_of(const TickSnapshot& snapshot) noexcept {
@@ -178,7 +177,7 @@ void LiveTick::step_models(const DeviceSample& sample) noexcept {
   }
   if (sample.restart) models_->tick.reset();
   snapshot_.tick = models_->tick.step(sample.tool);
-  snapshot_.faults |= fault_bits(snapshot_.tick.fault);
+  snapshot_.faults |= static_cast<std::uint32_t>(snapshot_.tick.fault);
   if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample) {
     snapshot_.reference_N = models_->reference->step(snapshot_.tick, sample.restart);
   }
@@ -258,15 +257,15 @@ double LiveTick::passive(double commanded_N, double step_s) noexcept {
 
 void LiveTick::render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept {
   const DeviceHealth& device = snapshot_.device;
-  // After an impossible sample there is no force until a possible one.
-  if ((snapshot_.faults & loop_fault::kBadSample) != 0) limiter_.fault();
   if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
   snapshot_.commanded_N = commanded_N;
   snapshot_.passive_N = passive_N;
   snapshot_.dead_man_released = dead_man_released;
+  // After an impossible sample there is no force until a possible one.
+  const bool bad_sample = (snapshot_.faults & loop_fault::kBadSample) != 0;
   snapshot_.rendered_N =
-      limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), dead_man_released});
-  snapshot_.faults |= limiter_bits(limiter_.flags());
+      limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), dead_man_released, bad_sample});
+  snapshot_.faults |= limiter_faults(limiter_.flags());
   snapshot_.limiter_flags = limiter_.flags();
   snapshot_.heat_share = static_cast<float>(limiter_.heat_share());
   device_.write(snapshot_.rendered_N);

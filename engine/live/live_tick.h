@@ -112,8 +112,6 @@ struct LoopSnapshot {
   bool dead_man_released = false;   // the dead-man switch is released: no force
   bool fading = false;              // between two models
   bool restarted = false;           // a new stream began in this tick
-  float lateness_us = 0.0F;
-  float tick_us = 0.0F;  // duration of the last tick
   std::array<float, kMaxModels> evaluation_ns{};
 };
 static_assert(std::is_trivially_copyable_v<LoopSnapshot>);

@@ -22,11 +22,12 @@ namespace palpate {
 
 inline constexpr std::size_t kMaxModels = 16;
 
+// The values are bits of the live loop's faults (engine/live/faults.h).
 enum class TickFault : std::uint8_t {
-  none,
-  bad_sample,        // a value of the sample is not finite: the state is kept
-  time_not_later,    // the sample is not later than the last one: the state is kept
-  force_not_finite,  // a model returned a non-finite force: replaced by 0
+  none = 0,
+  bad_sample = 1,        // a value of the sample is not finite: the state is kept
+  time_not_later = 2,    // the sample is not later than the last one: the state is kept
+  force_not_finite = 4,  // a model returned a non-finite force: replaced by 0
 };
 
 // The results of a tick, for the graphics thread and for replay.

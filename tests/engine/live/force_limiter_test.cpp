@@ -98,8 +98,7 @@ TEST(ForceLimiter, RampsUpAtTheStartAndAfterEachFault) {
   expect_ramp(limiter);
   limiter.limit(kNaN, kTick_s);
   expect_ramp(limiter);
-  limiter.fault();
-  limiter.limit(4.0, kTick_s);
+  limiter.limit(4.0, kTick_s, {.bad_sample = true});
   expect_ramp(limiter);
 }
 
