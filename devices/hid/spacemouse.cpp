@@ -10,7 +10,6 @@
 
 #include "devices/firmware/wire.h"
 #include "devices/hid/hid_protocols.h"
-#include "engine/live/device_health.h"
 
 namespace palpate {
 namespace {
