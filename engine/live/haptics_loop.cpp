@@ -7,7 +7,7 @@ namespace palpate {
 namespace {
 
 constexpr double kSPerNs = 1e-9;
-constexpr std::int64_t kPeriod_ns = 1'000'000;
+constexpr auto kPeriod_ns = static_cast<std::int64_t>(1e9 * kHapticTick_s);
 // At the end the limiter ramps the force down. This is enough for its slowest sensible slew rate; then 0 is written
 // to the device in any case.
 constexpr int kLetGoTicks = 100;

@@ -18,7 +18,6 @@
 #include "engine/live/faults.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/force_mixer.h"
-#include "engine/live/force_scale.h"
 #include "engine/live/handover.h"
 #include "engine/live/passivity_controller.h"
 #include "engine/live/stability_limit.h"
