@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -47,11 +48,21 @@ struct TickSnapshot {
 };
 static_assert(std::is_trivially_copyable_v<TickSnapshot>);
 
-// A past sample, for the memory of new models.
-struct PastMotion {
-  double time_s = 0.0;
-  double position_m = 0.0;
-  double velocity_m_per_s = 0.0;
+// The motion of the tool in the last minute, thinned to 4 ms. Models that are added during a press start with the
+// memory of the material for this motion, not with a material at rest under the tool (HapticsTick::recall).
+// Thread guarantee: slow side (allocates); one thread.
+class MotionHistory {
+ public:
+  struct Moment {
+    double time_s, position_m, velocity_m_per_s;
+  };
+  // Takes the snapshot of every tick in order. `restarted`: it begins a new stream; the earlier motion is deleted.
+  void add(const TickSnapshot& snapshot, bool restarted);
+  // Oldest first.
+  const std::deque<Moment>& past() const noexcept { return past_; }
+
+ private:
+  std::deque<Moment> past_;
 };
 
 class HapticsTick {
@@ -68,8 +79,8 @@ class HapticsTick {
   // that code and data of the next step are in the caches. Wait-free; the state does not change.
   void rehearse() noexcept;
 
-  // Slow side, before `continue_from`: advances the filters by a past sample; times increase.
-  void recall(const PastMotion& motion) noexcept;
+  // Slow side, before `continue_from`: advances the filters by this motion.
+  void recall(const MotionHistory& history) noexcept;
 
   // Continues from the state of `before`: takes over the motion estimate and the memory of equal features, so that a
   // change of models in mid-press does not lose the memory of the material; the snapshot is evaluated with these
@@ -92,7 +103,6 @@ class HapticsTick {
   const ForceModel& model(std::size_t index) const noexcept { return *models_[index]; }
   // The last features of model `index`.
   const FeatureVector& features_of(std::size_t index) const noexcept { return filters_[filter_of_[index]].vector(); }
-  std::size_t filter_count() const noexcept { return filters_.size(); }
 
  private:
   void evaluate_models() noexcept;

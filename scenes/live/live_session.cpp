@@ -183,7 +183,7 @@ void LiveSession::forget_errors(std::string why) {
 void LiveSession::publish(std::string why) {
   forget_errors(std::move(why));
   auto set = models_.make_set(device_->sensor(), truth_);
-  history_.recall(set->tick);
+  set->tick.recall(history_);
   loop_->publish_models(std::move(set));
   send_controls();
 }
