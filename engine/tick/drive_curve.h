@@ -20,50 +20,43 @@ struct DriveCurve {
   std::array<double, kDriveKnots> knot_N{};
 
   double at(double depth_m) const noexcept;
+  // Beyond this depth g is linear.
+  double least_reference_m() const noexcept { return reference_depth_m; }
   bool operator==(const DriveCurve&) const = default;
 };
 
-constexpr double knot_position(std::size_t k) noexcept { return static_cast<double>(k + 1) / (kDriveKnots + 1); }
-
-// The value at u <= 1. `curve`: a DriveCurve for one Number, or CurveLanes (feature_lanes.h) for four at once; the
+// Sets `value` to g. `curve`: a DriveCurve for one Number, or CurveLanes (feature_lanes.h) for four at once; the
 // results are bit-identical.
 template <typename Number, typename Curve>
-[[gnu::always_inline]] inline void curve_value(Number& value, const Curve& curve, const Number& u) noexcept {
-  value = Number{};
-  for (std::size_t k = kDriveCoefficients; k-- > 0;) value = (value + curve.coefficient_N[k]) * u;
-  if (!curve.has_knots) return;
+[[gnu::always_inline]] inline void evaluate_curve(Number& value, const Curve& curve, double depth_m) noexcept {
+  const auto knot_position = [](std::size_t k) { return static_cast<double>(k + 1) / (kDriveKnots + 1); };
+  const Number u = depth_m / curve.reference_depth_m;
+  const Number inside = u > 1.0 ? Number{} + 1.0 : u;
   Number sum{};
-  for (std::size_t k = 0; k < kDriveKnots; ++k) {
-    const Number above = u - knot_position(k);
+  for (std::size_t k = kDriveCoefficients; k-- > 0;) sum = (sum + curve.coefficient_N[k]) * inside;
+  Number knots{};
+  for (std::size_t k = 0; curve.has_knots && k < kDriveKnots; ++k) {
+    const Number above = inside - knot_position(k);
     const Number beyond = above > 0.0 ? above : Number{};
-    sum += curve.knot_N[k] * beyond * beyond * beyond;
+    knots += curve.knot_N[k] * beyond * beyond * beyond;
   }
-  value += sum;
-}
-
-// The derivative dg/du at u = 1.
-template <typename Number, typename Curve>
-[[gnu::always_inline]] inline void curve_slope(Number& slope, const Curve& curve) noexcept {
-  slope = Number{};
-  for (std::size_t k = kDriveCoefficients; k-- > 0;) slope += static_cast<double>(k + 1) * curve.coefficient_N[k];
-  if (!curve.has_knots) return;
-  Number sum{};
-  for (std::size_t k = 0; k < kDriveKnots; ++k) {
-    const double beyond = 1.0 - knot_position(k);
-    sum += 3.0 * (curve.knot_N[k] * beyond * beyond);
+  value = curve.has_knots ? sum + knots : sum;
+  if (depth_m > curve.least_reference_m()) [[unlikely]] {
+    Number slope{};  // dg/du at u = 1
+    for (std::size_t k = kDriveCoefficients; k-- > 0;) slope += static_cast<double>(k + 1) * curve.coefficient_N[k];
+    Number knots_slope{};
+    for (std::size_t k = 0; curve.has_knots && k < kDriveKnots; ++k) {
+      const double beyond = 1.0 - knot_position(k);
+      knots_slope += 3.0 * (curve.knot_N[k] * beyond * beyond);
+    }
+    slope += knots_slope;
+    value = u > 1.0 ? value + slope * (u - 1.0) : value;
   }
-  slope += sum;
 }
 
 inline double DriveCurve::at(double depth_m) const noexcept {
-  const double u = depth_m / reference_depth_m;
   double value = 0.0;
-  curve_value(value, *this, u > 1.0 ? 1.0 : u);
-  if (u > 1.0) [[unlikely]] {
-    double slope = 0.0;
-    curve_slope(slope, *this);
-    value += slope * (u - 1.0);
-  }
+  evaluate_curve(value, *this, depth_m);
   return value;
 }
 

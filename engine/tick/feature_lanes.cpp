@@ -9,17 +9,6 @@ namespace {
 
 // Smaller values are set to 0: denormals would slow every later operation.
 constexpr double kNothing_N = 1e-30;
-PALPATE_INLINE void curve_at(V4& value, const CurveLanes& curve, double depth_m) noexcept {
-  const V4 u = depth_m / curve.reference_depth_m;
-  const V4 inside = u > 1.0 ? V4{} + 1.0 : u;
-  curve_value(value, curve, inside);
-  if (depth_m > curve.least_reference_m) [[unlikely]] {
-    V4 slope;
-    curve_slope(slope, curve);
-    value = u > 1.0 ? value + slope * (u - 1.0) : value;
-  }
-}
-
 PALPATE_INLINE void step_of(V4& keep, V4& gain, const V4& time_s, double step_s, double per_step) noexcept {
   keep = -step_s / time_s;
   to_exponential(keep);
@@ -46,7 +35,7 @@ PALPATE_INLINE double advance_groups(const BranchLanes::Group* group, std::size_
   V4 sum{};
   for (std::size_t i = 0; i < count; ++i, from += BranchLanes::kMemory, to += BranchLanes::kMemory) {
     V4 drive;
-    curve_at(drive, group[i].drive, surface_m);
+    evaluate_curve(drive, group[i].drive, surface_m);
     const V4& last = from[0];
     const V4 kept = step[i].keep * (((last < kNothing_N) & (last > -kNothing_N)) ? V4{} : last);
     const V4 force = kept + step[i].gain * (drive - from[1]);
@@ -76,7 +65,7 @@ PALPATE_INLINE void bend_groups(const BristleLanes::Group* group, std::size_t co
     }
     bend = bend < -limit ? -limit : (limit < bend ? limit : bend);
     V4 force;
-    curve_at(force, group[i].drive, depth_m);
+    evaluate_curve(force, group[i].drive, depth_m);
     bend_m[i] = bend;
     force_N[i] = force * bend / group[i].threshold_m;
   }
@@ -127,7 +116,7 @@ BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
 void CurveLanes::set(std::size_t lane, const DriveCurve& drive) noexcept {
   for (std::size_t k = 0; k < kDriveCoefficients; ++k) coefficient_N[k][lane] = drive.coefficient_N[k];
   reference_depth_m[lane] = drive.reference_depth_m;
-  least_reference_m = std::min(least_reference_m, drive.reference_depth_m);
+  least_m = std::min(least_m, drive.reference_depth_m);
   if (!drive.has_knots) return;
   has_knots = true;
   for (std::size_t k = 0; k < kDriveKnots; ++k) knot_N[k][lane] = drive.knot_N[k];

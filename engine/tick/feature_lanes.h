@@ -18,10 +18,11 @@ struct alignas(sizeof(V4)) CurveLanes {
   V4 coefficient_N[kDriveCoefficients]{};
   V4 knot_N[kDriveKnots]{};
   V4 reference_depth_m{1.0, 1.0, 1.0, 1.0};
-  double least_reference_m = std::numeric_limits<double>::infinity();  // the smallest of the four
+  double least_m = std::numeric_limits<double>::infinity();  // the smallest of the four reference depths
   bool has_knots = false;
 
   void set(std::size_t lane, const DriveCurve& drive) noexcept;
+  double least_reference_m() const noexcept { return least_m; }
 };
 
 // One step of a Maxwell branch: z' = keep z + gain (g(s') - g(s)).
