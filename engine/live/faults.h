@@ -108,9 +108,6 @@ constexpr std::uint32_t fault_bits_of(FaultSource source, bool only_stopping = f
 namespace loop_fault {
 inline constexpr std::uint32_t kStops = fault_bits_of(FaultSource::loop, true);
 }
-namespace device_fault {
-inline constexpr std::uint32_t kAll = fault_bits_of(FaultSource::device);
-}
 
 // The index of the row with one bit, which must exist.
 constexpr std::size_t fault_index(FaultSource source, std::uint32_t bit) noexcept {

@@ -134,8 +134,7 @@ std::string feature_name(const FeatureSpec& spec);
 
 struct FeatureVector {
   std::array<double, kMaxFeatures> values{};
-  double depth_m = 0.0;  // from the raw position: max(0, position - surface)
-  bool in_contact = false;
+  bool in_contact = false;  // by the raw position
 };
 
 // The state of the filters of one list of features. Trivially copyable.
