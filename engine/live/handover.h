@@ -77,19 +77,14 @@ class SpscRing {
 
   // Producer thread. Wait-free. False: full, dropped and counted.
   bool push(const T& value) noexcept {
-    if (!has_room()) {
+    const std::uint64_t written = written_.load(std::memory_order_relaxed);
+    if (written - read_.load(std::memory_order_acquire) == N) {
       dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
       return false;
     }
-    const std::uint64_t written = written_.load(std::memory_order_relaxed);
     values_[written & (N - 1)] = value;
     written_.store(written + 1, std::memory_order_release);
     return true;
-  }
-
-  // Producer thread. Wait-free. Whether the next push will succeed; only a push can change true to false.
-  bool has_room() const noexcept {
-    return written_.load(std::memory_order_relaxed) - read_.load(std::memory_order_acquire) < N;
   }
 
   // Consumer thread. Wait-free. False: empty, `value` is unchanged.
@@ -120,9 +115,9 @@ class SpscRing {
 };
 
 // The slow side builds, checks and warms a set, then exchanges it into `pending_`; a set that was never taken comes
-// back and is deleted there. The tick takes the pending set at its boundary, but only if the retire ring has room for
-// the old one, which it may continue to use (to blend the force) and retires later. The slow side deletes the sets in
-// the ring. The tick thus never deletes a set or waits.
+// back and is deleted there. The tick takes the pending set at its boundary, but only if the slow side has deleted the
+// set that was retired before. It may continue to use the old one (to blend the force) and retires it later. The tick
+// thus never deletes a set or waits.
 template <typename T>
 class ModelSlot {
   static_assert(std::atomic<T*>::is_always_lock_free);
@@ -143,27 +138,23 @@ class ModelSlot {
     delete pending_.exchange(next.release(), std::memory_order_acq_rel);
   }
 
-  // The same slow-side thread. Deletes the retired sets; returns their number.
-  std::size_t collect() {
-    std::size_t count = 0;
-    for (T* old = nullptr; retired_.pop(old); ++count) delete old;
-    return count;
-  }
+  // The same slow-side thread. Deletes the retired set; returns whether there was one.
+  bool collect() { return std::unique_ptr<T>(retired_.exchange(nullptr, std::memory_order_acq_rel)) != nullptr; }
 
-  // Haptics thread. Wait-free. The pending set, which the caller must retire; null if there is none or the ring has no
-  // room. Besides the newest set, at most one taken set may be waiting for its `retire`.
+  // Haptics thread. Wait-free. The pending set; null if there is none or a retired set was not collected yet. The set
+  // taken before must be retired before the next call.
   std::unique_ptr<T> acquire() noexcept {
-    if (pending_.load(std::memory_order_relaxed) == nullptr || !retired_.has_room()) return nullptr;
+    if (pending_.load(std::memory_order_relaxed) == nullptr) return nullptr;
+    if (retired_.load(std::memory_order_acquire) != nullptr) return nullptr;
     return std::unique_ptr<T>(pending_.exchange(nullptr, std::memory_order_acq_rel));
   }
 
-  // Haptics thread. Wait-free. Hands `old` over for deletion. There is room: `acquire` checked it, and no other
-  // function fills the ring.
-  void retire(std::unique_ptr<T> old) noexcept { retired_.push(old.release()); }
+  // Haptics thread. Wait-free. Hands `old` over for deletion, at most one set after each that was acquired.
+  void retire(std::unique_ptr<T> old) noexcept { retired_.store(old.release(), std::memory_order_release); }
 
  private:
   std::atomic<T*> pending_{nullptr};
-  SpscRing<T*, 8> retired_;
+  std::atomic<T*> retired_{nullptr};
 };
 
 }  // namespace palpate
