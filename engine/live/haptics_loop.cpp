@@ -18,9 +18,8 @@ double seconds(std::int64_t time_ns) noexcept { return kSPerNs * static_cast<dou
 
 HapticsLoop::HapticsLoop(Device& device, const LoopSettings& settings)
     : device_(device),
-      recorded_(std::make_unique<RecordedRing>()),
       settings_(settings),
-      live_(device, slot_, {settings.jnd, recorded_.get(), settings.source}),
+      live_(device, slot_, {settings.jnd, settings.source}),
       ring_(std::make_unique<SpscRing<LoopSnapshot, kSnapshotRing>>()) {}
 
 HapticsLoop::~HapticsLoop() { stop(); }

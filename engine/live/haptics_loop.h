@@ -60,8 +60,9 @@ class HapticsLoop {
 
   // One slow-side thread, lock-free: models for the next ticks, see ModelSlot.
   void publish_models(std::unique_ptr<LiveModels> models) { slot_.publish(std::move(models)); }
-  // The same thread: deletes the sets that the loop no longer uses. To be called from time to time.
-  std::size_t collect_models() { return slot_.collect(); }
+  // The same thread: deletes a set that the loop no longer uses. To be called from time to time: until then the loop
+  // takes no other set.
+  void collect_models() { slot_.collect(); }
 
   // One slow-side thread, wait-free.
   void set_controls(const LoopControls& controls) noexcept { controls_.write(controls); }
@@ -73,9 +74,11 @@ class HapticsLoop {
 
   // One reader thread, the recorder's, wait-free, O(most). Every sample that was read while the controls requested a
   // recording, oldest first.
-  std::size_t read_samples(RecordedSample* samples, std::size_t most) noexcept { return recorded_->pop(samples, most); }
+  std::size_t read_samples(RecordedSample* samples, std::size_t most) noexcept {
+    return live_.recorded().pop(samples, most);
+  }
   // Any thread, wait-free. The number of samples that were dropped because the ring was full.
-  std::uint64_t dropped_samples() const noexcept { return recorded_->dropped(); }
+  std::uint64_t dropped_samples() noexcept { return live_.recorded().dropped(); }
 
   // Any thread, wait-free.
   LoopStatistics statistics() const noexcept;
@@ -92,7 +95,6 @@ class HapticsLoop {
   void let_go(Pacer& pacer, Deadlines& deadlines) noexcept;
 
   Device& device_;
-  std::unique_ptr<RecordedRing> recorded_;
   LoopSettings settings_;
   ModelSlot<LiveModels> slot_;
   LiveTick live_;

@@ -107,7 +107,7 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       source_(settings.source),
       models_(std::make_unique<LiveModels>(0, device.sensor(), ForceModels{})),
       outgoing_mixer_(settings.jnd),
-      recorded_(settings.recorded),
+      recorded_(std::make_unique<RecordedRing>()),
       ns_per_cycle_(ns_per_cycle()) {}
 
 void LiveTick::warm_up() noexcept {
@@ -151,16 +151,22 @@ void LiveTick::process_sample(const DeviceSample& sample) noexcept {
   ++snapshot_.samples;
   snapshot_.restarted = snapshot_.restarted || sample.restart;
   snapshot_.measured_N = sample.measured_force_N;
-  step_models(sample);
-  if (recording_ != 0 && recorded_ != nullptr) publish_sample(sample);
+  for (LiveModels* set : {outgoing_.get(), models_.get()}) {
+    if (set == nullptr) continue;
+    if (sample.restart) set->tick.reset();
+    set->tick.step(sample.tool);
+  }
+  snapshot_.tick = models_->tick.snapshot();
+  snapshot_.faults |= static_cast<std::uint32_t>(snapshot_.tick.fault);
+  if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample) {
+    snapshot_.reference_N = models_->reference->step(snapshot_.tick, sample.restart);
+  }
+  if (recording_ != 0) record(sample);
 }
 
-void LiveTick::publish_sample(const DeviceSample& sample) noexcept {
-  RecordedSample recorded;
-  recorded.tool = sample.tool;
-  recorded.measured_N = sample.measured_force_N;
-  recorded.recording = recording_;
-  recorded.restart = sample.restart;
+void LiveTick::record(const DeviceSample& sample) noexcept {
+  RecordedSample recorded{
+      .tool = sample.tool, .measured_N = sample.measured_force_N, .recording = recording_, .restart = sample.restart};
   const TickFault fault = snapshot_.tick.fault;
   recorded.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
   if (models_->reference != nullptr) recorded.reference_N = snapshot_.reference_N;
@@ -168,19 +174,6 @@ void LiveTick::publish_sample(const DeviceSample& sample) noexcept {
     recorded.model_N = snapshot_.tick.force_N[models_->written_model];
   }
   recorded_->push(recorded);
-}
-
-void LiveTick::step_models(const DeviceSample& sample) noexcept {
-  if (outgoing_ != nullptr) {
-    if (sample.restart) outgoing_->tick.reset();
-    outgoing_->tick.step(sample.tool);
-  }
-  if (sample.restart) models_->tick.reset();
-  snapshot_.tick = models_->tick.step(sample.tool);
-  snapshot_.faults |= static_cast<std::uint32_t>(snapshot_.tick.fault);
-  if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample) {
-    snapshot_.reference_N = models_->reference->step(snapshot_.tick, sample.restart);
-  }
 }
 
 double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
@@ -220,13 +213,6 @@ double LiveTick::scale(double force_N, const ForceScale& wanted, double step_s) 
   snapshot_.lag_ms = static_cast<float>(1e3 * stability_.lag_s());
   const TickSnapshot& tick = snapshot_.tick;
   return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, limited, step_s);
-}
-
-void LiveTick::acknowledge(const LoopControls& controls) noexcept {
-  if (controls.acknowledged == acknowledged_) return;
-  acknowledged_ = controls.acknowledged;
-  snapshot_.faults_latched = 0;
-  snapshot_.device_faults_latched = 0;
 }
 
 bool LiveTick::dead_man_released(const LoopControls& controls) const noexcept {
@@ -278,7 +264,10 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   snapshot_.loop_time_s = now_s;
   snapshot_.faults = 0;
   recording_ = controls.recording;
-  acknowledge(controls);
+  if (std::exchange(acknowledged_, controls.acknowledged) != controls.acknowledged) {
+    snapshot_.faults_latched = 0;
+    snapshot_.device_faults_latched = 0;
+  }
   update_models();
   process_samples(now_s);
   read_health(now_s);

@@ -133,9 +133,8 @@ using RecordedRing = SpscRing<RecordedSample, kRecordedRing>;
 
 struct LiveTickSettings {
   JndLine jnd;
-  RecordedRing* recorded = nullptr;  // outlives the tick; null: no recorder
-  ForceSource* source = nullptr;     // outlives the tick; null: the models
-  bool passivity = true;             // false: for tests without the controller
+  ForceSource* source = nullptr;  // outlives the tick; null: the models
+  bool passivity = true;          // false: for tests without the controller
 };
 
 class LiveTick {
@@ -155,6 +154,9 @@ class LiveTick {
   // `now_s`: steady clock. The snapshot is valid until the next call.
   const LoopSnapshot& run(double now_s, const LoopControls& controls) noexcept;
 
+  // One reader thread. Every sample that was read while the controls requested a recording.
+  RecordedRing& recorded() noexcept { return *recorded_; }
+
   // As `run`, with command 0; true when the device has got 0.
   bool release(double now_s) noexcept;
 
@@ -163,10 +165,8 @@ class LiveTick {
   void process_samples(double now_s) noexcept;
   void read_health(double now_s) noexcept;
   void process_sample(const DeviceSample& sample) noexcept;
-  void step_models(const DeviceSample& sample) noexcept;
-  void publish_sample(const DeviceSample& sample) noexcept;
+  void record(const DeviceSample& sample) noexcept;
   double mix(const LoopControls& controls, double step_s) noexcept;
-  void acknowledge(const LoopControls& controls) noexcept;
   bool dead_man_released(const LoopControls& controls) const noexcept;
   Impedance impedance() const noexcept;
   double scale(double force_N, const ForceScale& wanted, double step_s) noexcept;
@@ -187,7 +187,7 @@ class LiveTick {
   std::unique_ptr<LiveModels> outgoing_;  // previous set until its fade ends; then retired
   ForceMixer outgoing_mixer_;
   LoopSnapshot snapshot_;
-  RecordedRing* recorded_;
+  std::unique_ptr<RecordedRing> recorded_;  // 2.6 MB: too much for a stack
   std::uint32_t recording_ = 0;
   std::uint32_t acknowledged_ = 0;
   double ns_per_cycle_;
