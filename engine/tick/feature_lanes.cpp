@@ -9,6 +9,7 @@ namespace {
 
 // Smaller values are set to 0: denormals would slow every later operation.
 constexpr double kNothing_N = 1e-30;
+
 PALPATE_INLINE void step_of(V4& keep, V4& gain, const V4& time_s, double step_s, double per_step) noexcept {
   keep = -step_s / time_s;
   to_exponential(keep);
@@ -31,16 +32,16 @@ PALPATE_INLINE void prepare_groups(const BranchLanes::Group* group, std::size_t 
 }
 
 PALPATE_INLINE double advance_groups(const BranchLanes::Group* group, std::size_t count, const BranchLanes::Step* step,
-                                     double surface_m, const V4* from, V4* to) noexcept {
+                                     double surface_m, const PartMemory* from, PartMemory* to) noexcept {
   V4 sum{};
-  for (std::size_t i = 0; i < count; ++i, from += BranchLanes::kMemory, to += BranchLanes::kMemory) {
+  for (std::size_t i = 0; i < count; ++i) {
     V4 drive;
     evaluate_curve(drive, group[i].drive, surface_m);
-    const V4& last = from[0];
+    const V4& last = from->value[i];
     const V4 kept = step[i].keep * (((last < kNothing_N) & (last > -kNothing_N)) ? V4{} : last);
-    const V4 force = kept + step[i].gain * (drive - from[1]);
-    to[0] = force;
-    to[1] = drive;
+    const V4 force = kept + step[i].gain * (drive - from->drive_N[i]);
+    to->value[i] = force;
+    to->drive_N[i] = drive;
     sum += force;
   }
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
@@ -100,10 +101,10 @@ Group& group_of_next(std::vector<Group>& groups, std::size_t count) {
 
 }  // namespace
 
-double sum_of_parts(const V4* force_N, std::size_t stride, std::size_t first, std::size_t count) noexcept {
-  double sum_N = 0.0;
-  for (std::size_t i = first; i < first + count; ++i) sum_N += force_N[i / kLanes * stride][i % kLanes];
-  return sum_N;
+double sum_of_lanes(const V4* value, std::size_t first, std::size_t count) noexcept {
+  double sum = 0.0;
+  for (std::size_t i = first; i < first + count; ++i) sum += value[i / kLanes][i % kLanes];
+  return sum;
 }
 
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
@@ -139,8 +140,8 @@ void BranchLanes::prepare(double step_s, double surface_m, Step* step) const noe
   for (std::size_t i = 0; i < groups_.size(); ++i) step[i] = {V4{} + 1.0, V4{}};
 }
 
-double BranchLanes::advance(const Step* step, double surface_m, const V4* from, V4* to) const noexcept {
-  return call<advance_groups>(groups_.data(), groups_.size(), step, surface_m, from, to);
+double BranchLanes::advance(const Step* step, double surface_m, const PartMemory& from, PartMemory& to) const noexcept {
+  return call<advance_groups>(groups_.data(), groups_.size(), step, surface_m, &from, &to);
 }
 
 std::size_t BristleLanes::add(const DriveCurve& drive, double threshold_m, double creep_time_s) {

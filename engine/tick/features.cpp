@@ -44,10 +44,6 @@ double surface_above_m(const Held& held_N, double depth_m, double last_surface_m
   return middle_m;
 }
 
-void copy_lane(V4* to, std::size_t part, const V4* from, std::size_t other, std::size_t stride) noexcept {
-  to[part / kLanes * stride][part % kLanes] = from[other / kLanes * stride][other % kLanes];
-}
-
 }  // namespace
 
 double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept {
@@ -91,13 +87,15 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs)
     if (spec.kind == FeatureKind::surface_lag) lag_ = i;
     for (std::size_t p = 0; p < spec.part_count; ++p) {
       const FeaturePart& part = spec.parts[p];
-      const std::size_t part_index =
-          is_branch(spec.kind)
-              ? branches_.add(part.drive, part.relaxation_time_s, spec.slowing, spec.parts[0].drive.reference_depth_m)
-              : bristles_.add(part.drive, part.threshold_m,
-                              spec.kind == FeatureKind::creep ? part.relaxation_time_s : 0.0);
-      if (p == 0) first_part_[i] = part_index;
+      const double creep_time_s = spec.kind == FeatureKind::creep ? part.relaxation_time_s : 0.0;
+      const std::size_t lane = is_branch(spec.kind) ? branches_.add(part.drive, part.relaxation_time_s, spec.slowing,
+                                                                    spec.parts[0].drive.reference_depth_m)
+                                                    : bristles_.add(part.drive, part.threshold_m, creep_time_s);
+      if (p == 0) first_lane_[i] = lane;
     }
+  }
+  for (std::size_t i = 0; i < specs_.size(); ++i) {
+    if (is_bristle(specs_[i].kind)) first_lane_[i] += kLanes * branches_.groups();
   }
 }
 
@@ -108,7 +106,8 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
   const double step_s = state.started ? std::max(0.0, sample.time_s - state.time_s) : 0.0;
   const double surface_m = advance_branches(state, depth_m, step_s);
   V4 bristle_N[kMaxLaneGroups];
-  bristles_.advance(state.depth_m, depth_m, step_s, bends(state), bristle_N);
+  const std::size_t first_bristles = branches_.groups();
+  bristles_.advance(state.depth_m, depth_m, step_s, state.memory.value + first_bristles, bristle_N + first_bristles);
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     const FeatureSpec& spec = specs_[i];
     double& value = state.vector.values[i];
@@ -128,14 +127,14 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
         }
         break;
       case FeatureKind::maxwell_spectrum:
-        value = sum_of_parts(state.memory, BranchLanes::kMemory, first_part_[i], spec.part_count);
+        value = sum_of_lanes(state.memory.value, first_lane_[i], spec.part_count);
         break;
       case FeatureKind::surface_lag:
         value = surface_m - depth_m;
         break;
       case FeatureKind::stops:
       case FeatureKind::creep:
-        value = sum_of_parts(bristle_N, BristleLanes::kMemory, first_part_[i], spec.part_count);
+        value = sum_of_lanes(bristle_N, first_lane_[i], spec.part_count);
         break;
     }
   }
@@ -153,12 +152,13 @@ double FeaturePlan::advance_branches(FeatureState& state, double depth_m, double
     branches_.advance(step, depth_m, state.memory, state.memory);
     return depth_m;
   }
-  V4 trial[BranchLanes::kMemory * kMaxLaneGroups];
+  PartMemory trial;
   const auto held_N = [&](double surface_m) {
     return specs_[lag_].drive.at(surface_m) + branches_.advance(step, surface_m, state.memory, trial);
   };
   const double surface_m = surface_above_m(held_N, depth_m, state.surface_m);
-  std::copy_n(trial, BranchLanes::kMemory * branches_.groups(), state.memory);
+  std::copy_n(trial.value, branches_.groups(), state.memory.value);
+  std::copy_n(trial.drive_N, branches_.groups(), state.memory.drive_N);
   return surface_m;
 }
 
@@ -169,14 +169,13 @@ void FeaturePlan::adopt(FeatureState& state, const FeaturePlan& plan, const Feat
       if (specs_[i] != plan.specs_[k]) continue;
       state.vector.values[i] = before.vector.values[k];
       if (i == lag_) state.surface_m = before.surface_m;
-      const bool branches = is_branch(specs_[i].kind);
-      V4* const to = branches ? state.memory : bends(state);
-      const V4* const from = branches ? before.memory : plan.bends(before);
-      const std::size_t stride = branches ? BranchLanes::kMemory : BristleLanes::kMemory;
       for (std::size_t p = 0; p < specs_[i].part_count; ++p) {
-        for (std::size_t row = 0; row < stride; ++row) {
-          copy_lane(to + row, first_part_[i] + p, from + row, plan.first_part_[k] + p, stride);
-        }
+        const std::size_t lane = first_lane_[i] + p, old = plan.first_lane_[k] + p;
+        const auto copy = [&](V4* to, const V4* from) {
+          to[lane / kLanes][lane % kLanes] = from[old / kLanes][old % kLanes];
+        };
+        copy(state.memory.value, before.memory.value);
+        copy(state.memory.drive_N, before.memory.drive_N);
       }
     }
   }

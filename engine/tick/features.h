@@ -144,8 +144,7 @@ struct alignas(sizeof(V4)) FeatureState {
   double surface_m = 0.0;  // s >= depth_m; equal without a surface_lag
   double time_s = 0.0;
   bool started = false;
-  // Of the branches, then of the bristles; features have at most 16 groups of parts.
-  V4 memory[BranchLanes::kMemory * kMaxLaneGroups]{};
+  PartMemory memory{};
 };
 static_assert(std::is_trivially_copyable_v<FeatureState>);
 
@@ -167,13 +166,9 @@ class FeaturePlan {
 
  private:
   double advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept;
-  V4* bends(FeatureState& state) const noexcept { return state.memory + BranchLanes::kMemory * branches_.groups(); }
-  const V4* bends(const FeatureState& state) const noexcept {
-    return state.memory + BranchLanes::kMemory * branches_.groups();
-  }
 
   std::vector<FeatureSpec> specs_;
-  std::array<std::size_t, kMaxFeatures> first_part_{};  // of each feature, index among the lanes
+  std::array<std::size_t, kMaxFeatures> first_lane_{};  // of each feature in PartMemory
   BranchLanes branches_;
   BristleLanes bristles_;
   std::size_t lag_ = kMaxFeatures;  // index of the surface_lag; kMaxFeatures: none

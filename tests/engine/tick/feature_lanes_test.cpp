@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -27,19 +27,15 @@ class FeatureLanes : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(Parts, FeatureLanes, testing::Values(1, 2, 3, 4, 5, 13, 64),
                          [](const auto& instance) { return std::to_string(instance.param); });
 
-// The memory of all groups of one kind.
-template <typename Lanes>
-using Memory = std::array<V4, Lanes::kMemory * kMaxLaneGroups>;
-
 TEST_P(FeatureLanes, BranchesFollowTheirEquation) {
   BranchLanes lanes;
   std::vector<double> z(GetParam(), 0.0);
   for (std::size_t i = 0; i < z.size(); ++i) lanes.add(drive_of(i), time_of(i % 13));
-  Memory<BranchLanes> memory{};
-  Memory<BranchLanes> trial{};
+  PartMemory memory{};
+  PartMemory trial;
   BranchLanes::Step step[kMaxLaneGroups];
   lanes.prepare(0.0, depth_at(0), step);
-  lanes.advance(step, depth_at(0), memory.data(), memory.data());
+  lanes.advance(step, depth_at(0), memory, memory);
   for (int t = 1; t < 1000; ++t) {
     const double step_s = 1e-3 * (1.0 + 0.5 * std::sin(1.0 * t));
     lanes.prepare(step_s, depth_at(t), step);
@@ -49,12 +45,12 @@ TEST_P(FeatureLanes, BranchesFollowTheirEquation) {
       z[i] = one.keep * z[i] + one.gain * (drive_of(i).at(depth_at(t)) - drive_of(i).at(depth_at(t - 1)));
       held += z[i];
     }
-    lanes.advance(step, 0.123e-3, memory.data(), trial.data());  // a trial step must not change `memory`
+    lanes.advance(step, 0.123e-3, memory, trial);  // a trial step must not change `memory`
     // A thousand steps of two exponentials, each accurate to an ulp.
     const double rounding = 1e-12 * static_cast<double>(z.size());
-    ASSERT_NEAR(lanes.advance(step, depth_at(t), memory.data(), memory.data()), held, rounding);
+    ASSERT_NEAR(lanes.advance(step, depth_at(t), memory, memory), held, rounding);
     for (std::size_t i = 0; i < z.size(); ++i) {
-      ASSERT_NEAR(sum_of_parts(memory.data(), BranchLanes::kMemory, i, 1), z[i], 1e-12) << i << " at " << t;
+      ASSERT_NEAR(sum_of_lanes(memory.value, i, 1), z[i], 1e-12) << i << " at " << t;
     }
   }
 }
@@ -63,15 +59,15 @@ TEST_P(FeatureLanes, BranchesFollowTheirEquation) {
 TEST_P(FeatureLanes, BristlesFollowTheirEquations) {
   constexpr double kStep_s = 1e-3;
   BristleLanes lanes;
-  Memory<BristleLanes> bend_m{};
-  Memory<BristleLanes> force_N{};
+  PartMemory memory{};
+  V4 force_N[kMaxLaneGroups];
   std::vector<double> bend(GetParam(), 0.0);
   const auto creeps = [](std::size_t i) { return i % 2 == 1; };
   const auto threshold = [&](std::size_t i) { return creeps(i) ? 5e-3 : 1e-4 * static_cast<double>(i + 1); };
   const auto time = [](std::size_t i) { return 1e-3 * std::pow(10.0, static_cast<double>(i % 5)); };
   for (std::size_t i = 0; i < bend.size(); ++i) lanes.add(drive_of(i), threshold(i), creeps(i) ? time(i) : 0.0);
   for (int t = 1; t < 1000; ++t) {
-    lanes.advance(depth_at(t - 1), depth_at(t), kStep_s, bend_m.data(), force_N.data());
+    lanes.advance(depth_at(t - 1), depth_at(t), kStep_s, memory.value, force_N);
     for (std::size_t i = 0; i < bend.size(); ++i) {
       const double change_m = depth_at(t) - depth_at(t - 1);
       if (creeps(i)) {
@@ -83,8 +79,8 @@ TEST_P(FeatureLanes, BristlesFollowTheirEquations) {
         bend[i] = std::clamp(bend[i] + change_m, -limit_m, limit_m);
       }
       // Products of creep are in another order: a difference of some ulps a step, which creep forgets.
-      ASSERT_NEAR(sum_of_parts(force_N.data(), BristleLanes::kMemory, i, 1),
-                  drive_of(i).at(depth_at(t)) * bend[i] / threshold(i), creeps(i) ? 1e-12 : 0.0)
+      ASSERT_NEAR(sum_of_lanes(force_N, i, 1), drive_of(i).at(depth_at(t)) * bend[i] / threshold(i),
+                  creeps(i) ? 1e-12 : 0.0)
           << i << " at " << t;
     }
   }
