@@ -80,12 +80,6 @@ std::uint32_t limiter_faults(std::uint32_t flags) noexcept {
   return faults;
 }
 
-ForceMixer::Forces forces_of(const TickSnapshot& snapshot) noexcept {
-  ForceMixer::Forces forces_N{};
-  std::copy(snapshot.force_N.begin(), snapshot.force_N.end(), forces_N.begin());
-  return forces_N;
-}
-
 }  // namespace
 
 LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor, const ForceModels& models,
@@ -106,7 +100,6 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       limiter_(device.limits()),
       source_(settings.source),
       models_(std::make_unique<LiveModels>(0, device.sensor(), ForceModels{})),
-      outgoing_mixer_(settings.jnd),
       recorded_(std::make_unique<RecordedRing>()),
       ns_per_cycle_(ns_per_cycle()) {}
 
@@ -122,12 +115,12 @@ void LiveTick::warm_up() noexcept {
 }
 
 void LiveTick::update_models() noexcept {
-  if (outgoing_ != nullptr) return;  // one fade at a time
+  if (outgoing_ != nullptr || snapshot_.fading) return;  // one fade at a time
   std::unique_ptr<LiveModels> next = slot_.acquire();
   if (next == nullptr) return;
   next->tick.continue_from(models_->tick);
   outgoing_ = std::exchange(models_, std::move(next));
-  outgoing_mixer_ = mixer_;
+  outgoing_selected_ = snapshot_.selected;
   mixer_.jump_to(ForceMixer::kOutgoing);
   snapshot_.models_id = models_->id;
   snapshot_.selected = models_->selected;
@@ -180,15 +173,14 @@ double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
   const std::size_t count = models_->tick.model_count();
   if (controls.models_id == models_->id && controls.selected < count) snapshot_.selected = controls.selected;
   if (snapshot_.selected >= count) snapshot_.selected = 0;
-  ForceMixer::Forces forces_N = forces_of(snapshot_.tick);
+  ForceMixer::Forces forces_N{};
+  std::ranges::copy(snapshot_.tick.force_N, forces_N.begin());
   if (outgoing_ != nullptr) {
-    forces_N[ForceMixer::kOutgoing] = outgoing_mixer_.current(forces_of(outgoing_->tick.snapshot()));
+    forces_N[ForceMixer::kOutgoing] = outgoing_->tick.snapshot().force_N[outgoing_selected_];
   }
   const double force_N = mixer_.mix(forces_N, snapshot_.selected, step_s);
-  if (outgoing_ != nullptr && mixer_.weights()[ForceMixer::kOutgoing] == 0.0) {
-    slot_.retire(std::move(outgoing_));
-  }
   snapshot_.fading = !mixer_.settled_on(snapshot_.selected);
+  if (outgoing_ != nullptr && !snapshot_.fading) slot_.retire(std::move(outgoing_));
   if (count == 0 && outgoing_ == nullptr) return 0.0;  // without models no damping, either
   return scale(force_N, controls.scale, step_s);
 }
@@ -197,8 +189,8 @@ double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
 Impedance LiveTick::impedance() const noexcept {
   ForceMixer::Forces stiffness = models_->stiffness_N_per_m, damping = models_->damping_Ns_per_m;
   if (outgoing_ != nullptr) {
-    stiffness[ForceMixer::kOutgoing] = outgoing_mixer_.current(outgoing_->stiffness_N_per_m);
-    damping[ForceMixer::kOutgoing] = outgoing_mixer_.current(outgoing_->damping_Ns_per_m);
+    stiffness[ForceMixer::kOutgoing] = outgoing_->stiffness_N_per_m[outgoing_selected_];
+    damping[ForceMixer::kOutgoing] = outgoing_->damping_Ns_per_m[outgoing_selected_];
   }
   return {mixer_.current(stiffness), mixer_.current(damping)};
 }

@@ -185,7 +185,7 @@ class LiveTick {
   ForceSource* source_;
   std::unique_ptr<LiveModels> models_;    // before the first published set: one without models
   std::unique_ptr<LiveModels> outgoing_;  // previous set until its fade ends; then retired
-  ForceMixer outgoing_mixer_;
+  std::uint32_t outgoing_selected_ = 0;
   LoopSnapshot snapshot_;
   std::unique_ptr<RecordedRing> recorded_;  // 2.6 MB: too much for a stack
   std::uint32_t recording_ = 0;
