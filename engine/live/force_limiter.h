@@ -73,7 +73,6 @@ class ForceLimiter {
   bool stops(double commanded_N, const ForceConditions& conditions) noexcept;
   void warm(double step_s) noexcept;
   double clamp_N() const noexcept;
-  double ramped(double commanded_N, double step_s) noexcept;
   void change(double target_N, double most_N) noexcept;
 
   ForceLimits limits_;
