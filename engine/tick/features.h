@@ -75,7 +75,6 @@ struct FeatureKindFacts {
   std::string_view unit;    // end of the column name
   bool has_time = false;    // has one time constant
   bool has_drive = false;   // has a drive curve of its own
-  bool has_parts = false;   // is a sum of up to kMaxFeatureParts parts
   bool is_branch = false;   // consists of Maxwell branches
   bool is_bristle = false;  // consists of bristles
 };
@@ -84,9 +83,9 @@ inline constexpr std::array<FeatureKindFacts, 7> kFeatureKinds{{
     {.name = "depth", .unit = "_m"},
     {.name = "velocity", .unit = "_m_per_s"},
     {.name = "lowpass_velocity", .unit = "s_m_per_s", .has_time = true},
-    {.name = "maxwell_spectrum", .unit = "s_N", .has_parts = true, .is_branch = true},
-    {.name = "stops", .unit = "mm_N", .has_parts = true, .is_bristle = true},
-    {.name = "creep", .unit = "s_N", .has_parts = true, .is_bristle = true},
+    {.name = "maxwell_spectrum", .unit = "s_N", .is_branch = true},
+    {.name = "stops", .unit = "mm_N", .is_bristle = true},
+    {.name = "creep", .unit = "s_N", .is_bristle = true},
     {.name = "surface_lag", .unit = "_m", .has_drive = true},
 }};
 constexpr const FeatureKindFacts& facts_of(FeatureKind kind) noexcept {
@@ -94,9 +93,10 @@ constexpr const FeatureKindFacts& facts_of(FeatureKind kind) noexcept {
 }
 constexpr bool has_time(FeatureKind kind) noexcept { return facts_of(kind).has_time; }
 constexpr bool has_drive(FeatureKind kind) noexcept { return facts_of(kind).has_drive; }
-constexpr bool has_parts(FeatureKind kind) noexcept { return facts_of(kind).has_parts; }
 constexpr bool is_branch(FeatureKind kind) noexcept { return facts_of(kind).is_branch; }
 constexpr bool is_bristle(FeatureKind kind) noexcept { return facts_of(kind).is_bristle; }
+// Is a sum of up to kMaxFeatureParts parts.
+constexpr bool has_parts(FeatureKind kind) noexcept { return is_branch(kind) || is_bristle(kind); }
 
 // One branch of a maxwell_spectrum, one stop operator or one creeping bristle.
 struct FeaturePart {
