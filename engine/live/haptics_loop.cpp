@@ -8,9 +8,10 @@ namespace {
 
 constexpr double kSPerNs = 1e-9;
 constexpr auto kPeriod_ns = static_cast<std::int64_t>(1e9 * kHapticTick_s);
-// At the end the limiter ramps the force down. This is enough for its slowest sensible slew rate; then 0 is written
-// to the device in any case.
+// At the end the limiter reduces the force to 0, as when a dead-man key is released. This is enough for its longest
+// sensible stop; then 0 is written to the device in any case.
 constexpr int kLetGoTicks = 100;
+constexpr LoopControls kReleased{.dead_man = DeadMan::key};
 
 double seconds(std::int64_t time_ns) noexcept { return kSPerNs * static_cast<double>(time_ns); }
 
@@ -97,7 +98,7 @@ void HapticsLoop::let_go(Pacer& pacer, Deadlines& deadlines) noexcept {
     pacer.wait_until(deadlines.next_ns());
     const std::int64_t woke_ns = pacer.now_ns();
     deadlines.wake(woke_ns);
-    if (live_.release(seconds(woke_ns))) break;
+    if (live_.run(seconds(woke_ns), kReleased).rendered_N == 0.0) break;
   }
   device_.write(0.0);
 }

@@ -135,11 +135,6 @@ void LiveTick::process_samples(double now_s) noexcept {
   if (snapshot_.samples > 0) sampled_s_ = now_s;
 }
 
-void LiveTick::read_health(double now_s) noexcept {
-  snapshot_.device = device_.health(now_s);
-  if (std::isinf(snapshot_.device.sample_age_s)) snapshot_.device.sample_age_s = now_s - sampled_s_;
-}
-
 void LiveTick::process_sample(const DeviceSample& sample) noexcept {
   ++snapshot_.samples;
   snapshot_.restarted = snapshot_.restarted || sample.restart;
@@ -208,15 +203,8 @@ double LiveTick::scale(double force_N, const ForceScale& wanted, double step_s) 
 }
 
 bool LiveTick::dead_man_released(const LoopControls& controls) const noexcept {
-  switch (controls.dead_man) {
-    case DeadMan::key:
-      return !(now_s_ - controls.held_s < kDeadManHold_s);
-    case DeadMan::grip:
-      return !snapshot_.device.grip_held;
-    case DeadMan::off:
-      break;
-  }
-  return false;
+  if (controls.dead_man == DeadMan::grip) return !snapshot_.device.grip_held;
+  return controls.dead_man == DeadMan::key && !(now_s_ - controls.held_s < kDeadManHold_s);
 }
 
 // Off in a study, which presents forces that do not depend on the position of the tool.
@@ -262,7 +250,8 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   }
   update_models();
   process_samples(now_s);
-  read_health(now_s);
+  snapshot_.device = device_.health(now_s);
+  if (std::isinf(snapshot_.device.sample_age_s)) snapshot_.device.sample_age_s = now_s - sampled_s_;
   const double commanded_N = source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
   render(commanded_N, passive(commanded_N, step_s), step_s, dead_man_released(controls));
   snapshot_.faults_latched |= snapshot_.faults;
@@ -272,15 +261,6 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
         static_cast<float>(ns_per_cycle_ * static_cast<double>(models_->tick.evaluation_cycles(i)));
   }
   return snapshot_;
-}
-
-bool LiveTick::release(double now_s) noexcept {
-  const double step_s = now_s - now_s_;
-  now_s_ = now_s;
-  snapshot_.faults = 0;
-  read_health(now_s);
-  render(0.0, 0.0, step_s, false);
-  return snapshot_.rendered_N == 0.0;
 }
 
 }  // namespace palpate

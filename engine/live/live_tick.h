@@ -4,7 +4,7 @@
 //
 //   take a new set of models -> read the device -> HapticsTick for each sample
 //   -> mix (the active model) -> scale -> passivity -> limit -> write the device -> snapshot
-// Thread guarantee: constructed on the slow side; `run` and `release` belong to the haptics thread, are wait-free,
+// Thread guarantee: constructed on the slow side; `run` and `rehearse` belong to the haptics thread, are wait-free,
 // allocate nothing, lock nothing and never throw.
 #pragma once
 
@@ -157,13 +157,9 @@ class LiveTick {
   // One reader thread. Every sample that was read while the controls requested a recording.
   RecordedRing& recorded() noexcept { return *recorded_; }
 
-  // As `run`, with command 0; true when the device has got 0.
-  bool release(double now_s) noexcept;
-
  private:
   void update_models() noexcept;
   void process_samples(double now_s) noexcept;
-  void read_health(double now_s) noexcept;
   void process_sample(const DeviceSample& sample) noexcept;
   void record(const DeviceSample& sample) noexcept;
   double mix(const LoopControls& controls, double step_s) noexcept;
