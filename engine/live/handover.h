@@ -23,10 +23,6 @@ class TripleBuffer {
   static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 
  public:
-  TripleBuffer() = default;
-  TripleBuffer(const TripleBuffer&) = delete;
-  TripleBuffer& operator=(const TripleBuffer&) = delete;
-
   // One writer thread. Wait-free: one copy and one exchange.
   void write(const T& value) noexcept {
     slots_[back_].value = value;
@@ -71,10 +67,6 @@ class SpscRing {
   static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
  public:
-  SpscRing() = default;
-  SpscRing(const SpscRing&) = delete;
-  SpscRing& operator=(const SpscRing&) = delete;
-
   // Producer thread. Wait-free. False: full, dropped and counted.
   bool push(const T& value) noexcept {
     const std::uint64_t written = written_.load(std::memory_order_relaxed);
@@ -123,9 +115,6 @@ class ModelSlot {
   static_assert(std::atomic<T*>::is_always_lock_free);
 
  public:
-  ModelSlot() = default;
-  ModelSlot(const ModelSlot&) = delete;
-  ModelSlot& operator=(const ModelSlot&) = delete;
   // Slow side, after all other threads have ended.
   ~ModelSlot() {
     collect();

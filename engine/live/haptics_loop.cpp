@@ -23,8 +23,6 @@ HapticsLoop::HapticsLoop(Device& device, const LoopSettings& settings)
       live_(device, slot_, {settings.jnd, settings.source}),
       ring_(std::make_unique<SpscRing<LoopSnapshot, kSnapshotRing>>()) {}
 
-HapticsLoop::~HapticsLoop() { stop(); }
-
 Status HapticsLoop::start() {
   std::promise<RtStatus> granted;
   std::future<RtStatus> answer = granted.get_future();

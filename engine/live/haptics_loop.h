@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <memory>
 #include <thread>
-#include <vector>
 
 #include "engine/live/handover.h"
 #include "engine/live/live_tick.h"
@@ -45,10 +44,7 @@ class HapticsLoop {
  public:
   // Slow side. `device` must be open, outlive this and not be used elsewhere.
   HapticsLoop(Device& device, const LoopSettings& settings = {});
-  HapticsLoop(const HapticsLoop&) = delete;
-  HapticsLoop& operator=(const HapticsLoop&) = delete;
-  // Calls `stop`.
-  ~HapticsLoop();
+  ~HapticsLoop() { stop(); }
 
   // Slow side, blocks until the scheduling is set. Once. A first set of models should be published before, for the
   // warm-up. Errors: the thread cannot be started.
@@ -72,13 +68,8 @@ class HapticsLoop {
   // One reader thread, wait-free, O(most). Every snapshot, oldest first.
   std::size_t read_snapshots(LoopSnapshot* snapshots, std::size_t most) noexcept { return ring_->pop(snapshots, most); }
 
-  // One reader thread, the recorder's, wait-free, O(most). Every sample that was read while the controls requested a
-  // recording, oldest first.
-  std::size_t read_samples(RecordedSample* samples, std::size_t most) noexcept {
-    return live_.recorded().pop(samples, most);
-  }
-  // Any thread, wait-free. The number of samples that were dropped because the ring was full.
-  std::uint64_t dropped_samples() noexcept { return live_.recorded().dropped(); }
+  // One reader thread, the recorder's. Every sample that was read while the controls requested a recording.
+  RecordedRing& recorded() noexcept { return live_.recorded(); }
 
   // Any thread, wait-free.
   LoopStatistics statistics() const noexcept;

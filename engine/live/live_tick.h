@@ -125,7 +125,6 @@ struct RecordedSample {
   bool restart = false;           // a new stream begins
   bool usable = true;             // false: not finite, or not later than the one before
 };
-static_assert(std::is_trivially_copyable_v<RecordedSample>);
 
 // Half a minute at 1 kHz, and more than a second at 20 kHz, in which the recorder may stall.
 inline constexpr std::size_t kRecordedRing = 32768;
@@ -141,8 +140,6 @@ class LiveTick {
  public:
   // `device` outlives this. Forces are 0 until a set of models is taken.
   LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSettings& settings = {});
-  LiveTick(const LiveTick&) = delete;
-  LiveTick& operator=(const LiveTick&) = delete;
 
   // Takes the pending set, runs its tick on synthetic strokes and resets it, so that caches and branch predictors are
   // warm.
