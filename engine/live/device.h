@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <type_traits>
 
 #include "engine/base/result.h"
 #include "engine/live/faults.h"
@@ -45,7 +44,6 @@ struct DeviceHealth {
   // Whether a force is permitted.
   bool may_push() const noexcept { return faults == 0 && (zeroing == Zeroing::not_needed || zeroing == Zeroing::done); }
 };
-static_assert(std::is_trivially_copyable_v<DeviceHealth>);
 
 // What the user must do for zeroing; empty if nothing. Slow side.
 inline std::string zeroing_words(const DeviceHealth& health) {

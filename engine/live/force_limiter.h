@@ -17,7 +17,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <type_traits>
 
 namespace palpate {
 
@@ -83,7 +82,5 @@ class ForceLimiter {
   std::uint32_t flags_ = 0;
   bool stopping_ = false;
 };
-
-static_assert(std::is_trivially_copyable_v<ForceLimiter>);
 
 }  // namespace palpate
