@@ -40,7 +40,7 @@ template <typename Number, typename Curve>
     const Number beyond = above > 0.0 ? above : Number{};
     knots += curve.knot_N[k] * beyond * beyond * beyond;
   }
-  value = curve.has_knots ? sum + knots : sum;
+  value = sum + knots;
   if (depth_m > curve.least_reference_m()) [[unlikely]] {
     Number slope{};  // dg/du at u = 1
     for (std::size_t k = kDriveCoefficients; k-- > 0;) slope += static_cast<double>(k + 1) * curve.coefficient_N[k];
@@ -49,8 +49,7 @@ template <typename Number, typename Curve>
       const double beyond = 1.0 - knot_position(k);
       knots_slope += 3.0 * (curve.knot_N[k] * beyond * beyond);
     }
-    slope += knots_slope;
-    value = u > 1.0 ? value + slope * (u - 1.0) : value;
+    value = u > 1.0 ? value + (slope + knots_slope) * (u - 1.0) : value;
   }
 }
 
