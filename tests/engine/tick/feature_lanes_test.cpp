@@ -69,14 +69,13 @@ TEST_P(FeatureLanes, BristlesFollowTheirEquations) {
   for (int t = 1; t < 1000; ++t) {
     lanes.advance(depth_at(t - 1), depth_at(t), kStep_s, memory.value, force_N);
     for (std::size_t i = 0; i < bend.size(); ++i) {
-      const double change_m = depth_at(t) - depth_at(t - 1);
       if (creeps(i)) {
         const auto half = [&](double q) { return q / std::sqrt(1.0 + kStep_s / time(i) * (q / 5e-3) * (q / 5e-3)); };
-        bend[i] = half(half(bend[i]) + change_m);
+        bend[i] = half(half(bend[i]) + depth_at(t) - depth_at(t - 1));
       } else {
         // Out of contact a stop relaxes to zero.
         const double limit_m = depth_at(t) > 0.0 ? threshold(i) : 0.0;
-        bend[i] = std::clamp(bend[i] + change_m, -limit_m, limit_m);
+        bend[i] = std::clamp(bend[i] + depth_at(t) - depth_at(t - 1), -limit_m, limit_m);
       }
       // Products of creep are in another order: a difference of some ulps a step, which creep forgets.
       ASSERT_NEAR(sum_of_lanes(force_N, i, 1), drive_of(i).at(depth_at(t)) * bend[i] / threshold(i),
