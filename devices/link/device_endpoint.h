@@ -22,8 +22,7 @@
 #include "devices/link/device_link.h"
 #include "devices/link/stream_monitor.h"
 #include "engine/live/device.h"
-#include "engine/live/spsc_ring.h"
-#include "engine/live/triple_buffer.h"
+#include "engine/live/handover.h"
 
 namespace palpate {
 

@@ -20,7 +20,7 @@
 
 #include "devices/link/device_calibration.h"
 #include "devices/link/device_clock.h"
-#include "engine/live/device_health.h"
+#include "engine/live/device.h"
 
 namespace palpate {
 

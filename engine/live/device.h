@@ -4,17 +4,55 @@
 // blocks has its own thread and passes its samples on.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 
 #include "engine/base/result.h"
-#include "engine/live/device_health.h"
+#include "engine/live/faults.h"
 #include "engine/live/force_limiter.h"
 #include "engine/tick/tool_sample.h"
 
 namespace palpate {
 
 struct Recording;
+
+// Whether the device knows the position of its tool.
+enum class Zeroing : std::uint8_t {
+  not_needed,
+  needed,      // waits for Device::start_zeroing; no force before
+  hold_still,  // measuring; the tool must rest
+  done,
+};
+
+struct DeviceHealth {
+  std::uint32_t faults = 0;  // current faults, device_fault
+  Zeroing zeroing = Zeroing::not_needed;
+  bool grip_held = false;         // the dead-man switch on the handle is held
+  float zeroing_progress = 0.0F;  // 0 to 1 while hold_still
+  // Age of the newest sample. Infinite (default): not known to the device; the tick then uses the time since the last
+  // sample that it read. Before the first sample there is no force.
+  double sample_age_s = std::numeric_limits<double>::infinity();
+  double interval_s = 0.0;  // recent interval between samples; 0: not known
+  // Time from a command to the report that confirms it; NaN: the device does not confirm.
+  double round_trip_s = std::numeric_limits<double>::quiet_NaN();
+  // Lag of the force behind the motion: transport, waiting times, half the time for which a force is held. NaN: the
+  // device reads and writes in the tick itself.
+  double lag_s = std::numeric_limits<double>::quiet_NaN();
+
+  // Whether a force is permitted.
+  bool may_push() const noexcept { return faults == 0 && (zeroing == Zeroing::not_needed || zeroing == Zeroing::done); }
+};
+
+// What the user must do for zeroing; empty if nothing. Slow side.
+inline std::string zeroing_words(const DeviceHealth& health) {
+  if (health.zeroing == Zeroing::needed) {
+    return "bring the tool to its marked rest position and start zeroing; no force before";
+  }
+  if (health.zeroing != Zeroing::hold_still) return {};
+  return "zeroing: hold the tool still (" + std::to_string(std::lround(100.0F * health.zeroing_progress)) + " %)";
+}
 
 // One sample of a device.
 struct DeviceSample {

@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-// Faults of a tick, bits of LoopSnapshot::faults. The first three are those of TickFault, in its order.
+// Faults of a tick, bits of LoopSnapshot::faults. The first three are the values of TickFault.
 namespace loop_fault {
 inline constexpr std::uint32_t kBadSample = 1;
 inline constexpr std::uint32_t kTimeNotLater = 2;
@@ -55,52 +55,45 @@ struct Fault {
   // What happened and what to do; empty: normal operation, or reported by another row. zeroing_words reports whether
   // the device needs zeroing.
   const char* sentence;
-  bool stops_force;
-  bool alarm;  // the user is informed at once and has to acknowledge it
+  bool stops_force = true;
+  bool alarm = true;  // the user is informed at once and has to acknowledge it
 };
 
 // In the order of the reports.
 inline constexpr std::array<Fault, 23> kFaults = {{
-    {FaultSource::device, device_fault::kUnplugged, "the device is disconnected: connect it again", true, true},
-    {FaultSource::device, device_fault::kLate, "reports come late: no force until they are on time again", true, true},
+    {FaultSource::device, device_fault::kUnplugged, "the device is disconnected: connect it again"},
+    {FaultSource::device, device_fault::kLate, "reports come late: no force until they are on time again"},
     {FaultSource::device, device_fault::kOutOfOrder,
-     "a report came out of order: no force until reports are in order again", true, true},
-    {FaultSource::device, device_fault::kBurst, "old reports came in a burst: no force until reports are on time again",
-     true, true},
+     "a report came out of order: no force until reports are in order again"},
+    {FaultSource::device, device_fault::kBurst,
+     "old reports came in a burst: no force until reports are on time again"},
     {FaultSource::device, device_fault::kCorrupt,
-     "a report was corrupted: no force until reports are valid again; check the cable", true, true},
-    {FaultSource::device, device_fault::kStuck, "the position is stuck although the motor pushes: check the encoder",
-     true, true},
-    {FaultSource::device, device_fault::kJump, "the position jumped: check the encoder", true, true},
-    {FaultSource::device, device_fault::kReset, "the firmware restarted: check the power supply of the board", true,
-     true},
-    {FaultSource::device, device_fault::kWriteStalled, "commands do not reach the device: no force until they do", true,
-     true},
-    {FaultSource::device, device_fault::kOwn, "the device reports a fault of its own: check its motor and encoder",
-     true, true},
+     "a report was corrupted: no force until reports are valid again; check the cable"},
+    {FaultSource::device, device_fault::kStuck, "the position is stuck although the motor pushes: check the encoder"},
+    {FaultSource::device, device_fault::kJump, "the position jumped: check the encoder"},
+    {FaultSource::device, device_fault::kReset, "the firmware restarted: check the power supply of the board"},
+    {FaultSource::device, device_fault::kWriteStalled, "commands do not reach the device: no force until they do"},
+    {FaultSource::device, device_fault::kOwn, "the device reports a fault of its own: check its motor and encoder"},
     {FaultSource::device, device_fault::kWrongFirmware,
-     "the firmware has another version of the protocol: install the one in devices/firmware", true, true},
-    {FaultSource::loop, loop_fault::kBadSample, "the device gave a sample that is not a number: the force was set to 0",
-     true, true},
+     "the firmware has another version of the protocol: install the one in devices/firmware"},
+    {FaultSource::loop, loop_fault::kBadSample,
+     "the device gave a sample that is not a number: the force was set to 0"},
     {FaultSource::loop, loop_fault::kTimeNotLater,
-     "the device gave a sample that is not later than the previous one: it was skipped", false, true},
+     "the device gave a sample that is not later than the previous one: it was skipped", false},
     // Of one model, selected or not.
-    {FaultSource::loop, loop_fault::kModelNotFinite, "a model gave a force that is not a number: 0 N was used instead",
-     true, true},
-    {FaultSource::loop, loop_fault::kForceNotFinite, "the force was not a number: 0 N was used instead", true, true},
-    {FaultSource::loop, loop_fault::kForceClamped, "the force was above the limit of the device: it was limited", false,
-     true},
+    {FaultSource::loop, loop_fault::kModelNotFinite, "a model gave a force that is not a number: 0 N was used instead"},
+    {FaultSource::loop, loop_fault::kForceNotFinite, "the force was not a number: 0 N was used instead"},
+    {FaultSource::loop, loop_fault::kForceClamped, "the force was above the limit of the device: it was limited",
+     false},
     // Normal at every ramp and at hard impacts.
     {FaultSource::loop, loop_fault::kForceSlewed, "", false, false},
-    {FaultSource::loop, loop_fault::kStaleSample, "the newest sample of the device is too old: the force was set to 0",
-     true, true},
-    {FaultSource::loop, loop_fault::kForceThermal, "the motor is near its thermal limit: the force was reduced", false,
-     true},
+    {FaultSource::loop, loop_fault::kStaleSample, "the newest sample of the device is too old: the force was set to 0"},
+    {FaultSource::loop, loop_fault::kForceThermal, "the motor is near its thermal limit: the force was reduced", false},
     // Reported by the device's own rows.
     {FaultSource::loop, loop_fault::kDeviceFault, "", true, false},
     {FaultSource::loop, loop_fault::kDeadlineMissed, "a tick was late and missed its deadline", false, false},
     {FaultSource::window, window_fault::kDropped, "the window was too slow to show every tick", false, false},
-    {FaultSource::window, window_fault::kStall, "the haptics loop stood still for more than 50 ms", false, true},
+    {FaultSource::window, window_fault::kStall, "the haptics loop stood still for more than 50 ms", false},
 }};
 
 // The bits of all rows of `source`, or only of those that stop the force.
@@ -114,9 +107,6 @@ constexpr std::uint32_t fault_bits_of(FaultSource source, bool only_stopping = f
 
 namespace loop_fault {
 inline constexpr std::uint32_t kStops = fault_bits_of(FaultSource::loop, true);
-}
-namespace device_fault {
-inline constexpr std::uint32_t kAll = fault_bits_of(FaultSource::device);
 }
 
 // The index of the row with one bit, which must exist.

@@ -37,16 +37,7 @@ bool ForceLimiter::stops(double commanded_N, const ForceConditions& conditions) 
   if (!(conditions.sample_age_s <= limits_.stale_after_s)) flags_ |= force_limit::kStale;
   if (conditions.device_fault) flags_ |= force_limit::kDeviceFault;
   if (conditions.dead_man_released) flags_ |= force_limit::kReleased;
-  const bool stop = flags_ != 0 || stop_asked_;
-  stop_asked_ = false;
-  return stop;
-}
-
-double ForceLimiter::ramped(double commanded_N, double step_s) noexcept {
-  if (share_ < 1.0) flags_ |= force_limit::kRamping;
-  const double force_N = commanded_N * share_;
-  share_ = limits_.ramp_s > 0.0 ? std::min(1.0, share_ + step_s / limits_.ramp_s) : 1.0;
-  return force_N;
+  return flags_ != 0 || conditions.bad_sample;
 }
 
 void ForceLimiter::change(double target_N, double most_N) noexcept {
@@ -72,7 +63,9 @@ double ForceLimiter::limit(double commanded_N, double step_s, const ForceConditi
     return force_N_;
   }
   stopping_ = false;
-  const double ramped_N = ramped(commanded_N, step);
+  if (share_ < 1.0) flags_ |= force_limit::kRamping;
+  const double ramped_N = commanded_N * share_;
+  share_ = limits_.ramp_s > 0.0 ? std::min(1.0, share_ + step / limits_.ramp_s) : 1.0;
   const double most_N = clamp_N();
   const double clamped_N = std::clamp(ramped_N, -most_N, most_N);
   if (clamped_N != ramped_N) flags_ |= force_limit::kClamped;

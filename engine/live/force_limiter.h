@@ -1,7 +1,7 @@
 // Limits every force before the device gets it. In this order:
 //
-//   stop     no force while the sample is stale, the device has a fault or the dead-man switch is released; a force
-//            that is not finite is a fault, too
+//   stop     no force while the sample is stale or impossible, the device has a fault or the dead-man switch is
+//            released; a force that is not finite is a fault, too
 //   ramp     a factor that grows from 0 to 1 over `ramp_s` from the start, and again after each stop
 //   clamp    |force| <= largest_N, and less as the motor warms up (below)
 //   slew     |change| <= fastest_N_per_s x the time since the last force, so that neither a fault nor a jump is felt as
@@ -17,7 +17,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <type_traits>
 
 namespace palpate {
 
@@ -37,6 +36,7 @@ struct ForceConditions {
   double sample_age_s = 0.0;  // NaN counts as stale
   bool device_fault = false;
   bool dead_man_released = false;  // a dead-man switch is in use and not held
+  bool bad_sample = false;         // the newest sample is impossible; sets no flag
 };
 
 // What the limiter did to one force: bits of LoopSnapshot::limiter_flags.
@@ -63,9 +63,6 @@ class ForceLimiter {
   // does not permit a jump. Returns the force to render, finite, and sets `flags`.
   double limit(double commanded_N, double step_s, const ForceConditions& conditions = {}) noexcept;
 
-  // Requests a stop in the next call, for a fault found elsewhere; the ramp begins again.
-  void fault() noexcept { stop_asked_ = true; }
-
   std::uint32_t flags() const noexcept { return flags_; }
   double force_N() const noexcept { return force_N_; }
   // H / c^2; 0 without a thermal limit.
@@ -75,7 +72,6 @@ class ForceLimiter {
   bool stops(double commanded_N, const ForceConditions& conditions) noexcept;
   void warm(double step_s) noexcept;
   double clamp_N() const noexcept;
-  double ramped(double commanded_N, double step_s) noexcept;
   void change(double target_N, double most_N) noexcept;
 
   ForceLimits limits_;
@@ -85,9 +81,6 @@ class ForceLimiter {
   double stop_N_per_s_ = 0.0;
   std::uint32_t flags_ = 0;
   bool stopping_ = false;
-  bool stop_asked_ = false;
 };
-
-static_assert(std::is_trivially_copyable_v<ForceLimiter>);
 
 }  // namespace palpate

@@ -19,7 +19,7 @@ namespace palpate {
 
 class ForceMixer {
  public:
-  // One force for every model of a set, and the last one for the mixture of the previous set.
+  // One force for every model of a set, and the last one for the model that was selected in the previous set.
   static constexpr std::size_t kOutgoing = kMaxModels;
   using Forces = std::array<double, kMaxModels + 1>;
 
@@ -34,7 +34,6 @@ class ForceMixer {
   // The current mixture.
   double current(const Forces& forces_N) const noexcept;
 
-  const Forces& weights() const noexcept { return weights_; }
   bool settled_on(std::size_t index) const noexcept { return weights_[index] == 1.0; }
 
  private:

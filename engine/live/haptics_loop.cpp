@@ -7,9 +7,11 @@ namespace palpate {
 namespace {
 
 constexpr double kSPerNs = 1e-9;
-// At the end the limiter ramps the force down. This is enough for its slowest sensible slew rate; then 0 is written
-// to the device in any case.
+constexpr auto kPeriod_ns = static_cast<std::int64_t>(1e9 * kHapticTick_s);
+// At the end the limiter reduces the force to 0, as when a dead-man key is released. This is enough for its longest
+// sensible stop; then 0 is written to the device in any case.
 constexpr int kLetGoTicks = 100;
+constexpr LoopControls kReleased{.dead_man = DeadMan::key};
 
 double seconds(std::int64_t time_ns) noexcept { return kSPerNs * static_cast<double>(time_ns); }
 
@@ -17,12 +19,9 @@ double seconds(std::int64_t time_ns) noexcept { return kSPerNs * static_cast<dou
 
 HapticsLoop::HapticsLoop(Device& device, const LoopSettings& settings)
     : device_(device),
-      recorded_(std::make_unique<RecordedRing>()),
       settings_(settings),
-      live_(device, slot_, {settings.jnd, recorded_.get(), settings.source}),
+      live_(device, slot_, {settings.jnd, settings.source}),
       ring_(std::make_unique<SpscRing<LoopSnapshot, kSnapshotRing>>()) {}
-
-HapticsLoop::~HapticsLoop() { stop(); }
 
 Status HapticsLoop::start() {
   std::promise<RtStatus> granted;
@@ -55,7 +54,7 @@ void HapticsLoop::stop() {
 void HapticsLoop::run(Pacer& pacer) noexcept {
   live_.warm_up();
   last_tick_ns_.store(pacer.now_ns(), std::memory_order_relaxed);
-  Deadlines deadlines(pacer.now_ns(), settings_.period_ns);
+  Deadlines deadlines(pacer.now_ns(), kPeriod_ns);
   while (!stop_.load(std::memory_order_relaxed)) {
     wait_for(pacer, deadlines.next_ns());
     const std::int64_t woke_ns = pacer.now_ns();
@@ -79,21 +78,16 @@ void HapticsLoop::wait_for(Pacer& pacer, std::int64_t deadline_ns) noexcept {
 }
 
 void HapticsLoop::tick(Pacer& pacer, const Wake& wake, std::int64_t woke_ns) noexcept {
-  missed_ += wake.missed;
+  missed_.store(missed_.load(std::memory_order_relaxed) + wake.missed, std::memory_order_relaxed);
   LoopSnapshot snapshot = live_.run(seconds(woke_ns), controls_.newest());
-  snapshot.missed_deadlines = missed_;
+  snapshot.missed_deadlines = missed_.load(std::memory_order_relaxed);
   if (wake.missed > 0) snapshot.faults |= loop_fault::kDeadlineMissed;
-  snapshot.lateness_us = static_cast<float>(1e-3 * static_cast<double>(wake.lateness_ns));
-  snapshot.tick_us = last_tick_us_;
   newest_.write(snapshot);
   ring_->push(snapshot);
 
   const std::int64_t done_ns = pacer.now_ns();
   lateness_.add(wake.lateness_ns);
   duration_.add(done_ns - woke_ns);
-  last_tick_us_ = static_cast<float>(1e-3 * static_cast<double>(done_ns - woke_ns));
-  published_missed_.store(missed_, std::memory_order_relaxed);
-  ticks_.store(ticks_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   last_tick_ns_.store(done_ns, std::memory_order_relaxed);
 }
 
@@ -102,25 +96,21 @@ void HapticsLoop::let_go(Pacer& pacer, Deadlines& deadlines) noexcept {
     pacer.wait_until(deadlines.next_ns());
     const std::int64_t woke_ns = pacer.now_ns();
     deadlines.wake(woke_ns);
-    if (live_.release(seconds(woke_ns))) break;
+    if (live_.run(seconds(woke_ns), kReleased).rendered_N == 0.0) break;
   }
   device_.write(0.0);
 }
 
 LoopStatistics HapticsLoop::statistics() const noexcept {
   LoopStatistics result;
-  result.ticks = ticks_.load(std::memory_order_relaxed);
-  result.missed_deadlines = published_missed_.load(std::memory_order_relaxed);
+  result.tick = duration_.percentiles();
+  result.ticks = result.tick.count;
+  result.missed_deadlines = missed_.load(std::memory_order_relaxed);
   result.dropped_snapshots = ring_->dropped();
   result.lateness = lateness_.percentiles();
-  result.tick = duration_.percentiles();
-  result.age_s = age_s();
-  return result;
-}
-
-double HapticsLoop::age_s() const noexcept {
   const std::int64_t last_ns = last_tick_ns_.load(std::memory_order_relaxed);
-  return last_ns != 0 ? seconds(steady_now_ns() - last_ns) : 0.0;
+  if (last_ns != 0) result.age_s = seconds(steady_now_ns() - last_ns);
+  return result;
 }
 
 }  // namespace palpate

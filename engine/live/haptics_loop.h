@@ -10,19 +10,16 @@
 #include <cstdint>
 #include <memory>
 #include <thread>
-#include <vector>
 
+#include "engine/live/handover.h"
 #include "engine/live/live_tick.h"
 #include "engine/live/pacer.h"
 #include "engine/live/rt_thread.h"
-#include "engine/live/spsc_ring.h"
 #include "engine/live/time_histogram.h"
-#include "engine/live/triple_buffer.h"
 
 namespace palpate {
 
 struct LoopSettings {
-  std::int64_t period_ns = 1'000'000;
   // Time before a deadline at which the thread wakes up, rehearses the tick twice and spins: without it, the first
   // evaluations after a pause have cold caches, and a sleep ends late. 0: the thread sleeps until the deadline.
   std::int64_t rehearse_ns = 0;
@@ -47,10 +44,7 @@ class HapticsLoop {
  public:
   // Slow side. `device` must be open, outlive this and not be used elsewhere.
   HapticsLoop(Device& device, const LoopSettings& settings = {});
-  HapticsLoop(const HapticsLoop&) = delete;
-  HapticsLoop& operator=(const HapticsLoop&) = delete;
-  // Calls `stop`.
-  ~HapticsLoop();
+  ~HapticsLoop() { stop(); }
 
   // Slow side, blocks until the scheduling is set. Once. A first set of models should be published before, for the
   // warm-up. Errors: the thread cannot be started.
@@ -62,8 +56,9 @@ class HapticsLoop {
 
   // One slow-side thread, lock-free: models for the next ticks, see ModelSlot.
   void publish_models(std::unique_ptr<LiveModels> models) { slot_.publish(std::move(models)); }
-  // The same thread: deletes the sets that the loop no longer uses. To be called from time to time.
-  std::size_t collect_models() { return slot_.collect(); }
+  // The same thread: deletes a set that the loop no longer uses. To be called from time to time: until then the loop
+  // takes no other set.
+  void collect_models() { slot_.collect(); }
 
   // One slow-side thread, wait-free.
   void set_controls(const LoopControls& controls) noexcept { controls_.write(controls); }
@@ -73,15 +68,8 @@ class HapticsLoop {
   // One reader thread, wait-free, O(most). Every snapshot, oldest first.
   std::size_t read_snapshots(LoopSnapshot* snapshots, std::size_t most) noexcept { return ring_->pop(snapshots, most); }
 
-  // One reader thread, the recorder's, wait-free, O(most). Every sample that was read while the controls requested a
-  // recording, oldest first.
-  std::size_t read_samples(RecordedSample* samples, std::size_t most) noexcept { return recorded_->pop(samples, most); }
-  // Any thread, wait-free. The number of samples that were dropped because the ring was full.
-  std::uint64_t dropped_samples() const noexcept { return recorded_->dropped(); }
-
-  // Any thread, wait-free: those members of `statistics` that take no computation.
-  std::uint64_t dropped_snapshots() const noexcept { return ring_->dropped(); }
-  double age_s() const noexcept;
+  // One reader thread, the recorder's. Every sample that was read while the controls requested a recording.
+  RecordedRing& recorded() noexcept { return live_.recorded(); }
 
   // Any thread, wait-free.
   LoopStatistics statistics() const noexcept;
@@ -98,7 +86,6 @@ class HapticsLoop {
   void let_go(Pacer& pacer, Deadlines& deadlines) noexcept;
 
   Device& device_;
-  std::unique_ptr<RecordedRing> recorded_;
   LoopSettings settings_;
   ModelSlot<LiveModels> slot_;
   LiveTick live_;
@@ -111,11 +98,8 @@ class HapticsLoop {
   std::unique_ptr<SpscRing<LoopSnapshot, kSnapshotRing>> ring_;  // 2 MB: too much for a stack
   TimeHistogram lateness_;
   TimeHistogram duration_;
-  std::uint64_t missed_ = 0;
-  float last_tick_us_ = 0.0F;
-  std::atomic<std::uint64_t> published_missed_{0};
-  std::atomic<std::uint64_t> ticks_{0};
-  std::atomic<std::int64_t> last_tick_ns_{0};
+  std::atomic<std::uint64_t> missed_{0};
+  std::atomic<std::int64_t> last_tick_ns_{0};  // 0: no tick yet
   std::atomic<bool> stop_{false};
 };
 

@@ -13,24 +13,12 @@ namespace {
 
 // Strokes for warming up, in and out of contact.
 constexpr int kWarmUpSamples = 500;
-constexpr double kWarmUpStep_s = 1e-3;
 // A force that is written in a tick acts from the next tick on and is held for one.
 constexpr double kInTick_s = 1.5 * kHapticTick_s;
 
-ToolSample warm_up_sample(int index) noexcept {
-  const double time_s = kWarmUpStep_s * index;
-  ToolSample sample;
-  sample.time_s = time_s;
-  sample.position_m = 2e-3 * std::sin(25.0 * time_s);
-  return sample;
-}
-
-constexpr std::uint32_t fault_bits(TickFault fault) noexcept {
-  return fault == TickFault::none ? 0U : 1U << (static_cast<unsigned>(fault) - 1U);
-}
-static_assert(fault_bits(TickFault::bad_sample) == loop_fault::kBadSample &&
-              fault_bits(TickFault::time_not_later) == loop_fault::kTimeNotLater &&
-              fault_bits(TickFault::force_not_finite) == loop_fault::kModelNotFinite);
+static_assert(static_cast<std::uint32_t>(TickFault::bad_sample) == loop_fault::kBadSample &&
+              static_cast<std::uint32_t>(TickFault::time_not_later) == loop_fault::kTimeNotLater &&
+              static_cast<std::uint32_t>(TickFault::force_not_finite) == loop_fault::kModelNotFinite);
 
 // At each depth the tool comes to rest, then makes one cycle. The relaxation of the force is subtracted as a straight
 // line; the first harmonic of the rest gives the impedance.
@@ -53,7 +41,7 @@ Impedance impedance_of(const CycleForces& force_N) noexcept {
   return {in_phase_N / kProbe_m, out_of_phase_N / kSpeed_m_per_s};
 }
 
-void measure_impedance(const std::vector<std::shared_ptr<const ForceModel>>& models, LiveModels& set) {
+void measure_impedance(const ForceModels& models, LiveModels& set) {
   HapticsTick tick({}, models);
   std::vector<CycleForces> forces_N(models.size());
   ToolSample sample;
@@ -80,31 +68,24 @@ void measure_impedance(const std::vector<std::shared_ptr<const ForceModel>>& mod
   }
 }
 
-std::uint32_t limiter_bits(std::uint32_t flags) noexcept {
-  std::uint32_t bits = 0;
-  if ((flags & force_limit::kNotFinite) != 0) bits |= loop_fault::kForceNotFinite;
-  if ((flags & force_limit::kClamped) != 0) bits |= loop_fault::kForceClamped;
-  if ((flags & force_limit::kSlewed) != 0) bits |= loop_fault::kForceSlewed;
-  if ((flags & force_limit::kThermal) != 0) bits |= loop_fault::kForceThermal;
-  if ((flags & force_limit::kStale) != 0) bits |= loop_fault::kStaleSample;
-  return bits;
-}
-
-ForceMixer::Forces forces_of(const TickSnapshot& snapshot) noexcept {
-  ForceMixer::Forces forces_N{};
-  std::copy(snapshot.force_N.begin(), snapshot.force_N.end(), forces_N.begin());
-  return forces_N;
+std::uint32_t limiter_faults(std::uint32_t flags) noexcept {
+  constexpr std::pair<std::uint32_t, std::uint32_t> kFaultOfFlag[] = {
+      {force_limit::kNotFinite, loop_fault::kForceNotFinite},
+      {force_limit::kClamped, loop_fault::kForceClamped},
+      {force_limit::kSlewed, loop_fault::kForceSlewed},
+      {force_limit::kThermal, loop_fault::kForceThermal},
+      {force_limit::kStale, loop_fault::kStaleSample}};
+  std::uint32_t faults = 0;
+  for (const auto& [flag, fault] : kFaultOfFlag) faults |= (flags & flag) != 0 ? fault : 0U;
+  return faults;
 }
 
 }  // namespace
 
-LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor,
-                       std::vector<std::shared_ptr<const ForceModel>> models,
+LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor, const ForceModels& models,
                        std::shared_ptr<ReferenceForce> true_force)
     : id(set_id), tick(sensor, models), reference(std::move(true_force)) {
   measure_impedance(models, *this);
-  for (int i = 0; i < 2; ++i) tick.step({kWarmUpStep_s * i, 1e-3, 0.0, 0.0});
-  tick.reset();
   tick.time_evaluations(true);
 }
 
@@ -118,37 +99,29 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       passivity_on_(settings.passivity && settings.source == nullptr),
       limiter_(device.limits()),
       source_(settings.source),
-      outgoing_mixer_(settings.jnd),
-      recorded_(settings.recorded),
-      ns_per_cycle_(ns_per_cycle()) {
-  mixer_.jump_to(ForceMixer::kOutgoing);
-}
-
-LiveTick::~LiveTick() {
-  delete models_;
-  delete outgoing_;
-}
+      models_(std::make_unique<LiveModels>(0, device.sensor(), ForceModels{})),
+      recorded_(std::make_unique<RecordedRing>()),
+      ns_per_cycle_(ns_per_cycle()) {}
 
 void LiveTick::warm_up() noexcept {
   update_models();
-  if (models_ == nullptr) return;
   HapticsTick& tick = models_->tick;
   tick.reset();
-  for (int i = 0; i < kWarmUpSamples; ++i) tick.step(warm_up_sample(i));
+  for (int i = 0; i < kWarmUpSamples; ++i) {
+    const double time_s = kHapticTick_s * i;
+    tick.step({time_s, 2e-3 * std::sin(25.0 * time_s), 0.0, 0.0});
+  }
   tick.reset();
 }
 
 void LiveTick::update_models() noexcept {
-  if (outgoing_ != nullptr) return;  // one fade at a time
-  LiveModels* next = slot_.acquire();
+  if (outgoing_ != nullptr || snapshot_.fading) return;  // one fade at a time
+  std::unique_ptr<LiveModels> next = slot_.acquire();
   if (next == nullptr) return;
-  if (models_ != nullptr) {
-    next->tick.continue_from(models_->tick);
-    outgoing_ = models_;
-    outgoing_mixer_ = mixer_;
-  }
+  next->tick.continue_from(models_->tick);
+  outgoing_ = std::exchange(models_, std::move(next));
+  outgoing_selected_ = snapshot_.selected;
   mixer_.jump_to(ForceMixer::kOutgoing);
-  models_ = next;
   snapshot_.models_id = models_->id;
   snapshot_.selected = models_->selected;
   snapshot_.tick = models_->tick.snapshot();
@@ -162,71 +135,48 @@ void LiveTick::process_samples(double now_s) noexcept {
   if (snapshot_.samples > 0) sampled_s_ = now_s;
 }
 
-void LiveTick::read_health(double now_s) noexcept {
-  snapshot_.device = device_.health(now_s);
-  if (std::isinf(snapshot_.device.sample_age_s)) snapshot_.device.sample_age_s = now_s - sampled_s_;
-}
-
 void LiveTick::process_sample(const DeviceSample& sample) noexcept {
   ++snapshot_.samples;
   snapshot_.restarted = snapshot_.restarted || sample.restart;
   snapshot_.measured_N = sample.measured_force_N;
-  step_models(sample);
-  if (recording_ != 0 && recorded_ != nullptr) publish_sample(sample);
+  for (LiveModels* set : {outgoing_.get(), models_.get()}) {
+    if (set == nullptr) continue;
+    if (sample.restart) set->tick.reset();
+    set->tick.step(sample.tool);
+  }
+  snapshot_.tick = models_->tick.snapshot();
+  snapshot_.faults |= static_cast<std::uint32_t>(snapshot_.tick.fault);
+  if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample) {
+    snapshot_.reference_N = models_->reference->step(snapshot_.tick, sample.restart);
+  }
+  if (recording_ != 0) record(sample);
 }
 
-void LiveTick::publish_sample(const DeviceSample& sample) noexcept {
-  RecordedSample recorded;
-  recorded.tool = sample.tool;
-  recorded.measured_N = sample.measured_force_N;
-  recorded.recording = recording_;
-  recorded.restart = sample.restart;
-  if (models_ != nullptr) {
-    const TickFault fault = snapshot_.tick.fault;
-    recorded.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
-    if (models_->reference != nullptr) recorded.reference_N = snapshot_.reference_N;
-    if (models_->written_model < models_->tick.model_count()) {
-      recorded.model_N = snapshot_.tick.force_N[models_->written_model];
-    }
+void LiveTick::record(const DeviceSample& sample) noexcept {
+  RecordedSample recorded{
+      .tool = sample.tool, .measured_N = sample.measured_force_N, .recording = recording_, .restart = sample.restart};
+  const TickFault fault = snapshot_.tick.fault;
+  recorded.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
+  if (models_->reference != nullptr) recorded.reference_N = snapshot_.reference_N;
+  if (models_->written_model < models_->tick.model_count()) {
+    recorded.model_N = snapshot_.tick.force_N[models_->written_model];
   }
   recorded_->push(recorded);
 }
 
-void LiveTick::step_models(const DeviceSample& sample) noexcept {
-  if (models_ == nullptr) {
-    snapshot_.tick.time_s = sample.tool.time_s;
-    snapshot_.tick.position_m = sample.tool.position_m;
-    snapshot_.tick.depth_m = std::max(0.0, sample.tool.position_m);
-    snapshot_.tick.in_contact = sample.tool.position_m > 0.0;
-    return;
-  }
-  if (outgoing_ != nullptr) {
-    if (sample.restart) outgoing_->tick.reset();
-    outgoing_->tick.step(sample.tool);
-  }
-  if (sample.restart) models_->tick.reset();
-  snapshot_.tick = models_->tick.step(sample.tool);
-  snapshot_.faults |= fault_bits(snapshot_.tick.fault);
-  if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample) {
-    snapshot_.reference_N = models_->reference->step(snapshot_.tick, sample.restart);
-  }
-}
-
 double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
-  if (models_ == nullptr) return 0.0;
   const std::size_t count = models_->tick.model_count();
   if (controls.models_id == models_->id && controls.selected < count) snapshot_.selected = controls.selected;
   if (snapshot_.selected >= count) snapshot_.selected = 0;
-  ForceMixer::Forces forces_N = forces_of(snapshot_.tick);
+  ForceMixer::Forces forces_N{};
+  std::ranges::copy(snapshot_.tick.force_N, forces_N.begin());
   if (outgoing_ != nullptr) {
-    forces_N[ForceMixer::kOutgoing] = outgoing_mixer_.current(forces_of(outgoing_->tick.snapshot()));
+    forces_N[ForceMixer::kOutgoing] = outgoing_->tick.snapshot().force_N[outgoing_selected_];
   }
   const double force_N = mixer_.mix(forces_N, snapshot_.selected, step_s);
-  if (outgoing_ != nullptr && mixer_.weights()[ForceMixer::kOutgoing] == 0.0) {
-    slot_.retire(outgoing_);
-    outgoing_ = nullptr;
-  }
   snapshot_.fading = !mixer_.settled_on(snapshot_.selected);
+  if (outgoing_ != nullptr && !snapshot_.fading) slot_.retire(std::move(outgoing_));
+  if (count == 0 && outgoing_ == nullptr) return 0.0;  // without models no damping, either
   return scale(force_N, controls.scale, step_s);
 }
 
@@ -234,8 +184,8 @@ double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
 Impedance LiveTick::impedance() const noexcept {
   ForceMixer::Forces stiffness = models_->stiffness_N_per_m, damping = models_->damping_Ns_per_m;
   if (outgoing_ != nullptr) {
-    stiffness[ForceMixer::kOutgoing] = outgoing_mixer_.current(outgoing_->stiffness_N_per_m);
-    damping[ForceMixer::kOutgoing] = outgoing_mixer_.current(outgoing_->damping_Ns_per_m);
+    stiffness[ForceMixer::kOutgoing] = outgoing_->stiffness_N_per_m[outgoing_selected_];
+    damping[ForceMixer::kOutgoing] = outgoing_->damping_Ns_per_m[outgoing_selected_];
   }
   return {mixer_.current(stiffness), mixer_.current(damping)};
 }
@@ -252,23 +202,9 @@ double LiveTick::scale(double force_N, const ForceScale& wanted, double step_s) 
   return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, limited, step_s);
 }
 
-void LiveTick::acknowledge(const LoopControls& controls) noexcept {
-  if (controls.acknowledged == acknowledged_) return;
-  acknowledged_ = controls.acknowledged;
-  snapshot_.faults_latched = 0;
-  snapshot_.device_faults_latched = 0;
-}
-
 bool LiveTick::dead_man_released(const LoopControls& controls) const noexcept {
-  switch (controls.dead_man) {
-    case DeadMan::key:
-      return !(now_s_ - controls.held_s < kDeadManHold_s);
-    case DeadMan::grip:
-      return !snapshot_.device.grip_held;
-    case DeadMan::off:
-      break;
-  }
-  return false;
+  if (controls.dead_man == DeadMan::grip) return !snapshot_.device.grip_held;
+  return controls.dead_man == DeadMan::key && !(now_s_ - controls.held_s < kDeadManHold_s);
 }
 
 // Off in a study, which presents forces that do not depend on the position of the tool.
@@ -287,15 +223,15 @@ double LiveTick::passive(double commanded_N, double step_s) noexcept {
 
 void LiveTick::render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept {
   const DeviceHealth& device = snapshot_.device;
-  // After an impossible sample there is no force until a possible one.
-  if ((snapshot_.faults & loop_fault::kBadSample) != 0) limiter_.fault();
   if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
   snapshot_.commanded_N = commanded_N;
   snapshot_.passive_N = passive_N;
   snapshot_.dead_man_released = dead_man_released;
+  // After an impossible sample there is no force until a possible one.
+  const bool bad_sample = (snapshot_.faults & loop_fault::kBadSample) != 0;
   snapshot_.rendered_N =
-      limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), dead_man_released});
-  snapshot_.faults |= limiter_bits(limiter_.flags());
+      limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), dead_man_released, bad_sample});
+  snapshot_.faults |= limiter_faults(limiter_.flags());
   snapshot_.limiter_flags = limiter_.flags();
   snapshot_.heat_share = static_cast<float>(limiter_.heat_share());
   device_.write(snapshot_.rendered_N);
@@ -308,30 +244,23 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   snapshot_.loop_time_s = now_s;
   snapshot_.faults = 0;
   recording_ = controls.recording;
-  acknowledge(controls);
+  if (std::exchange(acknowledged_, controls.acknowledged) != controls.acknowledged) {
+    snapshot_.faults_latched = 0;
+    snapshot_.device_faults_latched = 0;
+  }
   update_models();
   process_samples(now_s);
-  read_health(now_s);
+  snapshot_.device = device_.health(now_s);
+  if (std::isinf(snapshot_.device.sample_age_s)) snapshot_.device.sample_age_s = now_s - sampled_s_;
   const double commanded_N = source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
   render(commanded_N, passive(commanded_N, step_s), step_s, dead_man_released(controls));
   snapshot_.faults_latched |= snapshot_.faults;
   snapshot_.device_faults_latched |= snapshot_.device.faults;
-  if (models_ != nullptr) {
-    for (std::size_t i = 0; i < models_->tick.model_count(); ++i) {
-      snapshot_.evaluation_ns[i] =
-          static_cast<float>(ns_per_cycle_ * static_cast<double>(models_->tick.evaluation_cycles(i)));
-    }
+  for (std::size_t i = 0; i < models_->tick.model_count(); ++i) {
+    snapshot_.evaluation_ns[i] =
+        static_cast<float>(ns_per_cycle_ * static_cast<double>(models_->tick.evaluation_cycles(i)));
   }
   return snapshot_;
-}
-
-bool LiveTick::release(double now_s) noexcept {
-  const double step_s = now_s - now_s_;
-  now_s_ = now_s;
-  snapshot_.faults = 0;
-  read_health(now_s);
-  render(0.0, 0.0, step_s, false);
-  return snapshot_.rendered_N == 0.0;
 }
 
 }  // namespace palpate

@@ -4,7 +4,7 @@
 //
 //   take a new set of models -> read the device -> HapticsTick for each sample
 //   -> mix (the active model) -> scale -> passivity -> limit -> write the device -> snapshot
-// Thread guarantee: constructed on the slow side; `run` and `release` belong to the haptics thread, are wait-free,
+// Thread guarantee: constructed on the slow side; `run` and `rehearse` belong to the haptics thread, are wait-free,
 // allocate nothing, lock nothing and never throw.
 #pragma once
 
@@ -18,10 +18,8 @@
 #include "engine/live/faults.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/force_mixer.h"
-#include "engine/live/force_scale.h"
-#include "engine/live/model_slot.h"
+#include "engine/live/handover.h"
 #include "engine/live/passivity_controller.h"
-#include "engine/live/spsc_ring.h"
 #include "engine/live/stability_limit.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
@@ -49,7 +47,7 @@ class ForceSource {
 struct LiveModels {
   // Slow side: sizes all workspaces and measures every model's impedance. `id` > 0 identifies this set in snapshots and
   // controls. `reference` may be null; consecutive sets may share one, because only the newest set calls it.
-  LiveModels(std::uint32_t id, const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models,
+  LiveModels(std::uint32_t id, const SensorSpec& sensor, const ForceModels& models,
              std::shared_ptr<ReferenceForce> reference = nullptr);
 
   std::uint32_t id;
@@ -113,8 +111,6 @@ struct LoopSnapshot {
   bool dead_man_released = false;   // the dead-man switch is released: no force
   bool fading = false;              // between two models
   bool restarted = false;           // a new stream began in this tick
-  float lateness_us = 0.0F;
-  float tick_us = 0.0F;  // duration of the last tick
   std::array<float, kMaxModels> evaluation_ns{};
 };
 static_assert(std::is_trivially_copyable_v<LoopSnapshot>);
@@ -129,7 +125,6 @@ struct RecordedSample {
   bool restart = false;           // a new stream begins
   bool usable = true;             // false: not finite, or not later than the one before
 };
-static_assert(std::is_trivially_copyable_v<RecordedSample>);
 
 // Half a minute at 1 kHz, and more than a second at 20 kHz, in which the recorder may stall.
 inline constexpr std::size_t kRecordedRing = 32768;
@@ -137,43 +132,34 @@ using RecordedRing = SpscRing<RecordedSample, kRecordedRing>;
 
 struct LiveTickSettings {
   JndLine jnd;
-  RecordedRing* recorded = nullptr;  // outlives the tick; null: no recorder
-  ForceSource* source = nullptr;     // outlives the tick; null: the models
-  bool passivity = true;             // false: for tests without the controller
+  ForceSource* source = nullptr;  // outlives the tick; null: the models
+  bool passivity = true;          // false: for tests without the controller
 };
 
 class LiveTick {
  public:
   // `device` outlives this. Forces are 0 until a set of models is taken.
   LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSettings& settings = {});
-  LiveTick(const LiveTick&) = delete;
-  LiveTick& operator=(const LiveTick&) = delete;
-  ~LiveTick();
 
   // Takes the pending set, runs its tick on synthetic strokes and resets it, so that caches and branch predictors are
   // warm.
   void warm_up() noexcept;
 
   // Loads code and data of the next `run` into the caches; no state changes.
-  void rehearse() noexcept {
-    if (models_ != nullptr) models_->tick.rehearse();
-  }
+  void rehearse() noexcept { models_->tick.rehearse(); }
 
   // `now_s`: steady clock. The snapshot is valid until the next call.
   const LoopSnapshot& run(double now_s, const LoopControls& controls) noexcept;
 
-  // As `run`, with command 0; true when the device has got 0.
-  bool release(double now_s) noexcept;
+  // One reader thread. Every sample that was read while the controls requested a recording.
+  RecordedRing& recorded() noexcept { return *recorded_; }
 
  private:
   void update_models() noexcept;
   void process_samples(double now_s) noexcept;
-  void read_health(double now_s) noexcept;
   void process_sample(const DeviceSample& sample) noexcept;
-  void step_models(const DeviceSample& sample) noexcept;
-  void publish_sample(const DeviceSample& sample) noexcept;
+  void record(const DeviceSample& sample) noexcept;
   double mix(const LoopControls& controls, double step_s) noexcept;
-  void acknowledge(const LoopControls& controls) noexcept;
   bool dead_man_released(const LoopControls& controls) const noexcept;
   Impedance impedance() const noexcept;
   double scale(double force_N, const ForceScale& wanted, double step_s) noexcept;
@@ -190,11 +176,11 @@ class LiveTick {
   bool passivity_on_;
   ForceLimiter limiter_;
   ForceSource* source_;
-  LiveModels* models_ = nullptr;
-  LiveModels* outgoing_ = nullptr;  // previous set until its fade ends; then retired
-  ForceMixer outgoing_mixer_;
+  std::unique_ptr<LiveModels> models_;    // before the first published set: one without models
+  std::unique_ptr<LiveModels> outgoing_;  // previous set until its fade ends; then retired
+  std::uint32_t outgoing_selected_ = 0;
   LoopSnapshot snapshot_;
-  RecordedRing* recorded_;
+  std::unique_ptr<RecordedRing> recorded_;  // 2.6 MB: too much for a stack
   std::uint32_t recording_ = 0;
   std::uint32_t acknowledged_ = 0;
   double ns_per_cycle_;

@@ -5,11 +5,8 @@
 #include <cerrno>
 
 namespace palpate {
-namespace {
 
 constexpr std::int64_t kNsPerS = 1'000'000'000;
-
-}  // namespace
 
 std::int64_t steady_now_ns() noexcept {
   timespec now{};
@@ -18,9 +15,7 @@ std::int64_t steady_now_ns() noexcept {
 }
 
 void SteadyPacer::wait_until(std::int64_t deadline_ns) noexcept {
-  timespec until{};
-  until.tv_sec = static_cast<time_t>(deadline_ns / kNsPerS);
-  until.tv_nsec = static_cast<long>(deadline_ns % kNsPerS);
+  const timespec until{deadline_ns / kNsPerS, deadline_ns % kNsPerS};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
   }
 }

@@ -6,14 +6,10 @@
 namespace palpate {
 namespace {
 
-constexpr double kPlay_steps = 1.01;  // rounding must not let a step exceed the play
-
 // The time constant with which the reduction decays while models are exchanged.
 constexpr double kLetGo_s = 0.01;
 
 }  // namespace
-
-PassivityController::PassivityController(double encoder_step_m) noexcept : play_m_(kPlay_steps * encoder_step_m) {}
 
 void PassivityController::begin_at(double depth_m) noexcept {
   passed_[0] = {depth_m, 0.0};

@@ -29,7 +29,7 @@ inline constexpr double kHapticTick_s = 1e-3;
 class PassivityController {
  public:
   // `encoder_step_m`: 0 without an encoder.
-  explicit PassivityController(double encoder_step_m = 0.0) noexcept;
+  explicit PassivityController(double encoder_step_m = 0.0) noexcept : play_m_(kPlay_steps * encoder_step_m) {}
 
   struct Tool {
     double depth_m = 0.0;  // of the sample, quantised by the encoder
@@ -55,6 +55,7 @@ class PassivityController {
     double depth_m = 0.0;
     double energy_J = 0.0;
   };
+  static constexpr double kPlay_steps = 1.01;  // rounding must not let a step exceed the play
   static constexpr std::size_t kMostPassed = 256;
   static constexpr double kSpacing_m = 20e-6;
   static constexpr std::size_t kMostUnderWay = 64;

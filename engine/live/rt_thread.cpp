@@ -1,7 +1,6 @@
 #include "engine/live/rt_thread.h"
 
 #include <pthread.h>
-#include <pwd.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -11,20 +10,17 @@
 #include <array>
 #include <cerrno>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t kStackBytes = 256 * 1024;
 constexpr int kCapIpcLock = 14;  // linux/capability.h
-
-int set_fifo(int priority) {
-  sched_param parameters{};
-  parameters.sched_priority = priority;
-  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
-}
 
 bool has_capability(int number) {
   std::ifstream status("/proc/self/status");
@@ -43,20 +39,6 @@ int lock_all_memory() {
   const bool unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
   if (!unlimited && !has_capability(kCapIpcLock)) return EPERM;
   return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 ? 0 : errno;
-}
-
-std::string user_name() {
-  std::array<char, 4096> text;
-  passwd entry{};
-  passwd* found = nullptr;
-  if (getpwuid_r(geteuid(), &entry, text.data(), text.size(), &found) == 0 && found != nullptr) return entry.pw_name;
-  return "USER";
-}
-
-std::string program_path() {
-  std::array<char, 4096> text;
-  const ssize_t length = readlink("/proc/self/exe", text.data(), text.size());
-  return length > 0 ? std::string(text.data(), static_cast<std::size_t>(length)) : std::string("PROGRAM");
 }
 
 // Maps the pages of the stack before the first deep call of a tick.
@@ -80,10 +62,13 @@ std::string realtime_advice(int priority_error, int memory_error, bool is_root) 
            " refused by the container although this is root; start the container with "
            "--cap-add=SYS_NICE --cap-add=IPC_LOCK --ulimit rtprio=99 --ulimit memlock=-1";
   }
-  const std::string user = user_name();
+  const char* name = std::getenv("USER");
+  const std::string user = name != nullptr ? name : "USER";
+  std::error_code unreadable;
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe", unreadable);
   return refused + " refused; either add these two lines to /etc/security/limits.conf and log in again:\n  " + user +
          " - rtprio 90\n  " + user + " - memlock unlimited\nor run: sudo setcap cap_sys_nice,cap_ipc_lock=ep " +
-         program_path();
+         (unreadable ? "PROGRAM" : program);
 }
 
 void set_timer_slack_1ns() noexcept { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
@@ -91,7 +76,9 @@ void set_timer_slack_1ns() noexcept { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0U
 RtStatus make_this_thread_realtime(int priority, bool lock_memory) {
   RtStatus status;
   set_timer_slack_1ns();
-  const int priority_error = set_fifo(priority);
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  const int priority_error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
   status.realtime = priority_error == 0;
   status.scheduling = status.realtime ? "SCHED_FIFO " + std::to_string(priority) : "normal";
   status.fix = realtime_advice(priority_error, lock_memory ? lock_all_memory() : 0, geteuid() == 0);

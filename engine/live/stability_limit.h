@@ -1,5 +1,5 @@
-// The largest stable stiffness and damping of a force that lags the motion by T: transport, waiting times, and half the
-// time for which it is held.
+// The largest stable stiffness and damping of a force that lags the motion by T (transport, waiting times, and half the
+// time for which it is held), and the scale of the force that the user wants, within that limit.
 //
 // A lagging spring K is a spring with the damping -K T (Colgate & Schenkel 1997; with transport: Diolaiti et al. 2006).
 // The limit is K T <= b + c B, where
@@ -15,6 +15,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpate {
 
@@ -57,6 +58,54 @@ class StabilityLimit {
   static constexpr double kNone = 1e-9;
   double share_;
   double lag_s_ = 0.0;
+};
+
+// The scale that the user wants for the stiffness of the active model, and additional damping:
+//   F' = k F + b v     in contact; k: stiffness, b: damping_Ns_per_m, v: velocity inward; b v never changes the sign
+//                      of a positive force
+// Passivity controller and limiter come after it and apply to the scaled force.
+struct ForceScale {
+  static constexpr double kLeast = 0.25, kMost = 4.0;
+  static constexpr double kMostDamping_Ns_per_m = 20.0;
+  double stiffness = 1.0;
+  double damping_Ns_per_m = 0.0;
+  bool operator==(const ForceScale&) const = default;
+
+  // Clamped to the bounds above and, for a model of this impedance, to the stability limit.
+  ForceScale limited(const StabilityLimit& limit, const Impedance& model) const noexcept {
+    const double scale = std::min(std::clamp(stiffness, kLeast, kMost), limit.largest_scale(model));
+    // Half of the rest, because the estimated velocity lags more than the position; the passivity controller uses the
+    // other half.
+    const double left_Ns_per_m = 0.5 * (limit.damping_Ns_per_m() - scale * model.damping_Ns_per_m);
+    return {scale, std::min(std::clamp(damping_Ns_per_m, 0.0, kMostDamping_Ns_per_m), left_Ns_per_m)};
+  }
+};
+
+// The force scaled by what is wanted, without a kick.
+class ScaledForce {
+ public:
+  // Moves towards `wanted`, which is not clamped, with a time constant of 50 ms, so that the change is not felt as a
+  // kick, and returns the scaled force. With the default scale the force stays bit-identical.
+  double apply(double force_N, double velocity_m_per_s, bool in_contact, const ForceScale& wanted,
+               double step_s) noexcept {
+    const double share = std::clamp(step_s / kEasing_s, 0.0, 1.0);
+    ease(now_.stiffness, wanted.stiffness, share);
+    ease(now_.damping_Ns_per_m, wanted.damping_Ns_per_m, share);
+    if (!in_contact || now_ == ForceScale{}) return force_N;
+    const double scaled_N = now_.stiffness * force_N;
+    return std::max(scaled_N + now_.damping_Ns_per_m * velocity_m_per_s, std::min(scaled_N, 0.0));
+  }
+
+  const ForceScale& now() const noexcept { return now_; }
+
+ private:
+  static constexpr double kEasing_s = 0.05;
+  static constexpr double kArrived = 1e-3;
+  static void ease(double& value, double wanted, double share) noexcept {
+    value += share * (wanted - value);
+    if (std::abs(wanted - value) < kArrived) value = wanted;
+  }
+  ForceScale now_;
 };
 
 }  // namespace palpate

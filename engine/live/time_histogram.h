@@ -23,7 +23,8 @@ class TimeHistogram {
   // One writer thread. Wait-free. Negative times count as zero.
   void add(std::int64_t time_ns) noexcept {
     const auto value = static_cast<std::uint64_t>(time_ns > 0 ? time_ns : 0);
-    bump(counts_[bin_of(value)]);
+    std::atomic<std::uint64_t>& counter = counts_[bin_of(value)];
+    counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     if (value > longest_ns_.load(std::memory_order_relaxed)) longest_ns_.store(value, std::memory_order_relaxed);
   }
 
@@ -35,9 +36,6 @@ class TimeHistogram {
   static constexpr std::uint64_t kPerDoubling = 1U << kShift;
   static constexpr std::size_t kBins = (64 - kShift + 1) << kShift;
 
-  static void bump(std::atomic<std::uint64_t>& counter) noexcept {
-    counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-  }
   // One bin each below 32 ns; above, the leading bit and the five that follow determine the bin.
   static std::size_t bin_of(std::uint64_t value) noexcept {
     if (value < kPerDoubling) return static_cast<std::size_t>(value);

@@ -4,25 +4,11 @@
 #include <cassert>
 #include <cmath>
 
-#include "engine/tick/exponential.h"
-#include "engine/tick/features.h"
-
 namespace palpate {
 namespace {
 
 // Smaller values are set to 0: denormals would slow every later operation.
 constexpr double kNothing_N = 1e-30;
-PALPATE_INLINE void curve_at(V4& value, const CurveLanes& curve, double depth_m) noexcept {
-  const auto* knots = curve.has_knots ? &curve.knot_N : nullptr;
-  const V4 u = depth_m / curve.reference_depth_m;
-  const V4 inside = u > 1.0 ? V4{} + 1.0 : u;
-  rising_value(value, curve.coefficient_N, knots, inside);
-  if (depth_m > curve.least_reference_m) [[unlikely]] {
-    V4 slope;
-    slope_at_end(slope, curve.coefficient_N, knots);
-    value = u > 1.0 ? value + slope * (u - 1.0) : value;
-  }
-}
 
 PALPATE_INLINE void step_of(V4& keep, V4& gain, const V4& time_s, double step_s, double per_step) noexcept {
   keep = -step_s / time_s;
@@ -46,16 +32,16 @@ PALPATE_INLINE void prepare_groups(const BranchLanes::Group* group, std::size_t 
 }
 
 PALPATE_INLINE double advance_groups(const BranchLanes::Group* group, std::size_t count, const BranchLanes::Step* step,
-                                     double surface_m, const V4* from, V4* to) noexcept {
+                                     double surface_m, const PartMemory* from, PartMemory* to) noexcept {
   V4 sum{};
-  for (std::size_t i = 0; i < count; ++i, from += BranchLanes::kMemory, to += BranchLanes::kMemory) {
+  for (std::size_t i = 0; i < count; ++i) {
     V4 drive;
-    curve_at(drive, group[i].drive, surface_m);
-    const V4& last = from[0];
+    evaluate_curve(drive, group[i].drive, surface_m);
+    const V4& last = from->value[i];
     const V4 kept = step[i].keep * (((last < kNothing_N) & (last > -kNothing_N)) ? V4{} : last);
-    const V4 force = kept + step[i].gain * (drive - from[1]);
-    to[0] = force;
-    to[1] = drive;
+    const V4 force = kept + step[i].gain * (drive - from->drive_N[i]);
+    to->value[i] = force;
+    to->drive_N[i] = drive;
     sum += force;
   }
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
@@ -80,40 +66,30 @@ PALPATE_INLINE void bend_groups(const BristleLanes::Group* group, std::size_t co
     }
     bend = bend < -limit ? -limit : (limit < bend ? limit : bend);
     V4 force;
-    curve_at(force, group[i].drive, depth_m);
+    evaluate_curve(force, group[i].drive, depth_m);
     bend_m[i] = bend;
     force_N[i] = force * bend / group[i].threshold_m;
   }
 }
 
-// Each loop is compiled twice, for the baseline and with four lanes to an instruction; the bits are the same.
-#define PALPATE_LANE_LOOPS(attribute, suffix)                                                                          \
-  attribute void prepare_##suffix(const BranchLanes::Group* group, std::size_t count, double step_s, double surface_m, \
-                                  BranchLanes::Step* step) noexcept {                                                  \
-    prepare_groups(group, count, step_s, surface_m, step);                                                             \
-  }                                                                                                                    \
-  attribute double advance_##suffix(const BranchLanes::Group* group, std::size_t count, const BranchLanes::Step* step, \
-                                    double surface_m, const V4* from, V4* to) noexcept {                               \
-    return advance_groups(group, count, step, surface_m, from, to);                                                    \
-  }                                                                                                                    \
-  attribute void bend_##suffix(const BristleLanes::Group* group, std::size_t count, double last_depth_m,               \
-                               double depth_m, double step_s, V4* bend_m, V4* force_N) noexcept {                      \
-    bend_groups(group, count, last_depth_m, depth_m, step_s, bend_m, force_N);                                         \
-  }
-
-PALPATE_LANE_LOOPS(, plain)
+// Calls a loop over groups, which is compiled twice, for the baseline and with four lanes to an instruction; the bits
+// are the same.
 #ifdef __x86_64__
-PALPATE_LANE_LOOPS([[gnu::target("avx2")]], wide)
-const bool kWide = has_wide_lanes();
-const auto kPrepare = kWide ? &prepare_wide : &prepare_plain;
-const auto kAdvance = kWide ? &advance_wide : &advance_plain;
-const auto kBend = kWide ? &bend_wide : &bend_plain;
-#else
-constexpr auto kPrepare = &prepare_plain;
-constexpr auto kAdvance = &advance_plain;
-constexpr auto kBend = &bend_plain;
+const bool kWide = __builtin_cpu_supports("avx2") != 0;
+
+template <auto loop, typename... Arguments>
+[[gnu::target("avx2")]] auto call_wide(Arguments... arguments) noexcept {
+  return loop(arguments...);
+}
 #endif
-#undef PALPATE_LANE_LOOPS
+
+template <auto loop, typename... Arguments>
+auto call(Arguments... arguments) noexcept {
+#ifdef __x86_64__
+  if (kWide) return call_wide<loop>(arguments...);
+#endif
+  return loop(arguments...);
+}
 
 // The group of the next part after `count` parts.
 template <typename Group>
@@ -123,14 +99,13 @@ Group& group_of_next(std::vector<Group>& groups, std::size_t count) {
   return groups.back();
 }
 
-// The sum of `count` lanes from `place` on, in rows `stride` apart.
-double sum_of(const V4* row, std::size_t stride, std::size_t place, std::size_t count) noexcept {
+}  // namespace
+
+double sum_of_lanes(const V4* value, std::size_t first, std::size_t count) noexcept {
   double sum = 0.0;
-  for (std::size_t i = place; i < place + count; ++i) sum += row[i / kLanes * stride][i % kLanes];
+  for (std::size_t i = first; i < first + count; ++i) sum += value[i / kLanes][i % kLanes];
   return sum;
 }
-
-}  // namespace
 
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
   V4 keep;
@@ -142,7 +117,7 @@ BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
 void CurveLanes::set(std::size_t lane, const DriveCurve& drive) noexcept {
   for (std::size_t k = 0; k < kDriveCoefficients; ++k) coefficient_N[k][lane] = drive.coefficient_N[k];
   reference_depth_m[lane] = drive.reference_depth_m;
-  least_reference_m = std::min(least_reference_m, drive.reference_depth_m);
+  least_m = std::min(least_m, drive.reference_depth_m);
   if (!drive.has_knots) return;
   has_knots = true;
   for (std::size_t k = 0; k < kDriveKnots; ++k) knot_N[k][lane] = drive.knot_N[k];
@@ -161,16 +136,12 @@ std::size_t BranchLanes::add(const DriveCurve& drive, double relaxation_time_s, 
 }
 
 void BranchLanes::prepare(double step_s, double surface_m, Step* step) const noexcept {
-  if (step_s > 0.0) return kPrepare(groups_.data(), groups_.size(), step_s, surface_m, step);
+  if (step_s > 0.0) return call<prepare_groups>(groups_.data(), groups_.size(), step_s, surface_m, step);
   for (std::size_t i = 0; i < groups_.size(); ++i) step[i] = {V4{} + 1.0, V4{}};
 }
 
-double BranchLanes::advance(const Step* step, double surface_m, const V4* from, V4* to) const noexcept {
-  return kAdvance(groups_.data(), groups_.size(), step, surface_m, from, to);
-}
-
-double BranchLanes::force_N(const V4* memory, std::size_t place, std::size_t count) noexcept {
-  return sum_of(memory, kMemory, place, count);
+double BranchLanes::advance(const Step* step, double surface_m, const PartMemory& from, PartMemory& to) const noexcept {
+  return call<advance_groups>(groups_.data(), groups_.size(), step, surface_m, &from, &to);
 }
 
 std::size_t BristleLanes::add(const DriveCurve& drive, double threshold_m, double creep_time_s) {
@@ -188,11 +159,7 @@ std::size_t BristleLanes::add(const DriveCurve& drive, double threshold_m, doubl
 }
 
 void BristleLanes::advance(double last_depth_m, double depth_m, double step_s, V4* bend_m, V4* force_N) const noexcept {
-  kBend(groups_.data(), groups_.size(), last_depth_m, depth_m, step_s, bend_m, force_N);
-}
-
-double BristleLanes::force_N(const V4* force_N, std::size_t place, std::size_t count) noexcept {
-  return sum_of(force_N, kMemory, place, count);
+  call<bend_groups>(groups_.data(), groups_.size(), last_depth_m, depth_m, step_s, bend_m, force_N);
 }
 
 }  // namespace palpate

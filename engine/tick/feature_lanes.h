@@ -1,32 +1,28 @@
 // The branches of relaxation spectra, and the stop operators and creeping bristles (features.h gives the equations),
 // four at a time in SIMD lanes. All branches of a filter are in one sequence of groups of four, and all bristles in
-// another. The caller stores their state: kMemory vectors of four for each group.
+// another. The caller stores their state.
 // Thread guarantee: immutable after the last `add`, which allocates; all else is wait-free.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
+#include "engine/tick/drive_curve.h"
 #include "engine/tick/lanes.h"
-#include "engine/tick/rising_curve.h"
 
 namespace palpate {
 
-inline constexpr std::size_t kDriveCoefficients = 4;
-
-struct DriveCurve;
-
-// Four drive curves g (DriveCurve in features.h). An unused lane has g = 0.
+// Four drive curves. An unused lane has g = 0.
 struct alignas(sizeof(V4)) CurveLanes {
   V4 coefficient_N[kDriveCoefficients]{};
   V4 knot_N[kDriveKnots]{};
   V4 reference_depth_m{1.0, 1.0, 1.0, 1.0};
-  double least_reference_m = std::numeric_limits<double>::infinity();  // the smallest of the four
+  double least_m = std::numeric_limits<double>::infinity();  // the smallest of the four reference depths
   bool has_knots = false;
 
   void set(std::size_t lane, const DriveCurve& drive) noexcept;
+  double least_reference_m() const noexcept { return least_m; }
 };
 
 // One step of a Maxwell branch: z' = keep z + gain (g(s') - g(s)).
@@ -37,6 +33,15 @@ struct BranchStep {
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
 // Groups that suffice for all branches and bristles of a filter: 8 features of 8 parts in fours.
 inline constexpr std::size_t kMaxLaneGroups = 16;
+
+// The state of the parts of a filter: the groups of branches, then those of bristles.
+struct alignas(sizeof(V4)) PartMemory {
+  V4 value[kMaxLaneGroups];    // the force z of a branch, N; the deflection s or q of a bristle, m
+  V4 drive_N[kMaxLaneGroups];  // g(s) of a branch at the same time
+};
+
+// The sum of `count` lanes from index `first`.
+double sum_of_lanes(const V4* value, std::size_t first, std::size_t count) noexcept;
 
 class BranchLanes {
  public:
@@ -51,9 +56,6 @@ class BranchLanes {
     V4 keep;
     V4 gain;
   };
-  // The state of a group: z, and g(s) at the same time.
-  static constexpr std::size_t kMemory = 2;
-
   // Returns the index of the branch among the lanes.
   std::size_t add(const DriveCurve& drive, double relaxation_time_s, double slowing = 0.0,
                   double slowing_depth_m = 1.0);
@@ -62,9 +64,7 @@ class BranchLanes {
   // Computes the steps of all groups for the surface at `surface_m`. With `step_s` 0 the state will not change.
   void prepare(double step_s, double surface_m, Step* step) const noexcept;
   // Advances all branches to the surface at `surface_m` and returns the sum of their forces, N; `to` may be `from`.
-  double advance(const Step* step, double surface_m, const V4* from, V4* to) const noexcept;
-  // The sum of the forces of `count` branches from index `place`, N.
-  static double force_N(const V4* memory, std::size_t place, std::size_t count) noexcept;
+  double advance(const Step* step, double surface_m, const PartMemory& from, PartMemory& to) const noexcept;
 
  private:
   std::vector<Group> groups_;
@@ -82,9 +82,6 @@ class BristleLanes {
     V4 creep_per_m2_s{};  // 1 / (tau r^2); 0 for a stop
     bool creeps = false;  // whether one lane creeps
   };
-  // The state of a group: the deflection s or q.
-  static constexpr std::size_t kMemory = 1;
-
   // `creep_time_s`: tau, or 0 for a stop. Returns the index of the bristle among the lanes.
   std::size_t add(const DriveCurve& drive, double threshold_m, double creep_time_s);
   std::size_t groups() const noexcept { return groups_.size(); }
@@ -92,7 +89,6 @@ class BristleLanes {
   // Advances all bristles from the last depth by `step_s`; with 0 only the forces are computed. Out of contact the
   // deflection of a stop becomes 0. `force_N`: receives the forces.
   void advance(double last_depth_m, double depth_m, double step_s, V4* bend_m, V4* force_N) const noexcept;
-  static double force_N(const V4* force_N, std::size_t place, std::size_t count) noexcept;
 
  private:
   std::vector<Group> groups_;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "engine/base/text.h"
-#include "engine/tick/exponential.h"
 
 namespace palpate {
 namespace {
@@ -45,27 +44,7 @@ double surface_above_m(const Held& held_N, double depth_m, double last_surface_m
   return middle_m;
 }
 
-void copy_lane(V4* to, std::size_t place, const V4* from, std::size_t other, std::size_t stride) noexcept {
-  to[place / kLanes * stride][place % kLanes] = from[other / kLanes * stride][other % kLanes];
-}
-
-// Copies the bends of the bristles that both features have.
-void adopt_bends(const FeatureSpec& spec, std::size_t place, V4* bend_m, const FeatureSpec& old, std::size_t old_place,
-                 const V4* old_bend_m) noexcept {
-  for (std::size_t p = 0; p < spec.part_count; ++p) {
-    for (std::size_t q = 0; q < old.part_count; ++q) {
-      if (spec.parts[p].threshold_m != old.parts[q].threshold_m) continue;
-      if (spec.parts[p].relaxation_time_s != old.parts[q].relaxation_time_s) continue;
-      copy_lane(bend_m, place + p, old_bend_m, old_place + q, BristleLanes::kMemory);
-    }
-  }
-}
-
 }  // namespace
-
-double DriveCurve::at(double depth_m) const noexcept {
-  return rising_curve(coefficient_N, has_knots ? &knot_N : nullptr, depth_m / reference_depth_m);
-}
 
 double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept {
   const bool apart = last_surface_m > last_depth_m && last_surface_m > depth_m;
@@ -108,25 +87,27 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs)
     if (spec.kind == FeatureKind::surface_lag) lag_ = i;
     for (std::size_t p = 0; p < spec.part_count; ++p) {
       const FeaturePart& part = spec.parts[p];
-      const std::size_t place =
-          is_branch(spec.kind)
-              ? branches_.add(part.drive, part.relaxation_time_s, spec.slowing, spec.parts[0].drive.reference_depth_m)
-              : bristles_.add(part.drive, part.threshold_m,
-                              spec.kind == FeatureKind::creep ? part.relaxation_time_s : 0.0);
-      if (p == 0) place_[i] = place;
+      const double creep_time_s = spec.kind == FeatureKind::creep ? part.relaxation_time_s : 0.0;
+      const std::size_t lane = is_branch(spec.kind) ? branches_.add(part.drive, part.relaxation_time_s, spec.slowing,
+                                                                    spec.parts[0].drive.reference_depth_m)
+                                                    : bristles_.add(part.drive, part.threshold_m, creep_time_s);
+      if (p == 0) first_lane_[i] = lane;
     }
+  }
+  for (std::size_t i = 0; i < specs_.size(); ++i) {
+    if (is_bristle(specs_[i].kind)) first_lane_[i] += kLanes * branches_.groups();
   }
 }
 
 void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept {
   const double depth_m = std::max(0.0, motion.position_m - surface_position_m_);
   if (!state.started) state = {};
-  state.vector.depth_m = std::max(0.0, sample.position_m - surface_position_m_);
   state.vector.in_contact = sample.position_m > surface_position_m_;
   const double step_s = state.started ? std::max(0.0, sample.time_s - state.time_s) : 0.0;
   const double surface_m = advance_branches(state, depth_m, step_s);
   V4 bristle_N[kMaxLaneGroups];
-  bristles_.advance(state.depth_m, depth_m, step_s, bends(state), bristle_N);
+  const std::size_t first_bristles = branches_.groups();
+  bristles_.advance(state.depth_m, depth_m, step_s, state.memory.value + first_bristles, bristle_N + first_bristles);
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     const FeatureSpec& spec = specs_[i];
     double& value = state.vector.values[i];
@@ -146,17 +127,17 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
         }
         break;
       case FeatureKind::maxwell_spectrum:
-        value = BranchLanes::force_N(state.memory, place_[i], spec.part_count);
+        value = sum_of_lanes(state.memory.value, first_lane_[i], spec.part_count);
         break;
       case FeatureKind::surface_lag:
         value = surface_m - depth_m;
         break;
       case FeatureKind::stops:
       case FeatureKind::creep:
+        value = sum_of_lanes(bristle_N, first_lane_[i], spec.part_count);
         break;
     }
   }
-  take_bristles(state, bristle_N);
   state.started = true;
   state.time_s = sample.time_s;
   state.depth_m = depth_m;
@@ -171,12 +152,13 @@ double FeaturePlan::advance_branches(FeatureState& state, double depth_m, double
     branches_.advance(step, depth_m, state.memory, state.memory);
     return depth_m;
   }
-  V4 trial[BranchLanes::kMemory * kMaxLaneGroups];
+  PartMemory trial;
   const auto held_N = [&](double surface_m) {
     return specs_[lag_].drive.at(surface_m) + branches_.advance(step, surface_m, state.memory, trial);
   };
   const double surface_m = surface_above_m(held_N, depth_m, state.surface_m);
-  std::copy_n(trial, BranchLanes::kMemory * branches_.groups(), state.memory);
+  std::copy_n(trial.value, branches_.groups(), state.memory.value);
+  std::copy_n(trial.drive_N, branches_.groups(), state.memory.drive_N);
   return surface_m;
 }
 
@@ -184,30 +166,18 @@ void FeaturePlan::adopt(FeatureState& state, const FeaturePlan& plan, const Feat
   if (plan.surface_position_m_ != surface_position_m_) return;
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     for (std::size_t k = 0; k < plan.specs_.size(); ++k) {
-      const FeatureSpec& spec = specs_[i];
-      const FeatureSpec& old = plan.specs_[k];
-      if (spec.kind == old.kind && is_bristle(spec.kind)) {
-        adopt_bends(spec, place_[i], bends(state), old, plan.place_[k], plan.bends(before));
-      } else if (spec == old) {
-        state.vector.values[i] = before.vector.values[k];
-        if (i == lag_) state.surface_m = before.surface_m;
-        for (std::size_t p = 0; p < spec.part_count; ++p) {
-          for (std::size_t row = 0; row < BranchLanes::kMemory; ++row) {
-            copy_lane(state.memory + row, place_[i] + p, before.memory + row, plan.place_[k] + p, BranchLanes::kMemory);
-          }
-        }
+      if (specs_[i] != plan.specs_[k]) continue;
+      state.vector.values[i] = before.vector.values[k];
+      if (i == lag_) state.surface_m = before.surface_m;
+      for (std::size_t p = 0; p < specs_[i].part_count; ++p) {
+        const std::size_t lane = first_lane_[i] + p, old = plan.first_lane_[k] + p;
+        const auto copy = [&](V4* to, const V4* from) {
+          to[lane / kLanes][lane % kLanes] = from[old / kLanes][old % kLanes];
+        };
+        copy(state.memory.value, before.memory.value);
+        copy(state.memory.drive_N, before.memory.drive_N);
       }
     }
-  }
-  V4 bristle_N[kMaxLaneGroups];
-  bristles_.advance(state.depth_m, state.depth_m, 0.0, bends(state), bristle_N);
-  take_bristles(state, bristle_N);
-}
-
-void FeaturePlan::take_bristles(FeatureState& state, const V4* bristle_N) const noexcept {
-  for (std::size_t i = 0; i < specs_.size(); ++i) {
-    if (!is_bristle(specs_[i].kind)) continue;
-    state.vector.values[i] = BristleLanes::force_N(bristle_N, place_[i], specs_[i].part_count);
   }
 }
 

@@ -75,7 +75,6 @@ struct FeatureKindFacts {
   std::string_view unit;    // end of the column name
   bool has_time = false;    // has one time constant
   bool has_drive = false;   // has a drive curve of its own
-  bool has_parts = false;   // is a sum of up to kMaxFeatureParts parts
   bool is_branch = false;   // consists of Maxwell branches
   bool is_bristle = false;  // consists of bristles
 };
@@ -84,9 +83,9 @@ inline constexpr std::array<FeatureKindFacts, 7> kFeatureKinds{{
     {.name = "depth", .unit = "_m"},
     {.name = "velocity", .unit = "_m_per_s"},
     {.name = "lowpass_velocity", .unit = "s_m_per_s", .has_time = true},
-    {.name = "maxwell_spectrum", .unit = "s_N", .has_parts = true, .is_branch = true},
-    {.name = "stops", .unit = "mm_N", .has_parts = true, .is_bristle = true},
-    {.name = "creep", .unit = "s_N", .has_parts = true, .is_bristle = true},
+    {.name = "maxwell_spectrum", .unit = "s_N", .is_branch = true},
+    {.name = "stops", .unit = "mm_N", .is_bristle = true},
+    {.name = "creep", .unit = "s_N", .is_bristle = true},
     {.name = "surface_lag", .unit = "_m", .has_drive = true},
 }};
 constexpr const FeatureKindFacts& facts_of(FeatureKind kind) noexcept {
@@ -94,21 +93,10 @@ constexpr const FeatureKindFacts& facts_of(FeatureKind kind) noexcept {
 }
 constexpr bool has_time(FeatureKind kind) noexcept { return facts_of(kind).has_time; }
 constexpr bool has_drive(FeatureKind kind) noexcept { return facts_of(kind).has_drive; }
-constexpr bool has_parts(FeatureKind kind) noexcept { return facts_of(kind).has_parts; }
 constexpr bool is_branch(FeatureKind kind) noexcept { return facts_of(kind).is_branch; }
 constexpr bool is_bristle(FeatureKind kind) noexcept { return facts_of(kind).is_bristle; }
-
-// g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for u <= 1; beyond, g continues along its
-// tangent at u = 1. With knots, g is a cubic spline: the truncated powers of rising_curve.h are added.
-struct DriveCurve {
-  double reference_depth_m = 1.0;
-  std::array<double, kDriveCoefficients> coefficient_N{};
-  bool has_knots = false;
-  std::array<double, kDriveKnots> knot_N{};
-
-  double at(double depth_m) const noexcept;
-  bool operator==(const DriveCurve&) const = default;
-};
+// Is a sum of up to kMaxFeatureParts parts.
+constexpr bool has_parts(FeatureKind kind) noexcept { return is_branch(kind) || is_bristle(kind); }
 
 // One branch of a maxwell_spectrum, one stop operator or one creeping bristle.
 struct FeaturePart {
@@ -146,8 +134,7 @@ std::string feature_name(const FeatureSpec& spec);
 
 struct FeatureVector {
   std::array<double, kMaxFeatures> values{};
-  double depth_m = 0.0;  // from the raw position: max(0, position - surface)
-  bool in_contact = false;
+  bool in_contact = false;  // by the raw position
 };
 
 // The state of the filters of one list of features. Trivially copyable.
@@ -157,8 +144,7 @@ struct alignas(sizeof(V4)) FeatureState {
   double surface_m = 0.0;  // s >= depth_m; equal without a surface_lag
   double time_s = 0.0;
   bool started = false;
-  // Of the branches, then of the bristles; features have at most 16 groups of parts.
-  V4 memory[BranchLanes::kMemory * kMaxLaneGroups]{};
+  PartMemory memory{};
 };
 static_assert(std::is_trivially_copyable_v<FeatureState>);
 
@@ -174,20 +160,15 @@ class FeaturePlan {
   // Advances `state` by a sample and its motion estimate; times increase. Contact is determined from the raw position.
   void update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
   // To be called after an `update`: copies the state that `before`, fed with the same motion, has of equal features of
-  // `plan`, so that a change of models keeps the memory of the material. Bristles are matched by threshold and creep
-  // time, other features by equality; the surface positions must be equal, otherwise nothing is copied.
+  // `plan`, so that a change of models keeps the memory of the material. The surface positions must be equal, otherwise
+  // nothing is copied.
   void adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept;
 
  private:
   double advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept;
-  void take_bristles(FeatureState& state, const V4* bristle_N) const noexcept;
-  V4* bends(FeatureState& state) const noexcept { return state.memory + BranchLanes::kMemory * branches_.groups(); }
-  const V4* bends(const FeatureState& state) const noexcept {
-    return state.memory + BranchLanes::kMemory * branches_.groups();
-  }
 
   std::vector<FeatureSpec> specs_;
-  std::array<std::size_t, kMaxFeatures> place_{};  // index of the first part of each feature among the lanes
+  std::array<std::size_t, kMaxFeatures> first_lane_{};  // of each feature in PartMemory
   BranchLanes branches_;
   BristleLanes bristles_;
   std::size_t lag_ = kMaxFeatures;  // index of the surface_lag; kMaxFeatures: none

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,5 +35,7 @@ class ForceModel {
   virtual const std::string& method() const noexcept = 0;  // e.g. "greedy"
   virtual int centre_count() const noexcept = 0;           // nodes for a grid
 };
+
+using ForceModels = std::vector<std::shared_ptr<const ForceModel>>;
 
 }  // namespace palpate

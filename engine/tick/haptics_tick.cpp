@@ -20,10 +20,22 @@ bool finite(const ToolSample& sample) noexcept {
          std::isfinite(sample.acceleration_m_per_s2);
 }
 
+// Steps of MotionHistory. The filters are exact for steps of any length with a constant velocity, and that of a hand
+// changes little in a step.
+constexpr double kHistoryStep_s = 3.9e-3;
+constexpr double kRemembered_s = 60.0;
+
 }  // namespace
 
-HapticsTick::HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models)
-    : motion_(sensor), models_(std::move(models)) {
+void MotionHistory::add(const TickSnapshot& snapshot, bool restarted) {
+  if (restarted || (!past_.empty() && snapshot.time_s < past_.back().time_s)) past_.clear();
+  if (snapshot.fault == TickFault::bad_sample || snapshot.fault == TickFault::time_not_later) return;
+  if (!past_.empty() && snapshot.time_s - past_.back().time_s < kHistoryStep_s) return;
+  past_.push_back({snapshot.time_s, snapshot.position_m, snapshot.velocity_m_per_s});
+  while (snapshot.time_s - past_.front().time_s > kRemembered_s) past_.pop_front();
+}
+
+HapticsTick::HapticsTick(const SensorSpec& sensor, ForceModels models) : motion_(sensor), models_(std::move(models)) {
   assert(models_.size() <= kMaxModels);
   for (const auto& model : models_) {
     std::size_t index = 0;
@@ -59,9 +71,11 @@ void HapticsTick::rehearse() noexcept {
   rehearsed_N_ = sum_N;
 }
 
-void HapticsTick::recall(const PastMotion& motion) noexcept {
-  for (FeatureFilter& filter : filters_) {
-    filter.update({motion.time_s, motion.position_m, 0.0, 0.0}, {motion.position_m, motion.velocity_m_per_s});
+void HapticsTick::recall(const MotionHistory& history) noexcept {
+  for (const auto& [time_s, position_m, velocity_m_per_s] : history.past()) {
+    for (FeatureFilter& filter : filters_) {
+      filter.update({time_s, position_m, 0.0, 0.0}, {position_m, velocity_m_per_s});
+    }
   }
 }
 

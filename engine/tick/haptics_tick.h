@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -22,11 +23,12 @@ namespace palpate {
 
 inline constexpr std::size_t kMaxModels = 16;
 
+// The values are bits of the live loop's faults (engine/live/faults.h).
 enum class TickFault : std::uint8_t {
-  none,
-  bad_sample,        // a value of the sample is not finite: the state is kept
-  time_not_later,    // the sample is not later than the last one: the state is kept
-  force_not_finite,  // a model returned a non-finite force: replaced by 0
+  none = 0,
+  bad_sample = 1,        // a value of the sample is not finite: the state is kept
+  time_not_later = 2,    // the sample is not later than the last one: the state is kept
+  force_not_finite = 4,  // a model returned a non-finite force: replaced by 0
 };
 
 // The results of a tick, for the graphics thread and for replay.
@@ -46,17 +48,27 @@ struct TickSnapshot {
 };
 static_assert(std::is_trivially_copyable_v<TickSnapshot>);
 
-// A past sample, for the memory of new models.
-struct PastMotion {
-  double time_s = 0.0;
-  double position_m = 0.0;
-  double velocity_m_per_s = 0.0;
+// The motion of the tool in the last minute, thinned to 4 ms. Models that are added during a press start with the
+// memory of the material for this motion, not with a material at rest under the tool (HapticsTick::recall).
+// Thread guarantee: slow side (allocates); one thread.
+class MotionHistory {
+ public:
+  struct Moment {
+    double time_s, position_m, velocity_m_per_s;
+  };
+  // Takes the snapshot of every tick in order. `restarted`: it begins a new stream; the earlier motion is deleted.
+  void add(const TickSnapshot& snapshot, bool restarted);
+  // Oldest first.
+  const std::deque<Moment>& past() const noexcept { return past_; }
+
+ private:
+  std::deque<Moment> past_;
 };
 
 class HapticsTick {
  public:
   // `models`: up to kMaxModels.
-  HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models);
+  HapticsTick(const SensorSpec& sensor, ForceModels models);
 
   // Resets the motion estimate and the filters; the next sample starts a new stream.
   void reset() noexcept;
@@ -67,8 +79,8 @@ class HapticsTick {
   // that code and data of the next step are in the caches. Wait-free; the state does not change.
   void rehearse() noexcept;
 
-  // Slow side, before `continue_from`: advances the filters by a past sample; times increase.
-  void recall(const PastMotion& motion) noexcept;
+  // Slow side, before `continue_from`: advances the filters by this motion.
+  void recall(const MotionHistory& history) noexcept;
 
   // Continues from the state of `before`: takes over the motion estimate and the memory of equal features, so that a
   // change of models in mid-press does not lose the memory of the material; the snapshot is evaluated with these
@@ -91,13 +103,12 @@ class HapticsTick {
   const ForceModel& model(std::size_t index) const noexcept { return *models_[index]; }
   // The last features of model `index`.
   const FeatureVector& features_of(std::size_t index) const noexcept { return filters_[filter_of_[index]].vector(); }
-  std::size_t filter_count() const noexcept { return filters_.size(); }
 
  private:
   void evaluate_models() noexcept;
 
   MotionEstimator motion_;
-  std::vector<std::shared_ptr<const ForceModel>> models_;
+  ForceModels models_;
   std::vector<FeatureFilter> filters_;
   std::vector<std::size_t> filter_of_;  // for each model
   std::array<std::uint64_t, kMaxModels> cycles_{};

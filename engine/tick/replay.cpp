@@ -3,19 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <vector>
 
 #include "engine/tick/jnd.h"
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {
 namespace {
-
-Status check_count(const ForceModels& models) {
-  if (models.size() <= kMaxModels) return {};
-  return Error{"found " + std::to_string(models.size()) + " models, expected at most " + std::to_string(kMaxModels) +
-               "; replay them in several runs"};
-}
 
 // The least number of rows for a standard deviation.
 constexpr std::size_t kFewestAirRows = 20;
@@ -44,29 +38,39 @@ double common_surface_m(const ForceModels& models) {
   return std::isfinite(outermost_m) ? outermost_m : 0.0;
 }
 
-struct ContactRule {
-  double surface_m = 0.0;
-  double least_N = 0.0;
-};
+// Steps a tick through the rows of one recording.
+class Replay {
+ public:
+  // `rows`: the first rows, from which sensor and noise are identified.
+  Replay(const ForceModels& models, const RecordingRow* rows, std::size_t count, RecordingColumns columns,
+         double surface_offset_m)
+      : summary_{identify_sensor(rows, count, columns)},
+        tick_(summary_.sensor, models),
+        surface_offset_m_(surface_offset_m),
+        surface_m_(common_surface_m(models)),
+        least_N_(least_contact_N(rows, count, surface_m_ + surface_offset_m)) {}
 
-ContactRule contact_rule(const ForceModels& models, const RecordingRow* rows, std::size_t count,
-                         double surface_offset_m) {
-  const double surface_m = common_surface_m(models);
-  return {surface_m, least_contact_N(rows, count, surface_m + surface_offset_m)};
-}
-
-void run(HapticsTick& tick, const ContactRule& contact, const RecordingRow* rows, std::size_t count,
-         const ReplayVisitor& visitor, double surface_offset_m, ReplaySummary& summary) {
-  for (std::size_t i = 0; i < count; ++i) {
-    ToolSample sample = tool_sample(rows[i]);
-    sample.position_m -= surface_offset_m;
-    TickSnapshot snapshot = tick.step(sample);
-    snapshot.in_contact = sample.position_m > contact.surface_m || std::abs(rows[i].force_N) > contact.least_N;
-    ++summary.samples;
-    if (snapshot.in_contact) ++summary.contact_samples;
-    if (visitor) visitor(rows[i], snapshot, tick);
+  // To be called with all rows in order.
+  void run(const RecordingRow* rows, std::size_t count, const ReplayVisitor& visitor) {
+    for (std::size_t i = 0; i < count; ++i) {
+      ToolSample sample = tool_sample(rows[i]);
+      sample.position_m -= surface_offset_m_;
+      TickSnapshot snapshot = tick_.step(sample);
+      snapshot.in_contact = sample.position_m > surface_m_ || std::abs(rows[i].force_N) > least_N_;
+      ++summary_.samples;
+      if (snapshot.in_contact) ++summary_.contact_samples;
+      if (visitor) visitor(rows[i], snapshot, tick_);
+    }
   }
-}
+  const ReplaySummary& summary() const { return summary_; }
+
+ private:
+  ReplaySummary summary_;
+  HapticsTick tick_;
+  double surface_offset_m_;
+  double surface_m_;
+  double least_N_;
+};
 
 }  // namespace
 
@@ -75,35 +79,27 @@ double least_contact_N(const RecordingRow* rows, std::size_t count, double surfa
   return certain_force_N(noise_N);
 }
 
-Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
-                             double surface_offset_m) {
-  if (const Status status = check_count(models); !status) return status.error();
-  ReplaySummary summary;
-  summary.sensor = identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns);
-  HapticsTick tick(summary.sensor, models);
-  const RecordingRow* const rows = recording.rows.data();
-  run(tick, contact_rule(models, rows, recording.rows.size(), surface_offset_m), rows, recording.rows.size(), visitor,
-      surface_offset_m, summary);
-  return summary;
+ReplaySummary replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
+                     double surface_offset_m) {
+  const std::vector<RecordingRow>& rows = recording.rows;
+  Replay replay(models, rows.data(), rows.size(), recording.columns, surface_offset_m);
+  replay.run(rows.data(), rows.size(), visitor);
+  return replay.summary();
 }
 
 Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor,
                              double surface_offset_m) {
-  if (const Status status = check_count(models); !status) return status.error();
   // One buffer: the rows for the identification are also the first chunk.
   std::vector<RecordingRow> rows(kSensorIdentificationRows);
   Result<std::size_t> count = reader.read(rows.data(), rows.size());
   if (!count) return count.error();
-  ReplaySummary summary;
-  summary.sensor = identify_sensor(rows.data(), *count, reader.columns());
-  const ContactRule contact = contact_rule(models, rows.data(), *count, surface_offset_m);
-  HapticsTick tick(summary.sensor, models);
+  Replay replay(models, rows.data(), *count, reader.columns(), surface_offset_m);
   while (*count > 0) {
-    run(tick, contact, rows.data(), *count, visitor, surface_offset_m, summary);
+    replay.run(rows.data(), *count, visitor);
     count = reader.read(rows.data(), rows.size());
     if (!count) return count.error();
   }
-  return summary;
+  return replay.summary();
 }
 
 }  // namespace palpate

@@ -13,13 +13,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <vector>
 
 #include "engine/base/result.h"
 #include "engine/recording/recording_reader.h"
 #include "engine/tick/haptics_tick.h"
-#include "engine/tick/tool_sample.h"
 
 namespace palpate {
 
@@ -27,8 +24,6 @@ namespace palpate {
 // during the call.
 using ReplayVisitor =
     std::function<void(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick)>;
-
-using ForceModels = std::vector<std::shared_ptr<const ForceModel>>;
 
 struct ReplaySummary {
   SensorSpec sensor;
@@ -40,12 +35,12 @@ struct ReplaySummary {
 // white noise or, if larger, the standard deviation before the first contact.
 double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m);
 
-// `surface_offset_m` is subtracted from every position before the tick; the visitor receives the row as recorded.
-// Errors: more than kMaxModels models.
-Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
-                             double surface_offset_m = 0.0);
+// `models`: up to kMaxModels. `surface_offset_m` is subtracted from every position before the tick; the visitor
+// receives the row as recorded.
+ReplaySummary replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
+                     double surface_offset_m = 0.0);
 
-// The same for the remaining rows of `reader`, in bounded memory. Errors also of the reader, after the visits of the
+// The same for the remaining rows of `reader`, in bounded memory. Errors: those of the reader, after the visits of the
 // rows before the fault.
 Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor,
                              double surface_offset_m = 0.0);

@@ -122,13 +122,6 @@ SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, Recordin
   return sensor;
 }
 
-Result<SensorSpec> identify_sensor(RecordingReader& reader) {
-  std::vector<RecordingRow> rows(kSensorIdentificationRows);
-  const Result<std::size_t> count = reader.read(rows.data(), rows.size());
-  if (!count) return count.error();
-  return identify_sensor(rows.data(), *count, reader.columns());
-}
-
 double identify_force_noise_N(const RecordingRow* rows, std::size_t count) {
   return quiet_noise(rows, std::min(count, kSensorIdentificationRows), &RecordingRow::force_N);
 }

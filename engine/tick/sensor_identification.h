@@ -22,8 +22,6 @@ namespace palpate {
 inline constexpr std::size_t kSensorIdentificationRows = 30000;
 
 SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, RecordingColumns columns);
-// The same for the next rows of `reader`. Errors: those of the reader.
-Result<SensorSpec> identify_sensor(RecordingReader& reader);
 
 // The white noise of the force column, N.
 double identify_force_noise_N(const RecordingRow* rows, std::size_t count);

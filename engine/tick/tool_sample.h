@@ -1,8 +1,6 @@
 // The measured state of the tool at one time, and the sensor that measured it.
 #pragma once
 
-#include <type_traits>
-
 namespace palpate {
 
 // One sample. The position is along the inward surface normal, 0 at the undisturbed surface, positive inside the block.
@@ -24,8 +22,5 @@ struct SensorSpec {
   bool has_acceleration = false;
   double acceleration_noise_m_per_s2 = 0.0;  // white noise only; a drifting bias is always estimated
 };
-
-static_assert(std::is_trivially_copyable_v<ToolSample>);
-static_assert(std::is_trivially_copyable_v<SensorSpec>);
 
 }  // namespace palpate

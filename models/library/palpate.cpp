@@ -214,9 +214,10 @@ int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* 
     if (path == nullptr || sensor == nullptr) return Error{"found no path or no sensor to fill, expected both"};
     auto reader = palpate::RecordingReader::open(path);
     if (!reader) return reader.error();
-    const auto spec = palpate::identify_sensor(*reader);
-    if (!spec) return spec.error();
-    *sensor = palpate::library::sensor_from(*spec);
+    std::vector<palpate::RecordingRow> rows(palpate::kSensorIdentificationRows);
+    const auto count = reader->read(rows.data(), rows.size());
+    if (!count) return count.error();
+    *sensor = palpate::library::sensor_from(palpate::identify_sensor(rows.data(), *count, reader->columns()));
     return {};
   });
 }

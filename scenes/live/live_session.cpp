@@ -154,8 +154,9 @@ void LiveSession::update() {
   comparison_.show(newest_);
   background_evaluation_.update(models_, comparison_, newest_.loop_time_s);
   const double now_s = steady_now_s();
-  faults_.update_dropped(loop_->dropped_snapshots(), now_s);
-  faults_.update_age(loop_->age_s(), now_s);
+  const LoopStatistics statistics = loop_->statistics();
+  faults_.update_dropped(statistics.dropped_snapshots, now_s);
+  faults_.update_age(statistics.age_s, now_s);
   if (std::optional<Notice> outcome = recorder_->read_outcome()) {
     send_controls();  // a write error may have ended the recording
     notices_.push_back({std::move(outcome->text), outcome->problem});
@@ -181,7 +182,7 @@ void LiveSession::forget_errors(std::string why) {
 void LiveSession::publish(std::string why) {
   forget_errors(std::move(why));
   auto set = models_.make_set(device_->sensor(), truth_);
-  history_.recall(set->tick);
+  set->tick.recall(history_);
   loop_->publish_models(std::move(set));
   send_controls();
 }

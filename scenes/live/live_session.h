@@ -15,7 +15,6 @@
 #include "engine/live/fault_recorder.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/tick/jnd.h"
-#include "engine/tick/motion_history.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/notices.h"

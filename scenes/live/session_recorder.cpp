@@ -58,14 +58,14 @@ Status SessionRecorder::start(const RecorderRequest& request) {
       RecordingWriter::create(request.path, request.columns, request.comments, request.overwrite);
   if (!writer) return writer.error();
   // Discards samples that an earlier recording left in the ring.
-  while (loop_.read_samples(buffer_.data(), buffer_.size()) > 0) continue;
+  while (loop_.recorded().pop(buffer_.data(), buffer_.size()) > 0) continue;
   writer_.emplace(std::move(*writer));
   request_ = request;
   ++number_;
   time_ = {};
   counts_ = {};
   restart_pending_ = false;
-  dropped_before_ = loop_.dropped_samples();
+  dropped_before_ = loop_.recorded().dropped();
   rows_.store(0, std::memory_order_relaxed);
   seconds_.store(0.0, std::memory_order_relaxed);
   stop_ = false;
@@ -109,7 +109,7 @@ void SessionRecorder::drain() {
   // Reads at most as many samples as the ring holds, so that `stop` ends even if the loop fills the ring faster than
   // the disk takes it.
   for (std::size_t round = 0; round <= kRecordedRing / kSamplesAtOnce; ++round) {
-    const std::size_t count = loop_.read_samples(buffer_.data(), buffer_.size());
+    const std::size_t count = loop_.recorded().pop(buffer_.data(), buffer_.size());
     for (std::size_t i = 0; i < count; ++i) write(buffer_[i]);
     if (count < buffer_.size()) break;
   }
@@ -142,7 +142,7 @@ void SessionRecorder::write(const RecordedSample& sample) {
 }
 
 Notice SessionRecorder::finish() {
-  const std::uint64_t dropped = loop_.dropped_samples() - dropped_before_;
+  const std::uint64_t dropped = loop_.recorded().dropped() - dropped_before_;
   const Status status = writer_->commit();
   if (!status && writer_->published_rows() == 0) return {"the recording was lost: " + status.error().message, true};
   if (!status) {

@@ -156,9 +156,7 @@ Status PaperMeasurement::measure_run(PaperRun run, const PreparedTraining& prepa
     for (std::size_t i = 0; i < models.size(); ++i)
       samples[i].push_back({row.force_N, std::abs(snapshot.force_N[i] - row.force_N)});
   };
-  const auto replayed = replay(*recordings_[1], models, visitor);
-  if (!replayed) return replayed.error();
-  timing.sensor = replayed->sensor;
+  timing.sensor = replay(*recordings_[1], models, visitor).sensor;
   const std::vector<ModelTiming> times = time_models(models, {timing});
   for (std::size_t i = 0; i < models.size(); ++i) {
     double squares = 0.0;

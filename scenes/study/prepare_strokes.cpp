@@ -39,16 +39,14 @@ struct Trace {
 };
 using Traces = std::vector<Trace>;
 
-Result<Traces> forces_of(const Recording& recording, const Model& reference, const Model& comparison) {
+Traces forces_of(const Recording& recording, const Model& reference, const Model& comparison) {
   ForceModels models{comparison};
   if (reference != nullptr) models.push_back(reference);
   Traces rows;
-  const auto summary =
-      replay(recording, models, [&](const RecordingRow& row, const TickSnapshot& tick, const HapticsTick&) {
-        rows.push_back(
-            {row.time_s, reference != nullptr ? tick.force_N[1] : row.force_N, tick.force_N[0], tick.in_contact});
-      });
-  if (!summary) return summary.error();
+  replay(recording, models, [&](const RecordingRow& row, const TickSnapshot& tick, const HapticsTick&) {
+    rows.push_back(
+        {row.time_s, reference != nullptr ? tick.force_N[1] : row.force_N, tick.force_N[0], tick.in_contact});
+  });
   return rows;
 }
 
@@ -168,9 +166,7 @@ Result<std::shared_ptr<const StrokePair>> prepare_strokes(const StrokeRequest& r
 
 Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording, const Model& reference,
                                                      const Model& comparison, const JndLine& jnd) {
-  const Result<Traces> rows = forces_of(recording, reference, comparison);
-  if (!rows) return rows.error();
-  Traces traces = resampled(*rows);
+  Traces traces = resampled(forces_of(recording, reference, comparison));
   smooth(traces, &Trace::reference_N);
   smooth(traces, &Trace::comparison_N);
   const auto [from, errors] = hardest_piece(traces, jnd);

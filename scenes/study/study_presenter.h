@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "engine/live/force_limiter.h"
-#include "engine/live/triple_buffer.h"
+#include "engine/live/handover.h"
 
 namespace palpate {
 

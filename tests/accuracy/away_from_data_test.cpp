@@ -93,31 +93,30 @@ std::vector<Stroke> stroke_over(const Subject& subject, const ScriptedPress& mot
   std::vector<double> last_N(subject.models.size(), 0.0);
   std::size_t row_index = 0;
   bool was_in_contact = false;
-  must(replay(motion.recording, ForceModels(subject.models.begin(), subject.models.end()),
-              [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-                double true_step_N =
-                    row_index > 0 ? std::abs(motion.true_N[row_index] - motion.true_N[row_index - 1]) : 0.0;
-                if (snapshot.in_contact != was_in_contact) true_step_N = std::max(true_step_N, subject.onset_N);
-                was_in_contact = snapshot.in_contact;
-                EXPECT_EQ(snapshot.fault, TickFault::none);
-                for (std::size_t i = 0; i < strokes.size(); ++i) {
-                  const double force_N = snapshot.force_N[i];
-                  Stroke& stroke = strokes[i];
-                  EXPECT_TRUE(std::isfinite(force_N));
-                  EXPECT_GE(force_N, 0.0);
-                  stroke.largest_N = std::max(stroke.largest_N, force_N);
-                  const double jnd_N = subject.models[i]->data().jnd.at(std::max(force_N, last_N[i]));
-                  const double allowed_N = std::max(jnd_N, true_step_N);
-                  stroke.largest_step_over_jnd =
-                      std::max(stroke.largest_step_over_jnd, std::abs(force_N - last_N[i]) / allowed_N);
-                  last_N[i] = force_N;
-                  if (row.position_m > 1.3 * subject.deepest_m) {
-                    ++stroke.outside;
-                    if ((snapshot.out_of_domain_mask >> i & 1U) == 0) ++stroke.outside_unmarked;
-                  }
-                }
-                ++row_index;
-              }));
+  replay(motion.recording, ForceModels(subject.models.begin(), subject.models.end()),
+         [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+           double true_step_N = row_index > 0 ? std::abs(motion.true_N[row_index] - motion.true_N[row_index - 1]) : 0.0;
+           if (snapshot.in_contact != was_in_contact) true_step_N = std::max(true_step_N, subject.onset_N);
+           was_in_contact = snapshot.in_contact;
+           EXPECT_EQ(snapshot.fault, TickFault::none);
+           for (std::size_t i = 0; i < strokes.size(); ++i) {
+             const double force_N = snapshot.force_N[i];
+             Stroke& stroke = strokes[i];
+             EXPECT_TRUE(std::isfinite(force_N));
+             EXPECT_GE(force_N, 0.0);
+             stroke.largest_N = std::max(stroke.largest_N, force_N);
+             const double jnd_N = subject.models[i]->data().jnd.at(std::max(force_N, last_N[i]));
+             const double allowed_N = std::max(jnd_N, true_step_N);
+             stroke.largest_step_over_jnd =
+                 std::max(stroke.largest_step_over_jnd, std::abs(force_N - last_N[i]) / allowed_N);
+             last_N[i] = force_N;
+             if (row.position_m > 1.3 * subject.deepest_m) {
+               ++stroke.outside;
+               if ((snapshot.out_of_domain_mask >> i & 1U) == 0) ++stroke.outside_unmarked;
+             }
+           }
+           ++row_index;
+         });
   return strokes;
 }
 

@@ -40,17 +40,16 @@ PeerData make_data(const std::string& name, const PreparedTraining& prepared,
   const test::ModelPtr model = test::fit(prepared, &kRandomMethod);  // needed only for its features
   std::vector<double> points, force_N, trend_N, trust;
   for (const RecordingPtr& recording : test_recordings) {
-    must(replay(*recording, {model},
-                [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-                  if (!snapshot.in_contact) return;
-                  const double* features = tick.features_of(0).values.data();
-                  const Eigen::VectorXd u =
-                      (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
-                  points.insert(points.end(), u.begin(), u.end());
-                  force_N.push_back(row.force_N);
-                  trend_N.push_back(common.trend.at(features, common.features));
-                  trust.push_back(guard.trust(u.data()));
-                }));
+    replay(*recording, {model}, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+      if (!snapshot.in_contact) return;
+      const double* features = tick.features_of(0).values.data();
+      const Eigen::VectorXd u =
+          (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
+      points.insert(points.end(), u.begin(), u.end());
+      force_N.push_back(row.force_N);
+      trend_N.push_back(common.trend.at(features, common.features));
+      trust.push_back(guard.trust(u.data()));
+    });
   }
   const auto n = static_cast<Eigen::Index>(force_N.size());
   data.test_points = Eigen::Map<const Eigen::MatrixXd>(points.data(), d, n);

@@ -56,13 +56,13 @@ FittedMethods fit_methods(const std::string& name, const Recording& recording, c
 void evaluate_press(const Press& press, const std::vector<std::shared_ptr<const FittedModel>>& models,
                     std::vector<OutcomeCounter>& counters) {
   std::size_t row = 0;
-  (void)replay(press.recording, ForceModels(models.begin(), models.end()),
-               [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
-                 const double truth_N = press.true_N[row++];
-                 if (!snapshot.in_contact) return;
-                 for (std::size_t i = 0; i < models.size(); ++i)
-                   counters[i].add(snapshot.force_N[i], truth_N, 0.0, kForceMargin * models[i]->data().largest_force_N);
-               });
+  replay(press.recording, ForceModels(models.begin(), models.end()),
+         [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
+           const double truth_N = press.true_N[row++];
+           if (!snapshot.in_contact) return;
+           for (std::size_t i = 0; i < models.size(); ++i)
+             counters[i].add(snapshot.force_N[i], truth_N, 0.0, kForceMargin * models[i]->data().largest_force_N);
+         });
 }
 
 }  // namespace palpate

@@ -68,7 +68,7 @@ class Host {
       last_s_ = sample.tool.time_s;
     }
     const DeviceHealth health = endpoint_->health(now_s_);
-    require((health.faults & ~device_fault::kAll) == 0 && health.sample_age_s >= 0.0, "health");
+    require((health.faults & ~fault_bits_of(FaultSource::device)) == 0 && health.sample_age_s >= 0.0, "health");
     endpoint_->write(1e3);
     const OutReports out = endpoint_->next(now_s_);
     if (out.count == 0) return;

@@ -84,7 +84,7 @@ void SimulatedTool::place(double position_m, double velocity_m_per_s) noexcept {
 
 ClosedLoop::ClosedLoop(const LoopSettings& settings)
     : tool_(settings),
-      live_(tool_, slot_, LiveTickSettings{{}, nullptr, nullptr, settings.passivity}),
+      live_(tool_, slot_, LiveTickSettings{{}, nullptr, settings.passivity}),
       ticking_(settings.ticking) {
   controls_.scale = settings.scale;
 }

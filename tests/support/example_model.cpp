@@ -184,6 +184,12 @@ std::vector<ModelData> example_models() {
   return models;
 }
 
+ForceModels example_force_models() {
+  ForceModels models;
+  for (const ModelData& data : example_models()) models.push_back(std::make_shared<const FittedModel>(data));
+  return models;
+}
+
 Recording example_recording(std::size_t rows, double rate_Hz, double encoder_step_m) {
   Recording recording;
   recording.name = "example";

@@ -33,6 +33,7 @@ std::vector<FeatureSpec> memory_features();
 // Covers each method, kernel, feature kind and term of the trend, and the recipe of
 // the paper, which corrects no trend. All names differ.
 std::vector<ModelData> example_models();
+ForceModels example_force_models();
 
 // Strokes into the block and out of it, 6 mm deep at most, beginning in the air;
 // with `encoder_step_m` above 0, positions in whole steps. Forces are those of

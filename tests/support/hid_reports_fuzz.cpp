@@ -55,7 +55,7 @@ void check_handed_over(DeviceEndpoint& endpoint, double now_s, double& last_samp
     last_sample_s = sample.tool.time_s;
   }
   const DeviceHealth health = endpoint.health(now_s);
-  require((health.faults & ~device_fault::kAll) == 0, "unknown fault");
+  require((health.faults & ~fault_bits_of(FaultSource::device)) == 0, "unknown fault");
   require(health.sample_age_s >= 0.0, "a sample from the future");
   require(!std::isnan(health.zeroing_progress) && health.zeroing_progress <= 1.0F, "progress");
 }

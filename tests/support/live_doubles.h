@@ -100,6 +100,31 @@ class PathDevice final : public Device {
   int writes_ = 0;
 };
 
+// A live tick of a device, called every millisecond.
+class LiveRig {
+ public:
+  explicit LiveRig(Device& device, const LiveTickSettings& settings = {})
+      : device_(device), live_(device, slot_, settings) {}
+
+  LiveTick& live() { return live_; }
+  ModelSlot<LiveModels>& slot() { return slot_; }
+  void publish(std::uint32_t id, const ForceModels& models, std::shared_ptr<ReferenceForce> reference = nullptr) {
+    slot_.publish(std::make_unique<LiveModels>(id, device_.sensor(), models, std::move(reference)));
+  }
+  // The snapshot of the last of `ticks` ticks.
+  const LoopSnapshot& run(int ticks = 1, const LoopControls& controls = {}) {
+    for (int i = 1; i < ticks; ++i) live_.run(kHapticTick_s * tick_++, controls);
+    return live_.run(kHapticTick_s * tick_++, controls);
+  }
+  double next_s() const { return kHapticTick_s * tick_; }
+
+ private:
+  Device& device_;
+  ModelSlot<LiveModels> slot_;
+  LiveTick live_;
+  int tick_ = 0;
+};
+
 inline double held_5mm(double) { return 5e-3; }
 inline double strokes(double time_s) { return 4e-3 * std::sin(6.0 * time_s); }
 

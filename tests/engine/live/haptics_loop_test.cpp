@@ -15,32 +15,28 @@ using test::spring;
 constexpr std::int64_t kMs = 1'000'000;
 
 std::unique_ptr<LiveModels> springs(std::uint32_t id, const Device& device) {
-  return std::make_unique<LiveModels>(id, device.sensor(), std::vector{spring(300.0), spring(500.0)});
+  return std::make_unique<LiveModels>(id, device.sensor(), ForceModels{spring(300.0), spring(500.0)});
 }
 
-TEST(Deadlines, StayOnTheirGridWhateverATickTakes) {
+TEST(Deadlines, StayOnTheirGridAndSkipWhatWasMissed) {
+  struct Case {
+    std::int64_t now_ns, lateness_ns;
+    std::uint64_t missed;
+    std::int64_t next_ns;
+  };
+  const Case cases[] = {{kMs + 30'000, 30'000, 0, 2 * kMs},  // not 1 ms from now
+                        {3 * kMs - 1, kMs - 1, 0, 3 * kMs},  // late, but before the next one
+                        {3 * kMs - 5, 0, 0, 4 * kMs},        // too early is not late
+                        {9 * kMs + 200, 5 * kMs + 200, 5, 10 * kMs},
+                        {11 * kMs, kMs, 1, 12 * kMs}};  // exactly at the next one counts as its end
   Deadlines deadlines(0, kMs);
   EXPECT_EQ(deadlines.next_ns(), kMs);
-  Wake wake = deadlines.wake(kMs + 30'000);
-  EXPECT_EQ(wake.lateness_ns, 30'000);
-  EXPECT_EQ(wake.missed, 0u);
-  EXPECT_EQ(deadlines.next_ns(), 2 * kMs) << "not 1 ms from now";
-  wake = deadlines.wake(2 * kMs + kMs - 1);
-  EXPECT_EQ(wake.missed, 0u) << "late, but before the next one";
-  EXPECT_EQ(deadlines.next_ns(), 3 * kMs);
-  wake = deadlines.wake(3 * kMs - 5);
-  EXPECT_EQ(wake.lateness_ns, 0) << "too early is not late";
-}
-
-TEST(Deadlines, CountAndSkipWhatWasMissed) {
-  Deadlines deadlines(0, kMs);
-  Wake wake = deadlines.wake(kMs + 5 * kMs + 200);
-  EXPECT_EQ(wake.lateness_ns, 5 * kMs + 200);
-  EXPECT_EQ(wake.missed, 5u) << "2 to 6 ms";
-  EXPECT_EQ(deadlines.next_ns(), 7 * kMs) << "no burst";
-  wake = deadlines.wake(7 * kMs + kMs);
-  EXPECT_EQ(wake.missed, 1u) << "exactly at the next one counts as its end";
-  EXPECT_EQ(deadlines.next_ns(), 9 * kMs);
+  for (const Case& one : cases) {
+    const Wake wake = deadlines.wake(one.now_ns);
+    EXPECT_EQ(wake.lateness_ns, one.lateness_ns) << one.now_ns;
+    EXPECT_EQ(wake.missed, one.missed) << one.now_ns;
+    EXPECT_EQ(deadlines.next_ns(), one.next_ns) << one.now_ns;
+  }
 }
 
 TEST(HapticsLoop, CountsTicksLatenessAndMissedDeadlines) {
@@ -83,8 +79,7 @@ TEST(HapticsLoop, RehearsesTwiceBeforeADeadlineUnlessItWakesLate) {
   settings.rehearse_ns = 60'000;
   HapticsLoop loop(device, settings);
   auto counting = std::make_shared<test::CountingModel>();
-  loop.publish_models(
-      std::make_unique<LiveModels>(1, device.sensor(), std::vector<std::shared_ptr<const ForceModel>>{counting}));
+  loop.publish_models(std::make_unique<LiveModels>(1, device.sensor(), ForceModels{counting}));
   std::vector<std::uint64_t> evaluations;
   // Each tick waits three times: for the wake-up, for the last quarter before the deadline,
   // and for the deadline. A tick that wakes up too late waits twice.

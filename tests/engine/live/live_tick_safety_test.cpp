@@ -12,12 +12,11 @@
 namespace palpate {
 namespace {
 
+using test::LiveRig;
 using test::PathDevice;
 using test::spring;
 
-constexpr double kTick_s = 1e-3;
-
-// A device whose health a test sets.
+// A device whose health, and whether it gives samples, a test sets.
 class FrailDevice final : public Device {
  public:
   const std::string& name() const noexcept override { return name_; }
@@ -25,64 +24,59 @@ class FrailDevice final : public Device {
   Holder holder() const noexcept override { return Holder::person; }
   ForceLimits limits() const noexcept override { return {10.0, 1000.0, 0.05}; }
   bool read(double now_s, DeviceSample& sample) noexcept override {
+    if (!speaks || now_s == now_s_) return false;
+    now_s_ = now_s;
     sample = {};
     sample.tool.time_s = now_s;
     sample.tool.position_m = 5e-3;
-    return std::exchange(fresh_, !fresh_);
+    return true;
   }
   void write(double force_N) noexcept override { written_N = force_N; }
   DeviceHealth health(double) noexcept override { return state; }
+  bool speaks = true;
   DeviceHealth state;
   double written_N = 0.0;
 
  private:
   std::string name_ = "frail";
-  bool fresh_ = true;
+  double now_s_ = -1.0;
 };
 
 TEST(LiveTickSafety, NobodyAtTheDeadManKeyIsNoForce) {
   PathDevice device(test::held_5mm);
-  ModelSlot<LiveModels> slot;
-  LiveTick live(device, slot);
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0)}));
-  int tick = 0;
-  const auto run = [&](int ticks, const LoopControls& controls) {
-    LoopSnapshot snapshot;
-    for (int i = 0; i < ticks; ++i) snapshot = live.run(kTick_s * tick++, controls);
-    return snapshot;
-  };
+  LiveRig rig(device);
+  rig.publish(1, {spring(300.0)});
   LoopControls controls;
   controls.dead_man = DeadMan::key;
-  EXPECT_EQ(run(500, controls).rendered_N, 0.0);
-  EXPECT_TRUE(run(1, controls).dead_man_released);
+  EXPECT_EQ(rig.run(500, controls).rendered_N, 0.0);
+  EXPECT_TRUE(rig.run(1, controls).dead_man_released);
   // A window at 60 Hz reports in each frame that the key is held.
   for (int frame = 0; frame < 60; ++frame) {
-    controls.held_s = kTick_s * tick;
-    run(16, controls);
+    controls.held_s = rig.next_s();
+    rig.run(16, controls);
   }
   EXPECT_NEAR(device.force_N(), 1.5, 1e-9);
-  EXPECT_FALSE(run(1, controls).dead_man_released);
+  EXPECT_FALSE(rig.run(1, controls).dead_man_released);
   // The window hangs while the key is held.
-  EXPECT_EQ(run(250, controls).rendered_N, 0.0);
-  EXPECT_TRUE(run(1, controls).dead_man_released);
+  EXPECT_EQ(rig.run(250, controls).rendered_N, 0.0);
+  EXPECT_TRUE(rig.run(1, controls).dead_man_released);
 }
 
 // Into the block at up to 24 mm/s and out again.
 TEST(LiveTickSafety, AScaledForceIsEasedAndLimitedAndNeverPulls) {
   PathDevice plain_device(test::strokes), device(test::strokes, {6.0, 1e9, 0.0});
-  ModelSlot<LiveModels> plain_slot, slot;
   LiveTickSettings settings;
   settings.passivity = false;
-  LiveTick plain(plain_device, plain_slot, settings), live(device, slot, settings);
-  plain_slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(600.0)}));
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(600.0)}));
+  LiveRig plain(plain_device, settings), rig(device, settings);
+  plain.publish(1, {spring(600.0)});
+  rig.publish(1, {spring(600.0)});
   double last_N = 0.0, largest_N = 0.0;
   LoopControls controls;
   for (int tick = 0; tick < 4000; ++tick) {
     if (tick == 1000) controls.scale = {4.0, 8.0};
     if (tick == 3000) controls.scale = {};
-    const LoopSnapshot scaled = live.run(kTick_s * tick, controls);
-    const LoopSnapshot as_it_is = plain.run(kTick_s * tick, {});
+    const LoopSnapshot& scaled = rig.run(1, controls);
+    const LoopSnapshot& as_it_is = plain.run();
     const double force_N = as_it_is.commanded_N;
     if (tick < 1000 || tick > 3600) {
       ASSERT_EQ(scaled.commanded_N, force_N) << "its bits";
@@ -108,16 +102,15 @@ double shaken(double time_s) {
 
 TEST(LiveTickSafety, AScaledForceIsKeptAsPassiveAsThatOfAStifferModel) {
   PathDevice stiff_device(shaken), device(shaken);
-  ModelSlot<LiveModels> stiff_slot, slot;
-  LiveTick stiff(stiff_device, stiff_slot), live(device, slot);
-  stiff_slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(4 * 750.0)}));
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(750.0)}));
+  LiveRig stiff(stiff_device), rig(device);
+  stiff.publish(1, {spring(4 * 750.0)});
+  rig.publish(1, {spring(750.0)});
   LoopControls controls;
   controls.scale.stiffness = 4.0;
   double taken_N = 0.0;
   for (int tick = 0; tick < 3000; ++tick) {
-    const LoopSnapshot scaled = live.run(kTick_s * tick, controls);
-    const LoopSnapshot as_stiff = stiff.run(kTick_s * tick, {});
+    const LoopSnapshot& scaled = rig.run(1, controls);
+    const LoopSnapshot& as_stiff = stiff.run();
     ASSERT_NEAR(scaled.commanded_N, as_stiff.commanded_N, 1e-9) << tick;
     ASSERT_NEAR(scaled.rendered_N, as_stiff.rendered_N, 1e-6) << tick;
     taken_N = std::max(taken_N, std::abs(scaled.passive_N - scaled.commanded_N));
@@ -127,15 +120,9 @@ TEST(LiveTickSafety, AScaledForceIsKeptAsPassiveAsThatOfAStifferModel) {
 
 TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
   FrailDevice device;
-  ModelSlot<LiveModels> slot;
-  LiveTick live(device, slot);
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(1000.0)}));
-  int tick = 0;
+  LiveRig rig(device);
+  rig.publish(1, {spring(1000.0)});
   LoopControls controls;
-  LoopSnapshot snapshot;
-  const auto run = [&](int ticks) {
-    for (int i = 0; i < ticks; ++i) snapshot = live.run(kTick_s * tick++, controls);
-  };
   const DeviceHealth well;
   DeviceHealth faulty, not_zeroed, old;
   faulty.faults = device_fault::kJump;
@@ -144,17 +131,15 @@ TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
   for (const auto& [trouble, bit] :
        {std::pair{faulty, loop_fault::kDeviceFault}, {old, loop_fault::kStaleSample}, {not_zeroed, 0u}}) {
     device.state = well;
-    run(500);
+    rig.run(500, controls);
     EXPECT_NEAR(device.written_N, 5.0, 0.01);
     controls.acknowledged += 1;
-    run(1);
-    EXPECT_EQ(snapshot.faults_latched & loop_fault::kStops, 0u);
+    EXPECT_EQ(rig.run(1, controls).faults_latched & loop_fault::kStops, 0u);
     device.state = trouble;
-    run(12);
+    EXPECT_EQ(rig.run(12, controls).faults & loop_fault::kStops, bit);
     EXPECT_EQ(device.written_N, 0.0);
-    EXPECT_EQ(snapshot.faults & loop_fault::kStops, bit);
     device.state = well;
-    run(5);
+    const LoopSnapshot& snapshot = rig.run(5, controls);
     EXPECT_LT(device.written_N, 0.6) << "ramps up again";
     EXPECT_EQ(snapshot.faults_latched & loop_fault::kStops, bit) << "until it is acknowledged";
     EXPECT_EQ(snapshot.device_faults_latched, trouble.faults);
@@ -163,39 +148,22 @@ TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
 
 // The warm-up evaluates models in contact. Its forces must not reach a device.
 TEST(LiveTickSafety, ADeviceThatHasGivenNothingIsNotDriven) {
-  class SilentDevice final : public Device {
-   public:
-    const std::string& name() const noexcept override { return name_; }
-    SensorSpec sensor() const noexcept override { return {0.0, 1e-6}; }
-    Holder holder() const noexcept override { return Holder::person; }
-    ForceLimits limits() const noexcept override { return {10.0, 1000.0, 0.0}; }
-    bool read(double now_s, DeviceSample& sample) noexcept override {
-      sample.tool.time_s = now_s;
-      sample.tool.position_m = 5e-3;
-      return speaks;
-    }
-    void write(double force_N) noexcept override { written_N = force_N; }
-    double written_N = 0.0;
-    bool speaks = false;
-
-   private:
-    std::string name_ = "silent";
-  } device;
-  ModelSlot<LiveModels> slot;
-  LiveTick live(device, slot);
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(1000.0)}));
-  live.warm_up();
+  FrailDevice device;
+  device.speaks = false;
+  LiveRig rig(device);
+  rig.publish(1, {spring(1000.0)});
+  rig.live().warm_up();
   for (int i = 0; i < 100; ++i) {
-    const LoopSnapshot& snapshot = live.run(kTick_s * i, {});
+    const LoopSnapshot& snapshot = rig.run();
     ASSERT_EQ(snapshot.commanded_N, 0.0);
     ASSERT_EQ(device.written_N, 0.0);
     ASSERT_NE(snapshot.faults & loop_fault::kStaleSample, 0u);
   }
   device.speaks = true;
-  for (int i = 100; i < 200; ++i) live.run(kTick_s * i, {});
+  rig.run(150);
   EXPECT_NEAR(device.written_N, 5.0, 1e-9);
   device.speaks = false;
-  for (int i = 200; i < 225; ++i) live.run(kTick_s * i, {});
+  rig.run(25);
   EXPECT_EQ(device.written_N, 0.0) << "its last sample is too old";
 }
 

@@ -20,16 +20,10 @@
 namespace palpate {
 namespace {
 
+using test::example_force_models;
+using test::LiveRig;
 using test::PathDevice;
 using test::spring;
-
-constexpr double kTick_s = 1e-3;
-
-ForceModels all_models() {
-  ForceModels models;
-  for (const ModelData& data : test::example_models()) models.push_back(std::make_shared<FittedModel>(data));
-  return models;
-}
 
 // The snapshots of a replay of `recording`.
 std::vector<TickSnapshot> replayed(const Recording& recording) {
@@ -37,7 +31,7 @@ std::vector<TickSnapshot> replayed(const Recording& recording) {
   const auto visit = [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
     snapshots.push_back(snapshot);
   };
-  EXPECT_TRUE(replay(recording, all_models(), visit).ok());
+  replay(recording, example_force_models(), visit);
   return snapshots;
 }
 
@@ -48,17 +42,16 @@ void expect_live_equals_replay(double rate_Hz) {
   const Recording recording = test::example_recording(1500, rate_Hz, 30e-6);
   const std::vector<TickSnapshot> expected = replayed(recording);
   ReplayDevice device(recording);
-  ModelSlot<LiveModels> slot;
-  LiveTick live(device, slot);
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), all_models()));
-  live.warm_up();
+  LiveRig rig(device);
+  rig.publish(1, example_force_models());
+  rig.live().warm_up();
   std::size_t next = 0;
   std::size_t compared = 0;
   int rounds = 0;
-  const int ticks = static_cast<int>(2.0 * device.duration_s() / kTick_s);
+  const int ticks = static_cast<int>(2.0 * device.duration_s() / kHapticTick_s);
   for (int i = 0; i < ticks; ++i) {
-    if (i % 3 > 0) live.rehearse();  // must not change the result
-    const LoopSnapshot& snapshot = live.run(kTick_s * i, {});
+    if (i % 3 > 0) rig.live().rehearse();  // must not change the result
+    const LoopSnapshot& snapshot = rig.run();
     if (snapshot.samples == 0) continue;
     if (snapshot.restarted) {
       next = 0;
@@ -84,22 +77,18 @@ TEST(LiveTick, GivesTheBitsOfReplay) {
 
 // Ten thousand ticks with exchanges of models and of the selected model.
 int offences(Device& device) {
-  ModelSlot<LiveModels> slot;
-  LiveTick live(device, slot);
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), all_models()));
-  live.warm_up();
+  LiveRig rig(device);
+  rig.publish(1, example_force_models());
+  rig.live().warm_up();
   int total = 0;
-  double now_s = 0.0;
   std::uint32_t last_id = 0;
   for (std::uint32_t id = 2; id < 22; ++id) {
-    slot.publish(std::make_unique<LiveModels>(id, device.sensor(), all_models()));
+    rig.publish(id, example_force_models());
     test::RtGuard guard;
     for (std::uint32_t i = 0; i < 500; ++i) {
-      now_s += kTick_s;
-      live.rehearse();
-      last_id = live.run(now_s, {id, i / 50 % 8}).models_id;
+      rig.live().rehearse();
+      last_id = rig.run(1, {id, i / 50 % 8}).models_id;
     }
-    live.release(now_s += kTick_s);
     total += guard.stop().total();
   }
   EXPECT_GT(last_id, 1u) << "no set was ever taken";
@@ -107,7 +96,7 @@ int offences(Device& device) {
 }
 
 double strokes_with_faults(double time_s) {
-  const double tick = std::round(time_s / kTick_s);
+  const double tick = std::round(time_s / kHapticTick_s);
   return std::fmod(tick, 97.0) == 0.0 ? std::numeric_limits<double>::quiet_NaN() : test::strokes(time_s);
 }
 
@@ -127,29 +116,14 @@ TEST(LiveTick, DoesNothingForbiddenWithAnyDevice) {
   EXPECT_EQ(offences(faulty), 0) << "bad samples";
 }
 
-// A live tick with a tool held 5 mm deep.
+// A tool held 5 mm deep.
 struct Held {
   PathDevice device{test::held_5mm};
-  ModelSlot<LiveModels> slot;
-  LiveTick live{device, slot};
-  int tick = 0;
+  LiveRig rig{device};
 
-  void publish(std::uint32_t id, std::vector<std::shared_ptr<const ForceModel>> models) {
-    slot.publish(std::make_unique<LiveModels>(id, device.sensor(), std::move(models)));
-  }
-  LoopSnapshot run(int ticks, const LoopControls& controls = {}) {
-    LoopSnapshot snapshot;
-    for (int end = tick + ticks; tick < end; ++tick) snapshot = live.run(kTick_s * tick, controls);
-    return snapshot;
-  }
-  // Runs `ticks` ticks and returns the forces written to the device.
-  std::vector<double> felt_N(int ticks, const LoopControls& controls = {}) {
-    std::vector<double> forces_N;
-    for (int i = 0; i < ticks; ++i) {
-      run(1, controls);
-      forces_N.push_back(device.force_N());
-    }
-    return forces_N;
+  // Runs `ticks` ticks and appends the forces written to the device.
+  void run(int ticks, const LoopControls& controls, std::vector<double>& felt_N) {
+    for (int i = 0; i < ticks; ++i) felt_N.push_back(rig.run(1, controls).rendered_N);
   }
 };
 
@@ -163,55 +137,57 @@ void expect_no_step_above_a_jnd(const std::vector<double>& forces_N) {
 
 TEST(LiveTick, SwitchingTheModelInTheHandFades) {
   Held held;
-  held.publish(1, {spring(300.0), spring(900.0)});
-  EXPECT_NEAR(held.run(1000).rendered_N, 1.5, 1e-9);
-  std::vector<double> felt_N = held.felt_N(1000, {1, 1});
+  held.rig.publish(1, {spring(300.0), spring(900.0)});
+  EXPECT_NEAR(held.rig.run(1000).rendered_N, 1.5, 1e-9);
+  std::vector<double> felt_N;
+  held.run(1000, {1, 1}, felt_N);
   EXPECT_NEAR(felt_N.back(), 4.5, 1e-9) << "the depth is an estimate";
-  for (const double force_N : held.felt_N(1000, {1, 0})) felt_N.push_back(force_N);
-  EXPECT_NEAR(felt_N.back(), 1.5, 1e-9);
+  held.run(1000, {1, 0}, felt_N);
+  EXPECT_NEAR(held.device.force_N(), 1.5, 1e-9);
   expect_no_step_above_a_jnd(felt_N);
 }
 
 TEST(LiveTick, ANewSetFadesInAndTheOldOneIsRetired) {
   Held held;
-  const std::weak_ptr<const ForceModel> old = [&] {
-    auto model = spring(300.0);
-    held.publish(1, {model});
-    return std::weak_ptr<const ForceModel>(model);
-  }();
-  held.run(1000);
-  held.publish(2, {spring(900.0), spring(100.0)});
-  std::vector<double> felt_N = held.felt_N(20);
+  std::weak_ptr<const ForceModel> old;
+  {
+    const auto model = spring(300.0);
+    held.rig.publish(1, {model});
+    old = model;
+  }
+  held.rig.run(1000);
+  held.rig.publish(2, {spring(900.0), spring(100.0)});
+  std::vector<double> felt_N;
+  held.run(20, {}, felt_N);
   EXPECT_FALSE(old.expired()) << "still felt";
-  EXPECT_EQ(held.slot.collect(), 0u);
-  for (const double force_N : held.felt_N(1000)) felt_N.push_back(force_N);
+  EXPECT_FALSE(held.rig.slot().collect());
+  held.run(1000, {}, felt_N);
   EXPECT_NEAR(felt_N.back(), 4.5, 1e-9) << "the depth is an estimate";
   expect_no_step_above_a_jnd(felt_N);
   EXPECT_FALSE(old.expired()) << "not deleted by the tick";
-  EXPECT_EQ(held.slot.collect(), 1u);
+  EXPECT_TRUE(held.rig.slot().collect());
   EXPECT_TRUE(old.expired());
 }
 
 TEST(LiveTick, ControlsOfAnotherSetDoNotCount) {
   Held held;
-  held.publish(1, {spring(300.0), spring(900.0)});
-  EXPECT_EQ(held.run(1000, {7, 1}).selected, 0u);
-  EXPECT_EQ(held.run(10, {1, 5}).selected, 0u) << "there is no sixth model";
-  EXPECT_EQ(held.run(10, {1, 1}).selected, 1u);
-  EXPECT_EQ(held.run(10, {7, 0}).selected, 1u) << "the choice stays";
+  held.rig.publish(1, {spring(300.0), spring(900.0)});
+  EXPECT_EQ(held.rig.run(1000, {7, 1}).selected, 0u);
+  EXPECT_EQ(held.rig.run(10, {1, 5}).selected, 0u) << "there is no sixth model";
+  EXPECT_EQ(held.rig.run(10, {1, 1}).selected, 1u);
+  EXPECT_EQ(held.rig.run(10, {7, 0}).selected, 1u) << "the choice stays";
 }
 
 // The state of the material's memory is kept when models are exchanged in mid-press.
 TEST(LiveTick, ANewSetGoesOnWithTheFiltersOfTheOld) {
   const auto run = [](bool change) {
     PathDevice device(test::strokes);
-    ModelSlot<LiveModels> slot;
-    LiveTick live(device, slot);
-    slot.publish(std::make_unique<LiveModels>(1, device.sensor(), all_models()));
+    LiveRig rig(device);
+    rig.publish(1, example_force_models());
     std::vector<double> forces_N;
     for (int i = 0; i < 1500; ++i) {
-      if (change && i == 700) slot.publish(std::make_unique<LiveModels>(2, device.sensor(), all_models()));
-      const LoopSnapshot& snapshot = live.run(kTick_s * i, {});
+      if (change && i == 700) rig.publish(2, example_force_models());
+      const LoopSnapshot& snapshot = rig.run();
       forces_N.insert(forces_N.end(), snapshot.tick.force_N.begin(), snapshot.tick.force_N.end());
     }
     return forces_N;
@@ -223,48 +199,41 @@ TEST(LiveTick, ABadSampleLetsGoAndRampsBack) {
   static bool broken = false;
   broken = false;
   PathDevice device([](double) { return broken ? std::numeric_limits<double>::quiet_NaN() : 5e-3; }, {10.0, 1e9, 0.1});
-  ModelSlot<LiveModels> slot;
-  LiveTick live(device, slot);
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0)}));
-  int tick = 0;
-  LoopSnapshot snapshot;
-  const auto run = [&](int ticks) {
-    for (int i = 0; i < ticks; ++i) snapshot = live.run(kTick_s * tick++, {});
-  };
-  run(1000);
-  EXPECT_NEAR(snapshot.rendered_N, 1.5, 1e-9);
-  EXPECT_EQ(snapshot.faults_latched, 0u);
+  LiveRig rig(device);
+  rig.publish(1, {spring(300.0)});
+  EXPECT_NEAR(rig.run(1000).rendered_N, 1.5, 1e-9);
+  EXPECT_EQ(rig.run().faults_latched, 0u);
   broken = true;
-  run(1);
-  EXPECT_EQ(snapshot.rendered_N, 0.0);
-  EXPECT_EQ(snapshot.faults, loop_fault::kBadSample);
+  EXPECT_EQ(rig.run().faults, loop_fault::kBadSample);
+  EXPECT_EQ(device.force_N(), 0.0);
   broken = false;
-  run(10);
+  const LoopSnapshot snapshot = rig.run(10);
   EXPECT_EQ(snapshot.faults, 0u);
   EXPECT_EQ(snapshot.faults_latched, loop_fault::kBadSample);
   EXPECT_NE(snapshot.limiter_flags & force_limit::kRamping, 0u);
   EXPECT_LT(snapshot.rendered_N, 0.2);
-  run(200);
-  EXPECT_NEAR(snapshot.rendered_N, 1.5, 1e-9);
+  EXPECT_NEAR(rig.run(200).rendered_N, 1.5, 1e-9);
 }
 
 TEST(LiveTick, WithoutModelsShowsTheToolAndNoForce) {
   Held held;
-  const LoopSnapshot snapshot = held.run(5);
+  LoopControls controls;
+  controls.scale = {4.0, 20.0};
+  const LoopSnapshot snapshot = held.rig.run(5, controls);
   EXPECT_EQ(snapshot.tick.position_m, 5e-3);
   EXPECT_TRUE(snapshot.tick.in_contact);
   EXPECT_EQ(snapshot.tick.model_count, 0u);
   EXPECT_EQ(snapshot.models_id, 0u);
   EXPECT_EQ(held.device.force_N(), 0.0);
-  held.publish(1, {});
-  EXPECT_EQ(held.run(5).models_id, 1u);
+  held.rig.publish(1, {});
+  EXPECT_EQ(held.rig.run(5, controls).models_id, 1u);
   EXPECT_EQ(held.device.force_N(), 0.0);
 }
 
 TEST(LiveTick, TimesEachModel) {
   Held held;
-  held.publish(1, {spring(300.0), spring(400.0)});
-  const LoopSnapshot snapshot = held.run(10);
+  held.rig.publish(1, {spring(300.0), spring(400.0)});
+  const LoopSnapshot& snapshot = held.rig.run(10);
   EXPECT_GT(snapshot.evaluation_ns[0], 0.0F);
   EXPECT_GT(snapshot.evaluation_ns[1], 0.0F);
   EXPECT_EQ(snapshot.evaluation_ns[2], 0.0F);
@@ -282,11 +251,10 @@ class CountingReference final : public ReferenceForce {
 TEST(LiveTick, StepsTheReferenceOfTheNewestSet) {
   ReplayDevice device(test::example_recording(500, 1000.0));
   const auto reference = std::make_shared<CountingReference>();
-  ModelSlot<LiveModels> slot;
-  LiveTick live(device, slot);
-  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0)}, reference));
+  LiveRig rig(device);
+  rig.publish(1, {spring(300.0)}, reference);
   for (int i = 0; i < 1200; ++i) {
-    const LoopSnapshot& snapshot = live.run(kTick_s * i, {});
+    const LoopSnapshot& snapshot = rig.run();
     if (snapshot.samples > 0) {
       ASSERT_EQ(snapshot.reference_N, 2.0 * snapshot.tick.depth_m);
     }
@@ -298,21 +266,18 @@ TEST(LiveTick, StepsTheReferenceOfTheNewestSet) {
 TEST(LiveTick, HandsOverEverySampleWhileRecording) {
   const Recording recording = test::example_recording(4000, 4000.0);
   ReplayDevice device(recording);
-  ModelSlot<LiveModels> slot;
-  const auto taken = std::make_unique<RecordedRing>();
-  LiveTick live(device, slot, {{}, taken.get()});
-  auto models = std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0), spring(500.0)},
+  LiveRig rig(device);
+  auto models = std::make_unique<LiveModels>(1, device.sensor(), ForceModels{spring(300.0), spring(500.0)},
                                              std::make_shared<CountingReference>());
   models->written_model = 1;
-  slot.publish(std::move(models));
-  int tick = 0;
-  for (; tick < 100; ++tick) live.run(kTick_s * tick, {});
+  rig.slot().publish(std::move(models));
+  rig.run(100);
   RecordedSample sample;
-  EXPECT_FALSE(taken->pop(sample)) << "nobody asked";
+  EXPECT_FALSE(rig.live().recorded().pop(sample)) << "no recording was requested";
   std::vector<RecordedSample> samples;
-  for (; tick < 400; ++tick) {
-    const LoopSnapshot& snapshot = live.run(kTick_s * tick, {1, 0, 7});
-    while (taken->pop(sample)) samples.push_back(sample);
+  for (int tick = 0; tick < 300; ++tick) {
+    const LoopSnapshot& snapshot = rig.run(1, {1, 0, 7});
+    while (rig.live().recorded().pop(sample)) samples.push_back(sample);
     ASSERT_EQ(samples.back().tool.time_s, snapshot.tick.time_s);
     ASSERT_EQ(samples.back().model_N, snapshot.tick.force_N[1]);
     ASSERT_EQ(samples.back().reference_N, snapshot.reference_N);
@@ -340,16 +305,9 @@ TEST(LiveTick, AForceSourceTakesThePlaceOfTheModels) {
   };
   Source source;
   PathDevice device(test::held_5mm, {1.0, 1e9, 0.0});
-  ModelSlot<LiveModels> slot;
-  LiveTickSettings settings;
-  settings.source = &source;
-  LiveTick tick(device, slot, settings);
-  tick.run(1.000, {});
-  tick.run(1.001, {});
-  const LoopSnapshot& snapshot = tick.run(1.002, {});
-  EXPECT_EQ(snapshot.commanded_N, 1.5);
-  EXPECT_EQ(snapshot.rendered_N, 1.0) << "clamped to what the device may be given";
-  EXPECT_EQ(device.force_N(), 1.0);
+  LiveRig rig(device, {{}, &source});
+  EXPECT_EQ(rig.run(3).commanded_N, 1.5);
+  EXPECT_EQ(device.force_N(), 1.0) << "clamped to what the device may be given";
   EXPECT_EQ(source.seen_N, 1.0) << "what was rendered in the tick before";
 }
 

@@ -100,12 +100,10 @@ TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
 
 // After an exchange of models in mid-press, the memory of equal features continues.
 TEST(FeatureMemory, AnotherFilterAdoptsTheMemoryOfTheSameFeatures) {
-  const std::vector<FeatureSpec> before_specs = {FeatureSpec{}, stops({1e-4, 3e-4}, stiffening()),
-                                                 creep({2.0}, stiffening()), spectrum({0.3}, stiffening())};
   const DriveCurve softer{5e-3, {0.2, 0.1, 0.0, 0.0}};
-  const std::vector<FeatureSpec> specs = {spectrum({0.3}, stiffening()), stops({3e-4, 1e-4}, softer),
+  const std::vector<FeatureSpec> specs = {spectrum({0.3}, stiffening()), stops({3e-4, 1e-4}, stiffening()),
                                           creep({2.0}, stiffening()), spectrum({0.3}, softer)};
-  FeatureFilter before(before_specs);
+  FeatureFilter before({FeatureSpec{}, stops({5e-4}, softer), specs[1], specs[2], specs[0]});
   FeatureFilter always(specs);
   const auto at = [](int i) { return closed_motion_m(2e-4 * i); };
   for (int i = 0; i < 2000; ++i) {
@@ -115,7 +113,7 @@ TEST(FeatureMemory, AnotherFilterAdoptsTheMemoryOfTheSameFeatures) {
   FeatureFilter after(specs);
   feed(after, 1.999, at(1999));
   after.adopt(before);
-  EXPECT_EQ(after.vector().values[3], 0.0) << "a branch that nobody had is at rest";
+  EXPECT_EQ(after.vector().values[3], 0.0) << "a branch of no earlier model is at rest";
   for (int i = 2000; i < 4000; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       ASSERT_EQ(after.vector().values[k], always.vector().values[k]) << feature_name(specs[k]);

@@ -179,11 +179,9 @@ TEST(Features, ContactIsThatOfTheRawPosition) {
   FeatureFilter filter({FeatureSpec{}});
   const FeatureVector touching = filter.update({0.0, 1e-6, 0.0, 0.0}, {-1e-6, 0.0});
   EXPECT_TRUE(touching.in_contact);
-  EXPECT_EQ(touching.depth_m, 1e-6);
   EXPECT_EQ(touching.values[0], 0.0);
   const FeatureVector free = filter.update({1e-3, 0.0, 0.0, 0.0}, {2e-6, 0.0});
   EXPECT_FALSE(free.in_contact);
-  EXPECT_EQ(free.depth_m, 0.0);
   EXPECT_EQ(free.values[0], 2e-6);
 }
 

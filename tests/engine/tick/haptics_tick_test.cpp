@@ -4,16 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/tick/sensor_identification.h"
 #include "tests/support/example_model.h"
+#include "tests/support/live_doubles.h"
 
 namespace palpate {
 namespace {
-
-using Models = std::vector<std::shared_ptr<const ForceModel>>;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -21,20 +21,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 std::shared_ptr<const FittedModel> fitted(const ModelData& data) { return std::make_shared<const FittedModel>(data); }
 
 // Returns the estimate that a test sets.
-class StubModel final : public ForceModel {
+class StubModel final : public test::NamedModel {
  public:
-  explicit StubModel(double force_N, bool outside = false) : force_N_(force_N), outside_(outside) {}
-  ForceEstimate evaluate(const double*) const noexcept override { return {force_N_, outside_}; }
-  const std::vector<FeatureSpec>& features() const noexcept override { return features_; }
-  const std::string& name() const noexcept override { return name_; }
-  const std::string& method() const noexcept override { return name_; }
-  int centre_count() const noexcept override { return 0; }
+  explicit StubModel(double force_N, bool outside = false) : NamedModel("stub"), estimate_{force_N, outside} {}
+  ForceEstimate evaluate(const double*) const noexcept override { return estimate_; }
 
  private:
-  std::vector<FeatureSpec> features_ = test::position_features();
-  std::string name_ = "stub";
-  double force_N_;
-  bool outside_;
+  ForceEstimate estimate_;
 };
 
 TEST(HapticsTick, LatchesBadSamplesAndKeepsItsState) {
@@ -83,8 +76,7 @@ TEST(HapticsTick, ANonFiniteForceIsZeroAndAFault) {
 }
 
 TEST(HapticsTick, GivesNoForceOutOfContact) {
-  Models models;
-  for (const ModelData& data : test::example_models()) models.push_back(fitted(data));
+  ForceModels models = test::example_force_models();
   models.push_back(std::make_shared<StubModel>(7.0, true));
   HapticsTick tick({30e-6, 0.0}, models);
   int outside = 0;
@@ -101,28 +93,85 @@ TEST(HapticsTick, GivesNoForceOutOfContact) {
 }
 
 TEST(HapticsTick, ModelsOfTheSameFeaturesShareAFilter) {
-  Models models;
-  for (const ModelData& data : test::example_models()) models.push_back(fitted(data));
-  const HapticsTick tick({}, models);
-  EXPECT_EQ(tick.model_count(), 11u);
-  EXPECT_EQ(tick.filter_count(), 5u) << "paper's four, Maxwell's four, position alone, memories, a lag";
+  const HapticsTick tick({}, test::example_force_models());
   EXPECT_EQ(&tick.features_of(0), &tick.features_of(1));
   EXPECT_EQ(&tick.features_of(0), &tick.features_of(8));
   EXPECT_NE(&tick.features_of(0), &tick.features_of(3));
 }
 
 TEST(HapticsTick, OneModelsForceDoesNotDependOnItsNeighbours) {
-  Models all;
-  for (const ModelData& data : test::example_models()) all.push_back(fitted(data));
+  const ForceModels all = test::example_force_models();
   HapticsTick together({30e-6, 0.0}, all);
   std::vector<HapticsTick> alone;
-  for (const auto& model : all) alone.emplace_back(SensorSpec{30e-6, 0.0}, Models{model});
+  for (const auto& model : all) alone.emplace_back(SensorSpec{30e-6, 0.0}, ForceModels{model});
   for (const RecordingRow& row : test::example_recording(2000, 1000.0, 30e-6).rows) {
     const TickSnapshot snapshot = together.step(tool_sample(row));
     for (std::size_t m = 0; m < all.size(); ++m) {
       ASSERT_EQ(snapshot.force_N[m], alone[m].step(tool_sample(row)).force_N[0]);
     }
   }
+}
+
+constexpr std::size_t kJoin = 1900;   // in mid-press
+constexpr std::size_t kNotSeen = 40;  // ticks before kJoin that the slow side has not read yet
+
+struct Join {
+  bool knows_history = true;
+  std::size_t restart = 0;  // the stream restarts at this tick
+};
+
+// The largest force difference over half a second between a model that joins at kJoin and
+// one that ran from the start.
+double difference_N(const ModelData& data, const Join& join) {
+  const Recording recording = test::example_recording(kJoin + 500, 1000.0);
+  EXPECT_GT(recording.rows[kJoin].position_m, 2e-3) << "in mid-press";
+  const ForceModels models{fitted(data)};
+  HapticsTick always({}, models);
+  HapticsTick before({}, {});
+  HapticsTick after({}, models);
+  MotionHistory history;
+  double largest_N = 0.0;
+  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+    const ToolSample sample{recording.rows[i].time_s, recording.rows[i].position_m, 0.0, 0.0};
+    if (i == join.restart) {
+      always.reset();
+      before.reset();
+    }
+    const double expected_N = always.step(sample).force_N[0];
+    if (i < kJoin) {
+      const TickSnapshot& snapshot = before.step(sample);
+      if (join.knows_history && i + kNotSeen < kJoin) history.add(snapshot, i == join.restart);
+      continue;
+    }
+    if (i == kJoin) {
+      after.recall(history);
+      after.continue_from(before);
+    }
+    largest_N = std::max(largest_N, std::abs(after.step(sample).force_N[0] - expected_N));
+  }
+  return largest_N;
+}
+
+ModelData slow_material() { return test::example_model("trend", KernelKind::cubic, test::maxwell_features(), 3); }
+
+TEST(MotionHistory, AModelThatJoinsInMidPressKnowsThePressUpToNow) {
+  // The last 40 ms of the motion are taken as linear, with branches of 0.1 and 1.1 s: 0.4 mN.
+  EXPECT_LT(difference_N(slow_material(), {}), 1e-3);
+  EXPECT_GT(difference_N(slow_material(), {.knows_history = false}), 0.1) << "at rest under the tool";
+}
+
+TEST(MotionHistory, OfEveryFeature) {
+  for (const auto& features : {test::memory_features(), test::paper_features()}) {
+    const ModelData data = test::example_model("trend", KernelKind::cubic, features, 4);
+    EXPECT_LT(difference_N(data, {}), 0.5 * difference_N(data, {.knows_history = false}) + 1e-9);
+  }
+}
+
+// Like the tick, the history forgets the previous stream.
+TEST(MotionHistory, ForgetsWithANewStream) {
+  EXPECT_LT(difference_N(slow_material(), {.restart = kJoin - 300}), 5e-3);
+  // Nothing of the new stream was read yet: the material is at rest at its first sample.
+  EXPECT_LT(difference_N(slow_material(), {.restart = kJoin}), 1e-12);
 }
 
 }  // namespace

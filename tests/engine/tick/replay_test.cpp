@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-
 #include <string>
 
 #include "engine/tick/sensor_identification.h"
 #include "tests/support/example_model.h"
-#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -31,12 +29,6 @@ struct Trace {
   }
 };
 
-ForceModels all_models() {
-  ForceModels models;
-  for (const ModelData& data : test::example_models()) models.push_back(std::make_shared<FittedModel>(data));
-  return models;
-}
-
 // A rig whose material starts at 6.2 mm; before that is air.
 TEST(Replay, ContactCountsFromTheSurfaceOfTheModel) {
   std::vector<FeatureSpec> features = test::position_features();
@@ -46,7 +38,7 @@ TEST(Replay, ContactCountsFromTheSurfaceOfTheModel) {
   const auto at_zero = std::make_shared<const FittedModel>(test::example_models().front());
   Recording recording;
   for (int i = 0; i < 1000; ++i) recording.rows.push_back({1e-3 * i, 1e-5 * (i + 0.5), 0.0, 0.0, 0.0});
-  const auto contacts = [&](const ForceModels& models) { return replay(recording, models, {})->contact_samples; };
+  const auto contacts = [&](const ForceModels& models) { return replay(recording, models, {}).contact_samples; };
   EXPECT_EQ(contacts({at_surface}), 380u);
   EXPECT_EQ(contacts({at_surface, at_zero}), 380u);
   EXPECT_EQ(contacts({at_zero}), 1000u);
@@ -55,30 +47,23 @@ TEST(Replay, ContactCountsFromTheSurfaceOfTheModel) {
 
 TEST(Replay, EqualsSteppingByHand) {
   const Recording recording = example_recording(3000, 1000.0, 30e-6);
-  const ForceModels models = all_models();
+  const ForceModels models = test::example_force_models();
   Trace trace;
-  const auto summary = replay(recording, models, trace.visitor());
-  ASSERT_TRUE(summary.ok());
+  const ReplaySummary summary = replay(recording, models, trace.visitor());
 
   Trace by_hand;
   const ReplayVisitor visit = by_hand.visitor();
   HapticsTick tick(identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns), models);
-  double surface_m = 1.0;
-  for (const auto& model : models) {
-    const double own_m = surface_position_m(model->features());
-    if (own_m != 0.0) surface_m = std::min(surface_m, own_m);
-  }
-  if (surface_m == 1.0) surface_m = 0.0;
   std::uint64_t contact = 0;
   for (const RecordingRow& row : recording.rows) {
     const TickSnapshot& snapshot = tick.step({row.time_s, row.position_m, 0.0, 0.0});
-    contact += row.position_m > surface_m ? 1 : 0;
+    contact += row.position_m > 0.4e-3 ? 1 : 0;  // the surface of the last example
     visit(row, snapshot, tick);
   }
   EXPECT_EQ(trace.values, by_hand.values);
-  EXPECT_EQ(summary->samples, recording.rows.size());
-  EXPECT_EQ(summary->contact_samples, contact);
-  EXPECT_NEAR(summary->sensor.encoder_step_m, 30e-6, 1e-12);
+  EXPECT_EQ(summary.samples, recording.rows.size());
+  EXPECT_EQ(summary.contact_samples, contact);
+  EXPECT_NEAR(summary.sensor.encoder_step_m, 30e-6, 1e-12);
 }
 
 // With an offset, the tick gets the same as from a recording with moved positions; the
@@ -89,11 +74,11 @@ TEST(Replay, MovesTheSurface) {
   for (RecordingRow& row : recording.rows) row.position_m = std::round(row.position_m * 1e7) * std::ldexp(1.0, -23);
   Recording shifted = recording;
   for (RecordingRow& row : shifted.rows) row.position_m += offset_m;
-  const ForceModels models = all_models();
+  const ForceModels models = test::example_force_models();
   Trace plain;
   Trace moved;
-  ASSERT_TRUE(replay(recording, models, plain.visitor()).ok());
-  ASSERT_TRUE(replay(shifted, models, moved.visitor(), offset_m).ok());
+  replay(recording, models, plain.visitor());
+  replay(shifted, models, moved.visitor(), offset_m);
   EXPECT_EQ(plain.values, moved.values);
 }
 
@@ -104,16 +89,15 @@ TEST(Replay, InChunksEqualsTheWhole) {
   ASSERT_TRUE(write_recording(folder.file("r.csv"), recording, {}, false).ok());
   const ForceModels models = {std::make_shared<FittedModel>(test::example_models().front())};
   Trace whole;
-  const auto in_memory = replay(recording, models, whole.visitor());
-  ASSERT_TRUE(in_memory.ok());
+  const ReplaySummary in_memory = replay(recording, models, whole.visitor());
   auto reader = RecordingReader::open(folder.file("r.csv"));
   ASSERT_TRUE(reader.ok());
   Trace chunked;
   const auto streamed = replay(*reader, models, chunked.visitor());
   ASSERT_TRUE(streamed.ok());
   EXPECT_TRUE(whole.values == chunked.values);
-  EXPECT_EQ(in_memory->samples, streamed->samples);
-  EXPECT_EQ(in_memory->contact_samples, streamed->contact_samples);
+  EXPECT_EQ(in_memory.samples, streamed->samples);
+  EXPECT_EQ(in_memory.contact_samples, streamed->contact_samples);
 }
 
 TEST(Replay, HandsOnTheReadersError) {
@@ -126,13 +110,6 @@ TEST(Replay, HandsOnTheReadersError) {
   const auto summary = replay(*reader, {}, {});
   ASSERT_FALSE(summary.ok());
   EXPECT_EQ(summary.error().message.rfind(path + ":22:1: ", 0), 0u) << summary.error().message;
-}
-
-TEST(Replay, RefusesMoreModelsThanATickTakes) {
-  const ForceModels models(kMaxModels + 1, std::make_shared<FittedModel>(test::example_models().front()));
-  const auto summary = replay(example_recording(100, 1000.0), models, {});
-  ASSERT_FALSE(summary.ok());
-  EXPECT_TRUE(test::has_parts(summary.error().message, {"17", "16", "; "}));
 }
 
 }  // namespace

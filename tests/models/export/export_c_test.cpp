@@ -29,11 +29,10 @@ ExportRequest request_for(const Recording& recording) {
 }
 
 void for_each_force(const Recording& recording, const ModelData& data, const Compare& compare) {
-  const auto summary = replay(recording, {std::make_shared<FittedModel>(data)},
-                              [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-                                compare(row, snapshot.force_N[0], (snapshot.out_of_domain_mask & 1U) != 0);
-                              });
-  EXPECT_TRUE(summary.ok());
+  replay(recording, {std::make_shared<FittedModel>(data)},
+         [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+           compare(row, snapshot.force_N[0], (snapshot.out_of_domain_mask & 1U) != 0);
+         });
 }
 
 const std::vector<Recording>& recordings() {

@@ -1,4 +1,4 @@
-#include "engine/tick/exponential.h"
+#include "engine/tick/lanes.h"
 
 #include <gtest/gtest.h>
 
