@@ -73,9 +73,9 @@ void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& sce
 
 }  // namespace
 
-std::vector<DeviceChoice> device_choices() {
-  std::vector<DeviceChoice> choices = list_devices({.calibrations = calibrations_folder()});
-  std::erase_if(choices, [](const DeviceChoice& device) { return device.name.find(':') != std::string::npos; });
+std::vector<DeviceDescription> device_choices() {
+  std::vector<DeviceDescription> choices = list_devices({.calibrations = calibrations_folder()});
+  std::erase_if(choices, [](const DeviceDescription& device) { return device.name.find(':') != std::string::npos; });
   return choices;
 }
 

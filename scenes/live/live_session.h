@@ -47,8 +47,7 @@ struct SessionRequest {
 
 // The devices that need no argument after their name, for code that may not include devices/. Slow: opens and closes
 // each connected device.
-using DeviceChoice = DeviceDescription;
-std::vector<DeviceChoice> device_choices();
+std::vector<DeviceDescription> device_choices();
 
 class LiveSession {
  public:
