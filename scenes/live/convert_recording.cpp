@@ -1,31 +1,12 @@
 #include "scenes/live/convert_recording.h"
 
 #include <filesystem>
-#include <string_view>
 
-#include "engine/base/csv_scanner.h"
-#include "engine/base/whole_file.h"
 #include "engine/import/import_words.h"
-#include "engine/recording/recording.h"
+#include "engine/recording/recording_reader.h"
 #include "scenes/scene/user_folders.h"
 
 namespace palpate {
-namespace {
-
-// Whether the file has the header of a recording, so that its errors are reported as those of a recording.
-bool has_our_columns(const std::string& path) {
-  auto file = open_plain_file(path, "a recording");
-  if (!file) return false;
-  LineScanner lines(std::move(*file), path);
-  CsvLine line;
-  while (lines.next(line)) {
-    if (line.text.empty() || line.text.front() != '#') break;
-  }
-  const auto has = [&](const char* name) { return line.text.find(name) != std::string_view::npos; };
-  return has("time_s") && has("position_m") && has("force_N");
-}
-
-}  // namespace
 
 bool may_be_recording(const std::string& path) {
   const std::filesystem::path ending = std::filesystem::path(path).extension();
@@ -35,8 +16,9 @@ bool may_be_recording(const std::string& path) {
 Result<ConvertedRecording> convert_recording(const std::string& path, const std::string& folder) {
   const auto recording = read_recording(path);
   if (recording) return ConvertedRecording{path, {}};
+  // A file with the header of a recording is no table of another program.
   std::error_code missing;
-  if (has_our_columns(path) || !std::filesystem::exists(path, missing)) return recording.error();
+  if (RecordingReader::open(path) || !std::filesystem::exists(path, missing)) return recording.error();
   const ImportRequest request;
   const auto table = import_table(path, request);
   if (!table) return table.error();
