@@ -17,11 +17,10 @@
 #include "engine/tick/jnd.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/live/dent.h"
-#include "scenes/live/error_quantile.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/force_history.h"
 #include "scenes/live/session_models.h"
-#include "scenes/live/sustained_error.h"
+#include "scenes/live/stream_errors.h"
 
 namespace palpate {
 
@@ -31,7 +30,7 @@ struct ModelFigures {
   double force_N = 0.0;
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();  // of the force, 95 %; NaN: unknown
   bool out_of_domain = false;
-  // Over the same samples for all compared models. The 99 % error has a resolution of 4.4 % (error_quantile.h).
+  // Over the same samples for all compared models. The 99 % error has a resolution of 4.4 % (stream_errors.h).
   ErrorSummary errors;
   // For drawing (dent.h): the dent's depth, and the largest recent sustained error.
   double dent_m = 0.0;
