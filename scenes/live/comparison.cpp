@@ -39,7 +39,7 @@ void Comparison::forget_errors(std::string why) {
   }
 }
 
-void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_.features(slot)); }
+void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_.model(slot)->features()); }
 
 void Comparison::forget_slot(std::size_t slot) {
   slots_[slot] = {};
