@@ -154,9 +154,7 @@ void LiveSession::update() {
   newest_ = loop_->newest();
   comparison_.show(newest_);
   background_evaluation_.update(models_, comparison_, newest_.loop_time_s);
-  const double now_s = steady_now_s();
-  faults_.update_dropped(loop_->dropped_snapshots(), now_s);
-  faults_.update_age(loop_->age_s(), now_s);
+  faults_.update_window(loop_->dropped_snapshots(), loop_->age_s(), steady_now_s());
   if (std::optional<Notice> outcome = recorder_->read_outcome()) {
     send_controls();  // a write error may have ended the recording
     notices_.push_back({std::move(outcome->text), outcome->problem});
