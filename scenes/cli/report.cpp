@@ -71,8 +71,7 @@ Status run_report(const Arguments& arguments) {
                         command_line(arguments),
                         "palpate " PALPATE_VERSION};
   for (std::size_t i = 0; i < checked->size(); ++i) {
-    const PreparedRecordingPointer& prepared = (*checked)[i].prepared;
-    (i < arguments.train.size() ? request.train : request.test).emplace_back(prepared, &prepared->recording);
+    (i < arguments.train.size() ? request.train : request.test).push_back((*checked)[i].prepared);
   }
   return write_folder("reporting", request.out,
                       [&](const FitControl& control) { return make_report(request, control); });

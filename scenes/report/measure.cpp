@@ -89,9 +89,9 @@ class Measurement {
            (total + kEvaluateSeconds * static_cast<double>(models_.size()));
   }
 
-  Result<Preparations> prepare(const std::vector<SharedRecording>& training) {
+  Result<Preparations> prepare(const std::vector<PreparedRecordingPointer>& training) {
     std::vector<MotionSource::Input> inputs;
-    for (const SharedRecording& recording : training) inputs.push_back({"", prepare_recording(*recording)});
+    for (const PreparedRecordingPointer& recording : training) inputs.push_back({"", recording});
     const TrainingRequest request = training_request(data_.scene);
     std::vector<PreparedTraining> made;
     for (const TrainingRequest& one : {recipe_2009_request(request), request}) {
@@ -136,8 +136,8 @@ class Measurement {
     if (!prepared) return prepared.error();
     if (data_.gains.empty()) remember(*prepared);
     if (const Status fitted = fit(*prepared); !fitted) return fitted;
-    for (const SharedRecording& recording : fold.tested) {
-      if (const Status status = evaluate_test(*recording, fold.counted_from_s); !status) return status;
+    for (const PreparedRecordingPointer& recording : fold.tested) {
+      if (const Status status = evaluate_test(recording->recording, fold.counted_from_s); !status) return status;
     }
     return {};
   }
@@ -232,9 +232,9 @@ class Measurement {
     for (std::size_t fold = 0; fold < data_.recordings.folds.size(); ++fold) {
       std::vector<ModelPointer> models;
       for (const std::size_t i : shown) models.push_back(models_[i].fits[fold]);
-      for (const SharedRecording& recording : data_.recordings.folds[fold].tested) {
+      for (const PreparedRecordingPointer& recording : data_.recordings.folds[fold].tested) {
         WorstStretch stretch =
-            worst_stretch(*recording, models, data_.scene.jnd, data_.recordings.folds[fold].counted_from_s);
+            worst_stretch(recording->recording, models, data_.scene.jnd, data_.recordings.folds[fold].counted_from_s);
         if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
       }
     }

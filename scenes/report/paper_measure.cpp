@@ -102,11 +102,11 @@ class PaperMeasurement {
   double done_ = 0.0;
   Scene scene_;
   PaperData data_;
-  std::vector<SharedRecording> recordings_;  // to train and to test
+  std::vector<PreparedRecordingPointer> recordings_;  // to train and to test
 };
 
 Result<PreparedTraining> PaperMeasurement::prepare(TrainingRequest request) {
-  MotionSource source({{"", prepare_recording(*recordings_[0])}});
+  MotionSource source({{"", recordings_[0]}});
   auto prepared = prepare_training(source, request, part());
   if (!prepared) return prepared.error();
   if (prepared->set.reduction_force_N != kStep_N)
@@ -128,8 +128,8 @@ Status PaperMeasurement::run_material(const std::string& material) {
     PaperRun run{material,
                  fitted,
                  {},
-                 recordings_[0]->rows.size(),
-                 recordings_[1]->rows.size(),
+                 recordings_[0]->recording.rows.size(),
+                 recordings_[1]->recording.rows.size(),
                  static_cast<std::uint64_t>(prepared->sites.count()),
                  {}};
     for (const RelaxationTime& one : prepared->common.provenance.relaxation_times) run.times_s.push_back(one.time_s);
@@ -157,7 +157,7 @@ Status PaperMeasurement::measure_run(PaperRun run, const PreparedTraining& prepa
     for (std::size_t i = 0; i < models.size(); ++i)
       samples[i].push_back({row.force_N, std::abs(snapshot.force_N[i] - row.force_N)});
   };
-  const auto replayed = replay(*recordings_[1], models, visitor);
+  const auto replayed = replay(recordings_[1]->recording, models, visitor);
   if (!replayed) return replayed.error();
   timing.sensor = replayed->sensor;
   const std::vector<ModelTiming> times = time_models(models, {timing});
