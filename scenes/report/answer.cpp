@@ -99,20 +99,17 @@ Sentence answer(const ReportData& data) {
   add_surface(sentence, data, use);
   if (data.choice.correction_off)
     sentence << "The RBF correction is off on this material: all methods equal the trend. ";
-  const ModelResult* best = &use;
-  const ModelResult* paper = nullptr;
-  for (const std::size_t i : data.choice.candidates) {
-    const ModelResult& one = data.models[i];
-    if (one.errors.p99_error_over_jnd < best->errors.p99_error_over_jnd) best = &one;
-    if (one.plan.recipe == Recipe::paper && one.plan.request.method == &kGreedyMethod) paper = &one;
-  }
-  if (best != &use) add_comparison(sentence, *best, use);
+  const ModelResult& best = data.models[data.choice.best];
+  if (&best != &use) add_comparison(sentence, best, use);
   if (data.choice.dominating) {
     sentence << "Another size was faster and had a smaller 99 % error in this test: ";
     add_comparison(sentence, data.models[*data.choice.dominating], use);
     sentence << "A size that is chosen by a test has to be tested on another recording. ";
   }
-  if (paper != nullptr && paper != &use && paper != best) add_comparison(sentence, *paper, use);
+  for (const std::size_t i : data.choice.candidates) {
+    const ModelResult& one = data.models[i];
+    if (one.plan.is_greedy_2009() && &one != &use && &one != &best) add_comparison(sentence, one, use);
+  }
   return sentence;
 }
 

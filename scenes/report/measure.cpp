@@ -220,15 +220,9 @@ class Measurement {
   void find_worst() {
     const Choice& choice = data_.choice;
     std::vector<std::size_t> shown{choice.recommended};
-    const auto add = [&](std::size_t i) {
-      if (std::find(shown.begin(), shown.end(), i) == shown.end()) shown.push_back(i);
-    };
-    std::size_t best = choice.recommended;
     for (const std::size_t i : choice.candidates) {
-      if (data_.models[i].plan.recipe == Recipe::paper && data_.models[i].plan.request.method == &kGreedyMethod) add(i);
-      if (data_.models[i].errors.p99_error_over_jnd < data_.models[best].errors.p99_error_over_jnd) best = i;
+      if (i != choice.recommended && (i == choice.best || data_.models[i].plan.is_greedy_2009())) shown.push_back(i);
     }
-    add(best);
     for (std::size_t fold = 0; fold < data_.recordings.folds.size(); ++fold) {
       std::vector<ModelPointer> models;
       for (const std::size_t i : shown) models.push_back(models_[i].fits[fold]);
@@ -335,8 +329,7 @@ std::vector<std::size_t> headline_models(const ReportData& data) {
   std::vector<std::size_t> rows{0};
   for (const std::size_t i : data.choice.candidates) {
     const PlannedModel& plan = data.models[i].plan;
-    if (plan.recipe != Recipe::paper || plan.request.method == &kGreedyMethod || i == data.choice.recommended)
-      rows.push_back(i);
+    if (plan.recipe != Recipe::paper || plan.is_greedy_2009() || i == data.choice.recommended) rows.push_back(i);
   }
   return rows;
 }
