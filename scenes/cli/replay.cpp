@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "engine/base/text.h"
-#include "scenes/cli/check_recordings.h"
-#include "scenes/cli/output.h"
 #include "scenes/cli/replay_files.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/plot/draw.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/cli/check_recordings.h"
 #include "scenes/cli/progress.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/report/paper.h"
 
