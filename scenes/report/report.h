@@ -15,7 +15,7 @@ struct ReportRequest {
   Scene scene;
   std::vector<PreparedRecordingPointer> train;  // empty: the virtual silicone
   std::vector<PreparedRecordingPointer> test;   // empty: see split_recordings
-  bool quick = false;                  // fewer models
+  bool quick = false;                           // fewer models
   std::string out;
   bool force = false;  // replaces an earlier report in `out`
   std::string command_line;

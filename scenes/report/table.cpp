@@ -1,8 +1,10 @@
 #include "scenes/report/table.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/csv_scanner.h"
+#include "scenes/evaluation/ranking.h"
 #include "scenes/plot/inline_svg.h"
 
 namespace palpate {
@@ -158,6 +160,13 @@ Table gains_table(const ReportData& data) {
   return table;
 }
 
+std::string verdict(const Choice& choice, std::size_t model, const PairedDifference& difference) {
+  if (model == choice.recommended) return "recommended";
+  const bool qualified = std::find(choice.qualified.begin(), choice.qualified.end(), model) != choice.qualified.end();
+  return (difference.p99 >= 0.0 ? "+" : "−") + three_digits(std::abs(difference.p99)) +
+         (qualified ? ", qualified" : "");
+}
+
 }  // namespace
 
 const char* unit_name(const UnitErrors& errors) { return errors.units_are_recordings ? "recording" : "stroke"; }
@@ -208,6 +217,31 @@ std::string table_html(const Table& table) {
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
+}
+
+Table headline_table(const ReportData& data) {
+  Table table{"headline"};
+  for (const std::size_t i : headline_models(data)) {
+    const ModelResult& one = data.models[i];
+    const UnitErrors& errors = one.errors;
+    const Interval interval = errors.p99_interval();
+    const auto time = [&](double time_ns) { return one.time.measured ? time_ns : kNoNumber; };
+    table.begin_row();
+    table.add({"", "model"}, one.plan.name);
+    table.add({"", "tick [ns]", 1.0, 0, 2}, time(one.time.tick.median_ns));
+    table.add({}, time(one.time.tick.low_ns));
+    table.add({}, time(one.time.tick.high_ns));
+    table.add({"", std::string("≤ JND [%], ") + unit_name(errors) + "s beyond", kInPercent, 2, 1},
+              std::floor(1e4 * errors.within_jnd) / 1e4);
+    table.add({}, std::to_string(errors.units_above_jnd) + " of " + std::to_string(errors.units()));
+    table.add({"", "99 % error [JND], 95 %", 1.0, kThree, 2}, errors.p99_error_over_jnd);
+    table.add({}, interval.low);
+    table.add({}, interval.high);
+    table.add({"", "worst [JND]"}, errors.max_error_over_jnd);
+    table.add({"", "99 % error minus the smallest [JND]"},
+              verdict(data.choice, i, paired_difference(errors, data.models[data.choice.best].errors)));
+  }
+  return table;
 }
 
 std::vector<Table> make_tables(const ReportData& data) {

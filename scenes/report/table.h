@@ -58,6 +58,9 @@ std::string table_html(const Table& table);
 // The independent units of the confidence intervals: "recording" or "stroke".
 const char* unit_name(const UnitErrors& errors);
 
+// The page's first table: the models of headline_models with time, errors and the verdict of the ranking.
+Table headline_table(const ReportData& data);
+
 // All numbers of a report: the tables models, recordings, force_bins, features and times.
 std::vector<Table> make_tables(const ReportData& data);
 
