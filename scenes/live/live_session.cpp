@@ -1,18 +1,16 @@
 #include "scenes/live/live_session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
-#include <utility>
 
 #include "engine/base/text.h"
 #include "models/model/fitted_model.h"
 #include "models/recordings/recording_faults.h"
-#include "scenes/live/press_range.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/user_folders.h"
-#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -24,11 +22,37 @@ constexpr std::int64_t kRehearse_ns = 100'000;
 // The number is limited, so that a device that fails all day does not fill the disk.
 constexpr int kMostFaultFiles = 50;
 
-constexpr const char* kDefaultScene = "silicone_block";
 constexpr std::string_view kReplay = "replay:";
 
 std::string replayed_file(const std::string& device) {
   return device.rfind(kReplay, 0) == 0 ? device.substr(kReplay.size()) : std::string();
+}
+
+// Limits the simulated hand to the forces, depths and speeds of the training data. Returns whether there is any force.
+// Speeds are differences over at least 20 ms, to suppress encoder steps. The fastest 1 % are ignored as noise.
+bool limit_hand(const std::vector<Recording>& recordings, HandSettings& hand) {
+  constexpr double kInside = 0.8;  // of the largest values, because the simulated hand overshoots
+  constexpr double kSpan_s = 0.02;
+  double strongest_N = 0.0, deepest_m = 0.0;
+  std::vector<double> speeds_m_per_s;  // in contact
+  for (const Recording& recording : recordings) {
+    RecordingRow before = recording.rows.front();
+    for (const RecordingRow& row : recording.rows) {
+      strongest_N = std::max(strongest_N, row.force_N);
+      deepest_m = std::max(deepest_m, row.position_m);
+      const double span_s = row.time_s - before.time_s;
+      if (span_s < kSpan_s) continue;
+      if (row.position_m > 0.0) speeds_m_per_s.push_back(std::abs(row.position_m - before.position_m) / span_s);
+      before = row;
+    }
+  }
+  if (strongest_N <= 0.0 || speeds_m_per_s.empty()) return false;
+  const auto fast = speeds_m_per_s.begin() + static_cast<std::ptrdiff_t>(99 * (speeds_m_per_s.size() - 1) / 100);
+  std::nth_element(speeds_m_per_s.begin(), fast, speeds_m_per_s.end());
+  hand.strongest_press_N = kInside * strongest_N;
+  hand.deepest_m = kInside * deepest_m;
+  hand.fastest_m_per_s = kInside * *fast;
+  return true;
 }
 
 // Replaces the scene's material by the named recordings, or by the replayed one: no true force is known for them.
@@ -49,12 +73,7 @@ Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings
     recordings.push_back(std::move(*recording));
   }
   if (recordings.empty()) scene.title = std::filesystem::path(replayed).stem().string();
-  const PressRange range = press_range(recordings);
-  if (range.strongest_N <= 0.0) return {};
-  constexpr double kInside = 0.8;  // of the largest values, because the simulated hand overshoots
-  hand.strongest_press_N = scene.strongest_press_N = kInside * range.strongest_N;
-  hand.deepest_m = kInside * range.deepest_m;
-  hand.fastest_m_per_s = kInside * range.fastest_m_per_s;
+  if (limit_hand(recordings, hand)) scene.strongest_press_N = hand.strongest_press_N;
   return {};
 }
 
@@ -62,7 +81,7 @@ Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings
 // virtual material: it is not the truth of those models.
 void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& scene) {
   const auto is_file = [](const SlotPlan& plan) { return plan.origin == ModelOrigin::file; };
-  if (static_cast<std::size_t>(std::count_if(plans.begin(), plans.end(), is_file)) != files) return;
+  if (static_cast<std::size_t>(std::ranges::count_if(plans, is_file)) != files) return;
   std::erase_if(plans, [&](const SlotPlan& plan) { return !is_file(plan); });
   const Provenance& from = plans.front().loaded->data().provenance;
   if (auto own = load_scene(from.scene)) scene = std::move(*own);
@@ -89,7 +108,7 @@ LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique
       buffer_(kSnapshotsAtOnce) {}
 
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
-  Result<Scene> scene = load_scene(request.scene.empty() ? kDefaultScene : request.scene);
+  Result<Scene> scene = load_scene(request.scene.empty() ? "silicone_block" : request.scene);
   if (!scene) return scene.error();
   DeviceRequest device_request{.calibrations = calibrations_folder(), .bus = request.bus};
   device_request.hand.strongest_press_N = scene->strongest_press_N;
@@ -138,10 +157,7 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
 
 LiveSession::~LiveSession() {
   models_.cancel();
-  if (recorder_ != nullptr) {
-    stop_recording();
-    recorder_->wait();
-  }
+  recorder_.reset();  // completes a recording
   if (loop_ != nullptr) loop_->stop();
 }
 
@@ -250,9 +266,7 @@ void LiveSession::use_reference(ReferenceKind kind) {
 }
 
 bool LiveSession::replays_training() const noexcept {
-  const std::string replayed = replayed_file(request_.device);
-  return models_.fits() &&
-         std::find(scene_.recordings.begin(), scene_.recordings.end(), replayed) != scene_.recordings.end();
+  return models_.fits() && std::ranges::count(scene_.recordings, replayed_file(request_.device)) > 0;
 }
 
 bool LiveSession::tests_recording() const noexcept {
@@ -339,8 +353,6 @@ std::string LiveSession::device_words() const {
 void LiveSession::move_surface(bool moved) {
   if (test_.move(moved)) forget_errors("the surface moved");
 }
-
-bool LiveSession::renders_force() const noexcept { return device_->holder() == Holder::person; }
 
 void LiveSession::use_dead_man(DeadMan what) {
   controls_.dead_man = what;

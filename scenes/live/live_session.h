@@ -101,8 +101,8 @@ class LiveSession {
 
   // The device. Its state is `newest().device`.
   const std::string& device_name() const noexcept { return device_->name(); }
-  std::string device_words() const;                   // what the user has to do before it renders force; may be empty
-  bool renders_force() const noexcept;                // whether a person holds it
+  std::string device_words() const;  // what the user has to do before it renders force; may be empty
+  bool renders_force() const noexcept { return device_->holder() == Holder::person; }
   void start_zeroing() { device_->start_zeroing(); }  // call it while the tool is at its rest position
   // Null where the device has none.
   ToolInput* tool_input() const noexcept { return device_->tool_input(); }
