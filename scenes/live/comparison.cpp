@@ -13,13 +13,11 @@ constexpr double kLongestStep_s = 0.1;
 constexpr double kBeginning_s = 0.05;
 // After 5 time constants a first-order filter has less than 1 % of its initial error.
 constexpr double kSettled_memories = 5.0;
+constexpr double kUnitErrors_s = 2.0;
 
 }  // namespace
 
-Comparison::Comparison(const SessionModels& models, const JndLine& jnd) : models_(models), jnd_(jnd) {
-  slots_.resize(kMaxModels);
-  for (Slot& slot : slots_) slot.model_errors = ModelErrors(jnd);
-}
+Comparison::Comparison(const SessionModels& models, const JndLine& jnd) : models_(models), jnd_(jnd) {}
 
 void Comparison::use_reference(ReferenceKind kind) {
   if (kind != reference_) forget_errors("the reference changed");
@@ -28,13 +26,11 @@ void Comparison::use_reference(ReferenceKind kind) {
 
 void Comparison::forget_errors(std::string why) {
   since_ = std::move(why);
-  contact_s_ = counted_s_ = outside_s_ = 0.0;
-  counted_ = 0;
+  contact_s_ = counted_s_ = outside_s_ = unit_errors_s_ = 0.0;
   stroke_pending_ = true;
   for (Slot& slot : slots_) {
     slot.errors = {};
-    slot.quantile = {};
-    slot.model_errors = ModelErrors(jnd_);
+    slot.unit_errors = {};
     slot.outside_s = 0.0;
   }
 }
@@ -43,7 +39,6 @@ void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_
 
 void Comparison::forget_slot(std::size_t slot) {
   slots_[slot] = {};
-  slots_[slot].model_errors = ModelErrors(jnd_);
   history_.forget(slot);
 }
 
@@ -57,7 +52,6 @@ ModelFigures Comparison::figures(std::size_t slot) const {
   const Slot& one = slots_[slot];
   ModelFigures figures = one.newest;
   figures.errors = one.errors.summary(jnd_);
-  figures.errors.p99_error_over_jnd = one.quantile.p99();
   figures.dent_m = one.dent.depth_m();
   figures.recent_error_over_jnd = one.dent.error_over_jnd();
   return figures;
@@ -151,25 +145,21 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
 
 void Comparison::count_errors(const HistoryPoint& point, const PublishedSet& set) {
   const bool begins = std::exchange(stroke_pending_, false);
-  ++counted_;
-  for (const std::size_t index : set.slots) {
-    if (index == PublishedSet::kRemoved) continue;
-    const double difference = point.difference_over_jnd(index, jnd_);
-    if (std::isnan(difference)) continue;
-    Slot& slot = slots_[index];
-    const auto model_N = static_cast<double>(point.force_N[index]);
-    const auto reference_N = static_cast<double>(point.reference_N);
-    slot.errors.add(model_N, reference_N, false, jnd_);
-    slot.quantile.add(std::abs(difference));
-    if (counted_ > kMostJudged) continue;
-    if (begins) slot.model_errors.begin_stroke();
-    slot.model_errors.add(model_N, reference_N, false);
+  for (const std::size_t slot : set.slots) {
+    if (slot == PublishedSet::kRemoved || std::isnan(point.difference_over_jnd(slot, jnd_))) continue;
+    StreamErrors& errors = slots_[slot].errors;
+    if (begins) errors.begin_stroke();
+    errors.add(static_cast<double>(point.force_N[slot]), static_cast<double>(point.reference_N), jnd_);
   }
 }
 
 void Comparison::show(const LoopSnapshot& newest) {
   const PublishedSet* set = models_.set_of(newest);
   reference_N_ = reference_in(newest, set);
+  if (newest.loop_time_s >= unit_errors_s_ && counted_s_ >= kLeastContact_s) {
+    unit_errors_s_ = newest.loop_time_s + kUnitErrors_s;
+    for (Slot& slot : slots_) slot.unit_errors = slot.errors.unit_errors(jnd_);
+  }
   if (set == nullptr) return;
   for (std::size_t i = 0; i < set->slots.size(); ++i) {
     if (set->slots[i] == PublishedSet::kRemoved) continue;

@@ -165,11 +165,10 @@ void LiveSession::update() {
   // The snapshots come first, because new models are initialised with the motion up to now.
   read_snapshots();
   update_models();
-  if (test_.update(models_)) forget_errors("the surface was found");
+  if (test_.update(models_)) comparison_.forget_errors("the surface was found");
   loop_->collect_models();
   newest_ = loop_->newest();
   comparison_.show(newest_);
-  background_evaluation_.update(models_, comparison_, newest_.loop_time_s);
   faults_.update_window(loop_->dropped_snapshots(), loop_->age_s(), steady_now_s());
   if (std::optional<Notice> outcome = recorder_->read_outcome()) {
     send_controls();  // a write error may have ended the recording
@@ -186,15 +185,9 @@ void LiveSession::update_models() {
   publish(name.substr(0, name.size() > 16 ? name.find('-') : name.size()) + " joined");
 }
 
-// The errors so far and the verdict that is computed from them.
-void LiveSession::forget_errors(std::string why) {
-  comparison_.forget_errors(std::move(why));
-  background_evaluation_.reset();
-}
-
 // Clears all errors, so that all models are compared over the same samples.
 void LiveSession::publish(std::string why) {
-  forget_errors(std::move(why));
+  comparison_.forget_errors(std::move(why));
   auto set = models_.make_set(device_->sensor(), truth_);
   history_.recall(set->tick);
   loop_->publish_models(std::move(set));
@@ -207,7 +200,7 @@ void LiveSession::remove(std::size_t slot) {
 
 void LiveSession::treat_as_this_material(std::size_t slot) {
   models_.treat_as_this_material(slot);
-  forget_errors(models_.info(slot).name + " joined");
+  comparison_.forget_errors(models_.info(slot).name + " joined");
 }
 
 void LiveSession::use_line_up(const std::string& name) {
@@ -260,9 +253,7 @@ bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
 }
 
 void LiveSession::use_reference(ReferenceKind kind) {
-  if (!has_reference(kind)) return;
-  comparison_.use_reference(kind);
-  background_evaluation_.reset();
+  if (has_reference(kind)) comparison_.use_reference(kind);
 }
 
 bool LiveSession::replays_training() const noexcept {
@@ -282,18 +273,16 @@ ModelFigures LiveSession::figures(std::size_t slot) const {
 }
 
 Verdict LiveSession::verdict() const {
-  std::vector<EvaluatedSlot> evaluated;
-  if (tests_recording()) {
-    for (const std::size_t slot : models_.ready_slots()) {
-      const UnitErrors* errors = test_.errors(models_.model(slot).get());
-      if (errors != nullptr && errors->samples > 0) evaluated.push_back({slot, models_.info(slot).tick, *errors, 0.0});
-    }
-  } else {
-    evaluated = background_evaluation_.evaluated();
-  }
-  for (EvaluatedSlot& one : evaluated) one.p99_error_over_jnd = figures(one.slot).errors.p99_error_over_jnd;
-  if (evaluated.empty()) return {{}, false, why_no_verdict(), {}};
   const bool of_model = comparison_.reference() == ReferenceKind::direct;
+  std::vector<EvaluatedSlot> evaluated;
+  for (const std::size_t slot : models_.ready_slots()) {
+    if (of_model && models_.reference() == slot) continue;
+    const UnitErrors* errors =
+        tests_recording() ? test_.errors(models_.model(slot).get()) : &comparison_.unit_errors(slot);
+    if (errors == nullptr || errors->samples == 0) continue;
+    evaluated.push_back({slot, *errors, figures(slot).errors.p99_error_over_jnd});
+  }
+  if (evaluated.empty()) return {{}, false, why_no_verdict(), {}};
   Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");
   if (of_model && verdict.detail.empty())
     verdict.detail = "There is no true force here: test on a second recording (M).";
@@ -307,7 +296,7 @@ std::string LiveSession::why_no_verdict() const {
   if (!has_reference(comparison_.reference())) return reference_words();
   if (replay() != nullptr && comparison_.reference() == ReferenceKind::measured)
     return "Testing the models on " + replay()->recording().name + " ...";
-  if (comparison_.outside_s() > kLeastContact_s) {
+  if (comparison_.outside_s() > Comparison::kLeastContact_s) {
     const std::string& name = models_.info(comparison_.mostly_outside()).name;
     return "No verdict yet: these presses are deeper or faster than what " + name + " was trained on";
   }
@@ -331,7 +320,7 @@ std::string LiveSession::reference_words(bool brief) const {
 }
 
 void LiveSession::reset_figures() {
-  forget_errors("they were cleared");
+  comparison_.forget_errors("they were cleared");
   faults_.acknowledge();
   ++controls_.acknowledged;
   send_controls();
@@ -351,7 +340,7 @@ std::string LiveSession::device_words() const {
 }
 
 void LiveSession::move_surface(bool moved) {
-  if (test_.move(moved)) forget_errors("the surface moved");
+  if (test_.move(moved)) comparison_.forget_errors("the surface moved");
 }
 
 void LiveSession::use_dead_man(DeadMan what) {

@@ -131,7 +131,6 @@ class LiveSession {
   LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);
   Status begin(const std::vector<SlotPlan>& plans);
   void update_models();
-  void forget_errors(std::string why);
   void publish(std::string why);
   void read_snapshots();
   void save_fault_ticks();
@@ -149,7 +148,6 @@ class LiveSession {
   Comparison comparison_;
   MotionHistory history_;
   ReplayTest test_;
-  BackgroundEvaluation background_evaluation_;
   FaultLog faults_;
   FaultRecorder fault_recorder_;
   std::unique_ptr<SessionRecorder> recorder_;

@@ -11,7 +11,7 @@ TEST(ErrorQuantile, IsTheNinetyNinthPercentile) {
   ErrorQuantile errors;
   EXPECT_EQ(errors.p99(), 0.0);
   for (int i = 1; i <= 1000; ++i) errors.add(2e-3 * i);
-  EXPECT_NEAR(errors.p99(), 1.98, 0.045 * 1.98);
+  EXPECT_NEAR(errors.p99(), 1.98, 0.011 * 1.98);
 }
 
 // An error of exactly 1 JND counts as within, as in the share within the JND.
@@ -22,6 +22,30 @@ TEST(ErrorQuantile, IsExactBesideOneJnd) {
   EXPECT_EQ(errors.p99(), 1.0);
   errors.add(1.0001);
   EXPECT_GT(errors.p99(), 1.0);
+}
+
+TEST(StreamErrors, AreThoseOfAllSamplesInTotalAndByStroke) {
+  const JndLine jnd;
+  StreamErrors stream;
+  ModelErrors all(jnd);
+  for (int stroke = 1; stroke <= 4; ++stroke) {
+    stream.begin_stroke();
+    all.begin_stroke();
+    for (int i = 0; i < 100 * stroke; ++i) {
+      const double model_N = 1.0 + 0.13 * stroke * std::sin(0.1 * i);
+      stream.add(model_N, 1.0, jnd);
+      all.add(model_N, 1.0, false);
+    }
+  }
+  const UnitErrors errors = stream.unit_errors(jnd), exact = all.unit_errors();
+  EXPECT_EQ(errors.samples, 1000u);
+  EXPECT_EQ(errors.within_jnd, exact.within_jnd);
+  EXPECT_NEAR(errors.p99_error_over_jnd, exact.p99_error_over_jnd, 0.011 * exact.p99_error_over_jnd);
+  EXPECT_EQ(errors.unit_samples, exact.unit_samples);
+  EXPECT_EQ(errors.unit_within, exact.unit_within);
+  EXPECT_EQ(errors.units_above_jnd, exact.units_above_jnd);
+  ASSERT_EQ(errors.unit_p99.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(errors.unit_p99[i], exact.unit_p99[i], 0.011 * exact.unit_p99[i]);
 }
 
 TEST(SustainedError, IsTheSignedMeanOfTheLast50Milliseconds) {
