@@ -15,6 +15,11 @@ constexpr double kNear = 0.2;  // the budget is drawn if a tick takes more than 
 // The curves omit bins with fewer samples.
 constexpr std::uint64_t kFewSamples = 20;
 
+// The colour of the model's method, which the window uses as well; grey for no force.
+Hue model_colour(const PlannedModel& plan) {
+  return plan.recipe == Recipe::no_force ? kMutedColour : plan.request.method->colour;
+}
+
 using Kind = std::pair<Recipe, const Method*>;
 
 // The models of one recipe and method, in order of their size.
@@ -71,10 +76,6 @@ void share_scale(Panel& one, Panel& other) {
 }
 
 }  // namespace
-
-Hue model_colour(const PlannedModel& plan) {
-  return plan.recipe == Recipe::no_force ? kMutedColour : plan.request.method->colour;
-}
 
 Figure speed_figure(const ReportData& data) {
   Figure figure;
