@@ -14,6 +14,7 @@
 namespace palpate {
 namespace {
 
+constexpr std::size_t kLeakValues = 12;
 constexpr std::size_t kSmallestRecording = 1000;  // rows; a shorter recording is not divided
 constexpr double kKeptShare = 0.6;                // of a single recording
 
@@ -116,6 +117,25 @@ Split leave_out(const PreparedRecordingPointer& training) {
   return split;
 }
 
+// The first `trained` recordings of `all` are training data, the others test data; without others, all pairs are
+// compared.
+Status refuse_leakage(const std::vector<PreparedRecordingPointer>& all, std::size_t trained) {
+  const bool tests = trained < all.size();
+  for (std::size_t i = tests ? trained : 0; i < all.size(); ++i) {
+    for (std::size_t k = 0; k < (tests ? trained : i); ++k) {
+      const Recording& trained_on = all[k]->recording;
+      const Recording& tested = all[i]->recording;
+      const SharedStretch stretch = shared_stretch(trained_on, tested);
+      if (stretch.rows == 0) continue;
+      return Error{tested.name + ": the forces of " + std::to_string(stretch.rows) + " rows from " +
+                   seconds(tested, stretch.first_row) + " s on are those of " + trained_on.name + " from " +
+                   seconds(trained_on, stretch.trained_row) +
+                   " s on, expected a test that was not trained on; leave that stretch out of one of them"};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share) {
@@ -143,23 +163,6 @@ SharedStretch shared_stretch(const Recording& trained, const Recording& tested) 
   for (std::size_t first = 0; first + kLeakRows <= asked.size(); ++first) {
     const auto found = windows.find(window_at(asked, first));
     if (found != windows.end()) return extended(known, asked, found->second, first);
-  }
-  return {};
-}
-
-Status refuse_leakage(const std::vector<PreparedRecordingPointer>& all, std::size_t trained) {
-  const bool tests = trained < all.size();
-  for (std::size_t i = tests ? trained : 0; i < all.size(); ++i) {
-    for (std::size_t k = 0; k < (tests ? trained : i); ++k) {
-      const Recording& trained_on = all[k]->recording;
-      const Recording& tested = all[i]->recording;
-      const SharedStretch stretch = shared_stretch(trained_on, tested);
-      if (stretch.rows == 0) continue;
-      return Error{tested.name + ": the forces of " + std::to_string(stretch.rows) + " rows from " +
-                   seconds(tested, stretch.first_row) + " s on are those of " + trained_on.name + " from " +
-                   seconds(trained_on, stretch.trained_row) +
-                   " s on, expected a test that was not trained on; leave that stretch out of one of them"};
-    }
   }
   return {};
 }

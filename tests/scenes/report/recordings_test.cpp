@@ -107,7 +107,7 @@ TEST(ReportRecordings, RefusesUnusableRecordings) {
 
 TEST(Leakage, TheSameMotionWithItsOwnNoiseIsNoLeak) {
   EXPECT_EQ(shared_stretch(noisy("train"), noisy("test")).rows, 0u);
-  EXPECT_TRUE(refuse_leakage(prepared({noisy("train"), noisy("test")}), 1).ok());
+  EXPECT_TRUE(split({noisy("train")}, {noisy("test")}).ok());
 }
 
 TEST(Leakage, ACopyUnderAnotherNameIsRefusedByName) {
@@ -119,9 +119,9 @@ TEST(Leakage, ACopyUnderAnotherNameIsRefusedByName) {
     row.position_m += 0.0003;
   }
   const std::vector<std::string> parts = {"copy: ", "1000 rows from 0 s", "train from 0 s", "; "};
-  const auto both = prepared({train, copy});
-  EXPECT_TRUE(test::has_parts(refuse_leakage(both, 1).error().message, parts));
-  EXPECT_TRUE(test::has_parts(refuse_leakage(both, 2).error().message, parts)) << "without a test they test each other";
+  EXPECT_TRUE(test::has_parts(split({train}, {copy}).error().message, parts));
+  EXPECT_TRUE(test::has_parts(split({copy, train}, {}).error().message, {"train: ", "copy from 0 s"}))
+      << "without a test they test each other";
 }
 
 TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
@@ -133,9 +133,9 @@ TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
   EXPECT_EQ(stretch.rows, 2 * kLeakRows);
   EXPECT_EQ(stretch.first_row, 777u);
   EXPECT_EQ(stretch.trained_row, 331u);
-  const Status status = refuse_leakage(prepared({train, test}), 1);
-  ASSERT_FALSE(status);
-  EXPECT_TRUE(palpate::test::has_parts(status.error().message, {"100 rows from 0.777 s", "0.331 s"}));
+  const auto set = split({train}, {test});
+  ASSERT_FALSE(set.ok());
+  EXPECT_TRUE(palpate::test::has_parts(set.error().message, {"100 rows from 0.777 s", "0.331 s"}));
 }
 
 TEST(Leakage, SilenceIsNoContent) {
