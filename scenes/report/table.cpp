@@ -48,10 +48,8 @@ std::string under_html(const std::vector<TableCell>& row, std::size_t first, con
 }
 
 bool is_text(const Table& table, std::size_t column) {
-  for (const auto& row : table.rows) {
-    if (!row[column].is_string()) return false;
-  }
-  return !table.rows.empty();
+  return !table.rows.empty() &&
+         std::ranges::all_of(table.rows, [&](const auto& row) { return row[column].is_string(); });
 }
 
 TableCell any(const ErrorSummary& errors, double value) { return errors.samples > 0 ? value : kNoNumber; }
@@ -162,7 +160,7 @@ Table gains_table(const ReportData& data) {
 
 std::string verdict(const Choice& choice, std::size_t model, const PairedDifference& difference) {
   if (model == choice.recommended) return "recommended";
-  const bool qualified = std::find(choice.qualified.begin(), choice.qualified.end(), model) != choice.qualified.end();
+  const bool qualified = std::ranges::count(choice.qualified, model) > 0;
   return (difference.p99 >= 0.0 ? "+" : "−") + three_digits(std::abs(difference.p99)) +
          (qualified ? ", qualified" : "");
 }
