@@ -57,8 +57,6 @@ Status SessionRecorder::start(const RecorderRequest& request) {
   Result<RecordingWriter> writer =
       RecordingWriter::create(request.path, request.columns, request.comments, request.overwrite);
   if (!writer) return writer.error();
-  // Discards samples that an earlier recording left in the ring.
-  while (loop_.read_samples(buffer_.data(), buffer_.size()) > 0) continue;
   writer_.emplace(std::move(*writer));
   request_ = request;
   ++number_;
