@@ -42,51 +42,37 @@ struct Preparations {
   const PreparedTraining& of(Recipe recipe) const { return recipe == Recipe::paper ? paper : palpate; }
 };
 
-// A planned model with what is known of it while the folds are measured.
-struct Measured {
-  ModelResult result;
-  ModelErrors recorded;
-  ModelErrors moved;
-  std::vector<ModelPointer> fits{};  // of each fold; empty: no force
-};
-
 class Measurement {
  public:
   Measurement(ReportData& data, const FitControl& control)
-      : data_(data), models_(planned(data.quick, data.scene)), progress_(control, expected_total()) {}
+      : data_(data), models_(data.models), progress_(control, plan_models()) {}
 
   Status run() {
     for (const Split& fold : data_.recordings.folds) {
       if (const Status status = run_fold(fold); !status) return status;
     }
-    for (Measured& one : models_) finish(one);
+    for (ModelResult& one : models_) finish(one);
     data_.floor = noise_floor(tested_, data_.scene.jnd);
     time_all();
     merge_equal();
-    for (Measured& one : models_) data_.models.push_back(std::move(one.result));
-    data_.choice = choose(data_.models);
+    data_.choice = choose(models_);
     find_worst();
     return progress_.next(0.0).may_continue(1.0) ? Status{} : Status{interrupted()};
   }
 
  private:
-  static std::vector<Measured> planned(bool quick, const Scene& scene) {
-    std::vector<Measured> models;
-    for (PlannedModel& plan : make_plan(quick, scene.features.size())) {
-      models.push_back({{}, ModelErrors(scene.jnd), ModelErrors(scene.jnd)});
-      models.back().result.plan = std::move(plan);
-    }
-    return models;
-  }
-
-  double expected_total() const {
+  // Returns the expected time of the whole measurement, s.
+  double plan_models() {
     double total = 2.0 * kPrepareSeconds;
-    for (const Measured& one : models_) {
-      const PlannedModel& plan = one.result.plan;
-      if (plan.recipe != Recipe::no_force) total += plan.request.method->expected_seconds(plan.request);
+    for (PlannedModel& plan : make_plan(data_.quick, data_.scene.features.size())) {
+      ModelResult& model = models_.emplace_back();
+      model.plan = std::move(plan);
+      model.recorded_samples = model.moved_samples = ModelErrors(data_.scene.jnd);
+      const MethodRequest& request = model.plan.request;
+      total += kEvaluateSeconds;
+      if (model.plan.recipe != Recipe::no_force) total += request.method->expected_seconds(request);
     }
-    return static_cast<double>(data_.recordings.folds.size()) *
-           (total + kEvaluateSeconds * static_cast<double>(models_.size()));
+    return static_cast<double>(data_.recordings.folds.size()) * total;
   }
 
   Result<Preparations> prepare(const std::vector<PreparedRecordingPointer>& training) {
@@ -106,8 +92,7 @@ class Measurement {
   // Fits all planned models of one fold.
   Status fit(const Preparations& prepared) {
     std::map<std::pair<Recipe, const Method*>, std::pair<MethodFit, double>> bases;
-    for (Measured& measured : models_) {
-      ModelResult& result = measured.result;
+    for (ModelResult& result : models_) {
       const PlannedModel& plan = result.plan;
       if (plan.recipe == Recipe::no_force) continue;
       const auto base = bases.find({plan.recipe, plan.request.method->base});
@@ -126,7 +111,7 @@ class Measurement {
       result.fit_seconds += seconds / static_cast<double>(data_.recordings.folds.size());
       result.model = std::make_shared<const FittedModel>(std::move(one->data));
       result.size = std::max(result.size, result.model->centre_count());
-      measured.fits.push_back(result.model);
+      result.fits.push_back(result.model);
     }
     return {};
   }
@@ -142,10 +127,9 @@ class Measurement {
     return {};
   }
 
-  void finish(Measured& one) {
-    ModelResult& result = one.result;
-    result.errors = one.recorded.unit_errors();
-    result.moved = one.moved.summary();
+  static void finish(ModelResult& result) {
+    result.errors = result.recorded_samples.unit_errors();
+    result.moved = result.moved_samples.summary();
     // A fit has at most as many centres as sites; the name has the actual number.
     const MethodRequest& request = result.plan.request;
     if (result.model && request.method->can_take(kTakesCentres) && result.size < request.centres)
@@ -165,8 +149,7 @@ class Measurement {
     std::vector<EvaluatedModel> models;
     EvaluationRequest request;
     request.counted_s.low = counted_from_s;
-    for (const Measured& measured : models_) {
-      const ModelResult& one = measured.result;
+    for (const ModelResult& one : models_) {
       if (!one.model) continue;
       models.push_back({one.model, data_.scene.jnd});
       if (one.plan.main && one.plan.recipe == Recipe::palpate) request.surface_models.push_back(one.model);
@@ -175,10 +158,10 @@ class Measurement {
     const auto result = evaluate(rows_of(recording), models, request);
     if (!result) return result.error();
     auto errors = result->models.begin();
-    for (Measured& one : models_) {
-      one.recorded.append(one.result.model ? errors->as_recorded : result->no_force);
-      one.moved.append(one.result.model ? errors->surface_moved : result->no_force);
-      if (one.result.model) ++errors;
+    for (ModelResult& one : models_) {
+      one.recorded_samples.append(one.model ? errors->as_recorded : result->no_force);
+      one.moved_samples.append(one.model ? errors->surface_moved : result->no_force);
+      if (one.model) ++errors;
     }
     timing_.push_back(result->timing);
     data_.tested.push_back({recording.name, result->models.front().surface.at});
@@ -189,28 +172,28 @@ class Measurement {
   // Times the models of the last fold.
   void time_all() {
     std::vector<ModelPointer> fitted;
-    for (const Measured& one : models_) {
-      if (one.result.model) fitted.push_back(one.result.model);
+    for (const ModelResult& one : models_) {
+      if (one.model) fitted.push_back(one.model);
     }
     const std::vector<ModelTiming> times = time_models(fitted, timing_);
     auto time = times.begin();
-    for (Measured& one : models_) {
-      if (one.result.model) one.result.time = *time++;
+    for (ModelResult& one : models_) {
+      if (one.model) one.time = *time++;
     }
   }
 
   // Merges models with equal forces into the first of them: without a correction every method equals the trend, and
   // with fewer sites than centres two sizes are equal.
   void merge_equal() {
-    std::vector<Measured> kept;
-    for (Measured& one : models_) {
-      const auto first = std::find_if(kept.begin(), kept.end(), [&](const Measured& other) {
-        return one.result.model && other.result.model && other.recorded.equals(one.recorded);
+    std::vector<ModelResult> kept;
+    for (ModelResult& one : models_) {
+      const auto first = std::ranges::find_if(kept, [&](const ModelResult& other) {
+        return one.model && other.model && other.recorded_samples.equals(one.recorded_samples);
       });
       if (first == kept.end()) {
         kept.push_back(std::move(one));
-      } else if (first->result.plan.name != one.result.plan.name) {
-        first->result.same.push_back(one.result.plan.name);
+      } else if (first->plan.name != one.plan.name) {
+        first->same.push_back(one.plan.name);
       }
     }
     models_ = std::move(kept);
@@ -221,7 +204,7 @@ class Measurement {
     const Choice& choice = data_.choice;
     std::vector<std::size_t> shown{choice.recommended};
     for (const std::size_t i : choice.candidates) {
-      if (i != choice.recommended && (i == choice.best || data_.models[i].plan.is_greedy_2009())) shown.push_back(i);
+      if (i != choice.recommended && (i == choice.best || models_[i].plan.is_greedy_2009())) shown.push_back(i);
     }
     for (std::size_t fold = 0; fold < data_.recordings.folds.size(); ++fold) {
       std::vector<ModelPointer> models;
@@ -236,7 +219,7 @@ class Measurement {
   }
 
   ReportData& data_;
-  std::vector<Measured> models_;
+  std::vector<ModelResult>& models_;
   Progress progress_;
   std::vector<const Recording*> tested_;
   std::vector<TimedSamples> timing_;  // one per test recording
