@@ -1,5 +1,5 @@
 // The forces of the last kHistory_s at 1 kHz, one point per tick, for curves.
-// Thread guarantee: one thread; `append` allocates nothing.
+// Thread guarantee: one thread.
 #pragma once
 
 #include <array>
