@@ -18,7 +18,7 @@ std::string recordings_of(const FittedModel& model) {
 }  // namespace
 
 std::optional<std::size_t> PublishedSet::index_of(std::size_t slot) const noexcept {
-  const auto place = std::find(slots.begin(), slots.end(), slot);
+  const auto place = std::ranges::find(slots, slot);
   if (place == slots.end()) return std::nullopt;
   return static_cast<std::size_t>(place - slots.begin());
 }
@@ -99,7 +99,7 @@ bool SessionModels::is_of_other_material(const Slot& slot) const {
   const bool claimed = slot.claimed || slot.plan.of_this_material;
   if (!scene_.material || claimed || slot.plan.origin != ModelOrigin::file) return false;
   const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
-  return std::any_of(recordings.begin(), recordings.end(), [&](const std::string& name) {
+  return std::ranges::any_of(recordings, [&](const std::string& name) {
     const std::string start = *scene_.material + "_";  // the rig names its recordings MATERIAL_SEED
     return name.rfind(start, 0) != 0 || name.find_first_not_of("0123456789", start.size()) != std::string::npos;
   });
@@ -111,8 +111,7 @@ Status SessionModels::save(std::size_t slot, const std::string& path) const {
 }
 
 bool SessionModels::fits() const noexcept {
-  return std::any_of(slots_.begin(), slots_.end(),
-                     [](const auto& slot) { return slot.plan.origin != ModelOrigin::file; });
+  return std::ranges::any_of(slots_, [](const Slot& slot) { return slot.plan.origin != ModelOrigin::file; });
 }
 
 std::optional<std::size_t> SessionModels::reference() const noexcept {
@@ -123,7 +122,7 @@ std::optional<std::size_t> SessionModels::reference() const noexcept {
 }
 
 bool SessionModels::all_settled() const noexcept {
-  return std::none_of(slots_.begin(), slots_.end(), [](const auto& slot) {
+  return std::ranges::none_of(slots_, [](const Slot& slot) {
     const SlotState state = slot.info.state;
     return slot.info.refitting || state == SlotState::waiting || state == SlotState::fitting;
   });
@@ -169,7 +168,7 @@ void SessionModels::use_plans(const std::vector<SlotPlan>& plans) {
   }
   std::optional<std::size_t> first;
   for (const SlotPlan& plan : plans) {
-    const auto same = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.is(plan); });
+    const auto same = std::ranges::find_if(slots_, [&](const Slot& slot) { return slot.is(plan); });
     auto index = static_cast<std::size_t>(same - slots_.begin());
     if (same == slots_.end()) {
       if (!has_room("show " + plan_name(plan))) continue;
@@ -206,7 +205,7 @@ bool SessionModels::remove(std::size_t index) {
 // Removes the slot from all published sets, so that another model may use it.
 void SessionModels::free(std::size_t index) {
   freed_.push_back(index);
-  for (PublishedSet& set : sets_) std::replace(set.slots.begin(), set.slots.end(), index, PublishedSet::kRemoved);
+  for (PublishedSet& set : sets_) std::ranges::replace(set.slots, index, PublishedSet::kRemoved);
 }
 
 std::vector<std::size_t> SessionModels::read_freed() { return std::exchange(freed_, {}); }
@@ -330,12 +329,9 @@ bool SessionModels::load_file(const std::string& path) {
 }
 
 std::string SessionModels::distinct_name(const std::string& name, const Slot* but) const {
-  const auto taken = [&](const std::string& candidate) {
-    return std::any_of(slots_.begin(), slots_.end(),
-                       [&](const auto& slot) { return &slot != but && slot.info.name == candidate; });
-  };
   std::string candidate = name;
-  for (int i = 2; taken(candidate); ++i) candidate = name + "-" + std::to_string(i);
+  const auto is_taken = [&](const Slot& slot) { return &slot != but && slot.info.name == candidate; };
+  for (int i = 2; std::ranges::any_of(slots_, is_taken); ++i) candidate = name + "-" + std::to_string(i);
   return candidate;
 }
 
