@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -78,18 +79,15 @@ bool is_telling(const Forces& forces_N, std::size_t first) {
   return std::set<double>(begin, begin + static_cast<std::ptrdiff_t>(kLeakRows)).size() >= kLeakValues;
 }
 
+// The longest stretch of equal forces that contains these rows.
 SharedStretch extended(const Forces& trained, const Forces& tested, std::size_t trained_row, std::size_t tested_row) {
-  SharedStretch stretch{tested_row, trained_row, 0};
-  while (stretch.first_row > 0 && stretch.trained_row > 0 &&
-         tested[stretch.first_row - 1] == trained[stretch.trained_row - 1]) {
-    --stretch.first_row;
-    --stretch.trained_row;
-  }
-  while (stretch.first_row + stretch.rows < tested.size() && stretch.trained_row + stretch.rows < trained.size() &&
-         tested[stretch.first_row + stretch.rows] == trained[stretch.trained_row + stretch.rows]) {
-    ++stretch.rows;
-  }
-  return stretch;
+  const auto known = trained.begin() + static_cast<std::ptrdiff_t>(trained_row);
+  const auto asked = tested.begin() + static_cast<std::ptrdiff_t>(tested_row);
+  const std::reverse_iterator before(known);
+  const auto first = std::mismatch(before, trained.rend(), std::reverse_iterator(asked), tested.rend()).first.base();
+  const auto last = std::mismatch(known, trained.end(), asked, tested.end()).first;
+  const auto back = static_cast<std::size_t>(known - first);
+  return {tested_row - back, trained_row - back, static_cast<std::size_t>(last - first)};
 }
 
 // A time of a recording, counted from its beginning.
