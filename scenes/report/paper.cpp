@@ -161,12 +161,8 @@ Table bins_table(const PaperData& data) {
         table.add({"model", ""}, model.name);
         table.add({"force_N", ""}, bin.force_N.mean());
         table.add({"count", ""}, bin.force_N.count());
-        table.add({"mean_error_N", ""}, bin.error_N.mean());
-        table.add({"std_error_N", ""}, bin.error_N.deviation());
-        table.add({"max_error_N", ""}, bin.error_N.largest());
-        table.add({"mean_relative_error", ""}, bin.relative.mean());
-        table.add({"std_relative_error", ""}, bin.relative.deviation());
-        table.add({"max_relative_error", ""}, bin.relative.largest());
+        table.add_moments("error_N", bin.error_N);
+        table.add_moments("relative_error", bin.relative);
         table.add({"jnd_N", ""}, data.jnd.at(bin.force_N.mean()));
       }
     }

@@ -135,12 +135,8 @@ Table bins_table(const ReportData& data) {
       table.add({"force_to_N", ""}, bin.force_to_N);
       table.add({"count", ""}, bin.force_N.count());
       table.add({"mean_force_N", ""}, bin.force_N.mean());
-      table.add({"mean_abs_error_N", ""}, bin.error_N.mean());
-      table.add({"std_abs_error_N", ""}, bin.error_N.deviation());
-      table.add({"max_abs_error_N", ""}, bin.error_N.largest());
-      table.add({"mean_error_over_jnd", ""}, bin.over_jnd.mean());
-      table.add({"std_error_over_jnd", ""}, bin.over_jnd.deviation());
-      table.add({"max_error_over_jnd", ""}, bin.over_jnd.largest());
+      table.add_moments("abs_error_N", bin.error_N);
+      table.add_moments("error_over_jnd", bin.over_jnd);
     }
   }
   return table;

@@ -44,6 +44,12 @@ struct Table {
     if (rows.size() == 1) columns.push_back(column);
     rows.back().push_back(std::move(cell));
   }
+  // Adds mean_KEY, std_KEY and max_KEY, which are not on the page.
+  void add_moments(const std::string& key, const Moments& values) {
+    add({"mean_" + key, ""}, values.mean());
+    add({"std_" + key, ""}, values.deviation());
+    add({"max_" + key, ""}, values.largest());
+  }
 };
 
 // Numbers read back as the same doubles; text is quoted where needed (RFC 4180).
