@@ -136,8 +136,7 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
   for (std::size_t first = 0; first < moments_.size(); first += group) {
     const auto begin = moments_.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = moments_.begin() + static_cast<std::ptrdiff_t>(std::min(first + group, moments_.size()));
-    const Moment& shown =
-        *std::max_element(begin, end, [&](const Moment& a, const Moment& b) { return worst_of(a) < worst_of(b); });
+    const Moment& shown = *std::ranges::max_element(begin, end, {}, worst_of);
     largest = std::max(largest, 1.1 * worst_of(shown));
     force.series[0].rows.push_back({shown.time_s, shown.measured_N});
     difference.series[0].rows.push_back({shown.time_s, 0.0, -1.0, 1.0});

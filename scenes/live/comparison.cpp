@@ -43,9 +43,7 @@ void Comparison::forget_slot(std::size_t slot) {
 }
 
 std::size_t Comparison::mostly_outside() const noexcept {
-  const auto most = std::max_element(slots_.begin(), slots_.end(),
-                                     [](const Slot& a, const Slot& b) { return a.outside_s < b.outside_s; });
-  return static_cast<std::size_t>(most - slots_.begin());
+  return static_cast<std::size_t>(std::ranges::max_element(slots_, {}, &Slot::outside_s) - slots_.begin());
 }
 
 ModelFigures Comparison::figures(std::size_t slot) const {

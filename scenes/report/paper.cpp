@@ -174,10 +174,8 @@ std::string protocol_words(const PaperData& data) {
   std::string text =
       "Samples at steps of 50 mN; depth, velocity and two low-passed velocities; rows scaled by 1/f; linear polynomial "
       "tail; pseudo-inverses by truncated singular values; 100 centres; no trend, trust or surface search. Forces are "
-      "cut "
-      "at 0 and at 1.2 times the largest measured one, as of every model here. Bins are two JND wide, those of fewer "
-      "than 20 "
-      "samples in contact are left out.";
+      "cut at 0 and at 1.2 times the largest measured one, as of every model here. Bins are two JND wide, those of "
+      "fewer than 20 samples in contact are left out.";
   for (const PaperRun& run : data.runs) {
     text.append(" ").append(run_name(run)).append(": ").append(with_thousands(std::to_string(run.trained)));
     text.append(" samples to train, ").append(with_thousands(std::to_string(run.tested)));
