@@ -101,13 +101,11 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
   point.sustained_over_jnd.fill(std::nanf(""));
   point.predicted_error_N = std::nanf("");
   if (set == nullptr) return point;
-  if (snapshot.selected < set->slots.size()) {
-    point.active = static_cast<std::uint8_t>(std::min(set->slots[snapshot.selected], kMaxModels - 1));
-    point.predicted_error_N = static_cast<float>(snapshot.tick.predicted_error_N[snapshot.selected]);
-  }
-  for (std::size_t i = 0; i < set->slots.size(); ++i) {
-    const std::size_t slot = set->slots[i];
-    if (slot == PublishedSet::kRemoved) continue;
+  for (const auto& [slot, i] : set->models) {
+    if (i == snapshot.selected) {
+      point.active = static_cast<std::uint8_t>(slot);
+      point.predicted_error_N = static_cast<float>(snapshot.tick.predicted_error_N[i]);
+    }
     point.force_N[slot] = static_cast<float>(snapshot.tick.force_N[i]);
     if (models_.info(slot).other_material) point.other_material |= static_cast<std::uint16_t>(1U << slot);
   }
@@ -118,15 +116,11 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
                        double step_s) {
   // Where one model is outside its training domain, the sample counts for no model.
   bool outside = false;
-  for (std::size_t i = 0; i < set.slots.size(); ++i) {
-    const std::size_t slot = set.slots[i];
-    if (slot == PublishedSet::kRemoved || models_.info(slot).other_material) continue;
-    if ((snapshot.tick.out_of_domain_mask >> i & 1U) == 0) continue;
-    outside = true;
-    slots_[slot].outside_s += step_s;
-  }
-  for (const std::size_t slot : set.slots) {
-    if (slot == PublishedSet::kRemoved) continue;
+  for (const auto& [slot, i] : set.models) {
+    if (!models_.info(slot).other_material && (snapshot.tick.out_of_domain_mask >> i & 1U) != 0) {
+      outside = true;
+      slots_[slot].outside_s += step_s;
+    }
     const double difference = point.difference_over_jnd(slot, jnd_);
     slots_[slot].sustained_over_jnd =
         slots_[slot].sustained.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
@@ -143,8 +137,8 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
 
 void Comparison::count_errors(const HistoryPoint& point, const PublishedSet& set) {
   const bool begins = std::exchange(stroke_pending_, false);
-  for (const std::size_t slot : set.slots) {
-    if (slot == PublishedSet::kRemoved || std::isnan(point.difference_over_jnd(slot, jnd_))) continue;
+  for (const auto& [slot, i] : set.models) {
+    if (std::isnan(point.difference_over_jnd(slot, jnd_))) continue;
     StreamErrors& errors = slots_[slot].errors;
     if (begins) errors.begin_stroke();
     errors.add(static_cast<double>(point.force_N[slot]), static_cast<double>(point.reference_N), jnd_);
@@ -159,9 +153,8 @@ void Comparison::show(const LoopSnapshot& newest) {
     for (Slot& slot : slots_) slot.unit_errors = slot.errors.unit_errors(jnd_);
   }
   if (set == nullptr) return;
-  for (std::size_t i = 0; i < set->slots.size(); ++i) {
-    if (set->slots[i] == PublishedSet::kRemoved) continue;
-    ModelFigures& figures = slots_[set->slots[i]].newest;
+  for (const auto& [slot, i] : set->models) {
+    ModelFigures& figures = slots_[slot].newest;
     figures.force_N = newest.tick.force_N[i];
     figures.predicted_error_N = newest.tick.predicted_error_N[i];
     figures.out_of_domain = (newest.tick.out_of_domain_mask >> i & 1U) != 0;
@@ -172,8 +165,8 @@ double Comparison::reference_in(const LoopSnapshot& snapshot, const PublishedSet
   if (reference_ == ReferenceKind::measured) return snapshot.measured_N;
   if (reference_ == ReferenceKind::truth) return snapshot.reference_N;
   if (set == nullptr || !models_.reference()) return kNoForce;
-  const auto index = set->index_of(*models_.reference());
-  return index ? snapshot.tick.force_N[*index] : kNoForce;
+  const std::size_t index = set->index_of(*models_.reference());
+  return index < kMaxModels ? snapshot.tick.force_N[index] : kNoForce;
 }
 
 }  // namespace palpate

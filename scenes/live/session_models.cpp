@@ -17,12 +17,6 @@ std::string recordings_of(const FittedModel& model) {
 
 }  // namespace
 
-std::optional<std::size_t> PublishedSet::index_of(std::size_t slot) const noexcept {
-  const auto place = std::ranges::find(slots, slot);
-  if (place == slots.end()) return std::nullopt;
-  return static_cast<std::size_t>(place - slots.begin());
-}
-
 SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices)
     : scene_(scene), notices_(notices), worker_(scene_, seed) {}
 
@@ -205,7 +199,7 @@ bool SessionModels::remove(std::size_t index) {
 // Removes the slot from all published sets, so that another model may use it.
 void SessionModels::free(std::size_t index) {
   freed_.push_back(index);
-  for (PublishedSet& set : sets_) std::ranges::replace(set.slots, index, PublishedSet::kRemoved);
+  for (PublishedSet& set : sets_) set.models.erase(index);
 }
 
 std::vector<std::size_t> SessionModels::read_freed() { return std::exchange(freed_, {}); }
@@ -264,14 +258,13 @@ std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     // The reference is in every set, even when it is hidden.
     if (!slots_[i].takes_part() && !(direct_ == i && slots_[i].model != nullptr)) continue;
+    set.models[i] = models.size();
     models.push_back(slots_[i].model);
-    set.slots.push_back(i);
   }
   auto next = std::make_unique<LiveModels>(set.id, sensor, std::move(models), std::move(reference));
-  next->selected = static_cast<std::uint32_t>(set.index_of(selected_).value_or(0));
-  if (const auto model = this->reference(); model && set.index_of(*model)) {
-    next->written_model = static_cast<std::uint32_t>(*set.index_of(*model));
-  }
+  next->selected = static_cast<std::uint32_t>(set.models.contains(selected_) ? set.index_of(selected_) : 0);
+  if (const auto model = this->reference(); model && set.models.contains(*model))
+    next->written_model = static_cast<std::uint32_t>(set.index_of(*model));
   sets_.push_back(std::move(set));
   return next;
 }
@@ -285,7 +278,7 @@ const PublishedSet* SessionModels::set_of(const LoopSnapshot& snapshot) const no
 void SessionModels::write_selection(LoopControls& controls) const {
   if (sets_.empty()) return;
   controls.models_id = sets_.back().id;
-  controls.selected = static_cast<std::uint32_t>(sets_.back().index_of(selected_).value_or(sets_.back().slots.size()));
+  controls.selected = static_cast<std::uint32_t>(sets_.back().index_of(selected_));
 }
 
 std::vector<SlotPlan> SessionModels::plans() const {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,16 +46,16 @@ struct ModelInfo {
   bool paper = false;          // fitted by the recipe of the paper (2009)
 };
 
-// Maps the models of a published set to their slots. Snapshots of a set may still arrive after the next set was
-// published.
+// A published set of models. Snapshots of a set may still arrive after the next set was published.
 struct PublishedSet {
-  // Replaces the index of a slot whose model was removed.
-  static constexpr std::size_t kRemoved = static_cast<std::size_t>(-1);
   std::uint32_t id = 0;
-  std::vector<std::size_t> slots;
+  std::map<std::size_t, std::size_t> models;  // slot to index in the set, without the models that were removed since
 
-  // Index of the slot's model in the set; empty when it has none.
-  std::optional<std::size_t> index_of(std::size_t slot) const noexcept;
+  // Index of the slot's model in the set; kMaxModels when it has none.
+  std::size_t index_of(std::size_t slot) const noexcept {
+    const auto model = models.find(slot);
+    return model != models.end() ? model->second : kMaxModels;
+  }
 };
 
 class SessionModels {
