@@ -208,7 +208,7 @@ void DemoApp::scroll_curves(double by_s) {
 void DemoApp::seek_replay(double by_s) { session_->replay()->seek(session_->replay()->playhead_s() + by_s); }
 
 void DemoApp::close_windows() {
-  const std::vector<DeviceChoice> devices = view_.dialogs.devices;
+  const std::vector<DeviceDescription> devices = view_.dialogs.devices;
   view_.dialogs = {};
   view_.dialogs.devices = devices;
   view_.details = false;

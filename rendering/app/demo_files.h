@@ -54,12 +54,12 @@ class DemoFiles {
   Notify notify_;
   Read read_;
   std::string settings_file_;
-  std::future<Result<ConvertedRecording>> arriving_;  // the file that is being read
-  std::string reading_;                               // its path
-  std::vector<std::string> waiting_;                  // files to read after it
-  std::future<std::vector<DeviceChoice>> looking_;    // the search for devices
-  std::future<Notice> drawing_;                       // the figure of the curves that is being drawn
-  std::string recording_;                             // the file that is being recorded; empty: none
+  std::future<Result<ConvertedRecording>> arriving_;     // the file that is being read
+  std::string reading_;                                  // its path
+  std::vector<std::string> waiting_;                     // files to read after it
+  std::future<std::vector<DeviceDescription>> looking_;  // the search for devices
+  std::future<Notice> drawing_;                          // the figure of the curves that is being drawn
+  std::string recording_;                                // the file that is being recorded; empty: none
 };
 
 }  // namespace palpate

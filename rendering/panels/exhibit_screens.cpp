@@ -129,7 +129,7 @@ struct Exhibit::Screens {
       points.clear();
     };
     for (std::size_t i = 0; i < trace.columns().size(); ++i) {
-      const double over_jnd = trace.over_jnd(i);
+      const double over_jnd = trace.columns()[i].over_jnd;
       if (std::isnan(over_jnd)) {
         flush();
       } else {

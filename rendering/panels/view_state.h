@@ -100,7 +100,7 @@ struct Dialogs {
   bool view_list = false;  // choices of the display
   RecordingRoles recording_roles;
   FilePicker picker;
-  std::vector<DeviceChoice> devices;  // empty: no search has finished
+  std::vector<DeviceDescription> devices;  // empty: no search has finished
 
   bool any() const noexcept {
     return help || file_list || scene_list || device_list || view_list || recording_roles.any();

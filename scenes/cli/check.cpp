@@ -1,16 +1,11 @@
 // palpate check: checks whether a recording is suitable for a fit.
 #include <iostream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "engine/base/text.h"
-#include "models/check/check_recording.h"
-#include "scenes/cli/check_recordings.h"
-#include "scenes/cli/output.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate::cli {
 namespace {
@@ -44,11 +39,6 @@ void print_check_json(const std::vector<CheckedFile>& files) {
   print_json({{"recordings", list}});
 }
 
-std::string verdict_text(const RecordingCheck& check) {
-  const std::string verdict = check.verdict();
-  return verdict == "care" ? "usable with care" : verdict == "unusable" ? "not usable" : "usable";
-}
-
 Status run_check(const CheckOptions& options) {
   const auto scene = load_scene(options.scene);
   if (!scene) return scene.error();
@@ -63,31 +53,6 @@ Status run_check(const CheckOptions& options) {
 }
 
 }  // namespace
-
-std::string check_text(const CheckedFile& file) {
-  std::ostringstream text;
-  text << file.path << ": " << verdict_text(file.check) << "\n";
-  for (const Finding& finding : file.check.findings) {
-    const std::string severity = severity_name(finding.severity);
-    text << "  " << severity << std::string(9 - severity.size(), ' ') << finding.code
-         << std::string(finding.code.size() < 17 ? 17 - finding.code.size() : 1, ' ') << finding.text
-         << (finding.advice.empty() ? "" : "; " + finding.advice) << "\n";
-  }
-  text << "  the noise of the force sensor alone leaves " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
-       << " % of the contact samples within the JND; this says nothing about a model\n";
-  if (!file.whole) text << "  only the first " << kMostCheckedRows << " rows were checked\n";
-  return text.str();
-}
-
-CheckRequest check_request(const Scene& scene) { return check_request(scene.jnd, scene.features); }
-
-Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request) {
-  auto files = check_recording_files(paths, request);
-  if (!files) return files.error();
-  if (const Status usable = refuse_unusable(*files); !usable) return usable.error();
-  for (const std::string& line : warning_lines(*files)) std::cerr << "warning: " << line << "\n";
-  return files;
-}
 
 void add_check(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<CheckOptions>();

@@ -16,9 +16,8 @@
 #include "models/model/file/model_io.h"
 #include "models/model/fitted_model.h"
 #include "models/recordings/recording_faults.h"
-#include "scenes/cli/check_recordings.h"
-#include "scenes/cli/output.h"
 #include "scenes/cli/progress.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/scene/scene.h"
@@ -36,7 +35,6 @@ struct FitArguments {
   std::string out;
   bool force = false;
   bool json = false;
-  bool list_methods = false;
 };
 
 // An option that only some methods have.
@@ -49,20 +47,8 @@ constexpr MethodOnly kMethodOnly[] = {{"--centres", kTakesCentres},
                                       {"--grid", kTakesGrid},
                                       {"--kernel", kTakesKernel}};
 
-// The sensors behind the training error: an accelerometer reduces it, and a device may have none.
-std::string sensor_text(const std::vector<CheckedFile>& files) {
-  const bool any = std::any_of(files.begin(), files.end(),
-                               [](const CheckedFile& one) { return one.recording().columns.acceleration; });
-  return any ? " (with the accelerometer)" : " (from positions alone)";
-}
-
-// Checks what CLI11 cannot: options that are required unless the methods are only listed, and options that the method
-// does not have.
+// Checks for options that exclude each other by their values, and for those that the method does not have.
 void check_usage(const CLI::App& verb, const FitArguments& arguments) {
-  if (arguments.list_methods) return;
-  for (const char* needed : {"--recording", "--method", "--out"}) {
-    if (verb.count(needed) == 0) throw CLI::RequiredError(needed);
-  }
   if (verb.count("--relaxation") > 0 && verb.count("--features") > 0 && arguments.options.features != "scene") {
     throw CLI::ValidationError("--relaxation", "found --features \"" + arguments.options.features +
                                                    "\", expected the scene's features; leave one of the two out");
@@ -75,9 +61,9 @@ void check_usage(const CLI::App& verb, const FitArguments& arguments) {
   }
 }
 
-Status list_methods() {
+void list_methods() {
   for (const Method* method : methods()) std::cout << method->name << "\n";
-  return {};
+  throw CLI::Success();
 }
 
 // Replays the training recordings as recorded, and reports where their share within the JND contradicts that of the
@@ -96,7 +82,7 @@ std::string training_contradiction(const std::vector<std::string>& recordings, c
   const double printed = data.provenance.training_within_jnd;
   if (!(std::abs(as_recorded - printed) > kContradiction)) return {};
   const auto& surfaces = data.provenance.surfaces;
-  const bool changed = std::any_of(surfaces.begin(), surfaces.end(), [](const RecordingSurface& one) {
+  const bool changed = std::ranges::any_of(surfaces, [](const RecordingSurface& one) {
     return one.offset_m != 0.0 || one.force_zero_N != 0.0 || one.lag_s != 0.0;
   });
   return "the training recordings have " + fixed(100.0 * as_recorded, 2) + " % within the JND as recorded, and " +
@@ -148,8 +134,8 @@ void print_surfaces(const Provenance& provenance) {
   }
 }
 
-// `sensor`: printed after the share of the training within the JND; `out`: the file that was written.
-void print_fit(const RecordingsFit& fitted, const std::string& sensor, const std::string& out) {
+// `out`: the file that was written.
+void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::string& out) {
   const auto& [prepared, fit, seconds] = fitted;
   print_gains(prepared.gains);
   const Provenance& provenance = fit.data.provenance;
@@ -165,13 +151,13 @@ void print_fit(const RecordingsFit& fitted, const std::string& sensor, const std
             << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "full strength")
             << "\n"
             << "fit time            " << fixed(seconds, 2) << " s\n"
-            << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %" << sensor << "\n";
+            << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %"
+            << (accelerometer ? " (with the accelerometer)" : " (from positions alone)") << "\n";
   for (const std::string& note : fit.report.notes) std::cout << "note                " << note << "\n";
   std::cout << "written             " << out << "\n";
 }
 
 Status run_fit(const FitArguments& arguments) {
-  if (arguments.list_methods) return list_methods();
   const auto scene = load_scene(arguments.scene);
   if (!scene) return scene.error();
   // Reports before the fit if the output cannot be written.
@@ -180,7 +166,9 @@ Status run_fit(const FitArguments& arguments) {
   std::optional<ProgressLine> line("fitting " + arguments.options.method);
   auto checked = check_before_use(arguments.recordings, check_request(*scene));
   if (!checked) return checked.error();
-  const std::string sensor = sensor_text(*checked);
+  // An accelerometer reduces the training error, and a device may have none.
+  const bool accelerometer =
+      std::ranges::any_of(*checked, [](const CheckedFile& one) { return one.recording().columns.acceleration; });
   const auto fitted = fit_recordings(std::move(*checked), training_request(*scene), arguments.options, began,
                                      [&](double fraction) { return line->update(fraction); });
   if (!fitted) return fitted.error();
@@ -192,7 +180,7 @@ Status run_fit(const FitArguments& arguments) {
   if (arguments.json) {
     print_json(fit_json(*fitted, arguments.options));
   } else {
-    print_fit(*fitted, sensor, arguments.out);
+    print_fit(*fitted, accelerometer, arguments.out);
   }
   return {};
 }
@@ -204,12 +192,14 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("fit", "Fit a force model to recordings");
   verb->add_option("--recording", arguments->recordings,
                    "Training recordings (CSV); together they form one training set")
+      ->required()
       ->type_name("CSV");
   std::vector<std::string> names;
   for (const Method* method : methods()) names.emplace_back(method->name);
   verb->add_option("--method", arguments->options.method, "Method of the correction: " + method_names())
+      ->required()
       ->check(CLI::IsMember(names));
-  verb->add_flag("--list-methods", arguments->list_methods, "Print the names of the methods, one per line");
+  verb->add_flag_callback("--list-methods", list_methods, "Print the names of the methods, one per line");
   verb->option_defaults()->always_capture_default();
   verb->add_option("--centres", arguments->options.centres,
                    "Number of centres, for " + methods_that_take(kTakesCentres) + "; direct uses every site")
@@ -251,7 +241,7 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line");
   verb->add_option("--seed", arguments->options.seed,
                    "Seed of the random numbers, for " + methods_that_take(kTakesSeed));
-  verb->add_option("--out", arguments->out, "Model file to write (JSON)")->type_name("JSON");
+  verb->add_option("--out", arguments->out, "Model file to write (JSON)")->required()->type_name("JSON");
   verb->add_flag("--force", arguments->force, "Replace an existing file");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   verb->parse_complete_callback([verb, arguments] { check_usage(*verb, *arguments); });

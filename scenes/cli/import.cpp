@@ -11,7 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
 #include "models/recordings/surface_estimate.h"
-#include "scenes/cli/output.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {

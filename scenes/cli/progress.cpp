@@ -2,10 +2,10 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <utility>
+
+#include "engine/base/text.h"
 
 namespace palpate::cli {
 namespace {
@@ -15,15 +15,12 @@ constexpr auto kDrawInterval = std::chrono::milliseconds(100);
 }  // namespace
 
 std::string progress_text(const std::string& label, double fraction, double elapsed_s) {
-  const double done = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0;
   char numbers[64];
-  if (done >= 0.02 && elapsed_s >= 1.0) {
-    const double left_s = elapsed_s * (1.0 - done) / done;
-    std::snprintf(numbers, sizeof numbers, "  %3.0f %%  %.0f s left", 100.0 * done, left_s);
-  } else {
-    std::snprintf(numbers, sizeof numbers, "  %3.0f %%", 100.0 * done);
-  }
-  return label + numbers;
+  std::snprintf(numbers, sizeof numbers, "  %3.0f %%", 100.0 * fraction);
+  std::string text = label + numbers;
+  if (fraction >= 0.02 && elapsed_s >= 1.0)
+    text += "  " + fixed(elapsed_s * (1.0 - fraction) / fraction, 0) + " s left";
+  return text;
 }
 
 ProgressLine::ProgressLine(std::string label)

@@ -15,8 +15,8 @@
 #include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "engine/live/haptics_loop.h"
-#include "scenes/cli/check_recordings.h"
 #include "scenes/cli/record_guide.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/scene/folders.h"
@@ -93,11 +93,6 @@ void zero_on_enter(Device& device, const DeviceHealth& health, bool& announced, 
   if (poll(&input, 1, 0) == 1 && ::read(STDIN_FILENO, typed, sizeof typed) > 0) device.start_zeroing();
 }
 
-Result<std::unique_ptr<Device>> open_for_recording(const RecordOptions& options) {
-  return open_device(options.bridge_remote ? with_remote_bridge(options.device) : options.device,
-                     {.calibrations = calibrations_folder()});
-}
-
 RecorderRequest recorder_request(const RecordOptions& options, Device& device) {
   const SensorSpec sensor = device.sensor();
   RecorderRequest request;
@@ -147,7 +142,8 @@ Status run_record(const RecordOptions& options) {
   const StopListener listener;
   const auto scene = load_scene(options.scene);
   if (!scene) return scene.error();
-  auto device = open_for_recording(options);
+  auto device = open_device(options.bridge_remote ? with_remote_bridge(options.device) : options.device,
+                            {.calibrations = calibrations_folder()});
   if (!device) return device.error();
   if (options.guide && !(*device)->measures_force()) {
     return Error{"--guide: " + options.device +

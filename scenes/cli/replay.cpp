@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "engine/base/text.h"
-#include "scenes/cli/check_recordings.h"
-#include "scenes/cli/output.h"
 #include "scenes/cli/replay_files.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/plot/draw.h"
@@ -35,6 +34,7 @@ struct Options {
 constexpr double kShareThatMatters = 0.005;
 
 struct ReplayedModel {
+  LoadedModel loaded;
   ErrorSummary as_recorded;
   ErrorSummary surface_moved;
   BoundCoverage predicted;
@@ -95,8 +95,9 @@ void add_figures(OrderedJson& object, const ErrorSummary& errors) {
   for (const Figure& figure : kFigures) object[figure.key] = number_or_null(errors.samples > 0, errors.*figure.value);
 }
 
-OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
-  OrderedJson object = {{"name", one.name}, {"method", one.model->method()}, {"centres", one.model->centre_count()}};
+OrderedJson model_json(const ReplayedModel& replayed) {
+  const auto& [name, model] = replayed.loaded;
+  OrderedJson object = {{"name", name}, {"method", model->method()}, {"centres", model->centre_count()}};
   add_figures(object, replayed.as_recorded);
   object["out_of_domain_samples"] = replayed.as_recorded.out_of_domain_samples;
   for (const auto& [key, time] :
@@ -114,9 +115,9 @@ OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
   return object;
 }
 
-OrderedJson recording_json(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
+OrderedJson recording_json(const ReplayedRecording& replayed) {
   OrderedJson list = OrderedJson::array();
-  for (std::size_t i = 0; i < models.size(); ++i) list.push_back(model_json(models[i], replayed.models[i]));
+  for (const ReplayedModel& one : replayed.models) list.push_back(model_json(one));
   return {{"recording", replayed.path},
           {"samples", replayed.samples},
           {"contact_samples", replayed.contact_samples},
@@ -124,8 +125,8 @@ OrderedJson recording_json(const ReplayedRecording& replayed, const std::vector<
           {"models", list}};
 }
 
-std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& model) {
-  std::vector<std::string> row{one.name, std::to_string(one.model->centre_count())};
+std::vector<std::string> table_row(const ReplayedModel& model) {
+  std::vector<std::string> row{model.loaded.name, std::to_string(model.loaded.model->centre_count())};
   const auto add = [&](const ErrorSummary& errors) {
     for (const Figure& figure : kFigures) {
       row.push_back(errors.samples > 0 ? fixed(figure.scale * (errors.*figure.value), figure.decimals) : "-");
@@ -144,57 +145,50 @@ std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& 
 }
 
 // Says, for the first such model, that the recording does not distinguish an offset of the surface and of the force.
-std::string ambiguity_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    const OffsetEstimate& surface = replayed.models[i].surface;
-    if (surface.force_offset_N == 0.0) continue;
+std::string ambiguity_remark(const ReplayedRecording& replayed) {
+  for (const ReplayedModel& one : replayed.models) {
+    if (one.surface.force_offset_N == 0.0) continue;
     char text[320];
     std::snprintf(text, sizeof text,
                   "a surface at %+.3f mm for %s and a force offset of %+.3f N explain this recording equally well: "
                   "neither is corrected",
-                  1e3 * surface.minimum_at, models[i].name.substr(0, 64).c_str(), surface.force_offset_N);
+                  1e3 * one.surface.minimum_at, one.loaded.name.substr(0, 64).c_str(), one.surface.force_offset_N);
     return text;
   }
   return {};
 }
 
-// Describes how moving the surface changes the share within the JND; empty if the change is small.
-std::string surface_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
-  std::size_t most = models.size();
-  double largest = kShareThatMatters;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    const double share =
-        std::abs(replayed.models[i].surface_moved.within_jnd - replayed.models[i].as_recorded.within_jnd);
-    if (share <= largest) continue;
-    most = i;
-    largest = share;
-  }
-  if (most == models.size()) return {};
-  const ErrorSummary& plain = replayed.models[most].as_recorded;
-  const ErrorSummary& moved = replayed.models[most].surface_moved;
+// Describes the largest change of a share within the JND by moving the surface; empty if it is small.
+std::string surface_remark(const ReplayedRecording& replayed) {
+  const auto change = [](const ReplayedModel& one) {
+    return std::abs(one.surface_moved.within_jnd - one.as_recorded.within_jnd);
+  };
+  const ReplayedModel& most = *std::ranges::max_element(replayed.models, {}, change);
+  if (change(most) <= kShareThatMatters) return {};
+  const ErrorSummary& plain = most.as_recorded;
+  const ErrorSummary& moved = most.surface_moved;
   char text[320];
   std::snprintf(text, sizeof text,
                 "the surface of this recording is at %+.3f mm for %s, which changes the figures: "
                 "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface moved; the "
                 "surface is estimated from these same forces",
-                1e3 * replayed.models[most].surface.at, models[most].name.substr(0, 64).c_str(), 1e2 * plain.within_jnd,
+                1e3 * most.surface.at, most.loaded.name.substr(0, 64).c_str(), 1e2 * plain.within_jnd,
                 1e3 * plain.rms_error_N, 1e2 * moved.within_jnd, 1e3 * moved.rms_error_N);
   return text;
 }
 
-void print_recording(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
+void print_recording(const ReplayedRecording& replayed) {
   std::printf("%s: %llu samples, %llu in contact\n", replayed.path.c_str(),
               static_cast<unsigned long long>(replayed.samples),
               static_cast<unsigned long long>(replayed.contact_samples));
   std::vector<std::vector<std::string>> rows = {{"MODEL", "CENTRES", "RMS mN", "MAX mN", "WITHIN JND %", "P99 JND",
                                                  "MAX JND", "OUT OF DOMAIN", "SURFACE mm", "MOVED: RMS mN", "MAX mN",
                                                  "WITHIN JND %", "P99 JND", "MAX JND", "TICK ns", "P99 ns"}};
-  for (std::size_t i = 0; i < models.size(); ++i) rows.push_back(table_row(models[i], replayed.models[i]));
+  for (const ReplayedModel& one : replayed.models) rows.push_back(table_row(one));
   print_table(rows, true);
-  if (const std::string remark = surface_remark(replayed, models); !remark.empty())
-    std::printf("note: %s\n", remark.c_str());
-  if (const std::string remark = ambiguity_remark(replayed, models); !remark.empty())
-    std::printf("note: %s\n", remark.c_str());
+  for (const std::string& remark : {surface_remark(replayed), ambiguity_remark(replayed)}) {
+    if (!remark.empty()) std::printf("note: %s\n", remark.c_str());
+  }
 }
 
 // `forces_path`: features and forces; `plot_path`: a figure. Empty: not requested.
@@ -228,7 +222,8 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vect
   for (std::size_t i = 0; i < models.size(); ++i) {
     const ModelEvaluation& one = evaluation->models[i];
     errors.push_back(one.as_recorded.summary());
-    replayed.models.push_back({errors.back(), one.surface_moved.summary(), one.predicted, one.surface, times[i]});
+    replayed.models.push_back(
+        {models[i], errors.back(), one.surface_moved.summary(), one.predicted, one.surface, times[i]});
   }
   if (plot_path.empty()) return replayed;
   const Status drawn = plot.draw(plot_path, fs::path(checked.path).filename().string(), errors, overwrite);
@@ -262,10 +257,10 @@ Status run(const Options& options) {
   }
   if (options.json) {
     OrderedJson list = OrderedJson::array();
-    for (const ReplayedRecording& replayed : all) list.push_back(recording_json(replayed, *models));
+    for (const ReplayedRecording& replayed : all) list.push_back(recording_json(replayed));
     print_json(list.size() == 1 ? list.front() : list);
   } else {
-    for (const ReplayedRecording& replayed : all) print_recording(replayed, *models);
+    for (const ReplayedRecording& replayed : all) print_recording(replayed);
   }
   return {};
 }

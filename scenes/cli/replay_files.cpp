@@ -14,22 +14,6 @@
 namespace palpate::cli {
 namespace {
 
-bool is_recording(const std::string& path) { return RecordingReader::open(path).ok(); }
-
-Error recording_as_model(const std::string& path) {
-  return Error{path + " is a recording, expected a model file (JSON, made by palpate fit); give it with --recording"};
-}
-
-// Replaces names that several models have by the names of their files.
-std::vector<std::string> told_apart(const std::vector<std::string>& names, const std::vector<std::string>& paths) {
-  std::vector<std::string> result = names;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (std::count(names.begin(), names.end(), names[i]) > 1)
-      result[i] = std::filesystem::path(paths[i]).stem().string();
-  }
-  return result;
-}
-
 bool same_rows(const Series& one, const Series& other) {
   return std::equal(one.rows.begin(), one.rows.end(), other.rows.begin(), [](const PlotRow& a, const PlotRow& b) {
     return a.y == b.y || (std::isnan(a.y) && std::isnan(b.y));
@@ -44,12 +28,9 @@ constexpr double kMostScale_jnd = 5.0;
 
 std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
   std::vector<std::string> distinct;
-  const auto taken = [&](const std::string& name) {
-    return std::find(distinct.begin(), distinct.end(), name) != distinct.end();
-  };
   for (const std::string& name : names) {
     std::string candidate = name;
-    for (int i = 2; taken(candidate); ++i) candidate = name + "-" + std::to_string(i);
+    for (int i = 2; std::ranges::count(distinct, candidate) > 0; ++i) candidate = name + "-" + std::to_string(i);
     distinct.push_back(candidate);
   }
   return distinct;
@@ -65,7 +46,7 @@ Result<ForcesFile> ForcesFile::create(const std::string& path, bool overwrite, c
     const std::vector<FeatureSpec>& features = models[m].model->features();
     for (std::size_t i = 0; i < features.size(); ++i) {
       const FeatureSpec& spec = features[i];
-      if (std::find(specs.begin(), specs.end(), spec) != specs.end()) continue;
+      if (std::ranges::count(specs, spec) > 0) continue;
       specs.push_back(spec);
       feature_names.push_back(feature_name(spec));
       forces.columns_.push_back({m, i});
@@ -101,14 +82,20 @@ Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& pat
                  " models, expected one each; give --name once for every --model"};
   }
   std::vector<LoadedModel> models;
-  std::vector<std::string> names;
   for (const std::string& path : paths) {
     auto model = load_model(path);
-    if (!model) return is_recording(path) ? recording_as_model(path) : model.error();
-    names.push_back((*model)->name());
-    models.push_back({"", *model});
+    if (!model && RecordingReader::open(path))
+      return Error{path +
+                   " is a recording, expected a model file (JSON, made by palpate fit); give it with --recording"};
+    if (!model) return model.error();
+    models.push_back({(*model)->name(), *model});
   }
-  names = distinct_names(given.empty() ? told_apart(names, paths) : given);
+  std::vector<std::string> names = given;
+  for (std::size_t i = 0; given.empty() && i < models.size(); ++i) {
+    const bool unique = std::ranges::count(models, models[i].name, &LoadedModel::name) == 1;
+    names.push_back(unique ? models[i].name : std::filesystem::path(paths[i]).stem().string());
+  }
+  names = distinct_names(names);
   for (std::size_t i = 0; i < names.size(); ++i) models[i].name = names[i];
   return models;
 }
@@ -149,8 +136,7 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
   for (std::size_t first = 0; first < moments_.size(); first += group) {
     const auto begin = moments_.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = moments_.begin() + static_cast<std::ptrdiff_t>(std::min(first + group, moments_.size()));
-    const Moment& shown =
-        *std::max_element(begin, end, [&](const Moment& a, const Moment& b) { return worst_of(a) < worst_of(b); });
+    const Moment& shown = *std::ranges::max_element(begin, end, {}, worst_of);
     largest = std::max(largest, 1.1 * worst_of(shown));
     force.series[0].rows.push_back({shown.time_s, shown.measured_N});
     difference.series[0].rows.push_back({shown.time_s, 0.0, -1.0, 1.0});

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "scenes/cli/check_recordings.h"
 #include "scenes/cli/progress.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/report/paper.h"
 
@@ -20,9 +20,7 @@ struct Arguments {
   std::vector<std::string> train;
   std::vector<std::string> test;
   std::string scene = "silicone_block";
-  std::string out;
-  bool quick = false;
-  bool force = false;
+  ReportRequest request;
 };
 
 // The command that makes the same report again.
@@ -35,8 +33,8 @@ std::string command_line(const Arguments& arguments) {
   add("--train", arguments.train);
   add("--test", arguments.test);
   add("--scene", {arguments.scene});
-  if (arguments.quick) text += " --quick";
-  add("--out", {arguments.out});
+  if (arguments.request.quick) text += " --quick";
+  add("--out", {arguments.request.out});
   return text;
 }
 
@@ -52,7 +50,7 @@ Status write_folder(const char* label, const std::string& out,
   return {};
 }
 
-Status run_report(const Arguments& arguments) {
+Status run_report(Arguments arguments) {
   if (arguments.train.empty() && !arguments.test.empty()) {
     return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
   }
@@ -62,17 +60,12 @@ Status run_report(const Arguments& arguments) {
   paths.insert(paths.end(), arguments.test.begin(), arguments.test.end());
   auto checked = check_before_use(paths, check_request(*scene));
   if (!checked) return checked.error();
-  ReportRequest request{*scene,
-                        {},
-                        {},
-                        arguments.quick,
-                        arguments.out,
-                        arguments.force,
-                        command_line(arguments),
-                        "palpate " PALPATE_VERSION};
+  ReportRequest& request = arguments.request;
+  request.scene = *scene;
+  request.command_line = command_line(arguments);
+  request.version = "palpate " PALPATE_VERSION;
   for (std::size_t i = 0; i < checked->size(); ++i) {
-    const PreparedRecordingPointer& prepared = (*checked)[i].prepared;
-    (i < arguments.train.size() ? request.train : request.test).emplace_back(prepared, &prepared->recording);
+    (i < arguments.train.size() ? request.train : request.test).push_back((*checked)[i].prepared);
   }
   return write_folder("reporting", request.out,
                       [&](const FitControl& control) { return make_report(request, control); });
@@ -97,9 +90,9 @@ void add_report(CLI::App& app, Verbs& verbs) {
       ->type_name("CSV");
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
       ->capture_default_str();
-  verb->add_option("--out", arguments->out, "Folder to create")->required()->type_name("DIR");
-  verb->add_flag("--quick", arguments->quick, "Fit fewer models: about 10 s instead of a minute");
-  verb->add_flag("--force", arguments->force, "Replace an earlier report");
+  verb->add_option("--out", arguments->request.out, "Folder to create")->required()->type_name("DIR");
+  verb->add_flag("--quick", arguments->request.quick, "Fit fewer models: about 10 s instead of a minute");
+  verb->add_flag("--force", arguments->request.force, "Replace an earlier report");
   verbs.emplace_back(verb, [arguments] { return run_report(*arguments); });
 }
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/cli/output.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/scene.h"
 

@@ -15,10 +15,8 @@ namespace palpate::cli {
 namespace {
 
 struct SynthOptions {
-  SynthOptions() { rig.material.clear(); }
   RigSettings rig;
   std::string out;
-  bool list = false;
   bool force = false;
 };
 
@@ -33,9 +31,6 @@ std::string whole_number(const std::string& text) {
 
 // Checks the command line before any work.
 void check_usage(const CLI::App& verb, const SynthOptions& options) {
-  if (options.list) return;
-  if (options.rig.material.empty()) throw CLI::RequiredError("--material");
-  if (options.out.empty()) throw CLI::RequiredError("--out");
   if (verb.count("--seconds") > 0 && !(options.rig.seconds > 0.0)) {
     throw CLI::ValidationError("--seconds", "must be a number above 0");
   }
@@ -43,16 +38,15 @@ void check_usage(const CLI::App& verb, const SynthOptions& options) {
   if (!trial) throw CLI::ValidationError("synth", trial.error().message);
 }
 
-Status list_materials() {
+void list_materials() {
   for (const Material& material : materials()) {
     std::cout << std::left << std::setw(9) << material.name << " " << material.summary
               << " (relaxation times: " << material.relaxation_times << ")\n";
   }
-  return {};
+  throw CLI::Success();
 }
 
 Status run_synth(const SynthOptions& options) {
-  if (options.list) return list_materials();
   const Result<Material> material = find_material(options.rig.material);
   if (!material) return material.error();
   ProgressLine line("recording " + options.rig.material);
@@ -67,15 +61,15 @@ Status run_synth(const SynthOptions& options) {
 void add_synth(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<SynthOptions>();
   CLI::App* verb = app.add_subcommand("synth", "Make a recording in which a virtual hand presses a virtual material");
-  verb->add_option("--material", options->rig.material, "Material to press; --list prints the names");
+  verb->add_option("--material", options->rig.material, "Material to press; --list prints the names")->required();
   verb->add_option("--seed", options->rig.seed, "Seed of the hand motion and the sensor noise")
       ->check(whole_number)
       ->capture_default_str();
   verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]");
   verb->add_option("--rate", options->rig.rate_Hz, "Rows per second (Hz), 10 to 20000")->capture_default_str();
-  verb->add_option("--out", options->out, "Recording to write (CSV)");
+  verb->add_option("--out", options->out, "Recording to write (CSV)")->required();
   verb->add_flag("--force", options->force, "Replace an existing file");
-  verb->add_flag("--list", options->list, "Print the materials and their relaxation times");
+  verb->add_flag_callback("--list", list_materials, "Print the materials and their relaxation times");
   verb->parse_complete_callback([verb, options] { check_usage(*verb, *options); });
   verbs.emplace_back(verb, [options] { return run_synth(*options); });
 }

@@ -13,13 +13,11 @@ constexpr double kLongestStep_s = 0.1;
 constexpr double kBeginning_s = 0.05;
 // After 5 time constants a first-order filter has less than 1 % of its initial error.
 constexpr double kSettled_memories = 5.0;
+constexpr double kUnitErrors_s = 2.0;
 
 }  // namespace
 
-Comparison::Comparison(const SessionModels& models, const JndLine& jnd) : models_(models), jnd_(jnd) {
-  slots_.resize(kMaxModels);
-  for (Slot& slot : slots_) slot.model_errors = ModelErrors(jnd);
-}
+Comparison::Comparison(const SessionModels& models, const JndLine& jnd) : models_(models), jnd_(jnd) {}
 
 void Comparison::use_reference(ReferenceKind kind) {
   if (kind != reference_) forget_errors("the reference changed");
@@ -28,36 +26,30 @@ void Comparison::use_reference(ReferenceKind kind) {
 
 void Comparison::forget_errors(std::string why) {
   since_ = std::move(why);
-  contact_s_ = counted_s_ = outside_s_ = 0.0;
-  counted_ = 0;
+  contact_s_ = counted_s_ = outside_s_ = unit_errors_s_ = 0.0;
   stroke_pending_ = true;
   for (Slot& slot : slots_) {
     slot.errors = {};
-    slot.quantile = {};
-    slot.model_errors = ModelErrors(jnd_);
+    slot.unit_errors = {};
     slot.outside_s = 0.0;
   }
 }
 
-void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_.features(slot)); }
+void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_.model(slot)->features()); }
 
 void Comparison::forget_slot(std::size_t slot) {
   slots_[slot] = {};
-  slots_[slot].model_errors = ModelErrors(jnd_);
   history_.forget(slot);
 }
 
 std::size_t Comparison::mostly_outside() const noexcept {
-  const auto most = std::max_element(slots_.begin(), slots_.end(),
-                                     [](const Slot& a, const Slot& b) { return a.outside_s < b.outside_s; });
-  return static_cast<std::size_t>(most - slots_.begin());
+  return static_cast<std::size_t>(std::ranges::max_element(slots_, {}, &Slot::outside_s) - slots_.begin());
 }
 
 ModelFigures Comparison::figures(std::size_t slot) const {
   const Slot& one = slots_[slot];
   ModelFigures figures = one.newest;
   figures.errors = one.errors.summary(jnd_);
-  figures.errors.p99_error_over_jnd = one.quantile.p99();
   figures.dent_m = one.dent.depth_m();
   figures.recent_error_over_jnd = one.dent.error_over_jnd();
   return figures;
@@ -109,13 +101,11 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
   point.sustained_over_jnd.fill(std::nanf(""));
   point.predicted_error_N = std::nanf("");
   if (set == nullptr) return point;
-  if (snapshot.selected < set->slots.size()) {
-    point.active = static_cast<std::uint8_t>(std::min(set->slots[snapshot.selected], kMaxModels - 1));
-    point.predicted_error_N = static_cast<float>(snapshot.tick.predicted_error_N[snapshot.selected]);
-  }
-  for (std::size_t i = 0; i < set->slots.size(); ++i) {
-    const std::size_t slot = set->slots[i];
-    if (slot == PublishedSet::kRemoved) continue;
+  for (const auto& [slot, i] : set->models) {
+    if (i == snapshot.selected) {
+      point.active = static_cast<std::uint8_t>(slot);
+      point.predicted_error_N = static_cast<float>(snapshot.tick.predicted_error_N[i]);
+    }
     point.force_N[slot] = static_cast<float>(snapshot.tick.force_N[i]);
     if (models_.info(slot).other_material) point.other_material |= static_cast<std::uint16_t>(1U << slot);
   }
@@ -126,15 +116,11 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
                        double step_s) {
   // Where one model is outside its training domain, the sample counts for no model.
   bool outside = false;
-  for (std::size_t i = 0; i < set.slots.size(); ++i) {
-    const std::size_t slot = set.slots[i];
-    if (slot == PublishedSet::kRemoved || models_.info(slot).other_material) continue;
-    if ((snapshot.tick.out_of_domain_mask >> i & 1U) == 0) continue;
-    outside = true;
-    slots_[slot].outside_s += step_s;
-  }
-  for (const std::size_t slot : set.slots) {
-    if (slot == PublishedSet::kRemoved) continue;
+  for (const auto& [slot, i] : set.models) {
+    if (!models_.info(slot).other_material && (snapshot.tick.out_of_domain_mask >> i & 1U) != 0) {
+      outside = true;
+      slots_[slot].outside_s += step_s;
+    }
     const double difference = point.difference_over_jnd(slot, jnd_);
     slots_[slot].sustained_over_jnd =
         slots_[slot].sustained.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
@@ -151,29 +137,24 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
 
 void Comparison::count_errors(const HistoryPoint& point, const PublishedSet& set) {
   const bool begins = std::exchange(stroke_pending_, false);
-  ++counted_;
-  for (const std::size_t index : set.slots) {
-    if (index == PublishedSet::kRemoved) continue;
-    const double difference = point.difference_over_jnd(index, jnd_);
-    if (std::isnan(difference)) continue;
-    Slot& slot = slots_[index];
-    const auto model_N = static_cast<double>(point.force_N[index]);
-    const auto reference_N = static_cast<double>(point.reference_N);
-    slot.errors.add(model_N, reference_N, false, jnd_);
-    slot.quantile.add(std::abs(difference));
-    if (counted_ > kMostJudged) continue;
-    if (begins) slot.model_errors.begin_stroke();
-    slot.model_errors.add(model_N, reference_N, false);
+  for (const auto& [slot, i] : set.models) {
+    if (std::isnan(point.difference_over_jnd(slot, jnd_))) continue;
+    StreamErrors& errors = slots_[slot].errors;
+    if (begins) errors.begin_stroke();
+    errors.add(static_cast<double>(point.force_N[slot]), static_cast<double>(point.reference_N), jnd_);
   }
 }
 
 void Comparison::show(const LoopSnapshot& newest) {
   const PublishedSet* set = models_.set_of(newest);
   reference_N_ = reference_in(newest, set);
+  if (newest.loop_time_s >= unit_errors_s_ && counted_s_ >= kLeastContact_s) {
+    unit_errors_s_ = newest.loop_time_s + kUnitErrors_s;
+    for (Slot& slot : slots_) slot.unit_errors = slot.errors.unit_errors(jnd_);
+  }
   if (set == nullptr) return;
-  for (std::size_t i = 0; i < set->slots.size(); ++i) {
-    if (set->slots[i] == PublishedSet::kRemoved) continue;
-    ModelFigures& figures = slots_[set->slots[i]].newest;
+  for (const auto& [slot, i] : set->models) {
+    ModelFigures& figures = slots_[slot].newest;
     figures.force_N = newest.tick.force_N[i];
     figures.predicted_error_N = newest.tick.predicted_error_N[i];
     figures.out_of_domain = (newest.tick.out_of_domain_mask >> i & 1U) != 0;
@@ -184,8 +165,8 @@ double Comparison::reference_in(const LoopSnapshot& snapshot, const PublishedSet
   if (reference_ == ReferenceKind::measured) return snapshot.measured_N;
   if (reference_ == ReferenceKind::truth) return snapshot.reference_N;
   if (set == nullptr || !models_.reference()) return kNoForce;
-  const auto index = set->index_of(*models_.reference());
-  return index ? snapshot.tick.force_N[*index] : kNoForce;
+  const std::size_t index = set->index_of(*models_.reference());
+  return index < kMaxModels ? snapshot.tick.force_N[index] : kNoForce;
 }
 
 }  // namespace palpate

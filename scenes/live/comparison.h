@@ -1,5 +1,5 @@
-// Compares the models of a session with a reference force. Holds, for every slot, the error statistics, their
-// quantiles, the sustained error and the dent that is drawn.
+// Compares the models of a session with a reference force. Holds, for every slot, the errors in total and by stroke,
+// the sustained error and the dent that is drawn.
 // A sample counts when it is in contact, the reference is available, no compared model is outside its training
 // domain, and the feature filters have settled: since the stream began they have seen a sample out of contact or the
 // beginning of the recording, or they have run for 5 times their longest relaxation time.
@@ -15,13 +15,11 @@
 
 #include "engine/live/live_tick.h"
 #include "engine/tick/jnd.h"
-#include "scenes/evaluation/model_errors.h"
 #include "scenes/live/dent.h"
-#include "scenes/live/error_quantile.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/force_history.h"
 #include "scenes/live/session_models.h"
-#include "scenes/live/sustained_error.h"
+#include "scenes/live/stream_errors.h"
 
 namespace palpate {
 
@@ -31,7 +29,7 @@ struct ModelFigures {
   double force_N = 0.0;
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();  // of the force, 95 %; NaN: unknown
   bool out_of_domain = false;
-  // Over the same samples for all compared models. The 99 % error has a resolution of 4.4 % (error_quantile.h).
+  // Over the same samples for all compared models. The 99 % error has a resolution of 1.1 % (stream_errors.h).
   ErrorSummary errors;
   // For drawing (dent.h): the dent's depth, and the largest recent sustained error.
   double dent_m = 0.0;
@@ -54,7 +52,7 @@ class Comparison {
   void forget_slot(std::size_t slot);  // its model was removed
   // Call it for every snapshot in order, with the return value of FaultLog::update.
   void add(const LoopSnapshot& snapshot, TickFaultLevel fault_level);
-  // Call it once a frame, after `add`: sets the figures of the newest tick.
+  // Call it once a frame, after `add`: sets the figures of the newest tick and updates the errors by stroke.
   void show(const LoopSnapshot& newest);
   // Clears the errors so far; the history stays. `why`: the reason in words, e.g. "voxel joined".
   void forget_errors(std::string why);
@@ -68,11 +66,12 @@ class Comparison {
   std::size_t mostly_outside() const noexcept;
 
   ModelFigures figures(std::size_t slot) const;
-  // The errors of the first kMostJudged samples with their strokes, for a ranking.
-  const ModelErrors& model_errors(std::size_t slot) const noexcept { return slots_[slot].model_errors; }
+  // The errors by stroke, for a ranking. They are updated every 2 s, so that the ranking does not flicker; without
+  // samples before kLeastContact_s.
+  const UnitErrors& unit_errors(std::size_t slot) const noexcept { return slots_[slot].unit_errors; }
 
-  // Ten minutes of contact at 1 kHz; 2.4 MB per model.
-  static constexpr std::uint64_t kMostJudged = 600'000;
+  // Contact that a ranking needs at least.
+  static constexpr double kLeastContact_s = 1.0;
 
  private:
   struct Slot {
@@ -80,9 +79,8 @@ class Comparison {
     Dent dent;
     SustainedError sustained;
     double sustained_over_jnd = 0.0;  // in the last snapshot; ticks without a reference count as 0
-    ErrorFigures errors;
-    ErrorQuantile quantile;
-    ModelErrors model_errors{JndLine{}};
+    StreamErrors errors;
+    UnitErrors unit_errors;
     double outside_s = 0.0;
   };
   HistoryPoint point_of(const LoopSnapshot& snapshot, const PublishedSet* set);
@@ -94,10 +92,10 @@ class Comparison {
   JndLine jnd_;
   ReferenceKind reference_ = ReferenceKind::direct;
   double reference_N_ = kNoForce;
-  std::vector<Slot> slots_;
+  std::vector<Slot> slots_{kMaxModels};
   std::string since_ = "the start";
   double contact_s_ = 0.0, counted_s_ = 0.0, outside_s_ = 0.0;
-  std::uint64_t counted_ = 0;
+  double unit_errors_s_ = 0.0;  // loop time of the next update of the errors by stroke
   StrokeCounter strokes_;
   bool stroke_pending_ = true;   // a stroke has begun since the last sample that counts
   bool settled_ = false;         // the feature filters have settled

@@ -15,8 +15,8 @@ bool may_be_recording(const std::string& path) {
 Result<ConvertedRecording> convert_recording(const std::string& path, const std::string& folder) {
   const auto recording = read_recording(path);
   if (recording) return ConvertedRecording{path, {}};
+  // A file with the header of a recording is no table of another program.
   std::error_code missing;
-  // A file with the header of a recording has the errors of one.
   if (RecordingReader::open(path) || !std::filesystem::exists(path, missing)) return recording.error();
   const ImportRequest request;
   const auto table = import_table(path, request);

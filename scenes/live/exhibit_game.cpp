@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace palpate {
@@ -11,9 +10,8 @@ namespace {
 constexpr double kLongest_s = 60.0;  // of a trace
 
 const ExhibitModel* find_model(const std::vector<ExhibitModel>& models, const std::string& method, bool paper) {
-  const auto found = std::find_if(models.begin(), models.end(), [&](const ExhibitModel& model) {
-    return model.paper == paper && (paper || model.method == method);
-  });
+  const auto found = std::ranges::find_if(
+      models, [&](const ExhibitModel& model) { return model.paper == paper && (paper || model.method == method); });
   return found != models.end() ? &*found : nullptr;
 }
 
@@ -40,16 +38,11 @@ void ExhibitTrace::add(const ExhibitTick& tick) {
   column.first_N += share * (tick.first_N - column.first_N);
   column.second_N += share * (tick.second_N - column.second_N);
   column.position_m += share * (tick.position_m - column.position_m);
-  if (std::abs(tick.over_jnd) > std::abs(column.over_jnd)) column.over_jnd = tick.over_jnd;
+  if (column.ticks == 1 || std::abs(tick.over_jnd) > std::abs(column.over_jnd)) column.over_jnd = tick.over_jnd;
   if (std::abs(tick.over_jnd) > largest_) {
     largest_ = std::abs(tick.over_jnd);
     largest_at_ = at;
   }
-}
-
-double ExhibitTrace::over_jnd(std::size_t column) const noexcept {
-  const Column& now = columns_[column];
-  return now.ticks == 0 ? std::numeric_limits<double>::quiet_NaN() : now.over_jnd;
 }
 
 std::vector<ExhibitRound> ExhibitGame::rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference,
@@ -62,9 +55,8 @@ std::vector<ExhibitRound> ExhibitGame::rounds_of(const std::vector<ExhibitModel>
   for (const ExhibitModel& model : ready) others.push_back(&model);
   std::vector<ExhibitRound> rounds;
   const auto is_there = [&](const ExhibitModel* model) {
-    return model == nullptr || model == first || std::any_of(rounds.begin(), rounds.end(), [&](const auto& round) {
-             return round.second.slot == model->slot;
-           });
+    return model == nullptr || model == first ||
+           std::ranges::any_of(rounds, [&](const auto& round) { return round.second.slot == model->slot; });
   };
   for (const ExhibitModel* model : others) {
     if (is_there(model) || rounds.size() == kMostRounds) continue;
@@ -151,8 +143,7 @@ void ExhibitGame::go_on() {
 }
 
 std::size_t ExhibitGame::correct_answers() const noexcept {
-  return static_cast<std::size_t>(
-      std::count_if(rounds_.begin(), rounds_.end(), [](const ExhibitRound& round) { return round.correct(); }));
+  return static_cast<std::size_t>(std::ranges::count_if(rounds_, &ExhibitRound::correct));
 }
 
 }  // namespace palpate

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,19 +38,17 @@ class ExhibitTrace {
  public:
   static constexpr double kColumn_s = 0.025;
   struct Column {
-    double first_N = 0.0;     // mean
-    double second_N = 0.0;    // mean
-    double position_m = 0.0;  // mean
-    double over_jnd = 0.0;    // the value of largest magnitude, signed
-    int ticks = 0;            // ticks within the training domain; 0: the curve has a gap
+    double first_N = 0.0;                                        // mean
+    double second_N = 0.0;                                       // mean
+    double position_m = 0.0;                                     // mean
+    double over_jnd = std::numeric_limits<double>::quiet_NaN();  // the value of largest magnitude, signed; NaN: a gap
+    int ticks = 0;                                               // within the training domain
   };
 
   void clear();
   void add(const ExhibitTick& tick);
   double seconds() const noexcept { return seconds_; }  // since the first contact
   const std::vector<Column>& columns() const noexcept { return columns_; }
-  // NaN: a gap.
-  double over_jnd(std::size_t column) const noexcept;
   // The largest magnitude so far, and its column.
   double largest_over_jnd() const noexcept { return largest_; }
   std::size_t largest_at() const noexcept { return largest_at_; }

@@ -63,8 +63,7 @@ Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder) 
     languages.push_back(std::move(*words));
   }
   if (languages.empty()) return Error{"found no language in " + folder + ", expected at least one .txt file"};
-  std::sort(languages.begin(), languages.end(),
-            [](const ExhibitWords& a, const ExhibitWords& b) { return a("order") < b("order"); });
+  std::ranges::sort(languages, {}, [](const ExhibitWords& words) { return words("order"); });
   return languages;
 }
 

@@ -39,12 +39,9 @@ TickFaultLevel FaultLog::update(const LoopSnapshot& snapshot) {
   return fault_level;
 }
 
-void FaultLog::update_dropped(std::uint64_t dropped, double now_s) {
+void FaultLog::update_window(std::uint64_t dropped, double age_s, double now_s) {
   if (dropped > dropped_) note(kDropped, dropped - dropped_, now_s);
   dropped_ = dropped;
-}
-
-void FaultLog::update_age(double age_s, double now_s) {
   const bool stalled = age_s > kStall_s;
   if (stalled && !stalled_) note(kStall, 1, now_s);
   stalled_ = stalled;
@@ -59,16 +56,16 @@ std::vector<std::string> FaultLog::alarms(const LoopSnapshot& newest) const {
 }
 
 void FaultLog::note(std::size_t kind, std::uint64_t count, double at_s) {
-  const Fault& fault = kFaults[kind];
-  const auto same = std::find_if(events_.rbegin(), events_.rend(),
-                                 [&](const FaultEvent& event) { return event.text == fault.sentence; });
+  const char* const text = kFaults[kind].sentence;
+  const auto same =
+      std::find_if(events_.rbegin(), events_.rend(), [&](const FaultEvent& event) { return event.text == text; });
   if (same != events_.rend() && at_s - same->last_s <= kSameEvent_s) {
     same->count += count;
     same->last_s = at_s;
     return;
   }
   if (events_.size() == kMost) events_.erase(events_.begin());
-  events_.push_back({at_s, fault.sentence, count, fault.alarm, at_s});
+  events_.push_back({at_s, text, count, at_s});
 }
 
 }  // namespace palpate

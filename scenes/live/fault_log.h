@@ -16,7 +16,6 @@ struct FaultEvent {
   double loop_time_s = 0.0;  // of the first
   std::string text;
   std::uint64_t count = 1;  // occurrences, each within a second of the one before
-  bool alarm = true;        // false: it is logged without an alarm
   double last_s = 0.0;      // loop time of the last
 };
 
@@ -35,10 +34,9 @@ class FaultLog {
 
   // Call it for every snapshot in order. Returns the worst fault of the snapshot.
   TickFaultLevel update(const LoopSnapshot& snapshot);
-  // `dropped`: total number of snapshots lost so far.
-  void update_dropped(std::uint64_t dropped, double now_s);
-  // `age_s`: time since the last tick. A stall is logged once, at its beginning.
-  void update_age(double age_s, double now_s);
+  // Call it once a frame. `dropped`: total number of snapshots lost so far. `age_s`: time since the last tick; a stall
+  // is logged once, at its beginning.
+  void update_window(std::uint64_t dropped, double age_s, double now_s);
 
   const std::vector<FaultEvent>& events() const noexcept { return events_; }
 

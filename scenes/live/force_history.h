@@ -1,5 +1,5 @@
 // The forces of the last kHistory_s at 1 kHz, one point per tick, for curves.
-// Thread guarantee: one thread; `append` allocates nothing.
+// Thread guarantee: one thread.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ struct HistoryPoint {
   std::uint8_t active = 0;     // its slot
   TickFaultLevel fault_level = TickFaultLevel::none;
   std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready
-  // By slot: mean over 50 ms of (model - reference) / JND (sustained_error.h), signed; NaN without a comparison.
+  // By slot: mean over 50 ms of (model - reference) / JND (stream_errors.h), signed; NaN without a comparison.
   std::array<float, kMaxModels> sustained_over_jnd{};
   std::uint16_t other_material = 0;  // bit per slot: a model of another material, which is not compared
 

@@ -1,17 +1,15 @@
 #include "scenes/live/live_session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
-#include <utility>
 
 #include "engine/base/text.h"
 #include "models/model/fitted_model.h"
 #include "models/recordings/recording_faults.h"
-#include "scenes/live/press_range.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/folders.h"
-#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -23,11 +21,37 @@ constexpr std::int64_t kRehearse_ns = 100'000;
 // The number is limited, so that a device that fails all day does not fill the disk.
 constexpr int kMostFaultFiles = 50;
 
-constexpr const char* kDefaultScene = "silicone_block";
 constexpr std::string_view kReplay = "replay:";
 
 std::string replayed_file(const std::string& device) {
   return device.rfind(kReplay, 0) == 0 ? device.substr(kReplay.size()) : std::string();
+}
+
+// Limits the simulated hand to the forces, depths and speeds of the training data. Returns whether there is any force.
+// Speeds are differences over at least 20 ms, to suppress encoder steps. The fastest 1 % are ignored as noise.
+bool limit_hand(const std::vector<Recording>& recordings, HandSettings& hand) {
+  constexpr double kInside = 0.8;  // of the largest values, because the simulated hand overshoots
+  constexpr double kSpan_s = 0.02;
+  double strongest_N = 0.0, deepest_m = 0.0;
+  std::vector<double> speeds_m_per_s;  // in contact
+  for (const Recording& recording : recordings) {
+    RecordingRow before = recording.rows.front();
+    for (const RecordingRow& row : recording.rows) {
+      strongest_N = std::max(strongest_N, row.force_N);
+      deepest_m = std::max(deepest_m, row.position_m);
+      const double span_s = row.time_s - before.time_s;
+      if (span_s < kSpan_s) continue;
+      if (row.position_m > 0.0) speeds_m_per_s.push_back(std::abs(row.position_m - before.position_m) / span_s);
+      before = row;
+    }
+  }
+  if (strongest_N <= 0.0 || speeds_m_per_s.empty()) return false;
+  const auto fast = speeds_m_per_s.begin() + static_cast<std::ptrdiff_t>(99 * (speeds_m_per_s.size() - 1) / 100);
+  std::nth_element(speeds_m_per_s.begin(), fast, speeds_m_per_s.end());
+  hand.strongest_press_N = kInside * strongest_N;
+  hand.deepest_m = kInside * deepest_m;
+  hand.fastest_m_per_s = kInside * *fast;
+  return true;
 }
 
 // Replaces the scene's material by the named recordings, or by the replayed one: no true force is known for them.
@@ -48,12 +72,7 @@ Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings
     recordings.push_back(std::move(*recording));
   }
   if (recordings.empty()) scene.title = std::filesystem::path(replayed).stem().string();
-  const PressRange range = press_range(recordings);
-  if (range.strongest_N <= 0.0) return {};
-  constexpr double kInside = 0.8;  // of the largest values, because the simulated hand overshoots
-  hand.strongest_press_N = scene.strongest_press_N = kInside * range.strongest_N;
-  hand.deepest_m = kInside * range.deepest_m;
-  hand.fastest_m_per_s = kInside * range.fastest_m_per_s;
+  if (limit_hand(recordings, hand)) scene.strongest_press_N = hand.strongest_press_N;
   return {};
 }
 
@@ -61,7 +80,7 @@ Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings
 // virtual material: it is not the truth of those models.
 void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& scene) {
   const auto is_file = [](const SlotPlan& plan) { return plan.origin == ModelOrigin::file; };
-  if (static_cast<std::size_t>(std::count_if(plans.begin(), plans.end(), is_file)) != files) return;
+  if (static_cast<std::size_t>(std::ranges::count_if(plans, is_file)) != files) return;
   std::erase_if(plans, [&](const SlotPlan& plan) { return !is_file(plan); });
   const Provenance& from = plans.front().loaded->data().provenance;
   if (auto own = load_scene(from.scene)) scene = std::move(*own);
@@ -72,9 +91,9 @@ void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& sce
 
 }  // namespace
 
-std::vector<DeviceChoice> device_choices() {
-  std::vector<DeviceChoice> choices = list_devices({.calibrations = calibrations_folder()});
-  std::erase_if(choices, [](const DeviceChoice& device) { return device.name.find(':') != std::string::npos; });
+std::vector<DeviceDescription> device_choices() {
+  std::vector<DeviceDescription> choices = list_devices({.calibrations = calibrations_folder()});
+  std::erase_if(choices, [](const DeviceDescription& device) { return device.name.find(':') != std::string::npos; });
   return choices;
 }
 
@@ -88,7 +107,7 @@ LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique
       buffer_(kSnapshotsAtOnce) {}
 
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
-  Result<Scene> scene = load_scene(request.scene.empty() ? kDefaultScene : request.scene);
+  Result<Scene> scene = load_scene(request.scene.empty() ? "silicone_block" : request.scene);
   if (!scene) return scene.error();
   DeviceRequest device_request{.calibrations = calibrations_folder(), .bus = request.bus};
   device_request.hand.strongest_press_N = scene->strongest_press_N;
@@ -137,10 +156,7 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
 
 LiveSession::~LiveSession() {
   models_.cancel();
-  if (recorder_ != nullptr) {
-    stop_recording();
-    recorder_->wait();
-  }
+  recorder_.reset();  // completes a recording
   if (loop_ != nullptr) loop_->stop();
 }
 
@@ -148,15 +164,12 @@ void LiveSession::update() {
   // The snapshots come first, because new models are initialised with the motion up to now.
   read_snapshots();
   update_models();
-  if (test_.update(models_)) forget_errors("the surface was found");
+  if (test_.update(models_)) comparison_.forget_errors("the surface was found");
   loop_->collect_models();
   newest_ = loop_->newest();
   comparison_.show(newest_);
-  background_evaluation_.update(models_, comparison_, newest_.loop_time_s);
-  const double now_s = steady_now_s();
   const LoopStatistics statistics = loop_->statistics();
-  faults_.update_dropped(statistics.dropped_snapshots, now_s);
-  faults_.update_age(statistics.age_s, now_s);
+  faults_.update_window(statistics.dropped_snapshots, statistics.age_s, steady_now_s());
   if (std::optional<Notice> outcome = recorder_->read_outcome()) {
     send_controls();  // a write error may have ended the recording
     notices_.push_back({std::move(outcome->text), outcome->problem});
@@ -172,15 +185,9 @@ void LiveSession::update_models() {
   publish(name.substr(0, name.size() > 16 ? name.find('-') : name.size()) + " joined");
 }
 
-// The errors so far and the verdict that is computed from them.
-void LiveSession::forget_errors(std::string why) {
-  comparison_.forget_errors(std::move(why));
-  background_evaluation_.reset();
-}
-
 // Clears all errors, so that all models are compared over the same samples.
 void LiveSession::publish(std::string why) {
-  forget_errors(std::move(why));
+  comparison_.forget_errors(std::move(why));
   auto set = models_.make_set(device_->sensor(), truth_);
   set->tick.recall(history_);
   loop_->publish_models(std::move(set));
@@ -193,7 +200,7 @@ void LiveSession::remove(std::size_t slot) {
 
 void LiveSession::treat_as_this_material(std::size_t slot) {
   models_.treat_as_this_material(slot);
-  forget_errors(models_.info(slot).name + " joined");
+  comparison_.forget_errors(models_.info(slot).name + " joined");
 }
 
 void LiveSession::use_line_up(const std::string& name) {
@@ -246,15 +253,11 @@ bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
 }
 
 void LiveSession::use_reference(ReferenceKind kind) {
-  if (!has_reference(kind)) return;
-  comparison_.use_reference(kind);
-  background_evaluation_.reset();
+  if (has_reference(kind)) comparison_.use_reference(kind);
 }
 
 bool LiveSession::replays_training() const noexcept {
-  const std::string replayed = replayed_file(request_.device);
-  return models_.fits() &&
-         std::find(scene_.recordings.begin(), scene_.recordings.end(), replayed) != scene_.recordings.end();
+  return models_.fits() && std::ranges::count(scene_.recordings, replayed_file(request_.device)) > 0;
 }
 
 bool LiveSession::tests_recording() const noexcept {
@@ -270,18 +273,16 @@ ModelFigures LiveSession::figures(std::size_t slot) const {
 }
 
 Verdict LiveSession::verdict() const {
-  std::vector<EvaluatedSlot> evaluated;
-  if (tests_recording()) {
-    for (const std::size_t slot : models_.ready_slots()) {
-      const UnitErrors* errors = test_.errors(models_.model(slot).get());
-      if (errors != nullptr && errors->samples > 0) evaluated.push_back({slot, models_.info(slot).tick, *errors, 0.0});
-    }
-  } else {
-    evaluated = background_evaluation_.evaluated();
-  }
-  for (EvaluatedSlot& one : evaluated) one.p99_error_over_jnd = figures(one.slot).errors.p99_error_over_jnd;
-  if (evaluated.empty()) return {{}, false, why_no_verdict(), {}};
   const bool of_model = comparison_.reference() == ReferenceKind::direct;
+  std::vector<EvaluatedSlot> evaluated;
+  for (const std::size_t slot : models_.ready_slots()) {
+    if (of_model && models_.reference() == slot) continue;
+    const UnitErrors* errors =
+        tests_recording() ? test_.errors(models_.model(slot).get()) : &comparison_.unit_errors(slot);
+    if (errors == nullptr || errors->samples == 0) continue;
+    evaluated.push_back({slot, *errors, figures(slot).errors.p99_error_over_jnd});
+  }
+  if (evaluated.empty()) return {{}, false, why_no_verdict(), {}};
   Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");
   if (of_model && verdict.detail.empty())
     verdict.detail = "There is no true force here: test on a second recording (M).";
@@ -295,7 +296,7 @@ std::string LiveSession::why_no_verdict() const {
   if (!has_reference(comparison_.reference())) return reference_words();
   if (replay() != nullptr && comparison_.reference() == ReferenceKind::measured)
     return "Testing the models on " + replay()->recording().name + " ...";
-  if (comparison_.outside_s() > kLeastContact_s) {
+  if (comparison_.outside_s() > Comparison::kLeastContact_s) {
     const std::string& name = models_.info(comparison_.mostly_outside()).name;
     return "No verdict yet: these presses are deeper or faster than what " + name + " was trained on";
   }
@@ -319,7 +320,7 @@ std::string LiveSession::reference_words(bool brief) const {
 }
 
 void LiveSession::reset_figures() {
-  forget_errors("they were cleared");
+  comparison_.forget_errors("they were cleared");
   faults_.acknowledge();
   ++controls_.acknowledged;
   send_controls();
@@ -339,10 +340,8 @@ std::string LiveSession::device_words() const {
 }
 
 void LiveSession::move_surface(bool moved) {
-  if (test_.move(moved)) forget_errors("the surface moved");
+  if (test_.move(moved)) comparison_.forget_errors("the surface moved");
 }
-
-bool LiveSession::renders_force() const noexcept { return device_->holder() == Holder::person; }
 
 void LiveSession::use_dead_man(DeadMan what) {
   controls_.dead_man = what;

@@ -46,8 +46,7 @@ struct SessionRequest {
 
 // The devices that need no argument after their name, for code that may not include devices/. Slow: opens and closes
 // each connected device.
-using DeviceChoice = DeviceDescription;
-std::vector<DeviceChoice> device_choices();
+std::vector<DeviceDescription> device_choices();
 
 class LiveSession {
  public:
@@ -101,8 +100,8 @@ class LiveSession {
 
   // The device. Its state is `newest().device`.
   const std::string& device_name() const noexcept { return device_->name(); }
-  std::string device_words() const;                   // what the user has to do before it renders force; may be empty
-  bool renders_force() const noexcept;                // whether a person holds it
+  std::string device_words() const;  // what the user has to do before it renders force; may be empty
+  bool renders_force() const noexcept { return device_->holder() == Holder::person; }
   void start_zeroing() { device_->start_zeroing(); }  // call it while the tool is at its rest position
   // Null where the device has none.
   ToolInput* tool_input() const noexcept { return device_->tool_input(); }
@@ -131,7 +130,6 @@ class LiveSession {
   LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);
   Status begin(const std::vector<SlotPlan>& plans);
   void update_models();
-  void forget_errors(std::string why);
   void publish(std::string why);
   void read_snapshots();
   void save_fault_ticks();
@@ -149,7 +147,6 @@ class LiveSession {
   Comparison comparison_;
   MotionHistory history_;
   ReplayTest test_;
-  BackgroundEvaluation background_evaluation_;
   FaultLog faults_;
   FaultRecorder fault_recorder_;
   std::unique_ptr<SessionRecorder> recorder_;

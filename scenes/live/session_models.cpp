@@ -5,9 +5,6 @@
 #include <utility>
 
 #include "models/model/file/model_io.h"
-#include "models/model/fitted_model.h"
-#include "scenes/worker/model_worker.h"
-#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -20,44 +17,16 @@ std::string recordings_of(const FittedModel& model) {
 
 }  // namespace
 
-struct SessionModels::Slot {
-  ModelInfo info;
-  SlotPlan plan;
-  std::size_t job = 0;                       // id of the worker's job
-  int asked_centres = 0;                     // of the plan, before the user changed the number
-  std::shared_ptr<const FittedModel> model;  // null until ready
-  bool removed = false;
-  bool claimed = false;  // the user said that this model file is of this material
-
-  bool hidden() const { return info.state == SlotState::hidden; }
-  bool takes_part() const { return model != nullptr && !hidden(); }
-  void show() {
-    info.state = model != nullptr ? SlotState::ready : info.problem.empty() ? SlotState::waiting : SlotState::failed;
-  }
-  bool is(const SlotPlan& other) const {  // `other` is not a file
-    return !removed && plan.origin == other.origin && plan.method == other.method && plan.paper == other.paper &&
-           asked_centres == other.centres;
-  }
-};
-
-std::optional<std::size_t> PublishedSet::index_of(std::size_t slot) const noexcept {
-  const auto place = std::find(slots.begin(), slots.end(), slot);
-  if (place == slots.end()) return std::nullopt;
-  return static_cast<std::size_t>(place - slots.begin());
-}
-
 SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices)
-    : scene_(scene), notices_(notices), worker_(std::make_unique<ModelWorker>(scene_, seed)) {}
-
-SessionModels::~SessionModels() = default;
+    : scene_(scene), notices_(notices), worker_(scene_, seed) {}
 
 Status SessionModels::start(const std::vector<SlotPlan>& plans, bool claimed) {
   for (const SlotPlan& plan : plans) {
-    Slot& slot = *slots_[add_slot(plan)];
+    Slot& slot = slots_[add_slot(plan)];
     slot.claimed = claimed;
-    worker_->add_job(slot.job, plan, slots_.size() == 1);
+    worker_.add_job(slot.job, plan, slots_.size() == 1);
   }
-  return worker_->start();
+  return worker_.start();
 }
 
 // The slot of a removed model; without one a new slot; if all kMaxModels slots exist, that of a hidden model. The
@@ -65,7 +34,7 @@ Status SessionModels::start(const std::vector<SlotPlan>& plans, bool claimed) {
 std::optional<std::size_t> SessionModels::room() const noexcept {
   for (const bool removed : {true, false}) {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
-      if (direct_ != i && (removed ? slots_[i]->removed : slots_[i]->hidden())) return i;
+      if (direct_ != i && (removed ? slots_[i].removed : slots_[i].hidden())) return i;
     }
     if (slots_.size() < kMaxModels) return slots_.size();
   }
@@ -76,11 +45,10 @@ std::size_t SessionModels::add_slot(const SlotPlan& plan) {
   const std::size_t index = *room();
   if (index == slots_.size()) {
     slots_.emplace_back();
-  } else if (!slots_[index]->removed) {
+  } else if (!slots_[index].removed) {
     free(index);
   }
-  slots_[index] = std::make_unique<Slot>();
-  Slot& slot = *slots_[index];
+  Slot& slot = slots_[index] = Slot{};
   slot.job = next_job_++;
   slot.info.name = distinct_name(plan_name(plan), &slot);
   slot.info.method = plan_method(plan);
@@ -92,20 +60,18 @@ std::size_t SessionModels::add_slot(const SlotPlan& plan) {
   return index;
 }
 
-void SessionModels::cancel() noexcept { worker_->cancel(); }
-
 std::vector<std::size_t> SessionModels::update() {
-  const ModelWorker::Progress progress = worker_->progress();
+  const ModelWorker::Progress progress = worker_.progress();
   if (const auto index = progress.working ? slot_of_job(progress.job_id) : std::nullopt) {
-    ModelInfo& info = slots_[*index]->info;
+    ModelInfo& info = slots_[*index].info;
     if (info.state == SlotState::waiting) info.state = SlotState::fitting;
     if (info.state == SlotState::fitting) info.progress = progress.share;
   }
   std::vector<std::size_t> ready = std::exchange(loaded_, {});
-  for (FinishedModel& finished : worker_->read_finished()) {
+  for (FinishedModel& finished : worker_.read_finished()) {
     const std::optional<std::size_t> index = slot_of_job(finished.job_id);
     if (!index) continue;  // the model was removed meanwhile
-    Slot& slot = *slots_[*index];
+    Slot& slot = slots_[*index];
     // The user has asked for another number of centres meanwhile: another fit follows.
     const bool old = slot.info.refitting && finished.plan.centres != slot.plan.centres;
     if (join(*index, finished)) ready.push_back(*index);
@@ -116,7 +82,7 @@ std::vector<std::size_t> SessionModels::update() {
 
 std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noexcept {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (slots_[i]->job == job && !slots_[i]->removed) return i;
+    if (slots_[i].job == job && !slots_[i].removed) return i;
   }
   return std::nullopt;
 }
@@ -127,20 +93,19 @@ bool SessionModels::is_of_other_material(const Slot& slot) const {
   const bool claimed = slot.claimed || slot.plan.of_this_material;
   if (!scene_.material || claimed || slot.plan.origin != ModelOrigin::file) return false;
   const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
-  return std::any_of(recordings.begin(), recordings.end(), [&](const std::string& name) {
+  return std::ranges::any_of(recordings, [&](const std::string& name) {
     const std::string start = *scene_.material + "_";  // the rig names its recordings MATERIAL_SEED
     return name.rfind(start, 0) != 0 || name.find_first_not_of("0123456789", start.size()) != std::string::npos;
   });
 }
 
 Status SessionModels::save(std::size_t slot, const std::string& path) const {
-  if (slot >= slots_.size() || slots_[slot]->model == nullptr) return Error{"there is no model to save yet"};
-  return save_model(path, slots_[slot]->model->data(), false);
+  if (slot >= slots_.size() || slots_[slot].model == nullptr) return Error{"there is no model to save yet"};
+  return save_model(path, slots_[slot].model->data(), false);
 }
 
 bool SessionModels::fits() const noexcept {
-  return std::any_of(slots_.begin(), slots_.end(),
-                     [](const auto& slot) { return slot->plan.origin != ModelOrigin::file; });
+  return std::ranges::any_of(slots_, [](const Slot& slot) { return slot.plan.origin != ModelOrigin::file; });
 }
 
 std::optional<std::size_t> SessionModels::reference() const noexcept {
@@ -151,22 +116,22 @@ std::optional<std::size_t> SessionModels::reference() const noexcept {
 }
 
 bool SessionModels::all_settled() const noexcept {
-  return std::none_of(slots_.begin(), slots_.end(), [](const auto& slot) {
-    const SlotState state = slot->info.state;
-    return slot->info.refitting || state == SlotState::waiting || state == SlotState::fitting;
+  return std::ranges::none_of(slots_, [](const Slot& slot) {
+    const SlotState state = slot.info.state;
+    return slot.info.refitting || state == SlotState::waiting || state == SlotState::fitting;
   });
 }
 
 std::vector<std::size_t> SessionModels::ready_slots() const {
   std::vector<std::size_t> shown;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (slots_[i]->takes_part()) shown.push_back(i);
+    if (slots_[i].takes_part()) shown.push_back(i);
   }
   return shown;
 }
 
 bool SessionModels::join(std::size_t index, FinishedModel& finished) {
-  Slot& slot = *slots_[index];
+  Slot& slot = slots_[index];
   if (finished.model == nullptr) {
     notices_.push_back({slot.info.name + ": " + finished.problem, true});
     slot.info.problem = finished.problem;
@@ -192,34 +157,34 @@ bool SessionModels::join(std::size_t index, FinishedModel& finished) {
 }
 
 void SessionModels::use_plans(const std::vector<SlotPlan>& plans) {
-  for (const auto& slot : slots_) {
-    if (slot->plan.origin != ModelOrigin::file) slot->info.state = SlotState::hidden;
+  for (Slot& slot : slots_) {
+    if (slot.plan.origin != ModelOrigin::file) slot.info.state = SlotState::hidden;
   }
   std::optional<std::size_t> first;
   for (const SlotPlan& plan : plans) {
-    const auto same = std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) { return slot->is(plan); });
+    const auto same = std::ranges::find_if(slots_, [&](const Slot& slot) { return slot.is(plan); });
     auto index = static_cast<std::size_t>(same - slots_.begin());
     if (same == slots_.end()) {
       if (!has_room("show " + plan_name(plan))) continue;
       index = add_slot(plan);
-      worker_->add_job(slots_[index]->job, plan, !first);
+      worker_.add_job(slots_[index].job, plan, !first);
     }
-    slots_[index]->show();
+    slots_[index].show();
     if (!first) first = index;
   }
-  if (slots_[selected_]->hidden() && first) selected_ = *first;
+  if (slots_[selected_].hidden() && first) selected_ = *first;
   select_what_is_there();
 }
 
 // If the active model is not shown, selects the first shown model, if there is one.
 void SessionModels::select_what_is_there() {
   const auto shown = ready_slots();
-  if (!shown.empty() && !slots_[selected_]->takes_part()) selected_ = shown.front();
+  if (!shown.empty() && !slots_[selected_].takes_part()) selected_ = shown.front();
 }
 
 bool SessionModels::remove(std::size_t index) {
-  if (index >= slots_.size() || slots_[index]->removed) return false;
-  Slot& slot = *slots_[index];
+  if (index >= slots_.size() || slots_[index].removed) return false;
+  Slot& slot = slots_[index];
   if (ready_slots().size() == (slot.takes_part() ? 1 : 0)) {
     notices_.push_back({"the last model cannot be removed", false});
     return false;
@@ -234,29 +199,29 @@ bool SessionModels::remove(std::size_t index) {
 // Removes the slot from all published sets, so that another model may use it.
 void SessionModels::free(std::size_t index) {
   freed_.push_back(index);
-  for (PublishedSet& set : sets_) std::replace(set.slots.begin(), set.slots.end(), index, PublishedSet::kRemoved);
+  for (PublishedSet& set : sets_) set.models.erase(index);
 }
 
 std::vector<std::size_t> SessionModels::read_freed() { return std::exchange(freed_, {}); }
 
 void SessionModels::rename(std::size_t slot, const std::string& name) {
-  if (slot < slots_.size() && !name.empty()) slots_[slot]->info.name = distinct_name(name, slots_[slot].get());
+  if (slot < slots_.size() && !name.empty()) slots_[slot].info.name = distinct_name(name, &slots_[slot]);
 }
 
 void SessionModels::refit(std::size_t index, int centres) {
-  if (index >= slots_.size() || !slots_[index]->info.takes_centres || centres < 1) return;
-  Slot& slot = *slots_[index];
+  if (index >= slots_.size() || !slots_[index].info.takes_centres || centres < 1) return;
+  Slot& slot = slots_[index];
   if (slot.model == nullptr || slot.plan.centres == centres) return;
   slot.plan.centres = centres;
   slot.plan.loaded = nullptr;
   slot.info.refitting = true;
-  worker_->add_job(slot.job, slot.plan);
+  worker_.add_job(slot.job, slot.plan);
 }
 
 double SessionModels::trained_depth_m() const noexcept {
   double depth_m = std::numeric_limits<double>::infinity();
   for (const std::size_t slot : ready_slots()) {
-    const ModelData& data = slots_[slot]->model->data();
+    const ModelData& data = slots_[slot].model->data();
     for (std::size_t i = 0; i < data.features.size(); ++i) {
       if (data.features[i].kind == FeatureKind::depth)
         depth_m = std::min(depth_m, data.upper[static_cast<Eigen::Index>(i)]);
@@ -268,7 +233,7 @@ double SessionModels::trained_depth_m() const noexcept {
 double SessionModels::longest_memory_s() const noexcept {
   double memory_s = 0.0;
   for (const std::size_t slot : ready_slots()) {
-    for (const FeatureSpec& feature : slots_[slot]->model->features()) {
+    for (const FeatureSpec& feature : slots_[slot].model->features()) {
       memory_s = std::max(memory_s, feature.relaxation_time_s);
       for (std::size_t p = 0; is_branch(feature.kind) && p < feature.part_count; ++p)
         memory_s = std::max(memory_s, feature.parts[p].relaxation_time_s);
@@ -292,15 +257,14 @@ std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
   std::vector<std::shared_ptr<const ForceModel>> models;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     // The reference is in every set, even when it is hidden.
-    if (!slots_[i]->takes_part() && !(direct_ == i && slots_[i]->model != nullptr)) continue;
-    models.push_back(slots_[i]->model);
-    set.slots.push_back(i);
+    if (!slots_[i].takes_part() && !(direct_ == i && slots_[i].model != nullptr)) continue;
+    set.models[i] = models.size();
+    models.push_back(slots_[i].model);
   }
   auto next = std::make_unique<LiveModels>(set.id, sensor, std::move(models), std::move(reference));
-  next->selected = static_cast<std::uint32_t>(set.index_of(selected_).value_or(0));
-  if (const auto model = this->reference(); model && set.index_of(*model)) {
-    next->written_model = static_cast<std::uint32_t>(*set.index_of(*model));
-  }
+  next->selected = static_cast<std::uint32_t>(set.models.contains(selected_) ? set.index_of(selected_) : 0);
+  if (const auto model = this->reference(); model && set.models.contains(*model))
+    next->written_model = static_cast<std::uint32_t>(set.index_of(*model));
   sets_.push_back(std::move(set));
   return next;
 }
@@ -314,35 +278,21 @@ const PublishedSet* SessionModels::set_of(const LoopSnapshot& snapshot) const no
 void SessionModels::write_selection(LoopControls& controls) const {
   if (sets_.empty()) return;
   controls.models_id = sets_.back().id;
-  controls.selected = static_cast<std::uint32_t>(sets_.back().index_of(selected_).value_or(sets_.back().slots.size()));
-}
-
-std::size_t SessionModels::size() const noexcept { return slots_.size(); }
-const ModelInfo& SessionModels::info(std::size_t slot) const noexcept { return slots_[slot]->info; }
-const std::shared_ptr<const FittedModel>& SessionModels::model(std::size_t slot) const noexcept {
-  return slots_[slot]->model;
-}
-void SessionModels::treat_as_this_material(std::size_t slot) noexcept {
-  slots_[slot]->plan.of_this_material = true;
-  slots_[slot]->info.other_material = false;
+  controls.selected = static_cast<std::uint32_t>(sets_.back().index_of(selected_));
 }
 
 std::vector<SlotPlan> SessionModels::plans() const {
   std::vector<SlotPlan> plans;
   for (const auto& slot : slots_) {
-    if (slot->removed || slot->info.state == SlotState::failed) continue;
-    plans.push_back(slot->plan);
-    if (!slot->info.refitting) plans.back().loaded = slot->model;
+    if (slot.removed || slot.info.state == SlotState::failed) continue;
+    plans.push_back(slot.plan);
+    if (!slot.info.refitting) plans.back().loaded = slot.model;
   }
   return plans;
 }
 
-const std::vector<FeatureSpec>& SessionModels::features(std::size_t slot) const noexcept {
-  return slots_[slot]->model->features();
-}
-
 bool SessionModels::select(std::size_t slot) {
-  if (slot >= slots_.size() || !slots_[slot]->takes_part()) return false;
+  if (slot >= slots_.size() || !slots_[slot].takes_part()) return false;
   selected_ = slot;
   user_chose_ = true;
   return true;
@@ -360,7 +310,7 @@ bool SessionModels::load_file(const std::string& path) {
   plan.path = path;
   plan.loaded = std::move(*model);
   const std::size_t index = add_slot(plan);
-  const Slot& slot = *slots_[index];
+  const Slot& slot = slots_[index];
   loaded_.push_back(index);
   FinishedModel finished = finished_model(slot.job, plan, plan.loaded);
   join(index, finished);
@@ -372,12 +322,9 @@ bool SessionModels::load_file(const std::string& path) {
 }
 
 std::string SessionModels::distinct_name(const std::string& name, const Slot* but) const {
-  const auto taken = [&](const std::string& candidate) {
-    return std::any_of(slots_.begin(), slots_.end(),
-                       [&](const auto& slot) { return slot.get() != but && slot->info.name == candidate; });
-  };
   std::string candidate = name;
-  for (int i = 2; taken(candidate); ++i) candidate = name + "-" + std::to_string(i);
+  const auto is_taken = [&](const Slot& slot) { return &slot != but && slot.info.name == candidate; };
+  for (int i = 2; std::ranges::any_of(slots_, is_taken); ++i) candidate = name + "-" + std::to_string(i);
   return candidate;
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,8 @@
 #include "scenes/evaluation/model_timing.h"
 #include "scenes/live/notices.h"
 #include "scenes/scene/scene.h"
+#include "scenes/worker/model_worker.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 
@@ -43,21 +46,16 @@ struct ModelInfo {
   bool paper = false;          // fitted by the recipe of the paper (2009)
 };
 
-class FittedModel;
-class ModelWorker;
-struct FinishedModel;
-struct SlotPlan;
-
-// Maps the models of a published set to their slots. Snapshots of a set may still arrive after the next set was
-// published.
+// A published set of models. Snapshots of a set may still arrive after the next set was published.
 struct PublishedSet {
-  // Replaces the index of a slot whose model was removed.
-  static constexpr std::size_t kRemoved = static_cast<std::size_t>(-1);
   std::uint32_t id = 0;
-  std::vector<std::size_t> slots;
+  std::map<std::size_t, std::size_t> models;  // slot to index in the set, without the models that were removed since
 
-  // Index of the slot's model in the set; empty when it has none.
-  std::optional<std::size_t> index_of(std::size_t slot) const noexcept;
+  // Index of the slot's model in the set; kMaxModels when it has none.
+  std::size_t index_of(std::size_t slot) const noexcept {
+    const auto model = models.find(slot);
+    return model != models.end() ? model->second : kMaxModels;
+  }
 };
 
 class SessionModels {
@@ -66,14 +64,12 @@ class SessionModels {
   SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices);
   SessionModels(const SessionModels&) = delete;
   SessionModels& operator=(const SessionModels&) = delete;
-  // Interrupts fits.
-  ~SessionModels();
 
   // Makes a slot for each plan. `claimed`: model files are of this material, whatever their provenance. Errors:
   // a thread cannot be started.
   Status start(const std::vector<SlotPlan>& plans, bool claimed);
   // Interrupts fits; does not wait.
-  void cancel() noexcept;
+  void cancel() noexcept { worker_.cancel(); }
   // Call it once a frame. Returns the slots whose models became ready. If there are any, publish a new set.
   std::vector<std::size_t> update();
 
@@ -87,14 +83,14 @@ class SessionModels {
 
   // The slots whose models are ready and not hidden.
   std::vector<std::size_t> ready_slots() const;
-  const std::shared_ptr<const FittedModel>& model(std::size_t slot) const noexcept;  // null until ready
+  // Null until ready.
+  const std::shared_ptr<const FittedModel>& model(std::size_t slot) const noexcept { return slots_[slot].model; }
   // The plans of all slots that are neither removed nor failed, each with its model where it is ready. A next
   // session that starts from them fits only the others.
   std::vector<SlotPlan> plans() const;
 
-  std::size_t size() const noexcept;
-  const ModelInfo& info(std::size_t slot) const noexcept;
-  const std::vector<FeatureSpec>& features(std::size_t slot) const noexcept;
+  std::size_t size() const noexcept { return slots_.size(); }
+  const ModelInfo& info(std::size_t slot) const noexcept { return slots_[slot].info; }
 
   // The slot of the active model. The rendered force may still fade to it.
   std::size_t selected() const noexcept { return selected_; }
@@ -105,7 +101,10 @@ class SessionModels {
   // Whether any model is fitted in this session, not read from a file.
   bool fits() const noexcept;
   // Treats the model as one of this material, whatever its provenance.
-  void treat_as_this_material(std::size_t slot) noexcept;
+  void treat_as_this_material(std::size_t slot) noexcept {
+    slots_[slot].plan.of_this_material = true;
+    slots_[slot].info.other_material = false;
+  }
 
   // Shows the models of these plans, fits those that are missing and hides all others except models from files.
   // The active model stays active if it is shown; else the first model becomes active.
@@ -132,7 +131,25 @@ class SessionModels {
   bool all_settled() const noexcept;
 
  private:
-  struct Slot;
+  struct Slot {
+    ModelInfo info;
+    SlotPlan plan;
+    std::size_t job = 0;                       // id of the worker's job
+    int asked_centres = 0;                     // of the plan, before the user changed the number
+    std::shared_ptr<const FittedModel> model;  // null until ready
+    bool removed = false;
+    bool claimed = false;  // the user said that this model file is of this material
+
+    bool hidden() const { return info.state == SlotState::hidden; }
+    bool takes_part() const { return model != nullptr && !hidden(); }
+    void show() {
+      info.state = model != nullptr ? SlotState::ready : info.problem.empty() ? SlotState::waiting : SlotState::failed;
+    }
+    bool is(const SlotPlan& other) const {  // `other` is not a file
+      return !removed && plan.origin == other.origin && plan.method == other.method && plan.paper == other.paper &&
+             asked_centres == other.centres;
+    }
+  };
 
   std::size_t add_slot(const SlotPlan& plan);
   bool is_of_other_material(const Slot& slot) const;
@@ -146,8 +163,8 @@ class SessionModels {
 
   const Scene& scene_;
   Notices& notices_;
-  std::unique_ptr<ModelWorker> worker_;
-  std::vector<std::unique_ptr<Slot>> slots_;
+  ModelWorker worker_;
+  std::vector<Slot> slots_;
   std::vector<PublishedSet> sets_;  // newest last
   std::optional<std::size_t> direct_;
   std::size_t selected_ = 0;

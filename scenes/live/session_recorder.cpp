@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <system_error>
 #include <utility>
 
@@ -51,14 +50,9 @@ SessionRecorder::~SessionRecorder() {
 
 Status SessionRecorder::start(const RecorderRequest& request) {
   if (thread_.joinable()) return Error{"already recording into " + request_.path + "; stop that one first"};
-  std::error_code ignored;
-  if (!request.overwrite && std::filesystem::exists(request.path, ignored))
-    return Error{request.path + " exists; choose another name"};
   Result<RecordingWriter> writer =
       RecordingWriter::create(request.path, request.columns, request.comments, request.overwrite);
   if (!writer) return writer.error();
-  // Discards samples that an earlier recording left in the ring.
-  while (loop_.recorded().pop(buffer_.data(), buffer_.size()) > 0) continue;
   writer_.emplace(std::move(*writer));
   request_ = request;
   ++number_;

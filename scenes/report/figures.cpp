@@ -15,24 +15,25 @@ constexpr double kNear = 0.2;  // the budget is drawn if a tick takes more than 
 // The curves omit bins with fewer samples.
 constexpr std::uint64_t kFewSamples = 20;
 
-using Kind = std::pair<Recipe, const Method*>;
-
-// The models of one recipe and method, in order of their size.
-std::vector<const ModelResult*> of_kind(const ReportData& data, const Kind& kind) {
-  std::vector<const ModelResult*> models;
-  for (const ModelResult& one : data.models) {
-    if (one.model && one.plan.recipe == kind.first && one.plan.request.method == kind.second) models.push_back(&one);
-  }
-  std::sort(models.begin(), models.end(), [](auto* a, auto* b) { return a->size < b->size; });
-  return models;
+// The colour of the model's method, which the window uses as well; grey for no force.
+Hue model_colour(const PlannedModel& plan) {
+  return plan.recipe == Recipe::no_force ? kMutedColour : plan.request.method->colour;
 }
 
-std::vector<Kind> kinds_of(const ReportData& data) {
-  std::vector<Kind> kinds;
+// The models of each recipe and method, in order of their size.
+std::vector<std::vector<const ModelResult*>> kinds_of(const ReportData& data) {
+  std::vector<std::vector<const ModelResult*>> kinds;
   for (const ModelResult& one : data.models) {
-    const Kind kind{one.plan.recipe, one.plan.request.method};
-    if (one.model && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+    if (!one.model) continue;
+    const auto is_same = [&](const std::vector<const ModelResult*>& kind) {
+      const PlannedModel& plan = kind.front()->plan;
+      return plan.recipe == one.plan.recipe && plan.request.method == one.plan.request.method;
+    };
+    auto kind = std::ranges::find_if(kinds, is_same);
+    if (kind == kinds.end()) kind = kinds.emplace(kinds.end());
+    kind->push_back(&one);
   }
+  for (auto& kind : kinds) std::ranges::sort(kind, {}, &ModelResult::size);
   return kinds;
 }
 
@@ -72,10 +73,6 @@ void share_scale(Panel& one, Panel& other) {
 
 }  // namespace
 
-Hue model_colour(const PlannedModel& plan) {
-  return plan.recipe == Recipe::no_force ? kMutedColour : plan.request.method->colour;
-}
-
 Figure speed_figure(const ReportData& data) {
   Figure figure;
   Panel panel;
@@ -84,9 +81,9 @@ Figure speed_figure(const ReportData& data) {
   panel.names_at_ends = true;
   double slowest_s = 0.0;
   double least = 1e300;
-  for (const Kind& kind : kinds_of(data)) {
+  for (const auto& kind : kinds_of(data)) {
     Series curve{"", kInkColour, Mark::line, {}};
-    for (const ModelResult* one : of_kind(data, kind)) {
+    for (const ModelResult* one : kind) {
       if (!one->time.measured) continue;
       slowest_s = std::max(slowest_s, 1e-9 * one->time.tick.high_ns);
       least = std::min(least, std::max(one->errors.p99_error_over_jnd, 1e-6));

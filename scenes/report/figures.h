@@ -11,7 +11,4 @@ Figure speed_figure(const ReportData& data);
 Figure worst_figure(const ReportData& data);
 Figure force_figure(const ReportData& data);
 
-// The colour of the model's method, which the window uses as well; grey for no force.
-Hue model_colour(const PlannedModel& plan);
-
 }  // namespace palpate

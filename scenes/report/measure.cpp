@@ -41,56 +41,42 @@ struct Preparations {
   const PreparedTraining& of(Recipe recipe) const { return recipe == Recipe::paper ? paper : palpate; }
 };
 
-// A planned model with what is known of it while the folds are measured.
-struct Measured {
-  ModelResult result;
-  ModelErrors recorded;
-  ModelErrors moved;
-  std::vector<ModelPointer> fits{};  // of each fold; empty: no force
-};
-
 class Measurement {
  public:
   Measurement(ReportData& data, const FitControl& control)
-      : data_(data), models_(planned(data.quick, data.scene)), progress_(control, expected_total()) {}
+      : data_(data), models_(data.models), progress_(control, plan_models()) {}
 
   Status run() {
     for (const Split& fold : data_.recordings.folds) {
       if (const Status status = run_fold(fold); !status) return status;
     }
-    for (Measured& one : models_) finish(one);
+    for (ModelResult& one : models_) finish(one);
     data_.floor = noise_floor(tested_, data_.scene.jnd);
     time_all();
     merge_equal();
-    for (Measured& one : models_) data_.models.push_back(std::move(one.result));
-    data_.choice = choose(data_.models);
+    data_.choice = choose(models_);
     find_worst();
     return progress_.next(0.0).may_continue(1.0) ? Status{} : Status{interrupted()};
   }
 
  private:
-  static std::vector<Measured> planned(bool quick, const Scene& scene) {
-    std::vector<Measured> models;
-    for (PlannedModel& plan : make_plan(quick, scene.features.size())) {
-      models.push_back({{}, ModelErrors(scene.jnd), ModelErrors(scene.jnd)});
-      models.back().result.plan = std::move(plan);
-    }
-    return models;
-  }
-
-  double expected_total() const {
+  // Returns the expected time of the whole measurement, s.
+  double plan_models() {
     double total = 2.0 * kPrepareSeconds;
-    for (const Measured& one : models_) {
-      const PlannedModel& plan = one.result.plan;
-      if (plan.recipe != Recipe::no_force) total += plan.request.method->expected_seconds(plan.request);
+    for (PlannedModel& plan : make_plan(data_.quick, data_.scene.features.size())) {
+      ModelResult& model = models_.emplace_back();
+      model.plan = std::move(plan);
+      model.recorded_samples = model.moved_samples = ModelErrors(data_.scene.jnd);
+      const MethodRequest& request = model.plan.request;
+      total += kEvaluateSeconds;
+      if (model.plan.recipe != Recipe::no_force) total += request.method->expected_seconds(request);
     }
-    return static_cast<double>(data_.recordings.folds.size()) *
-           (total + kEvaluateSeconds * static_cast<double>(models_.size()));
+    return static_cast<double>(data_.recordings.folds.size()) * total;
   }
 
-  Result<Preparations> prepare(const std::vector<SharedRecording>& training) {
+  Result<Preparations> prepare(const std::vector<PreparedRecordingPointer>& training) {
     std::vector<MotionSource::Input> inputs;
-    for (const SharedRecording& recording : training) inputs.push_back({"", prepare_recording(*recording)});
+    for (const PreparedRecordingPointer& recording : training) inputs.push_back({"", recording});
     const TrainingRequest request = training_request(data_.scene);
     std::vector<PreparedTraining> made;
     for (const TrainingRequest& one : {recipe_2009_request(request), request}) {
@@ -105,8 +91,7 @@ class Measurement {
   // Fits all planned models of one fold.
   Status fit(const Preparations& prepared) {
     std::map<std::pair<Recipe, const Method*>, std::pair<MethodFit, double>> bases;
-    for (Measured& measured : models_) {
-      ModelResult& result = measured.result;
+    for (ModelResult& result : models_) {
       const PlannedModel& plan = result.plan;
       if (plan.recipe == Recipe::no_force) continue;
       const auto base = bases.find({plan.recipe, plan.request.method->base});
@@ -125,7 +110,7 @@ class Measurement {
       result.fit_seconds += seconds / static_cast<double>(data_.recordings.folds.size());
       result.model = std::make_shared<const FittedModel>(std::move(one->data));
       result.size = std::max(result.size, result.model->centre_count());
-      measured.fits.push_back(result.model);
+      result.fits.push_back(result.model);
     }
     return {};
   }
@@ -135,16 +120,15 @@ class Measurement {
     if (!prepared) return prepared.error();
     if (data_.gains.empty()) remember(*prepared);
     if (const Status fitted = fit(*prepared); !fitted) return fitted;
-    for (const SharedRecording& recording : fold.tested) {
-      if (const Status status = evaluate_test(*recording, fold.counted_from_s); !status) return status;
+    for (const PreparedRecordingPointer& recording : fold.tested) {
+      if (const Status status = evaluate_test(recording->recording, fold.counted_from_s); !status) return status;
     }
     return {};
   }
 
-  void finish(Measured& one) {
-    ModelResult& result = one.result;
-    result.errors = one.recorded.unit_errors();
-    result.moved = one.moved.summary();
+  static void finish(ModelResult& result) {
+    result.errors = result.recorded_samples.unit_errors();
+    result.moved = result.moved_samples.summary();
     // A fit has at most as many centres as sites; the name has the actual number.
     const MethodRequest& request = result.plan.request;
     if (result.model && request.method->can_take(kTakesCentres) && result.size < request.centres)
@@ -164,8 +148,7 @@ class Measurement {
     std::vector<EvaluatedModel> models;
     EvaluationRequest request;
     request.counted_from_s = counted_from_s;
-    for (const Measured& measured : models_) {
-      const ModelResult& one = measured.result;
+    for (const ModelResult& one : models_) {
       if (!one.model) continue;
       models.push_back({one.model, data_.scene.jnd});
       if (one.plan.main && one.plan.recipe == Recipe::palpate) request.surface_models.push_back(one.model);
@@ -174,10 +157,10 @@ class Measurement {
     const auto result = evaluate(rows_of(recording), models, request);
     if (!result) return result.error();
     auto errors = result->models.begin();
-    for (Measured& one : models_) {
-      one.recorded.append(one.result.model ? errors->as_recorded : result->no_force);
-      one.moved.append(one.result.model ? errors->surface_moved : result->no_force);
-      if (one.result.model) ++errors;
+    for (ModelResult& one : models_) {
+      one.recorded_samples.append(one.model ? errors->as_recorded : result->no_force);
+      one.moved_samples.append(one.model ? errors->surface_moved : result->no_force);
+      if (one.model) ++errors;
     }
     timing_.push_back(result->timing);
     data_.tested.push_back({recording.name, result->models.front().surface.at});
@@ -188,28 +171,28 @@ class Measurement {
   // Times the models of the last fold.
   void time_all() {
     std::vector<ModelPointer> fitted;
-    for (const Measured& one : models_) {
-      if (one.result.model) fitted.push_back(one.result.model);
+    for (const ModelResult& one : models_) {
+      if (one.model) fitted.push_back(one.model);
     }
     const std::vector<ModelTiming> times = time_models(fitted, timing_);
     auto time = times.begin();
-    for (Measured& one : models_) {
-      if (one.result.model) one.result.time = *time++;
+    for (ModelResult& one : models_) {
+      if (one.model) one.time = *time++;
     }
   }
 
   // Merges models with equal forces into the first of them: without a correction every method equals the trend, and
   // with fewer sites than centres two sizes are equal.
   void merge_equal() {
-    std::vector<Measured> kept;
-    for (Measured& one : models_) {
-      const auto first = std::find_if(kept.begin(), kept.end(), [&](const Measured& other) {
-        return one.result.model && other.result.model && other.recorded.equals(one.recorded);
+    std::vector<ModelResult> kept;
+    for (ModelResult& one : models_) {
+      const auto first = std::ranges::find_if(kept, [&](const ModelResult& other) {
+        return one.model && other.model && other.recorded_samples.equals(one.recorded_samples);
       });
       if (first == kept.end()) {
         kept.push_back(std::move(one));
-      } else if (first->result.plan.name != one.result.plan.name) {
-        first->result.same.push_back(one.result.plan.name);
+      } else if (first->plan.name != one.plan.name) {
+        first->same.push_back(one.plan.name);
       }
     }
     models_ = std::move(kept);
@@ -219,21 +202,15 @@ class Measurement {
   void find_worst() {
     const Choice& choice = data_.choice;
     std::vector<std::size_t> shown{choice.recommended};
-    const auto add = [&](std::size_t i) {
-      if (std::find(shown.begin(), shown.end(), i) == shown.end()) shown.push_back(i);
-    };
-    std::size_t best = choice.recommended;
     for (const std::size_t i : choice.candidates) {
-      if (data_.models[i].plan.recipe == Recipe::paper && data_.models[i].plan.request.method == &kGreedyMethod) add(i);
-      if (data_.models[i].errors.p99_error_over_jnd < data_.models[best].errors.p99_error_over_jnd) best = i;
+      if (i != choice.recommended && (i == choice.best || models_[i].plan.is_greedy_2009())) shown.push_back(i);
     }
-    add(best);
     for (std::size_t fold = 0; fold < data_.recordings.folds.size(); ++fold) {
       std::vector<ModelPointer> models;
       for (const std::size_t i : shown) models.push_back(models_[i].fits[fold]);
-      for (const SharedRecording& recording : data_.recordings.folds[fold].tested) {
+      for (const PreparedRecordingPointer& recording : data_.recordings.folds[fold].tested) {
         WorstStretch stretch =
-            worst_stretch(*recording, models, data_.scene.jnd, data_.recordings.folds[fold].counted_from_s);
+            worst_stretch(recording->recording, models, data_.scene.jnd, data_.recordings.folds[fold].counted_from_s);
         if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
       }
     }
@@ -241,7 +218,7 @@ class Measurement {
   }
 
   ReportData& data_;
-  std::vector<Measured> models_;
+  std::vector<ModelResult>& models_;
   Progress progress_;
   std::vector<const Recording*> tested_;
   std::vector<TimedSamples> timing_;  // one per test recording
@@ -252,43 +229,36 @@ class Measurement {
 WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
                            double from_s) {
   std::vector<StretchRow> rows;
-  std::vector<double> squares;  // for each row, of the first model
+  // Over the rows before each: the sum of (error / JND)^2 of the first model, and the samples in contact.
+  std::vector<double> squares{0.0};
+  std::vector<std::size_t> contacts{0};
   const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
     if (row.time_s < from_s) return;
     const bool contact = snapshot.in_contact;
-    const double ratio = jnd.error_over_jnd(snapshot.force_N[0], row.force_N);
-    squares.push_back(contact ? ratio * ratio : 0.0);
+    const double ratio = contact ? jnd.error_over_jnd(snapshot.force_N[0], row.force_N) : 0.0;
+    squares.push_back(squares.back() + ratio * ratio);
+    contacts.push_back(contacts.back() + (contact ? 1 : 0));
     rows.push_back({row.time_s, row.force_N, contact, {}});
     rows.back().force_N.assign(snapshot.force_N.begin(), snapshot.force_N.begin() + snapshot.model_count);
   };
   WorstStretch worst;
   worst.recording = recording.name;
   replay(recording, models, visitor);
-  double sum = 0.0;
-  std::size_t contact = 0;
-  std::size_t first = 0;
-  std::size_t best_first = 0;
-  std::size_t best_last = rows.size() - 1;
   const double length_s = std::min(kStretchSeconds, rows.back().time_s - rows.front().time_s);
-  // The window is from `first` to `last`, including both.
+  std::size_t first = 0;
+  std::pair<std::size_t, std::size_t> stretch{0, rows.size() - 1};  // includes both rows
   for (std::size_t last = 0; last < rows.size(); ++last) {
-    sum += squares[last];
-    contact += rows[last].in_contact ? 1 : 0;
-    while (rows[last].time_s - rows[first].time_s > length_s) {
-      sum -= squares[first];
-      contact -= rows[first].in_contact ? 1 : 0;
-      ++first;
-    }
+    if (rows[last].time_s - rows.front().time_s < length_s) continue;
+    while (rows[last].time_s - rows[first].time_s > length_s) ++first;
     // A quarter of the window is the least divisor, so that a window with little contact has a low score.
-    const double score = sum / static_cast<double>(std::max(contact, (last - first) / 4 + 1));
-    const bool full = first > 0 || rows[last].time_s - rows[first].time_s >= length_s;
-    if (!full || score <= worst.score) continue;
+    const std::size_t contact = std::max(contacts[last + 1] - contacts[first], (last - first) / 4 + 1);
+    const double score = (squares[last + 1] - squares[first]) / static_cast<double>(contact);
+    if (score <= worst.score) continue;
     worst.score = score;
-    best_first = first;
-    best_last = last;
+    stretch = {first, last};
   }
-  worst.rows.assign(rows.begin() + static_cast<std::ptrdiff_t>(best_first),
-                    rows.begin() + static_cast<std::ptrdiff_t>(best_last + 1));
+  worst.rows.assign(rows.begin() + static_cast<std::ptrdiff_t>(stretch.first),
+                    rows.begin() + static_cast<std::ptrdiff_t>(stretch.second + 1));
   return worst;
 }
 
@@ -334,8 +304,7 @@ std::vector<std::size_t> headline_models(const ReportData& data) {
   std::vector<std::size_t> rows{0};
   for (const std::size_t i : data.choice.candidates) {
     const PlannedModel& plan = data.models[i].plan;
-    if (plan.recipe != Recipe::paper || plan.request.method == &kGreedyMethod || i == data.choice.recommended)
-      rows.push_back(i);
+    if (plan.recipe != Recipe::paper || plan.is_greedy_2009() || i == data.choice.recommended) rows.push_back(i);
   }
   return rows;
 }

@@ -45,7 +45,11 @@ struct ModelResult {
   double fit_seconds = 0.0;                  // mean over the folds, without the preparation
   ModelTiming time;                          // of the last fold's model, on all test recordings
   std::shared_ptr<const FittedModel> model;  // of the last fold; null: no force
-  std::vector<std::string> same;             // names of further planned models with the same forces
+  std::vector<ModelPointer> fits;            // of each fold; empty: no force
+  // Of every sample; `errors` and `moved` are computed from them.
+  ModelErrors recorded_samples{JndLine{}};
+  ModelErrors moved_samples{JndLine{}};
+  std::vector<std::string> same;  // names of further planned models with the same forces
 };
 
 // A test recording with its estimated surface offset; 0: none.

@@ -161,12 +161,8 @@ Table bins_table(const PaperData& data) {
         table.add({"model", ""}, model.name);
         table.add({"force_N", ""}, bin.force_N.mean());
         table.add({"count", ""}, bin.force_N.count());
-        table.add({"mean_error_N", ""}, bin.error_N.mean());
-        table.add({"std_error_N", ""}, bin.error_N.deviation());
-        table.add({"max_error_N", ""}, bin.error_N.largest());
-        table.add({"mean_relative_error", ""}, bin.relative.mean());
-        table.add({"std_relative_error", ""}, bin.relative.deviation());
-        table.add({"max_relative_error", ""}, bin.relative.largest());
+        table.add_moments("error_N", bin.error_N);
+        table.add_moments("relative_error", bin.relative);
         table.add({"jnd_N", ""}, data.jnd.at(bin.force_N.mean()));
       }
     }
@@ -178,10 +174,8 @@ std::string protocol_words(const PaperData& data) {
   std::string text =
       "Samples at steps of 50 mN; depth, velocity and two low-passed velocities; rows scaled by 1/f; linear polynomial "
       "tail; pseudo-inverses by truncated singular values; 100 centres; no trend, trust or surface search. Forces are "
-      "cut "
-      "at 0 and at 1.2 times the largest measured one, as of every model here. Bins are two JND wide, those of fewer "
-      "than 20 "
-      "samples in contact are left out.";
+      "cut at 0 and at 1.2 times the largest measured one, as of every model here. Bins are two JND wide, those of "
+      "fewer than 20 samples in contact are left out.";
   for (const PaperRun& run : data.runs) {
     text.append(" ").append(run_name(run)).append(": ").append(with_thousands(std::to_string(run.trained)));
     text.append(" samples to train, ").append(with_thousands(std::to_string(run.tested)));

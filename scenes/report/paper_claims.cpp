@@ -19,9 +19,8 @@ double spread(const PaperBin& bin) { return bin.error_N.mean() + bin.error_N.dev
 double largest(const PaperBin& bin) { return bin.error_N.largest(); }
 
 std::size_t bins_above(const PaperData& data, const PaperModel& model, double (*figure)(const PaperBin&)) {
-  return static_cast<std::size_t>(std::count_if(model.bins.begin(), model.bins.end(), [&](const PaperBin& bin) {
-    return figure(bin) > data.jnd.at(bin.force_N.mean());
-  }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      model.bins, [&](const PaperBin& bin) { return figure(bin) > data.jnd.at(bin.force_N.mean()); }));
 }
 
 // The ratio of two methods' means of `figure` over the bins with forces between two values.
@@ -39,13 +38,6 @@ double ratio(const PaperRun& run, PaperMethod one, PaperMethod other, double (*f
 
 std::string of_bins(std::size_t above, const PaperModel& model) {
   return std::to_string(above) + " of " + std::to_string(model.bins.size()) + " bins above";
-}
-
-// Exponent of a power law through the last two points.
-double exponent(const std::vector<double>& x, const std::vector<double>& y) {
-  const std::size_t n = x.size();
-  if (n < 2) return 0.0;
-  return std::log(y[n - 1] / y[n - 2]) / std::log(x[n - 1] / x[n - 2]);
 }
 
 class Claims {
@@ -76,8 +68,7 @@ class Claims {
   // Gives the claims that are not reproduced and have no remark this one.
   void remark(const char* why) {
     for (Claim& claim : claims_) {
-      const bool all =
-          std::all_of(claim.here.begin(), claim.here.end(), [](const Claim::Result& one) { return one.reproduced; });
+      const bool all = std::ranges::all_of(claim.here, &Claim::Result::reproduced);
       if (!all && claim.why.empty()) claim.why = why;
     }
   }
@@ -148,21 +139,22 @@ void Claims::add_times() {
         }
         return result;
       });
-  std::vector<double> sites;
-  std::vector<std::vector<double>> seconds(kPaperMethods);
-  for (const FitTimes& one : data_.by_sites) {
-    sites.push_back(static_cast<double>(one.sites));
-    for (std::size_t i = 0; i < kPaperMethods; ++i) seconds[i].push_back(one.seconds[i]);
-  }
+  // Exponent of a power law through the last two numbers of sites.
+  const FitTimes& most = data_.by_sites.back();
+  const FitTimes& fewer = data_.by_sites[data_.by_sites.size() - 2];
+  const auto exponent = [&](PaperMethod which) {
+    return std::log(most.seconds[which] / fewer.seconds[which]) /
+           std::log(static_cast<double>(most.sites) / static_cast<double>(fewer.sites));
+  };
   std::string linear;
   double steepest = 0.0;
   for (const PaperMethod which : {kRandomCentres, kTreeCentres, kGreedy20, kGreedy100}) {
-    const double slope = exponent(sites, seconds[which]);
+    const double slope = exponent(which);
     steepest = std::max(steepest, slope);
     linear += (linear.empty() ? "exponents " : ", ") + fixed(slope, 2);
   }
   add_once({"cost of random, kD-tree and greedy is linear in the samples", "linear"}, linear, steepest < kLinear);
-  const double cubic = exponent(sites, seconds[kGridOfAll]);
+  const double cubic = exponent(kGridOfAll);
   add_once({"that of the interpolant grows with their third power", "3", "the grid's cost is in it"},
            "exponent " + fixed(cubic, 2), cubic > 2.0);
   const DimensionTimes& last = data_.by_dimension.back();

@@ -28,24 +28,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-struct Sample {
-  double force_N;
-  double error_N;
-};
-
-std::vector<PaperBin> binned(const std::vector<Sample>& samples, const JndLine& jnd) {
-  std::vector<PaperBin> bins;
-  for (const Sample& one : samples) {
-    const double force_N = std::abs(one.force_N);
-    if (force_N == 0.0) continue;  // the relative error is undefined
-    const std::size_t index = force_bin(force_N, jnd);
-    if (bins.size() <= index) bins.resize(index + 1);
-    bins[index].force_N.add(force_N);
-    bins[index].error_N.add(one.error_N);
-    bins[index].relative.add(one.error_N / force_N);
-  }
-  std::erase_if(bins, [](const PaperBin& bin) { return bin.force_N.count() < kReducedSamples; });
-  return bins;
+void add_to_bin(std::vector<PaperBin>& bins, double force_N, double error_N, const JndLine& jnd) {
+  if (force_N == 0.0) return;  // the relative error is undefined
+  const std::size_t index = force_bin(force_N, jnd);
+  if (bins.size() <= index) bins.resize(index + 1);
+  bins[index].force_N.add(force_N);
+  bins[index].error_N.add(error_N);
+  bins[index].relative.add(error_N / force_N);
 }
 
 MethodRequest request_of(std::size_t which) {
@@ -77,7 +66,6 @@ class PaperMeasurement {
     for (const char* material : {"silicone", "maxwell"}) {
       if (const Status status = run_material(material); !status) return status.error();
     }
-    if (const Status status = time_dimensions(); !status) return status.error();
     return std::move(data_);
   }
 
@@ -101,11 +89,11 @@ class PaperMeasurement {
   double done_ = 0.0;
   Scene scene_;
   PaperData data_;
-  std::vector<SharedRecording> recordings_;  // to train and to test
+  std::vector<PreparedRecordingPointer> recordings_;  // to train and to test
 };
 
 Result<PreparedTraining> PaperMeasurement::prepare(TrainingRequest request) {
-  MotionSource source({{"", prepare_recording(*recordings_[0])}});
+  MotionSource source({{"", recordings_[0]}});
   auto prepared = prepare_training(source, request, part());
   if (!prepared) return prepared.error();
   if (prepared->set.reduction_force_N != kStep_N)
@@ -127,14 +115,15 @@ Status PaperMeasurement::run_material(const std::string& material) {
     PaperRun run{material,
                  fitted,
                  {},
-                 recordings_[0]->rows.size(),
-                 recordings_[1]->rows.size(),
+                 recordings_[0]->recording.rows.size(),
+                 recordings_[1]->recording.rows.size(),
                  static_cast<std::uint64_t>(prepared->sites.count()),
                  {}};
     for (const RelaxationTime& one : prepared->common.provenance.relaxation_times) run.times_s.push_back(one.time_s);
     if (const Status status = measure_run(std::move(run), *prepared); !status) return status;
     if (data_.runs.size() > 1) continue;
     if (const Status status = time_sites(*prepared); !status) return status;
+    if (const Status status = time_dimensions(); !status) return status;
   }
   return {};
 }
@@ -148,22 +137,23 @@ Status PaperMeasurement::measure_run(PaperRun run, const PreparedTraining& prepa
     run.models.push_back({kNames[which], colour_of(which), seconds_since(start), {}, 0.0, {}});
     models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
   }
-  std::vector<std::vector<Sample>> samples(models.size());
+  std::vector<Moments> errors_N(models.size());
   TimedSamples timing;
   const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
     if (!snapshot.in_contact) return;
     if (timing.samples.size() < kTimedSamples) timing.samples.push_back(tool_sample(row));
-    for (std::size_t i = 0; i < models.size(); ++i)
-      samples[i].push_back({row.force_N, std::abs(snapshot.force_N[i] - row.force_N)});
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      const double error_N = std::abs(snapshot.force_N[i] - row.force_N);
+      errors_N[i].add(error_N);
+      add_to_bin(run.models[i].bins, std::abs(row.force_N), error_N, data_.jnd);
+    }
   };
-  timing.sensor = replay(*recordings_[1], models, visitor).sensor;
+  timing.sensor = replay(recordings_[1]->recording, models, visitor).sensor;
   const std::vector<ModelTiming> times = time_models(models, {timing});
   for (std::size_t i = 0; i < models.size(); ++i) {
-    double squares = 0.0;
-    for (const Sample& one : samples[i]) squares += one.error_N * one.error_N;
-    run.models[i].rms_N = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, samples[i].size())));
+    run.models[i].rms_N = std::hypot(errors_N[i].mean(), errors_N[i].deviation());
     run.models[i].time = times[i];
-    run.models[i].bins = binned(samples[i], data_.jnd);
+    std::erase_if(run.models[i].bins, [](const PaperBin& bin) { return bin.force_N.count() < kReducedSamples; });
   }
   data_.runs.push_back(std::move(run));
   return {};
@@ -173,8 +163,7 @@ Status PaperMeasurement::time_sites(const PreparedTraining& prepared) {
   const Eigen::Index all = prepared.sites.count();
   for (const double share : quick_ ? std::vector<double>{0.25, 0.5, 1.0} : std::vector<double>{0.125, 0.25, 0.5, 1.0}) {
     const Sites some = even_subset(prepared.sites, static_cast<Eigen::Index>(share * static_cast<double>(all)));
-    Eigen::VectorXd jnd_N(some.count());
-    for (Eigen::Index i = 0; i < some.count(); ++i) jnd_N(i) = data_.jnd.at(some.target_N(i));
+    const Eigen::VectorXd jnd_N = some.target_N.unaryExpr([&](double force_N) { return data_.jnd.at(force_N); });
     FitTimes times{static_cast<std::size_t>(some.count()), {}};
     for (std::size_t which = 0; which < kPaperMethods; ++which) {
       const auto start = std::chrono::steady_clock::now();
@@ -188,9 +177,6 @@ Status PaperMeasurement::time_sites(const PreparedTraining& prepared) {
 }
 
 Status PaperMeasurement::time_dimensions() {
-  auto made = virtual_recordings("silicone", quick_ ? kQuickShare : 1.0);
-  if (!made) return made.error();
-  recordings_ = std::move(*made);
   std::vector<FeatureSpec> features = scene_.features;
   for (const double time_s : kMoreTimes_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
   for (std::size_t d = 1; d <= (quick_ ? std::size_t{4} : features.size()); ++d) {

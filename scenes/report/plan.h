@@ -21,6 +21,9 @@ struct PlannedModel {
   Recipe recipe = Recipe::palpate;
   MethodRequest request;
   bool main = false;  // the default size of its recipe and method: a candidate, drawn in the figure of error by force
+
+  // Whether the paper recommends this model's method.
+  bool is_greedy_2009() const { return recipe == Recipe::paper && request.method == &kGreedyMethod; }
 };
 
 // The name of a model with that many centres; methods without centres have no number.

@@ -58,19 +58,15 @@ Result<ReportFolder> ReportFolder::create(const std::string& path, bool overwrit
   }
   if (const Status target = check_target(clean, overwrite); !target) return target.error();
   const fs::path parent = clean.has_parent_path() ? clean.parent_path() : fs::path(".");
-  std::error_code error;
-  if (!fs::is_directory(parent, error)) {
-    return Error{"cannot write " + clean.string() + ": the folder " + parent.string() +
-                 " does not exist; create it first"};
-  }
   ReportFolder folder;
   folder.path_ = clean.string();
   folder.temporary_ = std::make_unique<ScratchFolder>(parent.string(), ".palpate-report-");
   if (folder.temporary_->path().empty()) {
-    return Error{"cannot write " + clean.string() + ": the folder " + parent.string() + " is not writable (" +
-                 std::generic_category().message(errno) + ")"};
+    return Error{"cannot write " + clean.string() + ": cannot make a folder in " + parent.string() + " (" +
+                 std::generic_category().message(errno) + "); create that folder first, or name another one"};
   }
   // Only the owner can read a new scratch folder.
+  std::error_code error;
   fs::permissions(folder.temporary_->path(), static_cast<fs::perms>(0755), error);
   return folder;
 }

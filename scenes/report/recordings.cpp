@@ -2,26 +2,29 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
-#include "engine/tick/sensor_identification.h"
 #include "scenes/material/rig.h"
 
 namespace palpate {
 namespace {
 
+constexpr std::size_t kLeakValues = 12;
 constexpr std::size_t kSmallestRecording = 1000;  // rows; a shorter recording is not divided
 constexpr double kKeptShare = 0.6;                // of a single recording
 
-RecordingFacts facts_of(const Recording& recording, const std::string& role) {
+RecordingFacts facts_of(const PreparedRecording& prepared, const std::string& role) {
+  const Recording& recording = prepared.recording;
   RecordingFacts facts;
   char hash[24];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(content_hash(recording)));
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(prepared.content_hash));
   facts.content_hash = hash;
   facts.role = role;
   facts.name = recording.name;
@@ -34,14 +37,13 @@ RecordingFacts facts_of(const Recording& recording, const std::string& role) {
     facts.deepest_m = std::max(facts.deepest_m, row.position_m);
     facts.largest_force_N = std::max(facts.largest_force_N, row.force_N);
   }
-  facts.force_noise_N =
-      identify_force_noise_N(recording.rows.data(), std::min(recording.rows.size(), kSensorIdentificationRows));
+  facts.force_noise_N = prepared.force_noise_N;
   facts.accelerometer = recording.columns.acceleration;
   return facts;
 }
 
 // Makes at most `most` folds: each recording is tested once, with models that are fitted to the other folds.
-std::vector<Split> folds_of(const std::vector<SharedRecording>& all, std::size_t most) {
+std::vector<Split> folds_of(const std::vector<PreparedRecordingPointer>& all, std::size_t most) {
   std::vector<Split> folds(std::min(most, all.size()));
   for (Split& fold : folds) fold.words = std::to_string(folds.size()) + "-fold cross-validation over the training";
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -52,11 +54,10 @@ std::vector<Split> folds_of(const std::vector<SharedRecording>& all, std::size_t
 }
 
 // Sorts by name and content, so that the result does not depend on the order in which the recordings are given.
-void sort_recordings(std::vector<SharedRecording>& recordings) {
-  std::vector<std::pair<std::pair<std::string, std::uint64_t>, SharedRecording>> keyed;
-  for (SharedRecording& one : recordings) keyed.emplace_back(std::pair(one->name, content_hash(*one)), one);
-  std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < keyed.size(); ++i) recordings[i] = keyed[i].second;
+void sort_recordings(std::vector<PreparedRecordingPointer>& recordings) {
+  std::sort(recordings.begin(), recordings.end(), [](const auto& a, const auto& b) {
+    return std::tie(a->recording.name, a->content_hash) < std::tie(b->recording.name, b->content_hash);
+  });
 }
 
 using Forces = std::vector<double>;
@@ -79,18 +80,15 @@ bool is_telling(const Forces& forces_N, std::size_t first) {
   return std::set<double>(begin, begin + static_cast<std::ptrdiff_t>(kLeakRows)).size() >= kLeakValues;
 }
 
+// The longest stretch of equal forces that contains these rows.
 SharedStretch extended(const Forces& trained, const Forces& tested, std::size_t trained_row, std::size_t tested_row) {
-  SharedStretch stretch{tested_row, trained_row, 0};
-  while (stretch.first_row > 0 && stretch.trained_row > 0 &&
-         tested[stretch.first_row - 1] == trained[stretch.trained_row - 1]) {
-    --stretch.first_row;
-    --stretch.trained_row;
-  }
-  while (stretch.first_row + stretch.rows < tested.size() && stretch.trained_row + stretch.rows < trained.size() &&
-         tested[stretch.first_row + stretch.rows] == trained[stretch.trained_row + stretch.rows]) {
-    ++stretch.rows;
-  }
-  return stretch;
+  const auto known = trained.begin() + static_cast<std::ptrdiff_t>(trained_row);
+  const auto asked = tested.begin() + static_cast<std::ptrdiff_t>(tested_row);
+  const std::reverse_iterator before(known);
+  const auto first = std::mismatch(before, trained.rend(), std::reverse_iterator(asked), tested.rend()).first.base();
+  const auto last = std::mismatch(known, trained.end(), asked, tested.end()).first;
+  const auto back = static_cast<std::size_t>(known - first);
+  return {tested_row - back, trained_row - back, static_cast<std::size_t>(last - first)};
 }
 
 // A time of a recording, counted from its beginning.
@@ -100,29 +98,47 @@ std::string seconds(const Recording& recording, std::size_t row) {
 
 // Splits off a block of up to 40 % at the end of a recording as test data. The block begins at the first sample in the
 // air, if one is within 10 % of the rows. A recording of fewer than 1000 rows gives an empty split.
-Split leave_out(const SharedRecording& training) {
+Split leave_out(const PreparedRecordingPointer& training) {
   Split split;
-  const Recording& whole = *training;
+  const Recording& whole = training->recording;
   if (whole.rows.size() < kSmallestRecording) return split;
   const auto kept =
       whole.rows.begin() + static_cast<std::ptrdiff_t>(kKeptShare * static_cast<double>(whole.rows.size()));
   const auto near = kept + static_cast<std::ptrdiff_t>(whole.rows.size() / 10);
   const auto in_air = std::find_if(kept, near, [](const RecordingRow& row) { return row.position_m <= 0.0; });
   const auto cut = in_air == near ? kept : in_air;
-  split.train.push_back(
-      std::make_shared<const Recording>(Recording{whole.name, whole.columns, {whole.rows.begin(), cut}}));
+  split.train.push_back(prepare_recording({whole.name, whole.columns, {whole.rows.begin(), cut}}));
   split.tested.push_back(training);
   split.counted_from_s = cut->time_s;
   split.words = "a block at the end of the training recording, " +
-                std::to_string(100 - 100 * split.train[0]->rows.size() / whole.rows.size()) +
+                std::to_string(100 - 100 * split.train[0]->recording.rows.size() / whole.rows.size()) +
                 " % of it, left out of these fits";
   return split;
 }
 
+// The first `trained` recordings of `all` are training data, the others test data; without others, all pairs are
+// compared.
+Status refuse_leakage(const std::vector<PreparedRecordingPointer>& all, std::size_t trained) {
+  const bool tests = trained < all.size();
+  for (std::size_t i = tests ? trained : 0; i < all.size(); ++i) {
+    for (std::size_t k = 0; k < (tests ? trained : i); ++k) {
+      const Recording& trained_on = all[k]->recording;
+      const Recording& tested = all[i]->recording;
+      const SharedStretch stretch = shared_stretch(trained_on, tested);
+      if (stretch.rows == 0) continue;
+      return Error{tested.name + ": the forces of " + std::to_string(stretch.rows) + " rows from " +
+                   seconds(tested, stretch.first_row) + " s on are those of " + trained_on.name + " from " +
+                   seconds(trained_on, stretch.trained_row) +
+                   " s on, expected a test that was not trained on; leave that stretch out of one of them"};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<std::vector<SharedRecording>> virtual_recordings(const std::string& material, double share) {
-  std::vector<SharedRecording> made;
+Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share) {
+  std::vector<PreparedRecordingPointer> made;
   for (const double seconds : {41.499, 45.272}) {
     RigSettings settings;
     settings.material = material;
@@ -130,7 +146,7 @@ Result<std::vector<SharedRecording>> virtual_recordings(const std::string& mater
     settings.seed = made.size() + 1;
     auto recording = record_sensors(settings);
     if (!recording) return recording.error();
-    made.push_back(std::make_shared<const Recording>(std::move(*recording)));
+    made.push_back(prepare_recording(std::move(*recording)));
   }
   return made;
 }
@@ -150,27 +166,13 @@ SharedStretch shared_stretch(const Recording& trained, const Recording& tested) 
   return {};
 }
 
-Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained) {
-  const bool tests = trained < all.size();
-  for (std::size_t i = tests ? trained : 0; i < all.size(); ++i) {
-    for (std::size_t k = 0; k < (tests ? trained : i); ++k) {
-      const SharedStretch stretch = shared_stretch(*all[k], *all[i]);
-      if (stretch.rows == 0) continue;
-      return Error{all[i]->name + ": the forces of " + std::to_string(stretch.rows) + " rows from " +
-                   seconds(*all[i], stretch.first_row) + " s on are those of " + all[k]->name + " from " +
-                   seconds(*all[k], stretch.trained_row) +
-                   " s on, expected a test that was not trained on; leave that stretch out of one of them"};
-    }
-  }
-  return {};
-}
-
-Result<RecordingSet> split_recordings(std::vector<SharedRecording> train, std::vector<SharedRecording> test) {
+Result<RecordingSet> split_recordings(std::vector<PreparedRecordingPointer> train,
+                                      std::vector<PreparedRecordingPointer> test) {
   RecordingSet set;
   set.virtual_recordings = train.empty();
   sort_recordings(train);
   sort_recordings(test);
-  std::vector<SharedRecording> all = std::move(train);
+  std::vector<PreparedRecordingPointer> all = std::move(train);
   if (set.virtual_recordings) {
     auto made = virtual_recordings("silicone");
     if (!made) return made.error();
@@ -187,14 +189,15 @@ Result<RecordingSet> split_recordings(std::vector<SharedRecording> train, std::v
     set.folds = all.size() == 1 ? std::vector<Split>{leave_out(all.front())} : folds_of(all, kMostFolds);
   }
   if (set.folds.front().tested.empty()) {
-    return Error{all.front()->name + ": found " + std::to_string(all.front()->rows.size()) +
+    const Recording& only = all.front()->recording;
+    return Error{only.name + ": found " + std::to_string(only.rows.size()) +
                  " rows and no test recording, expected at least " + std::to_string(kSmallestRecording) +
                  " to leave a part out; give another recording with --test"};
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
     set.facts.push_back(facts_of(*all[i], !tests ? "both" : i < trained ? "train" : "test"));
     if (set.facts.back().role == "train" || set.facts.back().contact_samples > 0) continue;
-    return Error{all[i]->name +
+    return Error{all[i]->recording.name +
                  ": no sample is in contact (position_m > 0), expected a press to test on; check the "
                  "sign and zero of position_m"};
   }

@@ -4,20 +4,17 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/recording/recording.h"
+#include "models/recordings/prepared_recording.h"
 
 namespace palpate {
 
-using SharedRecording = std::shared_ptr<const Recording>;
-
 // The recordings of the paper on a virtual material: 41.499 s with seed 1 for training, 45.272 s with seed 2 for the
 // test. `share`: of both durations. Errors: those of record_sensors.
-Result<std::vector<SharedRecording>> virtual_recordings(const std::string& material, double share = 1.0);
+Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share = 1.0);
 
 struct RecordingFacts {
   std::string role;  // "train", "test" or "both"
@@ -35,8 +32,8 @@ struct RecordingFacts {
 
 // Training and test data of one fold.
 struct Split {
-  std::vector<SharedRecording> train;
-  std::vector<SharedRecording> tested;
+  std::vector<PreparedRecordingPointer> train;
+  std::vector<PreparedRecordingPointer> tested;
   double counted_from_s = -1e300;  // earlier samples are replayed because the features have memory, but do not count
   std::string words;               // description of the test data where it was split off the training data
 };
@@ -47,9 +44,8 @@ struct RecordingSet {
   bool virtual_recordings = false;
 };
 
-// Equal forces in kLeakRows successive rows, with at least kLeakValues different values among them, are a leak.
+// Equal forces in this number of successive rows, with at least twelve different values among them, are a leak.
 inline constexpr std::size_t kLeakRows = 50;
-inline constexpr std::size_t kLeakValues = 12;
 
 struct SharedStretch {
   std::size_t first_row = 0;    // in `tested`
@@ -58,18 +54,16 @@ struct SharedStretch {
 };
 
 // The first stretch that is found of `tested` whose forces occur in `trained`. Stretches of at least 2 kLeakRows rows
-// are found where every kLeakRows of their rows have kLeakValues different values.
+// are found where every kLeakRows of their rows have twelve different values.
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
-
-// The first `trained` recordings of `all` are training data, the others test data; without others, all pairs are
-// compared. Errors: a test recording shares a stretch with a training recording; names both and the rows.
-Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained);
 
 // Without a training recording the virtual silicone is used: seed 1 for training, seed 2 for the test. Without a test
 // recording the training recordings are divided into up to kMostFolds folds for cross-validation, and of a single one a
 // block at its end is the test. Recordings are sorted by name and content.
-// Errors: those of refuse_leakage; a test recording without contact; a single recording that is too short.
+// Errors: a test recording shares a stretch with a training recording; a test recording without contact; a single
+// recording that is too short.
 inline constexpr std::size_t kMostFolds = 5;
-Result<RecordingSet> split_recordings(std::vector<SharedRecording> train, std::vector<SharedRecording> test);
+Result<RecordingSet> split_recordings(std::vector<PreparedRecordingPointer> train,
+                                      std::vector<PreparedRecordingPointer> test);
 
 }  // namespace palpate

@@ -9,9 +9,9 @@
 #include <map>
 #include <thread>
 
+#include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/plot/inline_svg.h"
-#include "scenes/report/answer.h"
 #include "scenes/report/figures.h"
 
 namespace palpate {
@@ -36,6 +36,138 @@ constexpr const char* kCompiler = "clang " __clang_version__;
 #else
 constexpr const char* kCompiler = "g++ " __VERSION__;
 #endif
+
+constexpr double kBudget_ns = 1e6;
+// No model is recommended if less than this share of the test samples is within the JND.
+constexpr double kGoodShare = 0.9;
+// The answer mentions the surface only if moving it changes the share within the JND by more.
+constexpr double kShareThatMatters = 0.005;
+
+// A part of a sentence: text, a model's name, or a number. A number has its model and figure of merit, so that
+// tests/scenes/report/check_report.py can recompute it.
+struct SentencePart {
+  std::string text;
+  std::string model{};   // name of the model; empty for text
+  std::string figure{};  // figure of merit of a number, e.g. "within_jnd"; else empty
+};
+
+// The answer of a report in words, which page, report.json and terminal show.
+class Sentence {
+ public:
+  Sentence& operator<<(const std::string& text) { return *this << SentencePart{text}; }
+  Sentence& operator<<(const SentencePart& part) {
+    parts_.push_back(part);
+    return *this;
+  }
+  std::string html() const {
+    std::string html;
+    for (const SentencePart& words : parts_) {
+      const std::string text = escape_html(words.text);
+      const std::string model = "<span data-model=\"" + escape_html(words.model) + "\" data-figure=\"";
+      html += words.model.empty()    ? text
+              : words.figure.empty() ? "<b>" + text + "</b>"
+                                     : model + words.figure + "\">" + text + "</span>";
+    }
+    return html;
+  }
+  std::string plain_text() const {
+    std::string text;
+    for (const SentencePart& words : parts_) text += words.text;
+    return text.substr(0, text.find_last_not_of(' ') + 1);
+  }
+
+ private:
+  std::vector<SentencePart> parts_;
+};
+
+// Two decimals, rounded down: 99.996 % is "99.99 %".
+std::string percent(double share) { return share >= 1.0 ? "100 %" : fixed(std::floor(1e4 * share) / 100.0, 2) + " %"; }
+
+SentencePart number(const ModelResult& model, const char* figure, const std::string& text) {
+  return {text, model.plan.name, figure};
+}
+
+SentencePart name(const ModelResult& model) { return {model.plan.name, model.plan.name}; }
+
+SentencePart tick(const ModelResult& model) {
+  return number(model, "tick_ns", with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns");
+}
+
+std::string unit_words(const UnitErrors& errors) {
+  return std::to_string(errors.units()) + " " + unit_name(errors) + (errors.units() == 1 ? "" : "s");
+}
+
+void add_errors(Sentence& sentence, const ModelResult& model) {
+  const UnitErrors& errors = model.errors;
+  const SentencePart beyond = number(
+      model, "beyond_units", std::to_string(errors.units_above_jnd) + " of " + unit_words(errors) + " exceed it");
+  sentence << number(model, "within_jnd", percent(errors.within_jnd))
+           << " of the test has an error of at most one JND, which a hand cannot notice (";
+  if (!errors.has_intervals()) {
+    sentence << beyond << ", too few for an interval";
+  } else if (errors.units_above_jnd == 0) {
+    sentence << beyond << "; 95 %: at most " << number(model, "units_at_most", percent(1.0 - errors.within_at_least()))
+             << " do";
+  } else {
+    sentence << "95 %: at least " << number(model, "within_at_least", percent(errors.within_at_least())) << "; "
+             << beyond;
+  }
+  sentence << "), and 99 % of the errors are below "
+           << number(model, "p99_error_over_jnd", three_digits(errors.p99_error_over_jnd)) << " JND";
+  if (errors.has_intervals())
+    sentence << " (95 %: " << number(model, "p99_at_most", three_digits(errors.p99_at_most())) << ")";
+  sentence << ". ";
+}
+
+std::string changed(double jnd) { return three_digits(std::abs(jnd)) + (jnd < 0.0 ? " smaller" : " larger"); }
+
+// Compares time and error of `other` with the recommended model.
+void add_comparison(Sentence& sentence, const ModelResult& other, const ModelResult& recommended) {
+  const PairedDifference difference = paired_difference(other.errors, recommended.errors);
+  const double time_ratio = other.time.tick.median_ns / recommended.time.tick.median_ns;
+  sentence << name(other) << " takes " << number(other, "time_ratio", three_digits(time_ratio)) << " times the time ("
+           << tick(other) << "), and its 99 % error is "
+           << number(other, "difference", three_digits(std::abs(difference.p99)))
+           << (difference.p99 < 0.0 ? " JND smaller" : " JND larger");
+  if (difference.interval.known())
+    sentence << " (95 %: " + changed(difference.interval.low) + " to " + changed(difference.interval.high) + ")";
+  sentence << ". ";
+}
+
+// Names the test recording whose surface is farthest from the models'.
+void add_surface(Sentence& sentence, const ReportData& data, const ModelResult& model) {
+  if (model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return;
+  const MovedSurface& surface =
+      *std::ranges::max_element(data.tested, {}, [](const MovedSurface& one) { return std::abs(one.offset_m); });
+  sentence << "The surface of " + surface.name + " is at " + three_digits(1e3 * surface.offset_m) +
+                  " mm for these models; with it moved, which uses the forces of the test, " +
+                  percent(model.moved.within_jnd) + " of the test is within the JND. ";
+}
+
+Sentence answer(const ReportData& data) {
+  const ModelResult& use = data.models[data.choice.recommended];
+  const bool good = use.errors.within_jnd >= kGoodShare;
+  Sentence sentence;
+  sentence << (good ? "Use " : "No model is good enough as recorded. The best choice is ") << name(use)
+           << ": a whole tick takes " << tick(use) << ", "
+           << number(use, "tick_share", three_digits(100.0 * use.time.tick.median_ns / kBudget_ns)) << " % of 1 ms; ";
+  add_errors(sentence, use);
+  add_surface(sentence, data, use);
+  if (data.choice.correction_off)
+    sentence << "The RBF correction is off on this material: all methods equal the trend. ";
+  const ModelResult& best = data.models[data.choice.best];
+  if (&best != &use) add_comparison(sentence, best, use);
+  if (data.choice.dominating) {
+    sentence << "Another size was faster and had a smaller 99 % error in this test: ";
+    add_comparison(sentence, data.models[*data.choice.dominating], use);
+    sentence << "A size that is chosen by a test has to be tested on another recording. ";
+  }
+  for (const std::size_t i : data.choice.candidates) {
+    const ModelResult& one = data.models[i];
+    if (one.plan.is_greedy_2009() && &one != &use && &one != &best) add_comparison(sentence, one, use);
+  }
+  return sentence;
+}
 
 // All numbers of the report. Those that differ from run to run are in "timings".
 OrderedJson report_json(const ReportData& data, const ReportRequest& request, const Sentence& answer,
@@ -83,44 +215,6 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
 
 constexpr double kStudiedUpTo_N = 2.5;  // Hoever & Harders (2009), section 4.1
 
-std::string verdict(const Choice& choice, std::size_t model, const PairedDifference& difference) {
-  if (model == choice.recommended) return "recommended";
-  const bool qualified = std::find(choice.qualified.begin(), choice.qualified.end(), model) != choice.qualified.end();
-  return (difference.p99 >= 0.0 ? "+" : "−") + three_digits(std::abs(difference.p99)) +
-         (qualified ? ", qualified" : "");
-}
-
-Table headline_table(const ReportData& data) {
-  Table table{"headline"};
-  for (const std::size_t i : headline_models(data)) {
-    const ModelResult& one = data.models[i];
-    const UnitErrors& errors = one.errors;
-    const Interval interval = errors.p99_interval();
-    const auto time = [&](double time_ns) { return one.time.measured ? time_ns : kNoNumber; };
-    table.begin_row();
-    table.add({"", "model"}, one.plan.name);
-    table.add({"", "tick [ns]", 1.0, 0, 2}, time(one.time.tick.median_ns));
-    table.add({}, time(one.time.tick.low_ns));
-    table.add({}, time(one.time.tick.high_ns));
-    table.add({"", std::string("≤ JND [%], ") + unit_name(errors) + "s beyond", kInPercent, 2, 1},
-              std::floor(1e4 * errors.within_jnd) / 1e4);
-    table.add({}, std::to_string(errors.units_above_jnd) + " of " + std::to_string(errors.units()));
-    table.add({"", "99 % error [JND], 95 %", 1.0, TableColumn::kThreeDigits, 2}, errors.p99_error_over_jnd);
-    table.add({}, interval.low);
-    table.add({}, interval.high);
-    table.add({"", "worst [JND]"}, errors.max_error_over_jnd);
-    table.add({"", "99 % error minus the smallest [JND]"},
-              verdict(data.choice, i, paired_difference(errors, data.models[data.choice.best].errors)));
-  }
-  return table;
-}
-
-double largest_force_N(const ReportData& data) {
-  double largest = 0.0;
-  for (const RecordingFacts& facts : data.recordings.facts) largest = std::max(largest, facts.largest_force_N);
-  return largest;
-}
-
 // Notes on how the numbers of the first screen were obtained.
 std::string notes_html(const ReportData& data) {
   std::vector<std::string> notes;
@@ -137,22 +231,23 @@ std::string notes_html(const ReportData& data) {
   }
   const std::string& tested_on = data.recordings.folds.front().words;
   if (!tested_on.empty()) notes.push_back("No test recording: " + tested_on + ".");
+  const auto& facts = data.recordings.facts;
+  const double largest_N = std::ranges::max_element(facts, {}, &RecordingFacts::largest_force_N)->largest_force_N;
   const JndLine paper;
   const JndLine& jnd = data.scene.jnd;
-  notes.push_back("JND: " + three_digits(1e3 * jnd.offset_N) + " mN + " + three_digits(100.0 * jnd.weber_fraction) +
-                  " % of the force." +
-                  (jnd.offset_N == paper.offset_N && jnd.weber_fraction == paper.weber_fraction &&
-                           largest_force_N(data) > kStudiedUpTo_N
-                       ? " It was measured up to 2.5 N; these forces go up to " + three_digits(largest_force_N(data)) +
-                             " N, where it is extrapolated."
-                       : ""));
+  notes.push_back(
+      "JND: " + three_digits(1e3 * jnd.offset_N) + " mN + " + three_digits(100.0 * jnd.weber_fraction) +
+      " % of the force." +
+      (jnd.offset_N == paper.offset_N && jnd.weber_fraction == paper.weber_fraction && largest_N > kStudiedUpTo_N
+           ? " It was measured up to 2.5 N; these forces go up to " + three_digits(largest_N) +
+                 " N, where it is extrapolated."
+           : ""));
   notes.push_back("A perfect model would have " + percent(data.floor.within_jnd) +
                   " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
                   " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +
                   " mN, from second differences in the quietest fifth of each test recording, without drift).");
-  const bool any = std::any_of(data.recordings.facts.begin(), data.recordings.facts.end(),
-                               [](const RecordingFacts& facts) { return facts.accelerometer; });
-  notes.push_back(any ? "With the accelerometer of the recordings."
+  notes.push_back(std::ranges::any_of(facts, &RecordingFacts::accelerometer)
+                      ? "With the accelerometer of the recordings."
                       : "From positions alone, without an accelerometer.");
   std::string html = "<ul class=\"notes\">";
   for (const std::string& note : notes) html += "<li>" + escape_html(note) + "</li>";

@@ -13,9 +13,9 @@ namespace palpate {
 
 struct ReportRequest {
   Scene scene;
-  std::vector<SharedRecording> train;  // empty: the virtual silicone
-  std::vector<SharedRecording> test;   // empty: see split_recordings
-  bool quick = false;                  // fewer models
+  std::vector<PreparedRecordingPointer> train;  // empty: the virtual silicone
+  std::vector<PreparedRecordingPointer> test;   // empty: see split_recordings
+  bool quick = false;                           // fewer models
   std::string out;
   bool force = false;  // replaces an earlier report in `out`
   std::string command_line;

@@ -1,8 +1,10 @@
 #include "scenes/report/table.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/csv_scanner.h"
+#include "scenes/evaluation/ranking.h"
 #include "scenes/plot/inline_svg.h"
 
 namespace palpate {
@@ -46,10 +48,8 @@ std::string under_html(const std::vector<TableCell>& row, std::size_t first, con
 }
 
 bool is_text(const Table& table, std::size_t column) {
-  for (const auto& row : table.rows) {
-    if (!row[column].is_string()) return false;
-  }
-  return !table.rows.empty();
+  return !table.rows.empty() &&
+         std::ranges::all_of(table.rows, [&](const auto& row) { return row[column].is_string(); });
 }
 
 TableCell any(const ErrorSummary& errors, double value) { return errors.samples > 0 ? value : kNoNumber; }
@@ -135,12 +135,8 @@ Table bins_table(const ReportData& data) {
       table.add({"force_to_N", ""}, bin.force_to_N);
       table.add({"count", ""}, bin.force_N.count());
       table.add({"mean_force_N", ""}, bin.force_N.mean());
-      table.add({"mean_abs_error_N", ""}, bin.error_N.mean());
-      table.add({"std_abs_error_N", ""}, bin.error_N.deviation());
-      table.add({"max_abs_error_N", ""}, bin.error_N.largest());
-      table.add({"mean_error_over_jnd", ""}, bin.over_jnd.mean());
-      table.add({"std_error_over_jnd", ""}, bin.over_jnd.deviation());
-      table.add({"max_error_over_jnd", ""}, bin.over_jnd.largest());
+      table.add_moments("abs_error_N", bin.error_N);
+      table.add_moments("error_over_jnd", bin.over_jnd);
     }
   }
   return table;
@@ -156,6 +152,13 @@ Table gains_table(const ReportData& data) {
     table.add({"error_over_jnd_without", "without"}, one.error_without);
   }
   return table;
+}
+
+std::string verdict(const Choice& choice, std::size_t model, const PairedDifference& difference) {
+  if (model == choice.recommended) return "recommended";
+  const bool qualified = std::ranges::count(choice.qualified, model) > 0;
+  return (difference.p99 >= 0.0 ? "+" : "−") + three_digits(std::abs(difference.p99)) +
+         (qualified ? ", qualified" : "");
 }
 
 }  // namespace
@@ -208,6 +211,31 @@ std::string table_html(const Table& table) {
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
+}
+
+Table headline_table(const ReportData& data) {
+  Table table{"headline"};
+  for (const std::size_t i : headline_models(data)) {
+    const ModelResult& one = data.models[i];
+    const UnitErrors& errors = one.errors;
+    const Interval interval = errors.p99_interval();
+    const auto time = [&](double time_ns) { return one.time.measured ? time_ns : kNoNumber; };
+    table.begin_row();
+    table.add({"", "model"}, one.plan.name);
+    table.add({"", "tick [ns]", 1.0, 0, 2}, time(one.time.tick.median_ns));
+    table.add({}, time(one.time.tick.low_ns));
+    table.add({}, time(one.time.tick.high_ns));
+    table.add({"", std::string("≤ JND [%], ") + unit_name(errors) + "s beyond", kInPercent, 2, 1},
+              std::floor(1e4 * errors.within_jnd) / 1e4);
+    table.add({}, std::to_string(errors.units_above_jnd) + " of " + std::to_string(errors.units()));
+    table.add({"", "99 % error [JND], 95 %", 1.0, kThree, 2}, errors.p99_error_over_jnd);
+    table.add({}, interval.low);
+    table.add({}, interval.high);
+    table.add({"", "worst [JND]"}, errors.max_error_over_jnd);
+    table.add({"", "99 % error minus the smallest [JND]"},
+              verdict(data.choice, i, paired_difference(errors, data.models[data.choice.best].errors)));
+  }
+  return table;
 }
 
 std::vector<Table> make_tables(const ReportData& data) {

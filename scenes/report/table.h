@@ -44,6 +44,12 @@ struct Table {
     if (rows.size() == 1) columns.push_back(column);
     rows.back().push_back(std::move(cell));
   }
+  // Adds mean_KEY, std_KEY and max_KEY, which are not on the page.
+  void add_moments(const std::string& key, const Moments& values) {
+    add({"mean_" + key, ""}, values.mean());
+    add({"std_" + key, ""}, values.deviation());
+    add({"max_" + key, ""}, values.largest());
+  }
 };
 
 // Numbers read back as the same doubles; text is quoted where needed (RFC 4180).
@@ -57,6 +63,9 @@ std::string table_html(const Table& table);
 
 // The independent units of the confidence intervals: "recording" or "stroke".
 const char* unit_name(const UnitErrors& errors);
+
+// The page's first table: the models of headline_models with time, errors and the verdict of the ranking.
+Table headline_table(const ReportData& data);
 
 // All numbers of a report: the tables models, recordings, force_bins, features and times.
 std::vector<Table> make_tables(const ReportData& data);

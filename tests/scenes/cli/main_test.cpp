@@ -10,8 +10,6 @@ namespace {
 using test::run_palpate;
 using test::run_program;
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 // Exactly one line that starts with "error: ".
 bool is_one_error_line(const std::string& text) {
   return text.rfind("error: ", 0) == 0 && text.find('\n') == text.size() - 1;
@@ -34,8 +32,7 @@ TEST(Main, WrongUsageIsOneLineThatNamesTheVerbs) {
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_EQ(run.out, "");
     EXPECT_TRUE(is_one_error_line(run.err)) << run.err;
-    EXPECT_TRUE(contains(run.err, "known verbs: ")) << run.err;
-    EXPECT_TRUE(contains(run.err, "scenes, devices")) << run.err;
+    EXPECT_TRUE(test::has_parts(run.err, {"known verbs: ", "scenes, devices"}));
   }
 }
 
@@ -50,7 +47,7 @@ TEST(Main, ScenesListsEveryScene) {
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_EQ(run.err, "");
   for (const char* name : {"silicone_block", "button", "foam_block", "elastic_block", "stiff_block", "skin"}) {
-    EXPECT_TRUE(contains(run.out, name)) << run.out;
+    EXPECT_TRUE(test::has_parts(run.out, {name}));
   }
 }
 

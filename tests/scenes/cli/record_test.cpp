@@ -57,24 +57,18 @@ TEST(Record, KeepsMotionAloneOfADeviceThatMeasuresNoForce) {
   EXPECT_TRUE(test::has_parts(guided.err, {"error: --guide", "hand", "; "})) << guided.err;
 }
 
-TEST(Record, CtrlCCompletesTheFile) {
-  const test::TemporaryFolder folder;
-  const std::string path = folder.file("press.csv");
-  test::ChildProcess program({PALPATE_BINARY, "record", "--device", replayed(folder), "--out", path});
-  ASSERT_TRUE(test::wait_for([&] { return std::filesystem::exists(path); }, 120)) << "after its first 1000 rows";
-  EXPECT_EQ(program.end(SIGINT), 0);
-  EXPECT_TRUE(read_recording(path).ok());
-}
-
-TEST(Record, AKilledRunLeavesWholeRows) {
-  const test::TemporaryFolder folder;
-  const std::string path = folder.file("press.csv");
-  test::ChildProcess program({PALPATE_BINARY, "record", "--device", replayed(folder), "--out", path});
-  ASSERT_TRUE(test::wait_for([&] { return std::filesystem::exists(path); }, 120));
-  EXPECT_EQ(program.end(SIGKILL), 128 + SIGKILL);
-  const auto recording = read_recording(path);
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  EXPECT_GE(recording->rows.size(), 1000u);
+TEST(Record, ARunThatIsStoppedOrKilledLeavesWholeRows) {
+  for (const auto& [signal, exit_code] : {std::pair{SIGINT, 0}, {SIGKILL, 128 + SIGKILL}}) {
+    SCOPED_TRACE(signal);
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("press.csv");
+    test::ChildProcess program({PALPATE_BINARY, "record", "--device", replayed(folder), "--out", path});
+    ASSERT_TRUE(test::wait_for([&] { return std::filesystem::exists(path); }, 120)) << "after its first 1000 rows";
+    EXPECT_EQ(program.end(signal), exit_code);
+    const auto recording = read_recording(path);
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_GE(recording->rows.size(), 1000u);
+  }
 }
 
 TEST(Record, RefusesDevicesWithAReason) {

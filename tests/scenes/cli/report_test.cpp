@@ -23,13 +23,12 @@ class ReportVerb : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::TemporaryFolder;
-    for (const char* seed : {"1", "2"}) {
-      const auto ran = run_palpate({"synth", "--material", "silicone", "--seed", seed, "--seconds", "4", "--rate",
-                                    "100", "--out", folder_->file(std::string("r") + seed + ".csv")});
+    for (const int seed : {1, 2}) {
+      const auto ran = run_palpate({"synth", "--material", "silicone", "--seed", std::to_string(seed), "--seconds", "4",
+                                    "--rate", "100", "--out", recording(seed)});
       ASSERT_EQ(ran.exit_code, 0) << ran.err;
     }
-    report_ = run_palpate(
-        {"report", "--quick", "--train", folder_->file("r1.csv"), "--test", folder_->file("r2.csv"), "--out", out()});
+    report_ = report({"--train", recording(1), "--test", recording(2), "--out", out()});
   }
   static void TearDownTestSuite() {
     delete folder_;
@@ -38,6 +37,13 @@ class ReportVerb : public ::testing::Test {
   void SetUp() override { ASSERT_EQ(report_.exit_code, 0) << report_.err; }
 
   static std::string out() { return folder_->file("report"); }
+  static std::string recording(int seed) { return folder_->file("r" + std::to_string(seed) + ".csv"); }
+  static test::ProgramRun report(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"report", "--quick"});
+    return run_palpate(arguments);
+  }
+
+  static Json json_of(const std::string& folder) { return Json::parse(test::read_text(folder + "/report.json")); }
 
   static test::TemporaryFolder* folder_;
   static test::ProgramRun report_;
@@ -50,18 +56,18 @@ TEST_F(ReportVerb, WritesTheWholeFolderAndNothingBesideIt) {
   EXPECT_EQ(report_.err, "");
   EXPECT_TRUE(test::has_parts(report_.out, {"a whole tick takes"}));
   EXPECT_EQ(folder_->entries(), (std::vector<std::string>{"r1.csv", "r2.csv", "report"}));
-  const Json report = Json::parse(test::read_text(out() + "/report.json"));
-  EXPECT_EQ(report["format"], "palpate-report");
-  EXPECT_EQ(report["quick"], true);
-  EXPECT_EQ(report["folds"], 0);
-  EXPECT_EQ(report["relaxation_times_2009_s"].size(), 2u) << "two, fitted to the recordings";
-  ASSERT_EQ(report["figures"].size(), 3u);
-  for (const Json& figure : report["figures"]) {
+  const Json json = json_of(out());
+  EXPECT_EQ(json["format"], "palpate-report");
+  EXPECT_EQ(json["quick"], true);
+  EXPECT_EQ(json["folds"], 0);
+  EXPECT_EQ(json["relaxation_times_2009_s"].size(), 2u) << "two, fitted to the recordings";
+  ASSERT_EQ(json["figures"].size(), 3u);
+  for (const Json& figure : json["figures"]) {
     const std::string stem = out() + "/figures/" + figure.get<std::string>();
     EXPECT_GT(fs::file_size(stem + ".svg"), 1000u) << stem;
     EXPECT_GT(fs::file_size(stem + ".png"), 1000u) << stem;
   }
-  for (const auto& [name, rows] : report["tables"].items()) {
+  for (const auto& [name, rows] : json["tables"].items()) {
     EXPECT_TRUE(fs::exists(out() + "/tables/" + name + ".csv")) << name;
   }
 }
@@ -91,9 +97,9 @@ TEST_F(ReportVerb, PageNeedsNothingElse) {
 }
 
 TEST_F(ReportVerb, EveryModelHasBoundsOfItsErrors) {
-  const Json report = Json::parse(test::read_text(out() + "/report.json"));
+  const Json json = json_of(out());
   std::map<std::string, Json> errors;
-  for (const Json& row : report["tables"]["models"])
+  for (const Json& row : json["tables"]["models"])
     EXPECT_TRUE(errors.emplace(row["model"], row).second) << row["model"] << " occurs twice";
   for (const auto& [name, row] : errors) {
     EXPECT_LE(row["p99_error_over_jnd"], row["p99_at_most"]);
@@ -103,7 +109,7 @@ TEST_F(ReportVerb, EveryModelHasBoundsOfItsErrors) {
   }
   EXPECT_EQ(errors.count("no force"), 1u);
   EXPECT_EQ(errors.count("trend"), 1u);
-  for (const Json& row : report["tables"]["recordings"]) EXPECT_EQ(row["content_hash"].get<std::string>().size(), 16u);
+  for (const Json& row : json["tables"]["recordings"]) EXPECT_EQ(row["content_hash"].get<std::string>().size(), 16u);
 }
 
 TEST_F(ReportVerb, EveryFigureCanBeDrawnAgainFromItsFolder) {
@@ -118,46 +124,37 @@ TEST_F(ReportVerb, EveryFigureCanBeDrawnAgainFromItsFolder) {
   }
 }
 
-TEST_F(ReportVerb, RefusesTrainingRecordingsAsTest) {
-  const std::string copy = folder_->with_file("copy.csv", test::read_text(folder_->file("r1.csv")));
-  const auto ran = run_palpate(
-      {"report", "--quick", "--train", folder_->file("r1.csv"), "--test", copy, "--out", folder_->file("leak")});
-  EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(ran.err, {"0 s", "r1", "0 s"}));
-  EXPECT_FALSE(fs::exists(folder_->file("leak")));
-  fs::remove(copy);
-}
-
-TEST_F(ReportVerb, NothingIsWrittenOverWithoutForce) {
-  const std::string before = test::read_text(out() + "/report.json");
-  const auto again = run_palpate({"report", "--quick", "--out", out()});
-  EXPECT_EQ(again.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(again.err, {"error: ", out(), "--force"}));
-  EXPECT_EQ(test::read_text(out() + "/report.json"), before);
-}
-
-TEST_F(ReportVerb, FailuresLeaveNoFiles) {
+TEST_F(ReportVerb, AFailureIsOneErrorAndLeavesNoFiles) {
   const std::string bad = folder_->with_file("bad.csv", "time_s,position_m\n0,0\n");
+  const std::string copy = folder_->with_file("copy.csv", test::read_text(recording(1)));
   const auto before = folder_->entries();
-  auto ran = run_palpate({"report", "--train", bad, "--out", folder_->file("other")});
-  EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err.rfind("error: " + bad + ":1:", 0), 0u) << ran.err;
-  ran = run_palpate({"report", "--test", bad, "--out", folder_->file("other")});
-  EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(ran.err, {"error: ", "--test", "--train", "--train"}));
+  const std::string written = test::read_text(out() + "/report.json");
+  struct Failure {
+    std::vector<std::string> arguments;
+    std::vector<std::string> parts;
+  };
+  const std::string other = folder_->file("other");
+  for (const auto& [arguments, parts] :
+       {Failure{{"--train", bad, "--out", other}, {"error: " + bad + ":1:"}},
+        Failure{{"--test", bad, "--out", other}, {"error: ", "--test", "--train", "; "}},
+        Failure{{"--train", recording(1), "--test", copy, "--out", other}, {"copy: ", "from 0 s", "r1 from 0 s"}},
+        Failure{{"--out", out()}, {"error: ", out(), "--force"}}}) {
+    const auto ran = report(arguments);
+    EXPECT_EQ(ran.exit_code, 1);
+    EXPECT_TRUE(test::has_parts(ran.err, parts));
+  }
   EXPECT_EQ(run_palpate({"report"}).exit_code, 2);
   EXPECT_EQ(folder_->entries(), before);
+  EXPECT_EQ(test::read_text(out() + "/report.json"), written);
   fs::remove(bad);
+  fs::remove(copy);
 }
 
 TEST_F(ReportVerb, TheSameRecordingsGiveTheSameFiguresButForTimes) {
   const std::string other = folder_->file("again");
-  const auto again = run_palpate(
-      {"report", "--quick", "--train", folder_->file("r1.csv"), "--test", folder_->file("r2.csv"), "--out", other});
+  const auto again = report({"--train", recording(1), "--test", recording(2), "--out", other});
   ASSERT_EQ(again.exit_code, 0) << again.err;
-  const Json first = Json::parse(test::read_text(out() + "/report.json"));
-  const Json second = Json::parse(test::read_text(other + "/report.json"));
-  EXPECT_EQ(first["tables"], second["tables"]);
+  EXPECT_EQ(json_of(out())["tables"], json_of(other)["tables"]);
   const std::string name = "/figures/error_by_force.svg";
   EXPECT_TRUE(test::read_text(out() + name) == test::read_text(other + name));
   fs::remove_all(other);
@@ -165,17 +162,16 @@ TEST_F(ReportVerb, TheSameRecordingsGiveTheSameFiguresButForTimes) {
 
 TEST_F(ReportVerb, CrossValidatesWithoutATest) {
   const std::string other = folder_->file("folds");
-  const auto ran =
-      run_palpate({"report", "--quick", "--train", folder_->file("r1.csv"), folder_->file("r2.csv"), "--out", other});
+  const auto ran = report({"--train", recording(1), recording(2), "--out", other});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  const Json report = Json::parse(test::read_text(other + "/report.json"));
-  EXPECT_EQ(report["folds"], 2);
+  const Json json = json_of(other);
+  EXPECT_EQ(json["folds"], 2);
   EXPECT_TRUE(test::has_parts(test::read_text(other + "/index.html"), {"2-fold cross-validation"}));
   // Both recordings were tested, so that the pooled samples include both.
   std::uint64_t contact = 0;
-  for (const Json& recording : report["tables"]["recordings"])
+  for (const Json& recording : json["tables"]["recordings"])
     contact += recording["contact_samples"].get<std::uint64_t>();
-  EXPECT_EQ(report["tables"]["models"][0]["contact_samples"], contact);
+  EXPECT_EQ(json["tables"]["models"][0]["contact_samples"], contact);
   fs::remove_all(other);
 }
 
@@ -208,19 +204,17 @@ TEST_F(ReportVerb, FirstScreenAgreesWithAnIndependentScript) {
       {"2009-kdtree-100", {"--method", "kdtree", "--reduction", "force", "--weighting", "relative"}},
       {"2009-greedy-100", {"--method", "greedy", "--reduction", "force", "--weighting", "relative"}}};
   std::set<std::string> reported;
-  const Json report = Json::parse(test::read_text(out() + "/report.json"));
-  for (const Json& row : report["tables"]["models"]) {
-    reported.insert(row["model"].get<std::string>());
-  }
+  const Json json = json_of(out());
+  for (const Json& row : json["tables"]["models"]) reported.insert(row["model"].get<std::string>());
   for (const auto& [name, options] : models) {
     if (reported.count(name) == 0) continue;  // fewer sites than centres
     const std::string model = folder_->file("model.json");
     const std::string forces = folder_->file(name + "_forces.csv");
-    std::vector<std::string> fit{"fit", "--recording", folder_->file("r1.csv"), "--out", model, "--force"};
+    std::vector<std::string> fit{"fit", "--recording", recording(1), "--out", model, "--force"};
     fit.insert(fit.end(), options.begin(), options.end());
     auto ran = run_palpate(fit);
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
-    ran = run_palpate({"replay", "--recording", folder_->file("r2.csv"), "--model", model, "--out", forces});
+    ran = run_palpate({"replay", "--recording", recording(2), "--model", model, "--out", forces});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     check.push_back(name + "=" + forces);
     fs::remove(model);

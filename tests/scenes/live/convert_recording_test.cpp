@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "engine/recording/recording.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
@@ -21,12 +18,6 @@ std::string rows(const char* header, const char* between) {
   return text;
 }
 
-std::string write(const test::TemporaryFolder& folder, const std::string& name, const std::string& text) {
-  const std::string path = folder.file(name);
-  std::ofstream(path) << text;
-  return path;
-}
-
 TEST(ConvertedRecording, EverythingButAModelMayBeARecording) {
   EXPECT_TRUE(may_be_recording("a.csv"));
   EXPECT_TRUE(may_be_recording("trial.TXT"));
@@ -36,7 +27,7 @@ TEST(ConvertedRecording, EverythingButAModelMayBeARecording) {
 
 TEST(ConvertedRecording, ARecordingStaysAsItIs) {
   const test::TemporaryFolder folder;
-  const std::string path = write(folder, "a.csv", rows("time_s,position_m,force_N", ","));
+  const std::string path = folder.with_file("a.csv", rows("time_s,position_m,force_N", ","));
   const auto converted = convert_recording(path, folder.path());
   ASSERT_TRUE(converted.ok()) << converted.error().message;
   EXPECT_EQ(converted->path, path);
@@ -46,7 +37,7 @@ TEST(ConvertedRecording, ARecordingStaysAsItIs) {
 TEST(ConvertedRecording, AnotherTableBecomesOneInTheFolder) {
   const test::TemporaryFolder folder;
   const test::TemporaryFolder data;
-  const std::string path = write(folder, "trial.txt", rows("Time [s]\tPosition [mm]\tForce [mN]", "\t"));
+  const std::string path = folder.with_file("trial.txt", rows("Time [s]\tPosition [mm]\tForce [mN]", "\t"));
   const auto converted = convert_recording(path, data.path());
   ASSERT_TRUE(converted.ok()) << converted.error().message;
   EXPECT_EQ(converted->path.rfind(data.path() + "/trial-", 0), 0u) << converted->path;
@@ -60,11 +51,11 @@ TEST(ConvertedRecording, AnotherTableBecomesOneInTheFolder) {
 TEST(ConvertedRecording, ErrorsNameTheKindOfTheFile) {
   const test::TemporaryFolder folder;
   const auto broken =
-      convert_recording(write(folder, "a.csv", "# mine\ntime_s,position_m,force_N\n0,0,x\n"), folder.path());
+      convert_recording(folder.with_file("a.csv", "# mine\ntime_s,position_m,force_N\n0,0,x\n"), folder.path());
   ASSERT_FALSE(broken.ok());
   EXPECT_TRUE(test::has_parts(broken.error().message, {"a.csv:3"}));
   const auto two = convert_recording(
-      write(folder, "b.csv", "t [s],x [mm],F1 [N],F2 [N]\n0,1,2,3\n1,2,3,4\n2,3,4,5\n3,4,5,6\n"), folder.path());
+      folder.with_file("b.csv", "t [s],x [mm],F1 [N],F2 [N]\n0,1,2,3\n1,2,3,4\n2,3,4,5\n3,4,5,6\n"), folder.path());
   ASSERT_FALSE(two.ok());
   EXPECT_TRUE(test::has_parts(two.error().message, {"--columns"}));
   EXPECT_FALSE(convert_recording(folder.file("none.csv"), folder.path()).ok());

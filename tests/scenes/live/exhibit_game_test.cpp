@@ -127,9 +127,9 @@ TEST(ExhibitTrace, KeepsTheLargestWithinWhatWasTrainedFor) {
   }
   EXPECT_NEAR(trace.largest_over_jnd(), 0.7, 1e-9);
   EXPECT_EQ(trace.largest_at(), 28u);
-  EXPECT_NEAR(trace.over_jnd(28), -0.7, 1e-9) << "with its sign";
-  EXPECT_TRUE(std::isnan(trace.over_jnd(41))) << "where nothing was recorded the curve has a gap";
-  EXPECT_NEAR(trace.over_jnd(60), 0.5, 1e-9);
+  EXPECT_NEAR(trace.columns()[28].over_jnd, -0.7, 1e-9) << "with its sign";
+  EXPECT_TRUE(std::isnan(trace.columns()[41].over_jnd)) << "where nothing was recorded the curve has a gap";
+  EXPECT_NEAR(trace.columns()[60].over_jnd, 0.5, 1e-9);
   EXPECT_NEAR(trace.seconds(), 1.999, 1e-9);
   trace.clear();
   EXPECT_TRUE(trace.columns().empty());

@@ -36,8 +36,7 @@ TEST(FaultLog, TakesNormalRunningForNoFault) {
   ramping.limiter_flags = force_limit::kRamping;
   EXPECT_EQ(log.update(ramping), TickFaultLevel::none);
   EXPECT_EQ(log.update(snapshot(2.0, loop_fault::kForceSlewed)), TickFaultLevel::none);
-  log.update_age(0.049, 2.0);
-  log.update_dropped(0, 2.0);
+  log.update_window(0, 0.049, 2.0);
   EXPECT_TRUE(log.events().empty());
 }
 
@@ -63,11 +62,11 @@ TEST(FaultLog, ForgetsMissedDeadlinesSomeTimeAfter) {
 
 TEST(FaultLog, AStallIsOneEvent) {
   FaultLog log;
-  for (int i = 0; i < 300; ++i) log.update_age(0.051 + 0.016 * i, 10.0 + 0.016 * i);
+  for (int i = 0; i < 300; ++i) log.update_window(0, 0.051 + 0.016 * i, 10.0 + 0.016 * i);
   ASSERT_EQ(log.events().size(), 1u);
   EXPECT_EQ(log.events()[0].count, 1u);
-  log.update_age(0.001, 20.0);
-  log.update_age(0.2, 30.0);
+  log.update_window(0, 0.001, 20.0);
+  log.update_window(0, 0.2, 30.0);
   EXPECT_EQ(log.events().size(), 2u);
 }
 
@@ -80,8 +79,8 @@ TEST(FaultLog, KeepsAlarmsUntilTheyAreAcknowledged) {
   const std::vector<std::string> expected = {device_fault_words(device_fault::kUnplugged).front(),
                                              "the device gave a sample that is not a number: the force was set to 0"};
   EXPECT_EQ(log.alarms(newest), expected) << "the device first; a slewed force is no alarm";
-  log.update_age(0.2, 10.0);
-  log.update_age(0.0, 10.1);
+  log.update_window(0, 0.2, 10.0);
+  log.update_window(0, 0.0, 10.1);
   EXPECT_EQ(log.alarms(snapshot(20.0, 0)), std::vector<std::string>{"the haptics loop stood still for more than 50 ms"})
       << "the loop itself cannot latch that";
   log.acknowledge();
@@ -90,9 +89,9 @@ TEST(FaultLog, KeepsAlarmsUntilTheyAreAcknowledged) {
 
 TEST(FaultLog, CountsLostSnapshots) {
   FaultLog log;
-  log.update_dropped(5, 1.0);
-  log.update_dropped(5, 1.1);
-  log.update_dropped(8, 1.2);
+  log.update_window(5, 0.0, 1.0);
+  log.update_window(5, 0.0, 1.1);
+  log.update_window(8, 0.0, 1.2);
   ASSERT_EQ(log.events().size(), 1u);
   EXPECT_EQ(log.events()[0].count, 8u);
 }

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/rt_guard.h"
-
 namespace palpate {
 namespace {
 
@@ -33,14 +31,6 @@ TEST(ForceHistory, FindsATime) {
   EXPECT_EQ(history.first_at(777.5), 1u);
   EXPECT_EQ(history[history.first_at(5000.0)].loop_time_s, 5000.0);
   EXPECT_EQ(history.first_at(1e9), history.size());
-}
-
-TEST(ForceHistory, AllocatesNothingOnTheWay) {
-  if (!test::rt_guard_works()) GTEST_SKIP() << "the sanitizer owns malloc";
-  ForceHistory history;
-  test::RtGuard guard;
-  for (int i = 0; i < 1000; ++i) history.append(point_at(i));
-  EXPECT_EQ(guard.stop().total(), 0);
 }
 
 }  // namespace

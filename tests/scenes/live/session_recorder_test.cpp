@@ -186,49 +186,35 @@ TEST(SessionRecorder, ReportsAMissingFolder) {
   EXPECT_TRUE(folder.entries().empty());
 }
 
-TEST(SessionRecorder, EndsByItselfWhenTheDiskIsFull) {
-  const TemporaryFolder folder;
-  PathDevice device(test::strokes);
-  Rig rig(device);
-  Notice notice;
-  {
-    const test::FullDisk full(100'000);
-    ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-    rig.run(30000);
-    notice = rig.outcome();
-  }
-  EXPECT_TRUE(notice.problem);
-  EXPECT_TRUE(test::has_parts(notice.text, {folder.file("a.csv"), "File too large"}));
-  EXPECT_TRUE(folder.entries().empty());
-  ASSERT_TRUE(rig.start(folder.file("b.csv"), ReferenceKind::truth).ok()) << "and the next one is free to begin";
-}
-
+// On a full disk a recording ends by itself. The published rows stay, and the next recording may begin.
 TEST(SessionRecorder, KeepsThePublishedRowsWhenTheDiskIsFull) {
-  const TemporaryFolder folder;
-  PathDevice device(test::strokes);
-  Rig rig(device);
-  Notice notice;
-  {
-    const test::FullDisk full(100'000);
-    ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-    const auto on_disk = [&] { return !folder.entries().empty(); };
-    FakePacer pacer([&](int wait) -> std::int64_t {
-      for (int i = 0; wait == 1500 && i < 200 && !on_disk(); ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      }
-      if (wait == 30000) rig.loop.request_stop();
-      return 0;
-    });
-    rig.loop.run(pacer);
-    ASSERT_TRUE(on_disk());
-    notice = rig.outcome();
+  for (const bool published : {false, true}) {
+    SCOPED_TRACE(published);
+    const TemporaryFolder folder;
+    PathDevice device(test::strokes);
+    Rig rig(device);
+    Notice notice;
+    {
+      const test::FullDisk full(100'000);
+      ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
+      FakePacer pacer([&](int wait) -> std::int64_t {
+        for (int i = 0; published && wait == 1500 && i < 200 && folder.entries().empty(); ++i)
+          std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        if (wait == 30000) rig.loop.request_stop();
+        return 0;
+      });
+      rig.loop.run(pacer);
+      notice = rig.outcome();
+    }
+    EXPECT_TRUE(notice.problem);
+    EXPECT_TRUE(test::has_parts(notice.text, {"File too large"}));
+    ASSERT_EQ(folder.entries().empty(), !published);
+    EXPECT_TRUE(rig.start(folder.file("b.csv"), ReferenceKind::truth).ok());
+    if (!published) continue;
+    const auto kept = read_recording(folder.file("a.csv"));
+    ASSERT_TRUE(kept.ok()) << kept.error().message;
+    EXPECT_TRUE(test::has_parts(notice.text, {"first " + std::to_string(kept->rows.size()) + " rows"}));
   }
-  EXPECT_TRUE(notice.problem);
-  EXPECT_TRUE(test::has_parts(notice.text, {"File too large"}));
-  const auto kept = read_recording(folder.file("a.csv"));
-  ASSERT_TRUE(kept.ok()) << kept.error().message;
-  EXPECT_TRUE(test::has_parts(notice.text, {"first " + std::to_string(kept->rows.size()) + " rows"}))
-      << notice.text << ", has " << kept->rows.size();
 }
 
 // The threads of the loop and of the recorder run in parallel, for the thread sanitizer.

@@ -71,13 +71,13 @@ TEST(Choose, OnEveryRecordedSetNoMethodDominatesTheRecommendedOne) {
   for (const std::filesystem::path& folder : {test::real_data(), test::real_data() / "../labs"}) {
     if (!std::filesystem::exists(folder)) continue;
     for (const auto& set : std::filesystem::directory_iterator(folder)) {
-      std::vector<SharedRecording> recordings[2];
+      std::vector<PreparedRecordingPointer> recordings[2];
       if (!set.is_directory()) continue;
       for (const auto& file : std::filesystem::directory_iterator(set.path())) {
         const std::string name = file.path().filename().string();
         const bool tested = name.find("test") != std::string::npos;
         if (file.path().extension() != ".csv" || (!tested && name.find("train") == std::string::npos)) continue;
-        recordings[tested].push_back(std::make_shared<const Recording>(*read_usable_recording(file.path().string())));
+        recordings[tested].push_back(prepare_recording(*read_usable_recording(file.path().string())));
       }
       const auto split = split_recordings(recordings[0], recordings[1]);
       if (recordings[0].empty() || recordings[1].empty() || !split.ok()) continue;  // no test, or one trained on
@@ -130,7 +130,7 @@ TEST(Measure, ANameHasTheNumberOfCentresInEveryOrderOfTheFolds) {
   const auto scene = load_scene("silicone_block");
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   for (const bool long_first : {false, true}) {
-    std::vector<SharedRecording> recordings;
+    std::vector<PreparedRecordingPointer> recordings;
     for (const bool first : {true, false}) {
       RigSettings settings;
       settings.seed = first ? 1 : 2;
@@ -138,7 +138,7 @@ TEST(Measure, ANameHasTheNumberOfCentresInEveryOrderOfTheFolds) {
       settings.seconds = first == long_first ? 20.0 : 4.0;
       Recording recording = *record_sensors(settings);
       recording.name = first ? "a" : "b";
-      recordings.push_back(std::make_shared<const Recording>(std::move(recording)));
+      recordings.push_back(prepare_recording(std::move(recording)));
     }
     const auto set = split_recordings(recordings, {});
     ASSERT_TRUE(set.ok()) << set.error().message;

@@ -2,51 +2,50 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
+#include <algorithm>
 #include <functional>
 #include <set>
 
 #include "engine/base/random_stream.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
-#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
 
-class ReportRecordings : public ::testing::Test {
- protected:
-  std::string recording(const std::string& name, std::size_t rows = 1000) const {
-    const std::string path = folder_.file(name + ".csv");
-    // Each name has independent noise, because a copy would be refused.
-    Recording recording = test::example_recording(rows, 1000.0);
-    RandomStream random(std::hash<std::string>{}(name), 0);
-    for (RecordingRow& row : recording.rows) row.force_N += 0.005 * random.normal();
-    EXPECT_TRUE(write_recording(path, recording, {}, false).ok());
-    return path;
-  }
-  static Result<RecordingSet> load(const std::vector<std::string>& train, const std::vector<std::string>& test) {
-    std::vector<SharedRecording> read[2];
-    for (const std::string& path : train) read[0].push_back(std::make_shared<const Recording>(*read_recording(path)));
-    for (const std::string& path : test) read[1].push_back(std::make_shared<const Recording>(*read_recording(path)));
-    return split_recordings(read[0], read[1]);
-  }
+using Names = std::multiset<std::string>;
 
-  static std::multiset<std::string> names(const std::vector<SharedRecording>& recordings) {
-    std::multiset<std::string> names;
-    for (const SharedRecording& one : recordings) names.insert(one->name);
-    return names;
-  }
+// The example recording with sensor noise that is the name's own, because a copy would be refused.
+Recording noisy(const std::string& name, std::size_t rows = 1000) {
+  Recording recording = test::example_recording(rows, 1000.0);
+  recording.name = name;
+  RandomStream random(std::hash<std::string>{}(name), 0);
+  for (RecordingRow& row : recording.rows) row.force_N += 0.005 * random.normal();
+  return recording;
+}
 
-  test::TemporaryFolder folder_;
-};
+std::vector<PreparedRecordingPointer> prepared(const std::vector<Recording>& recordings) {
+  std::vector<PreparedRecordingPointer> all;
+  for (const Recording& one : recordings) all.push_back(prepare_recording(one));
+  return all;
+}
 
-TEST_F(ReportRecordings, TrainAndTestStayApart) {
-  const auto set = load({recording("a"), recording("b")}, {recording("c")});
+Result<RecordingSet> split(const std::vector<Recording>& train, const std::vector<Recording>& test) {
+  return split_recordings(prepared(train), prepared(test));
+}
+
+Names names(const std::vector<PreparedRecordingPointer>& recordings) {
+  Names names;
+  for (const PreparedRecordingPointer& one : recordings) names.insert(one->recording.name);
+  return names;
+}
+
+TEST(ReportRecordings, TrainAndTestStayApart) {
+  const auto set = split({noisy("a"), noisy("b")}, {noisy("c")});
   ASSERT_TRUE(set.ok()) << set.error().message;
   ASSERT_EQ(set->folds.size(), 1u);
-  EXPECT_EQ(names(set->folds[0].train), (std::multiset<std::string>{"a", "b"}));
-  EXPECT_EQ(names(set->folds[0].tested), (std::multiset<std::string>{"c"}));
+  EXPECT_EQ(names(set->folds[0].train), (Names{"a", "b"}));
+  EXPECT_EQ(names(set->folds[0].tested), (Names{"c"}));
   EXPECT_EQ(set->folds[0].words, "");
   EXPECT_EQ(set->facts[2].role, "test");
   EXPECT_EQ(set->facts[2].name, "c");
@@ -54,43 +53,40 @@ TEST_F(ReportRecordings, TrainAndTestStayApart) {
   EXPECT_NEAR(set->facts[2].rate_Hz, 1000.0, 1e-6);
 }
 
-TEST_F(ReportRecordings, WithoutATestEveryRecordingIsTestedOnceByTheOthers) {
-  std::vector<std::string> paths;
-  for (const char* name : {"a", "b", "c", "d", "e", "f", "g"}) paths.push_back(recording(name));
-  const auto set = load(paths, {});
+TEST(ReportRecordings, WithoutATestEveryRecordingIsTestedOnceByTheOthers) {
+  std::vector<Recording> recordings;
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g"}) recordings.push_back(noisy(name));
+  const auto set = split(recordings, {});
   ASSERT_TRUE(set.ok()) << set.error().message;
   ASSERT_EQ(set->folds.size(), kMostFolds);
-  std::multiset<std::string> tested;
+  Names tested;
   for (const Split& fold : set->folds) {
     EXPECT_TRUE(test::has_parts(fold.words, {"5-fold"}));
-    EXPECT_EQ(fold.train.size() + fold.tested.size(), paths.size());
+    EXPECT_EQ(fold.train.size() + fold.tested.size(), recordings.size());
     tested.merge(names(fold.tested));
-    for (const SharedRecording& one : fold.tested) {
+    for (const PreparedRecordingPointer& one : fold.tested) {
       EXPECT_EQ(std::count(fold.train.begin(), fold.train.end(), one), 0);
     }
   }
-  EXPECT_EQ(tested, (std::multiset<std::string>{"a", "b", "c", "d", "e", "f", "g"}));
+  EXPECT_EQ(tested, (Names{"a", "b", "c", "d", "e", "f", "g"}));
 }
 
-TEST_F(ReportRecordings, OfASingleOneABlockAtItsEndIsTested) {
-  const auto set = load({recording("a", 3000)}, {});
+TEST(ReportRecordings, OfASingleOneABlockAtItsEndIsTested) {
+  const auto set = split({noisy("a", 3000)}, {});
   ASSERT_TRUE(set.ok()) << set.error().message;
   ASSERT_EQ(set->folds.size(), 1u);
   const Split& fold = set->folds.front();
   ASSERT_EQ(fold.train.size(), 1u);
-  EXPECT_NEAR(fold.train[0]->rows.back().time_s + 1e-3, fold.counted_from_s, 1e-9) << "the next row";
+  EXPECT_NEAR(fold.train[0]->recording.rows.back().time_s + 1e-3, fold.counted_from_s, 1e-9) << "the next row";
   EXPECT_TRUE(test::has_parts(fold.words, {"block at the end"}));
-  EXPECT_EQ(fold.tested[0]->rows.size(), 3000u);
+  EXPECT_EQ(fold.tested[0]->recording.rows.size(), 3000u);
   ASSERT_EQ(set->facts.size(), 1u);
   EXPECT_EQ(set->facts[0].role, "both");
 }
 
-TEST_F(ReportRecordings, TheirOrderDoesNotMatter) {
-  const std::string a = recording("a");
-  const std::string b = recording("b");
-  const std::string c = recording("c");
-  const auto one = load({a, b}, {c});
-  const auto other = load({b, a}, {c});
+TEST(ReportRecordings, TheirOrderDoesNotMatter) {
+  const auto one = split({noisy("a"), noisy("b")}, {noisy("c")});
+  const auto other = split({noisy("b"), noisy("a")}, {noisy("c")});
   ASSERT_TRUE(one.ok() && other.ok());
   for (std::size_t i = 0; i < one->facts.size(); ++i) {
     EXPECT_EQ(one->facts[i].name, other->facts[i].name);
@@ -98,17 +94,57 @@ TEST_F(ReportRecordings, TheirOrderDoesNotMatter) {
   }
 }
 
-TEST_F(ReportRecordings, RefusesUnusableRecordings) {
-  const std::string a = recording("a");
-  auto set = load({recording("short", 100)}, {});
+TEST(ReportRecordings, RefusesUnusableRecordings) {
+  auto set = split({noisy("short", 100)}, {});
   ASSERT_FALSE(set.ok());
-  EXPECT_TRUE(test::has_parts(set.error().message, {"100", "1000", "--test"}));
-  Recording air = test::example_recording(100, 1000.0);
+  EXPECT_TRUE(test::has_parts(set.error().message, {"100 rows", "1000", "--test"}));
+  Recording air = noisy("air", 100);
   for (RecordingRow& row : air.rows) row.position_m = -1e-3 - 1e-6 * row.time_s;
-  ASSERT_TRUE(write_recording(folder_.file("air.csv"), air, {}, false).ok());
-  set = load({a}, {folder_.file("air.csv")});
+  set = split({noisy("a")}, {air});
   ASSERT_FALSE(set.ok());
-  EXPECT_TRUE(test::has_parts(set.error().message, {"position_m", "0", "position_m"}));
+  EXPECT_TRUE(test::has_parts(set.error().message, {"air: ", "position_m > 0", "; "}));
+}
+
+TEST(Leakage, TheSameMotionWithItsOwnNoiseIsNoLeak) {
+  EXPECT_EQ(shared_stretch(noisy("train"), noisy("test")).rows, 0u);
+  EXPECT_TRUE(split({noisy("train")}, {noisy("test")}).ok());
+}
+
+TEST(Leakage, ACopyUnderAnotherNameIsRefusedByName) {
+  const Recording train = noisy("train");
+  Recording copy = train;
+  copy.name = "copy";
+  for (RecordingRow& row : copy.rows) {
+    row.time_s += 100.0;
+    row.position_m += 0.0003;
+  }
+  const std::vector<std::string> parts = {"copy: ", "1000 rows from 0 s", "train from 0 s", "; "};
+  EXPECT_TRUE(test::has_parts(split({train}, {copy}).error().message, parts));
+  EXPECT_TRUE(test::has_parts(split({copy, train}, {}).error().message, {"train: ", "copy from 0 s"}))
+      << "without a test they test each other";
+}
+
+TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
+  const Recording train = noisy("train");
+  Recording test = noisy("test");
+  // A shared stretch of 2 kLeakRows - 1 rows or more is always found, a shorter one not always.
+  for (std::size_t i = 0; i < 2 * kLeakRows; ++i) test.rows[777 + i].force_N = train.rows[331 + i].force_N;
+  const SharedStretch stretch = shared_stretch(train, test);
+  EXPECT_EQ(stretch.rows, 2 * kLeakRows);
+  EXPECT_EQ(stretch.first_row, 777u);
+  EXPECT_EQ(stretch.trained_row, 331u);
+  const auto set = split({train}, {test});
+  ASSERT_FALSE(set.ok());
+  EXPECT_TRUE(palpate::test::has_parts(set.error().message, {"100 rows from 0.777 s", "0.331 s"}));
+}
+
+TEST(Leakage, SilenceIsNoContent) {
+  Recording train = noisy("train");
+  Recording test = noisy("test");
+  for (Recording* recording : {&train, &test}) {
+    for (std::size_t i = 0; i < 500; ++i) recording->rows[i].force_N = 0.0;
+  }
+  EXPECT_EQ(shared_stretch(train, test).rows, 0u);
 }
 
 }  // namespace

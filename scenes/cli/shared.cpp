@@ -1,0 +1,71 @@
+#include "scenes/cli/shared.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "engine/base/text.h"
+
+namespace palpate::cli {
+
+CheckRequest check_request(const Scene& scene) { return check_request(scene.jnd, scene.features); }
+
+Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request) {
+  auto files = check_recording_files(paths, request);
+  if (!files) return files.error();
+  if (const Status usable = refuse_unusable(*files); !usable) return usable.error();
+  for (const std::string& line : warning_lines(*files)) std::fprintf(stderr, "warning: %s\n", line.c_str());
+  return files;
+}
+
+std::string check_text(const CheckedFile& file) {
+  const std::string verdict = file.check.verdict();
+  std::ostringstream text;
+  text << file.path << ": "
+       << (verdict == "care"       ? "usable with care"
+           : verdict == "unusable" ? "not usable"
+                                   : "usable")
+       << "\n";
+  for (const Finding& finding : file.check.findings) {
+    const std::string severity = severity_name(finding.severity);
+    text << "  " << severity << std::string(9 - severity.size(), ' ') << finding.code
+         << std::string(finding.code.size() < 17 ? 17 - finding.code.size() : 1, ' ') << finding.text
+         << (finding.advice.empty() ? "" : "; " + finding.advice) << "\n";
+  }
+  text << "  the noise of the force sensor alone leaves " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
+       << " % of the contact samples within the JND; this says nothing about a model\n";
+  if (!file.whole) text << "  only the first " << kMostCheckedRows << " rows were checked\n";
+  return text.str();
+}
+
+Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,
+                              const std::string& option) {
+  for (const std::string& input : inputs) {
+    std::error_code missing;
+    if (!std::filesystem::equivalent(out, input, missing)) continue;
+    return Error{out + " is the file to read from, expected another one for " + option + "; name a new file"};
+  }
+  return {};
+}
+
+void print_json(const nlohmann::ordered_json& json) {
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+void print_table(const std::vector<std::vector<std::string>>& rows, bool numbers) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string blanks(widths[i] - row[i].size(), ' ');
+      line += (i == 0 ? "" : "  ") + (numbers && i > 0 ? blanks + row[i] : row[i] + blanks);
+    }
+    std::printf("%s\n", line.substr(0, line.find_last_not_of(' ') + 1).c_str());
+  }
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,34 @@
+// What several verbs have in common: checks of their files, and output.
+// Thread guarantee: slow side (does I/O).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "models/check/check_recording.h"
+#include "scenes/scene/scene.h"
+
+namespace palpate::cli {
+
+// The JND line and the relaxation times of the scene.
+CheckRequest check_request(const Scene& scene);
+
+// Reads and checks `paths` and prints a line on stderr for each warning. Errors: a file cannot be read or is unusable.
+Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request);
+
+// The output of palpate check for one recording.
+std::string check_text(const CheckedFile& file);
+
+// Errors: `out` is one of the files that are read. `option`: the option that named it, for the message.
+Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,
+                              const std::string& option);
+
+// Prints to stdout. Bytes that are not UTF-8, as in paths, are replaced.
+void print_json(const nlohmann::ordered_json& json);
+
+// Prints rows of cells in aligned columns, left-aligned; with `numbers` all but the first are right-aligned.
+void print_table(const std::vector<std::vector<std::string>>& rows, bool numbers);
+
+}  // namespace palpate::cli

@@ -1,0 +1,65 @@
+#include "scenes/live/stream_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+TEST(ErrorQuantile, IsTheNinetyNinthPercentile) {
+  ErrorQuantile errors;
+  EXPECT_EQ(errors.p99(), 0.0);
+  for (int i = 1; i <= 1000; ++i) errors.add(2e-3 * i);
+  EXPECT_NEAR(errors.p99(), 1.98, 0.011 * 1.98);
+}
+
+// An error of exactly 1 JND counts as within, as in the share within the JND.
+TEST(ErrorQuantile, IsExactBesideOneJnd) {
+  ErrorQuantile errors;
+  for (int i = 0; i < 99; ++i) errors.add(1.0);
+  errors.add(1.0001);
+  EXPECT_EQ(errors.p99(), 1.0);
+  errors.add(1.0001);
+  EXPECT_GT(errors.p99(), 1.0);
+}
+
+TEST(StreamErrors, AreThoseOfAllSamplesInTotalAndByStroke) {
+  const JndLine jnd;
+  StreamErrors stream;
+  ModelErrors all(jnd);
+  for (int stroke = 1; stroke <= 4; ++stroke) {
+    stream.begin_stroke();
+    all.begin_stroke();
+    for (int i = 0; i < 100 * stroke; ++i) {
+      const double model_N = 1.0 + 0.13 * stroke * std::sin(0.1 * i);
+      stream.add(model_N, 1.0, jnd);
+      all.add(model_N, 1.0, false);
+    }
+  }
+  const UnitErrors errors = stream.unit_errors(jnd), exact = all.unit_errors();
+  EXPECT_EQ(errors.samples, 1000u);
+  EXPECT_EQ(errors.within_jnd, exact.within_jnd);
+  EXPECT_NEAR(errors.p99_error_over_jnd, exact.p99_error_over_jnd, 0.011 * exact.p99_error_over_jnd);
+  EXPECT_EQ(errors.unit_samples, exact.unit_samples);
+  EXPECT_EQ(errors.unit_within, exact.unit_within);
+  EXPECT_EQ(errors.units_above_jnd, exact.units_above_jnd);
+  ASSERT_EQ(errors.unit_p99.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(errors.unit_p99[i], exact.unit_p99[i], 0.011 * exact.unit_p99[i]);
+}
+
+TEST(SustainedError, IsTheSignedMeanOfTheLast50Milliseconds) {
+  SustainedError error;
+  double last = 0.0;
+  for (int i = 0; i < 200; ++i) last = error.add(1e-3 * i, -2.0);
+  EXPECT_NEAR(last, -2.0, 1e-12);
+  for (int i = 200; i < 225; ++i) last = error.add(1e-3 * i, 0.0);
+  EXPECT_NEAR(last, -1.0, 0.05) << "half of it is over";
+  for (int i = 225; i < 300; ++i) last = error.add(1e-3 * i, i % 2 == 0 ? 3.0 : -3.0);
+  EXPECT_LT(std::abs(last), 0.1) << "changing signs do not last";
+  EXPECT_NEAR(error.add(3.0, 0.5), 0.5, 1e-12) << "a gap restarts the window";
+  EXPECT_NEAR(error.add(1.0, 0.25), 0.25, 1e-12) << "so does a time that starts over";
+}
+
+}  // namespace
+}  // namespace palpate
