@@ -193,8 +193,8 @@ void DemoApp::read_notices(double now_s) {
   for (const Notice& notice : session_->read_notices()) {
     notify(notice.text, notice.problem);
   }
-  std::erase_if(toasts_, [&](const Toast& toast) { return toast.until_s < now_s; });
-  if (toasts_.size() > kMostToasts) toasts_.erase(toasts_.begin(), toasts_.end() - kMostToasts);
+  std::erase_if(view_.toasts, [&](const Toast& toast) { return toast.until_s < now_s; });
+  if (view_.toasts.size() > kMostToasts) view_.toasts.erase(view_.toasts.begin(), view_.toasts.end() - kMostToasts);
 }
 
 void DemoApp::notify(std::string text, bool problem) {
@@ -202,8 +202,8 @@ void DemoApp::notify(std::string text, bool problem) {
     DemoFiles::write_to_log(text);
     return;
   }
-  std::erase_if(toasts_, [&](const Toast& toast) { return toast.text == text; });
-  toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
+  std::erase_if(view_.toasts, [&](const Toast& toast) { return toast.text == text; });
+  view_.toasts.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
 }
 
 // Opens another material and fits models to it; models from files are kept.
@@ -242,7 +242,7 @@ void DemoApp::use_recording_roles() {
 }
 
 void DemoApp::reopen(const SessionRequest& request) {
-  toasts_.clear();
+  view_.toasts.clear();
   // A device belongs to one session at a time.
   session_.reset();
   // The previous session may fail as well, if its device or its files are gone.

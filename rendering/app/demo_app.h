@@ -55,8 +55,6 @@ class DemoApp {
   const WindowView& shown() const noexcept { return shown_; }  // of the last frame
   const Exhibit& exhibit() const noexcept { return exhibit_; }
   const BlockView& blocks() const noexcept { return *blocks_; }
-  const FrameFigures& frames() const noexcept { return frames_; }
-  const std::vector<Toast>& toasts() const noexcept { return toasts_; }
   Window& window() noexcept { return *window_; }
 
   // GLFW's callbacks call these. Dropped files: see DemoFiles::open. A key counts even when it was pressed and released
@@ -116,9 +114,7 @@ class DemoApp {
   SessionRequest request_;
   std::string first_device_;            // of the command line
   std::optional<SessionRequest> next_;  // the session to open after this frame
-  FrameFigures frames_;
   Resolution resolution_;
-  std::vector<Toast> toasts_;
   std::vector<WindowCommand> commands_;
   double key_velocity_m_per_s_ = 0.0;  // of the tool by the keys of this frame, positive inwards
   double frame_began_s_ = 0.0;

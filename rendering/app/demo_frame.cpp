@@ -41,7 +41,6 @@ void DemoApp::draw() {
   glClearColor(panel_colour.r, panel_colour.g, panel_colour.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   draw_blocks();
-  const SceneArea area = scene_area();
   const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
   const OverlayActions actions{&commands_,
                                [this](const std::string& scene) { use_material(scene, {}, first_device_); },
@@ -52,11 +51,11 @@ void DemoApp::draw() {
                                },
                                [this](const std::string& name) { use_line_up(*find_line_up(name)); },
                                [this] { use_recording_roles(); }};
-  draw_overlay(*session_, shown_, *blocks_, view_, style_, area, toasts_, actions);
+  draw_overlay(*session_, shown_, *blocks_, view_, style_, layout.scene, actions);
   if (view_.exhibit.on) {
     exhibit_.draw(*session_, shown_, *blocks_, style_, layout);
   } else {
-    draw_panel(curves_, *session_, shown_, view_, style_, frames_, layout.panel);
+    draw_panel(curves_, *session_, shown_, view_, style_, layout.panel);
   }
   ui_->end_frame();
   if (!blocks_->filters_edges()) return;
@@ -73,7 +72,7 @@ void DemoApp::draw_blocks() {
   if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
   blocks_framed_ = poses.size();
   blocks_->draw(poses, viewport, view_.settings.theme, resolution_.scale());
-  frames_.picture_scale = resolution_.scale();
+  view_.frames.picture_scale = resolution_.scale();
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {
@@ -148,13 +147,13 @@ BlockPose DemoApp::reference_pose(BlockPose pose) const {
 }
 
 void DemoApp::count_frame(double now_s) {
-  frames_.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) * kNsPerS));
-  frames_.seconds += now_s - last_frame_s_;
-  ++frames_.frames;
+  view_.frames.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) * kNsPerS));
+  view_.frames.seconds += now_s - last_frame_s_;
+  ++view_.frames.frames;
   ++frames_this_second_;
   last_frame_s_ = now_s;
   if (now_s - second_began_s_ < 1.0) return;
-  frames_.recent_fps = static_cast<double>(frames_this_second_) / (now_s - second_began_s_);
+  view_.frames.recent_fps = static_cast<double>(frames_this_second_) / (now_s - second_began_s_);
   frames_this_second_ = 0;
   second_began_s_ = now_s;
 }

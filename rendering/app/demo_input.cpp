@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "engine/live/pacer.h"
@@ -31,6 +32,26 @@ bool moves_in_lists(int key) {
   constexpr int kKeys[] = {GLFW_KEY_UP,    GLFW_KEY_DOWN,      GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_PAGE_UP,
                            GLFW_KEY_SPACE, GLFW_KEY_PAGE_DOWN, GLFW_KEY_HOME, GLFW_KEY_END,   GLFW_KEY_ENTER};
   return std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
+}
+
+// Index in WindowView::blocks of the block nearest to `point`. `aimed`: empty unless the point is on or near it.
+std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& blocks, const SceneArea& area,
+                                    const ImVec2& point, bool aimed) {
+  const std::size_t count = std::max<std::size_t>(shown.blocks.size(), 1);
+  const auto half_height = 0.5F * static_cast<float>(blocks.geometry().height_m);
+  const auto half_width = 0.5F * static_cast<float>(blocks.geometry().width_m);
+  const glm::vec2 size(area.size.x, area.size.y);
+  float nearest_px = 1e9F;
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec2 middle = blocks.on_screen(i, count, {0.0F, -half_height, 0.0F}, size);
+    const glm::vec2 side = blocks.on_screen(i, count, {half_width, 0.0F, 0.0F}, size);
+    const float away = std::hypot(area.at.x + middle.x - point.x, area.at.y + middle.y - point.y);
+    if ((aimed && away > 1.25F * glm::length(side - middle)) || away > nearest_px) continue;
+    nearest_px = away;
+    found = i;
+  }
+  return found;
 }
 
 // Once the mouse was over a block, it moves the tool in all of the picture, so that a fast move beyond the block still

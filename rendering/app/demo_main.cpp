@@ -157,7 +157,7 @@ Status run_demo(Arguments& arguments) {
     if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
   }
   if (arguments.stats.empty()) return {};
-  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->shown(), (*app)->frames()),
+  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->shown(), (*app)->view().frames),
                                arguments.force);
 }
 

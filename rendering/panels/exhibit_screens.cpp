@@ -5,15 +5,12 @@
 
 #include "engine/base/text.h"
 #include "rendering/panels/exhibit.h"
-#include "rendering/panels/overlay_parts.h"
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_parts.h"
 
 namespace palpate {
 namespace {
 
-using overlay::text_at;
-using overlay::text_size;
 using State = ExhibitGame::State;
 
 constexpr double kMost_jnd = 4.0;  // fixed range of the axis, so that rounds are comparable

@@ -39,7 +39,7 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
 }  // namespace
 
 void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& shown, ViewState& view,
-                const UiStyle& style, const FrameFigures& frames, const SceneArea& area) {
+                const UiStyle& style, const SceneArea& area) {
   begin_panel("panel", area);
   const ModelsView& models = shown.models;
   const float line = ImGui::GetTextLineHeightWithSpacing();
@@ -67,7 +67,7 @@ void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& sho
       draw_error_bins(models, style, rest * 0.33F);
     }
   }
-  draw_health(shown.health, view, style, frames);
+  draw_health(shown.health, view, style);
   ImGui::End();
 }
 

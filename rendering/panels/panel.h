@@ -13,6 +13,6 @@ namespace palpate {
 
 // Draws an ImGui window at `area`.
 void draw_panel(ForceCurves& curves, LiveSession& session, const WindowView& shown, ViewState& view,
-                const UiStyle& style, const FrameFigures& frames, const SceneArea& area);
+                const UiStyle& style, const SceneArea& area);
 
 }  // namespace palpate

@@ -9,6 +9,14 @@
 
 namespace palpate {
 
+ImVec2 text_size(ImFont* font, const std::string& text, float wrap) {
+  return font->CalcTextSizeA(height_of(font), 1e6F, wrap, text.c_str());
+}
+
+void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::string& text, float wrap) {
+  ImGui::GetBackgroundDrawList()->AddText(font, height_of(font), at, colour, text.c_str(), nullptr, wrap);
+}
+
 std::string fitting(const std::string& text, float room) {
   if (ImGui::CalcTextSize(text.c_str()).x <= room) return text;
   std::string cut = text;

@@ -115,22 +115,6 @@ struct ExhibitState {
   bool tool_is_held = false;  // keeps the tool out of the block; the mouse has no effect
 };
 
-struct ViewState {
-  Settings settings;
-  Dialogs dialogs;
-  ExhibitState exhibit;
-  CurveTime time;
-  TableState table;
-  bool scales_force = false;                           // shows the sliders that scale the rendered force
-  bool exaggerated = false;                            // arrows show ten times the difference
-  bool centres_together = true;                        // the slider of centres refits all models that have centres
-  int requested_centres = 0;                           // last value of that slider
-  bool details = false;                                // shows the figures and faults of the loop
-  bool has_pressed = false;                            // the user has pressed a block, so that the hint is hidden
-  std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse; its curves are labelled
-  bool verdict = true;                                 // plots error against time of a tick; else error against force
-};
-
 struct FrameFigures {
   TimeHistogram times;  // from the end of one frame to that of the next
   std::uint64_t frames = 0;
@@ -139,10 +123,29 @@ struct FrameFigures {
   float picture_scale = 1.0F;  // see Resolution::scale
 };
 
+// A notice over the picture.
 struct Toast {
   std::string text;
   bool problem = false;
   double until_s = 0.0;  // window time
+};
+
+struct ViewState {
+  Settings settings;
+  Dialogs dialogs;
+  ExhibitState exhibit;
+  CurveTime time;
+  TableState table;
+  FrameFigures frames;
+  std::vector<Toast> toasts;
+  bool scales_force = false;                           // shows the sliders that scale the rendered force
+  bool exaggerated = false;                            // arrows show ten times the difference
+  bool centres_together = true;                        // the slider of centres refits all models that have centres
+  int requested_centres = 0;                           // last value of that slider
+  bool details = false;                                // shows the figures and faults of the loop
+  bool has_pressed = false;                            // the user has pressed a block, so that the hint is hidden
+  std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse; its curves are labelled
+  bool verdict = true;                                 // plots error against time of a tick; else error against force
 };
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/text.h"
+#include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
@@ -101,6 +102,41 @@ std::string counted_words(const LiveSession& session) {
   if (left_out_s > 0.05) words += "; " + fixed(left_out_s, 1) + " s left out";
   if (comparison.outside_s() > 0.05) words += ", deeper or faster than recorded";
   return words;
+}
+
+std::string data_warning(const ModelsView& models) {
+  if (!models.out_of_domain()) return {};
+  return "No such motion was recorded: here " + models.active()->name + " renders only its trend";
+}
+
+BigNumber big_number(const ModelsView& models, bool has_truth) {
+  const ModelView* active = models.active();
+  if (active == nullptr) {
+    const auto fitting = std::find_if(models.slots.begin(), models.slots.end(),
+                                      [](const ModelView& slot) { return slot.state == SlotState::fitting; });
+    if (fitting == models.slots.end()) return {};
+    return {fixed(100.0 * fitting->progress, 0) + " %", "of the first model, " + fitting->name,
+            has_truth ? "until then only the true material has a force" : "until then there is no force", 0.0};
+  }
+  BigNumber big;
+  const std::string& name = active->name;
+  if (active->other_material) {
+    big.below = models.counted;
+  } else if (!models.compared) {
+    const double guess = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
+    if (!std::isnan(guess)) big.number = jnd_text(guess);
+    big.below = name + ": 95 % bound of its error; " + models.reference_name;
+    big.error_over_jnd = guess;
+  } else if (models.selected == models.reference) {
+    big.below = name + " is what the others are compared with";
+  } else if (active->errors.samples == 0) {
+    big.below = "the error of " + name + " from " + models.reference_name + ", from the next touch on";
+  } else {
+    big.error_over_jnd = active->errors.p99_error_over_jnd;
+    big.number = jnd_text(big.error_over_jnd);
+    big.below = "99 % of the time the error of " + name + " is below this";
+  }
+  return big;
 }
 
 HealthView health_view(const LiveSession& session) {

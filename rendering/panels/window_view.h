@@ -79,6 +79,19 @@ struct WindowView {
 WindowView window_view(const LiveSession& session, const ViewState& view);
 HealthView health_view(const LiveSession& session);
 
+// A warning that the active model is outside its training domain; else empty.
+std::string data_warning(const ModelsView& models);
+
+// The big number and its description: the 99 % error of the active model in JND, over the same samples as the table;
+// without a reference its predicted error; before the first model is ready the progress of its fit.
+struct BigNumber {
+  std::string number = "–";
+  std::string what = "times the smallest difference a hand can feel:";
+  std::string below = "the error of the active model";
+  double error_over_jnd = 0.0;  // above 1 it is drawn in kAboveJndColour
+};
+BigNumber big_number(const ModelsView& models, bool has_truth);
+
 // The samples that the errors are over, since when, and what is excluded, in words.
 std::string counted_words(const LiveSession& session);
 

@@ -207,7 +207,7 @@ TEST_F(DefaultStart, TheHeadlineIsOfAModelOnTheStageAndOfTheTablesNumbers) {
   EXPECT_EQ(shown.models.verdict.headline.rfind(best.name + ": ", 0), 0u) << shown.models.verdict.headline;
   EXPECT_NE(shown.models.verdict.headline.find(tick_share(best.tick_ns())), std::string::npos);
   EXPECT_EQ(shown.models.verdict.noticeable, best.errors.p99_error_over_jnd > 1.0);
-  const nlohmann::json stats = nlohmann::json::parse(stats_text(app_->session(), shown, app_->frames()));
+  const nlohmann::json stats = nlohmann::json::parse(stats_text(app_->session(), shown, app_->view().frames));
   EXPECT_EQ(stats["verdict"], shown.models.verdict.headline);
   // A verdict is cleared with its errors.
   app_->session().reset_figures();
