@@ -11,6 +11,7 @@
 #include "engine/tick/replay.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/material/rig.h"
+#include "scenes/scene/scene.h"
 #include "scenes/worker/model_worker.h"
 #include "scenes/worker/slot_plan.h"
 
@@ -132,38 +133,42 @@ double mean_of(const std::vector<double>& stroke_N) {
   return rounded(std::accumulate(begin, begin + kHold_ticks, 0.0) / kHold_ticks, 1e4);
 }
 
-Result<Recording> test_recording(const StrokeRequest& request) {
-  if (!request.recording.empty()) return read_recording(request.recording);
-  if (!request.scene.material) {
-    return Error{"the scene \"" + request.scene.name +
+Result<Recording> test_recording(const Scene& scene, const std::string& recording) {
+  if (!recording.empty()) return read_recording(recording);
+  if (!scene.material) {
+    return Error{"the scene \"" + scene.name +
                  "\" has no virtual material to record; name a recording: --discriminate REC.csv"};
   }
   RigSettings settings;
-  settings.material = *request.scene.material;
+  settings.material = *scene.material;
   settings.seed = kTestSeed;
   return record_sensors(settings);
 }
 
 }  // namespace
 
-Result<std::shared_ptr<const StrokePair>> prepare_strokes(const StrokeRequest& request) {
-  if (request.models.size() > 2) {
-    return Error{"found " + std::to_string(request.models.size()) +
+Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& scene,
+                                                          const std::vector<std::string>& models,
+                                                          const std::string& recording) {
+  const Result<Scene> loaded = load_scene(scene);
+  if (!loaded) return loaded.error();
+  if (models.size() > 2) {
+    return Error{"found " + std::to_string(models.size()) +
                  " models, expected one, to compare with the recorded force, or two; leave some out"};
   }
-  Result<std::vector<SlotPlan>> plans = plan_slots(request.scene, request.models, false);
+  Result<std::vector<SlotPlan>> plans = plan_slots(*loaded, models, false);
   if (!plans) return plans.error();
-  plans->resize(std::max<std::size_t>(request.models.size(), 1));
-  const Result<Recording> recording = test_recording(request);
-  if (!recording) return recording.error();
-  ModelWorker worker(request.scene, kTrainingSeed);
-  std::vector<Model> models;
+  plans->resize(std::max<std::size_t>(models.size(), 1));
+  const Result<Recording> rendered = test_recording(*loaded, recording);
+  if (!rendered) return rendered.error();
+  ModelWorker worker(*loaded, kTrainingSeed);
+  std::vector<Model> made;
   for (const SlotPlan& plan : *plans) {
-    auto made = worker.make(plan);
-    if (!made) return made.error();
-    models.push_back(std::move(*made));
+    auto model = worker.make(plan);
+    if (!model) return model.error();
+    made.push_back(std::move(*model));
   }
-  return strokes_of(*recording, models.size() == 2 ? models.front() : nullptr, models.back(), request.scene.jnd);
+  return strokes_of(*rendered, made.size() == 2 ? made.front() : nullptr, made.back(), loaded->jnd);
 }
 
 Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording, const Model& reference,
@@ -179,7 +184,7 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
                  recording.name + ", expected one that can be rendered to a still hand; name another recording"};
   }
   auto strokes = std::make_shared<StrokePair>();
-  strokes->reference = printable(reference != nullptr ? reference->name() : kRecordedForce, kLongestName);
+  strokes->reference = printable(reference != nullptr ? reference->name() : "recorded force", kLongestName);
   strokes->comparison = printable(comparison->name(), kLongestName);
   strokes->recording = printable(recording.name, kLongestName);
   strokes->from_s = rounded(traces[from].time_s, 1e3);

@@ -28,7 +28,7 @@ bool answers_second(const SubjectTraits& traits, const Stimuli& stimuli, RandomS
 }  // namespace
 
 bool second_feels_larger(const SubjectTraits& traits, double first_N, double second_N, RandomStream& random) noexcept {
-  const double noise_per_jnd = 1.0 / (normal_quantile(kJndCriterion) * std::sqrt(2.0));
+  const double noise_per_jnd = 1.0 / (kCriterionQuantile * std::sqrt(2.0));
   const auto perceived_N = [&](double force_N) {
     return force_N + noise_per_jnd * traits.jnd.at(force_N) * random.normal();
   };
