@@ -37,9 +37,7 @@ void DemoApp::draw() {
   ui_->begin_frame(input_.tapped());
   input_.keep_wheel();
   // With a software renderer, clearing is faster than filling a rectangle.
-  const Rgb& panel_colour = palette(view_.settings.theme).panel;
-  glClearColor(panel_colour.r, panel_colour.g, panel_colour.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  window_->clear(style_.colours().panel);
   draw_blocks();
   const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
   const OverlayActions actions{&commands_,

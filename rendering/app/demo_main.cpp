@@ -115,17 +115,15 @@ void run_frames(App& app, double seconds) {
 }
 
 Status run_study(const Arguments& arguments) {
-  StudyRequest request;
+  std::shared_ptr<const StrokePair> strokes;
   if (arguments.discriminate) {
     const std::string& scene = arguments.demo.session.scene;
-    auto strokes = prepare_strokes(scene.empty() ? "silicone_block" : scene, arguments.demo.session.models,
-                                   *arguments.discriminate);
-    if (!strokes) return strokes.error();
-    request.strokes = std::move(*strokes);
+    auto prepared = prepare_strokes(scene.empty() ? "silicone_block" : scene, arguments.demo.session.models,
+                                    *arguments.discriminate);
+    if (!prepared) return prepared.error();
+    strokes = std::move(*prepared);
   }
-  request.device = arguments.demo.session.device;
-  request.window = arguments.demo.window;
-  auto app = StudyApp::create(request);
+  auto app = StudyApp::create(arguments.demo.window, arguments.demo.session.device, strokes);
   if (!app) return app.error();
   run_frames(**app, arguments.seconds);
   return arguments.screenshot.empty() ? Status() : (*app)->screenshot(arguments.screenshot, arguments.force);

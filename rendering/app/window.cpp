@@ -146,8 +146,7 @@ Window::~Window() {
 
 bool Window::display_sets_pace(const Rgb& empty) {
   glfwSwapInterval(1);
-  glClearColor(empty.r, empty.g, empty.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT);
+  clear(empty);
   glfwSwapBuffers(window_);
   glFinish();
   const std::int64_t start_ns = steady_now_ns();
@@ -174,6 +173,13 @@ UiSize Window::size() const noexcept {
   size.pixels_per_unit = static_cast<float>(size.width_px) / size.width;
   glfwGetWindowContentScale(window_, &size.content_scale, nullptr);
   return size;
+}
+
+void Window::clear(const Rgb& colour) const {
+  const UiSize all = size();
+  glViewport(0, 0, all.width_px, all.height_px);
+  glClearColor(colour.r, colour.g, colour.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 Status Window::save_frame(const std::string& path, bool overwrite) {

@@ -98,28 +98,24 @@ bool can_be_presented(const Traces& traces, std::size_t from, double Trace::*for
   return squares_N2 <= kStrongestStroke_N * kStrongestStroke_N * kInterval_ticks;
 }
 
-// A piece of the length of an interval, and its errors as they are presented, with the ramps at both ends.
-struct Piece {
-  std::size_t from = 0;
-  ErrorFigures errors;
-
-  double sum_over_jnd() const { return static_cast<double>(errors.samples()) * errors.mean_error_over_jnd(); }
-};
-
-// The piece with the largest difference; without samples if no piece in contact can be presented.
-Piece hardest_piece(const Traces& traces, const JndLine& jnd) {
-  Piece hardest;
+// The first tick of the piece with the largest difference, and its errors as they are presented, with the ramps at both
+// ends. They have no samples if no piece in contact can be presented.
+std::pair<std::size_t, ErrorFigures> hardest_piece(const Traces& traces, const JndLine& jnd) {
+  std::pair<std::size_t, ErrorFigures> hardest;
+  double largest_sum = -1.0;
   for (std::size_t from = 0; from + kInterval_ticks <= traces.size(); from += kBetweenPieces_ticks) {
-    Piece piece{from, {}};
+    ErrorFigures errors;
     for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
       const Trace& at = traces[from + i];
       const double share = interval_share(i);
-      if (at.contact) piece.errors.add(share * at.comparison_N, share * at.reference_N, false, jnd);
+      if (at.contact) errors.add(share * at.comparison_N, share * at.reference_N, false, jnd);
     }
-    const bool harder = hardest.errors.samples() == 0 || piece.sum_over_jnd() > hardest.sum_over_jnd();
-    if (piece.errors.samples() > 0 && harder && can_be_presented(traces, from, &Trace::reference_N) &&
-        can_be_presented(traces, from, &Trace::comparison_N))
-      hardest = piece;
+    const double sum = static_cast<double>(errors.samples()) * errors.mean_error_over_jnd();
+    if (errors.samples() == 0 || sum <= largest_sum || !can_be_presented(traces, from, &Trace::reference_N) ||
+        !can_be_presented(traces, from, &Trace::comparison_N))
+      continue;
+    hardest = {from, errors};
+    largest_sum = sum;
   }
   return hardest;
 }

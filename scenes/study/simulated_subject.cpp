@@ -40,13 +40,13 @@ bool second_feels_larger(const SubjectTraits& traits, double first_N, double sec
 }
 
 std::vector<StudyRecord> simulated_answers(const StudyHeader& header, const SubjectTraits& traits, std::uint64_t seed) {
-  const StudyPlan plan = plan_study(header.subject, header.strokes.get());
+  const StrokePair* strokes = header.strokes.get();
   RandomStream random(seed, kStream);
   std::vector<StudyRecord> records;
-  for (const StudyTrial& trial : plan.trials) {
+  for (const StudyTrial& trial : plan_study(header.subject, strokes)) {
     StudyRecord record{trial, trial.first_N(), trial.second_N()};
-    if (header.strokes != nullptr) record.reminder_rendered_N = trial.reference_N;
-    record.answered_second = answers_second(traits, plan.stimuli(trial), random);
+    if (strokes != nullptr) record.reminder_rendered_N = trial.reference_N;
+    record.answered_second = answers_second(traits, stimuli_of(trial, strokes), random);
     record.device = "simulated";
     records.push_back(std::move(record));
   }

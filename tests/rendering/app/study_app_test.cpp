@@ -32,12 +32,8 @@ class StudyAppTest : public ::testing::Test {
     start(nullptr);
   }
   void start(std::shared_ptr<const StrokePair> strokes) {
-    StudyRequest request;
-    request.device = "hand";
-    request.realtime = false;  // tests do not need real-time priority
-    request.strokes = std::move(strokes);
     app_.reset();
-    auto app = StudyApp::create(request);
+    auto app = StudyApp::create({}, "hand", std::move(strokes), false);  // tests do not need real-time priority
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);
     app_->frame();

@@ -21,7 +21,7 @@ constexpr const char* kRow = "training,1,0.3,0.18,1,0.18,0.2999,0,second,731,unk
 
 // An answer to a trial of the plan of S01.
 StudyRecord answer_to(std::size_t trial) {
-  StudyRecord record{plan_study("S01", nullptr).trials[trial]};
+  StudyRecord record{plan_study("S01", nullptr)[trial]};
   record.first_rendered_N = 0.18;
   record.second_rendered_N = 0.2999;
   record.answered_second = true;
@@ -237,8 +237,7 @@ TEST(StudyFiles, AreOfDifferentSubjectsAndTheSameForces) {
 
 TEST(StudyReader, RefusesRowsAfterTheLastTrial) {
   std::string text = study_header_text(kHeader, "");
-  const StudyPlan plan = plan_study("S01", nullptr);
-  for (const StudyTrial& trial : plan.trials) text += study_row({trial}, false);
+  for (const StudyTrial& trial : plan_study("S01", nullptr)) text += study_row({trial}, false);
   EXPECT_EQ(complaint_of(text), "accepted");
   EXPECT_TRUE(has_parts(complaint_of(text + kRow), {"S01.csv:335:1: ", "training", "expected \"\""}));
 }
