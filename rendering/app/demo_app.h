@@ -18,7 +18,6 @@
 #include "rendering/panels/view_state.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/picture/resolution.h"
-#include "rendering/ui/ui_context.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 

@@ -13,7 +13,7 @@ namespace palpate {
 namespace {
 
 constexpr double kNsPerS = 1e9;
-constexpr double kExaggeration = 10.0;
+constexpr float kExaggeration = 10.0F;
 
 // Converts from ImGui, whose y points down from the top, to OpenGL, whose y points up from the bottom.
 Viewport pixels_of(const SceneArea& area) {
@@ -90,11 +90,10 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   return poses;
 }
 
-// While the curves are paused, the poses are those at their right edge.
+// The poses at the last tick that the curves show.
 std::vector<BlockPose> DemoApp::true_poses() const {
   BlockPose pose;
-  pose.tool_m =
-      view_.time.paused ? shown_.models.now.position_m : static_cast<float>(session_->newest().tick.position_m);
+  pose.tool_m = shown_.models.now.position_m;
   pose.dent_m = std::max(0.0F, pose.tool_m);
   std::vector<BlockPose> poses;
   for (const std::size_t slot : shown_.blocks)
@@ -110,11 +109,8 @@ std::vector<BlockPose> DemoApp::true_poses() const {
 BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
   const ModelsView& models = shown_.models;
   const ModelView& model = models.slots[slot];
-  double force_N = model.force_N;
-  double reference_N = shown_.reference_N;
+  const float force_N = models.now.force_N[slot], reference_N = models.now.reference_N;
   if (view_.time.paused) {
-    force_N = static_cast<double>(models.now.force_N[slot]);
-    reference_N = static_cast<double>(models.now.reference_N);
     pose.error_over_jnd = std::abs(models.now.sustained_over_jnd[slot]);
     if (std::isnan(pose.error_over_jnd)) pose.error_over_jnd = 0.0F;
   } else {
@@ -122,8 +118,8 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
     pose.error_over_jnd = static_cast<float>(model.recent_error_over_jnd);
   }
   const bool exaggerated = view_.exaggerated && !view_.exhibit.on && std::isfinite(reference_N);
-  const double shown_N = exaggerated ? reference_N + kExaggeration * (force_N - reference_N) : force_N;
-  pose.force_N = std::isfinite(shown_N) ? static_cast<float>(std::max(0.0, shown_N)) : 0.0F;
+  const float shown_N = exaggerated ? reference_N + kExaggeration * (force_N - reference_N) : force_N;
+  pose.force_N = std::isfinite(shown_N) ? std::max(0.0F, shown_N) : 0.0F;
   pose.arrow = view_.exhibit.on ? exhibit_colour(model.method, model.paper, view_.settings.theme)
                                 : slot_colour(models, slot, view_.settings.theme);
   pose.chosen = slot == models.selected;
@@ -135,10 +131,9 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
 // The pose of the reference block; it has the dent of the active model.
 BlockPose DemoApp::reference_pose(BlockPose pose) const {
   const ModelView* active = shown_.models.active();
-  const bool frozen = view_.time.paused;
-  const double reference_N = frozen ? static_cast<double>(shown_.models.now.reference_N) : shown_.reference_N;
-  if (active != nullptr && !frozen) pose.dent_m = static_cast<float>(active->dent_m);
-  pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;
+  const float reference_N = shown_.models.now.reference_N;
+  if (active != nullptr && !view_.time.paused) pose.dent_m = static_cast<float>(active->dent_m);
+  pose.force_N = std::isfinite(reference_N) ? reference_N : 0.0F;
   pose.arrow = reference_colour(view_.settings.theme);
   pose.chosen = pose.shows_error = false;
   return pose;

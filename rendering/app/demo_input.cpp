@@ -34,6 +34,23 @@ bool moves_in_lists(int key) {
   return std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
 }
 
+// Limits a depth smoothly to 8 % beyond the depth up to which the models were trained.
+double limited_depth_m(const LiveSession& session, double requested_m) {
+  constexpr double kMargin = 0.08;  // of the trained depth
+  const double known_m = session.models().trained_depth_m();
+  if (requested_m <= known_m) return requested_m;
+  const double margin_m = kMargin * known_m;
+  return known_m + margin_m * (1.0 - std::exp((known_m - requested_m) / margin_m));
+}
+
+// Moves the tool inwards by `by_m`; no effect on a device that is no ToolInput.
+void nudge_tool(const LiveSession& session, double by_m) {
+  ToolInput* tool = session.tool_input();
+  const double at_m = session.newest().tick.position_m;
+  if (tool != nullptr && (by_m < 0.0 || limited_depth_m(session, at_m + by_m) > at_m))
+    tool->nudge(by_m, steady_now_s());
+}
+
 // Index in WindowView::blocks of the block nearest to `point`. `aimed`: empty unless the point is on or near it.
 std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& blocks, const SceneArea& area,
                                     const ImVec2& point, bool aimed) {
@@ -76,21 +93,6 @@ void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const Blo
 }
 
 }  // namespace
-
-double limited_depth_m(const LiveSession& session, double requested_m) {
-  constexpr double kMargin = 0.08;  // of the trained depth
-  const double known_m = session.models().trained_depth_m();
-  if (requested_m <= known_m) return requested_m;
-  const double margin_m = kMargin * known_m;
-  return known_m + margin_m * (1.0 - std::exp((known_m - requested_m) / margin_m));
-}
-
-void nudge_tool(const LiveSession& session, double by_m) {
-  ToolInput* tool = session.tool_input();
-  const double at_m = session.newest().tick.position_m;
-  if (tool != nullptr && (by_m < 0.0 || limited_depth_m(session, at_m + by_m) > at_m))
-    tool->nudge(by_m, steady_now_s());
-}
 
 void DemoInput::drive_tool(const LiveSession& session, double velocity_m_per_s) {
   ToolInput* tool = session.tool_input();
@@ -170,7 +172,7 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
   }
   ToolInput* tool = session.tool_input();
   if (left && tool != nullptr && !tool->hand_is_exploring() && session.newest().tick.position_m > 0.0) {
-    tool->set_target(kRest_m, steady_now_s());
+    Exhibit::let_go(session);
     return true;
   }
   // A finger that leaves the screen releases the tool.

@@ -20,15 +20,8 @@ struct KeyContext {
   bool in_list = false;  // a list or menu is open, which takes the keys that move through it
 };
 
-// Position of the tool in the air after the mouse has left the picture.
-inline constexpr double kRest_m = -0.008;
 // Position just above the surface, at which the key that lifts the tool stops.
 inline constexpr double kHover_m = -0.002;
-
-// Limits a depth smoothly to 8 % beyond the depth up to which the models were trained.
-double limited_depth_m(const LiveSession& session, double requested_m);
-// Moves the tool inwards by `by_m`; no effect on a device that is no ToolInput.
-void nudge_tool(const LiveSession& session, double by_m);
 
 class DemoInput {
  public:
@@ -47,7 +40,7 @@ class DemoInput {
   static void run(const KeyPress& press, const std::vector<WindowCommand>& commands, const KeyContext& context);
 
   // Call it once a frame with the velocity of the held keys, positive inwards; 0: none is held. The loop moves the
-  // tool, at most to the depth of limited_depth_m and out to kHover_m.
+  // tool, at most to 8 % beyond the trained depth and out to kHover_m.
   void drive_tool(const LiveSession& session, double velocity_m_per_s);
 
   // Stores the motion of the wheel; call it within a frame, because ImGui clears it at the end.

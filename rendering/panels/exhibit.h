@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "rendering/panels/exhibit_reveal.h"
-#include "rendering/panels/layout.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/panels/window_view.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/ui/plot.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "rendering/panels/dialogs.h"
-#include "rendering/panels/layout.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/panels/window_view.h"
 #include "rendering/picture/block_view.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/text.h"
 #include "rendering/panels/panel_parts.h"
@@ -161,7 +162,6 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
   shown.blocks = slots_of_blocks(shown.models, reference, blocks);
   shown.reference_block = reference_block(session);
   shown.reference_words = session.reference_words();
-  shown.reference_N = session.comparison().reference_N();
   shown.usual_force_N = kUsualOverStrongest * session.scene().strongest_press_N;
   shown.usual_depth_m = session.models().trained_depth_m();
   shown.history = &session.comparison().history();

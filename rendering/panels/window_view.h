@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -70,7 +69,6 @@ struct WindowView {
   std::vector<std::size_t> blocks;
   std::string reference_block;  // name of the block of the reference
   std::string reference_words;
-  double reference_N = std::numeric_limits<double>::quiet_NaN();
   double usual_force_N = 0.0;  // the axes always include these two
   double usual_depth_m = 0.0;
   const ForceHistory* history = nullptr;  // of the session; not null in a result of window_view

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rendering/panels/layout.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/panels/panel_models.h"
 #include "rendering/ui/ui_style.h"
 
