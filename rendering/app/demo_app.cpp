@@ -76,7 +76,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (find_font().empty()) notify("no font found; install fonts-dejavu-core", true);
   for (const std::string& recording : request.recordings) files_.open_recording(recording);
   view_.time.zero_s = steady_now_s();
-  frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
+  frame_began_s_ = last_frame_s_ = steady_now_s();
   look();
   return {};
 }
@@ -174,7 +174,6 @@ void DemoApp::frame() {
   files_.update(*session_);
   look();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
-  frame_s_ = std::min(now_s - frame_began_s_, 0.1);
   frame_began_s_ = now_s;
   draw();
   handle_keys();
@@ -267,7 +266,6 @@ void DemoApp::reopen(const SessionRequest& request) {
   auto blocks = BlockView::create(session_->scene());
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(view_.settings.camera);
-  blocks_framed_ = 0;
   curves_ = {};  // without those of the old session
   view_.time = CurveTime{};
   view_.scales_force = false;

@@ -117,12 +117,8 @@ class DemoApp {
   std::vector<WindowCommand> commands_;
   double key_velocity_m_per_s_ = 0.0;  // of the tool by the keys of this frame, positive inwards
   double frame_began_s_ = 0.0;
-  double frame_s_ = 0.0;       // time since the frame before, at most 0.1 s
   double last_frame_s_ = 0.0;  // end of the last frame
-  double second_began_s_ = 0.0;
-  std::uint64_t frames_this_second_ = 0;
-  std::size_t blocks_framed_ = 1;
-  bool leaving_ = false;  // `close` was called; an exhibit ends only by it
+  bool leaving_ = false;       // `close` was called; an exhibit ends only by it
   Status outcome_;
 };
 

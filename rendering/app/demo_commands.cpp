@@ -115,7 +115,10 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       hint("on the curves", "drag: zoom; wheel: scroll back; double click: continue"),
       {.keys = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT},
        .help = "scroll back and forth while the curves stand still",
-       .run = [this](std::size_t key) { scroll_curves((key == 0 ? 1.0 : -1.0) * kScrollSpeed * frame_s_); },
+       .run =
+           [this](std::size_t key) {
+             scroll_curves((key == 0 ? 1.0 : -1.0) * kScrollSpeed * static_cast<double>(ImGui::GetIO().DeltaTime));
+           },
        .when = When::held},
       {.keys = {GLFW_KEY_P},
        .label = "Pause",

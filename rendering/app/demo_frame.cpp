@@ -66,9 +66,7 @@ void DemoApp::draw_blocks() {
   const SceneArea area = scene_area();
   const Viewport viewport = pixels_of(area);
   const std::vector<BlockPose> poses = block_poses();
-  // The number of blocks changes when models become ready.
-  if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
-  blocks_framed_ = poses.size();
+  blocks_->show(poses.size(), false);  // their number changes when models become ready
   blocks_->draw(poses, viewport, view_.settings.theme, resolution_.scale());
   view_.frames.picture_scale = resolution_.scale();
 }
@@ -143,12 +141,7 @@ void DemoApp::count_frame(double now_s) {
   view_.frames.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) * kNsPerS));
   view_.frames.seconds += now_s - last_frame_s_;
   ++view_.frames.frames;
-  ++frames_this_second_;
   last_frame_s_ = now_s;
-  if (now_s - second_began_s_ < 1.0) return;
-  view_.frames.recent_fps = static_cast<double>(frames_this_second_) / (now_s - second_began_s_);
-  frames_this_second_ = 0;
-  second_began_s_ = now_s;
 }
 
 }  // namespace palpate

@@ -11,11 +11,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// The field, if it has the type of the default, else the default.
 template <typename T>
-T field(const Json& json, const char* name, T otherwise, T low, T high) {
-  const auto found = json.find(name);
-  if (found == json.end() || !found->is_number()) return otherwise;
-  return std::clamp(found->get<T>(), low, high);
+T field(const Json& json, const char* name, const T& otherwise) {
+  try {
+    return json.value(name, otherwise);
+  } catch (const Json::type_error&) {
+    return otherwise;
+  }
 }
 
 }  // namespace
@@ -27,18 +30,16 @@ Result<Settings> read_settings(const std::string& path) {
   const Json json = Json::parse(*text, nullptr, false);
   if (!json.is_object())
     return Error{path + ": found no JSON object, expected the window's settings; the defaults are used"};
-  if (json.value("theme", Json()) == "dark") settings.theme = Theme::dark;
-  const auto blocks = field<std::size_t>(json, "blocks", settings.block_count, 1, 4);
-  settings.block_count = blocks == 3 ? 4 : blocks;
-  if (json.contains("difference") && json["difference"].is_boolean())
-    settings.difference = json["difference"].get<bool>();
-  settings.text_size = field(json, "text_size", 1.0F, kSmallestText, kLargestText);
-  if (json.contains("line_up") && json["line_up"].is_string()) settings.line_up = json["line_up"].get<std::string>();
-  for (const Json& one : json.value("recent", Json::array()))
-    if (one.is_string()) settings.recent.push_back(one.get<std::string>());
-  settings.camera.yaw_rad = field(json, "camera_yaw_rad", 0.0F, -6.3F, 6.3F);
-  settings.camera.pitch_rad = field(json, "camera_pitch_rad", 0.0F, -1.5F, 1.5F);
-  settings.camera.distance = field(json, "camera_distance", 1.0F, 0.2F, 5.0F);
+  if (field<std::string>(json, "theme", "") == "dark") settings.theme = Theme::dark;
+  const double blocks = field(json, "blocks", 4.0);
+  settings.block_count = blocks == 1.0 ? 1 : blocks == 2.0 ? 2 : 4;
+  settings.difference = field(json, "difference", settings.difference);
+  settings.text_size = std::clamp(field(json, "text_size", 1.0F), kSmallestText, kLargestText);
+  settings.line_up = field(json, "line_up", settings.line_up);
+  settings.recent = field(json, "recent", settings.recent);
+  // The camera limits pitch and distance itself.
+  settings.camera = {std::clamp(field(json, "camera_yaw_rad", 0.0F), -6.3F, 6.3F),
+                     field(json, "camera_pitch_rad", 0.0F), field(json, "camera_distance", 1.0F)};
   return settings;
 }
 

@@ -128,7 +128,7 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
 void draw_health(const HealthView& health, ViewState& view, const UiStyle& style) {
   section_title(style, "LOOP");
   ImGui::SameLine();
-  const HealthWords words = health_words(health, view.frames.recent_fps);
+  const HealthWords words = health_words(health, static_cast<double>(ImGui::GetIO().Framerate));
   const auto wrapped = [](const Rgb& colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
     ImGui::TextWrapped("%s", text.c_str());

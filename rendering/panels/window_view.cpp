@@ -46,8 +46,6 @@ ModelsView models_view(const LiveSession& session, double until_s) {
   view.replays_training = session.replay() != nullptr && session.replays_training();
   view.jnd = session.jnd();
   view.verdict = session.verdict();
-  view.now.force_N.fill(std::nanf(""));
-  view.now.reference_N = std::nanf("");
   const ForceHistory& history = comparison.history();
   if (const HistoryPoint* now = history.last_until(until_s)) {
     view.now = *now;

@@ -11,9 +11,9 @@
 #include "engine/live/haptics_loop.h"
 #include "engine/tick/jnd.h"
 #include "rendering/panels/view_state.h"
+#include "rendering/ui/curves.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
-#include "scenes/live/force_history.h"
 #include "scenes/live/session_models.h"
 #include "scenes/live/verdict.h"
 
@@ -38,7 +38,7 @@ struct ModelsView {
   bool replays_training = false;                // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
-  HistoryPoint now;  // the last tick that the curves show; without one all forces are NaN
+  HistoryPoint now = no_forces();  // the last tick that the curves show; without one all forces are NaN
 
   // The slots that are not hidden, in order. Keys and tables number them.
   std::vector<std::size_t> listed() const;
