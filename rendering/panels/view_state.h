@@ -90,6 +90,7 @@ struct Settings {
   std::string line_up;              // empty: the default
   std::vector<std::string> recent;  // files that were opened, the newest first
   CameraTurn camera;
+  bool operator==(const Settings&) const = default;
 };
 
 struct Dialogs {

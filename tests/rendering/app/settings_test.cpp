@@ -17,31 +17,27 @@ TEST(Settings, ComeBackAsTheyWere) {
   settings.difference = false;
   settings.text_size = 1.25F;
   settings.line_up = "2009";
+  settings.recent = {"b.csv", "a.json"};
   settings.camera = {0.5F, -0.25F, 1.5F};
   const std::string path = folder.file("window.json");
   ASSERT_TRUE(write_settings(path, settings).ok());
   ASSERT_TRUE(write_settings(path, settings).ok()) << "again";
   const auto back = read_settings(path);
   ASSERT_TRUE(back.ok());
-  EXPECT_EQ(back->theme, Theme::dark);
-  EXPECT_EQ(back->block_count, 2u);
-  EXPECT_FALSE(back->difference);
-  EXPECT_EQ(back->text_size, 1.25F);
-  EXPECT_EQ(back->line_up, "2009");
-  EXPECT_EQ(back->camera, settings.camera);
+  EXPECT_EQ(*back, settings);
 }
 
 TEST(Settings, AreNoReasonNotToStart) {
   const test::TemporaryFolder folder;
   const auto missing = read_settings(folder.file("none.json"));
   ASSERT_TRUE(missing.ok());
-  EXPECT_EQ(missing->block_count, 4u);
+  EXPECT_EQ(*missing, Settings{});
   std::ofstream(folder.file("odd.json")) << R"({"blocks": 3, "theme": 7, "text_size": 99, "camera_distance": "far"})";
   const auto odd = read_settings(folder.file("odd.json"));
   ASSERT_TRUE(odd.ok());
-  EXPECT_EQ(odd->block_count, 4u);
-  EXPECT_EQ(odd->text_size, kLargestText);
-  EXPECT_EQ(odd->camera, CameraTurn{});
+  Settings expected;
+  expected.text_size = kLargestText;
+  EXPECT_EQ(*odd, expected);
   std::ofstream(folder.file("broken.json")) << "{";
   EXPECT_FALSE(read_settings(folder.file("broken.json")).ok());
 }

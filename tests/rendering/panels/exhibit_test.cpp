@@ -164,16 +164,6 @@ TEST_F(ExhibitTest, IsPlayedWithAMouseAlone) {
   EXPECT_EQ(game().correct_answers(), 0u) << "and from the beginning";
 }
 
-TEST_F(ExhibitTest, IsPlayedWithKeysAlone) {
-  open_exhibit({});
-  visit_with_keys();
-}
-
-TEST_F(ExhibitTest, IsPlayedByTouchAlone) {
-  open_exhibit({});
-  visit_by_touch();
-}
-
 // The result appears at the end, with both blocks at the moment of the largest difference.
 TEST_F(ExhibitTest, TheRevealIsTheVisitorsOwnPressInSlowMotion) {
   open_exhibit({{1.0, 300.0, 2.0, 2.0}});

@@ -32,8 +32,13 @@ TEST(PanelWords, AStalledLoopComesBeforeAllElse) {
   health.loop.age_s = 0.3;
   health.newest.device.faults = device_fault::kUnplugged;
   const HealthWords words = health_words(health, 60.0);
-  EXPECT_TRUE(test::has_parts(words.text, {"0.3 s"}));
+  EXPECT_TRUE(test::has_parts(words.text, {"last tick 0.3 s"}));
   EXPECT_TRUE(words.problem);
+  health.loop.age_s = 0.0;
+  health.alarms = {"a tick was late"};
+  const HealthWords unplugged = health_words(health, 60.0);
+  EXPECT_TRUE(test::has_parts(unplugged.text, {device_fault_words(device_fault::kUnplugged).front()}));
+  EXPECT_TRUE(unplugged.problem && !unplugged.past) << "a present fault before those that are over";
 }
 
 TEST(PanelWords, AlarmsThatAreOverAreCounted) {

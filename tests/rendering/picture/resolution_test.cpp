@@ -9,12 +9,6 @@ void run(Resolution& resolution, double busy_s, int frames) {
   for (int i = 0; i < frames; ++i) resolution.add(busy_s);
 }
 
-TEST(Resolution, IsFullWhileFramesAreInTime) {
-  Resolution resolution;
-  run(resolution, 0.012, 1000);
-  EXPECT_EQ(resolution.scale(), 1.0F);
-}
-
 TEST(Resolution, FallsWhileFramesAreLateAndNeverBelowItsLeast) {
   Resolution resolution;
   run(resolution, 0.020, 70);
