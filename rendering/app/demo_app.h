@@ -17,7 +17,7 @@
 #include "rendering/panels/scene_overlay.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/picture/block_view.h"
-#include "rendering/picture/resolution.h"
+#include "rendering/picture/smooth_target.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 

@@ -6,9 +6,11 @@
 #include <fstream>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/whole_file.h"
 #include "engine/live/pacer.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
@@ -17,6 +19,58 @@
 
 namespace palpate {
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The field, if it has the type of the default, else the default.
+template <typename T>
+T field(const Json& json, const char* name, const T& otherwise) {
+  try {
+    return json.value(name, otherwise);
+  } catch (const Json::type_error&) {
+    return otherwise;
+  }
+}
+
+constexpr double kMsPerUs = 1e-3;
+
+Json times_json(const TimePercentiles& times) {
+  return {{"p50", times.p50_us}, {"p99", times.p99_us}, {"p99_9", times.p99_9_us}, {"max", times.max_us}};
+}
+
+Json haptics_json(const LiveSession& session) {
+  const LoopStatistics statistics = session.loop().statistics();
+  const RtStatus& granted = session.loop().scheduling();
+  return {{"ticks", statistics.ticks},
+          {"missed_deadlines", statistics.missed_deadlines},
+          {"lateness_us", times_json(statistics.lateness)},
+          {"tick_us", times_json(statistics.tick)},
+          {"scheduling", granted.scheduling},
+          {"scheduling_fix", granted.fix}};
+}
+
+Json graphics_json(const FrameFigures& frames) {
+  const TimePercentiles times = frames.times.percentiles();
+  return {{"frames", frames.frames},
+          {"fps", frames.seconds > 0.0 ? static_cast<double>(frames.frames) / frames.seconds : 0.0},
+          {"picture_scale", frames.picture_scale},
+          {"frame_ms",
+           {{"p50", kMsPerUs * times.p50_us}, {"p99", kMsPerUs * times.p99_us}, {"max", kMsPerUs * times.max_us}}}};
+}
+
+// Figures are null if there are no samples.
+Json model_json(const ModelView& slot) {
+  const bool has_errors = slot.errors.samples > 0;
+  return {{"name", slot.name},
+          {"method", slot.method},
+          {"centres", slot.centres},
+          {"samples", slot.errors.samples},
+          {"within_jnd", has_errors ? Json(slot.errors.within_jnd) : Json(nullptr)},
+          {"rms_error_N", has_errors ? Json(slot.errors.rms_error_N) : Json(nullptr)},
+          {"max_error_over_jnd", has_errors ? Json(slot.errors.max_error_over_jnd) : Json(nullptr)},
+          {"p99_error_over_jnd", has_errors ? Json(slot.errors.p99_error_over_jnd) : Json(nullptr)},
+          {"tick_ns", slot.tick_ns() > 0.0 ? Json(slot.tick_ns()) : Json(nullptr)}};
+}
 
 template <typename T>
 bool is_there(const std::future<T>& future) {
@@ -45,6 +99,59 @@ CurveSource curve_source(const LiveSession& session, const WindowView& shown, do
 }
 
 }  // namespace
+
+Result<Settings> read_settings(const std::string& path) {
+  Settings settings;
+  const auto text = read_whole_file(path);
+  if (!text) return settings;
+  const Json json = Json::parse(*text, nullptr, false);
+  if (!json.is_object())
+    return Error{path + ": found no JSON object, expected the window's settings; the defaults are used"};
+  if (field<std::string>(json, "theme", "") == "dark") settings.theme = Theme::dark;
+  const double blocks = field(json, "blocks", 4.0);
+  settings.block_count = blocks == 1.0 ? 1 : blocks == 2.0 ? 2 : 4;
+  settings.difference = field(json, "difference", settings.difference);
+  settings.text_size = std::clamp(field(json, "text_size", 1.0F), kSmallestText, kLargestText);
+  settings.line_up = field(json, "line_up", settings.line_up);
+  settings.recent = field(json, "recent", settings.recent);
+  // The camera limits pitch and distance itself.
+  settings.camera = {std::clamp(field(json, "camera_yaw_rad", 0.0F), -6.3F, 6.3F),
+                     field(json, "camera_pitch_rad", 0.0F), field(json, "camera_distance", 1.0F)};
+  return settings;
+}
+
+Status write_settings(const std::string& path, const Settings& settings) {
+  const Json json = {{"theme", settings.theme == Theme::dark ? "dark" : "light"},
+                     {"blocks", settings.block_count},
+                     {"difference", settings.difference},
+                     {"text_size", settings.text_size},
+                     {"line_up", settings.line_up},
+                     {"recent", settings.recent},
+                     {"camera_yaw_rad", settings.camera.yaw_rad},
+                     {"camera_pitch_rad", settings.camera.pitch_rad},
+                     {"camera_distance", settings.camera.distance}};
+  return write_file_atomically(path, json.dump(2) + "\n", true);
+}
+
+std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames) {
+  Json models = Json::array();
+  for (const ModelView& model : shown.models.slots) {
+    if (model.state == SlotState::ready) models.push_back(model_json(model));
+  }
+  Json faults = Json::array();
+  for (const FaultEvent& fault : session.faults().events()) {
+    faults.push_back({{"loop_time_s", fault.loop_time_s}, {"text", fault.text}, {"count", fault.count}});
+  }
+  const Json all = {{"haptics", haptics_json(session)},
+                    {"graphics", graphics_json(frames)},
+                    {"models", models},
+                    {"verdict", shown.models.verdict.headline},
+                    {"faults", faults},
+                    {"scene", session.scene().name},
+                    {"device", session.device_name()},
+                    {"reference", session.reference_words()}};
+  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 std::string DemoFiles::folder() {
   auto folder = data_folder();

@@ -1,5 +1,4 @@
-// The window's work with files and devices: settings, dropped files, saved files, the list of devices. `notify` reports
-// the results.
+// The window's work with files and devices: settings, dropped files, saved files, statistics, the list of devices.
 // Thread guarantee: main thread only; slow work runs in the background.
 #pragma once
 
@@ -9,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "rendering/app/settings.h"
 #include "rendering/panels/curve_files.h"
+#include "rendering/panels/view_state.h"
 #include "rendering/panels/window_view.h"
 #include "scenes/live/convert_recording.h"
 #include "scenes/live/live_session.h"
@@ -18,8 +17,16 @@
 
 namespace palpate {
 
-class LiveSession;
+// The settings that the window keeps between runs, a JSON file in the user's configuration folder.
+// A missing file, and a missing or invalid field, give the defaults. Errors: the file is no JSON object.
+Result<Settings> read_settings(const std::string& path);
+Status write_settings(const std::string& path, const Settings& settings);
 
+// The JSON text of --stats: figures of the loop, the graphics and the models. The keys are haptics, graphics, models,
+// verdict, faults, scene, device and reference.
+std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
+
+// `notify` reports the results.
 class DemoFiles {
  public:
   using Notify = std::function<void(std::string text, bool problem)>;

@@ -11,7 +11,6 @@
 #include "engine/base/signals.h"
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
-#include "rendering/app/stats_file.h"
 #include "rendering/app/study_app.h"
 #include "scenes/scene/user_folders.h"
 #include "scenes/study/prepare_strokes.h"

@@ -94,4 +94,20 @@ class SmoothTarget {
   unsigned no_vertices_ = 0;     // vertex array without buffers, for a triangle
 };
 
+// The resolution of the 3-D view for a software renderer: it is reduced while frames are late.
+class Resolution {
+ public:
+  static constexpr float kLeast = 0.67F;  // smallest `scale`
+
+  // Adds the computation time of a frame, without the wait for the next one.
+  void add(double busy_s) noexcept;
+  float scale() const noexcept;  // share of the pixels per side, kLeast to 1
+
+ private:
+  int step_ = 0;  // 0: full resolution
+  int frames_ = 0;
+  int good_ = 0;  // successive periods of 60 frames in which the next larger resolution would fit
+  double busy_s_ = 0.0;
+};
+
 }  // namespace palpate

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "engine/recording/recording.h"
-#include "rendering/app/stats_file.h"
 #include "scenes/worker/slot_plan.h"
 #include "tests/support/demo_window.h"
 

@@ -238,12 +238,5 @@ TEST_F(BlockViewTest, ADomeSnapsThroughOnABlockThatStays) {
   EXPECT_GT(at_dome, 500);
 }
 
-TEST(Smoothing, IsAFilterWhereTheRendererIsAProgram) {
-  EXPECT_EQ(smoothing_for("llvmpipe (LLVM 15.0.6, 256 bits)"), Smoothing::filter);
-  EXPECT_EQ(smoothing_for("softpipe"), Smoothing::filter);
-  EXPECT_EQ(smoothing_for("Mesa Intel(R) UHD Graphics 620 (KBL GT2)"), Smoothing::samples);
-  EXPECT_EQ(smoothing_for("NVIDIA GeForce RTX 3060/PCIe/SSE2"), Smoothing::samples);
-}
-
 }  // namespace
 }  // namespace palpate
