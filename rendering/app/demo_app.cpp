@@ -158,7 +158,7 @@ void DemoApp::handle_exhibit_key(const KeyPress& press) {
   const bool control = (press.modifiers & GLFW_MOD_CONTROL) != 0;
   const bool chord = control && (press.modifiers & GLFW_MOD_SHIFT) != 0;
   if (chord && press.key == GLFW_KEY_Q) close();
-  if (chord && press.key == GLFW_KEY_T) exhibit_.show_host(!exhibit_.shows_host());
+  if (chord && press.key == GLFW_KEY_T) exhibit_.toggle_host();
   if (press.key == GLFW_KEY_Z && session_->newest().device.zeroing == Zeroing::needed) session_->start_zeroing();
   if (!control && !press.again) exhibit_.press_key(press.key, *session_);
 }

@@ -105,7 +105,7 @@ class DemoApp {
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
   ForceCurves curves_;
-  Exhibit exhibit_{1};
+  Exhibit exhibit_;
   ViewState view_;
   WindowView shown_;
   DemoInput input_;

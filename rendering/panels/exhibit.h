@@ -44,7 +44,6 @@ Rgb exhibit_colour(const std::string& method, bool paper, Theme theme);
 
 class Exhibit {
  public:
-  explicit Exhibit(std::uint64_t seed) : game_(seed) {}
   // `languages`: at least one. `tally_folder`: it gets a tally file per day; empty: no tally is stored.
   void set_up(std::vector<ExhibitWords> languages, const std::string& tally_folder, const ExhibitTimes& times);
 
@@ -52,8 +51,7 @@ class Exhibit {
   bool update(LiveSession& session, ViewState& view);
   // `key`: of GLFW.
   void press_key(int key, const LiveSession& session);
-  void show_host(bool shown) noexcept { host_ = shown; }
-  bool shows_host() const noexcept { return host_; }
+  void toggle_host() noexcept { host_ = !host_; }
   // Moves the tool out of the block.
   static void let_go(LiveSession& session);
   // Draws the screen in the panel's area, and the names at the blocks.
@@ -89,7 +87,7 @@ class Exhibit {
   bool first_is_left() const { return pair()->first.has_value(); }
   const ExhibitWords& words() const { return languages_[language_]; }
 
-  ExhibitGame game_;
+  ExhibitGame game_{1};  // seed
   ExhibitTimes times_;
   std::optional<ExhibitRound> shown_;  // in the state attract
   ExhibitTrace trace_;                 // in the state attract

@@ -103,18 +103,13 @@ struct Exhibit::Screens {
     return pressed;
   }
 
-  // Draws the title of the curve, and returns the remaining height. The caller pops the font of the axes.
-  float begin_plot(const std::string& title) {
-    say_quietly(title);
-    ImGui::PushFont(style.fonts().body);
-    return std::max(bottom() - ImGui::GetCursorScreenPos().y, 6.0F * body());
-  }
-
   void draw_difference(const ExhibitTrace& trace) {
     // Outside the plot, where no curve crosses them.
     say_quietly(words()("axis_difference"));
     const double largest = trace.largest_over_jnd();
-    const float height = begin_plot(largest > 0.0 ? words()("so_far", number(largest)) : words()("in_band"));
+    say_quietly(largest > 0.0 ? words()("so_far", number(largest)) : words()("in_band"));
+    ImGui::PushFont(style.fonts().body);  // of the axes
+    const float height = std::max(bottom() - ImGui::GetCursorScreenPos().y, 6.0F * body());
     const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
                         {{0.0, exhibit.times_.press_s}, {-kMost_jnd, kMost_jnd}, "s", "", true});
     ImGui::PopFont();
@@ -148,7 +143,7 @@ struct Exhibit::Screens {
     draw_difference(exhibit.trace_);
   }
 
-  // Until the first models are ready: the progress of the fits, and the force of the block that the hand presses.
+  // Draws the progress of the fits until the first models are ready.
   void draw_learning() {
     say_quietly(words()("learning"));
     float done = 0.0F;
@@ -156,21 +151,6 @@ struct Exhibit::Screens {
       done += slot.state == SlotState::ready ? 1.0F : static_cast<float>(slot.progress);
     const auto all = static_cast<float>(std::max<std::size_t>(shown.models.slots.size(), 1));
     ImGui::ProgressBar(done / all, {-1.0F, 0.8F * body()}, "");
-    space(0.6F);
-    const float height = begin_plot(words()("axis_force"));
-    const ForceHistory& history = *shown.history;
-    const std::size_t first = history.first_at(now_s() - exhibit.times_.press_s);
-    constexpr std::size_t kMostPoints = 600;
-    const std::size_t step = (history.size() - first) / kMostPoints + 1;
-    std::vector<ImVec2> points;
-    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
-                        {{-exhibit.times_.press_s, 0.0}, {0.0, 1.6 * shown.usual_force_N}, "s", "N", true});
-    ImGui::PopFont();
-    for (std::size_t i = first - first % step; i < history.size(); i += step) {
-      const auto force_N = static_cast<double>(history[i].reference_N);
-      if (!std::isnan(force_N)) points.emplace_back(plot.x_px(history[i].loop_time_s - now_s()), plot.y_px(force_N));
-    }
-    plot.line(points, ink(reference_colour(style.theme())), 4.0F * style.scale());
   }
 
   void draw_guess() {
