@@ -194,11 +194,8 @@ void DemoApp::next_block_count() {
   std::size_t& wanted = view_.settings.block_count;
   wanted = wanted == 4 ? 1 : 2 * wanted;
   // Says why there are fewer blocks than the user selected.
-  const std::vector<ModelView>& slots = shown_.models.slots;
-  const auto ready =
-      std::count_if(slots.begin(), slots.end(), [](const ModelView& slot) { return slot.state == SlotState::ready; });
   const bool reference = shown_.models.compared && shown_.models.reference == kReferenceBlock && wanted > 1;
-  const std::size_t shown = static_cast<std::size_t>(ready) + (reference ? 1 : 0);
+  const std::size_t shown = shown_.models.drawn().size() + (reference ? 1 : 0);
   if (shown < wanted)
     notify(std::to_string(shown) + " of " + std::to_string(wanted) + " blocks: no more models are ready", false);
 }

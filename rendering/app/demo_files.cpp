@@ -82,19 +82,13 @@ Hue hue_of(const Rgb& colour) {
   return parts.r << 16 | parts.g << 8 | parts.b;
 }
 
-// The active model is the last one, because it is drawn on top.
 CurveSource curve_source(const LiveSession& session, const WindowView& shown, double zero_s) {
   CurveSource source{
       session.scene().title, session.device_name(), session.reference_words(), session.jnd(), zero_s, {}};
-  const ModelsView& models = shown.models;
-  const auto add = [&](std::size_t i) {
-    if (models.slots[i].state == SlotState::ready)
-      source.models.push_back({i, models.slots[i].name, hue_of(slot_colour(models, i, Theme::light))});
-  };
-  for (std::size_t i = 0; i < models.slots.size(); ++i) {
-    if (i != models.selected) add(i);
+  for (const std::size_t slot : shown.models.drawn()) {
+    const Rgb colour = slot_colour(shown.models, slot, Theme::light);
+    source.models.push_back({slot, shown.models.slots[slot].name, hue_of(colour)});
   }
-  if (models.selected < models.slots.size()) add(models.selected);
   return source;
 }
 

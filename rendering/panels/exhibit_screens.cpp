@@ -111,7 +111,7 @@ struct Exhibit::Screens {
     ImGui::PushFont(style.fonts().body);  // of the axes
     const float height = std::max(bottom() - ImGui::GetCursorScreenPos().y, 6.0F * body());
     const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
-                        {{0.0, exhibit.times_.press_s}, {-kMost_jnd, kMost_jnd}, "s", "", true});
+                        {{0.0, exhibit.times_.press_s}, {-kMost_jnd, kMost_jnd}, "s", ""});
     ImGui::PopFont();
     plot.jnd_band(-1.0, 1.0);
     plot.level(0.0, ink(reference_colour(style.theme())), 4.0F * style.scale());

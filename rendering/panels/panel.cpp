@@ -41,15 +41,6 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
 constexpr Range kErrors{-1.6, 1.5}, kTimes{-1.0, 3.3};
 constexpr double kBudget_us = 1000.0;
 
-std::vector<std::size_t> judged(const ModelsView& models) {
-  std::vector<std::size_t> list = models.listed();
-  std::erase_if(list, [&](std::size_t slot) {
-    const ModelView& view = models.slots[slot];
-    return view.state != SlotState::ready || view.errors.samples == 0 || slot == models.reference;
-  });
-  return list;
-}
-
 // Bins with fewer samples have no useful standard deviation.
 constexpr std::uint64_t kFewestSamples = 20;
 
@@ -97,17 +88,17 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
   const float size = style.scale();
   const Palette& p = style.colours();
   {
-    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
-                        {kTimes, kErrors, "us a tick", "", true, 0.6F, true});
+    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height}, {kTimes, kErrors, "us a tick", "", true});
     plot.jnd_band(kErrors.from, 0.0);
     plot.level(0.0, ink(p.text), 1.5F * size);
     const float budget_px = plot.x_px(std::log10(kBudget_us));
     plot.list().AddLine({budget_px, plot.top()}, {budget_px, plot.bottom()}, ink(p.fault), 1.5F * size);
-    plot.caption("a hand could tell", 0.01F, 0.0F, ink(p.quiet));
+    plot.caption("a hand could tell", plot.top());
     const float wide = ImGui::CalcTextSize("1 ms ").x;
     plot.list().AddText({budget_px - wide, plot.bottom() - line}, ink(p.quiet), "1 ms");
-    for (const std::size_t slot : judged(models)) {
+    for (const std::size_t slot : models.drawn()) {
       const ModelView& view = models.slots[slot];
+      if (view.errors.samples == 0 || slot == models.reference) continue;
       const double error =
           std::clamp(std::log10(std::max(view.errors.p99_error_over_jnd, 1e-9)), kErrors.from, kErrors.to);
       const ImVec2 at(plot.x_px(std::log10(std::max(1e-3 * view.tick_ns(), 0.1))), plot.y_px(error));
@@ -134,7 +125,7 @@ void draw_error_bins(const ModelsView& models, const UiStyle& style, float heigh
   const Limits limits = limits_of(models);
   {
     const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
-                        {{0.0, limits.force_N}, {0.0, limits.error_N}, "N", "N", true});
+                        {{0.0, limits.force_N}, {0.0, limits.error_N}, "N", "N"});
     const double ends[2] = {0.0, limits.force_N};
     std::vector<ImVec2> line;
     std::vector<ImVec2> floor;
@@ -144,14 +135,8 @@ void draw_error_bins(const ModelsView& models, const UiStyle& style, float heigh
     }
     plot.band(line, floor, ink(style.colours().band));
     plot.line(line, ink(style.colours().text), 1.5F * style.scale());
-    for (std::size_t i = 0; i < models.slots.size(); ++i) {
-      if (i != models.selected) draw_slot(plot, models, i, style);
-    }
-    if (!models.slots.empty()) draw_slot(plot, models, models.selected, style);
-    plot.caption(
-        " JND", 0.0F,
-        std::clamp((plot.y_px(models.jnd.offset_N) - plot.top()) / (plot.bottom() - plot.top()) - 0.25F, 0.0F, 0.9F),
-        ink(style.colours().quiet));
+    for (const std::size_t slot : models.drawn()) draw_slot(plot, models, slot, style);
+    plot.caption("JND", std::max(plot.top(), plot.y_px(models.jnd.offset_N) - 0.25F * (plot.bottom() - plot.top())));
   }
   tip("Error against force since the last reset (C), in steps of two JND.\nDots: mean + standard deviation. "
       "Triangles: the largest.\nBlack line: the just noticeable difference.");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/base/text.h"
 #include "rendering/panels/panel_parts.h"
@@ -17,16 +18,13 @@ constexpr double kUsualOverStrongest = 1.5;
 // The slots with a block. If there is too little room, the active model and that of the verdict come first.
 std::vector<std::size_t> slots_of_blocks(const ModelsView& models, bool reference, std::size_t block_count) {
   const std::size_t room = reference ? block_count - 1 : block_count;
-  std::vector<std::size_t> wanted;
-  if (models.active() != nullptr) wanted.push_back(models.selected);
-  if (models.verdict.chosen) wanted.push_back(*models.verdict.chosen);
-  for (const std::size_t slot : models.listed()) {
-    if (models.slots[slot].state == SlotState::ready) wanted.push_back(slot);
-  }
-  std::vector<std::size_t> slots;
-  for (const std::size_t slot : wanted) {
-    if (slots.size() < room && std::find(slots.begin(), slots.end(), slot) == slots.end()) slots.push_back(slot);
-  }
+  const auto rank = [&](std::size_t slot) {
+    return slot == models.selected ? 0 : models.verdict.chosen == slot ? 1 : 2;
+  };
+  std::vector<std::size_t> slots = models.drawn();
+  std::sort(slots.begin(), slots.end(),
+            [&](std::size_t a, std::size_t b) { return std::pair(rank(a), a) < std::pair(rank(b), b); });
+  slots.resize(std::min(slots.size(), room));
   std::sort(slots.begin(), slots.end());
   if (reference) slots.push_back(kReferenceBlock);
   return slots;
@@ -67,6 +65,13 @@ std::vector<std::size_t> ModelsView::listed() const {
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (slots[i].state != SlotState::hidden) list.push_back(i);
   }
+  return list;
+}
+
+std::vector<std::size_t> ModelsView::drawn() const {
+  std::vector<std::size_t> list = listed();
+  std::erase_if(list, [&](std::size_t slot) { return slots[slot].state != SlotState::ready; });
+  std::stable_partition(list.begin(), list.end(), [&](std::size_t slot) { return slot != selected; });
   return list;
 }
 

@@ -42,6 +42,8 @@ struct ModelsView {
 
   // The slots that are not hidden, in order. Keys and tables number them.
   std::vector<std::size_t> listed() const;
+  // The slots that are ready, the active one last: it is drawn on top.
+  std::vector<std::size_t> drawn() const;
   // The number of a listed slot, from 1.
   std::size_t number_of(std::size_t slot) const;
   // The active model; null unless it is ready.
