@@ -72,11 +72,6 @@ Json model_json(const ModelView& slot) {
           {"tick_ns", slot.tick_ns() > 0.0 ? Json(slot.tick_ns()) : Json(nullptr)}};
 }
 
-template <typename T>
-bool is_there(const std::future<T>& future) {
-  return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
-
 Hue hue_of(const Rgb& colour) {
   const glm::uvec3 parts(glm::round(255.0F * glm::clamp(colour, 0.0F, 1.0F)));
   return parts.r << 16 | parts.g << 8 | parts.b;
@@ -147,9 +142,9 @@ std::string stats_text(const LiveSession& session, const WindowView& shown, cons
   return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string DemoFiles::folder() {
-  auto folder = data_folder();
-  if (folder) return *folder;
+std::string DemoFiles::new_path(const char* name) {
+  const auto folder = data_folder();
+  if (folder) return *folder + local_time_text(name);
   notify_(folder.error().message, true);
   return {};
 }
@@ -174,24 +169,10 @@ void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& came
 }
 
 void DemoFiles::update(const LiveSession& session) {
-  if (is_there(arriving_)) {
-    const Result<ConvertedRecording> offered = arriving_.get();
-    if (offered) {
-      view_.dialogs.recording_roles.add({offered->path, offered->words});
-      remember(reading_);
-    } else {
-      view_.dialogs.recording_roles.problem = offered.error().message;
-    }
-    if (!waiting_.empty()) {
-      const std::string next = waiting_.front();
-      waiting_.erase(waiting_.begin());
-      open_recording(next);
-    }
-  }
-  if (is_there(looking_)) view_.dialogs.devices = looking_.get();
-  if (is_there(drawing_)) {
-    const Notice notice = drawing_.get();
-    notify_(notice.text, notice.problem);
+  if (running_.valid() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) running_.get()();
+  if (!running_.valid() && !waiting_.empty()) {
+    running_ = std::async(std::launch::async, std::move(waiting_.front()));
+    waiting_.pop_front();
   }
   // When a recording is saved, asks for its role.
   const RecordingStatus status = session.recording();
@@ -224,18 +205,20 @@ void DemoFiles::remember(const std::string& path) {
   if (recent.size() > kRecent) recent.pop_back();
 }
 
-// Files are read one after the other in the background: replacing the future of a running read would block until it
-// ends.
 void DemoFiles::open_recording(const std::string& path) {
-  const std::string into = folder();
-  if (into.empty()) return;
-  if (arriving_.valid()) {
-    waiting_.push_back(path);
-    return;
-  }
+  const auto into = data_folder();
+  if (!into) return notify_(into.error().message, true);
   notify_("reading " + path, false);
-  reading_ = path;
-  arriving_ = std::async(std::launch::async, [read = read_, path, into] { return read(path, into); });
+  waiting_.push_back([this, read = read_, path, into = *into]() -> Finish {
+    return [this, path, offered = read(path, into)] {
+      if (!offered) {
+        view_.dialogs.recording_roles.problem = offered.error().message;
+        return;
+      }
+      view_.dialogs.recording_roles.add({offered->path, offered->words});
+      remember(path);
+    };
+  });
 }
 
 void DemoFiles::record(LiveSession& session) {
@@ -243,44 +226,43 @@ void DemoFiles::record(LiveSession& session) {
     session.stop_recording();
     return;
   }
-  const std::string into = folder();
-  if (into.empty()) return;
-  const std::string path = into + local_time_text("/session-%Y%m%d-%H%M%S.csv");
+  const std::string path = new_path("/session-%Y%m%d-%H%M%S.csv");
+  if (path.empty()) return;
   const Status status = session.start_recording(path);
   notify_(status ? "recording to " + path : status.error().message, !status);
 }
 
 // Saves the data of the visible curves, and draws a figure of them in the background.
 void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns) {
-  const std::string into = folder();
-  if (into.empty() || drawing_.valid()) return;
-  const std::string path = into + local_time_text("/curves-%Y%m%d-%H%M%S");
+  const std::string path = new_path("/curves-%Y%m%d-%H%M%S");
+  if (path.empty()) return;
   const double to_s = view_.time.end_s(steady_now_s());
   const double from_s = to_s - view_.time.shown_s;
   const CurveSource source = curve_source(session, shown, view_.time.zero_s);
   const std::string table = curve_csv(session.comparison().history(), source, from_s, to_s);
-  drawing_ = std::async(std::launch::async, [path, table, plot = curve_plot(columns, source, from_s, to_s)] {
-    if (const Status status = write_file_atomically(path + ".csv", table, false); !status)
-      return Notice{status.error().message, true};
-    const Status drawn = draw_plot(plot, path + ".svg", false);
-    return drawn ? Notice{"saved " + path + ".svg and .csv", false}
-                 : Notice{"saved " + path + ".csv without a figure: " + drawn.error().message, true};
+  if (const Status status = write_file_atomically(path + ".csv", table, false); !status)
+    return notify_(status.error().message, true);
+  waiting_.push_back([this, path, plot = curve_plot(columns, source, from_s, to_s)]() -> Finish {
+    return [this, path, drawn = draw_plot(plot, path + ".svg", false)] {
+      notify_(drawn ? "saved " + path + ".svg and .csv"
+                    : "saved " + path + ".csv without a figure: " + drawn.error().message,
+              !drawn);
+    };
   });
 }
 
 void DemoFiles::save_model(const LiveSession& session) {
-  const std::string into = folder();
-  if (into.empty()) return;
+  const std::string path = new_path("/model-%Y%m%d-%H%M%S.json");
+  if (path.empty()) return;
   const std::size_t slot = session.models().selected();
-  const std::string path = into + local_time_text("/model-%Y%m%d-%H%M%S.json");
   const Status status = session.save_model(slot, path);
   notify_(status ? "saved " + session.models().info(slot).name + " to " + path : status.error().message, !status);
 }
 
 void DemoFiles::look_for_devices() {
-  if (looking_.valid()) return;
   view_.dialogs.devices.clear();
-  looking_ = std::async(std::launch::async, device_choices);
+  waiting_.push_back(
+      [this]() -> Finish { return [this, found = device_choices()] { view_.dialogs.devices = found; }; });
 }
 
 void DemoFiles::write_to_log(const std::string& text) {

@@ -2,6 +2,7 @@
 // Thread guarantee: main thread only; slow work runs in the background.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <future>
 #include <string>
@@ -53,20 +54,19 @@ class DemoFiles {
   static void write_to_log(const std::string& text);
 
  private:
+  // What is done in `update` after some work in the background.
+  using Finish = std::function<void()>;
   void remember(const std::string& path);  // adds it to the recent files
-  // The user's data folder; empty, after a notice, where there is none.
-  std::string folder();
+  // A path in the user's data folder with a name made of the time; empty, after a notice, where there is no folder.
+  std::string new_path(const char* name);
 
   ViewState& view_;
   Notify notify_;
   Read read_;
   std::string settings_file_;
-  std::future<Result<ConvertedRecording>> arriving_;  // the file that is being read
-  std::string reading_;                               // its path
-  std::vector<std::string> waiting_;                  // files to read after it
-  std::future<std::vector<DeviceChoice>> looking_;    // the search for devices
-  std::future<Notice> drawing_;                       // the figure of the curves that is being drawn
-  std::string recording_;                             // the file that is being recorded; empty: none
+  std::deque<std::function<Finish()>> waiting_;  // work for the background, one after the other
+  std::future<Finish> running_;
+  std::string recording_;  // the file that is being recorded; empty: none
 };
 
 }  // namespace palpate
