@@ -163,8 +163,6 @@ void DemoApp::handle_exhibit_key(const KeyPress& press) {
   if (!control && !press.again) exhibit_.press_key(press.key, *session_);
 }
 
-SceneArea DemoApp::scene_area() const { return lay_out(ImGui::GetIO().DisplaySize).scene; }
-
 void DemoApp::frame() {
   if (session_ == nullptr) return;  // the program is closing
   glfwPollEvents();
@@ -177,8 +175,6 @@ void DemoApp::frame() {
   frame_began_s_ = now_s;
   draw();
   handle_keys();
-  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, scene_area()) && !view_.exhibit.on)
-    notify("the mouse has left the picture: the probe is lifted", false);
   // The session changes between two frames, because drawing refers to it.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();

@@ -78,13 +78,12 @@ class DemoApp {
   void seek_replay(double by_s);
   void read_notices(double now_s);
   void draw();
-  void draw_blocks();
+  void draw_blocks(const SceneArea& area);
   void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
   std::vector<BlockPose> true_poses() const;  // without the exaggeration of dents
   BlockPose model_pose(std::size_t slot, BlockPose pose) const;
   BlockPose reference_pose(BlockPose pose) const;
-  SceneArea scene_area() const;
   Status set_up_exhibit(const ExhibitTimes& times);
   void notify(std::string text, bool problem);
   void look();

@@ -35,11 +35,12 @@ void DemoApp::draw() {
   style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
                 exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(input_.tapped());
-  input_.keep_wheel();
+  const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
+  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, layout.scene) && !exhibit)
+    notify("the mouse has left the picture: the probe is lifted", false);
   // With a software renderer, clearing is faster than filling a rectangle.
   window_->clear(style_.colours().panel);
-  draw_blocks();
-  const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
+  draw_blocks(layout.scene);
   const OverlayActions actions{&commands_,
                                [this](const std::string& scene) { use_material(scene, {}, first_device_); },
                                [this](const std::string& path) { drop_files({path}); },
@@ -50,7 +51,7 @@ void DemoApp::draw() {
                                [this](const std::string& name) { use_line_up(*find_line_up(name)); },
                                [this] { use_recording_roles(); }};
   draw_overlay(*session_, shown_, *blocks_, view_, style_, layout.scene, actions);
-  if (view_.exhibit.on) {
+  if (exhibit) {
     exhibit_.draw(*session_, shown_, *blocks_, style_, layout);
   } else {
     draw_panel(curves_, *session_, shown_, view_, style_, layout.panel);
@@ -62,12 +63,10 @@ void DemoApp::draw() {
   resolution_.add(steady_now_s() - frame_began_s_);
 }
 
-void DemoApp::draw_blocks() {
-  const SceneArea area = scene_area();
-  const Viewport viewport = pixels_of(area);
+void DemoApp::draw_blocks(const SceneArea& area) {
   const std::vector<BlockPose> poses = block_poses();
   blocks_->show(poses.size(), false);  // their number changes when models become ready
-  blocks_->draw(poses, viewport, view_.settings.theme, resolution_.scale());
+  blocks_->draw(poses, pixels_of(area), view_.settings.theme, resolution_.scale());
   view_.frames.picture_scale = resolution_.scale();
 }
 

@@ -155,8 +155,6 @@ void DemoInput::run(const KeyPress& press, const std::vector<WindowCommand>& com
   }
 }
 
-void DemoInput::keep_wheel() { wheel_ = ImGui::GetIO().MouseWheel; }
-
 bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, BlockView& blocks, const ViewState& view,
                              const SceneArea& area) {
   const ImGuiIO& io = ImGui::GetIO();
@@ -178,12 +176,10 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
   // A finger that leaves the screen releases the tool.
   if (view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) Exhibit::let_go(session);
   if (!over_scene) return false;
-  if (wheel_ != 0.0F) {
-    if (io.KeyCtrl) {
-      blocks.camera().zoom(std::pow(kZoom_per_step, wheel_));
-    } else {
-      nudge_tool(session, -kWheelStep_m * static_cast<double>(wheel_));
-    }
+  if (io.KeyCtrl) {
+    blocks.camera().zoom(std::pow(kZoom_per_step, io.MouseWheel));
+  } else if (io.MouseWheel != 0.0F) {
+    nudge_tool(session, -kWheelStep_m * static_cast<double>(io.MouseWheel));
   }
   if (!view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {

@@ -43,9 +43,8 @@ class DemoInput {
   // tool, at most to 8 % beyond the trained depth and out to kHover_m.
   void drive_tool(const LiveSession& session, double velocity_m_per_s);
 
-  // Stores the motion of the wheel; call it within a frame, because ImGui clears it at the end.
-  void keep_wheel();
-  // Returns whether the mouse has just left the picture, so that the tool was lifted.
+  // Call it within a frame, because ImGui clears the motion of the wheel at its end. Returns whether the mouse has just
+  // left the picture, so that the tool was lifted.
   bool handle_mouse(LiveSession& session, const WindowView& shown, BlockView& blocks, const ViewState& view,
                     const SceneArea& area);
 
@@ -55,7 +54,6 @@ class DemoInput {
   std::vector<KeyPress> keys_;
   std::vector<int> down_;  // keys that are held
   bool drives_ = false;    // a key moved the tool in the frame before
-  float wheel_ = 0.0F;
   bool orbiting_ = false;
   bool over_scene_ = false;  // in the frame before
 };

@@ -179,21 +179,27 @@ TEST_F(StudySessionTest, AbortWorksInEveryState) {
 }
 
 TEST_F(StudySessionTest, ResumesAfterTheLastAnswer) {
-  auto session = begun();
-  answer_trials(*session, 1000, truly_larger);
-  const std::string whole = test::read_text(path_);
-  for (const std::size_t until : {0u, 5u, 8u, 30u}) {
-    session.reset();
+  for (const bool strokes : {false, true}) {
+    SCOPED_TRACE(strokes);
+    const StudyHeader header = strokes ? test::discrimination_header(0.8) : StudyHeader{"S01"};
+    const auto right = strokes ? truly_like : truly_larger;
     std::filesystem::remove(path_);
-    session = begun();
-    answer_trials(*session, until, truly_larger);
-    session.reset();
-    auto resumed = test::session_at(path_);
-    ASSERT_TRUE(resumed.ok()) << resumed.error().message;
-    session = std::move(*resumed);
-    EXPECT_EQ(session->state(), StudyState::ready) << "consent is asked once";
-    answer_trials(*session, 1000, truly_larger);
-    EXPECT_EQ(test::read_text(path_), whole);
+    auto session = begun(header);
+    answer_trials(*session, 1000, right);
+    const std::string whole = test::read_text(path_);
+    for (const std::size_t until : {0u, 5u, 8u, 30u}) {
+      session.reset();
+      std::filesystem::remove(path_);
+      session = begun(header);
+      answer_trials(*session, until, right);
+      session.reset();
+      auto resumed = test::session_at(path_, header);
+      ASSERT_TRUE(resumed.ok()) << resumed.error().message;
+      session = std::move(*resumed);
+      EXPECT_EQ(session->state(), StudyState::ready) << "consent is asked once";
+      answer_trials(*session, 1000, right);
+      EXPECT_EQ(test::read_text(path_), whole);
+    }
   }
 }
 
