@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/live/pacer.h"
+#include "rendering/panels/window_command.h"
 #include "scenes/scene/user_folders.h"
 
 namespace palpate {
@@ -200,27 +201,20 @@ void Exhibit::forget(LiveSession& session, ViewState& view) {
 
 void Exhibit::press_key(int key, const LiveSession& session) {
   moved_s_ = session.newest().loop_time_s;
-  const bool first = key == GLFW_KEY_1 || key == GLFW_KEY_KP_1;
-  const bool second = key == GLFW_KEY_2 || key == GLFW_KEY_KP_2;
-  const bool on = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER || key == GLFW_KEY_SPACE;
   if (key == GLFW_KEY_L) language_ = (language_ + 1) % languages_.size();
-  switch (game_.state()) {
-    case State::attract:
-    case State::score:
-      if (first || on) begin(session);
-      break;
-    case State::guess:
-      if (first || second) game_.guess(first);
-      break;
-    case State::press:
-      if (first || second) game_.choose(first ? 1 : 2);
-      if (key == words()("key_differ").front() || key == words()("key_same").front())
-        game_.answer(key == words()("key_differ").front());
-      break;
-    case State::reveal:
-      if ((first || on) && reveal_is_done(session)) game_.go_on();
-      break;
-  }
+  if (key == GLFW_KEY_KP_1 || key == GLFW_KEY_KP_2) key += GLFW_KEY_1 - GLFW_KEY_KP_1;
+  const bool on = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER || key == GLFW_KEY_SPACE;
+  // Where there is nothing to choose, 1 and Enter are the same.
+  const bool only = buttons_.count("2") == 0 && (on || key == GLFW_KEY_1);
+  press_button(only ? buttons_.count("1") != 0 ? "1" : "Enter" : on ? "Enter" : key_name(key));
+}
+
+void Exhibit::press_button(const std::string& key) {
+  const auto found = buttons_.find(key);
+  if (found == buttons_.end()) return;
+  const std::function<void()> press = found->second.press;
+  buttons_.clear();
+  press();
 }
 
 }  // namespace palpate

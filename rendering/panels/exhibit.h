@@ -7,13 +7,14 @@
 //   reveal    the press with the largest difference in slow motion (exhibit_reveal.h), then the result
 //   score     the visitor's score and a summary
 //
-// Buttons, touch and keys are equivalent; each button shows its key. The tool is kept out of the block in all other
+// A key presses the button that shows it. The tool is kept out of the block in all other
 // screens than attract and press. After `stay_s` without a movement, the last `warn_s` of which are counted down, the
 // exhibit starts again. Ctrl+Shift+T shows the day's tally and the loop's health to the host.
 // Thread guarantee: the window's thread.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -64,8 +65,12 @@ class Exhibit {
   const ExhibitGame& game() const noexcept { return game_; }
   const ExhibitTrace& attract_trace() const noexcept { return trace_; }
   const ExhibitTally& tally() const noexcept { return tally_; }
-  // Positions of the buttons of the last frame, by their keys.
-  const std::map<std::string, ImVec2>& buttons() const noexcept { return buttons_; }
+  struct Button {
+    ImVec2 middle;
+    std::function<void()> press;
+  };
+  // The buttons of the last frame, by their keys.
+  const std::map<std::string, Button>& buttons() const noexcept { return buttons_; }
   // The sentences of the last frame, from the top.
   const std::vector<std::string>& said() const noexcept { return said_; }
 
@@ -79,6 +84,7 @@ class Exhibit {
   bool reveal_is_done(const LiveSession& session) const;
   std::string tally_path() const;  // today's file; empty: no tally is stored
   void begin(const LiveSession& session);
+  void press_button(const std::string& key);  // no effect without such a button
   // The pair on the screen; null: too few models are ready.
   const ExhibitRound* pair() const noexcept;
   Rgb first_colour(Theme theme) const;
@@ -96,7 +102,7 @@ class Exhibit {
   std::size_t language_ = 0;
   std::string tally_folder_;
   ExhibitTally tally_;
-  std::map<std::string, ImVec2> buttons_;
+  std::map<std::string, Button> buttons_;
   std::vector<std::string> said_;
   bool host_ = false;
   bool visitor_ = false;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "engine/base/text.h"
 #include "rendering/panels/exhibit.h"
@@ -31,6 +32,7 @@ struct Exhibit::Screens {
   const BlockView& blocks;
   const UiStyle& style;
   const WindowLayout& layout;
+  std::string pressed = {};  // the key of the button that was pressed; empty: none
 
   const ExhibitWords& words() const { return exhibit.words(); }
   // The end of the panel above the foot.
@@ -87,10 +89,11 @@ struct Exhibit::Screens {
     say_quietly(words()("round", std::to_string(game.number()), std::to_string(game.rounds().size())));
   }
 
-  // A button that is high enough for a finger, with its key in the corner.
-  bool button(const std::string& text, const std::string& key, float width, bool down = false) {
+  // A button that is high enough for a finger, with its key in the corner. It is pressed at the end of the frame.
+  void button(const std::string& text, const std::string& key, float width, std::function<void()> press,
+              bool down = false) {
     if (down) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-    const bool pressed = ImGui::Button(text.c_str(), {width, 2.2F * height_of(style.fonts().heading)});
+    if (ImGui::Button(text.c_str(), {width, 2.2F * height_of(style.fonts().heading)})) pressed = key;
     if (down) ImGui::PopStyleColor();
     const ImVec2 low = ImGui::GetItemRectMin();
     const ImVec2 corner = ImGui::GetItemRectMax();
@@ -99,8 +102,7 @@ struct Exhibit::Screens {
     const float wide = text_size(font, key).x;
     ImGui::GetWindowDrawList()->AddText(font, line, {corner.x - wide - 0.4F * line, corner.y - 1.2F * line},
                                         ink(style.colours().quiet), key.c_str());
-    exhibit.buttons_[key] = {0.5F * (low.x + corner.x), 0.5F * (low.y + corner.y)};
-    return pressed;
+    exhibit.buttons_[key] = {{0.5F * (low.x + corner.x), 0.5F * (low.y + corner.y)}, std::move(press)};
   }
 
   void draw_difference(const ExhibitTrace& trace) {
@@ -132,13 +134,17 @@ struct Exhibit::Screens {
     flush();
   }
 
+  std::function<void()> begin() const {
+    return [&exhibit = exhibit, &session = session] { exhibit.begin(session); };
+  }
+
   void draw_attract() {
     say(words()("attract"));
     space(0.3F);
     say_quietly(words()("attract_more"));
     space(0.6F);
     if (exhibit.pair() == nullptr) return draw_learning();
-    if (button(words()("play"), "1", -1.0F)) exhibit.begin(session);
+    button(words()("play"), "1", -1.0F, begin());
     space(0.6F);
     draw_difference(exhibit.trace_);
   }
@@ -160,13 +166,11 @@ struct Exhibit::Screens {
     say(words()("question_guess"));
     space(0.4F);
     const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-    std::optional<bool> noticed;
-    if (button(words()("yes"), "1", half)) noticed = true;
+    button(words()("yes"), "1", half, [&game = game] { game.guess(true); });
     ImGui::SameLine();
-    if (button(words()("no"), "2", half)) noticed = false;
+    button(words()("no"), "2", half, [&game = game] { game.guess(false); });
     space(0.6F);
     draw_difference(game.trace());
-    if (noticed) game.guess(*noticed);
   }
 
   void draw_press() {
@@ -181,15 +185,15 @@ struct Exhibit::Screens {
     say_quietly(words()(game.pressed_both() ? "answer" : "feel_both"));
     space(0.4F);
     const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-    if (button(words()("block_1"), "1", half, game.chosen() == 1)) game.choose(1);
+    button(
+        words()("block_1"), "1", half, [&game = game] { game.choose(1); }, game.chosen() == 1);
     ImGui::SameLine();
-    if (button(words()("block_2"), "2", half, game.chosen() == 2)) game.choose(2);
+    button(
+        words()("block_2"), "2", half, [&game = game] { game.choose(2); }, game.chosen() == 2);
     if (!game.pressed_both()) return;
     space(0.8F);
-    std::optional<bool> different;
-    if (button(words()("differ"), words()("key_differ"), -1.0F)) different = true;
-    if (button(words()("same"), words()("key_same"), -1.0F)) different = false;
-    if (different) game.answer(*different);
+    button(words()("differ"), words()("key_differ"), -1.0F, [&game = game] { game.answer(true); });
+    button(words()("same"), words()("key_same"), -1.0F, [&game = game] { game.answer(false); });
   }
 
   void draw_key(const ExhibitModel& model, const char* block) {
@@ -220,8 +224,8 @@ struct Exhibit::Screens {
     say_large(words()(edge ? "edge" : round.correct() ? "right" : "wrong"));
     say(verdict());
     space(0.4F);
-    if (button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter", -1.0F))
-      return game.go_on();
+    button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter", -1.0F,
+           [&game = game] { game.go_on(); });
     if (game.has_force()) {  // shows which model had which key
       space(0.4F);
       draw_key(*round.first, "block_1");
@@ -260,7 +264,7 @@ struct Exhibit::Screens {
     say(game.has_force() ? words()("take_home_felt", used_us)
                          : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
     space(0.4F);
-    if (button(words()("again"), "Enter", -1.0F)) exhibit.begin(session);
+    button(words()("again"), "Enter", -1.0F, begin());
   }
 
   // Draws the button of the next language and the countdown.
@@ -366,6 +370,7 @@ void Exhibit::draw(const LiveSession& session, const WindowView& shown, const Bl
   ImGui::End();
   screens.draw_names();
   if (game_.state() == State::reveal) screens.draw_growing_number();
+  press_button(screens.pressed);
 }
 
 }  // namespace palpate

@@ -161,7 +161,10 @@ void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewS
   if (ImGui::Selectable(label.c_str(), index == models.selected, flags)) session.select(index);
   if (ImGui::IsItemHovered()) view.pointed = index;
   draw_menu(session, models, index, view.table);
-  tip(name_tip(models, index).c_str());
+  tip((index == models.selected ? slot.name + " is the active model"
+                                : "Click, or press " + std::to_string(models.number_of(index)) + ", to make " +
+                                      slot.name + " the active model")
+          .c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
   if (index == models.selected) list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
@@ -173,7 +176,10 @@ void draw_waiting(const ModelView& slot) {
   ImGui::TableNextColumn();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::PushClipRect(at, {at.x + 12.0F * ImGui::GetFontSize(), at.y + 2.0F * ImGui::GetFontSize()}, false);
-  ImGui::TextDisabled("%s", waiting_words(slot).c_str());
+  const std::string words = slot.state == SlotState::waiting   ? "waits"
+                            : slot.state == SlotState::fitting ? "fits " + fixed(100.0 * slot.progress, 0) + " %"
+                                                               : "failed";
+  ImGui::TextDisabled("%s", words.c_str());
   if (slot.state == SlotState::failed) tip(slot.problem.c_str());
   ImGui::PopClipRect();
 }
@@ -198,17 +204,6 @@ float column_width(int column) {
 }
 
 }  // namespace
-
-std::string waiting_words(const ModelInfo& slot) {
-  if (slot.state == SlotState::waiting) return "waits";
-  return slot.state == SlotState::fitting ? "fits " + fixed(100.0 * slot.progress, 0) + " %" : "failed";
-}
-
-std::string name_tip(const ModelsView& models, std::size_t slot) {
-  const std::string& name = models.slots[slot].name;
-  if (slot == models.selected) return name + " is the active model";
-  return "Click, or press " + std::to_string(models.number_of(slot)) + ", to make " + name + " the active model";
-}
 
 std::vector<int> shown_columns(float room, float (*width)(int)) {
   std::vector<int> columns;

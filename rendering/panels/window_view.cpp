@@ -30,6 +30,25 @@ std::vector<std::size_t> slots_of_blocks(const ModelsView& models, bool referenc
   return slots;
 }
 
+// The samples that the errors are over, since when, and what is excluded.
+std::string counted_words(const LiveSession& session) {
+  const Comparison& comparison = session.comparison();
+  const std::size_t active = session.models().selected();
+  if (!session.has_reference(comparison.reference())) return session.reference_words(true);
+  if (active >= session.models().size()) return {};
+  if (session.models().info(active).other_material)
+    return "no truth to compare " + session.models().info(active).name + " with";
+  if (session.tests_recording()) {
+    return with_thousands(std::to_string(session.figures(active).errors.samples)) + " samples in contact, all of " +
+           session.replay()->recording().name;
+  }
+  std::string words = fixed(comparison.counted_s(), 1) + " s of contact since " + comparison.counted_since();
+  const double left_out_s = comparison.contact_s() - comparison.counted_s();
+  if (left_out_s > 0.05) words += "; " + fixed(left_out_s, 1) + " s left out";
+  if (comparison.outside_s() > 0.05) words += ", deeper or faster than recorded";
+  return words;
+}
+
 ModelsView models_view(const LiveSession& session, double until_s) {
   ModelsView view;
   for (std::size_t i = 0; i < session.models().size(); ++i)
@@ -90,24 +109,6 @@ bool ModelsView::out_of_domain() const noexcept {
   return in_contact && model != nullptr && model->out_of_domain && !replays_training;
 }
 
-std::string counted_words(const LiveSession& session) {
-  const Comparison& comparison = session.comparison();
-  const std::size_t active = session.models().selected();
-  if (!session.has_reference(comparison.reference())) return session.reference_words(true);
-  if (active >= session.models().size()) return {};
-  if (session.models().info(active).other_material)
-    return "no truth to compare " + session.models().info(active).name + " with";
-  if (session.tests_recording()) {
-    return with_thousands(std::to_string(session.figures(active).errors.samples)) + " samples in contact, all of " +
-           session.replay()->recording().name;
-  }
-  std::string words = fixed(comparison.counted_s(), 1) + " s of contact since " + comparison.counted_since();
-  const double left_out_s = comparison.contact_s() - comparison.counted_s();
-  if (left_out_s > 0.05) words += "; " + fixed(left_out_s, 1) + " s left out";
-  if (comparison.outside_s() > 0.05) words += ", deeper or faster than recorded";
-  return words;
-}
-
 std::string data_warning(const ModelsView& models) {
   if (!models.out_of_domain()) return {};
   return "No such motion was recorded: here " + models.active()->name + " renders only its trend";
@@ -143,22 +144,18 @@ BigNumber big_number(const ModelsView& models, bool has_truth) {
   return big;
 }
 
-HealthView health_view(const LiveSession& session) {
-  return {session.loop().statistics(),
-          session.loop().scheduling(),
-          session.newest(),
-          session.faults().missed_of_late(),
-          session.faults().events(),
-          session.alarms(),
-          session.device_name()};
-}
-
 WindowView window_view(const LiveSession& session, const ViewState& view) {
   static std::uint64_t made = 0;
   WindowView shown;
   shown.number = ++made;
   shown.models = models_view(session, view.time.end_s(std::numeric_limits<double>::infinity()));
-  shown.health = health_view(session);
+  shown.health = {session.loop().statistics(),
+                  session.loop().scheduling(),
+                  session.newest(),
+                  session.faults().missed_of_late(),
+                  session.faults().events(),
+                  session.alarms(),
+                  session.device_name()};
   const ReferenceKind kind = session.comparison().reference();
   const std::size_t blocks = view.settings.block_count;
   const bool reference = blocks > 1 && kind != ReferenceKind::direct && session.has_reference(kind);

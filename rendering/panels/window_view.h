@@ -34,7 +34,7 @@ struct ModelsView {
   bool compared = true;                         // there is a reference
   std::size_t reference = kReferenceBlock;      // its slot, if it is a model
   std::string reference_name = "the material";  // the reference in few words
-  std::string counted;                          // see counted_words
+  std::string counted;                          // the samples that the errors are over, in words
   bool replays_training = false;                // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
@@ -77,7 +77,6 @@ struct WindowView {
 };
 
 WindowView window_view(const LiveSession& session, const ViewState& view);
-HealthView health_view(const LiveSession& session);
 
 // A warning that the active model is outside its training domain; else empty.
 std::string data_warning(const ModelsView& models);
@@ -91,8 +90,5 @@ struct BigNumber {
   double error_over_jnd = 0.0;  // above 1 it is drawn in kAboveJndColour
 };
 BigNumber big_number(const ModelsView& models, bool has_truth);
-
-// The samples that the errors are over, since when, and what is excluded, in words.
-std::string counted_words(const LiveSession& session);
 
 }  // namespace palpate

@@ -182,10 +182,6 @@ Status LiveStudy::begin(const std::string& code) {
 void LiveStudy::update() {
   if (loop_ == nullptr) return;
   newest_ = loop_->newest();
-  // The presenter records the forces; the snapshots are discarded, so that the ring does not fill up.
-  std::array<LoopSnapshot, 64> passed;
-  while (loop_->read_snapshots(passed.data(), passed.size()) == passed.size()) {
-  }
   session_->update();
 }
 

@@ -78,7 +78,7 @@ class ExhibitTest : public test::DemoWindowTest {
   // Moves the mouse to the button and clicks.
   void click_on(const std::string& button) {
     ASSERT_TRUE(until([&] { return shows(button); })) << button;
-    move(app_->exhibit().buttons().at(button));
+    move(app_->exhibit().buttons().at(button).middle);
     click();
   }
   // A touch: the pointer appears at `at` and is pressed at the same time.
@@ -89,7 +89,7 @@ class ExhibitTest : public test::DemoWindowTest {
   }
   void touch_on(const std::string& button) {
     ASSERT_TRUE(until([&] { return shows(button); })) << button;
-    touch(app_->exhibit().buttons().at(button));
+    touch(app_->exhibit().buttons().at(button).middle);
   }
   bool until_over(const std::function<void()>& stroke) {
     return until([&] {
