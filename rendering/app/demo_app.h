@@ -74,8 +74,6 @@ class DemoApp {
   void close_windows();
   void select_listed(std::size_t number);
   void next_block_count();
-  void scroll_curves(double by_s);
-  void seek_replay(double by_s);
   void read_notices(double now_s);
   void draw();
   void draw_blocks(const SceneArea& area);
