@@ -77,16 +77,6 @@ Hue hue_of(const Rgb& colour) {
   return parts.r << 16 | parts.g << 8 | parts.b;
 }
 
-CurveSource curve_source(const LiveSession& session, const WindowView& shown, double zero_s) {
-  CurveSource source{
-      session.scene().title, session.device_name(), session.reference_words(), session.jnd(), zero_s, {}};
-  for (const std::size_t slot : shown.models.drawn()) {
-    const Rgb colour = slot_colour(shown.models, slot, Theme::light);
-    source.models.push_back({slot, shown.models.slots[slot].name, hue_of(colour)});
-  }
-  return source;
-}
-
 }  // namespace
 
 Result<Settings> read_settings(const std::string& path) {
@@ -237,12 +227,21 @@ void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown,
   const std::string path = new_path("/curves-%Y%m%d-%H%M%S");
   if (path.empty()) return;
   const double to_s = view_.time.end_s(steady_now_s());
-  const double from_s = to_s - view_.time.shown_s;
-  const CurveSource source = curve_source(session, shown, view_.time.zero_s);
-  const std::string table = curve_csv(session.comparison().history(), source, from_s, to_s);
+  CurveSource source{session.scene().title + ", " + session.device_name(),
+                     session.reference_words(),
+                     session.jnd(),
+                     view_.time.zero_s,
+                     to_s - view_.time.shown_s,
+                     to_s,
+                     {}};
+  for (const std::size_t slot : shown.models.drawn()) {
+    const Rgb colour = slot_colour(shown.models, slot, Theme::light);
+    source.models.push_back({slot, shown.models.slots[slot].name, hue_of(colour)});
+  }
+  const std::string table = curve_csv(session.comparison().history(), source);
   if (const Status status = write_file_atomically(path + ".csv", table, false); !status)
     return notify_(status.error().message, true);
-  waiting_.push_back([this, path, plot = curve_plot(columns, source, from_s, to_s)]() -> Finish {
+  waiting_.push_back([this, path, plot = curve_plot(columns, source)]() -> Finish {
     return [this, path, drawn = draw_plot(plot, path + ".svg", false)] {
       notify_(drawn ? "saved " + path + ".svg and .csv"
                     : "saved " + path + ".csv without a figure: " + drawn.error().message,

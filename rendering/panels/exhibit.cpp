@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/live/pacer.h"
@@ -117,9 +118,8 @@ void Exhibit::note_device(const LiveSession& session) {
 void Exhibit::read_ticks(const LiveSession& session) {
   const ForceHistory& history = session.comparison().history();
   const ExhibitRound* now = pair();
-  std::size_t next = history.first_at(seen_s_);
-  while (next < history.size() && history[next].loop_time_s <= seen_s_) ++next;
-  for (; now != nullptr && next < history.size(); ++next) {
+  const std::size_t first = history.first_at(std::nextafter(seen_s_, std::numeric_limits<double>::infinity()));
+  for (std::size_t next = first; now != nullptr && next < history.size(); ++next) {
     const ExhibitTick tick = tick_of(history[next], *now);
     if (game_.state() != State::attract) {
       game_.add(tick);
@@ -158,13 +158,11 @@ void Exhibit::note_result() {
   if (!path.empty()) (void)write_tally(path, tally_);
 }
 
-Rgb Exhibit::first_colour(Theme theme) const {
-  const auto& first = pair()->first;
-  return first ? exhibit_colour(first->method, first->paper, theme) : reference_colour(theme);
-}
-
-Rgb Exhibit::second_colour(Theme theme) const {
-  return exhibit_colour(pair()->second.method, pair()->second.paper, theme);
+Rgb Exhibit::colour_of(bool first, Theme theme) const {
+  const ExhibitRound& round = *pair();
+  if (first && !round.first) return reference_colour(theme);
+  const ExhibitModel& model = first ? *round.first : round.second;
+  return exhibit_colour(model.method, model.paper, theme);
 }
 
 std::vector<BlockPose> Exhibit::reveal_poses(const LiveSession& session, Theme theme) const {
@@ -174,12 +172,12 @@ std::vector<BlockPose> Exhibit::reveal_poses(const LiveSession& session, Theme t
   first.tool_m = static_cast<float>(moment.position_m);
   first.dent_m = std::max(0.0F, first.tool_m);
   first.force_N = static_cast<float>(moment.first_N);
-  first.arrow = first_colour(theme);
+  first.arrow = colour_of(true, theme);
   first.shows_error = false;
   BlockPose second = first;
   second.force_N = static_cast<float>(std::max(0.0, reveal_.second_N(moment)));
   second.error_over_jnd = static_cast<float>(std::abs(moment.over_jnd));
-  second.arrow = second_colour(theme);
+  second.arrow = colour_of(false, theme);
   second.shows_error = true;
   return first_is_left() ? std::vector{first, second} : std::vector{second, first};
 }

@@ -87,8 +87,8 @@ class Exhibit {
   void press_button(const std::string& key);  // no effect without such a button
   // The pair on the screen; null: too few models are ready.
   const ExhibitRound* pair() const noexcept;
-  Rgb first_colour(Theme theme) const;
-  Rgb second_colour(Theme theme) const;
+  // The colour of the first or the second of the pair.
+  Rgb colour_of(bool first, Theme theme) const;
   // Whether the first of the pair has the left block. A reference is the right one.
   bool first_is_left() const { return pair()->first.has_value(); }
   const ExhibitWords& words() const { return languages_[language_]; }

@@ -208,8 +208,8 @@ struct Exhibit::Screens {
     const ImVec2 at(ImGui::GetCursorScreenPos().x, ImGui::GetCursorScreenPos().y + line);
     const ImVec2 size(ImGui::GetContentRegionAvail().x, std::max(bottom() - 1.6F * line - at.y, 4.0F * line));
     const Theme theme = style.theme();
-    exhibit.reveal_.draw_arrows(style, {at, size}, now_s(), exhibit.first_colour(theme), exhibit.second_colour(theme),
-                                exhibit.first_is_left());
+    exhibit.reveal_.draw_arrows(style, {at, size}, now_s(), exhibit.colour_of(true, theme),
+                                exhibit.colour_of(false, theme), exhibit.first_is_left());
   }
 
   void draw_reveal() {
@@ -345,7 +345,7 @@ struct Exhibit::Screens {
       std::string text = blind ? words()(game.chosen() == 2 ? "block_2" : "block_1") : name_of(first);
       if (blind && game.state() != State::press) text.clear();
       if (game.has_force() && revealed) text = words()(first ? "block_1" : "block_2");
-      const Rgb colour = first ? exhibit.first_colour(theme) : exhibit.second_colour(theme);
+      const Rgb colour = exhibit.colour_of(first, theme);
       draw_name(i, count, text, blind ? style.colours().text : text_colour(colour, theme));
     }
   }

@@ -17,8 +17,7 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
   const double first = std::floor(from_s / width_s);
   std::size_t next = 0;
   if (scroll(width_s, first, slots, count)) {
-    next = history.first_at(taken_s_);
-    while (next < history.size() && history[next].loop_time_s <= taken_s_) ++next;
+    next = history.first_at(std::nextafter(taken_s_, std::numeric_limits<double>::infinity()));
   } else {
     columns_.assign(count + 2, CurveColumn());
     next = history.first_at(first * width_s);
