@@ -43,18 +43,17 @@ Status DemoApp::set_up(const DemoRequest& request) {
   view_.settings.theme = request.exhibit ? Theme::dark : Theme::light;
   // Reports a missing display before anything else starts.
   if (Status status = Window::find_display(); !status) return status;
-  SessionRequest wanted = request.session;
+  request_ = request.session;
   if (request.exhibit) {  // models whose differences are obvious to unnoticeable
-    wanted.position_only = true;
-    if (wanted.models.empty()) wanted.models = {"greedy", "paper:greedy-10"};
+    request_.position_only = true;
+    if (request_.models.empty()) request_.models = {"greedy", "paper:greedy-10"};
   }
-  if (const auto folder = data_folder()) wanted.data_folder = *folder;
+  if (const auto folder = data_folder()) request_.data_folder = *folder;
   files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
-  if (!view_.settings.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
-    wanted.line_up = view_.settings.line_up;
-  request_ = wanted;
-  first_device_ = wanted.device.rfind("replay:", 0) == 0 ? "auto" : wanted.device;
-  auto session = LiveSession::open(wanted);
+  if (!view_.settings.line_up.empty() && request_.models.empty() && !request_.line_up.empty())
+    request_.line_up = view_.settings.line_up;
+  first_device_ = request_.device.rfind("replay:", 0) == 0 ? "auto" : request_.device;
+  auto session = LiveSession::open(request_);
   if (!session) return session.error();
   session_ = std::move(*session);
   yield_to_haptics(session_->loop().scheduling());
