@@ -177,7 +177,10 @@ void DemoApp::frame() {
   // The session changes between two frames, because drawing refers to it.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
-  count_frame(steady_now_s());
+  const double shown_s = steady_now_s();
+  view_.frames.times.add(static_cast<std::int64_t>(1e9 * (shown_s - last_frame_s_)));
+  view_.frames.seconds += shown_s - last_frame_s_;
+  last_frame_s_ = shown_s;
 }
 
 // Makes the view of this frame; all drawing uses it.

@@ -77,7 +77,6 @@ class DemoApp {
   void read_notices(double now_s);
   void draw();
   void draw_blocks(const SceneArea& area);
-  void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
   std::vector<BlockPose> true_poses() const;  // without the exaggeration of dents
   BlockPose model_pose(std::size_t slot, BlockPose pose) const;

@@ -12,7 +12,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kNsPerS = 1e9;
 constexpr float kExaggeration = 10.0F;
 
 // Converts from ImGui, whose y points down from the top, to OpenGL, whose y points up from the bottom.
@@ -134,13 +133,6 @@ BlockPose DemoApp::reference_pose(BlockPose pose) const {
   pose.arrow = reference_colour(view_.settings.theme);
   pose.chosen = pose.shows_error = false;
   return pose;
-}
-
-void DemoApp::count_frame(double now_s) {
-  view_.frames.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) * kNsPerS));
-  view_.frames.seconds += now_s - last_frame_s_;
-  ++view_.frames.frames;
-  last_frame_s_ = now_s;
 }
 
 }  // namespace palpate

@@ -118,7 +118,6 @@ struct ExhibitState {
 
 struct FrameFigures {
   TimeHistogram times;  // from the end of one frame to that of the next
-  std::uint64_t frames = 0;
   double seconds = 0.0;
   float picture_scale = 1.0F;  // see Resolution::scale
 };

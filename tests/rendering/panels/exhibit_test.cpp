@@ -278,7 +278,7 @@ TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
     EXPECT_NEAR(block(0, 0.0F).x, home.x, 0.5F);
     resident.push_back(resident_MB());
     std::printf("visitor %d: %.1f MB, %llu frames, late p50 %.0f us\n", i + 1, resident_MB(),
-                static_cast<unsigned long long>(app_->view().frames.frames),
+                static_cast<unsigned long long>(app_->view().frames.times.percentiles().count),
                 app_->session().loop().statistics().lateness.p50_us);
   }
   // What screens, threads and the driver allocate once comes with some of the visitors; a leak is in every visit.
