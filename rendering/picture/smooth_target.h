@@ -16,7 +16,6 @@ namespace palpate {
 // In pixels of a framebuffer; the origin is the lower left corner.
 struct Viewport {
   int x = 0, y = 0, width = 0, height = 0;
-  bool operator==(const Viewport&) const = default;
 };
 
 // A framebuffer object with colour and depth.
