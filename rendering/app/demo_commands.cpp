@@ -185,9 +185,7 @@ void DemoApp::next_block_count() {
 }
 
 void DemoApp::close_windows() {
-  const std::vector<DeviceChoice> devices = view_.dialogs.devices;
   view_.dialogs = {};
-  view_.dialogs.devices = devices;
   view_.details = false;
 }
 

@@ -259,9 +259,8 @@ void DemoFiles::save_model(const LiveSession& session) {
 }
 
 void DemoFiles::look_for_devices() {
-  view_.dialogs.devices.clear();
-  waiting_.push_back(
-      [this]() -> Finish { return [this, found = device_choices()] { view_.dialogs.devices = found; }; });
+  view_.devices.clear();
+  waiting_.push_back([this]() -> Finish { return [this, found = device_choices()] { view_.devices = found; }; });
 }
 
 void DemoFiles::write_to_log(const std::string& text) {

@@ -276,8 +276,8 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
 // Draws the list of devices, with the reason if one cannot be used.
 void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions) {
   if (!begin_dialog("Device", view.dialogs.device_list)) return;
-  if (view.dialogs.devices.empty()) ImGui::TextDisabled("looking for devices ...");
-  for (const DeviceChoice& device : view.dialogs.devices) {
+  if (view.devices.empty()) ImGui::TextDisabled("looking for devices ...");
+  for (const DeviceChoice& device : view.devices) {
     const bool own = device.name == in_use;
     const bool usable = own || device.problem.empty();
     if (list_entry(device.name, own, usable)) {

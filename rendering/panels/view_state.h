@@ -101,7 +101,6 @@ struct Dialogs {
   bool view_list = false;  // choices of the display
   RecordingRoles recording_roles;
   FilePicker picker;
-  std::vector<DeviceChoice> devices;  // empty: no search has finished
 
   bool any() const noexcept {
     return help || file_list || scene_list || device_list || view_list || recording_roles.any();
@@ -135,6 +134,7 @@ struct ViewState {
   ExhibitState exhibit;
   CurveTime time;
   TableState table;
+  std::vector<DeviceChoice> devices;  // empty: no search has finished
   FrameFigures frames;
   std::vector<Toast> toasts;
   bool scales_force = false;                           // shows the sliders that scale the rendered force

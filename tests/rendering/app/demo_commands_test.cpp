@@ -169,7 +169,7 @@ TEST_F(DemoCommandsTest, ListsAreUsedWithKeysAlone) {
   EXPECT_EQ(app_->session().scene().name, "skin");
 
   open_list(GLFW_KEY_U);
-  ASSERT_TRUE(until([&] { return !app_->view().dialogs.devices.empty(); }));
+  ASSERT_TRUE(until([&] { return !app_->view().devices.empty(); }));
   frames(4);
   for (int i = 0; i < 9; ++i) press(GLFW_KEY_UP);
   for (int i = 0; i < 9 && app_->view().dialogs.device_list; ++i) {
