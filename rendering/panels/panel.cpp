@@ -96,9 +96,9 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
     plot.caption("a hand could tell", plot.top());
     const float wide = ImGui::CalcTextSize("1 ms ").x;
     plot.list().AddText({budget_px - wide, plot.bottom() - line}, ink(p.quiet), "1 ms");
-    for (const std::size_t slot : models.drawn()) {
+    for (const std::size_t slot : models.listed()) {
       const ModelView& view = models.slots[slot];
-      if (view.errors.samples == 0 || slot == models.reference) continue;
+      if (view.state != SlotState::ready || view.errors.samples == 0 || slot == models.reference) continue;
       const double error =
           std::clamp(std::log10(std::max(view.errors.p99_error_over_jnd, 1e-9)), kErrors.from, kErrors.to);
       const ImVec2 at(plot.x_px(std::log10(std::max(1e-3 * view.tick_ns(), 0.1))), plot.y_px(error));

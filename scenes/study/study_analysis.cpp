@@ -13,7 +13,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kReferences = kReferenceForces_N.size();
-constexpr double kNormal95 = 1.959963984540054;  // Phi^-1(0.975), for intervals of 95 %
+constexpr double kNormal95 = 1.9599639845400542;  // Phi^-1(0.975), for intervals of 95 %
 
 bool is_usable(const StudyRecord& record) {
   const auto deviates = [](double planned_N, double rendered_N) {
