@@ -42,18 +42,17 @@ Status DemoApp::set_up(const DemoRequest& request) {
   view_.settings.theme = request.exhibit ? Theme::dark : Theme::light;
   // Reports a missing display before anything else starts.
   if (Status status = Window::find_display(); !status) return status;
-  SessionRequest wanted = request.session;
+  request_ = request.session;
   if (request.exhibit) {  // models whose differences are obvious to unnoticeable
-    wanted.position_only = true;
-    if (wanted.models.empty()) wanted.models = {"greedy", "paper:greedy-10"};
+    request_.position_only = true;
+    if (request_.models.empty()) request_.models = {"greedy", "paper:greedy-10"};
   }
-  if (const auto folder = data_folder()) wanted.data_folder = *folder;
+  if (const auto folder = data_folder()) request_.data_folder = *folder;
   files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
-  if (!view_.settings.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
-    wanted.line_up = view_.settings.line_up;
-  request_ = wanted;
-  first_device_ = wanted.device.rfind("replay:", 0) == 0 ? "auto" : wanted.device;
-  auto session = LiveSession::open(wanted);
+  if (!view_.settings.line_up.empty() && request_.models.empty() && !request_.line_up.empty())
+    request_.line_up = view_.settings.line_up;
+  first_device_ = request_.device.rfind("replay:", 0) == 0 ? "auto" : request_.device;
+  auto session = LiveSession::open(request_);
   if (!session) return session.error();
   session_ = std::move(*session);
   yield_to_haptics(session_->loop().scheduling());
@@ -75,7 +74,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (find_font().empty()) notify("no font found; install fonts-dejavu-core", true);
   for (const std::string& recording : request.recordings) files_.open_recording(recording);
   view_.time.zero_s = steady_now_s();
-  frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
+  frame_began_s_ = last_frame_s_ = steady_now_s();
   look();
   return {};
 }
@@ -157,12 +156,10 @@ void DemoApp::handle_exhibit_key(const KeyPress& press) {
   const bool control = (press.modifiers & GLFW_MOD_CONTROL) != 0;
   const bool chord = control && (press.modifiers & GLFW_MOD_SHIFT) != 0;
   if (chord && press.key == GLFW_KEY_Q) close();
-  if (chord && press.key == GLFW_KEY_T) exhibit_.show_host(!exhibit_.shows_host());
+  if (chord && press.key == GLFW_KEY_T) exhibit_.toggle_host();
   if (press.key == GLFW_KEY_Z && session_->newest().device.zeroing == Zeroing::needed) session_->start_zeroing();
   if (!control && !press.again) exhibit_.press_key(press.key, *session_);
 }
-
-SceneArea DemoApp::scene_area() const { return lay_out(ImGui::GetIO().DisplaySize).scene; }
 
 void DemoApp::frame() {
   if (session_ == nullptr) return;  // the program is closing
@@ -173,16 +170,16 @@ void DemoApp::frame() {
   files_.update(*session_);
   look();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
-  frame_s_ = std::min(now_s - frame_began_s_, 0.1);
   frame_began_s_ = now_s;
   draw();
   handle_keys();
-  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, scene_area()) && !view_.exhibit.on)
-    notify("the mouse has left the picture: the probe is lifted", false);
   // The session changes between two frames, because drawing refers to it.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
-  count_frame(steady_now_s());
+  const double shown_s = steady_now_s();
+  view_.frames.times.add(static_cast<std::int64_t>(1e9 * (shown_s - last_frame_s_)));
+  view_.frames.seconds += shown_s - last_frame_s_;
+  last_frame_s_ = shown_s;
 }
 
 // Makes the view of this frame; all drawing uses it.
@@ -192,8 +189,8 @@ void DemoApp::read_notices(double now_s) {
   for (const Notice& notice : session_->read_notices()) {
     notify(notice.text, notice.problem);
   }
-  std::erase_if(toasts_, [&](const Toast& toast) { return toast.until_s < now_s; });
-  if (toasts_.size() > kMostToasts) toasts_.erase(toasts_.begin(), toasts_.end() - kMostToasts);
+  std::erase_if(view_.toasts, [&](const Toast& toast) { return toast.until_s < now_s; });
+  if (view_.toasts.size() > kMostToasts) view_.toasts.erase(view_.toasts.begin(), view_.toasts.end() - kMostToasts);
 }
 
 void DemoApp::notify(std::string text, bool problem) {
@@ -201,8 +198,8 @@ void DemoApp::notify(std::string text, bool problem) {
     DemoFiles::write_to_log(text);
     return;
   }
-  std::erase_if(toasts_, [&](const Toast& toast) { return toast.text == text; });
-  toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
+  std::erase_if(view_.toasts, [&](const Toast& toast) { return toast.text == text; });
+  view_.toasts.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
 }
 
 // Opens another material and fits models to it; models from files are kept.
@@ -241,7 +238,7 @@ void DemoApp::use_recording_roles() {
 }
 
 void DemoApp::reopen(const SessionRequest& request) {
-  toasts_.clear();
+  view_.toasts.clear();
   // A device belongs to one session at a time.
   session_.reset();
   // The previous session may fail as well, if its device or its files are gone.
@@ -266,7 +263,6 @@ void DemoApp::reopen(const SessionRequest& request) {
   auto blocks = BlockView::create(session_->scene());
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(view_.settings.camera);
-  blocks_framed_ = 0;
   curves_ = {};  // without those of the old session
   view_.time = CurveTime{};
   view_.scales_force = false;

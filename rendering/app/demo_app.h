@@ -17,8 +17,7 @@
 #include "rendering/panels/scene_overlay.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/picture/block_view.h"
-#include "rendering/picture/resolution.h"
-#include "rendering/ui/ui_context.h"
+#include "rendering/picture/smooth_target.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 
@@ -55,8 +54,6 @@ class DemoApp {
   const WindowView& shown() const noexcept { return shown_; }  // of the last frame
   const Exhibit& exhibit() const noexcept { return exhibit_; }
   const BlockView& blocks() const noexcept { return *blocks_; }
-  const FrameFigures& frames() const noexcept { return frames_; }
-  const std::vector<Toast>& toasts() const noexcept { return toasts_; }
   Window& window() noexcept { return *window_; }
 
   // GLFW's callbacks call these. Dropped files: see DemoFiles::open. A key counts even when it was pressed and released
@@ -77,17 +74,13 @@ class DemoApp {
   void close_windows();
   void select_listed(std::size_t number);
   void next_block_count();
-  void scroll_curves(double by_s);
-  void seek_replay(double by_s);
   void read_notices(double now_s);
   void draw();
-  void draw_blocks();
-  void count_frame(double now_s);
+  void draw_blocks(const SceneArea& area);
   std::vector<BlockPose> block_poses() const;
   std::vector<BlockPose> true_poses() const;  // without the exaggeration of dents
   BlockPose model_pose(std::size_t slot, BlockPose pose) const;
   BlockPose reference_pose(BlockPose pose) const;
-  SceneArea scene_area() const;
   Status set_up_exhibit(const ExhibitTimes& times);
   void notify(std::string text, bool problem);
   void look();
@@ -108,7 +101,7 @@ class DemoApp {
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
   ForceCurves curves_;
-  Exhibit exhibit_{1};
+  Exhibit exhibit_;
   ViewState view_;
   WindowView shown_;
   DemoInput input_;
@@ -116,18 +109,12 @@ class DemoApp {
   SessionRequest request_;
   std::string first_device_;            // of the command line
   std::optional<SessionRequest> next_;  // the session to open after this frame
-  FrameFigures frames_;
   Resolution resolution_;
-  std::vector<Toast> toasts_;
   std::vector<WindowCommand> commands_;
   double key_velocity_m_per_s_ = 0.0;  // of the tool by the keys of this frame, positive inwards
   double frame_began_s_ = 0.0;
-  double frame_s_ = 0.0;       // time since the frame before, at most 0.1 s
   double last_frame_s_ = 0.0;  // end of the last frame
-  double second_began_s_ = 0.0;
-  std::uint64_t frames_this_second_ = 0;
-  std::size_t blocks_framed_ = 1;
-  bool leaving_ = false;  // `close` was called; an exhibit ends only by it
+  bool leaving_ = false;       // `close` was called; an exhibit ends only by it
   Status outcome_;
 };
 

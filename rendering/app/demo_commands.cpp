@@ -20,21 +20,31 @@ constexpr double kSeekStep_s = 2.0;
 constexpr double kSpeedStep = 1.25;
 constexpr float kTextStep = 0.1F;
 
+using When = WindowCommand::When;
+
 // An input without a command, for the list of keys.
 WindowCommand hint(const char* shown, const char* help) { return {.shown = shown, .help = help}; }
+
+// A command of several keys; `run` gets the index of the key.
+WindowCommand keys(std::vector<int> keys, const char* help, std::function<void(std::size_t)> run) {
+  return {.keys = std::move(keys), .help = help, .run = std::move(run)};
+}
 
 // A command of one key; with a label it has a menu item.
 WindowCommand command(int key, const char* label, const char* help, std::function<void()> run) {
   return {.keys = {key}, .label = label, .help = help, .run = [run = std::move(run)](std::size_t) { run(); }};
 }
 
+// Shows whether the command is switched on, with `label_on` as its label then, if that is not empty.
+WindowCommand with_state(WindowCommand command, std::function<bool()> on, const char* label_on = "") {
+  command.on = std::move(on);
+  command.label_on = label_on;
+  return command;
+}
+
 // A command that switches a setting, which lives as long as the commands; with a label its item shows the state.
 WindowCommand toggle(int key, const char* label, const char* help, bool& setting) {
-  return {.keys = {key},
-          .label = label,
-          .help = help,
-          .run = [&setting](std::size_t) { setting = !setting; },
-          .on = [&setting] { return setting; }};
+  return with_state(command(key, label, help, [&setting] { setting = !setting; }), [&setting] { return setting; });
 }
 
 WindowCommand in_bar(WindowCommand command) {
@@ -42,68 +52,77 @@ WindowCommand in_bar(WindowCommand command) {
   return command;
 }
 
+WindowCommand in_replay(WindowCommand command) {
+  command.replay = true;
+  return command;
+}
+
+WindowCommand when(When when, WindowCommand command) {
+  command.when = when;
+  return command;
+}
+
+// Shows these words instead of the names of the keys.
+WindowCommand shown_as(const char* shown, WindowCommand command) {
+  command.shown = shown;
+  return command;
+}
+
 }  // namespace
 
 std::vector<WindowCommand> DemoApp::make_commands() {
-  using When = WindowCommand::When;
   Settings& settings = view_.settings;
   Dialogs& dialogs = view_.dialogs;
+  const auto press = [this](std::size_t key) { key_velocity_m_per_s_ += (key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s; };
+  const auto scroll = [this](std::size_t key) {
+    const ForceHistory& history = session_->comparison().history();
+    const double by_s = kScrollSpeed * static_cast<double>(ImGui::GetIO().DeltaTime);
+    if (history.size() > 0) view_.time.scroll_back(key == 0 ? by_s : -by_s, history[0].loop_time_s);
+  };
+  const auto play_at = [this](double speed) { session_->replay()->set_speed(speed * session_->replay()->speed()); };
+  const auto seek = [this](double by_s) { session_->replay()->seek(session_->replay()->playhead_s() + by_s); };
+  const auto resize = [&settings](float step) {
+    settings.text_size = std::clamp(settings.text_size + step, kSmallestText, kLargestText);
+  };
+  WindowCommand help = toggle(GLFW_KEY_H, "Help", "what the picture shows, and all keys", dialogs.help);
+  help.keys.push_back(GLFW_KEY_SLASH);
   return {
       hint("mouse", "moves the probe, over the block; down is deeper"),
       hint("wheel", "moves the probe step by step; with Ctrl: zooms the view"),
       hint("right button", "turns the view"),
-      {.keys = {GLFW_KEY_DOWN, GLFW_KEY_UP},
-       .help = "press deeper; lift the probe to just above the surface",
-       .run = [this](std::size_t key) { key_velocity_m_per_s_ += (key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s; },
-       .when = When::held},
-      {.keys = {GLFW_KEY_1, GLFW_KEY_2, GLFW_KEY_3, GLFW_KEY_4, GLFW_KEY_5, GLFW_KEY_6, GLFW_KEY_7, GLFW_KEY_8,
-                GLFW_KEY_9},
-       .shown = "1 ... 9",
-       .help = "make a model the active one; a click on its block or row too",
-       .run = [this](std::size_t key) { select_listed(key); }},
+      when(When::held,
+           keys({GLFW_KEY_DOWN, GLFW_KEY_UP}, "press deeper; lift the probe to just above the surface", press)),
+      shown_as("1 ... 9", keys({GLFW_KEY_1, GLFW_KEY_2, GLFW_KEY_3, GLFW_KEY_4, GLFW_KEY_5, GLFW_KEY_6, GLFW_KEY_7,
+                                GLFW_KEY_8, GLFW_KEY_9},
+                               "make a model the active one; a click on its block or row too",
+                               [this](std::size_t key) { select_listed(key); })),
       in_bar(toggle(GLFW_KEY_M, "Open", "open recordings, other programs' tables or models", dialogs.file_list)),
       in_bar(toggle(GLFW_KEY_O, "Scene", "choose another material", dialogs.scene_list)),
-      {.keys = {GLFW_KEY_U},
-       .label = "Device",
-       .help = "choose what holds the tool",
-       .run =
-           [this](std::size_t) {
-             view_.dialogs.device_list = !view_.dialogs.device_list;
-             if (view_.dialogs.device_list) files_.look_for_devices();
-           },
-       .bar = true,
-       .on = [&dialogs] { return dialogs.device_list; }},
-      {.keys = {GLFW_KEY_R},
-       .label = "Record",
-       .help = "record this session to a file that `palpate fit` reads",
-       .run = [this](std::size_t) { files_.record(*session_); },
-       .bar = true,
-       .on = [this] { return session_->recording().active; },
-       .label_on = "Stop recording"},
+      in_bar(with_state(command(GLFW_KEY_U, "Device", "choose what holds the tool",
+                                [this, &dialogs] {
+                                  dialogs.device_list = !dialogs.device_list;
+                                  if (dialogs.device_list) files_.look_for_devices();
+                                }),
+                        [&dialogs] { return dialogs.device_list; })),
+      in_bar(with_state(
+          command(GLFW_KEY_R, "Record", "record this session to a file that `palpate fit` reads",
+                  [this] { files_.record(*session_); }),
+          [this] { return session_->recording().active; }, "Stop recording")),
       in_bar(toggle(GLFW_KEY_W, "View", "choose what is shown, and what is compared with what", dialogs.view_list)),
-      {.keys = {GLFW_KEY_H, GLFW_KEY_SLASH},
-       .label = "Help",
-       .help = "what the picture shows, and all keys",
-       .run = [&dialogs](std::size_t) { dialogs.help = !dialogs.help; },
-       .on = [&dialogs] { return dialogs.help; }},
-      {.keys = {GLFW_KEY_SPACE},
-       .label = "Freeze",
-       .help = "freeze curves and picture to look back; continue",
-       .run = [this](std::size_t) { view_.time.paused ? view_.time.run() : view_.time.pause(steady_now_s()); },
-       .on = [this] { return view_.time.paused; },
-       .label_on = "Go on"},
+      help,
+      with_state(
+          command(GLFW_KEY_SPACE, "Freeze", "freeze curves and picture to look back; continue",
+                  [this] { view_.time.paused ? view_.time.run() : view_.time.pause(steady_now_s()); }),
+          [this] { return view_.time.paused; }, "Go on"),
       command(GLFW_KEY_C, "Clear", "clear the errors so far and the alarms", [this] { session_->reset_figures(); }),
       command(GLFW_KEY_N, "", "the next set of models: Ladder, 2009, Palpate", [this] { next_line_up(); }),
       toggle(GLFW_KEY_X, "Arrows x 10", "arrows that show ten times the difference, and back", view_.exaggerated),
-      {.keys = {GLFW_KEY_J},
-       .label = "Feel",
-       .help = "scale the stiffness and damping of the rendered force; back to the model",
-       .run =
-           [this](std::size_t) {
-             view_.scales_force = !view_.scales_force;
-             session_->use_scale({});
-           },
-       .on = [this] { return view_.scales_force; }},
+      with_state(command(GLFW_KEY_J, "Feel", "scale the stiffness and damping of the rendered force; back to the model",
+                         [this] {
+                           view_.scales_force = !view_.scales_force;
+                           session_->use_scale({});
+                         }),
+                 [this] { return view_.scales_force; }),
       command(GLFW_KEY_B, "", "one, two or four blocks side by side", [this] { next_block_count(); }),
       toggle(GLFW_KEY_V, "", "the difference in its band, or its mean over 50 ms", settings.difference),
       toggle(GLFW_KEY_E, "", "the error against the time that a model takes, or against the force", view_.verdict),
@@ -113,45 +132,22 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       command(GLFW_KEY_K, "Save model", "save the active model to a file", [this] { files_.save_model(*session_); }),
       hint("a row, right button", "renames a model, takes it out"),
       hint("on the curves", "drag: zoom; wheel: scroll back; double click: continue"),
-      {.keys = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT},
-       .help = "scroll back and forth while the curves stand still",
-       .run = [this](std::size_t key) { scroll_curves((key == 0 ? 1.0 : -1.0) * kScrollSpeed * frame_s_); },
-       .when = When::held},
-      {.keys = {GLFW_KEY_P},
-       .label = "Pause",
-       .help = "pause a replayed recording, and play it on",
-       .run = [this](std::size_t) { session_->replay()->pause(!session_->replay()->paused()); },
-       .replay = true,
-       .on = [this] { return session_->replay() != nullptr && session_->replay()->paused(); },
-       .label_on = "Play"},
-      {.keys = {GLFW_KEY_BACKSPACE},
-       .label = "Back to the hand",
-       .help = "end the replay and press the block yourself",
-       .run = [this](std::size_t) { use_device(first_device_); },
-       .replay = true},
-      {.keys = {GLFW_KEY_COMMA},
-       .label = "<",
-       .help = "one sample back; the recording pauses",
-       .run = [this](std::size_t) { session_->replay()->step(-1); },
-       .when = When::repeated,
-       .replay = true},
-      {.keys = {GLFW_KEY_PERIOD},
-       .label = ">",
-       .help = "one sample forward; the recording pauses",
-       .run = [this](std::size_t) { session_->replay()->step(1); },
-       .when = When::repeated,
-       .replay = true},
-      {.keys = {GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN},
-       .help = "2 s back or forward in a recording",
-       .run = [this](std::size_t key) { seek_replay(key == 0 ? -kSeekStep_s : kSeekStep_s); },
-       .replay = true},
-      {.keys = {GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET},
-       .help = "play a recording slower or faster",
-       .run =
-           [this](std::size_t key) {
-             session_->replay()->set_speed(session_->replay()->speed() * (key == 0 ? 1.0 / kSpeedStep : kSpeedStep));
-           },
-       .replay = true},
+      when(When::held,
+           keys({GLFW_KEY_LEFT, GLFW_KEY_RIGHT}, "scroll back and forth while the curves stand still", scroll)),
+      in_replay(with_state(
+          command(GLFW_KEY_P, "Pause", "pause a replayed recording, and play it on",
+                  [this] { session_->replay()->pause(!session_->replay()->paused()); }),
+          [this] { return session_->replay() != nullptr && session_->replay()->paused(); }, "Play")),
+      in_replay(command(GLFW_KEY_BACKSPACE, "Back to the hand", "end the replay and press the block yourself",
+                        [this] { use_device(first_device_); })),
+      in_replay(when(When::repeated, command(GLFW_KEY_COMMA, "<", "one sample back; the recording pauses",
+                                             [this] { session_->replay()->step(-1); }))),
+      in_replay(when(When::repeated, command(GLFW_KEY_PERIOD, ">", "one sample forward; the recording pauses",
+                                             [this] { session_->replay()->step(1); }))),
+      in_replay(keys({GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN}, "2 s back or forward in a recording",
+                     [seek](std::size_t key) { seek(key == 0 ? -kSeekStep_s : kSeekStep_s); })),
+      in_replay(keys({GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET}, "play a recording slower or faster",
+                     [play_at](std::size_t key) { play_at(key == 0 ? 1.0 / kSpeedStep : kSpeedStep); })),
       command(GLFW_KEY_T, "", "light or dark",
               [&settings] { settings.theme = settings.theme == Theme::light ? Theme::dark : Theme::light; }),
       toggle(GLFW_KEY_L, "Loop", "all figures of the loop, and its faults", view_.details),
@@ -159,24 +155,15 @@ std::vector<WindowCommand> DemoApp::make_commands() {
               [this] { session_->start_zeroing(); }),
       command(GLFW_KEY_D, "", "the device pushes only while G is held, only while its grip is held, or always",
               [this] { next_dead_man(); }),
-      {.keys = {GLFW_KEY_G},
-       .help = "hold it to let the device push, if D requires it",
-       .run =
-           [this](std::size_t) {
-             if (session_->dead_man() == DeadMan::key) session_->hold();
-           },
-       .when = When::held},
+      when(When::held, command(GLFW_KEY_G, "", "hold it to let the device push, if D requires it",
+                               [this] {
+                                 if (session_->dead_man() == DeadMan::key) session_->hold();
+                               })),
       command(GLFW_KEY_HOME, "", "the view as it was at the beginning", [this] { blocks_->camera().go_home(); }),
-      {.keys = {GLFW_KEY_EQUAL, GLFW_KEY_KP_ADD},
-       .shown = "+",
-       .help = "larger text",
-       .run =
-           [&settings](std::size_t) { settings.text_size = std::min(kLargestText, settings.text_size + kTextStep); }},
-      {.keys = {GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT},
-       .shown = "-",
-       .help = "smaller text",
-       .run =
-           [&settings](std::size_t) { settings.text_size = std::max(kSmallestText, settings.text_size - kTextStep); }},
+      shown_as("+",
+               keys({GLFW_KEY_EQUAL, GLFW_KEY_KP_ADD}, "larger text", [resize](std::size_t) { resize(kTextStep); })),
+      shown_as("-", keys({GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT}, "smaller text",
+                         [resize](std::size_t) { resize(-kTextStep); })),
       command(GLFW_KEY_ESCAPE, "", "closes lists, questions and this", [this] { close_windows(); }),
       hint("drop a file", "loads a model; recordings and other programs' tables: trains or tests on them"),
       {.keys = {GLFW_KEY_Q}, .help = "ends the program", .run = [this](std::size_t) { close(); }, .control = true}};
@@ -191,26 +178,14 @@ void DemoApp::next_block_count() {
   std::size_t& wanted = view_.settings.block_count;
   wanted = wanted == 4 ? 1 : 2 * wanted;
   // Says why there are fewer blocks than the user selected.
-  const std::vector<ModelView>& slots = shown_.models.slots;
-  const auto ready =
-      std::count_if(slots.begin(), slots.end(), [](const ModelView& slot) { return slot.state == SlotState::ready; });
   const bool reference = shown_.models.compared && shown_.models.reference == kReferenceBlock && wanted > 1;
-  const std::size_t shown = static_cast<std::size_t>(ready) + (reference ? 1 : 0);
+  const std::size_t shown = shown_.models.drawn().size() + (reference ? 1 : 0);
   if (shown < wanted)
     notify(std::to_string(shown) + " of " + std::to_string(wanted) + " blocks: no more models are ready", false);
 }
 
-void DemoApp::scroll_curves(double by_s) {
-  const ForceHistory& history = session_->comparison().history();
-  if (history.size() > 0) view_.time.scroll_back(by_s, history[0].loop_time_s);
-}
-
-void DemoApp::seek_replay(double by_s) { session_->replay()->seek(session_->replay()->playhead_s() + by_s); }
-
 void DemoApp::close_windows() {
-  const std::vector<DeviceDescription> devices = view_.dialogs.devices;
   view_.dialogs = {};
-  view_.dialogs.devices = devices;
   view_.details = false;
 }
 

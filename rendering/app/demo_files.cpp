@@ -6,9 +6,11 @@
 #include <fstream>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/whole_file.h"
 #include "engine/live/pacer.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
@@ -18,9 +20,56 @@
 namespace palpate {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
+// The field, if it has the type of the default, else the default.
 template <typename T>
-bool is_there(const std::future<T>& future) {
-  return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+T field(const Json& json, const char* name, const T& otherwise) {
+  try {
+    return json.value(name, otherwise);
+  } catch (const Json::type_error&) {
+    return otherwise;
+  }
+}
+
+constexpr double kMsPerUs = 1e-3;
+
+Json times_json(const TimePercentiles& times) {
+  return {{"p50", times.p50_us}, {"p99", times.p99_us}, {"p99_9", times.p99_9_us}, {"max", times.max_us}};
+}
+
+Json haptics_json(const LiveSession& session) {
+  const LoopStatistics statistics = session.loop().statistics();
+  const RtStatus& granted = session.loop().scheduling();
+  return {{"ticks", statistics.ticks},
+          {"missed_deadlines", statistics.missed_deadlines},
+          {"lateness_us", times_json(statistics.lateness)},
+          {"tick_us", times_json(statistics.tick)},
+          {"scheduling", granted.scheduling},
+          {"scheduling_fix", granted.fix}};
+}
+
+Json graphics_json(const FrameFigures& frames) {
+  const TimePercentiles times = frames.times.percentiles();
+  return {{"frames", times.count},
+          {"fps", frames.seconds > 0.0 ? static_cast<double>(times.count) / frames.seconds : 0.0},
+          {"picture_scale", frames.picture_scale},
+          {"frame_ms",
+           {{"p50", kMsPerUs * times.p50_us}, {"p99", kMsPerUs * times.p99_us}, {"max", kMsPerUs * times.max_us}}}};
+}
+
+// Figures are null if there are no samples.
+Json model_json(const ModelView& slot) {
+  const bool has_errors = slot.errors.samples > 0;
+  return {{"name", slot.name},
+          {"method", slot.method},
+          {"centres", slot.centres},
+          {"samples", slot.errors.samples},
+          {"within_jnd", has_errors ? Json(slot.errors.within_jnd) : Json(nullptr)},
+          {"rms_error_N", has_errors ? Json(slot.errors.rms_error_N) : Json(nullptr)},
+          {"max_error_over_jnd", has_errors ? Json(slot.errors.max_error_over_jnd) : Json(nullptr)},
+          {"p99_error_over_jnd", has_errors ? Json(slot.errors.p99_error_over_jnd) : Json(nullptr)},
+          {"tick_ns", slot.tick_ns() > 0.0 ? Json(slot.tick_ns()) : Json(nullptr)}};
 }
 
 Hue hue_of(const Rgb& colour) {
@@ -28,27 +77,64 @@ Hue hue_of(const Rgb& colour) {
   return parts.r << 16 | parts.g << 8 | parts.b;
 }
 
-// The active model is the last one, because it is drawn on top.
-CurveSource curve_source(const LiveSession& session, const WindowView& shown, double zero_s) {
-  CurveSource source{
-      session.scene().title, session.device_name(), session.reference_words(), session.jnd(), zero_s, {}};
-  const ModelsView& models = shown.models;
-  const auto add = [&](std::size_t i) {
-    if (models.slots[i].state == SlotState::ready)
-      source.models.push_back({i, models.slots[i].name, hue_of(slot_colour(models, i, Theme::light))});
-  };
-  for (std::size_t i = 0; i < models.slots.size(); ++i) {
-    if (i != models.selected) add(i);
-  }
-  if (models.selected < models.slots.size()) add(models.selected);
-  return source;
-}
-
 }  // namespace
 
-std::string DemoFiles::folder() {
-  auto folder = data_folder();
-  if (folder) return *folder;
+Result<Settings> read_settings(const std::string& path) {
+  Settings settings;
+  const auto text = read_whole_file(path);
+  if (!text) return settings;
+  const Json json = Json::parse(*text, nullptr, false);
+  if (!json.is_object())
+    return Error{path + ": found no JSON object, expected the window's settings; the defaults are used"};
+  if (field<std::string>(json, "theme", "") == "dark") settings.theme = Theme::dark;
+  const double blocks = field(json, "blocks", 4.0);
+  settings.block_count = blocks == 1.0 ? 1 : blocks == 2.0 ? 2 : 4;
+  settings.difference = field(json, "difference", settings.difference);
+  settings.text_size = std::clamp(field(json, "text_size", 1.0F), kSmallestText, kLargestText);
+  settings.line_up = field(json, "line_up", settings.line_up);
+  settings.recent = field(json, "recent", settings.recent);
+  // The camera limits pitch and distance itself.
+  settings.camera = {std::clamp(field(json, "camera_yaw_rad", 0.0F), -6.3F, 6.3F),
+                     field(json, "camera_pitch_rad", 0.0F), field(json, "camera_distance", 1.0F)};
+  return settings;
+}
+
+Status write_settings(const std::string& path, const Settings& settings) {
+  const Json json = {{"theme", settings.theme == Theme::dark ? "dark" : "light"},
+                     {"blocks", settings.block_count},
+                     {"difference", settings.difference},
+                     {"text_size", settings.text_size},
+                     {"line_up", settings.line_up},
+                     {"recent", settings.recent},
+                     {"camera_yaw_rad", settings.camera.yaw_rad},
+                     {"camera_pitch_rad", settings.camera.pitch_rad},
+                     {"camera_distance", settings.camera.distance}};
+  return write_file_atomically(path, json.dump(2) + "\n", true);
+}
+
+std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames) {
+  Json models = Json::array();
+  for (const ModelView& model : shown.models.slots) {
+    if (model.state == SlotState::ready) models.push_back(model_json(model));
+  }
+  Json faults = Json::array();
+  for (const FaultEvent& fault : session.faults().events()) {
+    faults.push_back({{"loop_time_s", fault.loop_time_s}, {"text", fault.text}, {"count", fault.count}});
+  }
+  const Json all = {{"haptics", haptics_json(session)},
+                    {"graphics", graphics_json(frames)},
+                    {"models", models},
+                    {"verdict", shown.models.verdict.headline},
+                    {"faults", faults},
+                    {"scene", session.scene().name},
+                    {"device", session.device_name()},
+                    {"reference", session.reference_words()}};
+  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string DemoFiles::new_path(const char* name) {
+  const auto folder = data_folder();
+  if (folder) return *folder + local_time_text(name);
   notify_(folder.error().message, true);
   return {};
 }
@@ -73,24 +159,10 @@ void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& came
 }
 
 void DemoFiles::update(const LiveSession& session) {
-  if (is_there(arriving_)) {
-    const Result<ConvertedRecording> offered = arriving_.get();
-    if (offered) {
-      view_.dialogs.recording_roles.add({offered->path, offered->words});
-      remember(reading_);
-    } else {
-      view_.dialogs.recording_roles.problem = offered.error().message;
-    }
-    if (!waiting_.empty()) {
-      const std::string next = waiting_.front();
-      waiting_.erase(waiting_.begin());
-      open_recording(next);
-    }
-  }
-  if (is_there(looking_)) view_.dialogs.devices = looking_.get();
-  if (is_there(drawing_)) {
-    const Notice notice = drawing_.get();
-    notify_(notice.text, notice.problem);
+  if (running_.valid() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) running_.get()();
+  if (!running_.valid() && !waiting_.empty()) {
+    running_ = std::async(std::launch::async, std::move(waiting_.front()));
+    waiting_.pop_front();
   }
   // When a recording is saved, asks for its role.
   const RecordingStatus status = session.recording();
@@ -123,18 +195,20 @@ void DemoFiles::remember(const std::string& path) {
   if (recent.size() > kRecent) recent.pop_back();
 }
 
-// Files are read one after the other in the background: replacing the future of a running read would block until it
-// ends.
 void DemoFiles::open_recording(const std::string& path) {
-  const std::string into = folder();
-  if (into.empty()) return;
-  if (arriving_.valid()) {
-    waiting_.push_back(path);
-    return;
-  }
+  const auto into = data_folder();
+  if (!into) return notify_(into.error().message, true);
   notify_("reading " + path, false);
-  reading_ = path;
-  arriving_ = std::async(std::launch::async, [read = read_, path, into] { return read(path, into); });
+  waiting_.push_back([this, read = read_, path, into = *into]() -> Finish {
+    return [this, path, offered = read(path, into)] {
+      if (!offered) {
+        view_.dialogs.recording_roles.problem = offered.error().message;
+        return;
+      }
+      view_.dialogs.recording_roles.add({offered->path, offered->words});
+      remember(path);
+    };
+  });
 }
 
 void DemoFiles::record(LiveSession& session) {
@@ -142,44 +216,51 @@ void DemoFiles::record(LiveSession& session) {
     session.stop_recording();
     return;
   }
-  const std::string into = folder();
-  if (into.empty()) return;
-  const std::string path = into + local_time_text("/session-%Y%m%d-%H%M%S.csv");
+  const std::string path = new_path("/session-%Y%m%d-%H%M%S.csv");
+  if (path.empty()) return;
   const Status status = session.start_recording(path);
   notify_(status ? "recording to " + path : status.error().message, !status);
 }
 
 // Saves the data of the visible curves, and draws a figure of them in the background.
 void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns) {
-  const std::string into = folder();
-  if (into.empty() || drawing_.valid()) return;
-  const std::string path = into + local_time_text("/curves-%Y%m%d-%H%M%S");
+  const std::string path = new_path("/curves-%Y%m%d-%H%M%S");
+  if (path.empty()) return;
   const double to_s = view_.time.end_s(steady_now_s());
-  const double from_s = to_s - view_.time.shown_s;
-  const CurveSource source = curve_source(session, shown, view_.time.zero_s);
-  const std::string table = curve_csv(session.comparison().history(), source, from_s, to_s);
-  drawing_ = std::async(std::launch::async, [path, table, plot = curve_plot(columns, source, from_s, to_s)] {
-    if (const Status status = write_file_atomically(path + ".csv", table, false); !status)
-      return Notice{status.error().message, true};
-    const Status drawn = draw_plot(plot, path + ".svg", false);
-    return drawn ? Notice{"saved " + path + ".svg and .csv", false}
-                 : Notice{"saved " + path + ".csv without a figure: " + drawn.error().message, true};
+  CurveSource source{session.scene().title + ", " + session.device_name(),
+                     session.reference_words(),
+                     session.jnd(),
+                     view_.time.zero_s,
+                     to_s - view_.time.shown_s,
+                     to_s,
+                     {}};
+  for (const std::size_t slot : shown.models.drawn()) {
+    const Rgb colour = slot_colour(shown.models, slot, Theme::light);
+    source.models.push_back({slot, shown.models.slots[slot].name, hue_of(colour)});
+  }
+  const std::string table = curve_csv(session.comparison().history(), source);
+  if (const Status status = write_file_atomically(path + ".csv", table, false); !status)
+    return notify_(status.error().message, true);
+  waiting_.push_back([this, path, plot = curve_plot(columns, source)]() -> Finish {
+    return [this, path, drawn = draw_plot(plot, path + ".svg", false)] {
+      notify_(drawn ? "saved " + path + ".svg and .csv"
+                    : "saved " + path + ".csv without a figure: " + drawn.error().message,
+              !drawn);
+    };
   });
 }
 
 void DemoFiles::save_model(const LiveSession& session) {
-  const std::string into = folder();
-  if (into.empty()) return;
+  const std::string path = new_path("/model-%Y%m%d-%H%M%S.json");
+  if (path.empty()) return;
   const std::size_t slot = session.models().selected();
-  const std::string path = into + local_time_text("/model-%Y%m%d-%H%M%S.json");
   const Status status = session.save_model(slot, path);
   notify_(status ? "saved " + session.models().info(slot).name + " to " + path : status.error().message, !status);
 }
 
 void DemoFiles::look_for_devices() {
-  if (looking_.valid()) return;
-  view_.dialogs.devices.clear();
-  looking_ = std::async(std::launch::async, device_choices);
+  view_.devices.clear();
+  waiting_.push_back([this]() -> Finish { return [this, found = device_choices()] { view_.devices = found; }; });
 }
 
 void DemoFiles::write_to_log(const std::string& text) {

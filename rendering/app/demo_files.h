@@ -1,16 +1,16 @@
-// The window's work with files and devices: settings, dropped files, saved files, the list of devices. `notify` reports
-// the results.
+// The window's work with files and devices: settings, dropped files, saved files, statistics, the list of devices.
 // Thread guarantee: main thread only; slow work runs in the background.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <future>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
-#include "rendering/app/settings.h"
 #include "rendering/panels/curve_files.h"
+#include "rendering/panels/view_state.h"
 #include "rendering/panels/window_view.h"
 #include "scenes/live/convert_recording.h"
 #include "scenes/live/live_session.h"
@@ -18,8 +18,16 @@
 
 namespace palpate {
 
-class LiveSession;
+// The settings that the window keeps between runs, a JSON file in the user's configuration folder.
+// A missing file, and a missing or invalid field, give the defaults. Errors: the file is no JSON object.
+Result<Settings> read_settings(const std::string& path);
+Status write_settings(const std::string& path, const Settings& settings);
 
+// The JSON text of --stats: figures of the loop, the graphics and the models. The keys are haptics, graphics, models,
+// verdict, faults, scene, device and reference.
+std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
+
+// `notify` reports the results.
 class DemoFiles {
  public:
   using Notify = std::function<void(std::string text, bool problem)>;
@@ -46,20 +54,19 @@ class DemoFiles {
   static void write_to_log(const std::string& text);
 
  private:
+  // What is done in `update` after some work in the background.
+  using Finish = std::function<void()>;
   void remember(const std::string& path);  // adds it to the recent files
-  // The user's data folder; empty, after a notice, where there is none.
-  std::string folder();
+  // A path in the user's data folder with a name made of the time; empty, after a notice, where there is no folder.
+  std::string new_path(const char* name);
 
   ViewState& view_;
   Notify notify_;
   Read read_;
   std::string settings_file_;
-  std::future<Result<ConvertedRecording>> arriving_;     // the file that is being read
-  std::string reading_;                                  // its path
-  std::vector<std::string> waiting_;                     // files to read after it
-  std::future<std::vector<DeviceDescription>> looking_;  // the search for devices
-  std::future<Notice> drawing_;                          // the figure of the curves that is being drawn
-  std::string recording_;                                // the file that is being recorded; empty: none
+  std::deque<std::function<Finish()>> waiting_;  // work for the background, one after the other
+  std::future<Finish> running_;
+  std::string recording_;  // the file that is being recorded; empty: none
 };
 
 }  // namespace palpate

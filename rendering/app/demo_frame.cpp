@@ -12,8 +12,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kNsPerS = 1e9;
-constexpr double kExaggeration = 10.0;
+constexpr float kExaggeration = 10.0F;
 
 // Converts from ImGui, whose y points down from the top, to OpenGL, whose y points up from the bottom.
 Viewport pixels_of(const SceneArea& area) {
@@ -35,14 +34,12 @@ void DemoApp::draw() {
   style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
                 exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(input_.tapped());
-  input_.keep_wheel();
-  // With a software renderer, clearing is faster than filling a rectangle.
-  const Rgb& panel_colour = palette(view_.settings.theme).panel;
-  glClearColor(panel_colour.r, panel_colour.g, panel_colour.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  draw_blocks();
-  const SceneArea area = scene_area();
   const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
+  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, layout.scene) && !exhibit)
+    notify("the mouse has left the picture: the probe is lifted", false);
+  // With a software renderer, clearing is faster than filling a rectangle.
+  window_->clear(style_.colours().panel);
+  draw_blocks(layout.scene);
   const OverlayActions actions{&commands_,
                                [this](const std::string& scene) { use_material(scene, {}, first_device_); },
                                [this](const std::string& path) { drop_files({path}); },
@@ -52,11 +49,11 @@ void DemoApp::draw() {
                                },
                                [this](const std::string& name) { use_line_up(*find_line_up(name)); },
                                [this] { use_recording_roles(); }};
-  draw_overlay(*session_, shown_, *blocks_, view_, style_, area, toasts_, actions);
-  if (view_.exhibit.on) {
+  draw_overlay(*session_, shown_, *blocks_, view_, style_, layout.scene, actions);
+  if (exhibit) {
     exhibit_.draw(*session_, shown_, *blocks_, style_, layout);
   } else {
-    draw_panel(curves_, *session_, shown_, view_, style_, frames_, layout.panel);
+    draw_panel(curves_, *session_, shown_, view_, style_, layout.panel);
   }
   ui_->end_frame();
   if (!blocks_->filters_edges()) return;
@@ -65,15 +62,11 @@ void DemoApp::draw() {
   resolution_.add(steady_now_s() - frame_began_s_);
 }
 
-void DemoApp::draw_blocks() {
-  const SceneArea area = scene_area();
-  const Viewport viewport = pixels_of(area);
+void DemoApp::draw_blocks(const SceneArea& area) {
   const std::vector<BlockPose> poses = block_poses();
-  // The number of blocks changes when models become ready.
-  if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
-  blocks_framed_ = poses.size();
-  blocks_->draw(poses, viewport, view_.settings.theme, resolution_.scale());
-  frames_.picture_scale = resolution_.scale();
+  blocks_->show(poses.size(), false);  // their number changes when models become ready
+  blocks_->draw(poses, pixels_of(area), view_.settings.theme, resolution_.scale());
+  view_.frames.picture_scale = resolution_.scale();
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {
@@ -93,11 +86,10 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   return poses;
 }
 
-// While the curves are paused, the poses are those at their right edge.
+// The poses at the last tick that the curves show.
 std::vector<BlockPose> DemoApp::true_poses() const {
   BlockPose pose;
-  pose.tool_m =
-      view_.time.paused ? shown_.models.now.position_m : static_cast<float>(session_->newest().tick.position_m);
+  pose.tool_m = shown_.models.now.position_m;
   pose.dent_m = std::max(0.0F, pose.tool_m);
   std::vector<BlockPose> poses;
   for (const std::size_t slot : shown_.blocks)
@@ -113,11 +105,8 @@ std::vector<BlockPose> DemoApp::true_poses() const {
 BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
   const ModelsView& models = shown_.models;
   const ModelView& model = models.slots[slot];
-  double force_N = model.force_N;
-  double reference_N = shown_.reference_N;
+  const float force_N = models.now.force_N[slot], reference_N = models.now.reference_N;
   if (view_.time.paused) {
-    force_N = static_cast<double>(models.now.force_N[slot]);
-    reference_N = static_cast<double>(models.now.reference_N);
     pose.error_over_jnd = std::abs(models.now.sustained_over_jnd[slot]);
     if (std::isnan(pose.error_over_jnd)) pose.error_over_jnd = 0.0F;
   } else {
@@ -125,8 +114,8 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
     pose.error_over_jnd = static_cast<float>(model.recent_error_over_jnd);
   }
   const bool exaggerated = view_.exaggerated && !view_.exhibit.on && std::isfinite(reference_N);
-  const double shown_N = exaggerated ? reference_N + kExaggeration * (force_N - reference_N) : force_N;
-  pose.force_N = std::isfinite(shown_N) ? static_cast<float>(std::max(0.0, shown_N)) : 0.0F;
+  const float shown_N = exaggerated ? reference_N + kExaggeration * (force_N - reference_N) : force_N;
+  pose.force_N = std::isfinite(shown_N) ? std::max(0.0F, shown_N) : 0.0F;
   pose.arrow = view_.exhibit.on ? exhibit_colour(model.method, model.paper, view_.settings.theme)
                                 : slot_colour(models, slot, view_.settings.theme);
   pose.chosen = slot == models.selected;
@@ -138,25 +127,12 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
 // The pose of the reference block; it has the dent of the active model.
 BlockPose DemoApp::reference_pose(BlockPose pose) const {
   const ModelView* active = shown_.models.active();
-  const bool frozen = view_.time.paused;
-  const double reference_N = frozen ? static_cast<double>(shown_.models.now.reference_N) : shown_.reference_N;
-  if (active != nullptr && !frozen) pose.dent_m = static_cast<float>(active->dent_m);
-  pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;
+  const float reference_N = shown_.models.now.reference_N;
+  if (active != nullptr && !view_.time.paused) pose.dent_m = static_cast<float>(active->dent_m);
+  pose.force_N = std::isfinite(reference_N) ? reference_N : 0.0F;
   pose.arrow = reference_colour(view_.settings.theme);
   pose.chosen = pose.shows_error = false;
   return pose;
-}
-
-void DemoApp::count_frame(double now_s) {
-  frames_.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) * kNsPerS));
-  frames_.seconds += now_s - last_frame_s_;
-  ++frames_.frames;
-  ++frames_this_second_;
-  last_frame_s_ = now_s;
-  if (now_s - second_began_s_ < 1.0) return;
-  frames_.recent_fps = static_cast<double>(frames_this_second_) / (now_s - second_began_s_);
-  frames_this_second_ = 0;
-  second_began_s_ = now_s;
 }
 
 }  // namespace palpate

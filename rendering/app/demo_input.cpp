@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "engine/live/pacer.h"
@@ -33,6 +34,43 @@ bool moves_in_lists(int key) {
   return std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
 }
 
+// Limits a depth smoothly to 8 % beyond the depth up to which the models were trained.
+double limited_depth_m(const LiveSession& session, double requested_m) {
+  constexpr double kMargin = 0.08;  // of the trained depth
+  const double known_m = session.models().trained_depth_m();
+  if (requested_m <= known_m) return requested_m;
+  const double margin_m = kMargin * known_m;
+  return known_m + margin_m * (1.0 - std::exp((known_m - requested_m) / margin_m));
+}
+
+// Moves the tool inwards by `by_m`; no effect on a device that is no ToolInput.
+void nudge_tool(const LiveSession& session, double by_m) {
+  ToolInput* tool = session.tool_input();
+  const double at_m = session.newest().tick.position_m;
+  if (tool != nullptr && (by_m < 0.0 || limited_depth_m(session, at_m + by_m) > at_m))
+    tool->nudge(by_m, steady_now_s());
+}
+
+// Index in WindowView::blocks of the block nearest to `point`. `aimed`: empty unless the point is on or near it.
+std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& blocks, const SceneArea& area,
+                                    const ImVec2& point, bool aimed) {
+  const std::size_t count = std::max<std::size_t>(shown.blocks.size(), 1);
+  const auto half_height = 0.5F * static_cast<float>(blocks.geometry().height_m);
+  const auto half_width = 0.5F * static_cast<float>(blocks.geometry().width_m);
+  const glm::vec2 size(area.size.x, area.size.y);
+  float nearest_px = 1e9F;
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec2 middle = blocks.on_screen(i, count, {0.0F, -half_height, 0.0F}, size);
+    const glm::vec2 side = blocks.on_screen(i, count, {half_width, 0.0F, 0.0F}, size);
+    const float away = std::hypot(area.at.x + middle.x - point.x, area.at.y + middle.y - point.y);
+    if ((aimed && away > 1.25F * glm::length(side - middle)) || away > nearest_px) continue;
+    nearest_px = away;
+    found = i;
+  }
+  return found;
+}
+
 // Once the mouse was over a block, it moves the tool in all of the picture, so that a fast move beyond the block still
 // presses. The full trained depth is within reach above the lower edge.
 void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const BlockView& blocks, const ViewState& view,
@@ -55,21 +93,6 @@ void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const Blo
 }
 
 }  // namespace
-
-double limited_depth_m(const LiveSession& session, double requested_m) {
-  constexpr double kMargin = 0.08;  // of the trained depth
-  const double known_m = session.models().trained_depth_m();
-  if (requested_m <= known_m) return requested_m;
-  const double margin_m = kMargin * known_m;
-  return known_m + margin_m * (1.0 - std::exp((known_m - requested_m) / margin_m));
-}
-
-void nudge_tool(const LiveSession& session, double by_m) {
-  ToolInput* tool = session.tool_input();
-  const double at_m = session.newest().tick.position_m;
-  if (tool != nullptr && (by_m < 0.0 || limited_depth_m(session, at_m + by_m) > at_m))
-    tool->nudge(by_m, steady_now_s());
-}
 
 void DemoInput::drive_tool(const LiveSession& session, double velocity_m_per_s) {
   ToolInput* tool = session.tool_input();
@@ -132,8 +155,6 @@ void DemoInput::run(const KeyPress& press, const std::vector<WindowCommand>& com
   }
 }
 
-void DemoInput::keep_wheel() { wheel_ = ImGui::GetIO().MouseWheel; }
-
 bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, BlockView& blocks, const ViewState& view,
                              const SceneArea& area) {
   const ImGuiIO& io = ImGui::GetIO();
@@ -149,18 +170,16 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
   }
   ToolInput* tool = session.tool_input();
   if (left && tool != nullptr && !tool->hand_is_exploring() && session.newest().tick.position_m > 0.0) {
-    tool->set_target(kRest_m, steady_now_s());
+    Exhibit::let_go(session);
     return true;
   }
   // A finger that leaves the screen releases the tool.
   if (view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) Exhibit::let_go(session);
   if (!over_scene) return false;
-  if (wheel_ != 0.0F) {
-    if (io.KeyCtrl) {
-      blocks.camera().zoom(std::pow(kZoom_per_step, wheel_));
-    } else {
-      nudge_tool(session, -kWheelStep_m * static_cast<double>(wheel_));
-    }
+  if (io.KeyCtrl) {
+    blocks.camera().zoom(std::pow(kZoom_per_step, io.MouseWheel));
+  } else if (io.MouseWheel != 0.0F) {
+    nudge_tool(session, -kWheelStep_m * static_cast<double>(io.MouseWheel));
   }
   if (!view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {

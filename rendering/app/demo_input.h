@@ -20,15 +20,8 @@ struct KeyContext {
   bool in_list = false;  // a list or menu is open, which takes the keys that move through it
 };
 
-// Position of the tool in the air after the mouse has left the picture.
-inline constexpr double kRest_m = -0.008;
 // Position just above the surface, at which the key that lifts the tool stops.
 inline constexpr double kHover_m = -0.002;
-
-// Limits a depth smoothly to 8 % beyond the depth up to which the models were trained.
-double limited_depth_m(const LiveSession& session, double requested_m);
-// Moves the tool inwards by `by_m`; no effect on a device that is no ToolInput.
-void nudge_tool(const LiveSession& session, double by_m);
 
 class DemoInput {
  public:
@@ -47,12 +40,11 @@ class DemoInput {
   static void run(const KeyPress& press, const std::vector<WindowCommand>& commands, const KeyContext& context);
 
   // Call it once a frame with the velocity of the held keys, positive inwards; 0: none is held. The loop moves the
-  // tool, at most to the depth of limited_depth_m and out to kHover_m.
+  // tool, at most to 8 % beyond the trained depth and out to kHover_m.
   void drive_tool(const LiveSession& session, double velocity_m_per_s);
 
-  // Stores the motion of the wheel; call it within a frame, because ImGui clears it at the end.
-  void keep_wheel();
-  // Returns whether the mouse has just left the picture, so that the tool was lifted.
+  // Call it within a frame, because ImGui clears the motion of the wheel at its end. Returns whether the mouse has just
+  // left the picture, so that the tool was lifted.
   bool handle_mouse(LiveSession& session, const WindowView& shown, BlockView& blocks, const ViewState& view,
                     const SceneArea& area);
 
@@ -62,7 +54,6 @@ class DemoInput {
   std::vector<KeyPress> keys_;
   std::vector<int> down_;  // keys that are held
   bool drives_ = false;    // a key moved the tool in the frame before
-  float wheel_ = 0.0F;
   bool orbiting_ = false;
   bool over_scene_ = false;  // in the frame before
 };

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -10,7 +11,6 @@
 #include "engine/base/signals.h"
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
-#include "rendering/app/stats_file.h"
 #include "rendering/app/study_app.h"
 #include "scenes/scene/folders.h"
 #include "scenes/study/prepare_strokes.h"
@@ -35,9 +35,8 @@ struct Arguments {
   std::string stats;
   bool force = false;
   bool bridge_remote = false;
-  bool discriminates = false;
-  std::string recording;  // for --discriminate; empty: a virtual one
-  std::string test;       // the recording to replay; empty: none
+  std::optional<std::string> discriminate;  // the recording; empty: a virtual one
+  std::string test;                         // the recording to replay; empty: none
   std::vector<std::string> files;
 };
 
@@ -64,11 +63,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("REC.csv")
       ->excludes("--device");
   app.add_option_function<std::string>(
-         "--discriminate",
-         [&arguments](const std::string& recording) {
-           arguments.discriminates = true;
-           arguments.recording = recording;
-         },
+         "--discriminate", [&arguments](const std::string& recording) { arguments.discriminate = recording; },
          "Ask a hand which is which: a stroke of this recording [a virtual one], rendered by two models, or by "
          "one and as recorded")
       ->type_name("[REC.csv]")
@@ -119,18 +114,15 @@ void run_frames(App& app, double seconds) {
 }
 
 Status run_study(const Arguments& arguments) {
-  StudyRequest request;
-  if (arguments.discriminates) {
-    const auto scene =
-        load_scene(arguments.demo.session.scene.empty() ? "silicone_block" : arguments.demo.session.scene);
-    if (!scene) return scene.error();
-    auto strokes = prepare_strokes({*scene, arguments.demo.session.models, arguments.recording});
-    if (!strokes) return strokes.error();
-    request.strokes = std::move(*strokes);
+  std::shared_ptr<const StrokePair> strokes;
+  if (arguments.discriminate) {
+    const std::string& scene = arguments.demo.session.scene;
+    auto prepared = prepare_strokes(scene.empty() ? "silicone_block" : scene, arguments.demo.session.models,
+                                    *arguments.discriminate);
+    if (!prepared) return prepared.error();
+    strokes = std::move(*prepared);
   }
-  request.device = arguments.demo.session.device;
-  request.window = arguments.demo.window;
-  auto app = StudyApp::create(request);
+  auto app = StudyApp::create(arguments.demo.window, arguments.demo.session.device, strokes);
   if (!app) return app.error();
   run_frames(**app, arguments.seconds);
   return arguments.screenshot.empty() ? Status() : (*app)->screenshot(arguments.screenshot, arguments.force);
@@ -143,7 +135,7 @@ Status run_demo(Arguments& arguments) {
   if (arguments.bridge_remote && device.rfind("bridge:tcp:", 0) == 0) device.insert(7, "remote-");
   if (arguments.demo.exhibit) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
-  if (arguments.discriminates || arguments.demo.session.scene == kStudyScene) return run_study(arguments);
+  if (arguments.discriminate || arguments.demo.session.scene == kStudyScene) return run_study(arguments);
   // A screenshot does not depend on the user's settings.
   if (const auto folder = config_folder(); folder && arguments.screenshot.empty())
     arguments.demo.settings_file = *folder + "/window.json";
@@ -157,7 +149,7 @@ Status run_demo(Arguments& arguments) {
     if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
   }
   if (arguments.stats.empty()) return {};
-  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->shown(), (*app)->frames()),
+  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->shown(), (*app)->view().frames),
                                arguments.force);
 }
 

@@ -1,7 +1,5 @@
 #include "rendering/app/study_app.h"
 
-#include <epoxy/gl.h>
-// GLFW after epoxy, which declares the functions of OpenGL.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -9,6 +7,7 @@
 #include <cctype>
 #include <utility>
 
+#include "rendering/panels/panel_parts.h"
 #include "scenes/scene/folders.h"
 #include "scenes/study/study_analysis.h"
 
@@ -18,9 +17,6 @@ namespace {
 constexpr float kColumnShare = 0.62F;     // of the window's width
 constexpr std::size_t kLongestCode = 12;  // longer than valid codes, so that a code that is too long is reported
 constexpr Theme kTheme = Theme::dark;     // avoids glare in a dim room
-
-constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                        ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav;
 
 // Replaces a key of the keypad by the usual key.
 int usual_key(int key) {
@@ -33,11 +29,12 @@ void gap() { ImGui::Dummy({1.0F, 0.6F * ImGui::GetFontSize()}); }
 
 }  // namespace
 
-Result<std::unique_ptr<StudyApp>> StudyApp::create(const StudyRequest& request) {
+Result<std::unique_ptr<StudyApp>> StudyApp::create(const WindowRequest& asked, const std::string& device,
+                                                   std::shared_ptr<const StrokePair> strokes, bool realtime) {
   if (Status status = Window::find_display(); !status) return status.error();
-  auto window = Window::open(request.window);
+  auto window = Window::open(asked);
   if (!window) return window.error();
-  auto study = LiveStudy::open(request.device, request.realtime, request.strokes);
+  auto study = LiveStudy::open(device, realtime, std::move(strokes));
   if (!study) return study.error();
   std::unique_ptr<StudyApp> app(new StudyApp);
   app->window_ = std::move(*window);
@@ -80,17 +77,11 @@ void StudyApp::type(char letter) {
 }
 
 void StudyApp::draw() {
-  const UiSize size = window_->size();
-  style_.update(size, kExhibitText, kTheme);
+  style_.update(window_->size(), kExhibitText, kTheme);
   ui_->begin_frame();
-  const Rgb& background = style_.colours().background;
-  glViewport(0, 0, size.width_px, size.height_px);
-  glClearColor(background.r, background.g, background.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT);
+  window_->clear(style_.colours().background);
   const ImVec2 all = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({0.5F * (1.0F - kColumnShare) * all.x, 0.15F * all.y});
-  ImGui::SetNextWindowSize({kColumnShare * all.x, 0.82F * all.y});
-  ImGui::Begin("study", nullptr, kFixed);
+  begin_panel("study", {{0.5F * (1.0F - kColumnShare) * all.x, 0.15F * all.y}, {kColumnShare * all.x, 0.82F * all.y}});
   ImGui::PushTextWrapPos();
   session() == nullptr ? draw_entry() : draw_session();
   gap();

@@ -10,23 +10,16 @@
 
 #include "engine/base/result.h"
 #include "rendering/app/window.h"
-#include "rendering/ui/ui_context.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/study/study_session.h"
 
 namespace palpate {
 
-struct StudyRequest {
-  std::string device = "auto";
-  WindowRequest window;
-  bool realtime = true;
-  std::shared_ptr<const StrokePair> strokes;  // of the discrimination; null: the JND study
-};
-
 class StudyApp {
  public:
-  // Errors: those of Window; the device cannot be opened.
-  static Result<std::unique_ptr<StudyApp>> create(const StudyRequest& request);
+  // `strokes`: of the discrimination; null: the JND study. Errors: those of Window; the device cannot be opened.
+  static Result<std::unique_ptr<StudyApp>> create(const WindowRequest& asked, const std::string& device,
+                                                  std::shared_ptr<const StrokePair> strokes, bool realtime = true);
   StudyApp(const StudyApp&) = delete;
   StudyApp& operator=(const StudyApp&) = delete;
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdlib>
 #include <vector>
 
 #include "engine/base/atomic_file.h"
@@ -31,11 +30,6 @@ std::string& last_problem() {
 }
 
 void keep_problem(int, const char* text) { last_problem() = text; }
-
-bool set(const char* name) {
-  const char* value = std::getenv(name);
-  return value != nullptr && *value != '\0';
-}
 
 constexpr std::size_t kChannels = 3;
 
@@ -92,20 +86,14 @@ void keep_on_screen(GLFWwindow* handle) {
   if (x != window.x || y != window.y) glfwSetWindowPos(handle, x, y);
 }
 
-Error no_display() {
-  const std::string display = set("DISPLAY") ? "DISPLAY=" + std::string(std::getenv("DISPLAY")) : "DISPLAY is not set";
-  return Error{"no display (" + display + ": " + last_problem() +
-               "), expected an X11 or Wayland session; run it on a desktop, under xvfb-run, or use `palpate` "
-               "without a window"};
-}
-
 }  // namespace
 
 Status Window::find_display() {
   glfwSetErrorCallback(keep_problem);
-  if (!set("DISPLAY") && !set("WAYLAND_DISPLAY")) last_problem() = "and neither is WAYLAND_DISPLAY";
-  if ((!set("DISPLAY") && !set("WAYLAND_DISPLAY")) || glfwInit() != GLFW_TRUE) return no_display();
-  return {};
+  if (glfwInit() == GLFW_TRUE) return {};
+  return Error{"no display (" + last_problem() +
+               "), expected an X11 or Wayland session; run it on a desktop, under xvfb-run, or use `palpate` "
+               "without a window"};
 }
 
 Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
@@ -146,8 +134,7 @@ Window::~Window() {
 
 bool Window::display_sets_pace(const Rgb& empty) {
   glfwSwapInterval(1);
-  glClearColor(empty.r, empty.g, empty.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT);
+  clear(empty);
   glfwSwapBuffers(window_);
   glFinish();
   const std::int64_t start_ns = steady_now_ns();
@@ -174,6 +161,13 @@ UiSize Window::size() const noexcept {
   size.pixels_per_unit = static_cast<float>(size.width_px) / size.width;
   glfwGetWindowContentScale(window_, &size.content_scale, nullptr);
   return size;
+}
+
+void Window::clear(const Rgb& colour) const {
+  const UiSize all = size();
+  glViewport(0, 0, all.width_px, all.height_px);
+  glClearColor(colour.r, colour.g, colour.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 Status Window::save_frame(const std::string& path, bool overwrite) {

@@ -32,6 +32,8 @@ class Window {
 
   GLFWwindow* handle() const noexcept { return window_; }
   UiSize size() const noexcept;
+  // Fills the frame with one colour.
+  void clear(const Rgb& colour) const;
   // Shows the frame and waits for the next one: for the display where the driver does so, else at 60 Hz.
   void show_frame();
   // Saves the frame as a PNG file and shows it. Errors: the file exists and `overwrite` is false; it cannot be written.

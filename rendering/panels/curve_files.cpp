@@ -16,9 +16,9 @@ std::string number(float value) { return std::isnan(value) ? "" : general(static
 
 }  // namespace
 
-Plot curve_plot(const CurveColumns& columns, const CurveSource& source, double from_s, double to_s) {
+Plot curve_plot(const CurveColumns& columns, const CurveSource& source) {
   Panel force;
-  force.title = source.scene + ", " + source.device + "; compared with: " + source.reference;
+  force.title = source.title + "; compared with: " + source.reference;
   force.y = {"Force [N]", "", false, 0.0};
   force.series = {{"within 1 JND", kMutedColour, Mark::area, {}}, {"reference", kMeasuredColour, Mark::line, {}}};
   Panel difference;
@@ -30,12 +30,12 @@ Plot curve_plot(const CurveColumns& columns, const CurveSource& source, double f
     difference.series.push_back({model.name, model.colour, Mark::line, {}});
   }
   for (Panel* panel : {&force, &difference}) {
-    panel->x.low = from_s - source.zero_s;
-    panel->x.high = to_s - source.zero_s;
+    panel->x.low = source.from_s - source.zero_s;
+    panel->x.high = source.to_s - source.zero_s;
   }
   for (const CurveColumn& column : columns.columns()) {
     const HistoryPoint& tick = column.tick;
-    if (!column.any || tick.loop_time_s < from_s || tick.loop_time_s > to_s) continue;
+    if (!column.any || tick.loop_time_s < source.from_s || tick.loop_time_s > source.to_s) continue;
     const double time_s = tick.loop_time_s - source.zero_s;
     const auto reference_N = static_cast<double>(tick.reference_N);
     const auto jnd_N = static_cast<double>(column.jnd_N);
@@ -54,12 +54,13 @@ Plot curve_plot(const CurveColumns& columns, const CurveSource& source, double f
   return plot;
 }
 
-std::string curve_csv(const ForceHistory& history, const CurveSource& source, double from_s, double to_s) {
-  std::string csv = std::string("# ") + source.scene + ", " + source.device +
-                    "; now compared with: " + source.reference + "\ntime_s,depth_m,reference,reference_N,rendered_N";
+std::string curve_csv(const ForceHistory& history, const CurveSource& source) {
+  std::string csv = "# " + source.title + "; now compared with: " + source.reference +
+                    "\ntime_s,depth_m,reference,reference_N,rendered_N";
   for (const CurveModel& model : source.models) csv.append(",").append(model.name).append("_N");
   csv += "\n";
-  for (std::size_t i = history.first_at(from_s); i < history.size() && history[i].loop_time_s <= to_s; ++i) {
+  for (std::size_t i = history.first_at(source.from_s); i < history.size() && history[i].loop_time_s <= source.to_s;
+       ++i) {
     const HistoryPoint& point = history[i];
     csv += fixed(point.loop_time_s - source.zero_s, 6) + "," + number(point.depth_m) + "," +
            (std::isnan(point.reference_N) ? "" : kReferenceNames[point.reference]) + "," + number(point.reference_N) +

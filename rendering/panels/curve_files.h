@@ -18,19 +18,19 @@ struct CurveModel {
 };
 
 struct CurveSource {
-  std::string scene;
-  std::string device;
+  std::string title;      // scene and device
   std::string reference;  // in words
   JndLine jnd;
   double zero_s = 0.0;  // loop time of the axis' 0
+  double from_s = 0.0, to_s = 0.0;
   std::vector<CurveModel> models;
 };
 
 // Two panels: force with the JND band, and difference in JND. Every point is the tick of a column (CurveColumn::tick).
-Plot curve_plot(const CurveColumns& columns, const CurveSource& source, double from_s, double to_s);
+Plot curve_plot(const CurveColumns& columns, const CurveSource& source);
 
-// Every tick between the two loop times with the columns time_s,depth_m,reference,reference_N,rendered_N and
+// Every tick from from_s to to_s with the columns time_s,depth_m,reference,reference_N,rendered_N and
 // "<name>_N" for each model. A missing force is an empty field.
-std::string curve_csv(const ForceHistory& history, const CurveSource& source, double from_s, double to_s);
+std::string curve_csv(const ForceHistory& history, const CurveSource& source);
 
 }  // namespace palpate

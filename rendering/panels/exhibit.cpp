@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/live/pacer.h"
+#include "rendering/panels/window_command.h"
 #include "scenes/scene/folders.h"
 
 namespace palpate {
@@ -116,9 +118,8 @@ void Exhibit::note_device(const LiveSession& session) {
 void Exhibit::read_ticks(const LiveSession& session) {
   const ForceHistory& history = session.comparison().history();
   const ExhibitRound* now = pair();
-  std::size_t next = history.first_at(seen_s_);
-  while (next < history.size() && history[next].loop_time_s <= seen_s_) ++next;
-  for (; now != nullptr && next < history.size(); ++next) {
+  const std::size_t first = history.first_at(std::nextafter(seen_s_, std::numeric_limits<double>::infinity()));
+  for (std::size_t next = first; now != nullptr && next < history.size(); ++next) {
     const ExhibitTick tick = tick_of(history[next], *now);
     if (game_.state() != State::attract) {
       game_.add(tick);
@@ -157,13 +158,11 @@ void Exhibit::note_result() {
   if (!path.empty()) (void)write_tally(path, tally_);
 }
 
-Rgb Exhibit::first_colour(Theme theme) const {
-  const auto& first = pair()->first;
-  return first ? exhibit_colour(first->method, first->paper, theme) : reference_colour(theme);
-}
-
-Rgb Exhibit::second_colour(Theme theme) const {
-  return exhibit_colour(pair()->second.method, pair()->second.paper, theme);
+Rgb Exhibit::colour_of(bool first, Theme theme) const {
+  const ExhibitRound& round = *pair();
+  if (first && !round.first) return reference_colour(theme);
+  const ExhibitModel& model = first ? *round.first : round.second;
+  return exhibit_colour(model.method, model.paper, theme);
 }
 
 std::vector<BlockPose> Exhibit::reveal_poses(const LiveSession& session, Theme theme) const {
@@ -173,12 +172,12 @@ std::vector<BlockPose> Exhibit::reveal_poses(const LiveSession& session, Theme t
   first.tool_m = static_cast<float>(moment.position_m);
   first.dent_m = std::max(0.0F, first.tool_m);
   first.force_N = static_cast<float>(moment.first_N);
-  first.arrow = first_colour(theme);
+  first.arrow = colour_of(true, theme);
   first.shows_error = false;
   BlockPose second = first;
   second.force_N = static_cast<float>(std::max(0.0, reveal_.second_N(moment)));
   second.error_over_jnd = static_cast<float>(std::abs(moment.over_jnd));
-  second.arrow = second_colour(theme);
+  second.arrow = colour_of(false, theme);
   second.shows_error = true;
   return first_is_left() ? std::vector{first, second} : std::vector{second, first};
 }
@@ -200,27 +199,20 @@ void Exhibit::forget(LiveSession& session, ViewState& view) {
 
 void Exhibit::press_key(int key, const LiveSession& session) {
   moved_s_ = session.newest().loop_time_s;
-  const bool first = key == GLFW_KEY_1 || key == GLFW_KEY_KP_1;
-  const bool second = key == GLFW_KEY_2 || key == GLFW_KEY_KP_2;
-  const bool on = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER || key == GLFW_KEY_SPACE;
   if (key == GLFW_KEY_L) language_ = (language_ + 1) % languages_.size();
-  switch (game_.state()) {
-    case State::attract:
-    case State::score:
-      if (first || on) begin(session);
-      break;
-    case State::guess:
-      if (first || second) game_.guess(first);
-      break;
-    case State::press:
-      if (first || second) game_.choose(first ? 1 : 2);
-      if (key == words()("key_differ").front() || key == words()("key_same").front())
-        game_.answer(key == words()("key_differ").front());
-      break;
-    case State::reveal:
-      if ((first || on) && reveal_is_done(session)) game_.go_on();
-      break;
-  }
+  if (key == GLFW_KEY_KP_1 || key == GLFW_KEY_KP_2) key += GLFW_KEY_1 - GLFW_KEY_KP_1;
+  const bool on = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER || key == GLFW_KEY_SPACE;
+  // Where there is nothing to choose, 1 and Enter are the same.
+  const bool only = buttons_.count("2") == 0 && (on || key == GLFW_KEY_1);
+  press_button(only ? buttons_.count("1") != 0 ? "1" : "Enter" : on ? "Enter" : key_name(key));
+}
+
+void Exhibit::press_button(const std::string& key) {
+  const auto found = buttons_.find(key);
+  if (found == buttons_.end()) return;
+  const std::function<void()> press = found->second.press;
+  buttons_.clear();
+  press();
 }
 
 }  // namespace palpate

@@ -7,20 +7,21 @@
 //   reveal    the press with the largest difference in slow motion (exhibit_reveal.h), then the result
 //   score     the visitor's score and a summary
 //
-// Buttons, touch and keys are equivalent; each button shows its key. The tool is kept out of the block in all other
+// A key presses the button that shows it. The tool is kept out of the block in all other
 // screens than attract and press. After `stay_s` without a movement, the last `warn_s` of which are counted down, the
 // exhibit starts again. Ctrl+Shift+T shows the day's tally and the loop's health to the host.
 // Thread guarantee: the window's thread.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rendering/panels/exhibit_reveal.h"
-#include "rendering/panels/layout.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/panels/window_view.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/ui/plot.h"
@@ -44,7 +45,6 @@ Rgb exhibit_colour(const std::string& method, bool paper, Theme theme);
 
 class Exhibit {
  public:
-  explicit Exhibit(std::uint64_t seed) : game_(seed) {}
   // `languages`: at least one. `tally_folder`: it gets a tally file per day; empty: no tally is stored.
   void set_up(std::vector<ExhibitWords> languages, const std::string& tally_folder, const ExhibitTimes& times);
 
@@ -52,8 +52,7 @@ class Exhibit {
   bool update(LiveSession& session, ViewState& view);
   // `key`: of GLFW.
   void press_key(int key, const LiveSession& session);
-  void show_host(bool shown) noexcept { host_ = shown; }
-  bool shows_host() const noexcept { return host_; }
+  void toggle_host() noexcept { host_ = !host_; }
   // Moves the tool out of the block.
   static void let_go(LiveSession& session);
   // Draws the screen in the panel's area, and the names at the blocks.
@@ -66,8 +65,12 @@ class Exhibit {
   const ExhibitGame& game() const noexcept { return game_; }
   const ExhibitTrace& attract_trace() const noexcept { return trace_; }
   const ExhibitTally& tally() const noexcept { return tally_; }
-  // Positions of the buttons of the last frame, by their keys.
-  const std::map<std::string, ImVec2>& buttons() const noexcept { return buttons_; }
+  struct Button {
+    ImVec2 middle;
+    std::function<void()> press;
+  };
+  // The buttons of the last frame, by their keys.
+  const std::map<std::string, Button>& buttons() const noexcept { return buttons_; }
   // The sentences of the last frame, from the top.
   const std::vector<std::string>& said() const noexcept { return said_; }
 
@@ -81,15 +84,16 @@ class Exhibit {
   bool reveal_is_done(const LiveSession& session) const;
   std::string tally_path() const;  // today's file; empty: no tally is stored
   void begin(const LiveSession& session);
+  void press_button(const std::string& key);  // no effect without such a button
   // The pair on the screen; null: too few models are ready.
   const ExhibitRound* pair() const noexcept;
-  Rgb first_colour(Theme theme) const;
-  Rgb second_colour(Theme theme) const;
+  // The colour of the first or the second of the pair.
+  Rgb colour_of(bool first, Theme theme) const;
   // Whether the first of the pair has the left block. A reference is the right one.
   bool first_is_left() const { return pair()->first.has_value(); }
   const ExhibitWords& words() const { return languages_[language_]; }
 
-  ExhibitGame game_;
+  ExhibitGame game_{1};  // seed
   ExhibitTimes times_;
   std::optional<ExhibitRound> shown_;  // in the state attract
   ExhibitTrace trace_;                 // in the state attract
@@ -98,7 +102,7 @@ class Exhibit {
   std::size_t language_ = 0;
   std::string tally_folder_;
   ExhibitTally tally_;
-  std::map<std::string, ImVec2> buttons_;
+  std::map<std::string, Button> buttons_;
   std::vector<std::string> said_;
   bool host_ = false;
   bool visitor_ = false;

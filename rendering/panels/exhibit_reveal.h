@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/tick/jnd.h"
-#include "rendering/panels/layout.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/exhibit_game.h"
 

@@ -2,18 +2,16 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "engine/base/text.h"
 #include "rendering/panels/exhibit.h"
-#include "rendering/panels/overlay_parts.h"
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_parts.h"
 
 namespace palpate {
 namespace {
 
-using overlay::text_at;
-using overlay::text_size;
 using State = ExhibitGame::State;
 
 constexpr double kMost_jnd = 4.0;  // fixed range of the axis, so that rounds are comparable
@@ -34,6 +32,7 @@ struct Exhibit::Screens {
   const BlockView& blocks;
   const UiStyle& style;
   const WindowLayout& layout;
+  std::string pressed = {};  // the key of the button that was pressed; empty: none
 
   const ExhibitWords& words() const { return exhibit.words(); }
   // The end of the panel above the foot.
@@ -90,10 +89,11 @@ struct Exhibit::Screens {
     say_quietly(words()("round", std::to_string(game.number()), std::to_string(game.rounds().size())));
   }
 
-  // A button that is high enough for a finger, with its key in the corner.
-  bool button(const std::string& text, const std::string& key, float width, bool down = false) {
+  // A button that is high enough for a finger, with its key in the corner. It is pressed at the end of the frame.
+  void button(const std::string& text, const std::string& key, float width, std::function<void()> press,
+              bool down = false) {
     if (down) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-    const bool pressed = ImGui::Button(text.c_str(), {width, 2.2F * height_of(style.fonts().heading)});
+    if (ImGui::Button(text.c_str(), {width, 2.2F * height_of(style.fonts().heading)})) pressed = key;
     if (down) ImGui::PopStyleColor();
     const ImVec2 low = ImGui::GetItemRectMin();
     const ImVec2 corner = ImGui::GetItemRectMax();
@@ -102,24 +102,18 @@ struct Exhibit::Screens {
     const float wide = text_size(font, key).x;
     ImGui::GetWindowDrawList()->AddText(font, line, {corner.x - wide - 0.4F * line, corner.y - 1.2F * line},
                                         ink(style.colours().quiet), key.c_str());
-    exhibit.buttons_[key] = {0.5F * (low.x + corner.x), 0.5F * (low.y + corner.y)};
-    return pressed;
-  }
-
-  // Draws the title of the curve, and returns the remaining height. The caller pops the font of the axes.
-  float begin_plot(const std::string& title) {
-    say_quietly(title);
-    ImGui::PushFont(style.fonts().body);
-    return std::max(bottom() - ImGui::GetCursorScreenPos().y, 6.0F * body());
+    exhibit.buttons_[key] = {{0.5F * (low.x + corner.x), 0.5F * (low.y + corner.y)}, std::move(press)};
   }
 
   void draw_difference(const ExhibitTrace& trace) {
     // Outside the plot, where no curve crosses them.
     say_quietly(words()("axis_difference"));
     const double largest = trace.largest_over_jnd();
-    const float height = begin_plot(largest > 0.0 ? words()("so_far", number(largest)) : words()("in_band"));
+    say_quietly(largest > 0.0 ? words()("so_far", number(largest)) : words()("in_band"));
+    ImGui::PushFont(style.fonts().body);  // of the axes
+    const float height = std::max(bottom() - ImGui::GetCursorScreenPos().y, 6.0F * body());
     const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
-                        {{0.0, exhibit.times_.press_s}, {-kMost_jnd, kMost_jnd}, "s", "", true});
+                        {{0.0, exhibit.times_.press_s}, {-kMost_jnd, kMost_jnd}, "s", ""});
     ImGui::PopFont();
     plot.jnd_band(-1.0, 1.0);
     plot.level(0.0, ink(reference_colour(style.theme())), 4.0F * style.scale());
@@ -140,18 +134,22 @@ struct Exhibit::Screens {
     flush();
   }
 
+  std::function<void()> begin() const {
+    return [&exhibit = exhibit, &session = session] { exhibit.begin(session); };
+  }
+
   void draw_attract() {
     say(words()("attract"));
     space(0.3F);
     say_quietly(words()("attract_more"));
     space(0.6F);
     if (exhibit.pair() == nullptr) return draw_learning();
-    if (button(words()("play"), "1", -1.0F)) exhibit.begin(session);
+    button(words()("play"), "1", -1.0F, begin());
     space(0.6F);
     draw_difference(exhibit.trace_);
   }
 
-  // Until the first models are ready: the progress of the fits, and the force of the block that the hand presses.
+  // Draws the progress of the fits until the first models are ready.
   void draw_learning() {
     say_quietly(words()("learning"));
     float done = 0.0F;
@@ -159,21 +157,6 @@ struct Exhibit::Screens {
       done += slot.state == SlotState::ready ? 1.0F : static_cast<float>(slot.progress);
     const auto all = static_cast<float>(std::max<std::size_t>(shown.models.slots.size(), 1));
     ImGui::ProgressBar(done / all, {-1.0F, 0.8F * body()}, "");
-    space(0.6F);
-    const float height = begin_plot(words()("axis_force"));
-    const ForceHistory& history = *shown.history;
-    const std::size_t first = history.first_at(now_s() - exhibit.times_.press_s);
-    constexpr std::size_t kMostPoints = 600;
-    const std::size_t step = (history.size() - first) / kMostPoints + 1;
-    std::vector<ImVec2> points;
-    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
-                        {{-exhibit.times_.press_s, 0.0}, {0.0, 1.6 * shown.usual_force_N}, "s", "N", true});
-    ImGui::PopFont();
-    for (std::size_t i = first - first % step; i < history.size(); i += step) {
-      const auto force_N = static_cast<double>(history[i].reference_N);
-      if (!std::isnan(force_N)) points.emplace_back(plot.x_px(history[i].loop_time_s - now_s()), plot.y_px(force_N));
-    }
-    plot.line(points, ink(reference_colour(style.theme())), 4.0F * style.scale());
   }
 
   void draw_guess() {
@@ -183,13 +166,11 @@ struct Exhibit::Screens {
     say(words()("question_guess"));
     space(0.4F);
     const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-    std::optional<bool> noticed;
-    if (button(words()("yes"), "1", half)) noticed = true;
+    button(words()("yes"), "1", half, [&game = game] { game.guess(true); });
     ImGui::SameLine();
-    if (button(words()("no"), "2", half)) noticed = false;
+    button(words()("no"), "2", half, [&game = game] { game.guess(false); });
     space(0.6F);
     draw_difference(game.trace());
-    if (noticed) game.guess(*noticed);
   }
 
   void draw_press() {
@@ -204,15 +185,15 @@ struct Exhibit::Screens {
     say_quietly(words()(game.pressed_both() ? "answer" : "feel_both"));
     space(0.4F);
     const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-    if (button(words()("block_1"), "1", half, game.chosen() == 1)) game.choose(1);
+    button(
+        words()("block_1"), "1", half, [&game = game] { game.choose(1); }, game.chosen() == 1);
     ImGui::SameLine();
-    if (button(words()("block_2"), "2", half, game.chosen() == 2)) game.choose(2);
+    button(
+        words()("block_2"), "2", half, [&game = game] { game.choose(2); }, game.chosen() == 2);
     if (!game.pressed_both()) return;
     space(0.8F);
-    std::optional<bool> different;
-    if (button(words()("differ"), words()("key_differ"), -1.0F)) different = true;
-    if (button(words()("same"), words()("key_same"), -1.0F)) different = false;
-    if (different) game.answer(*different);
+    button(words()("differ"), words()("key_differ"), -1.0F, [&game = game] { game.answer(true); });
+    button(words()("same"), words()("key_same"), -1.0F, [&game = game] { game.answer(false); });
   }
 
   void draw_key(const ExhibitModel& model, const char* block) {
@@ -227,8 +208,8 @@ struct Exhibit::Screens {
     const ImVec2 at(ImGui::GetCursorScreenPos().x, ImGui::GetCursorScreenPos().y + line);
     const ImVec2 size(ImGui::GetContentRegionAvail().x, std::max(bottom() - 1.6F * line - at.y, 4.0F * line));
     const Theme theme = style.theme();
-    exhibit.reveal_.draw_arrows(style, {at, size}, now_s(), exhibit.first_colour(theme), exhibit.second_colour(theme),
-                                exhibit.first_is_left());
+    exhibit.reveal_.draw_arrows(style, {at, size}, now_s(), exhibit.colour_of(true, theme),
+                                exhibit.colour_of(false, theme), exhibit.first_is_left());
   }
 
   void draw_reveal() {
@@ -243,8 +224,8 @@ struct Exhibit::Screens {
     say_large(words()(edge ? "edge" : round.correct() ? "right" : "wrong"));
     say(verdict());
     space(0.4F);
-    if (button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter", -1.0F))
-      return game.go_on();
+    button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter", -1.0F,
+           [&game = game] { game.go_on(); });
     if (game.has_force()) {  // shows which model had which key
       space(0.4F);
       draw_key(*round.first, "block_1");
@@ -283,7 +264,7 @@ struct Exhibit::Screens {
     say(game.has_force() ? words()("take_home_felt", used_us)
                          : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
     space(0.4F);
-    if (button(words()("again"), "Enter", -1.0F)) exhibit.begin(session);
+    button(words()("again"), "Enter", -1.0F, begin());
   }
 
   // Draws the button of the next language and the countdown.
@@ -364,7 +345,7 @@ struct Exhibit::Screens {
       std::string text = blind ? words()(game.chosen() == 2 ? "block_2" : "block_1") : name_of(first);
       if (blind && game.state() != State::press) text.clear();
       if (game.has_force() && revealed) text = words()(first ? "block_1" : "block_2");
-      const Rgb colour = first ? exhibit.first_colour(theme) : exhibit.second_colour(theme);
+      const Rgb colour = exhibit.colour_of(first, theme);
       draw_name(i, count, text, blind ? style.colours().text : text_colour(colour, theme));
     }
   }
@@ -389,6 +370,7 @@ void Exhibit::draw(const LiveSession& session, const WindowView& shown, const Bl
   ImGui::End();
   screens.draw_names();
   if (game_.state() == State::reveal) screens.draw_growing_number();
+  press_button(screens.pressed);
 }
 
 }  // namespace palpate

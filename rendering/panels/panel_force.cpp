@@ -121,18 +121,10 @@ struct Drawing {
   // Draws a curve of each model, the active one on top, the values under the mouse, and the name of the model whose row
   // is under the mouse.
   void draw_models(TimePlot& plot, SlotRange range, const char* unit) {
-    std::vector<std::size_t> slots;
-    for (std::size_t slot = 0; slot < models().slots.size(); ++slot) {
-      if (models().slots[slot].state == SlotState::ready) slots.push_back(slot);
-    }
-    const auto draw = [&](std::size_t slot, float thickness) {
-      plot.curve(ink(colour(slot)), thickness * scale(),
+    for (const std::size_t slot : models().drawn()) {
+      plot.curve(ink(colour(slot)), (slot == models().selected ? kSelectedLine_px : kModelLine_px) * scale(),
                  [&](const CurveColumn& column) { return range(column, slot); });
-    };
-    for (const std::size_t slot : slots) {
-      if (slot != models().selected) draw(slot, kModelLine_px);
     }
-    if (models().active() != nullptr) draw(models().selected, kSelectedLine_px);
     if (plot.handle_mouse(*shown.history)) hovered = true;
 
     const CurveColumn* under = columns.at(view.time.hover_s);
@@ -142,7 +134,7 @@ struct Drawing {
       if (!std::isnan(value)) readings.push_back({name + "  " + at_most_three_decimals(value) + of, in});
     };
     if (under != nullptr) read("reference", reference(), static_cast<double>(under->tick.reference_N), " N");
-    for (const std::size_t slot : slots) {
+    for (const std::size_t slot : models().listed()) {
       const std::string& name = models().slots[slot].name;
       const double end = last != nullptr ? farther(range(*last, slot)) : std::nan("");
       if (slot == view.pointed && !std::isnan(end))
@@ -161,7 +153,7 @@ struct Drawing {
     for (std::size_t i = first; i < end; ++i)
       deepest_mm = std::max(deepest_mm, 1e3 * static_cast<double>(history[i].depth_m));
     const LivePlot plot(style, size,
-                        {{-0.04 * deepest_mm, round_up(deepest_mm)}, {-0.04 * scale_N, scale_N}, "mm", "N", true});
+                        {{-0.04 * deepest_mm, round_up(deepest_mm)}, {-0.04 * scale_N, scale_N}, "mm", "N"});
     const std::size_t step = std::max<std::size_t>(1, (end - first) / kLoopPoints);
     std::vector<ImVec2> reference_points, model_points;
     // Points that are closer to the last one than a pixel are not visible.
@@ -219,8 +211,7 @@ struct Drawing {
     plot.level(1.0, ink(style.colours().text), 1.5F * scale());
     fill_prediction(plot, [&](const CurveColumn& column) { return Range{0.0, predicted_over_jnd(column)}; });
     // Faint marks for the largest difference of a single tick, where a hand could feel it.
-    for (std::size_t slot = 0; slot < models().slots.size(); ++slot) {
-      if (models().slots[slot].state != SlotState::ready) continue;
+    for (const std::size_t slot : models().drawn()) {
       for (const CurveColumn& column : columns.columns()) {
         const double largest = std::abs(farther(difference_of(column, slot)));
         if (!(largest > 1.0)) continue;

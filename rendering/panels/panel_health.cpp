@@ -125,10 +125,10 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
           false};
 }
 
-void draw_health(const HealthView& health, ViewState& view, const UiStyle& style, const FrameFigures& frames) {
+void draw_health(const HealthView& health, ViewState& view, const UiStyle& style) {
   section_title(style, "LOOP");
   ImGui::SameLine();
-  const HealthWords words = health_words(health, frames.recent_fps);
+  const HealthWords words = health_words(health, static_cast<double>(ImGui::GetIO().Framerate));
   const auto wrapped = [](const Rgb& colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
     ImGui::TextWrapped("%s", text.c_str());
@@ -152,7 +152,7 @@ void draw_health(const HealthView& health, ViewState& view, const UiStyle& style
   }
   if (!view.details) return;
   if (!scheduling.fix.empty()) ImGui::TextWrapped("%s", scheduling.fix.c_str());
-  draw_times(health.loop, frames);
+  draw_times(health.loop, view.frames);
   draw_faults(health, style);
 }
 

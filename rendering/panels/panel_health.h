@@ -23,6 +23,6 @@ std::string device_line(const HealthView& health);
 
 // Estimated height of draw_health.
 float health_height(const HealthView& health, const ViewState& view);
-void draw_health(const HealthView& health, ViewState& view, const UiStyle& style, const FrameFigures& frames);
+void draw_health(const HealthView& health, ViewState& view, const UiStyle& style);
 
 }  // namespace palpate

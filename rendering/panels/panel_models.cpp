@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,26 +15,28 @@ namespace {
 
 using Slot = std::size_t;
 
-// Force in the last tick of the curves; NaN: none.
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// The values of the columns; NaN: none. Forces are those of the last tick of the curves.
 double force_now_N(const ModelsView& models, Slot slot) { return static_cast<double>(models.now.force_N[slot]); }
 
 double error_now_N(const ModelsView& models, Slot slot) {
-  if (std::isnan(models.now.difference_over_jnd(slot, models.jnd))) return std::nan("");
+  if (std::isnan(models.now.difference_over_jnd(slot, models.jnd))) return kNone;
   return models.now.in_contact ? force_now_N(models, slot) - static_cast<double>(models.now.reference_N) : 0.0;
 }
 
-// The 99 % error over the samples so far; NaN: there are none.
 double p99_over_jnd(const ModelsView& models, Slot slot) {
-  return models.slots[slot].errors.samples > 0 ? models.slots[slot].errors.p99_error_over_jnd : std::nan("");
+  const ErrorSummary& errors = models.slots[slot].errors;
+  return errors.samples > 0 ? errors.p99_error_over_jnd : kNone;
 }
 
 double percent_within(const ModelsView& models, Slot slot) {
   const ErrorSummary& errors = models.slots[slot].errors;
-  return errors.samples > 0 ? 100.0 * errors.within_jnd : std::nan("");
+  return errors.samples > 0 ? 100.0 * errors.within_jnd : kNone;
 }
 
 double tick_ns(const ModelsView& models, Slot slot) {
-  return models.slots[slot].tick_ns() > 0.0 ? models.slots[slot].tick_ns() : std::nan("");
+  return models.slots[slot].tick_ns() > 0.0 ? models.slots[slot].tick_ns() : kNone;
 }
 
 double centres(const ModelsView& models, Slot slot) { return models.slots[slot].centres; }
@@ -93,16 +96,6 @@ void right_aligned(const std::string& text, const Rgb& colour) {
   ImGui::TextColored(paint(colour), "%s", text.c_str());
 }
 
-// Draws a small triangle above the heading of the column by which the table is sorted.
-void draw_sort_sign(float middle_px, float top_px, bool rising, ImU32 colour) {
-  const float size = 0.22F * ImGui::GetFontSize();
-  const float tip_px = rising ? top_px : top_px + size;
-  const float base_px = rising ? top_px + size : top_px;
-  ImVec2 corners[3] = {{middle_px - size, base_px}, {middle_px + size, base_px}, {middle_px, tip_px}};
-  if (rising) std::swap(corners[0], corners[1]);
-  ImGui::GetWindowDrawList()->AddConvexPolyFilled(corners, 3, colour);
-}
-
 // Draws a heading, right-aligned except for the name. Clicks sort in descending, ascending and original order.
 void draw_heading(int column, TableState& sort) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -125,7 +118,13 @@ void draw_heading(int column, TableState& sort) {
   const ImU32 colour = ImGui::GetColorU32(ImGuiCol_Text);
   const float x = column == kName ? at.x : at.x + room - width;
   ImGui::GetWindowDrawList()->AddText({x, at.y + sign}, colour, kTable[column].heading);
-  if (sort.column == column) draw_sort_sign(x + 0.5F * width, at.y, sort.rising, colour);
+  if (sort.column != column) return;
+  // A small triangle above the heading, which points up where the values rise.
+  const float middle = x + 0.5F * width, size = 0.22F * ImGui::GetFontSize();
+  const float tip_px = sort.rising ? at.y : at.y + size, base_px = sort.rising ? at.y + size : at.y;
+  const float side = sort.rising ? size : -size;
+  ImGui::GetWindowDrawList()->AddTriangleFilled({middle, tip_px}, {middle + side, base_px}, {middle - side, base_px},
+                                                colour);
 }
 
 // The menu of the right mouse button.
@@ -161,7 +160,10 @@ void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewS
   if (ImGui::Selectable(label.c_str(), index == models.selected, flags)) session.select(index);
   if (ImGui::IsItemHovered()) view.pointed = index;
   draw_menu(session, models, index, view.table);
-  tip(name_tip(models, index).c_str());
+  tip((index == models.selected ? slot.name + " is the active model"
+                                : "Click, or press " + std::to_string(models.number_of(index)) + ", to make " +
+                                      slot.name + " the active model")
+          .c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
   if (index == models.selected) list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
@@ -173,7 +175,10 @@ void draw_waiting(const ModelView& slot) {
   ImGui::TableNextColumn();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::PushClipRect(at, {at.x + 12.0F * ImGui::GetFontSize(), at.y + 2.0F * ImGui::GetFontSize()}, false);
-  ImGui::TextDisabled("%s", waiting_words(slot).c_str());
+  const std::string words = slot.state == SlotState::waiting   ? "waits"
+                            : slot.state == SlotState::fitting ? "fits " + fixed(100.0 * slot.progress, 0) + " %"
+                                                               : "failed";
+  ImGui::TextDisabled("%s", words.c_str());
   if (slot.state == SlotState::failed) tip(slot.problem.c_str());
   ImGui::PopClipRect();
 }
@@ -198,17 +203,6 @@ float column_width(int column) {
 }
 
 }  // namespace
-
-std::string waiting_words(const ModelInfo& slot) {
-  if (slot.state == SlotState::waiting) return "waits";
-  return slot.state == SlotState::fitting ? "fits " + fixed(100.0 * slot.progress, 0) + " %" : "failed";
-}
-
-std::string name_tip(const ModelsView& models, std::size_t slot) {
-  const std::string& name = models.slots[slot].name;
-  if (slot == models.selected) return name + " is the active model";
-  return "Click, or press " + std::to_string(models.number_of(slot)) + ", to make " + name + " the active model";
-}
 
 std::vector<int> shown_columns(float room, float (*width)(int)) {
   std::vector<int> columns;

@@ -1,9 +1,8 @@
 // The panel's table of models.
-// Thread guarantee: the window's thread, inside a frame; functions that return text need no window.
+// Thread guarantee: the window's thread, inside a frame; `shown_columns` is a pure function.
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include "rendering/panels/view_state.h"
@@ -19,9 +18,5 @@ void draw_model_table(LiveSession& session, const ModelsView& models, ViewState&
 // The columns of that table that fit into `room`. They are dropped in this order: error in mN, centres, time, force,
 // 99 % error. Name and share within the JND always stay.
 std::vector<int> shown_columns(float room, float (*width)(int column));
-
-// The text of a row without figures: "waits", "fits 40 %", "failed".
-std::string waiting_words(const ModelInfo& slot);
-std::string name_tip(const ModelsView& models, std::size_t slot);
 
 }  // namespace palpate

@@ -15,7 +15,7 @@ constexpr double kWheelShare = 0.1;  // one step of the wheel scrolls by this sh
 
 TimePlot::TimePlot(const UiStyle& style, const ImVec2& size, const Range& y, const char* y_unit, CurveTime& time,
                    double end_s, const CurveColumns& columns)
-    : LivePlot(style, size, {{end_s - time.shown_s - time.zero_s, end_s - time.zero_s}, y, "s", y_unit, true}),
+    : LivePlot(style, size, {{end_s - time.shown_s - time.zero_s, end_s - time.zero_s}, y, "s", y_unit}),
       time_(time),
       end_s_(end_s),
       columns_(columns) {}

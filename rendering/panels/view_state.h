@@ -90,6 +90,7 @@ struct Settings {
   std::string line_up;              // empty: the default
   std::vector<std::string> recent;  // files that were opened, the newest first
   CameraTurn camera;
+  bool operator==(const Settings&) const = default;
 };
 
 struct Dialogs {
@@ -100,7 +101,6 @@ struct Dialogs {
   bool view_list = false;  // choices of the display
   RecordingRoles recording_roles;
   FilePicker picker;
-  std::vector<DeviceDescription> devices;  // empty: no search has finished
 
   bool any() const noexcept {
     return help || file_list || scene_list || device_list || view_list || recording_roles.any();
@@ -115,12 +115,28 @@ struct ExhibitState {
   bool tool_is_held = false;  // keeps the tool out of the block; the mouse has no effect
 };
 
+struct FrameFigures {
+  TimeHistogram times;  // from the end of one frame to that of the next
+  double seconds = 0.0;
+  float picture_scale = 1.0F;  // see Resolution::scale
+};
+
+// A notice over the picture.
+struct Toast {
+  std::string text;
+  bool problem = false;
+  double until_s = 0.0;  // window time
+};
+
 struct ViewState {
   Settings settings;
   Dialogs dialogs;
   ExhibitState exhibit;
   CurveTime time;
   TableState table;
+  std::vector<DeviceDescription> devices;  // empty: no search has finished
+  FrameFigures frames;
+  std::vector<Toast> toasts;
   bool scales_force = false;                           // shows the sliders that scale the rendered force
   bool exaggerated = false;                            // arrows show ten times the difference
   bool centres_together = true;                        // the slider of centres refits all models that have centres
@@ -129,20 +145,6 @@ struct ViewState {
   bool has_pressed = false;                            // the user has pressed a block, so that the hint is hidden
   std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse; its curves are labelled
   bool verdict = true;                                 // plots error against time of a tick; else error against force
-};
-
-struct FrameFigures {
-  TimeHistogram times;  // from the end of one frame to that of the next
-  std::uint64_t frames = 0;
-  double seconds = 0.0;
-  double recent_fps = 0.0;
-  float picture_scale = 1.0F;  // see Resolution::scale
-};
-
-struct Toast {
-  std::string text;
-  bool problem = false;
-  double until_s = 0.0;  // window time
 };
 
 }  // namespace palpate

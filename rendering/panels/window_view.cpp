@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "engine/base/text.h"
+#include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
@@ -15,19 +18,35 @@ constexpr double kUsualOverStrongest = 1.5;
 // The slots with a block. If there is too little room, the active model and that of the verdict come first.
 std::vector<std::size_t> slots_of_blocks(const ModelsView& models, bool reference, std::size_t block_count) {
   const std::size_t room = reference ? block_count - 1 : block_count;
-  std::vector<std::size_t> wanted;
-  if (models.active() != nullptr) wanted.push_back(models.selected);
-  if (models.verdict.chosen) wanted.push_back(*models.verdict.chosen);
-  for (const std::size_t slot : models.listed()) {
-    if (models.slots[slot].state == SlotState::ready) wanted.push_back(slot);
-  }
-  std::vector<std::size_t> slots;
-  for (const std::size_t slot : wanted) {
-    if (slots.size() < room && std::find(slots.begin(), slots.end(), slot) == slots.end()) slots.push_back(slot);
-  }
+  const auto rank = [&](std::size_t slot) {
+    return slot == models.selected ? 0 : models.verdict.chosen == slot ? 1 : 2;
+  };
+  std::vector<std::size_t> slots = models.drawn();
+  std::sort(slots.begin(), slots.end(),
+            [&](std::size_t a, std::size_t b) { return std::pair(rank(a), a) < std::pair(rank(b), b); });
+  slots.resize(std::min(slots.size(), room));
   std::sort(slots.begin(), slots.end());
   if (reference) slots.push_back(kReferenceBlock);
   return slots;
+}
+
+// The samples that the errors are over, since when, and what is excluded.
+std::string counted_words(const LiveSession& session) {
+  const Comparison& comparison = session.comparison();
+  const std::size_t active = session.models().selected();
+  if (!session.has_reference(comparison.reference())) return session.reference_words(true);
+  if (active >= session.models().size()) return {};
+  if (session.models().info(active).other_material)
+    return "no truth to compare " + session.models().info(active).name + " with";
+  if (session.tests_recording()) {
+    return with_thousands(std::to_string(session.figures(active).errors.samples)) + " samples in contact, all of " +
+           session.replay()->recording().name;
+  }
+  std::string words = fixed(comparison.counted_s(), 1) + " s of contact since " + comparison.counted_since();
+  const double left_out_s = comparison.contact_s() - comparison.counted_s();
+  if (left_out_s > 0.05) words += "; " + fixed(left_out_s, 1) + " s left out";
+  if (comparison.outside_s() > 0.05) words += ", deeper or faster than recorded";
+  return words;
 }
 
 ModelsView models_view(const LiveSession& session, double until_s) {
@@ -44,8 +63,6 @@ ModelsView models_view(const LiveSession& session, double until_s) {
   view.replays_training = session.replay() != nullptr && session.replays_training();
   view.jnd = session.jnd();
   view.verdict = session.verdict();
-  view.now.force_N.fill(std::nanf(""));
-  view.now.reference_N = std::nanf("");
   const ForceHistory& history = comparison.history();
   if (const HistoryPoint* now = history.last_until(until_s)) {
     view.now = *now;
@@ -70,6 +87,13 @@ std::vector<std::size_t> ModelsView::listed() const {
   return list;
 }
 
+std::vector<std::size_t> ModelsView::drawn() const {
+  std::vector<std::size_t> list = listed();
+  std::erase_if(list, [&](std::size_t slot) { return slots[slot].state != SlotState::ready; });
+  std::stable_partition(list.begin(), list.end(), [&](std::size_t slot) { return slot != selected; });
+  return list;
+}
+
 std::size_t ModelsView::number_of(std::size_t slot) const {
   const std::vector<std::size_t> list = listed();
   return static_cast<std::size_t>(std::find(list.begin(), list.end(), slot) - list.begin()) + 1;
@@ -85,32 +109,39 @@ bool ModelsView::out_of_domain() const noexcept {
   return in_contact && model != nullptr && model->out_of_domain && !replays_training;
 }
 
-std::string counted_words(const LiveSession& session) {
-  const Comparison& comparison = session.comparison();
-  const std::size_t active = session.models().selected();
-  if (!session.has_reference(comparison.reference())) return session.reference_words(true);
-  if (active >= session.models().size()) return {};
-  if (session.models().info(active).other_material)
-    return "no truth to compare " + session.models().info(active).name + " with";
-  if (session.tests_recording()) {
-    return with_thousands(std::to_string(session.figures(active).errors.samples)) + " samples in contact, all of " +
-           session.replay()->recording().name;
-  }
-  std::string words = fixed(comparison.counted_s(), 1) + " s of contact since " + comparison.counted_since();
-  const double left_out_s = comparison.contact_s() - comparison.counted_s();
-  if (left_out_s > 0.05) words += "; " + fixed(left_out_s, 1) + " s left out";
-  if (comparison.outside_s() > 0.05) words += ", deeper or faster than recorded";
-  return words;
+std::string data_warning(const ModelsView& models) {
+  if (!models.out_of_domain()) return {};
+  return "No such motion was recorded: here " + models.active()->name + " renders only its trend";
 }
 
-HealthView health_view(const LiveSession& session) {
-  return {session.loop().statistics(),
-          session.loop().scheduling(),
-          session.newest(),
-          session.faults().missed_of_late(),
-          session.faults().events(),
-          session.alarms(),
-          session.device_name()};
+BigNumber big_number(const ModelsView& models, bool has_truth) {
+  const ModelView* active = models.active();
+  if (active == nullptr) {
+    const auto fitting = std::find_if(models.slots.begin(), models.slots.end(),
+                                      [](const ModelView& slot) { return slot.state == SlotState::fitting; });
+    if (fitting == models.slots.end()) return {};
+    return {fixed(100.0 * fitting->progress, 0) + " %", "of the first model, " + fitting->name,
+            has_truth ? "until then only the true material has a force" : "until then there is no force", 0.0};
+  }
+  BigNumber big;
+  const std::string& name = active->name;
+  if (active->other_material) {
+    big.below = models.counted;
+  } else if (!models.compared) {
+    const double guess = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
+    if (!std::isnan(guess)) big.number = jnd_text(guess);
+    big.below = name + ": 95 % bound of its error; " + models.reference_name;
+    big.error_over_jnd = guess;
+  } else if (models.selected == models.reference) {
+    big.below = name + " is what the others are compared with";
+  } else if (active->errors.samples == 0) {
+    big.below = "the error of " + name + " from " + models.reference_name + ", from the next touch on";
+  } else {
+    big.error_over_jnd = active->errors.p99_error_over_jnd;
+    big.number = jnd_text(big.error_over_jnd);
+    big.below = "99 % of the time the error of " + name + " is below this";
+  }
+  return big;
 }
 
 WindowView window_view(const LiveSession& session, const ViewState& view) {
@@ -118,14 +149,19 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
   WindowView shown;
   shown.number = ++made;
   shown.models = models_view(session, view.time.end_s(std::numeric_limits<double>::infinity()));
-  shown.health = health_view(session);
+  shown.health = {session.loop().statistics(),
+                  session.loop().scheduling(),
+                  session.newest(),
+                  session.faults().missed_of_late(),
+                  session.faults().events(),
+                  session.alarms(),
+                  session.device_name()};
   const ReferenceKind kind = session.comparison().reference();
   const std::size_t blocks = view.settings.block_count;
   const bool reference = blocks > 1 && kind != ReferenceKind::direct && session.has_reference(kind);
   shown.blocks = slots_of_blocks(shown.models, reference, blocks);
   shown.reference_block = reference_block(session);
   shown.reference_words = session.reference_words();
-  shown.reference_N = session.comparison().reference_N();
   shown.usual_force_N = kUsualOverStrongest * session.scene().strongest_press_N;
   shown.usual_depth_m = session.models().trained_depth_m();
   shown.history = &session.comparison().history();

@@ -5,16 +5,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "engine/live/haptics_loop.h"
 #include "engine/tick/jnd.h"
 #include "rendering/panels/view_state.h"
+#include "rendering/ui/curves.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
-#include "scenes/live/force_history.h"
 #include "scenes/live/session_models.h"
 #include "scenes/live/verdict.h"
 
@@ -35,14 +34,16 @@ struct ModelsView {
   bool compared = true;                         // there is a reference
   std::size_t reference = kReferenceBlock;      // its slot, if it is a model
   std::string reference_name = "the material";  // the reference in few words
-  std::string counted;                          // see counted_words
+  std::string counted;                          // the samples that the errors are over, in words
   bool replays_training = false;                // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
-  HistoryPoint now;  // the last tick that the curves show; without one all forces are NaN
+  HistoryPoint now = no_forces();  // the last tick that the curves show; without one all forces are NaN
 
   // The slots that are not hidden, in order. Keys and tables number them.
   std::vector<std::size_t> listed() const;
+  // The slots that are ready, the active one last: it is drawn on top.
+  std::vector<std::size_t> drawn() const;
   // The number of a listed slot, from 1.
   std::size_t number_of(std::size_t slot) const;
   // The active model; null unless it is ready.
@@ -70,16 +71,24 @@ struct WindowView {
   std::vector<std::size_t> blocks;
   std::string reference_block;  // name of the block of the reference
   std::string reference_words;
-  double reference_N = std::numeric_limits<double>::quiet_NaN();
   double usual_force_N = 0.0;  // the axes always include these two
   double usual_depth_m = 0.0;
   const ForceHistory* history = nullptr;  // of the session; not null in a result of window_view
 };
 
 WindowView window_view(const LiveSession& session, const ViewState& view);
-HealthView health_view(const LiveSession& session);
 
-// The samples that the errors are over, since when, and what is excluded, in words.
-std::string counted_words(const LiveSession& session);
+// A warning that the active model is outside its training domain; else empty.
+std::string data_warning(const ModelsView& models);
+
+// The big number and its description: the 99 % error of the active model in JND, over the same samples as the table;
+// without a reference its predicted error; before the first model is ready the progress of its fit.
+struct BigNumber {
+  std::string number = "–";
+  std::string what = "times the smallest difference a hand can feel:";
+  std::string below = "the error of the active model";
+  double error_over_jnd = 0.0;  // above 1 it is drawn in kAboveJndColour
+};
+BigNumber big_number(const ModelsView& models, bool has_truth);
 
 }  // namespace palpate

@@ -88,27 +88,29 @@ BlockView::Bodies::Bodies(const BlockGeometry& block, float dome_m, const Detail
 Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene, std::optional<Smoothing> smoothing) {
   const auto assets = find_assets();
   if (!assets) return assets.error();
-  const std::string folder = *assets + "/shaders";
-  auto block = Shader::load(folder, "block", "block", {"common", "dent"}, definitions_of(scene.finish));
-  if (!block) return block.error();
-  auto solid = Shader::load(folder, "solid", "solid");
-  if (!solid) return solid.error();
-  auto table = Shader::load(folder, "table", "table");
-  if (!table) return table.error();
-  std::optional<EdgeFilter> edges;
   if (!smoothing) smoothing = smoothing_for(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+  struct Program {
+    const char *vertex, *fragment;
+    std::vector<std::string> parts = {"common"};
+    std::string definitions = {};
+  };
+  std::vector<Program> programs = {
+      {"block", "block", {"common", "dent"}, definitions_of(scene.finish)}, {"solid", "solid"}, {"table", "table"}};
   if (*smoothing == Smoothing::filter) {
-    auto find = Shader::load(folder, "whole_view", "find_edges");
-    if (!find) return find.error();
-    auto smooth = Shader::load(folder, "whole_view", "edges");
-    if (!smooth) return smooth.error();
-    edges.emplace(EdgeFilter{std::move(*find), std::move(*smooth)});
+    programs.push_back({"whole_view", "find_edges"});
+    programs.push_back({"whole_view", "edges"});
   }
-  return std::unique_ptr<BlockView>(
-      new BlockView(scene, std::move(*block), std::move(*solid), std::move(*table), std::move(edges)));
+  std::vector<Shader> shaders;
+  for (const auto& [vertex, fragment, parts, definitions] : programs) {
+    auto shader = Shader::load(*assets + "/shaders", vertex, fragment, parts, definitions);
+    if (!shader) return shader.error();
+    shaders.push_back(std::move(*shader));
+  }
+  return std::unique_ptr<BlockView>(new BlockView(scene, std::move(shaders)));
 }
 
-BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader table, std::optional<EdgeFilter> edges)
+// `shaders`: of the blocks, of other bodies, of the table, and with the edge filter two for it.
+BlockView::BlockView(const Scene& scene, std::vector<Shader> shaders)
     : geometry_(scene.block),
       dome_m_(scene.finish == Finish::dome ? kDomeRise * static_cast<float>(scene.block.tool_radius_m) : 0.0F),
       finish_(scene.finish),
@@ -118,13 +120,14 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
                        1.3F * kToolLength * static_cast<float>(scene.block.tool_radius_m))),
       arrow_m_per_N_(kStrongestArrow * size_m_ / static_cast<float>(scene.strongest_press_N)),
       arrow_width_(size_m_ / kUsualSize_m),
-      block_shader_(std::move(block)),
-      solid_shader_(std::move(solid)),
-      table_shader_(std::move(table)),
+      block_shader_(std::move(shaders[0])),
+      solid_shader_(std::move(shaders[1])),
+      table_shader_(std::move(shaders[2])),
       fine_(scene.block, dome_m_, kFine),
       coarse_(scene.block, dome_m_, kCoarse),
       square_(square_mesh()),
-      smooth_(std::move(edges)) {
+      smooth_(shaders.size() > 3 ? std::optional(EdgeFilter{std::move(shaders[3]), std::move(shaders[4])})
+                                 : std::nullopt) {
   show(1, true);
 }
 
@@ -188,10 +191,17 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   glEnable(GL_CULL_FACE);
   smooth_.begin(viewport, scale);
   if (smooth_.filters()) {
-    refresh_still(blocks.size(), shown, theme);
+    // The picture of the static parts is kept until something changes that it depends on.
+    const Still now{view_projection_, smooth_.width(), smooth_.height(), blocks.size(), theme};
+    if (now != still_) {
+      smooth_.begin_still();
+      draw_still(blocks.size(), shown, theme);
+      smooth_.end_still();
+      still_ = now;
+    }
     smooth_.use_still(moving_parts(blocks));
   } else {
-    draw_all_still(blocks.size(), shown, theme);
+    draw_still(blocks.size(), shown, theme);
   }
   glEnable(GL_DEPTH_TEST);
   for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()), shown, theme);
@@ -202,16 +212,6 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
   smooth_.end();
-}
-
-// Updates the stored picture of the static parts if necessary.
-void BlockView::refresh_still(std::size_t count, const Bodies& bodies, Theme theme) {
-  const Still now{view_projection_, smooth_.width(), smooth_.height(), count, theme};
-  if (now == still_) return;
-  smooth_.begin_still();
-  draw_all_still(count, bodies, theme);
-  smooth_.end_still();
-  still_ = now;
 }
 
 // Of each block the top and the tool with its arrow, which are drawn in each frame.
@@ -254,7 +254,7 @@ Viewport BlockView::part_around(const glm::vec3& low, const glm::vec3& high) con
           static_cast<int>(most.y - least.y)};
 }
 
-void BlockView::draw_all_still(std::size_t count, const Bodies& bodies, Theme theme) const {
+void BlockView::draw_still(std::size_t count, const Bodies& bodies, Theme theme) const {
   const Rgb& background = palette(theme).background;
   glClearColor(background.r, background.g, background.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -357,17 +357,7 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at, const Bodi
   part(bodies.ball, tool_colour_, 1.0F);
   part(bodies.sensor, glm::mix(tool_colour_, palette(theme).rubber, 0.5F), 0.6F);
   part(bodies.handle, palette(theme).rubber, 0.25F);
-  if (pose.force_N >= kShortestArrow_N) draw_arrow(pose, at, bodies);
-}
-
-// The arrow is beside the tool in the view of the camera, so that neither hides the other.
-glm::vec3 BlockView::arrow_foot() const {
-  const glm::vec3 eye = camera_.eye();
-  const glm::vec3 right = glm::normalize(glm::vec3(eye.z, 0.0F, -eye.x));
-  return 3.2F * static_cast<float>(geometry_.tool_radius_m) * right;
-}
-
-void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies) const {
+  if (pose.force_N < kShortestArrow_N) return;
   const glm::vec3 foot = at + arrow_foot() + glm::vec3(0.0F, 0.001F - dome_m_, 0.0F);
   const float length_m = arrow_length_m(pose);
   solid_shader_.set("colour", pose.arrow);
@@ -379,6 +369,13 @@ void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at, const Bod
   solid_shader_.set("offset", foot + glm::vec3(0.0F, length_m, 0.0F));
   solid_shader_.set("stretch", glm::vec3(arrow_width_));
   bodies.tip.draw();
+}
+
+// The arrow is beside the tool in the view of the camera, so that neither hides the other.
+glm::vec3 BlockView::arrow_foot() const {
+  const glm::vec3 eye = camera_.eye();
+  const glm::vec3 right = glm::normalize(glm::vec3(eye.z, 0.0F, -eye.x));
+  return 3.2F * static_cast<float>(geometry_.tool_radius_m) * right;
 }
 
 }  // namespace palpate

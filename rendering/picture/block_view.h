@@ -69,20 +69,18 @@ class BlockView {
     bool operator==(const Still&) const = default;
   };
 
-  BlockView(const Scene& scene, Shader block, Shader solid, Shader table, std::optional<EdgeFilter> edges);
+  BlockView(const Scene& scene, std::vector<Shader> shaders);
   float outline_px() const;
   float arrow_length_m(const BlockPose& pose) const;
   glm::vec3 arrow_foot() const;  // relative to the middle of a block's top
   const Bodies& bodies(std::size_t count, const Viewport& viewport) const;
-  void refresh_still(std::size_t count, const Bodies& bodies, Theme theme);
   std::vector<Viewport> moving_parts(const std::vector<BlockPose>& blocks) const;
   Viewport part_around(const glm::vec3& low, const glm::vec3& high) const;
-  void draw_all_still(std::size_t count, const Bodies& bodies, Theme theme) const;
+  void draw_still(std::size_t count, const Bodies& bodies, Theme theme) const;
   void draw_outline(const glm::vec3& place, const Bodies& bodies, Theme theme) const;
   void draw_table(std::size_t count, Theme theme) const;
   void draw_top(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies, bool framed) const;
   void draw_tool(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies, Theme theme) const;
-  void draw_arrow(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies) const;
   void begin(const Shader& shader) const;
   void begin_block(const DentShape& dent, const glm::vec3& place) const;
 

@@ -41,7 +41,6 @@ class Camera {
     float yaw_rad = 0.5F;
     float pitch_rad = 0.42F;
     float distance_m = 0.4F;
-    bool operator==(const Pose&) const = default;
   };
   void aim();  // computes `target_` from `framed_` and `turn_`
   Pose now_;

@@ -60,23 +60,6 @@ void join_rings(Mesh& mesh, std::size_t around) {
   }
 }
 
-// Adds rings from the middle outward, whose shape changes from a circle to that of the rim.
-void add_top(Mesh& mesh, const Outline& rim, int rings) {
-  const glm::vec3 up(0.0F, 1.0F, 0.0F);
-  float nearest = 1e9F;
-  for (const Vertex& point : rim) nearest = std::min(nearest, glm::length(point.position));
-  for (int k = 0; k <= rings; ++k) {
-    const float t = static_cast<float>(k) / static_cast<float>(rings);
-    const float size = 1e-4F + (1.0F - 1e-4F) * t * (0.22F + 0.78F * t * t);
-    const float square = glm::smoothstep(0.4F, 1.0F, size);
-    for (const Vertex& point : rim) {
-      const glm::vec3 round = nearest * glm::normalize(point.position);
-      mesh.vertices.push_back({size * glm::mix(round, point.position, square), up});
-    }
-    if (k > 0) join_rings(mesh, rim.size());
-  }
-}
-
 void add_shifted(Mesh& mesh, const Outline& rim, float outward_m, float down_m, float tilt_rad) {
   for (const Vertex& point : rim) {
     const glm::vec3 place = point.position + outward_m * point.normal - glm::vec3(0.0F, down_m, 0.0F);
@@ -88,9 +71,23 @@ void add_shifted(Mesh& mesh, const Outline& rim, float outward_m, float down_m, 
 
 }  // namespace
 
+// Rings from the middle outward, whose shape changes from a circle to that of the rim.
 Mesh block_top(const glm::vec2& size_m, const Detail& detail) {
   Mesh mesh;
-  add_top(mesh, outline(0.5F * size_m - kEdge_m, detail), detail.rings);
+  const Outline rim = outline(0.5F * size_m - kEdge_m, detail);
+  const glm::vec3 up(0.0F, 1.0F, 0.0F);
+  float nearest = 1e9F;
+  for (const Vertex& point : rim) nearest = std::min(nearest, glm::length(point.position));
+  for (int k = 0; k <= detail.rings; ++k) {
+    const float t = static_cast<float>(k) / static_cast<float>(detail.rings);
+    const float size = 1e-4F + (1.0F - 1e-4F) * t * (0.22F + 0.78F * t * t);
+    const float square = glm::smoothstep(0.4F, 1.0F, size);
+    for (const Vertex& point : rim) {
+      const glm::vec3 round = nearest * glm::normalize(point.position);
+      mesh.vertices.push_back({size * glm::mix(round, point.position, square), up});
+    }
+    if (k > 0) join_rings(mesh, rim.size());
+  }
   return mesh;
 }
 

@@ -15,14 +15,6 @@ using Id = Result<unsigned>;
 
 constexpr const char* kElsewhere = ", and set PALPATE_ASSETS to the assets folder";
 
-std::string shader_log(unsigned shader) {
-  int length = 0;
-  glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
-  std::string text(static_cast<std::size_t>(length > 0 ? length : 1), '\0');
-  glGetShaderInfoLog(shader, static_cast<GLsizei>(text.size()), nullptr, text.data());
-  return text.c_str();
-}
-
 Id compile(const std::string& path, const std::string& text, unsigned kind) {
   const unsigned shader = glCreateShader(kind);
   const char* source = text.c_str();
@@ -31,7 +23,8 @@ Id compile(const std::string& path, const std::string& text, unsigned kind) {
   int good = 0;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
   if (good != 0) return Id(shader);
-  const std::string log = shader_log(shader);
+  char log[1024] = "";
+  glGetShaderInfoLog(shader, sizeof log, nullptr, log);
   glDeleteShader(shader);
   return Error{path + ": the graphics driver does not compile it: " + log};
 }

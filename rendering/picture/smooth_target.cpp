@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <iterator>
 #include <utility>
 
 namespace palpate {
@@ -12,6 +14,15 @@ namespace {
 constexpr int kSamples = 4;
 // Steps of the search along an edge in both directions; the flattest edge that it finds rises by one pixel in 26.
 constexpr int kSteps = 8;
+
+// Of Resolution.
+constexpr float kScales[] = {1.0F, 0.82F, Resolution::kLeast};  // each has two thirds of the pixels of the one before
+constexpr double kFrame_s = 1.0 / 60.0;
+constexpr int kFrames = 60;                  // frames of a mean
+constexpr double kStall_s = 2.0 * kFrame_s;  // longer frames count as this, so that one of them has no effect
+constexpr double kLate = 0.97, kRoom = 0.90;
+// A larger picture must fit for this many means, so that the resolution does not alternate.
+constexpr int kGood = 5;
 
 // Appends the parts of `a` outside of `b`: at most four.
 void append_outside(const Viewport& a, const Viewport& b, std::vector<Viewport>& to) {
@@ -56,6 +67,58 @@ Smoothing smoothing_for(std::string_view renderer) noexcept {
     if (renderer.find(program) != std::string_view::npos) return Smoothing::filter;
   }
   return Smoothing::samples;
+}
+
+void Pixels::release() {
+  if (framebuffer_ == 0) return;
+  glDeleteFramebuffers(1, &framebuffer_);
+  glDeleteTextures(1, &colour_);
+  glDeleteRenderbuffers(2, buffers_);
+  framebuffer_ = 0;
+}
+
+void Pixels::make() {
+  release();
+  glGenFramebuffers(1, &framebuffer_);
+  glGenTextures(1, &colour_);
+  glGenRenderbuffers(2, buffers_);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  const auto attach_buffer = [&](GLenum attachment, unsigned buffer, GLenum format) {
+    glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, format, width_, height_);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
+  };
+  if (samples_ > 0) {
+    attach_buffer(GL_COLOR_ATTACHMENT0, buffers_[0], GL_RGBA8);
+  } else {
+    glBindTexture(GL_TEXTURE_2D, colour_);
+    // The order of colours of a window, so that a software renderer copies memory without converting it.
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width_, height_, 0, GL_BGRA, GL_UNSIGNED_BYTE, nullptr);
+    for (const GLenum filter : std::initializer_list<GLenum>{GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const GLenum wrap : std::initializer_list<GLenum>{GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+      glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour_, 0);
+  }
+  attach_buffer(GL_DEPTH_ATTACHMENT, buffers_[1], GL_DEPTH_COMPONENT24);
+}
+
+void Pixels::draw_into(int width, int height) {
+  const bool same = framebuffer_ != 0 && width == width_ && height == height_;
+  width_ = width;
+  height_ = height;
+  if (!same) make();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glViewport(0, 0, width, height);
+}
+
+void Pixels::copy_to(const Pixels& other, const Viewport& part) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, other.framebuffer_);
+  const int right = part.x + part.width, top = part.y + part.height;
+  glBlitFramebuffer(part.x, part.y, right, top, part.x, part.y, right, top, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT,
+                    GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, other.framebuffer_);
 }
 
 SmoothTarget::SmoothTarget(std::optional<EdgeFilter> filter)
@@ -165,6 +228,28 @@ void SmoothTarget::filter_edges(const Pixels& picture, const std::vector<Viewpor
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_SCISSOR_TEST);
   glBindVertexArray(0);
+}
+
+float Resolution::scale() const noexcept { return kScales[step_]; }
+
+void Resolution::add(double busy_s) noexcept {
+  busy_s_ += std::min(busy_s, kStall_s);
+  if (++frames_ < kFrames) return;
+  const double mean_s = busy_s_ / frames_;
+  frames_ = 0;
+  busy_s_ = 0.0;
+  if (mean_s > kLate * kFrame_s) {
+    step_ = std::min(step_ + 1, static_cast<int>(std::size(kScales)) - 1);
+    good_ = 0;
+    return;
+  }
+  if (step_ == 0) return;
+  // The time of a larger picture, if all of it is proportional to the pixels.
+  const float more = kScales[step_ - 1] / kScales[step_];
+  good_ = mean_s * static_cast<double>(more * more) < kRoom * kFrame_s ? good_ + 1 : 0;
+  if (good_ < kGood) return;
+  --step_;
+  good_ = 0;
 }
 
 }  // namespace palpate

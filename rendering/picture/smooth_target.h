@@ -9,10 +9,41 @@
 #include <string_view>
 #include <vector>
 
-#include "rendering/picture/pixels.h"
 #include "rendering/picture/shader.h"
 
 namespace palpate {
+
+// In pixels of a framebuffer; the origin is the lower left corner.
+struct Viewport {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+// A framebuffer object with colour and depth.
+class Pixels {
+ public:
+  // `samples` per pixel, at most the 4 that OpenGL 3.3 guarantees; 0: no multisampling, and `colour` is a texture.
+  explicit Pixels(int samples) : samples_(samples) {}
+  Pixels(const Pixels&) = delete;
+  Pixels& operator=(const Pixels&) = delete;
+  ~Pixels() { release(); }
+
+  // Makes it the target of drawing. The contents are kept unless the size changes.
+  void draw_into(int width, int height);
+  // Copies colour and depth of `part` into `other`, which has the same size, and makes `other` the target of drawing.
+  void copy_to(const Pixels& other, const Viewport& part) const;
+  int width() const noexcept { return width_; }
+  int height() const noexcept { return height_; }
+  unsigned framebuffer() const noexcept { return framebuffer_; }
+  unsigned colour() const noexcept { return colour_; }
+
+ private:
+  void make();
+  void release();
+
+  int samples_, width_ = 0, height_ = 0;
+  unsigned framebuffer_ = 0, colour_ = 0;
+  unsigned buffers_[2] = {};  // of colour, with several samples, and of depth
+};
 
 enum class Smoothing { samples, filter };
 // For the renderer's name of OpenGL: the filter for a software renderer, else multisampling.
@@ -60,6 +91,22 @@ class SmoothTarget {
   std::vector<Viewport> parts_;  // in which this frame, or the one before, differs from the static picture
   std::vector<Viewport> drawn_;  // `parts` of this frame
   unsigned no_vertices_ = 0;     // vertex array without buffers, for a triangle
+};
+
+// The resolution of the 3-D view for a software renderer: it is reduced while frames are late.
+class Resolution {
+ public:
+  static constexpr float kLeast = 0.67F;  // smallest `scale`
+
+  // Adds the computation time of a frame, without the wait for the next one.
+  void add(double busy_s) noexcept;
+  float scale() const noexcept;  // share of the pixels per side, kLeast to 1
+
+ private:
+  int step_ = 0;  // 0: full resolution
+  int frames_ = 0;
+  int good_ = 0;  // successive periods of 60 frames in which the next larger resolution would fit
+  double busy_s_ = 0.0;
 };
 
 }  // namespace palpate

@@ -5,26 +5,6 @@
 #include <limits>
 
 namespace palpate {
-namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-
-// Ignores NaN.
-float smaller(float so_far, float value) noexcept { return value < so_far || std::isnan(so_far) ? value : so_far; }
-float larger(float so_far, float value) noexcept { return value > so_far || std::isnan(so_far) ? value : so_far; }
-
-const CurveColumn& empty_column() {
-  static const CurveColumn empty = [] {
-    CurveColumn column;
-    for (auto* values : {&column.low_over_jnd, &column.high_over_jnd, &column.sustained_over_jnd}) values->fill(kNone);
-    column.tick.force_N.fill(kNone);
-    column.tick.reference_N = column.jnd_N = kNone;
-    return column;
-  }();
-  return empty;
-}
-
-}  // namespace
 
 double predicted_error_N(const HistoryPoint& tick) noexcept {
   if (!std::isnan(tick.reference_N)) return std::nan("");
@@ -37,10 +17,9 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
   const double first = std::floor(from_s / width_s);
   std::size_t next = 0;
   if (scroll(width_s, first, slots, count)) {
-    next = history.first_at(taken_s_);
-    while (next < history.size() && history[next].loop_time_s <= taken_s_) ++next;
+    next = history.first_at(std::nextafter(taken_s_, std::numeric_limits<double>::infinity()));
   } else {
-    columns_.assign(count + 2, empty_column());
+    columns_.assign(count + 2, CurveColumn());
     next = history.first_at(first * width_s);
   }
   for (std::size_t i = 0; i < columns_.size(); ++i)
@@ -62,7 +41,7 @@ bool CurveColumns::scroll(double width_s, double first, std::size_t slots, std::
   if (same) {
     const auto gone = static_cast<std::ptrdiff_t>(first - first_);
     std::move(columns_.begin() + gone, columns_.end(), columns_.begin());
-    std::fill(columns_.end() - gone, columns_.end(), empty_column());
+    std::fill(columns_.end() - gone, columns_.end(), CurveColumn());
   } else {
     taken_s_ = -std::numeric_limits<double>::infinity();
   }
@@ -88,21 +67,20 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
   for (std::size_t i = 0; i < slots_; ++i) {
     const auto difference = static_cast<float>(point.difference_over_jnd(i, jnd));
     if (std::isnan(difference)) continue;
-    column.low_over_jnd[i] = smaller(column.low_over_jnd[i], difference);
-    column.high_over_jnd[i] = larger(column.high_over_jnd[i], difference);
-    column.sustained_over_jnd[i] = larger(column.sustained_over_jnd[i], std::abs(point.sustained_over_jnd[i]));
+    // These ignore NaN.
+    column.low_over_jnd[i] = std::fmin(column.low_over_jnd[i], difference);
+    column.high_over_jnd[i] = std::fmax(column.high_over_jnd[i], difference);
+    column.sustained_over_jnd[i] = std::fmax(column.sustained_over_jnd[i], std::abs(point.sustained_over_jnd[i]));
   }
 }
 
 void CurveColumns::find_highest() {
   highest_force_N_ = highest_sustained_ = 0.0F;
   for (const CurveColumn& column : columns_) {
-    // A comparison with NaN is false.
-    if (column.tick.reference_N + column.jnd_N > highest_force_N_)
-      highest_force_N_ = column.tick.reference_N + column.jnd_N;
+    highest_force_N_ = std::fmax(highest_force_N_, column.tick.reference_N + column.jnd_N);
     for (std::size_t i = 0; i < slots_; ++i) {
-      if (column.tick.force_N[i] > highest_force_N_) highest_force_N_ = column.tick.force_N[i];
-      if (column.sustained_over_jnd[i] > highest_sustained_) highest_sustained_ = column.sustained_over_jnd[i];
+      highest_force_N_ = std::fmax(highest_force_N_, column.tick.force_N[i]);
+      highest_sustained_ = std::fmax(highest_sustained_, column.sustained_over_jnd[i]);
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "engine/tick/haptics_tick.h"
@@ -13,18 +14,33 @@
 
 namespace palpate {
 
+// For each model: no value.
+constexpr std::array<float, kMaxModels> no_values() {
+  std::array<float, kMaxModels> values{};
+  values.fill(std::numeric_limits<float>::quiet_NaN());
+  return values;
+}
+// A tick without forces.
+inline HistoryPoint no_forces() {
+  HistoryPoint tick;
+  tick.force_N = no_values();
+  tick.reference_N = std::numeric_limits<float>::quiet_NaN();
+  return tick;
+}
+
 struct CurveColumn {
   double time_s = 0.0;                                // loop time of its middle
   bool any = false;                                   // whether it has ticks
   TickFaultLevel fault_level = TickFaultLevel::none;  // the worst of its ticks
   // The tick in which a model is farthest from the reference. All forces that are drawn are of this one tick, so that
   // no difference is shown that did not occur.
-  HistoryPoint tick;
-  float jnd_N = 0.0F;  // at that tick; NaN: no reference
+  HistoryPoint tick = no_forces();
+  float jnd_N = std::numeric_limits<float>::quiet_NaN();  // at that tick; NaN: no reference
   // Of each model; NaN: no force, or no comparison. Extremes of (model - reference) / JND, signed; 0 out of contact.
-  std::array<float, kMaxModels> low_over_jnd{};
-  std::array<float, kMaxModels> high_over_jnd{};
-  std::array<float, kMaxModels> sustained_over_jnd{};  // largest magnitude of HistoryPoint::sustained_over_jnd
+  std::array<float, kMaxModels> low_over_jnd = no_values();
+  std::array<float, kMaxModels> high_over_jnd = no_values();
+  std::array<float, kMaxModels> sustained_over_jnd =
+      no_values();  // largest magnitude of HistoryPoint::sustained_over_jnd
 };
 
 // The error (95 %) that the active model predicts of its force, 0 out of contact; NaN: there is none, or there is a

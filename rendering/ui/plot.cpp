@@ -30,7 +30,7 @@ LivePlot::LivePlot(const UiStyle& style, const ImVec2& size, const PlotAxes& axe
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetFontSize();
   low_ = {at.x + 2.6F * line, at.y + 0.45F * line};
-  high_ = {at.x + size.x - axes.right_room * line, at.y + size.y - (axes.x_numbers ? 1.35F : 0.45F) * line};
+  high_ = {at.x + size.x - 0.6F * line, at.y + size.y - 1.35F * line};
   ImGui::Dummy(size);
   draw_y_axis();
   draw_x_axis();
@@ -87,7 +87,6 @@ void LivePlot::draw_x_axis() const {
   for (double i = steps; i >= 0.0; i -= 1.0) {
     const double x = first + i * x_step;
     list_->AddLine({std::round(x_px(x)), low_.y}, {std::round(x_px(x)), high_.y}, ink(style_.colours().grid));
-    if (!axes_.x_numbers) continue;
     const bool last = i == steps;
     std::snprintf(text, sizeof text, "%.7g%s%s", shown(x), last ? " " : "", last ? axes_.x_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
@@ -129,10 +128,8 @@ void LivePlot::level(double y, ImU32 colour, float thickness) const {
   list_->AddLine({low_.x, y_px(y)}, {high_.x, y_px(y)}, colour, thickness);
 }
 
-void LivePlot::caption(const std::string& text, float x, float y, ImU32 colour) const {
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-  const ImVec2 room(high_.x - low_.x - size.x, high_.y - low_.y - size.y);
-  list_->AddText({low_.x + x * room.x, low_.y + y * room.y}, colour, text.c_str());
+void LivePlot::caption(const char* text, float top_px) const {
+  list_->AddText({low_.x + 0.2F * ImGui::GetFontSize(), top_px}, ink(style_.colours().quiet), text);
 }
 
 }  // namespace palpate

@@ -4,7 +4,6 @@
 
 #include <imgui.h>
 
-#include <string>
 #include <vector>
 
 #include "rendering/ui/ui_style.h"
@@ -25,9 +24,7 @@ struct PlotAxes {
   Range x, y;
   const char* x_unit = "";  // appended to the last label
   const char* y_unit = "";
-  bool x_numbers = false;   // whether to label the x axis
-  float right_room = 0.6F;  // margin for labels beside the frame, in line heights
-  bool decades = false;     // values are decimal logarithms; labels are not
+  bool decades = false;  // values are decimal logarithms; labels are not
 };
 
 class LivePlot {
@@ -56,8 +53,8 @@ class LivePlot {
   // Fills a range that a hand cannot feel, over the whole width.
   void jnd_band(double from, double to) const;
   void level(double y, ImU32 colour, float thickness) const;
-  // Text inside the frame; `x`, `y`: 0..1 from the upper left corner.
-  void caption(const std::string& text, float x, float y, ImU32 colour) const;
+  // Secondary text at the left edge of the frame.
+  void caption(const char* text, float top_px) const;
 
  protected:
   const UiStyle& style_;

@@ -1,11 +1,16 @@
 #include "rendering/ui/ui_style.h"
 
+#include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <filesystem>
 #include <glm/common.hpp>
+#include <initializer_list>
 
 namespace palpate {
 namespace {
@@ -40,6 +45,41 @@ ImFont* add_font(const std::string& path, float size_px) {
 }
 
 }  // namespace
+
+UiContext::UiContext(GLFWwindow* window) : window_(window) {
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // ImGui stores no window positions
+  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  ImGui_ImplGlfw_InitForOpenGL(window, true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+UiContext::~UiContext() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+void UiContext::begin_frame(const std::vector<int>& tapped) {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  // When the mouse leaves the window, no element is under it.
+  const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right);
+  if (!held && glfwGetWindowAttrib(window_, GLFW_HOVERED) == 0) ImGui::GetIO().MousePos = {-FLT_MAX, -FLT_MAX};
+  // ImGui samples its keys once a frame and would miss these.
+  const auto report = [&](bool down) {
+    for (const int key : tapped) ImGui::GetIO().KeysDown[key] = down;
+  };
+  report(true);
+  ImGui::NewFrame();
+  report(false);
+}
+
+void UiContext::end_frame() {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
 
 std::string find_font() {
   for (const char* path : kFontFiles) {
@@ -103,36 +143,24 @@ void UiStyle::set_colours() {
   style.CellPadding = {5.0F, 1.0F};
   style.ScaleAllSizes(std::max(scale_, 0.5F));
   const Palette& p = colours();
-  const auto set = [&](ImGuiCol what, const Rgb& colour, float alpha = 1.0F) {
-    style.Colors[what] = paint(colour, alpha);
+  const auto set = [&](const Rgb& colour, float alpha, std::initializer_list<ImGuiCol> parts) {
+    for (const ImGuiCol part : parts) style.Colors[part] = paint(colour, alpha);
   };
-  set(ImGuiCol_Text, p.text);
-  set(ImGuiCol_TextDisabled, p.quiet);
-  set(ImGuiCol_WindowBg, p.panel);
-  set(ImGuiCol_ChildBg, p.panel, 0.0F);
-  set(ImGuiCol_PopupBg, p.panel, 0.98F);
-  set(ImGuiCol_Border, p.edge);
-  for (const ImGuiCol what : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed}) set(what, p.raised);
-  const Rgb hovered = glm::mix(p.raised, p.text, 0.12F);
-  const Rgb pressed = glm::mix(p.raised, p.text, 0.22F);
-  for (const ImGuiCol what :
-       {ImGuiCol_FrameBg, ImGuiCol_Button, ImGuiCol_Header, ImGuiCol_TableHeaderBg, ImGuiCol_Tab}) {
-    set(what, p.raised);
-  }
-  for (const ImGuiCol what : {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered})
-    set(what, hovered);
-  for (const ImGuiCol what : {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive}) set(what, pressed);
-  set(ImGuiCol_SliderGrab, p.quiet);
-  set(ImGuiCol_SliderGrabActive, p.text);
-  set(ImGuiCol_CheckMark, p.text);
-  set(ImGuiCol_PlotHistogram, p.quiet);  // progress bars
-  set(ImGuiCol_TableBorderLight, p.grid);
-  set(ImGuiCol_TableBorderStrong, p.grid);
-  set(ImGuiCol_TableRowBgAlt, p.text, 0.03F);
-  set(ImGuiCol_ScrollbarBg, p.panel, 0.0F);
-  set(ImGuiCol_ScrollbarGrab, p.edge);
-  set(ImGuiCol_Separator, p.grid);
-  set(ImGuiCol_NavHighlight, p.quiet);
+  set(p.text, 1.0F, {ImGuiCol_Text, ImGuiCol_SliderGrabActive, ImGuiCol_CheckMark});
+  set(p.text, 0.03F, {ImGuiCol_TableRowBgAlt});
+  set(p.quiet, 1.0F, {ImGuiCol_TextDisabled, ImGuiCol_SliderGrab, ImGuiCol_NavHighlight});
+  set(p.quiet, 1.0F, {ImGuiCol_PlotHistogram});  // progress bars
+  set(p.panel, 1.0F, {ImGuiCol_WindowBg});
+  set(p.panel, 0.98F, {ImGuiCol_PopupBg});
+  set(p.panel, 0.0F, {ImGuiCol_ChildBg, ImGuiCol_ScrollbarBg});
+  set(p.edge, 1.0F, {ImGuiCol_Border, ImGuiCol_ScrollbarGrab});
+  set(p.grid, 1.0F, {ImGuiCol_TableBorderLight, ImGuiCol_TableBorderStrong, ImGuiCol_Separator});
+  set(p.raised, 1.0F,
+      {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed, ImGuiCol_FrameBg, ImGuiCol_Button,
+       ImGuiCol_Header, ImGuiCol_TableHeaderBg, ImGuiCol_Tab});
+  set(glm::mix(p.raised, p.text, 0.12F), 1.0F,
+      {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered});
+  set(glm::mix(p.raised, p.text, 0.22F), 1.0F, {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive});
 }
 
 }  // namespace palpate

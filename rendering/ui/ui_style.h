@@ -1,12 +1,15 @@
-// Fonts, sizes and colours of the panel, scaled with the window.
-// Thread guarantee: the window's thread, between frames.
+// Dear ImGui in a window: its context, and fonts, sizes and colours, scaled with the window.
+// Thread guarantee: the window's thread.
 #pragma once
 
 #include <imgui.h>
 
 #include <string>
+#include <vector>
 
 #include "rendering/ui/colours.h"
+
+struct GLFWwindow;
 
 namespace palpate {
 
@@ -44,10 +47,28 @@ struct Fonts {
 // The font file that is used; empty: none was found, so that the built-in font is used.
 std::string find_font();
 
+// The context of Dear ImGui for a window.
+class UiContext {
+ public:
+  // Set callbacks of the window before: ImGui calls them after its own.
+  explicit UiContext(GLFWwindow* window);
+  UiContext(const UiContext&) = delete;
+  UiContext& operator=(const UiContext&) = delete;
+  ~UiContext();
+
+  // `tapped`: keys of GLFW that were pressed and released since the last frame.
+  void begin_frame(const std::vector<int>& tapped = {});
+  // Draws all widgets since `begin_frame`.
+  void end_frame();
+
+ private:
+  GLFWwindow* window_;
+};
+
 class UiStyle {
  public:
-  // Call it before each frame. Rebuilds the fonts when the scale has changed, and sets the colours when the theme has
-  // changed.
+  // Call it before each frame (UiContext::begin_frame). Rebuilds the fonts when the scale has changed, and sets the
+  // colours when the theme has changed.
   void update(const UiSize& size, float larger, Theme theme, float body_px = kBody_px);
 
   const Fonts& fonts() const noexcept { return fonts_; }

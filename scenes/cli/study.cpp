@@ -2,13 +2,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/atomic_file.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/scene/scene.h"
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_analysis.h"
@@ -24,8 +24,7 @@ struct StudyOptions {
   int subjects = 12;               // for `simulate`
   std::uint64_t seed = 1;
   SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N, as in the paper
-  bool discriminates = false;
-  std::string recording;  // for --discriminate; empty: a virtual recording
+  std::optional<std::string> discriminate;         // the recording; empty: a virtual one
   std::string strokes_scene = "silicone_block";
   std::vector<std::string> models;
 };
@@ -62,16 +61,6 @@ void print_analysis(const StudyAnalysis& analysis) {
   print_line("conservative", analysis.lines->conservative);
 }
 
-// Writes the table and the JND file.
-Status analyse_jnd(const std::vector<StudyData>& files, const StudyOptions& options) {
-  const auto analysis = analyse_study(files, options.with_published);
-  if (!analysis) return analysis.error();
-  print_analysis(*analysis);
-  if (Status written = write_result("results.csv", analysis_table(*analysis), options); !written) return written;
-  if (!analysis->lines.ok()) return Error{"no JND file: " + analysis->lines.error().message};
-  return write_result("jnd.json", jnd_file_text(*analysis), options);
-}
-
 Status analyse_strokes(const std::vector<StudyData>& files, const StudyOptions& options) {
   const auto results = analyse_discrimination(files);
   if (!results) return results.error();
@@ -86,10 +75,16 @@ Status analyse_strokes(const std::vector<StudyData>& files, const StudyOptions& 
   return write_result("results.csv", discrimination_table(*results, strokes), options);
 }
 
-// Analyses all files by the procedure of the first one.
+// Analyses all files by the procedure of the first one. Writes the table and, for constant stimuli, the JND file.
 Status analyse(const std::vector<StudyData>& files, const StudyOptions& options) {
   if (const Status checked = check_study_files(files); !checked) return checked;
-  return files.front().header.strokes != nullptr ? analyse_strokes(files, options) : analyse_jnd(files, options);
+  if (files.front().header.strokes != nullptr) return analyse_strokes(files, options);
+  const auto analysis = analyse_study(files, options.with_published);
+  if (!analysis) return analysis.error();
+  print_analysis(*analysis);
+  if (Status written = write_result("results.csv", analysis_table(*analysis), options); !written) return written;
+  if (!analysis->lines.ok()) return Error{"no JND file: " + analysis->lines.error().message};
+  return write_result("jnd.json", jnd_file_text(*analysis), options);
 }
 
 Status run_analyse(const StudyOptions& options) {
@@ -105,10 +100,8 @@ Status run_analyse(const StudyOptions& options) {
 // Writes and analyses the file of each subject.
 Status run_simulate(const StudyOptions& options) {
   StudyHeader header;
-  if (options.discriminates) {
-    const Result<Scene> scene = load_scene(options.strokes_scene);
-    if (!scene) return scene.error();
-    auto strokes = prepare_strokes({*scene, options.models, options.recording});
+  if (options.discriminate) {
+    auto strokes = prepare_strokes(options.strokes_scene, options.models, *options.discriminate);
     if (!strokes) return strokes.error();
     header.strokes = std::move(*strokes);
   }
@@ -136,11 +129,7 @@ void add_output_options(CLI::App* verb, StudyOptions& options) {
 void add_stroke_options(CLI::App* verb, StudyOptions& options) {
   CLI::Option* discriminate =
       verb->add_option_function<std::string>(
-              "--discriminate",
-              [&options](const std::string& recording) {
-                options.discriminates = true;
-                options.recording = recording;
-              },
+              "--discriminate", [&options](const std::string& recording) { options.discriminate = recording; },
               "Discriminate two renderings of a stroke of this recording, in 100 trials [a virtual one]")
           ->type_name("[REC.csv]")
           ->expected(0, 1);

@@ -11,6 +11,7 @@
 #include "engine/tick/replay.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/material/rig.h"
+#include "scenes/scene/scene.h"
 #include "scenes/worker/model_worker.h"
 #include "scenes/worker/slot_plan.h"
 
@@ -95,28 +96,24 @@ bool can_be_presented(const Traces& traces, std::size_t from, double Trace::*for
   return squares_N2 <= kStrongestStroke_N * kStrongestStroke_N * kInterval_ticks;
 }
 
-// A piece of the length of an interval, and its errors as they are presented, with the ramps at both ends.
-struct Piece {
-  std::size_t from = 0;
-  ErrorFigures errors;
-
-  double sum_over_jnd() const { return static_cast<double>(errors.samples()) * errors.mean_error_over_jnd(); }
-};
-
-// The piece with the largest difference; without samples if no piece in contact can be presented.
-Piece hardest_piece(const Traces& traces, const JndLine& jnd) {
-  Piece hardest;
+// The first tick of the piece with the largest difference, and its errors as they are presented, with the ramps at both
+// ends. They have no samples if no piece in contact can be presented.
+std::pair<std::size_t, ErrorFigures> hardest_piece(const Traces& traces, const JndLine& jnd) {
+  std::pair<std::size_t, ErrorFigures> hardest;
+  double largest_sum = -1.0;
   for (std::size_t from = 0; from + kInterval_ticks <= traces.size(); from += kBetweenPieces_ticks) {
-    Piece piece{from, {}};
+    ErrorFigures errors;
     for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
       const Trace& at = traces[from + i];
       const double share = interval_share(i);
-      if (at.contact) piece.errors.add(share * at.comparison_N, share * at.reference_N, false, jnd);
+      if (at.contact) errors.add(share * at.comparison_N, share * at.reference_N, false, jnd);
     }
-    const bool harder = hardest.errors.samples() == 0 || piece.sum_over_jnd() > hardest.sum_over_jnd();
-    if (piece.errors.samples() > 0 && harder && can_be_presented(traces, from, &Trace::reference_N) &&
-        can_be_presented(traces, from, &Trace::comparison_N))
-      hardest = piece;
+    const double sum = static_cast<double>(errors.samples()) * errors.mean_error_over_jnd();
+    if (errors.samples() == 0 || sum <= largest_sum || !can_be_presented(traces, from, &Trace::reference_N) ||
+        !can_be_presented(traces, from, &Trace::comparison_N))
+      continue;
+    hardest = {from, errors};
+    largest_sum = sum;
   }
   return hardest;
 }
@@ -130,38 +127,42 @@ double mean_of(const std::vector<double>& stroke_N) {
   return rounded(std::accumulate(begin, begin + kHold_ticks, 0.0) / kHold_ticks, 1e4);
 }
 
-Result<Recording> test_recording(const StrokeRequest& request) {
-  if (!request.recording.empty()) return read_recording(request.recording);
-  if (!request.scene.material) {
-    return Error{"the scene \"" + request.scene.name +
+Result<Recording> test_recording(const Scene& scene, const std::string& recording) {
+  if (!recording.empty()) return read_recording(recording);
+  if (!scene.material) {
+    return Error{"the scene \"" + scene.name +
                  "\" has no virtual material to record; name a recording: --discriminate REC.csv"};
   }
   RigSettings settings;
-  settings.material = *request.scene.material;
+  settings.material = *scene.material;
   settings.seed = kTestSeed;
   return record_sensors(settings);
 }
 
 }  // namespace
 
-Result<std::shared_ptr<const StrokePair>> prepare_strokes(const StrokeRequest& request) {
-  if (request.models.size() > 2) {
-    return Error{"found " + std::to_string(request.models.size()) +
+Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& scene,
+                                                          const std::vector<std::string>& models,
+                                                          const std::string& recording) {
+  const Result<Scene> loaded = load_scene(scene);
+  if (!loaded) return loaded.error();
+  if (models.size() > 2) {
+    return Error{"found " + std::to_string(models.size()) +
                  " models, expected one, to compare with the recorded force, or two; leave some out"};
   }
-  Result<std::vector<SlotPlan>> plans = plan_slots(request.scene, request.models, false);
+  Result<std::vector<SlotPlan>> plans = plan_slots(*loaded, models, false);
   if (!plans) return plans.error();
-  plans->resize(std::max<std::size_t>(request.models.size(), 1));
-  const Result<Recording> recording = test_recording(request);
-  if (!recording) return recording.error();
-  ModelWorker worker(request.scene, kTrainingSeed);
-  std::vector<Model> models;
+  plans->resize(std::max<std::size_t>(models.size(), 1));
+  const Result<Recording> rendered = test_recording(*loaded, recording);
+  if (!rendered) return rendered.error();
+  ModelWorker worker(*loaded, kTrainingSeed);
+  std::vector<Model> made;
   for (const SlotPlan& plan : *plans) {
-    auto made = worker.make(plan);
-    if (!made) return made.error();
-    models.push_back(std::move(*made));
+    auto model = worker.make(plan);
+    if (!model) return model.error();
+    made.push_back(std::move(*model));
   }
-  return strokes_of(*recording, models.size() == 2 ? models.front() : nullptr, models.back(), request.scene.jnd);
+  return strokes_of(*rendered, made.size() == 2 ? made.front() : nullptr, made.back(), loaded->jnd);
 }
 
 Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording, const Model& reference,
@@ -175,7 +176,7 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
                  recording.name + ", expected one that can be rendered to a still hand; name another recording"};
   }
   auto strokes = std::make_shared<StrokePair>();
-  strokes->reference = printable(reference != nullptr ? reference->name() : kRecordedForce, kLongestName);
+  strokes->reference = printable(reference != nullptr ? reference->name() : "recorded force", kLongestName);
   strokes->comparison = printable(comparison->name(), kLongestName);
   strokes->recording = printable(recording.name, kLongestName);
   strokes->from_s = rounded(traces[from].time_s, 1e3);

@@ -16,26 +16,19 @@
 #include "engine/base/result.h"
 #include "engine/recording/recording.h"
 #include "engine/tick/force_model.h"
-#include "scenes/scene/scene.h"
 #include "scenes/study/study_plan.h"
 
 namespace palpate {
 
-inline constexpr const char* kRecordedForce = "recorded force";
-
-struct StrokeRequest {
-  Scene scene;
-  // Methods, fitted as by `palpate fit`, or model files. Two: the reference and the comparison. One: the comparison
-  // with the recorded force as the reference. None: the first default model of the scene, as one.
-  std::vector<std::string> models;
-  // The recording to render; do not name one that a model was fitted to. Empty: a recording of the scene's virtual
-  // material with seed 2.
-  std::string recording;
-};
-
-// Errors: more than two models; those of plan_slots, of the fits and of the recording; neither recording nor virtual
-// material; no piece within the limits.
-Result<std::shared_ptr<const StrokePair>> prepare_strokes(const StrokeRequest& request);
+// `scene`: its name. `models`: methods, fitted as by `palpate fit`, or model files. Two: the reference and the
+// comparison. One: the comparison with the recorded force as the reference. None: the first default model of the scene,
+// as one. `recording`: the one to render; do not name one that a model was fitted to. Empty: a recording of the scene's
+// virtual material with seed 2.
+// Errors: more than two models; those of load_scene, of plan_slots, of the fits and of the recording; neither recording
+// nor virtual material; no piece within the limits.
+Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& scene,
+                                                          const std::vector<std::string>& models,
+                                                          const std::string& recording);
 
 // The same for ready models; `reference` null: the recorded force.
 Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,

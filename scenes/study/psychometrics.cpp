@@ -67,23 +67,13 @@ bool bounds_slope(const Cells& cells, const PsychometricFunction& fitted) {
 
 double normal_cdf(double z) noexcept { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
-// Bisection to the precision of a double. It is slow, and called a few times per fit only.
-double normal_quantile(double probability) noexcept {
-  double low = -9.0, high = 9.0;
-  for (int i = 0; i < 80; ++i) {
-    const double middle = 0.5 * (low + high);
-    (normal_cdf(middle) < probability ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
 double PsychometricFunction::at(double difference, bool comparison_first) const noexcept {
   return lapse + (1.0 - 2.0 * lapse) * normal_cdf(slope * difference + (comparison_first ? -order_bias : order_bias));
 }
 
 // For a given bias and lapse rate the reference forces are independent, so that the likelihood is maximised by nested
 // searches: over the lapse rate, the bias, and the slope of each reference force.
-PsychometricFit fit_psychometric(const Cells& cells, std::size_t references) {
+std::vector<PsychometricFunction> fit_psychometric(const Cells& cells, std::size_t references) {
   std::vector<Cells> of_reference(references);
   for (const AnswerCell& cell : cells) of_reference[cell.reference].push_back(cell);
   PsychometricFunction shared;
@@ -102,12 +92,12 @@ PsychometricFit fit_psychometric(const Cells& cells, std::size_t references) {
     most_likely = reached;
     best = shared;
   }
-  PsychometricFit fit;
+  std::vector<PsychometricFunction> functions;
   for (const Cells& own : of_reference) {
-    fit.functions.push_back(with_best_slope(own, best));
-    fit.determined.push_back(bounds_slope(own, fit.functions.back()));
+    functions.push_back(with_best_slope(own, best));
+    functions.back().determined = bounds_slope(own, functions.back());
   }
-  return fit;
+  return functions;
 }
 
 }  // namespace palpate

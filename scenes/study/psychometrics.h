@@ -20,10 +20,10 @@
 namespace palpate {
 
 inline constexpr double kJndCriterion = 0.75;
+inline constexpr double kCriterionQuantile = 0.6744897501960817;  // Phi^-1(kJndCriterion)
 
-// Phi and its inverse; `probability` above 0 and below 1.
+// Phi.
 double normal_cdf(double z) noexcept;
-double normal_quantile(double probability) noexcept;
 
 // The answers to all trials with the same stimuli. Counts may be fractional, for expected answers.
 struct AnswerCell {
@@ -38,20 +38,16 @@ struct PsychometricFunction {
   double slope = 1.0;  // 0.25 .. 40, a JND of 2.7 times the reference to one of 1.7 %
   double order_bias = 0.0;
   double lapse = 0.0;  // 0 .. 0.06
+  // Whether the answers bound the slope on both sides. They do not when all are correct or all are guesses; the slope
+  // is then at or near an end of its range.
+  bool determined = false;
 
   double at(double difference, bool comparison_first) const noexcept;
   // The JND over the reference, at kJndCriterion.
-  double jnd() const noexcept { return normal_quantile(kJndCriterion) / slope; }
+  double jnd() const noexcept { return kCriterionQuantile / slope; }
 };
 
-struct PsychometricFit {
-  std::vector<PsychometricFunction> functions;  // of each reference force
-  // Whether the answers bound the slope on both sides. They do not when all are correct or all are guesses; the slope
-  // is then at or near an end of its range.
-  std::vector<bool> determined;
-};
-
-// Joint maximum likelihood for `references` reference forces. The lapse rate is a multiple of 0.01.
-PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size_t references);
+// The functions of `references` reference forces by joint maximum likelihood. The lapse rate is a multiple of 0.01.
+std::vector<PsychometricFunction> fit_psychometric(const std::vector<AnswerCell>& cells, std::size_t references);
 
 }  // namespace palpate

@@ -28,7 +28,7 @@ bool answers_second(const SubjectTraits& traits, const Stimuli& stimuli, RandomS
 }  // namespace
 
 bool second_feels_larger(const SubjectTraits& traits, double first_N, double second_N, RandomStream& random) noexcept {
-  const double noise_per_jnd = 1.0 / (normal_quantile(kJndCriterion) * std::sqrt(2.0));
+  const double noise_per_jnd = 1.0 / (kCriterionQuantile * std::sqrt(2.0));
   const auto perceived_N = [&](double force_N) {
     return force_N + noise_per_jnd * traits.jnd.at(force_N) * random.normal();
   };
@@ -40,13 +40,13 @@ bool second_feels_larger(const SubjectTraits& traits, double first_N, double sec
 }
 
 std::vector<StudyRecord> simulated_answers(const StudyHeader& header, const SubjectTraits& traits, std::uint64_t seed) {
-  const StudyPlan plan = plan_study(header.subject, header.strokes.get());
+  const StrokePair* strokes = header.strokes.get();
   RandomStream random(seed, kStream);
   std::vector<StudyRecord> records;
-  for (const StudyTrial& trial : plan.trials) {
+  for (const StudyTrial& trial : plan_study(header.subject, strokes)) {
     StudyRecord record{trial, trial.first_N(), trial.second_N()};
-    if (header.strokes != nullptr) record.reminder_rendered_N = trial.reference_N;
-    record.answered_second = answers_second(traits, plan.stimuli(trial), random);
+    if (strokes != nullptr) record.reminder_rendered_N = trial.reference_N;
+    record.answered_second = answers_second(traits, stimuli_of(trial, strokes), random);
     record.device = "simulated";
     records.push_back(std::move(record));
   }

@@ -6,12 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/text.h"
+#include "scenes/evaluation/error_figures.h"
 #include "scenes/study/psychometrics.h"
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t kReferences = kReferenceForces_N.size();
+constexpr double kNormal95 = 1.9599639845400542;  // Phi^-1(0.975), for intervals of 95 %
 
 bool is_usable(const StudyRecord& record) {
   const auto deviates = [](double planned_N, double rendered_N) {
@@ -23,6 +25,7 @@ bool is_usable(const StudyRecord& record) {
 
 Result<SubjectJnd> jnds_of(const StudyData& data) {
   SubjectJnd result{data.header.subject, 0, {}};
+  std::array<Moments, kReferences> rendered_N;
   std::vector<AnswerCell> answers;
   for (const StudyRecord& record : data.records) {
     const StudyTrial& trial = record.trial;
@@ -34,40 +37,31 @@ Result<SubjectJnd> jnds_of(const StudyData& data) {
     const auto r =
         static_cast<std::size_t>(std::find(kReferenceForces_N.begin(), kReferenceForces_N.end(), trial.reference_N) -
                                  kReferenceForces_N.begin());
-    ReferenceJnd& one = result.references.at(r);
-    ++one.count;
-    one.rendered_N += (record.reference_rendered_N() - one.rendered_N) / static_cast<double>(one.count);
+    rendered_N.at(r).add(record.reference_rendered_N());
     answers.push_back(
         {r, record.rendered_difference(), trial.comparison_first, record.comparison_judged_larger() ? 1.0 : 0.0, 1.0});
   }
   if (answers.empty()) return Error{"found no usable answer of subject " + result.subject + "; leave the file out"};
-  const PsychometricFit fit = fit_psychometric(answers, kReferences);
+  const auto functions = fit_psychometric(answers, kReferences);
   for (std::size_t r = 0; r < kReferences; ++r) {
-    ReferenceJnd& one = result.references[r];
-    one.reference_N = kReferenceForces_N[r];
-    one.jnd_N = one.rendered_N * fit.functions[r].jnd();
-    one.determined = fit.determined[r];
+    const double mean_N = rendered_N[r].mean();
+    result.references[r] = {kReferenceForces_N[r],       mean_N, rendered_N[r].count(),
+                            mean_N * functions[r].jnd(), 0.0,    functions[r].determined};
   }
   return result;
 }
 
 // Mean and standard error of the subjects' JNDs at reference force `r`.
 ReferenceJnd mean_of(const std::vector<SubjectJnd>& subjects, std::size_t r) {
-  ReferenceJnd mean{kReferenceForces_N[r]};
-  double answered = 0.0, count = 0.0, squares_N2 = 0.0;
+  Moments rendered_N, jnd_N;
   for (const SubjectJnd& subject : subjects) {
     const ReferenceJnd& one = subject.references[r];
-    if (one.count == 0) continue;
-    mean.rendered_N += (one.rendered_N - mean.rendered_N) / ++answered;
-    if (!one.determined) continue;
-    const double before_N = mean.jnd_N;
-    mean.jnd_N += (one.jnd_N - before_N) / ++count;
-    squares_N2 += (one.jnd_N - before_N) * (one.jnd_N - mean.jnd_N);  // Welford (1962)
-    ++mean.count;
+    if (one.count > 0) rendered_N.add(one.rendered_N);
+    if (one.determined) jnd_N.add(one.jnd_N);
   }
-  mean.determined = mean.count > 0;
-  if (mean.count > 1) mean.standard_error_N = std::sqrt(squares_N2 / (count * (count - 1.0)));
-  return mean;
+  const std::size_t count = jnd_N.count();
+  const double error_N = count > 1 ? jnd_N.deviation() / std::sqrt(static_cast<double>(count) - 1.0) : 0.0;
+  return {kReferenceForces_N[r], rendered_N.mean(), count, jnd_N.mean(), error_N, count > 0};
 }
 
 std::string row(const std::string& subject, const ReferenceJnd& one) {
@@ -155,7 +149,7 @@ std::string jnd_file_text(const StudyAnalysis& analysis) {
 CorrectShare correct_share(const Discrimination& result) noexcept {
   if (result.trials == 0) return {};
   const double n = static_cast<double>(result.trials), share = static_cast<double>(result.correct) / n;
-  const double z = normal_quantile(0.975), z2 = z * z / n;
+  const double z2 = kNormal95 * kNormal95 / n;
   const double middle = (share + 0.5 * z2) / (1.0 + z2);
   const double half = std::sqrt(share * (1.0 - share) * z2 + 0.25 * z2 * z2) / (1.0 + z2);
   return {share, std::max(0.0, middle - half), std::min(1.0, middle + half)};

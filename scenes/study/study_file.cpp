@@ -134,8 +134,7 @@ Result<StudyData> parse_study(const std::string& text, const std::string& path) 
     }
   }
   std::string expected = study_header_text(header, value_of(found, "# consent accepted, "));
-  const StudyPlan plan = plan_study(header.subject, header.strokes.get());
-  for (const StudyTrial& trial : plan.trials) {
+  for (const StudyTrial& trial : plan_study(header.subject, header.strokes.get())) {
     if (found.size() <= expected.size()) break;
     const std::string_view row = found.substr(expected.size());
     data.records.push_back(record_of(trial, row.substr(0, row.find('\n')), header.strokes != nullptr));

@@ -34,42 +34,43 @@ std::vector<StudyTrial> balanced(StudyTrial trial, std::size_t count, RandomStre
   return trials;
 }
 
-void append(std::vector<StudyTrial>& trials, const std::vector<StudyTrial>& more) {
-  trials.insert(trials.end(), more.begin(), more.end());
-}
+using Trials = std::vector<StudyTrial>;
+
+void append(Trials& trials, const Trials& more) { trials.insert(trials.end(), more.begin(), more.end()); }
 
 // Each reference against 60 % and 140 %, then the study.
-void add_constant_trials(StudyPlan& plan, const std::string& code) {
+Trials constant_trials(const std::string& code) {
   RandomStream random = subject_random(code, 2);
-  plan.trials = balanced({0.0, 0.0, false, true}, 2 * kReferenceForces_N.size(), random);
-  for (std::size_t i = 0; i < plan.trials.size(); ++i) {
+  Trials all = balanced({0.0, 0.0, false, true}, 2 * kReferenceForces_N.size(), random);
+  for (std::size_t i = 0; i < all.size(); ++i) {
     const int percent = i % 2 == 0 ? kComparisonPercent.front() : kComparisonPercent.back();
-    plan.trials[i].reference_N = kReferenceForces_N[i / 2];
-    plan.trials[i].comparison_N = percent_of(kReferenceForces_N[i / 2], percent);
+    all[i].reference_N = kReferenceForces_N[i / 2];
+    all[i].comparison_N = percent_of(kReferenceForces_N[i / 2], percent);
   }
-  shuffle(plan.trials, random);
+  shuffle(all, random);
   random = subject_random(code, 1);
-  std::vector<std::vector<StudyTrial>> rounds(kRepetitions);
+  std::vector<Trials> rounds(kRepetitions);
   for (const double reference_N : kReferenceForces_N) {
     for (const int percent : kComparisonPercent) {
-      const auto trials = balanced({reference_N, percent_of(reference_N, percent)}, kRepetitions, random);
+      const Trials trials = balanced({reference_N, percent_of(reference_N, percent)}, kRepetitions, random);
       for (std::size_t i = 0; i < rounds.size(); ++i) rounds[i].push_back(trials[i]);
     }
   }
-  for (std::vector<StudyTrial>& round : rounds) {
+  for (Trials& round : rounds) {
     shuffle(round, random);
-    append(plan.trials, round);
+    append(all, round);
   }
+  return all;
 }
 
-void add_stroke_trials(StudyPlan& plan, const std::string& code) {
-  const double reference_N = plan.strokes->reference_mean_N;
+Trials stroke_trials(const std::string& code, const StrokePair& strokes) {
+  const double reference_N = strokes.reference_mean_N;
   RandomStream random = subject_random(code, 5);
-  plan.trials = balanced({reference_N, percent_of(reference_N, 100.0 * kEasyShare), false, true}, 4, random);
-  plan.block = kDiscriminationBlock;
+  Trials all = balanced({reference_N, percent_of(reference_N, 100.0 * kEasyShare), false, true}, 4, random);
   random = subject_random(code, 4);
-  for (std::size_t i = 0; i < kDiscriminationTrials; i += plan.block)
-    append(plan.trials, balanced({reference_N, plan.strokes->comparison_mean_N}, plan.block, random));
+  for (std::size_t i = 0; i < kDiscriminationTrials; i += kDiscriminationBlock)
+    append(all, balanced({reference_N, strokes.comparison_mean_N}, kDiscriminationBlock, random));
+  return all;
 }
 
 }  // namespace
@@ -86,15 +87,14 @@ Status check_subject_code(const std::string& code) {
                "not stored"};
 }
 
-StudyPlan plan_study(const std::string& code, const StrokePair* strokes) {
-  StudyPlan plan{strokes, {}};
-  strokes == nullptr ? add_constant_trials(plan, code) : add_stroke_trials(plan, code);
-  std::size_t study = 0;
-  for (StudyTrial& trial : plan.trials) trial.number = trial.training ? ++plan.training : ++study;
-  return plan;
+std::vector<StudyTrial> plan_study(const std::string& code, const StrokePair* strokes) {
+  Trials trials = strokes == nullptr ? constant_trials(code) : stroke_trials(code, *strokes);
+  std::size_t training = 0, study = 0;
+  for (StudyTrial& trial : trials) trial.number = trial.training ? ++training : ++study;
+  return trials;
 }
 
-Stimuli StudyPlan::stimuli(const StudyTrial& trial) const {
+Stimuli stimuli_of(const StudyTrial& trial, const StrokePair* strokes) {
   if (strokes == nullptr) return {Stimulus{}, Stimulus{trial.first_N()}, Stimulus{trial.second_N()}};
   const Stimulus reference{1.0, &strokes->reference_N};
   const Stimulus comparison =

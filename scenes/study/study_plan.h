@@ -47,6 +47,8 @@ inline constexpr std::array<double, 4> kReferenceForces_N = {0.3, 0.5, 1.0, 2.5}
 inline constexpr std::array<int, 8> kComparisonPercent = {60, 70, 80, 90, 110, 120, 130, 140};
 inline constexpr int kRepetitions = 10;  // of each pair; even, for the balance
 inline constexpr std::size_t kDiscriminationTrials = 100;
+// Trials between two breaks. Of constant stimuli: two repetitions of each pair.
+inline constexpr std::size_t kConstantBlock = 64;
 inline constexpr std::size_t kDiscriminationBlock = 20;
 
 struct StudyTrial {
@@ -68,16 +70,11 @@ double percent_of(double reference_N, double percent) noexcept;
 // form.
 Status check_subject_code(const std::string& code);
 
-struct StudyPlan {
-  const StrokePair* strokes = nullptr;  // null: constant stimuli
-  std::vector<StudyTrial> trials;       // first the training: easy trials, to learn the task
-  std::size_t training = 0;             // number of training trials
-  std::size_t block = 64;               // trials between two breaks: two repetitions of each pair
-
-  Stimuli stimuli(const StudyTrial& trial) const;
-};
-// The trials of a subject. With `strokes`, which outlive the plan, the forces of a trial are the means of the strokes,
-// and the training compares the reference with half of it.
-StudyPlan plan_study(const std::string& code, const StrokePair* strokes);
+// In these functions `strokes` null: constant stimuli.
+// The trials of a subject, first the training: easy trials, to learn the task. With `strokes` the forces of a trial are
+// the means of the strokes, and the training compares the reference with half of it.
+std::vector<StudyTrial> plan_study(const std::string& code, const StrokePair* strokes);
+// The forces of a trial; they refer to `strokes`.
+Stimuli stimuli_of(const StudyTrial& trial, const StrokePair* strokes);
 
 }  // namespace palpate

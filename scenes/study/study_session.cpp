@@ -40,10 +40,8 @@ std::string consent_text(bool strokes) {
 }  // namespace
 
 StudySession::StudySession(StudyFile file, std::uint64_t rest_ticks)
-    : file_(std::move(file)),
-      rest_ticks_(rest_ticks),
-      plan_(plan_study(file_.header().subject, file_.header().strokes.get())) {
-  if (file_.consented()) state_ = answered() < plan_.trials.size() ? StudyState::ready : StudyState::done;
+    : file_(std::move(file)), rest_ticks_(rest_ticks), trials_(plan_study(file_.header().subject, strokes())) {
+  if (file_.consented()) state_ = answered() < trials_.size() ? StudyState::ready : StudyState::done;
 }
 
 void StudySession::accept_consent(const std::string& when) {
@@ -59,7 +57,7 @@ void StudySession::proceed() {
 }
 
 void StudySession::present_next() {
-  presentation_ = presenter_.present(plan_.stimuli(trial()));
+  presentation_ = presenter_.present(stimuli_of(trial(), strokes()));
   state_ = StudyState::presenting;
 }
 
@@ -76,7 +74,7 @@ void StudySession::answer(bool second) {
   StudyRecord record{trial()};
   record.first_rendered_N = to_tenth_mN(seen.rendered_N[1]);
   record.second_rendered_N = to_tenth_mN(seen.rendered_N[2]);
-  if (has_reminder()) {
+  if (strokes() != nullptr) {
     record.reminder_rendered_N = to_tenth_mN(seen.rendered_N[0]);
     record.worst_N = to_tenth_mN(seen.worst_N);
   }
@@ -87,12 +85,12 @@ void StudySession::answer(bool second) {
   const Status written = file_.append(record);
   problem_ = written ? "" : written.error().message;
   if (!written) return;
-  const std::size_t done = answered() - std::min(answered(), plan_.training);
-  if (answered() == plan_.trials.size()) {
+  const std::size_t block = strokes() != nullptr ? kDiscriminationBlock : kConstantBlock;
+  if (answered() == trials_.size()) {
     state_ = StudyState::done;
-  } else if (answered() == plan_.training) {
+  } else if (record.trial.training != trial().training) {
     state_ = StudyState::ready;
-  } else if (done > 0 && done % plan_.block == 0) {
+  } else if (!record.trial.training && record.trial.number % block == 0) {
     state_ = StudyState::rest;
     rest_until_ = seen.tick + rest_ticks_;
   } else {
@@ -109,12 +107,14 @@ StudyView StudySession::view() {
   const PresentationState& seen = presenter_.newest();
   StudyView view;
   view.state = state_;
-  view.training = training();
-  view.answered = answered() - (training() ? 0 : plan_.training);
-  view.trials = training() ? plan_.training : plan_.trials.size() - plan_.training;
+  const StudyTrial& now = trials_[std::min(answered(), trials_.size() - 1)];
+  view.training = now.training;
+  view.answered = now.number - (answered() < trials_.size() ? 1 : 0);
+  view.trials = static_cast<std::size_t>(std::count_if(
+      trials_.begin(), trials_.end(), [&](const StudyTrial& trial) { return trial.training == now.training; }));
   if (answered() > 0 && file_.records().back().trial.training) {
     const StudyRecord& last = file_.records().back();
-    view.was_correct = has_reminder() ? last.found_reference() : last.found_larger();
+    view.was_correct = strokes() != nullptr ? last.found_reference() : last.found_larger();
   }
   if (state_ == StudyState::presenting && seen.presentation == presentation_) view.interval = seen.interval;
   if (state_ == StudyState::rest && rest_until_ > seen.tick) view.rest_ticks_left = rest_until_ - seen.tick;
@@ -125,18 +125,18 @@ StudyView StudySession::view() {
 std::string StudySession::message(const StudyView& view) const {
   switch (state_) {
     case StudyState::consent:
-      return problem_.empty() ? consent_text(has_reminder()) : problem_;
+      return problem_.empty() ? consent_text(strokes() != nullptr) : problem_;
     case StudyState::ready:
       if (dropped_out_)
         return "The device was not ready for a moment. The same pushes come again; go on when you are ready.";
       if (!view.training) return "Now the study itself. Go on when you are ready.";
-      return std::string("First a few trials to learn the task. ") + question(has_reminder()) +
+      return std::string("First a few trials to learn the task. ") + question(strokes() != nullptr) +
              " Go on when you are ready.";
     case StudyState::presenting:
       return std::array{"Hold still", "The reference", "First push", "Second push"}.at(
           static_cast<std::size_t>(view.interval + 1));
     case StudyState::answering:
-      if (problem_.empty()) return std::string(question(has_reminder())) + " Press 1 or 2.";
+      if (problem_.empty()) return std::string(question(strokes() != nullptr)) + " Press 1 or 2.";
       return "Your answer could not be stored: " + problem_ + ". Call the experimenter, then answer again.";
     case StudyState::rest:
       return "A break. Relax your hand; go on when you are ready.";
@@ -182,10 +182,6 @@ Status LiveStudy::begin(const std::string& code) {
 void LiveStudy::update() {
   if (loop_ == nullptr) return;
   newest_ = loop_->newest();
-  // The presenter records the forces; the snapshots are discarded, so that the ring does not fill up.
-  std::array<LoopSnapshot, 64> passed;
-  while (loop_->read_snapshots(passed.data(), passed.size()) == passed.size()) {
-  }
   session_->update();
 }
 

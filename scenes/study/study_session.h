@@ -52,21 +52,20 @@ class StudySession final : public ForceSource {
   StudyView view();
   StudyState state() const noexcept { return state_; }
   const StudyFile& file() const noexcept { return file_; }
-  const StudyTrial& trial() const { return plan_.trials.at(answered()); }  // the current one
+  const StudyTrial& trial() const { return trials_.at(answered()); }  // the current one
 
   // Once per ms; see StudyPresenter.
   double next_force_N(double rendered_N) noexcept override { return presenter_.tick(rendered_N); }
 
  private:
   std::size_t answered() const noexcept { return file_.records().size(); }
-  bool training() const noexcept { return answered() < plan_.training; }
-  bool has_reminder() const noexcept { return plan_.strokes != nullptr; }
+  const StrokePair* strokes() const noexcept { return file_.header().strokes.get(); }
   std::string message(const StudyView& view) const;
   void present_next();
 
   StudyFile file_;
   std::uint64_t rest_ticks_;
-  StudyPlan plan_;
+  std::vector<StudyTrial> trials_;
   StudyPresenter presenter_;
 
   StudyState state_ = StudyState::consent;

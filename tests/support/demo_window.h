@@ -127,7 +127,7 @@ class DemoWindowTest : public ::testing::Test {
     send(glfwSetDropCallback, 1, static_cast<const char**>(paths));
   }
   bool told(const std::string& words) const {
-    const auto& toasts = app_->toasts();
+    const auto& toasts = app_->view().toasts;
     return std::any_of(toasts.begin(), toasts.end(),
                        [&](const Toast& toast) { return toast.text.find(words) != std::string::npos; });
   }

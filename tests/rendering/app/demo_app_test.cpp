@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "engine/recording/recording.h"
-#include "rendering/app/stats_file.h"
 #include "scenes/worker/slot_plan.h"
 #include "tests/support/demo_window.h"
 
@@ -19,6 +17,22 @@ namespace palpate {
 namespace {
 
 using DemoAppTest = test::DemoWindowTest;
+using Size = std::pair<std::uint32_t, std::uint32_t>;
+
+// Pixels of a PNG file.
+struct Picture {
+  Size size;
+  std::vector<unsigned char> pixels;  // RGB
+};
+Picture read_picture(const std::string& path) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0);
+  image.format = PNG_FORMAT_RGB;
+  Picture picture{{image.width, image.height}, std::vector<unsigned char>(PNG_IMAGE_SIZE(image))};
+  EXPECT_NE(png_image_finish_read(&image, nullptr, picture.pixels.data(), 0, nullptr), 0);
+  return picture;
+}
 
 TEST_F(DemoAppTest, ShowsAPictureThatIsNotEmpty) {
   open("hand");
@@ -26,19 +40,13 @@ TEST_F(DemoAppTest, ShowsAPictureThatIsNotEmpty) {
   const std::string path = folder_.file("shot.png");
   ASSERT_TRUE(app_->screenshot(path, false).ok());
   EXPECT_FALSE(app_->screenshot(path, false).ok()) << "nothing is written over";
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  ASSERT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0);
-  EXPECT_EQ(image.width, 1280u);
-  EXPECT_EQ(image.height, 720u);
-  image.format = PNG_FORMAT_RGB;
-  std::vector<unsigned char> pixels(PNG_IMAGE_SIZE(image));
-  ASSERT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
+  const auto [size, pixels] = read_picture(path);
+  ASSERT_EQ(size, Size(1280, 720));
   std::set<std::uint32_t> scene;
   std::set<std::uint32_t> panel;
   for (std::size_t i = 0; i < pixels.size(); i += 3) {
     const std::uint32_t colour = (std::uint32_t{pixels[i]} << 16) | (std::uint32_t{pixels[i + 1]} << 8) | pixels[i + 2];
-    (i / 3 % image.width < 768 ? scene : panel).insert(colour);
+    (i / 3 % size.first < 768 ? scene : panel).insert(colour);
   }
   EXPECT_GT(scene.size(), 2000u) << "shaded blocks";
   EXPECT_GT(panel.size(), 100u) << "text and curves";
@@ -52,40 +60,6 @@ TEST_F(DemoAppTest, ADroppedModelTakesPart) {
   EXPECT_EQ(app_->session().models().info(2).name, "third");
   press(GLFW_KEY_3);
   EXPECT_EQ(app_->session().models().selected(), 2u);
-}
-
-TEST_F(DemoAppTest, AnotherProgramsTableIsImportedAndOffered) {
-  open("hand");
-  const std::string foreign = folder_.file("trial.txt");
-  std::ofstream file(foreign);
-  file << "Zeit [s];Weg [mm];Kraft [N]\n";
-  for (int i = 0; i < 200; ++i) file << "0," << 1000 + i << ";1," << 100 + i << ";0," << 100 + i << "\n";
-  file.close();
-  drop(foreign);
-  ASSERT_TRUE(until([&] { return app_->view().dialogs.recording_roles.any(); }));
-  EXPECT_EQ(app_->view().dialogs.recording_roles.problem, "");
-  const OpenedRecording offered = app_->view().dialogs.recording_roles.recordings.at(0);
-  ASSERT_GE(offered.words.size(), 4u);
-  EXPECT_EQ(offered.words[2].substr(0, 30), "position: column 2 \"Weg [mm]\" ");
-  const auto recording = read_recording(offered.path);
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  EXPECT_EQ(recording->rows.size(), 200u);
-}
-
-TEST_F(DemoAppTest, WhatIsAmbiguousIsExplainedInTheWindow) {
-  open("hand");
-  const std::string foreign = folder_.file("two.csv");
-  std::ofstream file(foreign);
-  file << "time [s],position [mm],force A [N],force B [N]\n";
-  for (int i = 0; i < 200; ++i) file << 0.01 * i << "," << 1 + 0.1 * i << "," << 0.2 * i << "," << 0.3 * i << "\n";
-  file.close();
-  drop(foreign);
-  ASSERT_TRUE(until([&] { return app_->view().dialogs.recording_roles.any(); }));
-  EXPECT_TRUE(app_->view().dialogs.recording_roles.recordings.empty());
-  EXPECT_NE(app_->view().dialogs.recording_roles.problem.find("force B"), std::string::npos)
-      << app_->view().dialogs.recording_roles.problem;
-  EXPECT_NE(app_->view().dialogs.recording_roles.problem.find("--columns"), std::string::npos)
-      << app_->view().dialogs.recording_roles.problem;
 }
 
 TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
@@ -171,20 +145,6 @@ TEST_F(DemoAppTest, StartsInsideItsScreen) {
   EXPECT_EQ(y, 0);
 }
 
-TEST_F(DemoAppTest, FollowsTheSizeOfItsWindow) {
-  open("hand");
-  glfwSetWindowSize(app_->window().handle(), 1920, 1080);
-  frames(5);
-  const std::string path = folder_.file("large.png");
-  ASSERT_TRUE(app_->screenshot(path, false).ok());
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  ASSERT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0);
-  EXPECT_EQ(image.width, 1920u);
-  EXPECT_EQ(image.height, 1080u);
-  png_image_free(&image);
-}
-
 // The default start of the program: the silicone block, the first line-up, a simulated hand.
 class DefaultStart : public test::DemoWindowTest {
  protected:
@@ -207,7 +167,7 @@ TEST_F(DefaultStart, TheHeadlineIsOfAModelOnTheStageAndOfTheTablesNumbers) {
   EXPECT_EQ(shown.models.verdict.headline.rfind(best.name + ": ", 0), 0u) << shown.models.verdict.headline;
   EXPECT_NE(shown.models.verdict.headline.find(tick_share(best.tick_ns())), std::string::npos);
   EXPECT_EQ(shown.models.verdict.noticeable, best.errors.p99_error_over_jnd > 1.0);
-  const nlohmann::json stats = nlohmann::json::parse(stats_text(app_->session(), shown, app_->frames()));
+  const nlohmann::json stats = nlohmann::json::parse(stats_text(app_->session(), shown, app_->view().frames));
   EXPECT_EQ(stats["verdict"], shown.models.verdict.headline);
   // A verdict is cleared with its errors.
   app_->session().reset_figures();
@@ -235,7 +195,9 @@ TEST_F(DefaultStart, IsDrawnAtEverySizeInBothThemes) {
       app_->view().settings.theme = theme;
       frames(folder != nullptr ? 60 : 4);
       const std::string name = "window" + std::to_string(height) + (theme == Theme::dark ? "-dark.png" : ".png");
-      ASSERT_TRUE(app_->screenshot((folder != nullptr ? std::string(folder) : folder_.path()) + "/" + name, true).ok());
+      const std::string path = (folder != nullptr ? std::string(folder) : folder_.path()) + "/" + name;
+      ASSERT_TRUE(app_->screenshot(path, true).ok());
+      EXPECT_EQ(read_picture(path).size, Size(width, height));
       for (const char* part : {"title", "buttons", "panel"}) {
         const ImGuiWindow* window = ImGui::FindWindowByName(part);
         ASSERT_NE(window, nullptr) << part;

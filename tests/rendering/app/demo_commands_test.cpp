@@ -5,7 +5,7 @@
 #include <set>
 
 #include "engine/live/pacer.h"
-#include "rendering/panels/overlay_parts.h"
+#include "rendering/panels/dialogs.h"
 #include "tests/support/demo_window.h"
 
 namespace palpate {
@@ -84,9 +84,9 @@ TEST_F(DemoCommandsTest, ClosingWhileRecordingLeavesTheFileWhole) {
 TEST_F(DemoCommandsTest, TheFilePickerListsFoldersAndWhatCanBeOpened) {
   std::filesystem::create_directory(folder_.file("lab"));
   for (const char* name : {"b.csv", "a.json", ".hidden.csv", "picture.png"}) folder_.with_file(name, "x");
-  EXPECT_EQ(overlay::pickable_files(folder_.path()),
+  EXPECT_EQ(pickable_files(folder_.path()),
             (std::vector<std::string>{"lab/", "a.json", "b.csv", "firm.json", "soft.json"}));
-  EXPECT_TRUE(overlay::pickable_files(folder_.file("nowhere")).empty());
+  EXPECT_TRUE(pickable_files(folder_.file("nowhere")).empty());
 }
 
 TEST_F(DemoCommandsTest, OpenTakesTheFocusAndATypedPathReplacesTheOldOne) {
@@ -113,7 +113,7 @@ TEST_F(DemoCommandsTest, AFileThatCannotBeReadIsNotARecentOne) {
   const std::string table = folder_.with_file("bad.csv", "time_s,position_m,force_N\n0,0,nan\n");
   drop(model);
   ASSERT_TRUE(until([&] { return told("bad.json"); }));
-  EXPECT_TRUE(app_->toasts().back().problem);
+  EXPECT_TRUE(app_->view().toasts.back().problem);
   EXPECT_EQ(app_->session().models().size(), 2u);
   drop(table);
   ASSERT_TRUE(until([&] { return !app_->view().dialogs.recording_roles.problem.empty(); }));
@@ -169,7 +169,7 @@ TEST_F(DemoCommandsTest, ListsAreUsedWithKeysAlone) {
   EXPECT_EQ(app_->session().scene().name, "skin");
 
   open_list(GLFW_KEY_U);
-  ASSERT_TRUE(until([&] { return !app_->view().dialogs.devices.empty(); }));
+  ASSERT_TRUE(until([&] { return !app_->view().devices.empty(); }));
   frames(4);
   for (int i = 0; i < 9; ++i) press(GLFW_KEY_UP);
   for (int i = 0; i < 9 && app_->view().dialogs.device_list; ++i) {
@@ -297,7 +297,7 @@ TEST_F(DemoCommandsTest, SaysWhatThereIsNotForAKey) {
   for (int i = 0; i < 3; ++i) press(GLFW_KEY_D);
   EXPECT_EQ(app_->session().dead_man(), DeadMan::off);
   EXPECT_TRUE(told("no device that pushes"));
-  EXPECT_EQ(app_->toasts().size(), 1u) << "the same notice is there once";
+  EXPECT_EQ(app_->view().toasts.size(), 1u) << "the same notice is there once";
   press(GLFW_KEY_B);
   press(GLFW_KEY_B);
   EXPECT_EQ(app_->view().settings.block_count, 4u);

@@ -32,12 +32,8 @@ class StudyAppTest : public ::testing::Test {
     start(nullptr);
   }
   void start(std::shared_ptr<const StrokePair> strokes) {
-    StudyRequest request;
-    request.device = "hand";
-    request.realtime = false;  // tests do not need real-time priority
-    request.strokes = std::move(strokes);
     app_.reset();
-    auto app = StudyApp::create(request);
+    auto app = StudyApp::create({}, "hand", std::move(strokes), false);  // tests do not need real-time priority
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);
     app_->frame();
@@ -68,51 +64,35 @@ class StudyAppTest : public ::testing::Test {
   std::unique_ptr<StudyApp> app_;
 };
 
-TEST_F(StudyAppTest, StoresAnAnswer) {
-  begin("S01");
-  ASSERT_NE(app_->session(), nullptr) << app_->problem();
-  EXPECT_EQ(app_->session()->state(), StudyState::consent);
-  press(GLFW_KEY_Y);
-  ASSERT_TRUE(until(StudyState::ready));
-  press(GLFW_KEY_ENTER);
-  ASSERT_TRUE(until(StudyState::presenting));
-  ASSERT_TRUE(until(StudyState::answering));
-  press(GLFW_KEY_1);
-  ASSERT_TRUE(until(StudyState::presenting));
-  press(GLFW_KEY_ESCAPE);
-  EXPECT_EQ(app_->session()->state(), StudyState::aborted);
-  app_.reset();
-  const auto data = read_study("study-S01.csv");
-  ASSERT_TRUE(data.ok()) << data.error().message;
-  ASSERT_EQ(data->records.size(), 1u);
-  const StudyRecord& record = data->records.front();
-  EXPECT_FALSE(record.answered_second);
-  // The device received the commanded forces without limiting.
-  EXPECT_NEAR(record.first_rendered_N, record.trial.first_N(), 1e-3);
-  EXPECT_NEAR(record.second_rendered_N, record.trial.second_N(), 1e-3);
-}
-
-TEST_F(StudyAppTest, StoresTheAnswerToThreeStrokes) {
-  start(test::example_strokes(0.8));
-  begin("S01");
-  ASSERT_NE(app_->session(), nullptr) << app_->problem();
-  press(GLFW_KEY_Y);
-  ASSERT_TRUE(until(StudyState::ready));
-  press(GLFW_KEY_ENTER);
-  ASSERT_TRUE(until(StudyState::answering));
-  const bool second = app_->session()->trial().comparison_first;
-  press(second ? GLFW_KEY_2 : GLFW_KEY_1);
-  ASSERT_TRUE(until(StudyState::presenting));
-  EXPECT_TRUE(app_->session()->view().was_correct);
-  press(GLFW_KEY_ESCAPE);
-  app_.reset();
-  const auto data = read_study("discriminate-S01.csv");
-  ASSERT_TRUE(data.ok()) << data.error().message;
-  ASSERT_EQ(data->records.size(), 1u);
-  const StudyRecord& record = data->records.front();
-  EXPECT_TRUE(record.found_reference());
-  EXPECT_NEAR(record.reminder_rendered_N, record.trial.reference_N, 1e-3);
-  EXPECT_LT(record.worst_N, 1e-3) << "the device got the stroke";
+TEST_F(StudyAppTest, StoresTheAnswerToForcesAndToStrokes) {
+  for (const bool strokes : {false, true}) {
+    start(strokes ? test::example_strokes(0.8) : nullptr);
+    begin("S01");
+    ASSERT_NE(app_->session(), nullptr) << app_->problem();
+    EXPECT_EQ(app_->session()->state(), StudyState::consent);
+    press(GLFW_KEY_Y);
+    ASSERT_TRUE(until(StudyState::ready));
+    press(GLFW_KEY_ENTER);
+    ASSERT_TRUE(until(StudyState::answering));
+    const StudyTrial trial = app_->session()->trial();
+    const bool second = strokes ? test::truly_like(trial) : test::truly_larger(trial);
+    press(second ? GLFW_KEY_2 : GLFW_KEY_1);
+    ASSERT_TRUE(until(StudyState::presenting));
+    EXPECT_EQ(app_->session()->view().was_correct, true);
+    press(GLFW_KEY_ESCAPE);
+    EXPECT_EQ(app_->session()->state(), StudyState::aborted);
+    app_.reset();
+    const auto data = read_study(strokes ? "discriminate-S01.csv" : "study-S01.csv");
+    ASSERT_TRUE(data.ok()) << data.error().message;
+    ASSERT_EQ(data->records.size(), 1u);
+    const StudyRecord& record = data->records.front();
+    EXPECT_EQ(record.answered_second, second);
+    // The device received the commanded forces without limiting.
+    EXPECT_NEAR(record.first_rendered_N, trial.first_N(), 1e-3);
+    EXPECT_NEAR(record.second_rendered_N, trial.second_N(), 1e-3);
+    EXPECT_NEAR(record.reminder_rendered_N, strokes ? trial.reference_N : 0.0, 1e-3);
+    EXPECT_LT(record.worst_N, 1e-3);
+  }
 }
 
 TEST_F(StudyAppTest, ShowsTheResultAtTheEnd) {

@@ -28,8 +28,8 @@ TEST(CurveFiles, WhatIsEqualInTheTableIsEqualInTheFigure) {
   const ForceHistory history = example();
   CurveColumns columns;
   columns.gather(history, {}, 1, 100.0, 102.0, 100);
-  const CurveSource source{"scene", "hand", "truth", {}, 100.0, {{0, "model", kInkColour}}};
-  const Plot plot = curve_plot(columns, source, 100.0, 102.0);
+  const CurveSource source{"scene, hand", "truth", {}, 100.0, 100.0, 102.0, {{0, "model", kInkColour}}};
+  const Plot plot = curve_plot(columns, source);
   const std::vector<Series>& force = plot.panels.at(0).series;
   ASSERT_EQ(force.size(), 3u) << "band, reference, model";
   ASSERT_GT(force[1].rows.size(), 90u);
@@ -41,8 +41,8 @@ TEST(CurveFiles, WhatIsEqualInTheTableIsEqualInTheFigure) {
 }
 
 TEST(CurveFiles, EveryRowSaysWhatItsReferenceWas) {
-  const CurveSource source{"scene", "hand", "truth", {}, 100.0, {{0, "model", kInkColour}}};
-  std::istringstream csv(curve_csv(example(), source, 100.0, 102.0));
+  const CurveSource source{"scene, hand", "truth", {}, 100.0, 100.0, 102.0, {{0, "model", kInkColour}}};
+  std::istringstream csv(curve_csv(example(), source));
   std::string line;
   std::getline(csv, line);
   EXPECT_EQ(line, "# scene, hand; now compared with: truth");

@@ -78,7 +78,7 @@ class ExhibitTest : public test::DemoWindowTest {
   // Moves the mouse to the button and clicks.
   void click_on(const std::string& button) {
     ASSERT_TRUE(until([&] { return shows(button); })) << button;
-    move(app_->exhibit().buttons().at(button));
+    move(app_->exhibit().buttons().at(button).middle);
     click();
   }
   // A touch: the pointer appears at `at` and is pressed at the same time.
@@ -89,7 +89,7 @@ class ExhibitTest : public test::DemoWindowTest {
   }
   void touch_on(const std::string& button) {
     ASSERT_TRUE(until([&] { return shows(button); })) << button;
-    touch(app_->exhibit().buttons().at(button));
+    touch(app_->exhibit().buttons().at(button).middle);
   }
   bool until_over(const std::function<void()>& stroke) {
     return until([&] {
@@ -162,16 +162,6 @@ TEST_F(ExhibitTest, IsPlayedWithAMouseAlone) {
   click_on("Enter");
   EXPECT_EQ(state(), State::guess) << "once more";
   EXPECT_EQ(game().correct_answers(), 0u) << "and from the beginning";
-}
-
-TEST_F(ExhibitTest, IsPlayedWithKeysAlone) {
-  open_exhibit({});
-  visit_with_keys();
-}
-
-TEST_F(ExhibitTest, IsPlayedByTouchAlone) {
-  open_exhibit({});
-  visit_by_touch();
 }
 
 // The result appears at the end, with both blocks at the moment of the largest difference.
@@ -288,7 +278,7 @@ TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
     EXPECT_NEAR(block(0, 0.0F).x, home.x, 0.5F);
     resident.push_back(resident_MB());
     std::printf("visitor %d: %.1f MB, %llu frames, late p50 %.0f us\n", i + 1, resident_MB(),
-                static_cast<unsigned long long>(app_->frames().frames),
+                static_cast<unsigned long long>(app_->view().frames.times.percentiles().count),
                 app_->session().loop().statistics().lateness.p50_us);
   }
   // What screens, threads and the driver allocate once comes with some of the visitors; a leak is in every visit.

@@ -26,22 +26,23 @@ ModelsView view_of(std::vector<ModelView> slots, bool in_contact) {
   return models;
 }
 
-TEST(PanelWords, AStalledLoopComesBeforeAllElse) {
+TEST(PanelWords, AStallComesBeforeAFaultAndAFaultBeforeAlarmsThatAreOver) {
   HealthView health;
   health.loop.ticks = 10;
   health.loop.age_s = 0.3;
   health.newest.device.faults = device_fault::kUnplugged;
-  const HealthWords words = health_words(health, 60.0);
-  EXPECT_TRUE(test::has_parts(words.text, {"0.3 s"}));
-  EXPECT_TRUE(words.problem);
-}
-
-TEST(PanelWords, AlarmsThatAreOverAreCounted) {
-  HealthView health;
   health.alarms = {"the encoder jumped", "a tick was late"};
-  const HealthWords words = health_words(health, 60.0);
-  EXPECT_TRUE(test::has_parts(words.text, {"the encoder jumped", "1 more"}));
-  EXPECT_TRUE(words.problem && words.past);
+  const HealthWords stalled = health_words(health, 60.0);
+  EXPECT_TRUE(test::has_parts(stalled.text, {"last tick 0.3 s"}));
+  EXPECT_TRUE(stalled.problem && !stalled.past);
+  health.loop.age_s = 0.0;
+  const HealthWords unplugged = health_words(health, 60.0);
+  EXPECT_TRUE(test::has_parts(unplugged.text, {device_fault_words(device_fault::kUnplugged).front()}));
+  EXPECT_TRUE(unplugged.problem && !unplugged.past);
+  health.newest.device.faults = 0;
+  const HealthWords over = health_words(health, 60.0);
+  EXPECT_TRUE(test::has_parts(over.text, {"the encoder jumped", "1 more"}));
+  EXPECT_TRUE(over.problem && over.past);
 }
 
 TEST(PanelWords, MissedDeadlinesAndSlowPicturesAreNamed) {

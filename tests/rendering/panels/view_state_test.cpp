@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "rendering/panels/layout.h"
 #include "rendering/panels/panel_models.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/ui/ui_style.h"
 
 namespace palpate {

@@ -51,22 +51,6 @@ TEST(Mesh, TopAndSidesMeetWithoutAGap) {
   }
 }
 
-TEST(Mesh, ACoarseBlockHasAThirdOfTheTriangles) {
-  const auto count = [](const Detail& detail) {
-    return block_top({0.1F, 0.1F}, detail).triangles.size() + block_sides({0.1F, 0.1F}, 0.04F, detail).triangles.size();
-  };
-  EXPECT_LT(3 * count(kCoarse), count(kFine) * 11 / 10);
-}
-
-TEST(Mesh, TheTopIsFineWhereItIsPressed) {
-  const Mesh mesh = block_top({0.10F, 0.10F}, kFine);
-  int near_the_middle = 0;
-  for (const Vertex& vertex : mesh.vertices) {
-    if (std::hypot(vertex.position.x, vertex.position.z) < 0.005F) ++near_the_middle;
-  }
-  EXPECT_GT(near_the_middle, 500);
-}
-
 TEST(Mesh, ALatheFacesOutwards) {
   expect_consistent(lathe_mesh({{1e-4F, 0.0F}, {0.7F, 0.3F}, {1.0F, 1.0F}, {0.7F, 1.7F}, {1e-4F, 2.0F}}, 24));
 }

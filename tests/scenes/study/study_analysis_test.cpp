@@ -23,7 +23,7 @@ using test::example_strokes;
 StudyData average_subject(const std::string& code, const std::vector<double>& relative_jnds, int repetitions) {
   StudyData data{{code}, {}};
   for (std::size_t r = 0; r < kReferenceForces_N.size(); ++r) {
-    const PsychometricFunction truth{normal_quantile(kJndCriterion) / relative_jnds[r], 0.1, 0.0};
+    const PsychometricFunction truth{kCriterionQuantile / relative_jnds[r], 0.1, 0.0};
     for (const int percent : kComparisonPercent) {
       for (const bool first : {false, true}) {
         StudyRecord record;

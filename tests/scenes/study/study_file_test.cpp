@@ -21,7 +21,7 @@ constexpr const char* kRow = "training,1,0.3,0.18,1,0.18,0.2999,0,second,731,unk
 
 // An answer to a trial of the plan of S01.
 StudyRecord answer_to(std::size_t trial) {
-  StudyRecord record{plan_study("S01", nullptr).trials[trial]};
+  StudyRecord record{plan_study("S01", nullptr)[trial]};
   record.first_rendered_N = 0.18;
   record.second_rendered_N = 0.2999;
   record.answered_second = true;
@@ -89,6 +89,8 @@ TEST_F(StudyFileTest, OtherStudiesAndOtherFilesAreRefusedAndKept) {
   EXPECT_TRUE(has_parts(complaint(folder_.with_file("S02.csv", read_text(path_)), {"S02"}),
                         {"S02.csv", "S01", "S02", "another folder"}));
   EXPECT_TRUE(has_parts(complaint(path_, test::discrimination_header(0.8)), {path_, "same forces", "another folder"}));
+  const std::string strokes = folder_.with_file("S03.csv", study_header_text(test::discrimination_header(0.8), ""));
+  EXPECT_TRUE(has_parts(complaint(strokes, test::discrimination_header(0.9)), {strokes, "same forces"}));
   EXPECT_TRUE(has_parts(complaint(path_, {"Anna"}), {"Anna", "such as S01"}));
   const std::string notes = folder_.with_file("notes.csv", "time_s,position_m\n");
   EXPECT_TRUE(has_parts(complaint(notes), {notes + ":1:1:", "time_s,position_m", "# palpate-study 1"}));
@@ -117,33 +119,6 @@ TEST_F(StudyFileTest, AFullDiskLosesNothingThatWasAnswered) {
   EXPECT_EQ(file.records().size(), 1u);
   EXPECT_TRUE(file.append(answer_to(1)).ok());
   EXPECT_EQ(read_study(path_)->records.size(), 2u);
-}
-
-TEST_F(StudyFileTest, StrokesAreNamedAndResumed) {
-  const StudyHeader header = test::discrimination_header(0.8);
-  std::vector<StudyRecord> answered;
-  {
-    const auto session = test::session_at(path_, header);
-    ASSERT_TRUE(session.ok()) << session.error().message;
-    (*session)->accept_consent("");
-    test::answer_trials(**session, 11, test::truly_like);
-    answered = (*session)->file().records();
-  }
-  const std::string whole = read_text(path_);
-  EXPECT_TRUE(has_parts(whole, {"# procedure discriminate\n", "\"from_s\":12.3,"}));
-  folder_.with_file("S01.csv", whole + "study,8,1.69");  // an incomplete copy
-  {
-    const auto session = test::session_at(path_, header);
-    ASSERT_TRUE(session.ok()) << session.error().message;
-    EXPECT_EQ((*session)->file().records(), answered);
-    EXPECT_EQ((*session)->view().answered, 7u);
-    test::answer_trials(**session, 1000, test::truly_like);
-  }
-  const auto data = read_study(path_);
-  ASSERT_TRUE(data.ok()) << data.error().message;
-  EXPECT_EQ(data->records.size(), 4 + kDiscriminationTrials);
-  EXPECT_EQ(data->header.strokes->max_over_jnd, header.strokes->max_over_jnd);
-  EXPECT_TRUE(has_parts(complaint(path_, test::discrimination_header(0.9)), {path_, "same forces"}));
 }
 
 const std::string kGood = study_header_text(kHeader, "2024-05-06") +
@@ -237,8 +212,7 @@ TEST(StudyFiles, AreOfDifferentSubjectsAndTheSameForces) {
 
 TEST(StudyReader, RefusesRowsAfterTheLastTrial) {
   std::string text = study_header_text(kHeader, "");
-  const StudyPlan plan = plan_study("S01", nullptr);
-  for (const StudyTrial& trial : plan.trials) text += study_row({trial}, false);
+  for (const StudyTrial& trial : plan_study("S01", nullptr)) text += study_row({trial}, false);
   EXPECT_EQ(complaint_of(text), "accepted");
   EXPECT_TRUE(has_parts(complaint_of(text + kRow), {"S01.csv:335:1: ", "training", "expected \"\""}));
 }

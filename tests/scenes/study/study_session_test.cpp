@@ -65,21 +65,32 @@ TEST_F(StudySessionTest, NothingIsPresentedBeforeTheConsent) {
 }
 
 TEST_F(StudySessionTest, RunsFromConsentToTheEnd) {
-  const auto session = begun();
-  EXPECT_EQ(session->state(), StudyState::ready);
-  EXPECT_TRUE(session->view().training);
-  EXPECT_EQ(answer_trials(*session, 1000, truly_larger), 328u);
-  EXPECT_EQ(session->state(), StudyState::done);
-  EXPECT_EQ(session->view().answered, 320u);
-  ASSERT_EQ(records_of(session).size(), 328u);
-  for (const StudyRecord& record : records_of(session)) {
-    EXPECT_TRUE(record.found_larger());
-    EXPECT_EQ(record.first_rendered_N, record.trial.first_N());
-    EXPECT_EQ(record.second_rendered_N, record.trial.second_N());
-    EXPECT_FALSE(record.limited);
+  for (const bool strokes : {false, true}) {
+    SCOPED_TRACE(strokes);
+    std::filesystem::remove(path_);
+    const auto session = begun(strokes ? test::discrimination_header(0.8) : StudyHeader{"S01"});
+    const auto right = strokes ? truly_like : truly_larger;
+    EXPECT_EQ(session->state(), StudyState::ready);
+    EXPECT_TRUE(session->view().training);
+    EXPECT_TRUE(test::has_parts(session->view().message, {strokes ? "like the reference" : "larger"}));
+    answer_trials(*session, 1, [&](const StudyTrial& trial) { return !right(trial); });
+    EXPECT_EQ(session->view().was_correct, false);
+    const std::size_t study = strokes ? kDiscriminationTrials : 320, all = study + (strokes ? 4 : 8);
+    EXPECT_EQ(answer_trials(*session, 1000, right), all - 1);
+    EXPECT_EQ(session->state(), StudyState::done);
+    EXPECT_EQ(session->view().answered, study);
+    ASSERT_EQ(records_of(session).size(), all);
+    for (const StudyRecord& record : records_of(session)) {
+      EXPECT_EQ(strokes ? record.found_reference() : record.found_larger(), &record != &records_of(session).front());
+      EXPECT_EQ(record.first_rendered_N, record.trial.first_N());
+      EXPECT_EQ(record.second_rendered_N, record.trial.second_N());
+      EXPECT_EQ(record.reminder_rendered_N, strokes ? record.trial.reference_N : 0.0);
+      EXPECT_EQ(record.worst_N, 0.0);
+      EXPECT_FALSE(record.limited);
+    }
+    session->proceed();
+    EXPECT_EQ(session->state(), StudyState::done);
   }
-  session->proceed();
-  EXPECT_EQ(session->state(), StudyState::done);
 }
 
 TEST_F(StudySessionTest, OnlyTheTrainingHasFeedback) {
@@ -168,37 +179,27 @@ TEST_F(StudySessionTest, AbortWorksInEveryState) {
 }
 
 TEST_F(StudySessionTest, ResumesAfterTheLastAnswer) {
-  auto session = begun();
-  answer_trials(*session, 1000, truly_larger);
-  const std::string whole = test::read_text(path_);
-  for (const std::size_t until : {0u, 5u, 8u, 30u}) {
-    session.reset();
+  for (const bool strokes : {false, true}) {
+    SCOPED_TRACE(strokes);
+    const StudyHeader header = strokes ? test::discrimination_header(0.8) : StudyHeader{"S01"};
+    const auto right = strokes ? truly_like : truly_larger;
     std::filesystem::remove(path_);
-    session = begun();
-    answer_trials(*session, until, truly_larger);
-    session.reset();
-    auto resumed = test::session_at(path_);
-    ASSERT_TRUE(resumed.ok()) << resumed.error().message;
-    session = std::move(*resumed);
-    EXPECT_EQ(session->state(), StudyState::ready) << "consent is asked once";
-    answer_trials(*session, 1000, truly_larger);
-    EXPECT_EQ(test::read_text(path_), whole);
-  }
-}
-
-TEST_F(StudySessionTest, StrokesGoFromConsentToTheEnd) {
-  const auto session = begun(test::discrimination_header(0.8));
-  EXPECT_TRUE(test::has_parts(session->view().message, {"like the reference"}));
-  answer_trials(*session, 1, [](const StudyTrial& trial) { return !truly_like(trial); });
-  EXPECT_EQ(session->view().was_correct, false);
-  EXPECT_EQ(answer_trials(*session, 1000, truly_like), 3 + kDiscriminationTrials);
-  EXPECT_EQ(session->state(), StudyState::done);
-  for (const StudyRecord& record : records_of(session)) {
-    EXPECT_EQ(record.found_reference(), &record != &records_of(session).front());
-    EXPECT_EQ(record.first_rendered_N, record.trial.first_N());
-    EXPECT_EQ(record.second_rendered_N, record.trial.second_N());
-    EXPECT_EQ(record.reminder_rendered_N, record.trial.reference_N);
-    EXPECT_EQ(record.worst_N, 0.0);
+    auto session = begun(header);
+    answer_trials(*session, 1000, right);
+    const std::string whole = test::read_text(path_);
+    for (const std::size_t until : {0u, 5u, 8u, 30u}) {
+      session.reset();
+      std::filesystem::remove(path_);
+      session = begun(header);
+      answer_trials(*session, until, right);
+      session.reset();
+      auto resumed = test::session_at(path_, header);
+      ASSERT_TRUE(resumed.ok()) << resumed.error().message;
+      session = std::move(*resumed);
+      EXPECT_EQ(session->state(), StudyState::ready) << "consent is asked once";
+      answer_trials(*session, 1000, right);
+      EXPECT_EQ(test::read_text(path_), whole);
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-#include "rendering/picture/resolution.h"
+#include "rendering/picture/smooth_target.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,6 @@ namespace {
 
 void run(Resolution& resolution, double busy_s, int frames) {
   for (int i = 0; i < frames; ++i) resolution.add(busy_s);
-}
-
-TEST(Resolution, IsFullWhileFramesAreInTime) {
-  Resolution resolution;
-  run(resolution, 0.012, 1000);
-  EXPECT_EQ(resolution.scale(), 1.0F);
 }
 
 TEST(Resolution, FallsWhileFramesAreLateAndNeverBelowItsLeast) {
@@ -38,6 +32,13 @@ TEST(Resolution, RisesAgainOnlyWhereThereIsRoomForIt) {
   EXPECT_EQ(resolution.scale(), Resolution::kLeast) << "with half as many pixels again it would be late";
   run(resolution, 0.006, 3000);
   EXPECT_EQ(resolution.scale(), 1.0F);
+}
+
+TEST(Smoothing, IsAFilterWhereTheRendererIsAProgram) {
+  EXPECT_EQ(smoothing_for("llvmpipe (LLVM 15.0.6, 256 bits)"), Smoothing::filter);
+  EXPECT_EQ(smoothing_for("softpipe"), Smoothing::filter);
+  EXPECT_EQ(smoothing_for("Mesa Intel(R) UHD Graphics 620 (KBL GT2)"), Smoothing::samples);
+  EXPECT_EQ(smoothing_for("NVIDIA GeForce RTX 3060/PCIe/SSE2"), Smoothing::samples);
 }
 
 }  // namespace

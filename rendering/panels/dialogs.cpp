@@ -1,18 +1,23 @@
-// Windows and notices over the picture: the keys, files, scenes, roles of recordings, requests of the device.
+#include "rendering/panels/dialogs.h"
+
+#include <imgui.h>
+
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <iterator>
+#include <optional>
+#include <utility>
 
-#include "rendering/panels/overlay_parts.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/scene/folders.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/slot_plan.h"
 
-namespace palpate::overlay {
+namespace palpate {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr const char* kPictureHelp[] = {
     "The probe presses the same block with several models at once; the sentence at the top says which one to take.",
@@ -23,15 +28,7 @@ constexpr const char* kPictureHelp[] = {
     "Centres: the points that a radial basis function model is made of. More centres make it more accurate and "
     "slower."};
 
-}  // namespace
-
-void draw_plate(ImDrawList& list, const ImVec2& at, const ImVec2& size, const ImVec2& margin, ImU32 colour,
-                std::optional<Rgb> stripe) {
-  const ImVec2 low(at.x - margin.x, at.y - margin.y), high(at.x + size.x + margin.x, at.y + size.y + margin.y);
-  list.AddRectFilled(low, high, colour, 6.0F);
-  if (stripe) list.AddRectFilled(low, {at.x - 0.55F * margin.x, high.y}, ink(*stripe), 3.0F);
-}
-
+// Begins a dialog in the middle of the window, if it is open. Call ImGui::End if this returns true.
 bool begin_dialog(const char* title, bool& open) {
   if (!open) return false;
   const ImVec2 all = ImGui::GetIO().DisplaySize;
@@ -45,56 +42,14 @@ bool begin_dialog(const char* title, bool& open) {
   return true;
 }
 
+// Whether Enter was pressed in this frame.
 bool enter_pressed() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false); }
 
-bool list_entry(const std::string& text, bool selected, bool enabled) {
+// An entry of a list. Returns whether it was chosen with the mouse, the space bar or Enter.
+bool list_entry(const std::string& text, bool selected = false, bool enabled = true) {
   const bool chosen = ImGui::Selectable(text.c_str(), selected, enabled ? 0 : ImGuiSelectableFlags_Disabled);
   if (selected) ImGui::SetItemDefaultFocus();
   return chosen || (enabled && ImGui::IsItemFocused() && enter_pressed());
-}
-
-void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area, float top_px) {
-  float y = top_px;
-  ImFont* font = style.fonts().body;
-  const float pad = 0.6F * height_of(font);
-  const float wrap = 0.86F * area.size.x;
-  ImDrawList& list = *ImGui::GetForegroundDrawList();
-  for (const Toast& toast : toasts) {
-    const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, wrap, toast.text.c_str());
-    const float x = area.at.x + 0.5F * (area.size.x - size.x);
-    draw_plate(list, {x, y}, size, {pad, pad}, ink(style.colours().raised),
-               toast.problem ? style.colours().fault : reference_colour(style.theme()));
-    list.AddText(font, height_of(font), {x, y}, ink(style.colours().text), toast.text.c_str(), nullptr, wrap);
-    y += size.y + 2.6F * pad;
-  }
-}
-
-void draw_data_warning(const ModelsView& models, const UiStyle& style, const SceneArea& area, float top_px) {
-  const std::string text = data_warning(models);
-  if (text.empty()) return;
-  const float wrap = 0.8F * area.size.x;
-  const ImVec2 size = text_size(style.fonts().body, text, wrap);
-  const float pad = 0.4F * height_of(style.fonts().body);
-  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), top_px + pad);
-  draw_plate(*ImGui::GetBackgroundDrawList(), at, size, {2.0F * pad, pad}, ink(style.colours().raised));
-  text_at(style.fonts().body, at, ink(style.colours().text), text, wrap);
-}
-
-// Draws the request of the device to its user, in large text in the middle.
-void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  std::string words = empty_scene_words(session);
-  if (words.empty()) words = session.device_words();
-  if (words.empty()) return;
-  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-  ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.32F * area.size.y}, ImGuiCond_Always,
-                          {0.5F, 0.5F});
-  ImGui::SetNextWindowSize({0.8F * area.size.x, 0.0F});
-  ImGui::Begin("device", nullptr, kFloating & ~ImGuiWindowFlags_NoBackground);
-  ImGui::PushFont(style.fonts().heading);
-  ImGui::TextWrapped("%s", words.c_str());
-  ImGui::PopFont();
-  if (session.newest().device.zeroing == Zeroing::needed && ImGui::Button("Zero here (Z)")) session.start_zeroing();
-  ImGui::End();
 }
 
 void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands) {
@@ -150,8 +105,6 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
   ImGui::End();
 }
 
-namespace {
-
 // Draws a choice of several. Returns the index that the user has just chosen.
 template <typename Names>
 std::optional<std::size_t> choose(const char* title, const Names& names, std::size_t now) {
@@ -171,8 +124,6 @@ std::optional<std::size_t> choose(const char* title, const Names& names, std::si
 void choose(const char* title, const char* yes, const char* no, bool& value) {
   if (const auto to = choose(title, std::array{yes, no}, value ? 0 : 1)) value = *to == 0;
 }
-
-}  // namespace
 
 void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions& actions) {
   if (!begin_dialog("View", view.dialogs.view_list)) return;
@@ -216,8 +167,6 @@ void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions&
   ImGui::End();
 }
 
-namespace {
-
 void draw_role(RecordingRoles& roles, std::size_t index) {
   using Role = OpenedRecording::Role;
   OpenedRecording& one = roles.recordings[index];
@@ -231,7 +180,7 @@ void draw_role(RecordingRoles& roles, std::size_t index) {
   if (ImGui::RadioButton("leave", one.role == Role::none)) one.role = Role::none;
   ImGui::PopID();
   ImGui::SameLine();
-  ImGui::TextUnformatted(std::filesystem::path(one.path).filename().c_str());
+  ImGui::TextUnformatted(fs::path(one.path).filename().c_str());
   tip(one.path.c_str());
   for (const std::string& line : one.words) ImGui::TextDisabled("%s", line.c_str());
 }
@@ -247,8 +196,6 @@ std::string recording_roles_words(const RecordingRoles& roles) {
   return fits +
          (test ? ", and tests them on the other." : "; you press the best one. Drop a second recording to test on.");
 }
-
-}  // namespace
 
 void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
   RecordingRoles& roles = view.dialogs.recording_roles;
@@ -275,4 +222,105 @@ void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
   if (!open) roles = {};
 }
 
-}  // namespace palpate::overlay
+void go_to(FilePicker& picker, const fs::path& folder) {
+  picker.folder = folder.string();
+  picker.files = pickable_files(picker.folder);
+  picker.takes_focus = true;
+}
+
+// Enters a folder, or opens a file. Returns whether `path` was a file.
+bool pick(FilePicker& picker, const std::string& path, const OverlayActions& actions) {
+  if (path.empty()) return false;
+  std::error_code missing;
+  if (fs::is_directory(path, missing)) {
+    go_to(picker, path);
+    return false;
+  }
+  actions.open(path);
+  return true;
+}
+
+void draw_file_picker(ViewState& view, const OverlayActions& actions) {
+  FilePicker& picker = view.dialogs.picker;
+  if (!begin_dialog("Open a file", view.dialogs.file_list)) return picker.folder.clear();
+  std::error_code error;
+  if (picker.folder.empty()) go_to(picker, fs::current_path(error));
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const float width = std::min(0.85F * all.x, 44.0F * ImGui::GetFontSize());
+  bool done = false;
+  ImGui::TextDisabled("A recording, another program's table, or a model (.json). A path, then Enter:");
+  ImGui::SetNextItemWidth(width);
+  if (std::exchange(picker.takes_focus, false)) ImGui::SetKeyboardFocusHere();
+  if (ImGui::InputText("##path", picker.path.data(), picker.path.size(),
+                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
+    done = pick(picker, picker.path.data(), actions);
+  for (const std::string& file : std::vector<std::string>(view.settings.recent))
+    if (list_entry("recently opened: " + fs::path(file).filename().string() + "###" + file))
+      done = pick(picker, file, actions);
+  ImGui::TextUnformatted(fitting(picker.folder, width).c_str());
+  tip(picker.folder.c_str());
+  ImGui::BeginChild("files", {width, std::min(14.0F * line, 0.5F * all.y)}, true, ImGuiWindowFlags_NavFlattened);
+  std::string chosen;
+  if (list_entry("../")) chosen = fs::path(picker.folder).parent_path().string();
+  for (const std::string& name : picker.files)
+    if (list_entry(name)) chosen = (fs::path(picker.folder) / name).string();
+  if (picker.files.empty()) ImGui::TextDisabled("nothing here that can be opened");
+  ImGui::EndChild();
+  ImGui::End();
+  if (!chosen.empty())
+    done = pick(picker, chosen.back() == '/' ? chosen.substr(0, chosen.size() - 1) : chosen, actions);
+  if (done) view.dialogs.file_list = false;
+}
+
+// Draws the list of devices, with the reason if one cannot be used.
+void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions) {
+  if (!begin_dialog("Device", view.dialogs.device_list)) return;
+  if (view.devices.empty()) ImGui::TextDisabled("looking for devices ...");
+  for (const DeviceDescription& device : view.devices) {
+    const bool own = device.name == in_use;
+    const bool usable = own || device.problem.empty();
+    if (list_entry(device.name, own, usable)) {
+      actions.use_device(device.name);
+      view.dialogs.device_list = false;
+    }
+    ImGui::SameLine(8.0F * ImGui::GetFontSize());
+    ImGui::PushTextWrapPos(40.0F * ImGui::GetFontSize());
+    ImGui::TextDisabled("%s", own ? "in use here" : usable ? device.summary.c_str() : device.problem.c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::End();
+}
+
+}  // namespace
+
+std::vector<std::string> pickable_files(const std::string& folder) {
+  std::vector<std::string> folders, files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const std::string ending = entry->path().extension().string();
+    std::error_code unknown;
+    if (name.front() == '.') continue;
+    if (entry->is_directory(unknown)) {
+      folders.push_back(name + "/");
+    } else if (ending == ".json" || ending == ".csv" || ending == ".tsv" || ending == ".txt" || ending == ".dat") {
+      files.push_back(name);
+    }
+  }
+  std::sort(folders.begin(), folders.end());
+  std::sort(files.begin(), files.end());
+  folders.insert(folders.end(), files.begin(), files.end());
+  return folders;
+}
+
+void draw_dialogs(LiveSession& session, ViewState& view, const UiStyle& style, const OverlayActions& actions) {
+  draw_file_picker(view, actions);
+  draw_device_list(view, session.device_name(), actions);
+  draw_scene_list(session, view, actions);
+  draw_view_list(session, view, actions);
+  draw_recording_roles(view, actions);
+  draw_help(view, style, *actions.commands);
+}
+
+}  // namespace palpate

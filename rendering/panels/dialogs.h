@@ -1,0 +1,28 @@
+// The dialogs in the middle of the window: help, files to open, devices, scenes, the view, roles of recordings.
+// Thread guarantee: the window's thread, inside a frame.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "rendering/panels/view_state.h"
+#include "rendering/panels/window_command.h"
+#include "rendering/ui/ui_style.h"
+#include "scenes/live/live_session.h"
+
+namespace palpate {
+
+// What the choices of the dialogs do.
+struct OverlayActions {
+  const std::vector<WindowCommand>* commands = nullptr;  // for the buttons and the list of keys
+  std::function<void(const std::string&)> use_scene, open, use_device, use_line_up;
+  std::function<void()> use_recording_roles;  // trains and tests by Dialogs::recording_roles
+};
+
+void draw_dialogs(LiveSession& session, ViewState& view, const UiStyle& style, const OverlayActions& actions);
+
+// The entries of a folder that can be opened: its folders ("name/"), then its files.
+std::vector<std::string> pickable_files(const std::string& folder);
+
+}  // namespace palpate
