@@ -212,55 +212,6 @@ void print_peers(const BenchRows& rows) {
   print_settings();
 }
 
-constexpr const char* kMaterials[] = {"silicone", "foam", "gel", "stiff", "skin", "press"};
-
-// One line for each name after "<group>/<material>/", formatted by `cell`.
-template <typename Cell>
-void print_materials(const BenchRows& rows, const std::string& group, const std::string& title, const char* first,
-                     const std::vector<std::string>& names, const Cell& cell) {
-  const auto row_of = [&](const char* material, const std::string& name) {
-    return find(rows, group + "/" + material + "/" + name);
-  };
-  std::vector<const char*> materials;
-  for (const char* material : kMaterials)
-    if (std::any_of(names.begin(), names.end(), [&](const std::string& name) { return row_of(material, name); }))
-      materials.push_back(material);
-  if (materials.empty()) return;
-  std::vector<std::string> titles{first};
-  titles.insert(titles.end(), materials.begin(), materials.end());
-  print_header(title, titles);
-  for (const std::string& name : names) {
-    std::string words = name;
-    std::replace(words.begin(), words.end(), '_', ' ');
-    std::vector<std::string> cells{words};
-    for (const char* material : materials) {
-      const BenchRow* row = row_of(material, name);
-      cells.push_back(row != nullptr ? cell(*row) : "-");
-    }
-    print_row(cells);
-  }
-}
-
-void print_choices(const BenchRows& rows) {
-  print_materials(rows, "choice", "What each choice is worth: RMS [mN] cross-validated / on a recording held out",
-                  "greedy, 100 centres",
-                  {"default", "filters_driven_by_velocity", "relaxation_identified", "kernel_linear",
-                   "kernel_thin_plate", "kernel_quintic", "weights_relative", "weights_none", "every_50_mN",
-                   "papers_recipe", "candidates_all", "direct"},
-                  [](const BenchRow& row) {
-                    const auto validated = row.counters.find("cross_validated_mN");
-                    return (validated != row.counters.end() ? general(validated->second, 3) : "-") + " / " +
-                           general(row.counters.at("rms_mN"), 3);
-                  });
-  const std::vector<std::string> centres{"0", "1", "2", "5", "10", "20", "50", "100", "200"};
-  const auto within = [](const BenchRow& row) {
-    return fixed(row.counters.at("within_JND_percent"), 2) + " (" + general(row.counters.at("rms_mN"), 3) + ")";
-  };
-  print_materials(rows, "centres", "Within the JND [%] (RMS [mN]) of a recording held out", "greedy centres", centres,
-                  within);
-  print_materials(rows, "centres_papers_recipe", "The same by the paper's recipe", "greedy centres", centres, within);
-}
-
 }  // namespace
 
 std::string duration(double seconds) {
@@ -281,7 +232,6 @@ void print_tables(const BenchRows& rows) {
   print_against(rows, "Cost over dimension", "features", kDimensionColumns);
   print_peers(rows);
   print_features(rows);
-  print_choices(rows);
   std::fflush(stdout);
 }
 
