@@ -8,8 +8,9 @@
 #include <iostream>
 
 #include "engine/tick/replay.h"
+#include "scenes/material/material.h"
 #include "tests/support/fitting.h"
-#include "tests/support/scripted_press.h"
+#include "tests/support/press.h"
 
 namespace palpate::test {
 namespace {
@@ -56,7 +57,7 @@ const Subject& silicone() {
 
 bool have_press() { return std::filesystem::exists(real_data()); }
 
-const Subject& press() {
+const Subject& real_press() {
   static const Subject subject = [] {
     Subject made = subject_of(
         "press", prepare({real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block")), 0.01);
@@ -75,7 +76,7 @@ const Subject& press() {
 
 std::vector<const Subject*> subjects() {
   std::vector<const Subject*> all{&silicone()};
-  if (have_press()) all.push_back(&press());
+  if (have_press()) all.push_back(&real_press());
   return all;
 }
 
@@ -86,9 +87,18 @@ struct Stroke {
   std::size_t outside_unmarked = 0;
 };
 
+// These moves into a virtual material, at 1 kHz.
+Press scripted_press(const std::string& material, const std::vector<Stretch>& script, double encoder_step_m,
+                     std::uint64_t seed) {
+  double seconds = 0.0;
+  for (const Stretch& stretch : script) seconds += stretch.duration_s;
+  return press_into(*must(find_material(material)).make_block(), along(script), even_times(seconds, 1000.0),
+                    {.encoder_step_m = encoder_step_m, .seed = seed});
+}
+
 // Replays `motion`. The allowed step is one JND or the step of the true
 // material, whichever is larger.
-std::vector<Stroke> stroke_over(const Subject& subject, const ScriptedPress& motion) {
+std::vector<Stroke> stroke_over(const Subject& subject, const Press& motion) {
   std::vector<Stroke> strokes(subject.models.size());
   std::vector<double> last_N(subject.models.size(), 0.0);
   std::size_t row_index = 0;
