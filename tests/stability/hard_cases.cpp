@@ -7,7 +7,6 @@
 #include <cstdio>
 
 #include "engine/tick/replay.h"
-#include "scenes/material/maxwell_block.h"
 
 namespace palpate::test {
 
@@ -24,16 +23,6 @@ void HardCase::add(double value_N, double truth_N, double low_N, double high_N) 
   worst_over_jnd = std::max(worst_over_jnd, over_jnd);
 }
 
-std::unique_ptr<Block> make_soft_block() {
-  MaxwellParameters parameters;
-  parameters.elastic_linear_N_per_m = 300.0;
-  parameters.elastic_quadratic_N_per_m2 = 2e4;
-  parameters.viscosity_Ns_per_m2 = 500.0;
-  parameters.branch_count = 1;
-  parameters.branches[0] = {0.17, 100.0, 0.0};
-  return std::make_unique<MaxwellBlock>(parameters);
-}
-
 Path training_path(int variant) {
   return [variant](double time_s) {
     // Two tones whose sum does not repeat within a minute, compressed so that the
@@ -47,10 +36,6 @@ Path training_path(int variant) {
 
 Path scaled(const Path& path, double factor, double offset_m) {
   return [=](double time_s) { return offset_m + factor * path(time_s); };
-}
-
-Press clean_training() {
-  return press_into(*make_soft_block(), training_path(0), even_times(kTrainingSeconds, kTrainingRate_Hz));
 }
 
 TrainingRequest clean_request() {

@@ -1,10 +1,9 @@
 // Numerically hard data and motions far from the data: every method is tested on every case.
 //
-// Four kinds of case, all synthetic and deterministic:
+// Three kinds of case, all synthetic and deterministic:
 //   sites       coinciding, clustered, flat and badly scaled points; as few as one; more centres than sites
 //   recording   what sensors and hands do wrong: noise, drift, outliers, lost and jittered samples, extreme rates
-//   motion      presses unlike the training: deeper, faster, longer, abrupt
-//   material    these motions in every virtual material, with automatically selected features
+//   motion      presses unlike the training, in every virtual material: deeper, faster, longer, abrupt
 // A method must refuse a case with a message, or give only safe values: finite and bounded (sites: at most 1.2 times
 // the range of the forces outside that range; else from 0 to 1.2 times the largest training force).
 #pragma once
@@ -35,22 +34,13 @@ struct HardCase {
   void add(double value_N, double truth_N, double low_N, double high_N);
 };
 
-// The material of the cases that do not name another: up to about 2.5 N at 6 mm.
-std::unique_ptr<Block> make_soft_block();
-
-// Strokes of several depths (to 6 mm) and speeds with pauses between and on the way. `variant`
-// changes their order and speed, not their range.
+// Strokes of several depths and speeds with pauses between and on the way. `variant` changes their order and speed,
+// not their range.
+inline constexpr double kTrainingDepth_m = 6e-3;
 Path training_path(int variant);
 // offset + factor times the path.
 Path scaled(const Path& path, double factor, double offset_m);
 
-inline constexpr double kTrainingSeconds = 5.0;
-inline constexpr double kTrainingRate_Hz = 125.0;
-inline constexpr double kEvaluatedSeconds = 4.0;
-inline constexpr double kEvaluatedRate_Hz = 1000.0;
-
-// A training press without faults.
-Press clean_training();
 // Features: depth, velocity and a low-pass. The surface is as recorded, because these cases
 // test numerics and not registration.
 TrainingRequest clean_request();

@@ -5,11 +5,27 @@
 #include <set>
 
 #include "engine/base/random_stream.h"
+#include "scenes/material/maxwell_block.h"
 #include "tests/stability/hard_cases.h"
 #include "tests/support/fitting.h"
 
 namespace palpate::test {
 namespace {
+
+constexpr double kTrainingSeconds = 5.0;
+constexpr double kTrainingRate_Hz = 125.0;
+
+// Up to about 2.5 N at 6 mm.
+constexpr MaxwellParameters kSoft = {.elastic_linear_N_per_m = 300.0,
+                                     .elastic_quadratic_N_per_m2 = 2e4,
+                                     .viscosity_Ns_per_m2 = 500.0,
+                                     .branch_count = 1,
+                                     .branches = {{{0.17, 100.0, 0.0}}}};
+
+Press press_soft_block(const Path& path, const std::vector<double>& times_s) {
+  MaxwellBlock block(kSoft);
+  return press_into(block, path, times_s);
+}
 
 struct RecordingCase {
   std::string name;
@@ -19,11 +35,9 @@ struct RecordingCase {
 };
 
 RecordingCase moved(const std::string& name, double factor, double offset_m) {
-  const auto press = [=](int variant, double seconds, double rate_Hz) {
-    return press_into(*make_soft_block(), scaled(training_path(variant), factor, offset_m),
-                      even_times(seconds, rate_Hz));
-  };
-  return {name, press(0, kTrainingSeconds, kTrainingRate_Hz), press(1, kEvaluatedSeconds, kEvaluatedRate_Hz)};
+  return {name,
+          press_soft_block(scaled(training_path(0), factor, offset_m), even_times(kTrainingSeconds, kTrainingRate_Hz)),
+          press_soft_block(scaled(training_path(1), factor, offset_m), even_times(4.0, 1000.0))};
 }
 
 RecordingCase clean_case(const std::string& name) { return moved(name, 1.0, 0.0); }
@@ -42,7 +56,7 @@ RecordingCase with_forces(const std::string& name, const Change& change) {
 // The clean case sampled at `times_s`.
 RecordingCase sampled(const std::string& name, const std::vector<double>& times_s) {
   RecordingCase made = clean_case(name);
-  made.training = press_into(*make_soft_block(), training_path(0), times_s);
+  made.training = press_soft_block(training_path(0), times_s);
   return made;
 }
 
@@ -68,12 +82,8 @@ std::vector<RecordingCase> recording_cases() {
   std::vector<RecordingCase> cases;
   cases.push_back(clean_case("nothing wrong"));
   RandomStream random(7, 4);
-  for (const bool papers : {false, true}) {
-    cases.push_back(
-        moved(papers ? "forces near zero, the paper's recipe" : "forces near zero, weights 1/f", 0.02, 0.0));
-    cases.back().request.weighting = Weighting::relative;
-    if (papers) use_papers_recipe(cases.back().request);
-  }
+  cases.push_back(moved("forces near zero, weights 1/f", 0.02, 0.0));
+  cases.back().request.weighting = Weighting::relative;
   cases.push_back(with_forces("all forces zero", [](std::size_t, double) { return 0.0; }));
   std::fill(cases.back().held_out.true_N.begin(), cases.back().held_out.true_N.end(), 0.0);
   cases.push_back(clean_case("one outlier of 100 N"));
@@ -95,32 +105,36 @@ std::vector<RecordingCase> recording_cases() {
   return cases;
 }
 
-// Expects at least this share of the held-out press within the JND from every method, for common faults of a rig.
-void run_cases(FeatureChoice choice, const std::set<std::string>& accurate, double least_within_jnd) {
+// `prepare` changes the request of every case. For the recordings in `accurate` 99.9 % of a held-out press must be
+// within the JND.
+void run_cases(void (*prepare)(TrainingRequest&), const std::set<std::string>& accurate = {}) {
   for (RecordingCase& one : recording_cases()) {
-    one.request.choice = choice;
+    prepare(one.request);
     std::vector<HardCase> cases = fit_methods(one.training.recording, one.request);
     evaluate_press(one.held_out, cases);
     expect_safe(one.name, cases);
     if (accurate.count(one.name) == 0) continue;
     for (const HardCase& of : cases) {
       EXPECT_GT(of.known, 0U) << one.name << ", " << of.method << ": " << of.refusal;
-      EXPECT_GE(static_cast<double>(of.within), least_within_jnd * static_cast<double>(of.known))
-          << one.name << ", " << of.method;
+      EXPECT_GE(static_cast<double>(of.within), 0.999 * static_cast<double>(of.known)) << one.name << ", " << of.method;
     }
   }
 }
 
+// Common faults of a rig must not reduce the accuracy.
 TEST(HardCases, EveryMethodIsSafeWithEveryRecording) {
-  run_cases(FeatureChoice::scene,
+  run_cases([](TrainingRequest&) {},
             {"nothing wrong", "one outlier of 100 N", "20 % noise", "dropped samples", "10 Hz", "jittered time stamps",
-             "never leaves the surface", "forces near zero, weights 1/f"},
-            0.999);
+             "never leaves the surface", "forces near zero, weights 1/f"});
 }
 
 TEST(HardCases, EveryMethodIsSafeWithEveryRecordingThatDecidesItsFeatures) {
-  run_cases(FeatureChoice::automatic, {}, 0.0);
+  run_cases([](TrainingRequest& request) { request.choice = FeatureChoice::automatic; });
 }
+
+// Without trend and trust, so that every force is that of the method itself. The other fits leave the correction out,
+// because the trend describes this material.
+TEST(HardCases, EveryMethodIsSafeWithEveryRecordingByTheRecipeOf2009) { run_cases(use_papers_recipe); }
 
 }  // namespace
 }  // namespace palpate::test
