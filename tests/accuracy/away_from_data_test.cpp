@@ -208,12 +208,11 @@ void expect_no_worse_than_position(const std::string& what, const RecordingPtr& 
                                    const std::string& scene) {
   const std::vector<ModelPtr> full = fit_all(prepare({train}, scene_request(scene)));
   const std::vector<ModelPtr> alone = fit_all(prepare({train}, position_request()));
-  const std::vector<ErrorSummary> full_errors = evaluate_moved(*test_run, full);
-  const std::vector<ErrorSummary> alone_errors = evaluate_moved(*test_run, alone);
   for (std::size_t i = 0; i < full.size(); ++i) {
-    std::cout << what << ": " << figures(full[i]->name(), full_errors[i]) << "; position alone "
-              << 1e3 * alone_errors[i].rms_error_N << " mN\n";
-    EXPECT_LE(full_errors[i].rms_error_N, alone_errors[i].rms_error_N) << what << ", " << full[i]->name();
+    const ErrorSummary errors = judge_moved(*test_run, full[i]);
+    const double alone_N = judge_moved(*test_run, alone[i]).rms_error_N;
+    std::cout << what << ": " << figures(full[i]->name(), errors) << "; position alone " << 1e3 * alone_N << " mN\n";
+    EXPECT_LE(errors.rms_error_N, alone_N) << what << ", " << full[i]->name();
   }
 }
 

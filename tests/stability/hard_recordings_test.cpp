@@ -5,9 +5,9 @@
 #include <set>
 
 #include "engine/base/random_stream.h"
+#include "models/fit/recipe_2009.h"
 #include "scenes/material/maxwell_block.h"
 #include "tests/stability/hard_cases.h"
-#include "tests/support/fitting.h"
 
 namespace palpate::test {
 namespace {
@@ -134,7 +134,9 @@ TEST(HardCases, EveryMethodIsSafeWithEveryRecordingThatDecidesItsFeatures) {
 
 // Without trend and trust, so that every force is that of the method itself. The other fits leave the correction out,
 // because the trend describes this material.
-TEST(HardCases, EveryMethodIsSafeWithEveryRecordingByTheRecipeOf2009) { run_cases(use_papers_recipe); }
+TEST(HardCases, EveryMethodIsSafeWithEveryRecordingByTheRecipeOf2009) {
+  run_cases([](TrainingRequest& request) { request = recipe_2009_request(request); });
+}
 
 }  // namespace
 }  // namespace palpate::test
