@@ -167,23 +167,17 @@ TEST(AwayFromData, ThreeTimesAsFast) {
   }
 }
 
-// From the middle of the data along every axis: by 1e-6 to 1e6.
+// Along every axis through the middle of the data. HardCases.EveryMethodIsSafeInEveryMaterial checks that the force
+// is bounded there.
 TEST(AwayFromData, SweepsOfEveryFeature) {
   for (const Subject* subject : subjects()) {
     for (const ModelPtr& model : subject->models) {
       const ModelData& data = model->data();
-      const double highest_N = 1.2 * data.largest_force_N;
       for (std::size_t axis = 0; axis < data.features.size(); ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
         std::vector<double> x(data.offset.data(), data.offset.data() + data.offset.size());
-        for (const double sign : {-1.0, 1.0}) {
-          for (double away = 1e-6; away <= 1e6; away *= 1.05) {
-            x[axis] = sign * away;
-            const ForceEstimate estimate = model->evaluate(x.data());
-            ASSERT_TRUE(std::isfinite(estimate.force_N)) << model->name();
-            ASSERT_GE(estimate.force_N, 0.0) << model->name();
-            ASSERT_LE(estimate.force_N, highest_N) << model->name();
-          }
+        for (const double far : {-1e6, 1e6}) {
+          x[axis] = far;
           EXPECT_TRUE(model->evaluate(x.data()).out_of_domain) << model->name() << ", axis " << axis;
         }
         // Steps of a thousandth of the spread: the force has no jump. A change of
