@@ -20,7 +20,6 @@ import concurrent.futures
 import csv
 import json
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -170,43 +169,37 @@ def number(value, digits):
 
 
 def means(kind, names, results, models):
-    """The mean of every model over these sets, and the number of tests on which it differs from the recipe."""
-    lines = []
+    """For every model with tests in these sets: kind, model, mean shares as recorded and with the surface moved, number
+    of tests, and a sentence with the tests on which it differs from the recipe."""
     for model in models:
         tests = {(name, index): one for name in names for index, one in enumerate(results[name, model].get("tests", []))}
         if not tests:
             continue
-        mean = {key: sum(one[key] for one in tests.values()) / len(tests) for key in ("share", "moved")}
-        line = f"{kind}, {model}: mean {mean['share']:.2f} % as recorded, {mean['moved']:.2f} % surface moved, {len(tests)} tests"
+        recorded, moved = (sum(one[key] for one in tests.values()) / len(tests) for key in ("share", "moved"))
+        text = ""
         if "recipe" in models and model != "recipe":
             gains = [one["share"] - results[name, "recipe"]["tests"][index]["share"]
                      for (name, index), one in tests.items() if "tests" in results[name, "recipe"]]
             better, worse = sum(gain >= TIE for gain in gains), sum(gain <= -TIE for gain in gains)
-            line += f"; against the recipe {better} better, {worse} worse, {len(gains) - better - worse} within {TIE} points"
-        lines.append(line + ".")
-    return lines
+            text = f"; against the recipe {better} better, {worse} worse, {len(gains) - better - worse} within {TIE} points"
+        yield kind, model, f"{recorded:.2f}", f"{moved:.2f}", str(len(tests)), text
 
 
-def summary_table(summary):
-    """A table with one row for each mean, by kind of set and model."""
-    lines = ["| sets | model | as recorded | surface moved | tests |", "|---|---|---:|---:|---:|"]
-    for line in summary:
-        found = re.match(r"([^,]+), (\w+): mean ([\d.]+) % as recorded, ([\d.]+) % surface moved, (\d+) tests", line)
-        if found:
-            lines.append("| " + " | ".join(found.groups()) + " |")
-    return lines
+def sentence(row):
+    return "%s, %s: mean %s %% as recorded, %s %% surface moved, %s tests%s." % row
 
 
 def front_page(options, folder, rows, summary):
     """Writes all sets to RESULTS.md; the means, and the sentence and figure of a report on silicone, to README.md."""
     RESULTS.write_text("\n".join(["# Results", "", "Made by `python3 tests/labs.py --models recipe trend greedy --write`, whose header describes",
                                   "the columns. Recorded sets come first; the source and licence of each are in a PROVENANCE.md beside it,",
-                                  "outside this repository.", "", *rows, "", *summary, ""]))
+                                  "outside this repository.", "", *rows, "", *map(sentence, summary), ""]))
     report = folder / "report"
     run(options.palpate, "report", "--train", folder / "silicone_1.csv", "--test", folder / "silicone_2.csv", "--out", report)
     answer = json.loads((report / "report.json").read_text())["timings"]["answer"]
     shutil.copyfile(report / "figures" / "speed_error.png", ROOT / FIGURE)
-    text = "\n".join([*summary_table(summary), "", *textwrap.wrap("The report on the silicone: " + answer, 110), "",
+    text = "\n".join(["| sets | model | as recorded | surface moved | tests |", "|---|---|---:|---:|---:|",
+                      *("| " + " | ".join(row[:-1]) + " |" for row in summary), "", *textwrap.wrap("The report on the silicone: " + answer, 110), "",
                       f"![Time of a whole tick against error on the virtual silicone: the 2009 recipe hollow, Palpate filled]({FIGURE})"])
     readme = ROOT / "README.md"
     before, rest = readme.read_text().split(BEGIN)
@@ -236,7 +229,7 @@ def main():
         rows = table(names, results, options.models)
         summary = [*means("Recorded sets", names[:len(real)], results, options.models),
                    *means("Virtual materials", names[len(real):], results, options.models)]
-        print("\n".join([*rows, "", *summary]))
+        print("\n".join([*rows, "", *map(sentence, summary)]))
         if options.write:
             front_page(options, folder, rows, summary)
     for key, entry in results.items():

@@ -3,21 +3,62 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <string>
 
-#include "tests/support/closed_loop_energy.h"
+#include "tests/support/closed_loop_measures.h"
 #include "tests/support/live_doubles.h"
 
 namespace palpate::test {
 namespace {
 
-TEST(ClosedLoop, NoCycleInSiliconeGivesEnergy) {
-  for (const ModelPtr& model : silicone_models()) {
-    // The model alone is passive, without the controller.
-    const double least = least_damping_Ns_per_m(model, kFirm.depth_m, false);
-    say("cycles, " + model->name(), "damping of %.2f N s/m or more, %.2f needed", least, 0.0);
-    EXPECT_GE(least, 0.0) << model->name();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// What cycles (in N s/m of damping) and strokes of a hand may do at most.
+struct EnergyLimits {
+  const char* material;
+  double least_damping_Ns_per_m;
+  double worst_return = 1.0;
+  double beyond_step_J = 0.0;
+  double mean_cost_jnd = 1.0;
+  double largest_cost_jnd = kInfinity;
+  bool passivity_in_cycles = true;
+};
+
+// Silicone is passive without the controller, and the controller takes nothing away from a hand on it.
+// The stiff block: its own viscosity helps against the damping of a held and late force, -4.5 N s/m. Measured cost:
+// 0.67 JND (mean of all ticks in contact) and 13 JND (largest, when the tool leaves the block within 50 ms).
+// The others: a held and late force of up to 4 kN/m acts like -6 N s/m. With the controller it lacks less than the
+// 3.5 N s/m of a relaxed finger. Measured: -1.65 (sponge), -0.62 (layered) to 2.3 (friction); returned 0.95.
+// Known limitation: the sponge (17 N at 3.3 kN/m) returns up to 106 % of the energy of a stroke and a surplus of up to
+// 6.8 mJ. The controller, limited to 12 N s/m, cannot dissipate that within 50 ms.
+const EnergyLimits kLimits[] = {
+    {.material = "maxwell", .least_damping_Ns_per_m = 0.0, .largest_cost_jnd = 0.1, .passivity_in_cycles = false},
+    {.material = "stiff",
+     .least_damping_Ns_per_m = held_and_late_Ns_per_m(kStiffSpring_N_per_m),
+     .worst_return = kInfinity,
+     .beyond_step_J = kInfinity},
+    {.material = "friction", .least_damping_Ns_per_m = -2.0},
+    {.material = "softening", .least_damping_Ns_per_m = -2.0},
+    {.material = "sponge", .least_damping_Ns_per_m = -2.0, .worst_return = 1.25, .beyond_step_J = 0.01},
+    {.material = "layered", .least_damping_Ns_per_m = -2.0},
+    {.material = "tissue", .least_damping_Ns_per_m = -2.0},
+};
+
+HandPress press_of(const std::string& material, const ModelPtr& model) {
+  if (material == "maxwell") return kFirm;
+  return material == "stiff" ? kFirmOnStiff : half_press(model);
+}
+
+TEST(ClosedLoop, CyclesGiveLessEnergyThanAFingerTakes) {
+  for (const EnergyLimits& limits : kLimits) {
+    for (const ModelPtr& model : loop_models(limits.material)) {
+      const std::string who = std::string(limits.material) + ", " + model->name();
+      const double least =
+          least_damping_Ns_per_m(model, press_of(limits.material, model).depth_m, limits.passivity_in_cycles);
+      say("cycles, " + who, "damping of %.2f N s/m or more, %.2f needed", least, limits.least_damping_Ns_per_m);
+      EXPECT_GE(least, limits.least_damping_Ns_per_m) << who;
+    }
   }
   // The result of a spring has a closed form; at 40 Hz it is a tenth larger.
   for (const double stiffness : {kSoftSpring_N_per_m, kStiffSpring_N_per_m}) {
@@ -28,29 +69,27 @@ TEST(ClosedLoop, NoCycleInSiliconeGivesEnergy) {
 }
 
 // An encoder reverses a step late at the turn, on the way in and out. So a stroke may
-// return at most one step times the largest force more than it absorbed.
-// Silicone absorbs a fifth of every stroke and returns less than it took.
-TEST(ClosedLoop, StrokesIntoSiliconeGiveLessThanTheyTake) {
-  for (const ModelPtr& model : silicone_models()) {
-    double worst_return = 0.0, worst_bounce = 0.0;
-    for (const Grip& grip : grips()) {
-      for (const double encoder_m : kEncoders_m) {
-        for (const Ticking ticking : {Ticking::even, Ticking::jittered, Ticking::gaps}) {
-          const Strokes strokes = stroke(model, {grip, encoder_m, kOneTick_s, ticking}, kFirm);
-          double& worst = held(grip) ? worst_return : worst_bounce;
-          worst = std::max(worst, strokes.worst_return);
-          if (held(grip)) {
-            EXPECT_GE(strokes.lowest_J, -encoder_m * strokes.largest_N) << model->name() << ", " << grip.name;
-          }
+// return at most one step times the largest force more than it absorbed. The cost is the
+// force that the controller takes away in a hand, in JNDs.
+TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
+  for (const EnergyLimits& limits : kLimits) {
+    for (const ModelPtr& model : loop_models(limits.material)) {
+      const std::string who = std::string(limits.material) + ", " + model->name();
+      Strokes worst;
+      for (const Grip& grip : grips()) {
+        if (!held(grip)) continue;
+        for (const double encoder_m : kEncoders_m) {
+          worst.keep_worse(
+              stroke(model, {grip, encoder_m, kOneTick_s, Ticking::gaps}, press_of(limits.material, model)));
         }
       }
+      say("strokes, " + who, "%.1f %% comes out again, passivity costs %.3f JND on the mean",
+          100.0 * worst.worst_return, worst.mean_cost_jnd);
+      EXPECT_LE(worst.worst_return, limits.worst_return) << who;
+      EXPECT_LE(worst.beyond_step_J, limits.beyond_step_J) << who;
+      EXPECT_LE(worst.mean_cost_jnd, limits.mean_cost_jnd) << who;
+      EXPECT_LE(worst.largest_cost_jnd, limits.largest_cost_jnd) << who;
     }
-    say("strokes, " + model->name(), "%.1f %% comes out again, of a thrown mass %.1f %%", 100.0 * worst_return,
-        100.0 * worst_bounce);
-    EXPECT_LE(worst_return, 1.0) << model->name();
-    // A mass thrown at the surface stays where silicone has little viscosity, and one
-    // encoder step hides energy. Measured: 1.09; 1.19 without the controller.
-    EXPECT_LE(worst_bounce, 1.15) << model->name();
   }
   for (const Grip& grip : grips()) {
     LoopSettings settings{grip, 5e-6, kOneTick_s, Ticking::even};
@@ -59,28 +98,17 @@ TEST(ClosedLoop, StrokesIntoSiliconeGiveLessThanTheyTake) {
   }
 }
 
-// The force that the controller takes away in a hand, in JNDs: none on silicone, which
-// absorbs a fifth of every stroke; on the stiff block the excess that a held and delayed force
-// returns on the way out. Measured: silicone 0 JND; stiff block 0.67 JND (mean of all
-// ticks in contact) and 13 JND (largest, when the tool leaves the block within 50 ms).
-TEST(ClosedLoop, TheControllerCostsAHandLessThanOneJnd) {
-  const auto cost = [](const std::string& block, const std::vector<ModelPtr>& models, const Press& press) {
-    Strokes worst;
-    for (const ModelPtr& model : models) {
-      for (const Grip& grip : grips()) {
-        if (!held(grip)) continue;
-        for (const double encoder_m : kEncoders_m) {
-          const Strokes strokes = stroke(model, {grip, encoder_m, kOneTick_s, Ticking::gaps}, press);
-          worst.mean_cost_jnd = std::max(worst.mean_cost_jnd, strokes.mean_cost_jnd);
-          worst.largest_cost_jnd = std::max(worst.largest_cost_jnd, strokes.largest_cost_jnd);
-        }
+// A mass thrown at the surface stays where silicone has little viscosity, and one
+// encoder step hides energy. Measured: 1.09; 1.19 without the controller.
+TEST(ClosedLoop, AMassThrownAtSiliconeReturnsLittleMoreEnergyThanItHad) {
+  for (const ModelPtr& model : silicone_models()) {
+    for (const double encoder_m : kEncoders_m) {
+      for (const Ticking ticking : kTickings) {
+        const double returned = stroke(model, {mass_alone(), encoder_m, kOneTick_s, ticking}, kFirm).worst_return;
+        EXPECT_LE(returned, 1.15) << model->name() << ", " << encoder_m;
       }
     }
-    say("passivity costs on " + block, "%.3f JND mean, %.2f JND at most", worst.mean_cost_jnd, worst.largest_cost_jnd);
-    return worst;
-  };
-  EXPECT_LE(cost("silicone", silicone_models(), kFirm).largest_cost_jnd, 0.1);
-  EXPECT_LE(cost("the stiff block", stiff_models(), kFirmOnStiff).mean_cost_jnd, 1.0);
+  }
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/live/stability_limit.h"
-#include "tests/support/closed_loop.h"
+#include "tests/support/closed_loop_measures.h"
 #include "tests/support/live_doubles.h"
 
 namespace palpate::test {
@@ -29,37 +29,9 @@ constexpr double kCoarse_m = 30e-6;
 // device would get ten times as much. The energy grows with the square of the encoder step; measured at 30 um: 0.27 mJ.
 constexpr double kGiven_J = 100e-6, kCoarseGiven_J = 300e-6;
 
-struct Swing {
-  double position_m = 0.0;  // peak to peak in the last half second
-  double given_J = 0.0;     // energy from the rendered force in that time
-  double share = 1.0;       // rendered share of the stiffness
-};
-
-// Presses with 1 N, receives a pulse, and holds still.
-Swing swing(const std::shared_ptr<const ForceModel>& model, const LoopSettings& settings) {
-  constexpr double kPress_N = 1.0, kSeconds = 2.5, kStill_s = 2.0;
-  ClosedLoop loop(settings);
-  loop.publish(model);
-  const double aim_m = 1e-3 + kPress_N / settings.grip.stiffness_N_per_m;
-  const auto path = [&](double time_s) {
-    ClosedLoop::Drive drive = minimum_jerk(-2e-3, aim_m, 0.3, time_s);
-    if (time_s >= 0.6 && time_s < 0.62) drive.push_N = 1.0;
-    return drive;
-  };
-  Swing result;
-  Span span;
-  double before_J = 0.0;
-  loop.run(kSeconds, path, [&](const LoopSnapshot& snapshot) {
-    result.share = snapshot.stiffness_share;
-    if (snapshot.loop_time_s < kStill_s) {
-      before_J = loop.tool().energy().balance_J();
-    } else {
-      span.add(loop.tool().position_m());
-    }
-  });
-  result.position_m = span.width();
-  result.given_J = before_J - loop.tool().energy().balance_J();
-  return result;
+// Presses with 1 N, receives a pulse, and holds still for half a second.
+Rest swing(double stiffness_N_per_m, const LoopSettings& settings) {
+  return hold(spring(stiffness_N_per_m), settings, {1.0, 1e-3}, 2.5, 0.5);
 }
 
 // The stability limit includes the stiffness scale and the damping that a user sets.
@@ -69,7 +41,7 @@ TEST(ClosedLoop, NeitherScaleNorDampingOfTheUserDrivesAHand) {
       for (const double delay_s : {0.0, 1e-3, 3e-3}) {
         LoopSettings settings{kHands[0], encoder_m, delay_s};
         settings.scale = scale;
-        const Swing one = swing(spring(3000.0), settings);
+        const Rest one = swing(3000.0, settings);
         std::printf("x %.0f, %2.0f N s/m, %.0f ms, %2.0f um: %.3f mm\n", scale.stiffness, scale.damping_Ns_per_m,
                     1e3 * delay_s, 1e6 * encoder_m, 1e3 * one.position_m);
         EXPECT_LE(one.position_m, kSwing_m) << scale.stiffness << ", " << scale.damping_Ns_per_m << ", " << delay_s;
@@ -84,19 +56,18 @@ TEST(ClosedLoop, NoHandIsDrivenHoweverLateOrSlowTheLineIs) {
   for (const double stiffness_N_per_m : {600.0, 3000.0, 7000.0}) {
     for (const double delay_s : {0.0, 1e-3, 3e-3, 5e-3, 10e-3}) {
       for (const double sample_s : {1e-4, 1e-3, 3e-3, 10e-3}) {
-        Swing worst;
+        Rest worst;
         for (const Grip& grip : kHands) {
           for (const double encoder_m : {5e-6, 10e-6, 30e-6}) {
             LoopSettings settings{grip, encoder_m, delay_s};
             settings.sample_s = sample_s;
-            const Swing one = swing(spring(stiffness_N_per_m), settings);
+            const Rest one = swing(stiffness_N_per_m, settings);
             const std::string row = grip.name + ", " + std::to_string(stiffness_N_per_m) + " N/m, " +
                                     std::to_string(1e3 * delay_s) + " ms, every " + std::to_string(1e3 * sample_s) +
                                     " ms, encoder " + std::to_string(1e6 * encoder_m) + " um";
             EXPECT_LE(one.position_m, encoder_m < kCoarse_m ? kSwing_m : kCoarseSwing_m) << row << ", " << one.share;
             EXPECT_LE(one.given_J, encoder_m < kCoarse_m ? kGiven_J : kCoarseGiven_J) << row;
-            worst.position_m = std::max(worst.position_m, one.position_m);
-            worst.share = std::min(worst.share, one.share);
+            worst.keep_worse(one);
           }
         }
         worst_m = std::max(worst_m, worst.position_m);

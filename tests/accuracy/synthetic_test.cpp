@@ -5,9 +5,11 @@
 // measured value with a margin for other compilers and later changes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
+#include "models/fit/fit.h"
 #include "tests/support/fitting.h"
 
 namespace palpate::test {
@@ -82,48 +84,35 @@ TEST(SyntheticAccuracy, ForeignPhysicsByDefault) {
   }
 }
 
-void expect_times(const PreparedTraining& prepared, const std::vector<double>& truth_s,
-                  const std::vector<double>& tolerance) {
-  const std::vector<RelaxationTime>& found = prepared.common.provenance.relaxation_times;
-  // The candidates are four relaxation times per decade. One close to each true time must be selected.
-  ASSERT_GE(found.size(), truth_s.size());
-  for (std::size_t i = 0; i < truth_s.size(); ++i) {
-    double nearest = 1e9;
-    for (const RelaxationTime& one : found) {
-      nearest = std::min(nearest, std::abs(std::log10(one.time_s / truth_s[i])));
+TEST(SyntheticAccuracy, IdentifiedRelaxation) {
+  struct Material {
+    const char* name;
+    const char* scene;
+    std::vector<double> times_s;  // that must be found
+    double within_jnd;
+    double max_error_over_jnd;
+  };
+  // Maxwell: as with the true times. Reached for gel: 99.86 %, 2.5 JND.
+  const Material kMaterials[] = {{"foam", "foam_block", {0.08, 0.9}, 0.985, 4.0},
+                                 {"maxwell", "silicone_block", {0.17, 1.27}, 0.999, 4.0},
+                                 {"gel", "silicone_block", {}, 0.985, 4.0}};
+  for (const Material& material : kMaterials) {
+    SCOPED_TRACE(material.name);
+    TrainingRequest request = scene_request(material.scene);
+    request.relaxation = Relaxation::automatic;
+    const PreparedTraining prepared = prepare({train_recording(material.name)}, request);
+    // The candidates are four relaxation times per decade. One close to each true time must be selected.
+    const std::vector<RelaxationTime>& found = prepared.common.provenance.relaxation_times;
+    EXPECT_GE(found.size(), material.times_s.size());
+    for (const double time_s : material.times_s) {
+      EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const RelaxationTime& one) {
+        return std::abs(std::log10(one.time_s / time_s)) < 0.2;
+      })) << time_s;
     }
-    std::cout << "nearest to the relaxation time " << truth_s[i] << " s: " << nearest << " decades\n";
-    EXPECT_LT(nearest, tolerance[i]);
+    const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording(material.name));
+    EXPECT_GE(greedy.within_jnd, material.within_jnd);
+    EXPECT_LT(greedy.max_error_over_jnd, material.max_error_over_jnd);
   }
-}
-
-TEST(SyntheticAccuracy, FoamWithIdentifiedRelaxation) {
-  TrainingRequest request = scene_request("foam_block");
-  request.relaxation = Relaxation::automatic;
-  const PreparedTraining prepared = prepare({train_recording("foam")}, request);
-  expect_times(prepared, {0.08, 0.9}, {0.2, 0.2});
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("foam"));
-  EXPECT_GE(greedy.within_jnd, 0.985);
-  EXPECT_LT(greedy.max_error_over_jnd, 4.0);
-}
-
-TEST(SyntheticAccuracy, MaxwellWithIdentifiedRelaxation) {
-  TrainingRequest request = scene_request("silicone_block");
-  request.relaxation = Relaxation::automatic;
-  const PreparedTraining prepared = prepare({train_recording("maxwell")}, request);
-  expect_times(prepared, {0.17, 1.27}, {0.2, 0.2});
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("maxwell"));
-  EXPECT_GE(greedy.within_jnd, 0.999) << "as good as with the true times";
-}
-
-TEST(SyntheticAccuracy, GelWithThreeRelaxations) {
-  TrainingRequest request = scene_request("silicone_block");
-  request.relaxation = Relaxation::automatic;
-  const PreparedTraining prepared = prepare({train_recording("gel")}, request);
-  const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("gel"));
-  // Reached: 99.86 %, 2.5 JND. The limits are those of foam.
-  EXPECT_GE(greedy.within_jnd, 0.985);
-  EXPECT_LT(greedy.max_error_over_jnd, 4.0);
 }
 
 TEST(SyntheticAccuracy, StiffAndElasticBlocksWithTheFeaturesTheyNeed) {
@@ -141,8 +130,8 @@ TEST(SyntheticAccuracy, StiffAndElasticBlocksWithTheFeaturesTheyNeed) {
 
 // Reduction by force steps and rows weighted by 1/f, as in Hoever & Harders (2009).
 TEST(SyntheticAccuracy, ThePapersRecipeReproducesThePaper) {
-  TrainingRequest request = scene_request("silicone_block");
-  use_papers_recipe(request);
+  TrainingRequest request = recipe_2009_request(scene_request("silicone_block"));
+  request.relaxation = Relaxation::scene;
   const PreparedTraining prepared = prepare({train_recording("maxwell")}, request);
   EXPECT_NEAR(static_cast<double>(prepared.set.sites.size()), 6850.0, 150.0) << "the paper's N";
   const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("maxwell"));
@@ -157,10 +146,13 @@ TEST(SyntheticAccuracy, ThePapersRecipeReproducesThePaper) {
     squares += rms_N * rms_N / kDraws;
   }
   EXPECT_GT(std::sqrt(squares), 1.2 * greedy.rms_error_N) << "reached: 38 mN against 22 mN";
-  // Greedy has a smaller error than direct here (22 against 47 mN): the 6,900
-  // centres of direct fit the noise of small forces, which 1/f weights most.
-  const ErrorSummary direct = judged(prepared, &kDirectMethod, test_recording("maxwell"));
-  EXPECT_LE(greedy.rms_error_N, 1.3 * direct.rms_error_N);
+  // Greedy has a smaller error than direct here (73 against 82 mN): the centres of direct fit the
+  // noise of small forces, which 1/f weights most. Twelve seconds, because a direct fit to all takes a minute.
+  RigSettings settings = train_settings("maxwell");
+  settings.seconds = 12.0;
+  const PreparedTraining some = prepare({rig_recording(settings)}, request);
+  EXPECT_LE(judged(some, &kGreedyMethod, test_recording("maxwell")).rms_error_N,
+            1.3 * judged(some, &kDirectMethod, test_recording("maxwell")).rms_error_N);
 }
 
 }  // namespace

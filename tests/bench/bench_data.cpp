@@ -12,12 +12,6 @@
 namespace palpate::bench {
 namespace {
 
-PreparedTraining prepare(const TrainingRequest& request) {
-  RigSettings settings;
-  settings.seconds = 60.0;
-  return test::prepare({test::rig_recording(settings)}, request);
-}
-
 // The value of a line "name: 123 kB" in the status of this process.
 double status_bytes(const std::string& name) {
   std::ifstream status("/proc/self/status");
@@ -29,15 +23,10 @@ double status_bytes(const std::string& name) {
 }  // namespace
 
 const PreparedTraining& recorded() {
-  static const PreparedTraining prepared = prepare(test::scene_request("silicone_block"));
-  return prepared;
-}
-
-const PreparedTraining& recorded_as_paper() {
   static const PreparedTraining prepared = [] {
-    TrainingRequest request = test::scene_request("silicone_block");
-    test::use_papers_recipe(request);
-    return prepare(request);
+    RigSettings settings;
+    settings.seconds = 60.0;
+    return test::prepare({test::rig_recording(settings)}, test::scene_request("silicone_block"));
   }();
   return prepared;
 }

@@ -17,8 +17,6 @@ inline constexpr Eigen::Index kPaperSites = 6850;
 
 // The prepared recording: about 7,000 sites, four features.
 const PreparedTraining& recorded();
-// The same recording, prepared by the paper's recipe.
-const PreparedTraining& recorded_as_paper();
 // kPaperSites of its sites, evenly spread in time, and their thresholds.
 const Sites& recorded_sites();
 const Eigen::VectorXd& recorded_jnd_N();

@@ -1,8 +1,9 @@
 #include "tests/bench/bench_tables.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <set>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/base/text.h"
@@ -10,42 +11,44 @@
 namespace palpate::bench {
 namespace {
 
-// The time of a scalar loop over 6,850 centres on the reference machine of the
-// goals, a Zen 4 core at 3.6 GHz.
-constexpr double kReferenceScalar_s = 17.43e-6;
-
 struct Goal {
   const char* work;
   const char* benchmark;
   const char* paper;
   const char* goal;
-  const char* stretch;
 };
 
 constexpr Goal kGoals[] = {
-    {"evaluation, 100 centres", "evaluate/rbf/100", "60 us", "80 ns", "64 ns"},
-    {"evaluation, 6,850 centres", "evaluate/rbf/6850", "-", "3.8 us", "2.8 us"},
-    {"voxel look-up, 4-D", "evaluate/voxel_25x11x11x11", "-", "30 ns", "-"},
-    {"random-100", "fit/random-100", "4 s", "15 ms", "-"},
-    {"kD-tree-100", "fit/kdtree-100", "5 min", "40 ms", "25 ms"},
-    {"greedy-100, 20 candidates", "fit/greedy-100_of_20", "9 min", "0.1 s", "-"},
-    {"greedy-100, 100 candidates", "fit/greedy-100_of_100", "41 min", "0.15 s", "0.1 s"},
-    {"greedy-100, all sites", "fit/greedy-100_of_all", "-", "1.4 s", "0.8 s"},
-    {"direct + 25x11x11x11 grid", "fit/direct+grid", "50 min", "1.3 s", "0.9 s"},
-    {"whole tick in replay, greedy-100", "tick/whole_greedy", "-", "0.5 us", "0.35 us"},
-    {"`fit` random, the program", "program/fit_random", "-", "90 ms", "50 ms"},
-    {"`fit` greedy, the program", "program/fit_greedy", "-", "0.25 s", "0.15 s"},
+    {"evaluation, 100 centres", "evaluate/rbf/100", "60 us", "80 ns"},
+    {"evaluation, 6,850 centres", "evaluate/rbf/6850", "-", "3.8 us"},
+    {"voxel look-up, 4-D", "evaluate/voxel_25x11x11x11", "-", "30 ns"},
+    {"random-100", "fit/random-100", "4 s", "15 ms"},
+    {"kD-tree-100", "fit/kdtree-100", "5 min", "40 ms"},
+    {"greedy-100, 20 candidates", "fit/greedy-100_of_20", "9 min", "0.1 s"},
+    {"greedy-100, 100 candidates", "fit/greedy-100_of_100", "41 min", "0.15 s"},
+    {"greedy-100, all sites", "fit/greedy-100_of_all", "-", "1.4 s"},
+    {"direct + 25x11x11x11 grid", "fit/direct+grid", "50 min", "1.3 s"},
+    {"whole tick in replay, greedy-100", "tick/whole_greedy", "-", "0.5 us"},
+    {"`fit` random, the program", "program/fit_random", "-", "90 ms"},
+    {"`fit` greedy, the program", "program/fit_greedy", "-", "0.25 s"},
 };
 
-// The ratio of the time of some work to that of its essential part.
-struct Share {
+// The ratio of two times. It depends less than the times on other load of the machine.
+struct Ratio {
   const char* work;
-  const char* whole;
-  const char* part;
+  const char* above;
+  const char* below;
   const char* goal;
 };
 
-constexpr Share kShares[] = {
+constexpr Ratio kScalarRatios[] = {
+    {"100", "evaluate/scalar/100", "evaluate/rbf/100", "-"},
+    {"500", "evaluate/scalar/500", "evaluate/rbf/500", "-"},
+    {"1,000", "evaluate/scalar/1000", "evaluate/rbf/1000", "-"},
+    {"6,850", "evaluate/scalar/6850", "evaluate/rbf/6850", "-"},
+};
+
+constexpr Ratio kWholeRatios[] = {
     {"greedy-100: model / its RBF alone", "evaluate/model/greedy", "evaluate/rbf/100", "1.35"},
     {"voxel: model / its look-up alone", "evaluate/model/voxel", "evaluate/voxel_25x11x11x11", "2"},
     {"every count to 200 / the fit of 200", "fit/greedy-1_to_200_of_100", "fit/greedy-200_of_100", "1.3"},
@@ -78,86 +81,64 @@ const BenchRow* find(const BenchRows& rows, const std::string& name) {
   return found != rows.end() ? &found->second : nullptr;
 }
 
-bool starts_with(const std::string& name, const std::string& start) { return name.rfind(start, 0) == 0; }
+// A Markdown table. Title and header are printed before the first row, so that a table without rows is left out.
+class Table {
+ public:
+  Table(std::string title, std::vector<std::string> header) : title_(std::move(title)), header_(std::move(header)) {}
 
-void print_row(const std::vector<std::string>& cells) {
-  for (const std::string& cell : cells) std::printf("| %s ", cell.c_str());
-  std::printf("|\n");
-}
-
-void print_header(const std::string& title, const std::vector<std::string>& cells) {
-  std::printf("\n**%s**\n\n", title.c_str());
-  print_row(cells);
-  std::printf("|---");
-  for (std::size_t i = 1; i < cells.size(); ++i) std::printf("|---:");
-  std::printf("|\n");
-}
-
-// Ratios, which depend less than times on other load of the machine.
-void print_ratios(const BenchRows& rows) {
-  bool first = true;
-  for (const char* centres : {"100", "500", "1000", "6850"}) {
-    const BenchRow* slow = find(rows, std::string("evaluate/scalar/") + centres);
-    const BenchRow* fast = find(rows, std::string("evaluate/rbf/") + centres);
-    if (slow == nullptr || fast == nullptr) continue;
-    if (first) print_header("One evaluation", {"centres", "plain scalar loop, -O2", "here", "ratio"});
-    first = false;
-    print_row({thousands(std::stol(centres)), duration(slow->seconds), duration(fast->seconds),
-               fixed(slow->seconds / fast->seconds, 2)});
+  void add(const std::vector<std::string>& cells) {
+    if (!title_.empty()) {
+      std::printf("\n**%s**\n\n", title_.c_str());
+      print(header_);
+      std::printf("|---");
+      for (std::size_t i = 1; i < header_.size(); ++i) std::printf("|---:");
+      std::printf("|\n");
+      title_.clear();
+    }
+    print(cells);
   }
-}
 
-void print_shares(const BenchRows& rows) {
-  bool first = true;
-  for (const Share& share : kShares) {
-    const BenchRow* whole = find(rows, share.whole);
-    const BenchRow* part = find(rows, share.part);
-    if (whole == nullptr || part == nullptr) continue;
-    if (first) print_header("Whole beside bare", {"work", "whole", "bare", "ratio", "goal"});
-    first = false;
-    print_row({share.work, duration(whole->seconds), duration(part->seconds), fixed(whole->seconds / part->seconds, 2),
-               share.goal});
+ private:
+  static void print(const std::vector<std::string>& cells) {
+    for (const std::string& cell : cells) std::printf("| %s ", cell.c_str());
+    std::printf("|\n");
   }
-}
+
+  std::string title_;  // empty once printed
+  std::vector<std::string> header_;
+};
 
 void print_goals(const BenchRows& rows) {
-  const BenchRow* scalar = find(rows, "evaluate/scalar/6850");
-  const auto wanted = [&](const Goal& goal) { return find(rows, goal.benchmark) != nullptr; };
-  if (std::none_of(std::begin(kGoals), std::end(kGoals), wanted)) return;
-  std::vector<std::string> titles{"work (median)", "paper 2009", "here"};
-  if (scalar != nullptr) titles.emplace_back("at reference pace");
-  titles.emplace_back("goal");
-  titles.emplace_back("stretch");
-  print_header("Speed", titles);
-  const double pace = scalar != nullptr ? kReferenceScalar_s / scalar->seconds : 1.0;
+  Table table("Speed", {"work (median)", "paper 2009", "here", "goal"});
   for (const Goal& goal : kGoals) {
-    const BenchRow* row = find(rows, goal.benchmark);
-    if (row == nullptr) continue;
-    std::vector<std::string> cells{goal.work, goal.paper, duration(row->seconds)};
-    if (scalar != nullptr) cells.push_back(duration(pace * row->seconds));
-    cells.emplace_back(goal.goal);
-    cells.emplace_back(goal.stretch);
-    print_row(cells);
+    if (const BenchRow* row = find(rows, goal.benchmark))
+      table.add({goal.work, goal.paper, duration(row->seconds), goal.goal});
   }
-  if (scalar == nullptr) return;
-  std::printf("\nReference pace: times x %.3f, so that the scalar loop takes 17.43 us at 6,850 centres.\n", pace);
+}
+
+void print_ratios(const BenchRows& rows, Table table, std::span<const Ratio> ratios) {
+  for (const Ratio& ratio : ratios) {
+    const BenchRow* above = find(rows, ratio.above);
+    const BenchRow* below = find(rows, ratio.below);
+    if (above == nullptr || below == nullptr) continue;
+    table.add({ratio.work, duration(above->seconds), duration(below->seconds),
+               fixed(above->seconds / below->seconds, 2), ratio.goal});
+  }
 }
 
 // One line for each number with a row in any of the columns.
-template <std::size_t count>
-void print_against(const BenchRows& rows, const std::string& title, const char* first, const Column (&columns)[count]) {
+void print_against(const BenchRows& rows, const std::string& title, const char* first,
+                   std::span<const Column> columns) {
   std::set<long> numbers;
-  for (const auto& [name, row] : rows)
-    for (const Column& column : columns)
-      if (const std::string start = std::string(column.benchmark) + "/"; starts_with(name, start))
-        numbers.insert(std::stol(name.substr(start.size())));
-  if (numbers.empty()) return;
-  std::vector<std::string> titles{first};
+  std::vector<std::string> header{first};
   for (const Column& column : columns) {
-    titles.emplace_back(column.title);
-    if (column.with_memory) titles.emplace_back("peak memory");
+    const std::string start = std::string(column.benchmark) + "/";
+    for (const auto& [name, row] : rows)
+      if (name.starts_with(start)) numbers.insert(std::stol(name.substr(start.size())));
+    header.emplace_back(column.title);
+    if (column.with_memory) header.emplace_back("peak memory");
   }
-  print_header(title, titles);
+  Table table(title, header);
   for (const long number : numbers) {
     std::vector<std::string> cells{thousands(number)};
     for (const Column& column : columns) {
@@ -165,100 +146,33 @@ void print_against(const BenchRows& rows, const std::string& title, const char* 
       cells.push_back(row != nullptr ? duration(row->seconds) : "-");
       if (column.with_memory) cells.push_back(row != nullptr ? general(row->counters.at("peak_MB"), 3) + " MB" : "-");
     }
-    print_row(cells);
+    table.add(cells);
   }
 }
 
-// "feature/NAME": the time of a tick with that feature, less that with depth alone.
 void print_features(const BenchRows& rows) {
-  const BenchRow* alone = find(rows, "feature/depth");
-  if (alone == nullptr) return;
-  print_header("Features", {"feature", "one tick of the filter", "of which the feature"});
-  for (const auto& [name, row] : rows) {
-    if (!starts_with(name, "feature/")) continue;
-    print_row({name.substr(8), duration(row.seconds), fixed(1e9 * (row.seconds - alone->seconds), 1) + " ns"});
-  }
+  Table table("Features", {"feature", "one tick"});
+  for (const auto& [name, row] : rows)
+    if (name.starts_with("feature/")) table.add({name.substr(8), duration(row.seconds)});
 }
 
-// "peer/DATA/NAME/fit" and "/query", one line for each name.
+// "peer/silicone/NAME/fit" and "/query", one line for each name. Their settings follow as a list.
 void print_peers(const BenchRows& rows) {
-  std::string last_data;
-  std::vector<std::string> settings;
-  const auto print_settings = [&] {
-    if (!settings.empty()) std::printf("\n");
-    for (const std::string& setting : settings) std::printf("- %s\n", setting.c_str());
-    settings.clear();
-  };
+  const std::string start = "peer/silicone/", end = "/fit";
+  Table table("Beside peers", {"fitted by", "sites", "fit", "one query", "RMS [mN]", "within the JND [%]",
+                               "with trend: RMS [mN]", "within the JND [%]"});
+  std::string settings;
   for (const auto& [name, fit] : rows) {
-    if (!starts_with(name, "peer/") || name.substr(name.rfind('/')) != "/fit") continue;
-    const std::string data = name.substr(5, name.find('/', 5) - 5);
-    const std::string peer = name.substr(6 + data.size(), name.rfind('/') - 6 - data.size());
-    const auto counter = [&counters = fit.counters](const char* key) { return counters.at(key); };
-    if (data != last_data) {
-      print_settings();
-      print_header(
-          "Beside peers: " + data + ", " + thousands(static_cast<long>(counter("test_samples"))) + " test samples",
-          {"fitted by", "sites", "fit", "one query", "RMS [mN]", "within the JND [%]", "with trend: RMS [mN]",
-           "within the JND [%]"});
-      last_data = data;
-    }
-    const BenchRow* query = find(rows, name.substr(0, name.rfind('/')) + "/query");
-    print_row({peer, thousands(static_cast<long>(counter("sites"))), duration(fit.seconds),
-               query != nullptr ? duration(query->seconds) : "-", fixed(counter("rms_mN"), 1),
-               fixed(counter("within_jnd_pct"), 2), fixed(counter("with_trend_rms_mN"), 1),
-               fixed(counter("with_trend_within_jnd_pct"), 2)});
-    settings.push_back(peer + ": " + fit.label);
+    if (!name.starts_with(start) || !name.ends_with(end)) continue;
+    const std::string peer = name.substr(start.size(), name.size() - start.size() - end.size());
+    const BenchRow* query = find(rows, start + peer + "/query");
+    table.add({peer, thousands(static_cast<long>(fit.counters.at("sites"))), duration(fit.seconds),
+               query != nullptr ? duration(query->seconds) : "-", fixed(fit.counters.at("rms_mN"), 1),
+               fixed(fit.counters.at("within_jnd_pct"), 2), fixed(fit.counters.at("with_trend_rms_mN"), 1),
+               fixed(fit.counters.at("with_trend_within_jnd_pct"), 2)});
+    settings += "- " + peer + ": " + fit.label + "\n";
   }
-  print_settings();
-}
-
-constexpr const char* kMaterials[] = {"silicone", "foam", "gel", "stiff", "skin", "press"};
-
-// One line for each name after "<group>/<material>/", formatted by `cell`.
-template <typename Cell>
-void print_materials(const BenchRows& rows, const std::string& group, const std::string& title, const char* first,
-                     const std::vector<std::string>& names, const Cell& cell) {
-  const auto row_of = [&](const char* material, const std::string& name) {
-    return find(rows, group + "/" + material + "/" + name);
-  };
-  std::vector<const char*> materials;
-  for (const char* material : kMaterials)
-    if (std::any_of(names.begin(), names.end(), [&](const std::string& name) { return row_of(material, name); }))
-      materials.push_back(material);
-  if (materials.empty()) return;
-  std::vector<std::string> titles{first};
-  titles.insert(titles.end(), materials.begin(), materials.end());
-  print_header(title, titles);
-  for (const std::string& name : names) {
-    std::string words = name;
-    std::replace(words.begin(), words.end(), '_', ' ');
-    std::vector<std::string> cells{words};
-    for (const char* material : materials) {
-      const BenchRow* row = row_of(material, name);
-      cells.push_back(row != nullptr ? cell(*row) : "-");
-    }
-    print_row(cells);
-  }
-}
-
-void print_choices(const BenchRows& rows) {
-  print_materials(rows, "choice", "What each choice is worth: RMS [mN] cross-validated / on a recording held out",
-                  "greedy, 100 centres",
-                  {"default", "filters_driven_by_velocity", "relaxation_identified", "kernel_linear",
-                   "kernel_thin_plate", "kernel_quintic", "weights_relative", "weights_none", "every_50_mN",
-                   "papers_recipe", "candidates_all", "direct"},
-                  [](const BenchRow& row) {
-                    const auto validated = row.counters.find("cross_validated_mN");
-                    return (validated != row.counters.end() ? general(validated->second, 3) : "-") + " / " +
-                           general(row.counters.at("rms_mN"), 3);
-                  });
-  const std::vector<std::string> centres{"0", "1", "2", "5", "10", "20", "50", "100", "200"};
-  const auto within = [](const BenchRow& row) {
-    return fixed(row.counters.at("within_JND_percent"), 2) + " (" + general(row.counters.at("rms_mN"), 3) + ")";
-  };
-  print_materials(rows, "centres", "Within the JND [%] (RMS [mN]) of a recording held out", "greedy centres", centres,
-                  within);
-  print_materials(rows, "centres_papers_recipe", "The same by the paper's recipe", "greedy centres", centres, within);
+  if (!settings.empty()) std::printf("\n%s", settings.c_str());
 }
 
 }  // namespace
@@ -275,13 +189,13 @@ std::string duration(double seconds) {
 
 void print_tables(const BenchRows& rows) {
   print_goals(rows);
-  print_ratios(rows);
-  print_shares(rows);
+  print_ratios(rows, Table("One evaluation", {"centres", "plain scalar loop, -O2", "here", "ratio", "goal"}),
+               kScalarRatios);
+  print_ratios(rows, Table("Whole beside bare", {"work", "whole", "bare", "ratio", "goal"}), kWholeRatios);
   print_against(rows, "Cost over N", "sites, 4-D", kSizeColumns);
   print_against(rows, "Cost over dimension", "features", kDimensionColumns);
   print_peers(rows);
   print_features(rows);
-  print_choices(rows);
   std::fflush(stdout);
 }
 

@@ -1,18 +1,15 @@
 // Evaluation, one query at a time, each depending on the previous result, as in ticks.
 #include <benchmark/benchmark.h>
 
-#include <array>
-#include <memory>
+#include <cmath>
 #include <string>
 
 #include "models/model/fitted_model.h"
 #include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/model/rbf/rbf_simd.h"
 #include "models/solve/fill_grid.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
-#include "tests/bench/scalar_loop.h"
 
 namespace palpate::bench {
 namespace {
@@ -20,42 +17,32 @@ namespace {
 constexpr int kRepetitions = 7;
 constexpr double kSeconds = 0.05;  // per repetition
 
+// Eq. 2 in a plain loop over 4-D centres with the cubic kernel,
+//   sum_j weights[j] |x - centre_j|^3 + tail[0] + sum_k tail[1 + k] x[k].
+// Ratios to this reference, compiled with -O2 (CMakeLists.txt), are comparable between machines.
+[[gnu::noinline]] double scalar_cubic_4d(const RbfFunction& f, const double* x) {
+  const double* centres = f.centres.data();
+  double sum = f.tail[0];
+  for (Eigen::Index k = 0; k < 4; ++k) sum += f.tail[1 + k] * x[k];
+  for (Eigen::Index j = 0; j < f.centre_count(); ++j) {
+    double squared = 0.0;
+    for (Eigen::Index k = 0; k < 4; ++k) {
+      const double difference = x[k] - centres[4 * j + k];
+      squared += difference * difference;
+    }
+    sum += f.weights[j] * squared * std::sqrt(squared);
+  }
+  return sum;
+}
+
 void scalar_loop(benchmark::State& state) {
-  const RbfFunction f = recorded_function(state.range(0));
-  run_queries(state, recorded_sites().points, [&](const double* x) {
-    return scalar_cubic_4d(f.centres.data(), f.weights.data(), static_cast<std::size_t>(f.centre_count()),
-                           f.tail.data(), x);
-  });
+  const RbfFunction function = recorded_function(state.range(0));
+  run_queries(state, recorded_sites().points, [&](const double* x) { return scalar_cubic_4d(function, x); });
 }
 
 void rbf(benchmark::State& state) {
   const RbfCorrection evaluator(recorded_function(state.range(0)));
   run_queries(state, recorded_sites().points, [&](const double* x) { return evaluator.evaluate(x); });
-}
-
-void rbf_on_target(benchmark::State& state, const std::string& target) {
-  simd::choose_target(target);
-  const RbfCorrection evaluator(recorded_function(state.range(0)));
-  simd::choose_target("");
-  run_queries(state, recorded_sites().points, [&](const double* x) { return evaluator.evaluate(x); });
-}
-
-void rbf_of_kernel(benchmark::State& state, KernelKind kernel) {
-  RbfFunction function = recorded_function(100);
-  function.kernel = kernel;
-  function.tail = Eigen::VectorXd::Ones(tail_size(tail_degree(kernel), 4));
-  const RbfCorrection evaluator(function);
-  run_queries(state, recorded_sites().points, [&](const double* x) { return evaluator.evaluate(x); });
-}
-
-// Weights and queries in the denormal range must not take more time.
-void rbf_denormal(benchmark::State& state) {
-  RbfFunction function = recorded_function(100);
-  function.weights *= 1e-310;
-  function.centres *= 1e-310;
-  const RbfCorrection evaluator(function);
-  const Eigen::MatrixXd points = 1e-310 * recorded_sites().points;
-  run_queries(state, points, [&](const double* x) { return evaluator.evaluate(x); });
 }
 
 void voxel(benchmark::State& state) {
@@ -72,16 +59,10 @@ void whole_model(benchmark::State& state, const Method* method) {
   const Result<MethodFit> fit = fit_method(recorded(), request);
   if (!fit) return state.SkipWithError(fit.error().message.c_str());
   const FittedModel model(fit->data);
-  const auto& judged = recorded().set.evaluation_features;
-  std::size_t at = 0;
-  double last = 0.0;
-  for (auto _ : state) {
-    std::array<double, kMaxFeatures> features = judged[at];
-    features[0] += 1e-200 * last;
-    last = model.evaluate(features.data()).force_N;
-    at = at + 1 < judged.size() ? at + 1 : 0;
-  }
-  benchmark::DoNotOptimize(last);
+  const auto& samples = recorded().set.evaluation_features;
+  const Eigen::Map<const Eigen::MatrixXd> points(samples.front().data(), kMaxFeatures,
+                                                 static_cast<Eigen::Index>(samples.size()));
+  run_queries(state, points, [&](const double* x) { return model.evaluate(x).force_N; });
 }
 
 void prepare(benchmark::internal::Benchmark* one) {
@@ -96,17 +77,9 @@ void at_sizes(benchmark::internal::Benchmark* one) {
 const int registered = [] {
   at_sizes(benchmark::RegisterBenchmark("evaluate/scalar", scalar_loop));
   at_sizes(benchmark::RegisterBenchmark("evaluate/rbf", rbf));
-  prepare(benchmark::RegisterBenchmark("evaluate/rbf_denormal", rbf_denormal));
   prepare(benchmark::RegisterBenchmark("evaluate/voxel_25x11x11x11", voxel));
-  for (const KernelKind kernel : kKernelKinds)
-    prepare(benchmark::RegisterBenchmark(("evaluate/kernel/" + std::string(kernel_name(kernel))).c_str(), rbf_of_kernel,
-                                         kernel));
   for (const Method* method : methods())
     prepare(benchmark::RegisterBenchmark(("evaluate/model/" + std::string(method->name)).c_str(), whole_model, method));
-  for (const std::string& target : simd::target_names())
-    prepare(benchmark::RegisterBenchmark(("evaluate/target/" + target).c_str(), rbf_on_target, target)
-                ->Arg(100)
-                ->Arg(6850));
   return 0;
 }();
 

@@ -37,8 +37,8 @@ Fit greedy_fit(int candidates, int centres = kCentres) {
   };
 }
 
-// Fits with every number of centres up to the maximum of the slider, and one step of the
-// slider. Compare them with the row of one fit with that maximum.
+// Fits with every number of centres up to the maximum of the slider. Compare the time with that of one fit with that
+// maximum.
 constexpr int kMostCentres = 200;
 
 void slider_all(benchmark::State& state) {
@@ -48,16 +48,6 @@ void slider_all(benchmark::State& state) {
     for (Eigen::Index count = 1; count <= nested->most(); ++count) benchmark::DoNotOptimize(nested->solve(count));
   }
 }
-
-void slider_step(benchmark::State& state, const Method* method, bool papers) {
-  MethodRequest request;
-  request.method = method;
-  request.centres = kMostCentres;
-  const auto nested = NestedFit::make(papers ? recorded_as_paper() : recorded(), request);
-  for (auto _ : state) benchmark::DoNotOptimize(nested->fit(state.range(0)));
-}
-
-Result<FittedRbf> direct_fit(const Sites& sites, const Eigen::VectorXd&) { return fit_direct(sites); }
 
 Status fill(VoxelGrid& grid, const RbfFunction& function) {
   const RbfCorrection evaluator(function);
@@ -173,22 +163,7 @@ const int registered = [] {
   at_paper_size("greedy-100_of_100", greedy_fit(100), 5);
   at_paper_size("greedy-200_of_100", greedy_fit(100, kMostCentres), 3);
   in_single_fits(benchmark::RegisterBenchmark("fit/greedy-1_to_200_of_100", slider_all), 3)->UseRealTime();
-  for (const Method* method : methods()) {
-    if (method->choose == nullptr) continue;
-    for (const bool papers : {false, true})
-      benchmark::RegisterBenchmark((std::string("slider/") + method->name + (papers ? "_2009" : "")).c_str(),
-                                   slider_step, method, papers)
-          ->Arg(10)
-          ->Arg(50)
-          ->Arg(100)
-          ->Arg(kMostCentres)
-          ->Repetitions(5)
-          ->ReportAggregatesOnly()
-          ->UseRealTime()
-          ->Unit(benchmark::kMillisecond);
-  }
   at_paper_size("greedy-100_of_all", greedy_fit(0), 3);
-  at_paper_size("direct", direct_fit, 3);
   at_paper_size("direct+grid", direct_and_grid, 3);
   against_size("random-100", random_fit);
   against_size("kdtree-100", kdtree_fit);

@@ -1,4 +1,4 @@
-// The methods that palpate-bench compares: Palpate's and, where installed,
+// The methods that palpate-bench compares: Palpate's (peer_bench.cpp) and, where installed,
 // libraries that fit a function to scattered points.
 #pragma once
 
@@ -28,12 +28,8 @@ struct Peer {
   Eigen::Index most_sites = 0;
 };
 
-std::vector<Peer> palpate_peers();
-// No function: 0 N, or the trend alone.
-Peer nothing_peer();
 // Defined if CMake found the library.
 std::vector<Peer> alglib_peers();
 std::vector<Peer> dlib_peers();
-std::vector<Peer> dlib_forest_peers();
 
 }  // namespace palpate::bench

@@ -3,10 +3,10 @@
 // RBF (compact kernels of ever smaller radius).
 #include <interpolation.h>
 
-#include <cstdio>
 #include <memory>
 #include <string>
 
+#include "engine/base/text.h"
 #include "tests/bench/peer.h"
 
 namespace palpate::bench {
@@ -58,19 +58,13 @@ PeerSetting setting(const std::string& text, const Choice& choose) {
   return {text, [choose](const PreparedTraining& prepared) { return build(prepared.sites, choose); }};
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 }  // namespace
 
 std::vector<Peer> alglib_peers() {
   Peer polyharmonic{"alglib_ddm", {}, kMostDdmSites};
   for (const double lambda : {1e-6, 1e-3}) {
     polyharmonic.settings.push_back(
-        setting("thin plate spline, lambda " + number(lambda),
+        setting("thin plate spline, lambda " + general(lambda, 6),
                 [lambda](alglib::rbfmodel& model) { alglib::rbfsetalgothinplatespline(model, lambda); }));
   }
   Peer hierarchical{"alglib_hierarchical", {}};

@@ -1,5 +1,5 @@
-// peer/DATA/NAME/fit and /query: Palpate's methods and other libraries, fitted to
-// the same sites and tested on the same recordings. A fit is timed once for both
+// peer/silicone/NAME/fit and /query: Palpate's methods and other libraries, fitted to
+// the same sites and tested on the same recording. A fit is timed once for both
 // rows; their loops only report that time.
 #include <benchmark/benchmark.h>
 
@@ -24,12 +24,34 @@ constexpr int kQueryRepetitions = 7;
 constexpr double kQuerySeconds = 0.05;
 
 struct Fitted {
-  std::string setting;  // for the forces, like all members except the last
-  double fit_s = 0.0;   // median
-  Function function;
-  PeerError forces;
-  PeerError remainder;
+  PeerResult result;
+  Function function;  // for the forces
 };
+
+// Palpate's methods as peers: the correction function alone, without trend, trust and limits.
+Result<Function> fit(const PreparedTraining& prepared, const Method* method) {
+  MethodRequest request;
+  request.method = method;
+  Result<MethodFit> fitted = fit_method(prepared, request);
+  if (!fitted) return fitted.error();
+  return Function([correction = fitted->data.correction](const double* x) { return correction->evaluate(x); });
+}
+
+std::vector<Peer> palpate_peers() {
+  std::vector<Peer> peers;
+  const auto add = [&](const Method* method, const char* name, const char* text) {
+    peers.push_back({name, {{text, [method](const PreparedTraining& prepared) { return fit(prepared, method); }}}});
+  };
+  add(&kRandomMethod, "palpate_random-100", "100 centres");
+  add(&kKdTreeMethod, "palpate_kdtree-100", "100 centres");
+  add(&kGreedyMethod, "palpate_greedy-100", "100 centres, 100 candidates a step");
+  add(&kDirectMethod, "palpate_direct", "all sites are centres, smoothing chosen by leaving out strokes");
+  add(&kVoxelMethod, "palpate_voxel", "25x11x11x11 grid (as `palpate fit` chooses it), filled from direct");
+  // No function: 0 N, or the trend alone.
+  const auto nothing = [](const PreparedTraining&) { return Function([](const double*) { return 0.0; }); };
+  peers.push_back({"nothing", {{"0 N", nothing}}});
+  return peers;
+}
 
 // Fits up to kFitRepetitions times and returns the median time.
 Result<Function> timed_fit(const PeerSetting& setting, const PreparedTraining& training, double& median_s) {
@@ -48,66 +70,61 @@ Result<Function> timed_fit(const PeerSetting& setting, const PreparedTraining& t
   }
 }
 
-Result<Fitted> fit_both(const Peer& peer, const PeerData& data) {
+Result<Fitted> fit_both(const Peer& peer) {
+  const PeerData& data = peer_data();
   Fitted fitted;
   const PreparedTraining forces = with_some_sites(data.forces, peer.most_sites);
-  const PeerSetting& setting = peer.settings[best_setting(peer, forces)];
-  const Result<Function> function = timed_fit(setting, forces, fitted.fit_s);
+  const PeerSetting& setting = best_setting(peer, forces);
+  const Result<Function> function = timed_fit(setting, forces, fitted.result.fit_s);
   if (!function) return function.error();
-  fitted.setting = setting.text;
   fitted.function = *function;
-  fitted.forces = error_of_forces(data, output_N(*function, data.test_points));
+  fitted.result.setting = setting.text;
+  fitted.result.forces = error_of_forces(output_N(*function, data.test_points));
 
   const PreparedTraining remainder = with_some_sites(data.remainder, peer.most_sites);
-  const Result<Function> other = peer.settings[best_setting(peer, remainder)].fit(remainder);
+  const Result<Function> other = best_setting(peer, remainder).fit(remainder);
   if (!other) return other.error();
-  fitted.remainder = error_of_remainder(data, output_N(*other, data.test_points));
+  fitted.result.remainder = error_of_remainder(output_N(*other, data.test_points));
   return fitted;
 }
 
-// Fits once for each peer and data; both rows use the result.
-const Result<Fitted>& fitted_peer(const Peer& peer, const PeerData& data) {
+// Fits once for each peer; both rows use the result.
+const Result<Fitted>& fitted_peer(const Peer& peer) {
   static std::map<std::string, Result<Fitted>> done;
-  const std::string key = data.name + "/" + peer.name;
-  const auto found = done.find(key);
-  return found != done.end() ? found->second : done.emplace(key, fit_both(peer, data)).first->second;
+  const auto found = done.find(peer.name);
+  return found != done.end() ? found->second : done.emplace(peer.name, fit_both(peer)).first->second;
 }
 
-void report_errors(benchmark::State& state, const PeerData& data, Eigen::Index sites, const PeerError& forces,
-                   const PeerError& remainder, const std::string& setting) {
-  state.counters["sites"] = static_cast<double>(sites);
-  state.counters["test_samples"] = static_cast<double>(data.test_force_N.size());
-  state.counters["rms_mN"] = 1e3 * forces.rms_N;
-  state.counters["within_jnd_pct"] = 100.0 * forces.within_jnd;
-  state.counters["with_trend_rms_mN"] = 1e3 * remainder.rms_N;
-  state.counters["with_trend_within_jnd_pct"] = 100.0 * remainder.within_jnd;
-  state.SetLabel(setting);
+void report_result(benchmark::State& state, Eigen::Index most_sites, const PeerResult& result) {
+  const Eigen::Index all = peer_data().forces.sites.count();
+  for (auto _ : state) state.SetIterationTime(result.fit_s);
+  state.counters["sites"] = static_cast<double>(most_sites > 0 ? std::min(most_sites, all) : all);
+  state.counters["rms_mN"] = 1e3 * result.forces.rms_N;
+  state.counters["within_jnd_pct"] = 100.0 * result.forces.within_jnd;
+  state.counters["with_trend_rms_mN"] = 1e3 * result.remainder.rms_N;
+  state.counters["with_trend_within_jnd_pct"] = 100.0 * result.remainder.within_jnd;
+  state.SetLabel(result.setting);
 }
 
-void fit_row(benchmark::State& state, const std::string& data_name, const Peer& peer) {
-  const PeerData& data = peer_data(data_name);
-  const Result<Fitted>& fitted = fitted_peer(peer, data);
+void fit_row(benchmark::State& state, const Peer& peer) {
+  const Result<Fitted>& fitted = fitted_peer(peer);
   if (!fitted) return state.SkipWithError(fitted.error().message.c_str());
-  for (auto _ : state) state.SetIterationTime(fitted->fit_s);
-  const Eigen::Index all = data.forces.sites.count();
-  report_errors(state, data, peer.most_sites > 0 ? std::min(peer.most_sites, all) : all, fitted->forces,
-                fitted->remainder, fitted->setting);
+  report_result(state, peer.most_sites, fitted->result);
 }
 
-void query_row(benchmark::State& state, const std::string& data_name, const Peer& peer) {
-  const PeerData& data = peer_data(data_name);
-  const Result<Fitted>& fitted = fitted_peer(peer, data);
+void query_row(benchmark::State& state, const Peer& peer) {
+  const Result<Fitted>& fitted = fitted_peer(peer);
   if (!fitted) return state.SkipWithError(fitted.error().message.c_str());
-  run_queries(state, data.test_points, fitted->function);
+  run_queries(state, peer_data().test_points, fitted->function);
 }
 
-void register_peer(const std::string& data, const Peer& peer) {
-  const std::string name = "peer/" + data + "/" + peer.name;
-  benchmark::RegisterBenchmark((name + "/fit").c_str(), fit_row, data, peer)
+void register_peer(const Peer& peer) {
+  const std::string name = "peer/silicone/" + peer.name;
+  benchmark::RegisterBenchmark((name + "/fit").c_str(), fit_row, peer)
       ->Iterations(1)
       ->UseManualTime()
       ->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark((name + "/query").c_str(), query_row, data, peer)
+  benchmark::RegisterBenchmark((name + "/query").c_str(), query_row, peer)
       ->Repetitions(kQueryRepetitions)
       ->MinTime(kQuerySeconds)
       ->ReportAggregatesOnly();
@@ -115,20 +132,19 @@ void register_peer(const std::string& data, const Peer& peer) {
 
 #ifdef PALPATE_PYTHON
 // The times are those measured by the script.
-void scipy_row(benchmark::State& state, const std::string& data_name, const std::string& peer_name, bool query) {
-  const PeerData& data = peer_data(data_name);
-  const auto& peers = scipy_peers(data);
+void scipy_row(benchmark::State& state, const std::string& name, bool query) {
+  const auto& peers = scipy_peers();
   if (!peers) return state.SkipWithError(peers.error().message.c_str());
-  const ScipyPeer& peer = peers->at(peer_name);
-  for (auto _ : state) state.SetIterationTime(query ? peer.query_s : peer.fit_s);
-  if (!query) report_errors(state, data, data.forces.sites.count(), peer.forces, peer.remainder, peer.setting);
+  const ScipyPeer& peer = peers->at(name);
+  if (!query) return report_result(state, 0, peer.result);
+  for (auto _ : state) state.SetIterationTime(peer.query_s);
 }
 
-void register_scipy(const std::string& data) {
+void register_scipy() {
   for (const std::string peer : kScipyPeers)
     for (const bool query : {false, true})
-      benchmark::RegisterBenchmark(("peer/" + data + "/" + peer + (query ? "/query" : "/fit")).c_str(), scipy_row, data,
-                                   peer, query)
+      benchmark::RegisterBenchmark(("peer/silicone/" + peer + (query ? "/query" : "/fit")).c_str(), scipy_row, peer,
+                                   query)
           ->Iterations(1)
           ->UseManualTime()
           ->Unit(query ? benchmark::kMicrosecond : benchmark::kMillisecond);
@@ -136,24 +152,16 @@ void register_scipy(const std::string& data) {
 #endif
 
 const int registered = [] {
-  std::vector<Peer> peers = palpate_peers();
-  peers.push_back(nothing_peer());
-  [[maybe_unused]] const auto add = [&](const std::vector<Peer>& more) {
-    peers.insert(peers.end(), more.begin(), more.end());
-  };
+  for (const Peer& peer : palpate_peers()) register_peer(peer);
 #ifdef PALPATE_WITH_ALGLIB
-  add(alglib_peers());
+  for (const Peer& peer : alglib_peers()) register_peer(peer);
 #endif
 #ifdef PALPATE_WITH_DLIB
-  add(dlib_peers());
-  add(dlib_forest_peers());
+  for (const Peer& peer : dlib_peers()) register_peer(peer);
 #endif
-  for (const std::string& data : peer_data_names()) {
-    for (const Peer& peer : peers) register_peer(data, peer);
 #ifdef PALPATE_PYTHON
-    register_scipy(data);
+  register_scipy();
 #endif
-  }
   return 0;
 }();
 

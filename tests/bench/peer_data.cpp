@@ -1,20 +1,15 @@
 #include "tests/bench/peer_data.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
-#include <map>
 #include <set>
-#include <utility>
 
 #include "engine/tick/replay.h"
+#include "scenes/evaluation/error_figures.h"
 #include "tests/support/fitting.h"
 
 namespace palpate::bench {
 namespace {
-
-using test::must;
-using test::RecordingPtr;
 
 constexpr int kLeaveOut = 5;  // every fifth stroke is left out
 
@@ -31,26 +26,26 @@ PreparedTraining with_targets(const PreparedTraining& prepared, bool forces) {
   return other;
 }
 
-PeerData make_data(const std::string& name, const PreparedTraining& prepared,
-                   const std::vector<RecordingPtr>& test_recordings) {
-  PeerData data{name, with_targets(prepared, true), with_targets(prepared, false), {}, {}, {}, {}};
+PeerData make_data() {
+  const PreparedTraining prepared =
+      test::prepare({test::train_recording("silicone")}, test::scene_request("silicone_block"));
+  PeerData data{with_targets(prepared, true), with_targets(prepared, false), {}, {}, {}, {}};
   const ModelData& common = prepared.common;
   const auto d = static_cast<Eigen::Index>(common.features.size());
   const DomainGuard guard(common.cover);
   const test::ModelPtr model = test::fit(prepared, &kRandomMethod);  // needed only for its features
   std::vector<double> points, force_N, trend_N, trust;
-  for (const RecordingPtr& recording : test_recordings) {
-    replay(*recording, {model}, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-      if (!snapshot.in_contact) return;
-      const double* features = tick.features_of(0).values.data();
-      const Eigen::VectorXd u =
-          (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
-      points.insert(points.end(), u.begin(), u.end());
-      force_N.push_back(row.force_N);
-      trend_N.push_back(common.trend.at(features, common.features));
-      trust.push_back(guard.trust(u.data()));
-    });
-  }
+  replay(*test::test_recording("silicone"), {model},
+         [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+           if (!snapshot.in_contact) return;
+           const double* features = tick.features_of(0).values.data();
+           const Eigen::VectorXd u =
+               (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
+           points.insert(points.end(), u.begin(), u.end());
+           force_N.push_back(row.force_N);
+           trend_N.push_back(common.trend.at(features, common.features));
+           trust.push_back(guard.trust(u.data()));
+         });
   const auto n = static_cast<Eigen::Index>(force_N.size());
   data.test_points = Eigen::Map<const Eigen::MatrixXd>(points.data(), d, n);
   data.test_force_N = Eigen::Map<const Eigen::VectorXd>(force_N.data(), n);
@@ -59,34 +54,12 @@ PeerData make_data(const std::string& name, const PreparedTraining& prepared,
   return data;
 }
 
-// Materials outside the model's class, with automatically selected features.
-constexpr const char* kMaterials[] = {"friction", "softening", "tissue", "layered"};
-
-PeerData make_data(const std::string& name) {
-  if (name == "silicone") {
-    return make_data(name, test::prepare({test::train_recording(name)}, test::scene_request("silicone_block")),
-                     {test::test_recording(name)});
-  }
-  if (std::find(std::begin(kMaterials), std::end(kMaterials), name) != std::end(kMaterials)) {
-    return make_data(name, test::prepare({test::train_recording(name)}, test::default_request("silicone_block")),
-                     {test::test_recording(name)});
-  }
-  if (name == "press") {
-    return make_data(
-        name, test::prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")}, test::default_request("skin")),
-        {test::real_recording("ur3e_press_mit/test_cycle2.csv")});
-  }
-  return make_data(name,
-                   test::prepare(test::skin_recordings("train", {"250", "600", "1000"}), test::scene_request(name)),
-                   test::skin_recordings("test", {"400", "800", "900"}));
-}
-
-PeerError error_of(const PeerData& data, const std::function<double(Eigen::Index i)>& force_N) {
+PeerError error_of(const Eigen::VectorXd& force_N) {
+  const PeerData& data = peer_data();
   const ModelData& common = data.forces.common;
   ErrorFigures figures;
   for (Eigen::Index i = 0; i < data.test_force_N.size(); ++i) {
-    double force = force_N(i);
-    if (!(force > 0.0)) force = 0.0;
+    const double force = force_N[i] > 0.0 ? force_N[i] : 0.0;
     figures.add(std::min(force, kForceMargin * common.largest_force_N), data.test_force_N[i], false, common.jnd);
   }
   return {figures.summary(common.jnd).rms_error_N, figures.within_jnd()};
@@ -107,29 +80,18 @@ Sites some_sites(const Sites& all, const Wanted& wanted) {
 
 }  // namespace
 
-std::vector<std::string> peer_data_names() {
-  std::vector<std::string> names{"silicone"};
-  names.insert(names.end(), std::begin(kMaterials), std::end(kMaterials));
-  if (std::filesystem::exists(test::real_data() / "aurora_skin")) names.emplace_back("skin");
-  if (std::filesystem::exists(test::real_data() / "ur3e_press_mit")) names.emplace_back("press");
-  return names;
+const PeerData& peer_data() {
+  static const PeerData data = make_data();
+  return data;
 }
 
-const PeerData& peer_data(const std::string& name) {
-  static std::map<std::string, PeerData> made;
-  const auto found = made.find(name);
-  return found != made.end() ? found->second : made.emplace(name, make_data(name)).first->second;
-}
+PeerError error_of_forces(const Eigen::VectorXd& output_N) { return error_of(output_N); }
 
-PeerError error_of_forces(const PeerData& data, const Eigen::VectorXd& output_N) {
-  return error_of(data, [&](Eigen::Index i) { return output_N[i]; });
-}
-
-PeerError error_of_remainder(const PeerData& data, const Eigen::VectorXd& output_N) {
+PeerError error_of_remainder(const Eigen::VectorXd& output_N) {
+  const PeerData& data = peer_data();
   const double limit_N = data.remainder.common.correction_limit_N;
-  return error_of(data, [&](Eigen::Index i) {
-    return data.test_trend_N[i] + data.test_trust[i] * std::clamp(output_N[i], -limit_N, limit_N);
-  });
+  const Eigen::VectorXd correction_N = output_N.cwiseMax(-limit_N).cwiseMin(limit_N);
+  return error_of(data.test_trend_N + data.test_trust.cwiseProduct(correction_N));
 }
 
 Eigen::VectorXd output_N(const Function& function, const Eigen::MatrixXd& points) {
@@ -165,25 +127,25 @@ std::vector<bool> left_out_sites(const PreparedTraining& prepared) {
   return left_out;
 }
 
-std::size_t best_setting(const Peer& peer, const PreparedTraining& prepared) {
-  if (peer.settings.size() == 1) return 0;
+const PeerSetting& best_setting(const Peer& peer, const PreparedTraining& prepared) {
+  if (peer.settings.size() == 1) return peer.settings.front();
   const std::vector<bool> left_out = left_out_sites(prepared);
   PreparedTraining some;
   const auto is_left_out = [&](Eigen::Index i) { return left_out[static_cast<std::size_t>(i)]; };
   some.sites = some_sites(prepared.sites, [&](Eigen::Index i) { return !is_left_out(i); });
   const Sites judged = some_sites(prepared.sites, is_left_out);
-  std::size_t best = 0;
+  const PeerSetting* best = &peer.settings.front();
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < peer.settings.size(); ++i) {
-    const Result<Function> fitted = peer.settings[i].fit(some);
+  for (const PeerSetting& setting : peer.settings) {
+    const Result<Function> fitted = setting.fit(some);
     if (!fitted) continue;
     const double error = (output_N(*fitted, judged.points) - judged.target_N).squaredNorm();
     if (error < least) {
       least = error;
-      best = i;
+      best = &setting;
     }
   }
-  return best;
+  return *best;
 }
 
 }  // namespace palpate::bench

@@ -23,7 +23,8 @@ void write_rows(const std::filesystem::path& path, const Eigen::MatrixXd& column
   }
 }
 
-void write_data(const std::filesystem::path& folder, const PeerData& data) {
+void write_data(const std::filesystem::path& folder) {
+  const PeerData& data = peer_data();
   const Sites& sites = data.forces.sites;
   const std::vector<bool> left_out = left_out_sites(data.forces);
   Eigen::MatrixXd train(sites.dimension() + 3, sites.count());
@@ -56,26 +57,26 @@ Result<Eigen::VectorXd> read_output(const std::filesystem::path& path, Eigen::In
   return output;
 }
 
-Result<std::map<std::string, ScipyPeer>> run(const PeerData& data) {
+Result<std::map<std::string, ScipyPeer>> run() {
   const test::TemporaryFolder temporary;
   const std::filesystem::path folder = temporary.path();
-  write_data(folder, data);
+  write_data(folder);
   const Result<std::string> said = run_script(folder);
   if (!said) return said.error();
   std::map<std::string, ScipyPeer> peers;
   for (const nlohmann::json& row : nlohmann::json::parse(*said)) {
     const auto name = row.at("name").get<std::string>();
     const auto target = row.at("target").get<std::string>();
-    const auto output = read_output(folder / (name + "_" + target + ".csv"), data.test_force_N.size());
+    const auto output = read_output(folder / (name + "_" + target + ".csv"), peer_data().test_force_N.size());
     if (!output) return output.error();
     ScipyPeer& peer = peers[name];
     if (target == "remainder") {
-      peer.remainder = error_of_remainder(data, *output);
+      peer.result.remainder = error_of_remainder(*output);
       continue;
     }
-    peer.forces = error_of_forces(data, *output);
-    peer.setting = row.at("setting").get<std::string>();
-    peer.fit_s = row.at("fit_s").get<double>();
+    peer.result.forces = error_of_forces(*output);
+    peer.result.setting = row.at("setting").get<std::string>();
+    peer.result.fit_s = row.at("fit_s").get<double>();
     peer.query_s = row.at("query_s").get<double>();
   }
   return peers;
@@ -83,10 +84,9 @@ Result<std::map<std::string, ScipyPeer>> run(const PeerData& data) {
 
 }  // namespace
 
-const Result<std::map<std::string, ScipyPeer>>& scipy_peers(const PeerData& data) {
-  static std::map<std::string, Result<std::map<std::string, ScipyPeer>>> done;
-  const auto found = done.find(data.name);
-  return found != done.end() ? found->second : done.emplace(data.name, run(data)).first->second;
+const Result<std::map<std::string, ScipyPeer>>& scipy_peers() {
+  static const Result<std::map<std::string, ScipyPeer>> done = run();
+  return done;
 }
 
 }  // namespace palpate::bench

@@ -10,17 +10,13 @@
 namespace palpate::bench {
 
 struct ScipyPeer {
-  std::string setting;  // for the forces
-  double fit_s = 0.0;
+  PeerResult result;
   double query_s = 0.0;
-  PeerError forces;
-  PeerError remainder;
 };
 
 inline constexpr const char* kScipyPeers[] = {"scipy_all_sites", "scipy_50_neighbours"};
 
-// Peers by name. The script runs once for each data. Errors: the script failed, or
-// its output cannot be read.
-const Result<std::map<std::string, ScipyPeer>>& scipy_peers(const PeerData& data);
+// Peers by name. The script runs once. Errors: the script failed, or its output cannot be read.
+const Result<std::map<std::string, ScipyPeer>>& scipy_peers();
 
 }  // namespace palpate::bench

@@ -1,47 +1,56 @@
-// Numerically hard data and motions far from the data. Every method is tested
-// on every case.
+// Numerically hard data and motions far from the data: every method is tested on every case.
 //
-// Four kinds of case, all synthetic and deterministic:
-//   sites       coinciding, clustered, flat and badly scaled points; as few as
-//               one; more centres than sites. Evaluated at other points nearby.
-//   recording   what sensors and hands do wrong: noise, drift, outliers, lost
-//               and jittered samples, extreme rates. Evaluated on a clean press.
-//   motion      presses unlike the training: deeper, faster, longer, abrupt.
-//   material    these motions in every virtual material, with automatically selected features.
-// The true force is a closed form or that of the material. For direct interpolation the
-// system of eq. 4 is also solved in long double, if it is small enough.
-//
-// `safe` means: every value is finite and bounded (site cases: held-out values
-// at most 1.2 times the range of the forces outside that range; others: forces from
-// 0 to 1.2 times the largest training force), or the fit is refused with a message.
-// `outcome` describes the error.
-// Source: Hoever & Harders (2009), eqs. 2-8, for the system.
+// Three kinds of case, all synthetic and deterministic:
+//   sites       coinciding, clustered, flat and badly scaled points; as few as one; more centres than sites
+//   recording   what sensors and hands do wrong: noise, drift, outliers, lost and jittered samples, extreme rates
+//   motion      presses unlike the training, in every virtual material: deeper, faster, longer, abrupt
+// A method must refuse a case with a message, or give only safe values: finite and bounded (sites: at most 1.2 times
+// the range of the forces outside that range; else from 0 to 1.2 times the largest training force).
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "models/fit/fit.h"
+#include "tests/support/press.h"
 
-namespace palpate {
+namespace palpate::test {
 
-struct HardCaseResult {
-  std::string name;             // of the case
-  std::string method;           // its name
-  std::string outcome;          // in words
-  double condition = 0.0;       // of the linear system, see FitReport
-  double residual = 0.0;        // RMS over the sites, times row_scale: in JNDs
-  double smoothing = 0.0;       // chosen, see FitReport
-  double worst_over_jnd = 0.0;  // largest error on the held-out data
-  double within_jnd = 0.0;      // share of the held-out data
-  bool safe = false;
+// One method in one case.
+struct HardCase {
+  std::string method;
+  FitReport report;
+  std::string refusal;                       // empty if the fit was accepted
+  std::shared_ptr<const FittedModel> model;  // null for sites, or if refused
+  // The values so far.
+  std::size_t count = 0, unsafe = 0;
+  std::size_t known = 0, within = 0;  // with a known true force, and of these within the JND of it
+  double worst_over_jnd = 0.0;        // error
+
+  // Adds a value, which is safe if it is finite and from `low_N` to `high_N`.
+  void add(double value_N, double low_N, double high_N);
+  void add(double value_N, double truth_N, double low_N, double high_N);
 };
 
-// With methods in the order of methods(). Deterministic.
-std::vector<HardCaseResult> run_hard_sites();
-std::vector<HardCaseResult> run_hard_recordings(FeatureChoice choice);
-std::vector<HardCaseResult> run_hard_motions();
-// The materials. Takes half a minute.
-std::vector<HardCaseResult> run_hard_materials();
+// Strokes of several depths and speeds with pauses between and on the way. `variant` changes their order and speed,
+// not their range.
+inline constexpr double kTrainingDepth_m = 6e-3;
+Path training_path(int variant);
+// offset + factor times the path.
+Path scaled(const Path& path, double factor, double offset_m);
 
-}  // namespace palpate
+// Features: depth, velocity and a low-pass. The surface is as recorded, because these cases
+// test numerics and not registration.
+TrainingRequest clean_request();
+
+// Each method fitted to this recording, in the order of methods().
+std::vector<HardCase> fit_methods(const Recording& recording, const TrainingRequest& request);
+// Adds the force of every model at every tick of `press` in contact.
+void evaluate_press(const Press& press, std::vector<HardCase>& cases);
+
+// Expects safe values or a refusal, and logs one line for each case.
+void expect_safe(const std::string& name, const std::vector<HardCase>& cases);
+
+}  // namespace palpate::test

@@ -113,7 +113,6 @@ void ClosedLoop::run(double seconds, const Path& path, const AfterTick& after_ti
       const LoopSnapshot& snapshot = live_.run(tool_.time_s(), controls_);
       offences_ += guard.stop().total();
       faults_ |= snapshot.faults;
-      ++ticks_;
       due_ = next_tick();
       if (after_tick) after_tick(snapshot);
     }

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 
@@ -30,6 +29,10 @@ struct Grip {
 // 2002), the damping 0.5 to 0.7 of critical. `braced` is devices/virtual/hand_motion.h.
 // The last is a free mass without stiffness and damping.
 const std::array<Grip, 4>& grips();
+inline const Grip& mass_alone() { return grips().back(); }
+inline bool held(const Grip& grip) { return grip.stiffness_N_per_m > 0.0; }
+// A grip so stiff that the tool follows the prescribed path.
+inline Grip lead() { return {"lead", 1.0, 4e5, 1200.0}; }
 
 // The timing of ticks.
 enum class Ticking {
@@ -76,7 +79,6 @@ class SimulatedTool final : public Device {
 
   double time_s() const noexcept;
   double position_m() const noexcept { return position_m_; }
-  double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
   double force_N() const noexcept { return force_N_; }
   const LoopEnergy& energy() const noexcept { return energy_; }
 
@@ -119,7 +121,6 @@ class ClosedLoop {
   ModelSlot<LiveModels>& slot() { return slot_; }
   // Sum of the RtGuard counts of all ticks so far; 0 if rt_guard_works() is false.
   int offences() const { return offences_; }
-  int ticks() const { return ticks_; }
   std::uint32_t faults() const { return faults_; }
 
  private:
@@ -133,21 +134,10 @@ class ClosedLoop {
   RandomStream random_{1, 77};
   std::int64_t step_ = 0, deadline_ = 0, due_ = 0;
   std::uint32_t id_ = 0, faults_ = 0;
-  int offences_ = 0, ticks_ = 0;
+  int offences_ = 0;
 };
 
 // Minimum jerk from `from_m` to `to_m` within `duration_s`, then held.
 ClosedLoop::Drive minimum_jerk(double from_m, double to_m, double duration_s, double time_s);
-
-// Smallest and largest of a quantity.
-struct Span {
-  double lowest = std::numeric_limits<double>::infinity();
-  double highest = -std::numeric_limits<double>::infinity();
-  void add(double value) {
-    lowest = value < lowest ? value : lowest;
-    highest = value > highest ? value : highest;
-  }
-  double width() const { return highest - lowest; }
-};
 
 }  // namespace palpate::test

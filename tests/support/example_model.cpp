@@ -16,6 +16,7 @@ constexpr double kVelocity_m_per_s = 0.05;
 double typical_size(FeatureKind kind) {
   switch (kind) {
     case FeatureKind::depth:
+    case FeatureKind::surface_lag:
       return kDepth_m;
     case FeatureKind::velocity:
       return kVelocity_m_per_s;
@@ -25,8 +26,6 @@ double typical_size(FeatureKind kind) {
     case FeatureKind::stops:
     case FeatureKind::creep:
       return 1.0;
-    case FeatureKind::surface_lag:
-      return kDepth_m;
   }
   return 1.0;
 }
@@ -88,23 +87,14 @@ std::vector<FeatureSpec> maxwell_features() {
 }
 
 std::vector<FeatureSpec> memory_features() {
-  FeatureSpec spectrum;
-  spectrum.kind = FeatureKind::maxwell_spectrum;
-  spectrum.part_count = 3;
-  FeatureSpec stops;
-  stops.kind = FeatureKind::stops;
-  stops.part_count = 2;
-  FeatureSpec creep;
-  creep.kind = FeatureKind::creep;
-  creep.part_count = 2;
-  for (std::size_t p = 0; p < 3; ++p) {
-    const double size = static_cast<double>(p + 1);
-    spectrum.parts[p].relaxation_time_s = 0.03 * size * size;
-    spectrum.parts[p].drive = {kDepth_m, {0.3, 0.1 * size, 0.0, 0.05}};
-    if (p == stops.part_count) continue;
-    creep.parts[p] = {0.02 * size * size, kDepth_m, {kDepth_m, {0.2 * size, 0.1, 0.0, 0.0}}};
-    stops.parts[p].threshold_m = 2e-4 * size;
-    stops.parts[p].drive = {kDepth_m, {0.2, 0.0, 0.1 * size, 0.0}};
+  FeatureSpec spectrum{FeatureKind::maxwell_spectrum}, stops{FeatureKind::stops}, creep{FeatureKind::creep};
+  for (const double size : {1.0, 2.0, 3.0}) {
+    const DriveCurve drive{kDepth_m, {0.3, 0.1 * size, 0.0, 0.05}};
+    spectrum.parts[spectrum.part_count++] = {0.03 * size * size, 0.0, drive};
+  }
+  for (const double size : {1.0, 2.0}) {
+    stops.parts[stops.part_count++] = {0.0, 2e-4 * size, {kDepth_m, {0.2, 0.0, 0.1 * size, 0.0}}};
+    creep.parts[creep.part_count++] = {0.02 * size * size, kDepth_m, {kDepth_m, {0.2 * size, 0.1, 0.0, 0.0}}};
   }
   return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, spectrum, stops, creep};
 }

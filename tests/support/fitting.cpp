@@ -15,10 +15,12 @@ constexpr std::uint64_t kTestSeed = 2;
 // Bins with fewer samples are ignored, because their deviation is unreliable.
 constexpr std::uint64_t kFullBin = 100;
 
-std::vector<EvaluatedModel> evaluated_models(const std::vector<ModelPtr>& models) {
-  std::vector<EvaluatedModel> list;
-  for (const ModelPtr& model : models) list.push_back({model, model->data().jnd});
-  return list;
+// `settings`: train_settings or test_settings of a material.
+RecordingPtr made_once(const RigSettings& settings) {
+  static std::map<std::pair<std::string, std::uint64_t>, RecordingPtr> made;
+  RecordingPtr& recording = made[{settings.material, settings.seed}];
+  if (recording == nullptr) recording = rig_recording(settings);
+  return recording;
 }
 
 }  // namespace
@@ -41,19 +43,9 @@ RecordingPtr rig_recording(const RigSettings& settings) {
   return std::make_shared<const Recording>(must(record_sensors(settings)));
 }
 
-const RecordingPtr& train_recording(const std::string& material) {
-  static std::map<std::string, RecordingPtr> made;
-  RecordingPtr& recording = made[material];
-  if (recording == nullptr) recording = rig_recording(train_settings(material));
-  return recording;
-}
+RecordingPtr train_recording(const std::string& material) { return made_once(train_settings(material)); }
 
-const RecordingPtr& test_recording(const std::string& material) {
-  static std::map<std::string, RecordingPtr> made;
-  RecordingPtr& recording = made[material];
-  if (recording == nullptr) recording = rig_recording(test_settings(material));
-  return recording;
-}
+RecordingPtr test_recording(const std::string& material) { return made_once(test_settings(material)); }
 
 RecordingPtr encoder_only(const RecordingPtr& recording) {
   auto copy = std::make_shared<Recording>(*recording);
@@ -83,12 +75,6 @@ TrainingRequest scene_request(const std::string& scene) {
   return request;
 }
 
-void use_papers_recipe(TrainingRequest& request) {
-  request.recipe = FitRecipe::paper_2009;
-  request.reduction = Reduction::force;
-  request.weighting = Weighting::relative;
-}
-
 TrainingRequest position_request() { return scene_request("elastic_block"); }
 
 PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request) {
@@ -111,24 +97,14 @@ std::vector<ModelPtr> fit_all(const PreparedTraining& prepared) {
   return models;
 }
 
-std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models) {
+ErrorSummary judge(const Recording& recording, const ModelPtr& model) {
   EvaluationRequest request;
   request.move_surface = false;
-  std::vector<ErrorSummary> summaries;
-  const RecordingEvaluation evaluated = must(evaluate(rows_of(recording), evaluated_models(models), request));
-  for (const ModelEvaluation& one : evaluated.models) summaries.push_back(one.as_recorded.summary());
-  return summaries;
+  return must(evaluate(rows_of(recording), {{model, model->data().jnd}}, request)).models.front().as_recorded.summary();
 }
 
-std::vector<ErrorSummary> evaluate_moved(const Recording& recording, const std::vector<ModelPtr>& models) {
-  std::vector<ErrorSummary> summaries;
-  const RecordingEvaluation evaluated = must(evaluate(rows_of(recording), evaluated_models(models)));
-  for (const ModelEvaluation& one : evaluated.models) summaries.push_back(one.surface_moved.summary());
-  return summaries;
-}
-
-ErrorSummary judge(const Recording& recording, const ModelPtr& model) {
-  return judge(recording, std::vector<ModelPtr>{model}).front();
+ErrorSummary judge_moved(const Recording& recording, const ModelPtr& model) {
+  return must(evaluate(rows_of(recording), {{model, model->data().jnd}})).models.front().surface_moved.summary();
 }
 
 double worst_bin_over_jnd(const ErrorSummary& summary, double from_N) {

@@ -33,8 +33,8 @@ RigSettings test_settings(const std::string& material);
 
 RecordingPtr rig_recording(const RigSettings& settings);
 // The recordings of these settings, made once.
-const RecordingPtr& train_recording(const std::string& material);
-const RecordingPtr& test_recording(const std::string& material);
+RecordingPtr train_recording(const std::string& material);
+RecordingPtr test_recording(const std::string& material);
 // Removes the acceleration column, so that only the encoder is left.
 RecordingPtr encoder_only(const RecordingPtr& recording);
 
@@ -47,8 +47,6 @@ std::vector<RecordingPtr> skin_recordings(const std::string& kind, const std::ve
 // The requests of `palpate fit --scene scene`, and of that with `--features scene`.
 TrainingRequest default_request(const std::string& scene);
 TrainingRequest scene_request(const std::string& scene);
-// Changes a request to the recipe of the paper (2009).
-void use_papers_recipe(TrainingRequest& request);
 // A request for a model of position alone.
 TrainingRequest position_request();
 
@@ -57,11 +55,10 @@ ModelPtr fit(const PreparedTraining& prepared, const Method* method, std::uint64
 // One of each method, in the order of methods().
 std::vector<ModelPtr> fit_all(const PreparedTraining& prepared);
 
-// One summary per model, over the samples in contact.
-std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models);
+// The errors over the samples in contact, as recorded.
 ErrorSummary judge(const Recording& recording, const ModelPtr& model);
-// The same, with the surface of the recording moved to that of the models.
-std::vector<ErrorSummary> evaluate_moved(const Recording& recording, const std::vector<ModelPtr>& models);
+// The same, with the surface of the recording moved to that of the model.
+ErrorSummary judge_moved(const Recording& recording, const ModelPtr& model);
 
 // The worst of (mean + standard deviation) / JND over the bins that begin at
 // `from_N` or above and hold at least 100 samples.

@@ -6,9 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/replaced.h"
-
 namespace palpate::test {
+
+// Returns `text` with the first `from` (which must occur) replaced by `to`.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  return place == std::string::npos ? text : text.replace(place, from.size(), to);
+}
 
 // Success if `message` contains `parts` in this order.
 inline testing::AssertionResult has_parts(const std::string& message, const std::vector<std::string>& parts) {

@@ -1,24 +1,15 @@
-#include "tests/support/recording_fuzz.h"
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "engine/recording/recording_reader.h"
+#include "tests/support/fuzz_checks.h"
 
 namespace palpate::test {
 namespace {
-
-void require(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "recording reader: %s\n", what);
-  std::abort();
-}
 
 struct Outcome {
   std::vector<RecordingRow> rows;
@@ -71,19 +62,20 @@ bool same_row(const RecordingRow& a, const RecordingRow& b) {
 
 }  // namespace
 
-void check_recording_bytes(const std::uint8_t* data, std::size_t size) {
+std::size_t check_recording(const std::uint8_t* data, std::size_t size) {
   const std::string text(data, data + size);
   const Outcome whole = parse(text, 4096);
   const Outcome single = parse(text, 1);
   require(whole.message == single.message, "the verdict depends on the number of rows in a call");
   if (!whole.message.empty()) {
     check_message(whole.message);
-    return;
+    return whole.rows.size();
   }
   require(whole.rows.size() == single.rows.size() &&
               std::equal(whole.rows.begin(), whole.rows.end(), single.rows.begin(), same_row),
           "the rows depend on the number of rows in a call");
   check_rows(whole.rows);
+  return whole.rows.size();
 }
 
 }  // namespace palpate::test

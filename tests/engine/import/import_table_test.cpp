@@ -10,7 +10,6 @@
 #include <numbers>
 
 #include "tests/support/message_parts.h"
-#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {

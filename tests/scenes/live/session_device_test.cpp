@@ -14,7 +14,7 @@
 #include "scenes/live/live_session.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fake_device_bus.h"
-#include "tests/support/replaced.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/session_frames.h"
 #include "tests/support/temporary_folder.h"
 

@@ -6,7 +6,6 @@
 
 #include "tests/support/full_disk.h"
 #include "tests/support/message_parts.h"
-#include "tests/support/replaced.h"
 #include "tests/support/study_driving.h"
 #include "tests/support/temporary_folder.h"
 
