@@ -31,8 +31,9 @@ std::vector<double> ladder(double shortest_s, double longest_s, double per_decad
 }
 
 std::string range_text(const char* words, const std::vector<double>& values, double unit, const char* unit_name) {
-  const std::string last = values.size() > 1 ? "-" + general(unit * values.back(), 3) : "";
-  return std::string(words) + " " + general(unit * values.front(), 3) + last + " " + unit_name;
+  std::string text = std::string(words) + " " + general(unit * values.front(), 3);
+  if (values.size() > 1) text.append("-").append(general(unit * values.back(), 3));
+  return text + " " + unit_name;
 }
 
 Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {

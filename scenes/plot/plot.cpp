@@ -45,7 +45,9 @@ std::string data_name(std::size_t panel, std::size_t series) {
 // Columns: x, y, the ends of the horizontal bar, the ends of the vertical bar or area. A bar that is missing has the
 // length 0, and a row without a y breaks the line.
 std::string data_block(const Series& series, const std::string& name) {
-  const auto or_else = [](double value, double other) { return " " + number(std::isfinite(value) ? value : other); };
+  const auto or_else = [](double value, double other) {
+    return std::string(" ").append(number(std::isfinite(value) ? value : other));
+  };
   std::string text = name + " << END\n";
   for (const PlotRow& row : series.rows) {
     const bool gap = !std::isfinite(row.y) && !std::isfinite(row.low);

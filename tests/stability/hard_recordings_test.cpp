@@ -19,7 +19,6 @@ constexpr double kTrainingRate_Hz = 125.0;
 constexpr MaxwellParameters kSoft = {.elastic_linear_N_per_m = 300.0,
                                      .elastic_quadratic_N_per_m2 = 2e4,
                                      .viscosity_Ns_per_m2 = 500.0,
-                                     .branch_count = 1,
                                      .branches = {{{0.17, 100.0, 0.0}}}};
 
 Press press_soft_block(const Path& path, const std::vector<double>& times_s) {
