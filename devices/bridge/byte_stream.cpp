@@ -67,7 +67,9 @@ Opened open_serial(const std::string& rest) {
   termios settings{};
   // cfsetspeed refuses unusual rates, but takes numbers up to 4111 as its own codes of rates.
   if (baud < 9600 || cfsetspeed(&settings, static_cast<speed_t>(baud)) != 0) {
-    return wrong("/" + rest, "a usual baud rate from 9600 to 4000000 after the comma, as in /dev/ttyACM0,115200");
+    return wrong("/" + rest,
+                 "a baud rate of the system, such as 9600, 57600, 115200, 230400, 460800, 500000, 921600, 1000000 or "
+                 "2000000, after the comma, as in /dev/ttyACM0,115200");
   }
   const int line = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (line < 0) {
@@ -183,6 +185,7 @@ Opened open_tcp(const std::string& name, bool remote) {
 }
 
 Opened open_command(const std::string& command) {
+  if (command.find_first_not_of(' ') == std::string::npos) return wrong("exec:" + command, "a program, exec:COMMAND");
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     return failure(command, errno, "close other programs");

@@ -53,8 +53,9 @@ Result<DeviceCalibration> read_calibration(const std::string& folder, const Devi
     calibration.counts_per_metre = fields.number(top, "counts_per_metre", {1.0, 1e9});
   }
   calibration.direction = fields.number(top, "direction", {-1.0, 1.0});
-  if (std::abs(calibration.direction) != 1.0) {
-    fields.complain("/direction", found(document->at("direction")) + ", expected 1 or -1");
+  const JsonNode direction = fields.optional_member(top, "direction");
+  if (direction.value != nullptr && std::abs(calibration.direction) != 1.0) {
+    fields.complain(direction.pointer, found(*direction.value) + ", expected 1 or -1");
   }
   calibration.rest_position_m = fields.number(top, "rest_position_m", {-1.0, 1.0});
   if (protocol.renders_force) read_force(fields, top, calibration);

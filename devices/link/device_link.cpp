@@ -63,12 +63,15 @@ std::shared_ptr<DeviceConnection> DeviceLink::connection() noexcept {
   return connection_;
 }
 
-void DeviceLink::use(std::shared_ptr<DeviceConnection> connection) noexcept {
-  unregister_device_stop(stop_slot_);
-  const bool stops = connection != nullptr && protocol_.renders_force;
-  stop_slot_ = stops ? register_device_stop(connection->descriptor(), protocol_.encode_stop()) : -1;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  connection_.swap(connection);
+void DeviceLink::use(std::shared_ptr<DeviceConnection> next) noexcept {
+  const int earlier = stop_slot_;
+  const bool stops = next != nullptr && protocol_.renders_force && next->descriptor() >= 0;
+  stop_slot_ = stops ? register_device_stop(next->descriptor(), protocol_.encode_stop()) : -1;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    connection_.swap(next);
+  }
+  unregister_device_stop(earlier);  // `next` keeps the earlier connection open until here
 }
 
 Status DeviceLink::start() {

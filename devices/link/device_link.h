@@ -90,7 +90,7 @@ class DeviceLink {
   void read_all() noexcept;
   void write_all() noexcept;
   void write(DeviceConnection& connection, const OutReports& reports) noexcept;
-  void use(std::shared_ptr<DeviceConnection> connection) noexcept;
+  void use(std::shared_ptr<DeviceConnection> next) noexcept;
   std::shared_ptr<DeviceConnection> connection() noexcept;
   void look_again() noexcept;
 

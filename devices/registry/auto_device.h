@@ -1,6 +1,6 @@
 // The simulated hand, until the user moves the mouse or a SpaceMouse, and again once both have been idle for
 // MouseDevice::kIdleTime_s. The tool continues from its last position.
-// Thread guarantee: as Device; `mouse` as ToolInput.
+// Thread guarantee: as Device and ToolInput.
 #pragma once
 
 #include <atomic>

@@ -75,7 +75,7 @@ class Importer {
   RowTimes times_{'.'};
   int midnights_ = 0;         // that a note names
   bool own_time_ = false;     // the file has times; with a given rate they are only compared with it
-  double own_seconds_ = 0.0;  // the duration by these times
+  double own_seconds_ = 0.0;  // the last of these times that could be read
   std::optional<VelocityColumn> velocity_;
 };
 
@@ -180,7 +180,7 @@ std::size_t Importer::parse_row(RecordingRow& row) {
   if (is_bad(index_[2], to_si_[2], row.force_N)) return index_[2];
   if (velocity_ && is_bad(velocity_->column, velocity_->to_si, row.velocity_m_per_s)) return velocity_->column;
   const auto time = own_time_ ? times_.since_first(field(index_[0])) : std::nullopt;
-  if (time) row.time_s = to_si_[0] * *time;
+  if (time) own_seconds_ = row.time_s = to_si_[0] * *time;
   return time || request_.rate_Hz ? kNoColumn : index_[0];
 }
 
@@ -274,7 +274,6 @@ Status Importer::read_rows() {
     if (request_.flip_force) row.force_N = -row.force_N;
     if (const Status status = check_size(row, number); !status) return status;
     if (request_.rate_Hz) {
-      if (own_time_) own_seconds_ = row.time_s;
       row.time_s = static_cast<double>(rows.size()) / *request_.rate_Hz;
     } else if (const Status status = check_time(row, number); !status) {
       return status;

@@ -68,8 +68,8 @@ struct DeviceSample {
 // ten times as fast, and a margin.
 inline constexpr int kMaxSamplesPerTick = 32;
 
-// A tool that mouse and keys of a window can move. Called by the window's thread only; wait-free. `now_s`: steady
-// clock.
+// A tool that mouse and keys of a window can move. `set_target`: any thread; the rest: the window's thread. Wait-free.
+// `now_s`: steady clock.
 class ToolInput {
  public:
   virtual ~ToolInput() = default;

@@ -1,8 +1,8 @@
 // Passing values between two threads, of which neither waits for the other.
 //
-//   TripleBuffer  the newest value only: settings in, snapshots out. Values that were not read in time are lost.
-//   SpscRing      every value, in order: samples for plots and a recorder. A full ring drops new values and counts
-//   them. ModelSlot     a new set of models to the haptics thread, and the old one back.
+//   TripleBuffer  the newest value only: settings in, snapshots out. Values that are not read in time are lost.
+//   SpscRing      every value, in order: samples for plots and a recorder. When full, it drops and counts.
+//   ModelSlot     a new set of models to the haptics thread, and the old one back.
 #pragma once
 
 #include <algorithm>

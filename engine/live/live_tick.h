@@ -132,7 +132,7 @@ using RecordedRing = SpscRing<RecordedSample, kRecordedRing>;
 
 struct LiveTickSettings {
   JndLine jnd;
-  ForceSource* source = nullptr;  // outlives the tick; null: the models
+  ForceSource* source = nullptr;  // outlives the tick; null: the models. With a source, publish no sets.
   bool passivity = true;          // false: for tests without the controller
 };
 

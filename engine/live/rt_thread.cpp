@@ -1,6 +1,7 @@
 #include "engine/live/rt_thread.h"
 
 #include <pthread.h>
+#include <pwd.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -62,8 +63,11 @@ std::string realtime_advice(int priority_error, int memory_error, bool is_root) 
            " refused by the container although this is root; start the container with "
            "--cap-add=SYS_NICE --cap-add=IPC_LOCK --ulimit rtprio=99 --ulimit memlock=-1";
   }
-  const char* name = std::getenv("USER");
-  const std::string user = name != nullptr ? name : "USER";
+  std::array<char, 4096> text;
+  passwd entry{};
+  passwd* found = nullptr;
+  getpwuid_r(geteuid(), &entry, text.data(), text.size(), &found);
+  const std::string user = found != nullptr ? entry.pw_name : "USER";
   std::error_code unreadable;
   const std::string program = std::filesystem::read_symlink("/proc/self/exe", unreadable);
   return refused + " refused; either add these two lines to /etc/security/limits.conf and log in again:\n  " + user +

@@ -155,6 +155,8 @@ std::string number_fault(std::string_view field, std::string_view name) {
   } else if (std::from_chars(lower.data() + digits, lower.data() + lower.size(), value).ec ==
              std::errc::result_out_of_range) {
     advice = "it is beyond what a double can hold, repair the value";
+  } else if (text.find(';') != std::string_view::npos) {
+    advice = "separate fields with commas";
   }
   return "found " + found + ", expected a finite number in " + std::string(name) + "; " + advice;
 }

@@ -161,7 +161,7 @@ class FeaturePlan {
   void update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
   // To be called after an `update`: copies the state that `before`, fed with the same motion, has of equal features of
   // `plan`, so that a change of models keeps the memory of the material. The surface positions must be equal, otherwise
-  // nothing is copied.
+  // nothing is copied. Other features keep the state of the recalled motion (HapticsTick::recall).
   void adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept;
 
  private:

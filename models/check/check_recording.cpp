@@ -227,7 +227,7 @@ class Checker {
     add("lag", Severity::warning, lag.at,
         words("the force %s the position by %.3g ms (+- %.2g)", lag.at > 0.0 ? "lags" : "leads", 1e3 * std::abs(lag.at),
               1e3 * lag.standard_error),
-        "record both with the same clock; palpate fit corrects this lag");
+        "record both with the same clock; palpate fit corrects this lag, unless its error is lower without");
   }
 
   void check_surface() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 
 #include "models/export/feature_c.h"
 #include "models/export/motion_filter_c.h"
@@ -212,7 +213,7 @@ static real trust_in(const real *u) {
 void write_correction(CText& out, const CorrectionPtr& correction) {
   if (const RbfFunction* function = rbf_of(correction)) return emit_rbf(out, *function);
   if (const VoxelGrid* grid = grid_of(correction)) return emit_grid(out, *grid);
-  assert(correction->is_none());
+  if (!correction->is_none()) std::abort();  // a kind without C text: a mistake of the program
   out.add(
       "\n/* no correction: the model is its trend */\n\nstatic real correction_of(const real *u) {\n"
       "  (void)u;\n  return R(0.0);\n}\n");

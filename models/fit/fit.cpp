@@ -95,9 +95,11 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
       {prepared.sites, jnd_N, corrects ? request : of_trend, from && corrects ? &*from : nullptr}, control);
   if (!fitted) return fitted.error();
   if (!corrects && method.can_take(kTakesCentres)) fitted->size = "0";
+  auto& notes = fitted->report.notes;
+  notes.insert(notes.end(), prepared.notes.begin(), prepared.notes.end());
   if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
-    fitted->report.notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
-                                   " samples were used: the beginnings and some sections of the recordings");
+    notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
+                    " samples were used: the beginnings and some sections of the recordings");
   }
   std::vector<CorrectionPtr> of_folds;
   const int folds = prepared.left_out && !fitted->correction->is_none() ? prepared.left_out->folds() : 0;

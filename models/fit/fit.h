@@ -68,6 +68,7 @@ struct PreparedTraining {
   std::optional<StrengthChoice> strength;       // none in the paper's recipe
   std::optional<CrossValidationRows> left_out;  // rows for cross-validation; none in the paper's recipe
   std::size_t strokes = 0;
+  std::vector<std::string> notes;  // for the report of every fit
 
   // False if cross-validation rejected the correction; every method then returns the trend.
   bool corrects() const { return !strength || strength->strength > 0.0; }

@@ -103,6 +103,7 @@ struct CorrectedRecordings {
   std::vector<RowCorrection> corrections;
   double surface_m = 0.0;  // position of the surface, in positions as recorded
   TrainingExtent extent{};
+  std::string omitted{};  // those corrections of the registration that are not used
 };
 
 // Applies the corrections and measures the recordings.
@@ -138,53 +139,76 @@ FeatureList dictionary_of(const MotionSource& source, const TrainingExtent& exte
   return dictionary(extent.sample_s, extent.longest_recording_s, extent.depth_m, source.encoder_step_m());
 }
 
-// The cross-validated error of a trend of the recordings in their present correction.
+// The cross-validated error of a trend of the recordings in their present correction. Its folds are pieces of strokes,
+// of three recordings or more, too, because the question is whether one trend suits all recordings.
 Result<FoldErrors> error_of(MotionSource& source, const TrainingExtent& extent, const TrainingRequest& request,
                             const FitControl& control) {
   source.assign_folds({1, extent.strokes, extent.contact_samples, extent.has_unloading()});
   return simple_law_error(source, dictionary_of(source, extent), problem_of(source, extent, request), control, 0.05);
 }
 
-// Corrects the recordings by their offsets, force zeros and lag, unless a trend predicts them better as recorded: an
-// effect of the material that the registration does not know may look like an offset.
+// All corrections of the registration, then those without offsets, then none, as far as they differ.
+std::vector<CorrectedRecordings> possible_corrections(const RegisteredSurfaces& found) {
+  CorrectedRecordings all;
+  CorrectedRecordings unmoved;
+  CorrectedRecordings none;
+  all.surface_m = found.surface_position_m;
+  unmoved.surface_m = none.surface_m = found.unmoved_surface_position_m;
+  unmoved.omitted = "surface offsets";
+  none.omitted = "surface offsets, force zeros and lag";
+  bool offsets = false;
+  bool forces = false;
+  for (const RecordingSurface& one : found.recordings) {
+    all.corrections.push_back({one.offset_m + all.surface_m, one.force_zero_N, one.lag_s});
+    unmoved.corrections.push_back({unmoved.surface_m, one.force_zero_N, one.lag_s});
+    none.corrections.push_back({none.surface_m, 0.0, 0.0});
+    offsets = offsets || one.offset_m != 0.0;
+    forces = forces || one.force_zero_N != 0.0 || one.lag_s != 0.0;
+  }
+  std::vector<CorrectedRecordings> possible{std::move(all)};
+  if (offsets) possible.push_back(std::move(unmoved));
+  if (forces) possible.push_back(std::move(none));
+  return possible;
+}
+
+// Corrects the recordings by their offsets, force zeros and lag, unless a trend predicts them significantly better
+// without: an effect of the material that the registration does not know may look like an offset. The candidates differ
+// in the samples that are in contact, so the comparison is paired only by pieces of strokes.
 Result<CorrectedRecordings> correct_recordings(MotionSource& source, const TrainingRequest& request,
-                                               Provenance& provenance, const FitControl& control) {
-  CorrectedRecordings recorded;
+                                               PreparedTraining& prepared, const FitControl& control) {
   if (request.surface == Surface::recorded) {
+    CorrectedRecordings recorded;
     if (Status status = apply(recorded, source, request, control); !status) return status.error();
     return recorded;
   }
   source.correct({});
   auto found = register_surfaces(source, control);
   if (!found) return found.error();
-  CorrectedRecordings corrected;
-  corrected.surface_m = found->surface_position_m;
-  recorded.surface_m = found->recorded_surface_position_m;
-  for (const RecordingSurface& one : found->recordings) {
-    corrected.corrections.push_back({one.offset_m + corrected.surface_m, one.force_zero_N, one.lag_s});
-    recorded.corrections.push_back({recorded.surface_m, 0.0, 0.0});
+  std::vector<CorrectedRecordings> candidates = possible_corrections(*found);
+  std::vector<FoldErrors> errors;
+  for (CorrectedRecordings& one : candidates) {
+    if (Status status = apply(one, source, request, control); !status) return status.error();
+    // Without contact there is nothing to compare.
+    if (candidates.size() == 1 || !(one.extent.depth_m > 0.0)) break;
+    auto error = error_of(source, one.extent, request, control);
+    if (!error) return error.error();
+    errors.push_back(std::move(*error));
   }
-  bool as_recorded = false;
-  if (found->corrects()) {
-    if (Status status = apply(recorded, source, request, control); !status) return status.error();
-    const auto without = error_of(source, recorded.extent, request, control);
-    if (!without) return without.error();
-    if (Status status = apply(corrected, source, request, control); !status) return status.error();
-    const auto with = error_of(source, corrected.extent, request, control);
-    if (!with) return with.error();
-    const FoldErrors candidates[] = {*with, *without};
-    as_recorded = simplest_adequate(candidates) == 1;
-    if (as_recorded) source.correct(recorded.corrections);
-  } else if (Status status = apply(corrected, source, request, control); !status) {
-    return status.error();
+  CorrectedRecordings& chosen = candidates[errors.empty() ? 0 : simplest_adequate(errors)];
+  source.correct(chosen.corrections);
+  if (!chosen.omitted.empty()) {
+    prepared.notes.push_back("the " + chosen.omitted +
+                             " that were found are not used: the cross-validated error is lower without them");
+    for (std::size_t i = 0; i < found->recordings.size(); ++i) {
+      RecordingSurface& one = found->recordings[i];
+      one.offset_m = 0.0;
+      one.standard_error_m = std::numeric_limits<double>::infinity();
+      one.force_zero_N = chosen.corrections[i].force_zero_N;
+      one.lag_s = chosen.corrections[i].lag_s;
+    }
   }
-  for (RecordingSurface& one : found->recordings) {
-    if (!as_recorded) break;
-    one.offset_m = one.force_zero_N = one.lag_s = 0.0;
-    one.standard_error_m = std::numeric_limits<double>::infinity();
-  }
-  provenance.surfaces = std::move(found->recordings);
-  return as_recorded ? recorded : corrected;
+  prepared.common.provenance.surfaces = std::move(found->recordings);
+  return std::move(chosen);
 }
 
 // The data that all lists of features share.
@@ -292,7 +316,7 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control) {
   PreparedTraining prepared;
-  const auto corrected = correct_recordings(source, request, prepared.common.provenance, control);
+  const auto corrected = correct_recordings(source, request, prepared, control);
   if (!corrected) return corrected.error();
   const TrainingExtent& extent = corrected->extent;
   if (!control.may_continue(0.05)) return interrupted();

@@ -192,17 +192,11 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
   }
   result.surface_position_m = outermost_contact_m(members, force_noise_N, common_surface_m(members));
   for (Member& member : members) member.result.offset_m = 0.0;
-  result.recorded_surface_position_m = outermost_contact_m(members, force_noise_N, common_surface_m(members));
+  result.unmoved_surface_position_m = outermost_contact_m(members, force_noise_N, common_surface_m(members));
   return result;
 }
 
 }  // namespace
-
-bool RegisteredSurfaces::corrects() const {
-  return std::any_of(recordings.begin(), recordings.end(), [](const RecordingSurface& one) {
-    return one.offset_m != 0.0 || one.force_zero_N != 0.0 || one.lag_s != 0.0;
-  });
-}
 
 Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control) {
   if (const Status status = source.load(control); !status) return status.error();
@@ -224,7 +218,9 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
   std::vector<Member> members;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     std::vector<SurfaceRow>& rows = recordings[r];
-    if (lag_s != 0.0) rows = without_lag(rows, lag_s);
+    // A recording shorter than the lag stays as it is.
+    if (std::vector<SurfaceRow> moved = without_lag(rows, lag_s); lag_s != 0.0 && !moved.empty())
+      rows = std::move(moved);
     const bool same_lag = offsets[r].lag.at == lag_s;
     Member& member = members.emplace_back();
     member.own = same_lag ? offsets[r].surface : estimate_surface(rows, source.force_noise_N());

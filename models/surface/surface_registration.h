@@ -25,10 +25,7 @@ namespace palpate {
 struct RegisteredSurfaces {
   std::vector<RecordingSurface> recordings;  // in the order of `source.recordings()`; the lag is one for all
   double surface_position_m = 0.0;           // in positions corrected by the offsets
-  double recorded_surface_position_m = 0.0;  // in positions as recorded, without any correction
-
-  // Whether an offset, a force zero or a lag corrects a recording.
-  bool corrects() const;
+  double unmoved_surface_position_m = 0.0;   // the same without the offsets
 };
 
 // `source` must have no corrections. Errors: those of the source; interrupted.

@@ -179,10 +179,12 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   CoverageReduction coverage(set.normalisation, set.sites);
   ForceReduction force(set.sites);
   const std::size_t stride = set.contact_samples / kMaximumEvaluationSamples + 1;
+  const std::size_t none_stride = set.contact_samples / kMostSites + 1;
   std::size_t seen = 0;
   int recording = -1;
   status = pass([&](const MotionRow& row, const FeatureVector& vector) {
-    if (seen++ % stride == 0) {
+    const std::size_t index = seen++;
+    if (index % stride == 0) {
       set.evaluation_features.push_back(vector.values);
       set.evaluation_force_N.push_back(row.force_N);
     }
@@ -195,7 +197,7 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
         force.add(site, row.recording != recording);
         break;
       case Reduction::none:
-        set.sites.push_back(site);
+        if (index % none_stride == 0) set.sites.push_back(site);
         break;
     }
     recording = row.recording;

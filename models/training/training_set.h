@@ -10,7 +10,7 @@
 //             noise. The step starts at kCoverageStep and grows by a quarter while there are more than kCoverageSites.
 //   force     the paper's rule (section 2.1): a sample is kept when the force has changed by 50 mN since the last kept
 //             one. The 50 mN grow by a quarter while there are more than kMaximumSites.
-//   none      every sample in contact.
+//   none      every sample in contact; of more than kMostSites an evenly spaced part, for the memory of a fit.
 // Recordings stream through in bounded memory.
 //
 // In `coverage`, a site has samples of one fold only (cross_validation.h), so that cross-validation has no leakage, and
@@ -35,6 +35,7 @@ inline constexpr std::array<const char*, 3> kReductionNames{"coverage", "force",
 inline const char* reduction_name(Reduction reduction) { return kReductionNames[static_cast<std::size_t>(reduction)]; }
 
 inline constexpr std::size_t kMaximumSites = 10000;
+inline constexpr std::size_t kMostSites = 1000000;
 inline constexpr std::size_t kCoverageSites = 7500;  // the paper worked with 6,850
 inline constexpr double kCoverageStep = 0.005;       // at the start, in normalised feature space
 inline constexpr std::size_t kMaximumEvaluationSamples = 100000;

@@ -88,7 +88,7 @@ int run_program(int argc, char** argv) {
     return fail(status.error().message, stop_requested() != 0 ? 128 + stop_requested() : kFailed);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-      app.exit(error);  // --help and --version
+      app.exit(error);  // --help, --version and the lists that end a verb
       return std::cout.flush() ? kDone : fail("cannot write to standard output", kFailed);
     }
     return fail_usage(app, verbs, error.what());

@@ -81,6 +81,14 @@ Status draw_plots(const std::string& folder, const std::vector<Plot>& plots) {
     const std::string script = plot.name + ".gp";
     if (const Status status = write_file_atomically(folder + "/" + script, *text, true); !status) return status;
     if (const Status status = run_gnuplot(folder, script); !status) return status;
+    // gnuplot does not report a write that failed.
+    for (const char* ending : {".svg", ".png"}) {
+      const std::string drawn = plot.name + ending;
+      std::error_code missing;
+      if (const auto bytes = fs::file_size(folder + "/" + drawn, missing); missing || bytes == 0) {
+        return Error{"gnuplot wrote no " + drawn + "; check the free space, and that it is gnuplot 5.4 or newer"};
+      }
+    }
   }
   return {};
 }

@@ -22,7 +22,7 @@ struct PlannedModel {
   MethodRequest request;
   bool main = false;  // the default size of its recipe and method: a candidate, drawn in the figure of error by force
 
-  // Whether the paper recommends this model's method.
+  // Whether this is greedy by the recipe of 2009, the method that the paper recommends.
   bool is_greedy_2009() const { return recipe == Recipe::paper && request.method == &kGreedyMethod; }
 };
 

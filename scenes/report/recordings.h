@@ -44,7 +44,8 @@ struct RecordingSet {
   bool virtual_recordings = false;
 };
 
-// Equal forces in this number of successive rows, with at least twelve different values among them, are a leak.
+// Equal forces in this number of successive rows, with enough different values among them (kLeakValues in the source),
+// are a leak.
 inline constexpr std::size_t kLeakRows = 50;
 
 struct SharedStretch {
@@ -54,7 +55,7 @@ struct SharedStretch {
 };
 
 // The first stretch that is found of `tested` whose forces occur in `trained`. Stretches of at least 2 kLeakRows rows
-// are found where every kLeakRows of their rows have twelve different values.
+// are found where every kLeakRows of their rows have that many different values.
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 
 // Without a training recording the virtual silicone is used: seed 1 for training, seed 2 for the test. Without a test

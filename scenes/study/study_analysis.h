@@ -52,7 +52,7 @@ struct ReferenceJnd {
   std::size_t count = 0;     // trials; of a mean, subjects whose JND is determined
   double jnd_N = 0.0;
   double standard_error_N = 0.0;  // of a mean
-  bool determined = false;        // see PsychometricFit; of a mean, whether it is of any subject
+  bool determined = false;        // see PsychometricFunction; of a mean, whether it is of any subject
 };
 
 struct SubjectJnd {

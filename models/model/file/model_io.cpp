@@ -288,6 +288,7 @@ class ModelWriter {
     } else if (const VoxelGrid* grid = grid_of(value)) {
       add("grid", grid_text(*grid));
     } else {
+      if (!value->is_none()) std::abort();  // a kind without members: a mistake of the program
       flag("trend_alone", true);
     }
   }

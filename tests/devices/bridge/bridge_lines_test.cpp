@@ -33,10 +33,18 @@ struct Fault {
 
 std::vector<Fault> faults() {
   using namespace device_fault;
-  return {{"silent", kLate},      {"die", kUnplugged},         {"corrupt", kCorrupt},
-          {"cut", kCorrupt},      {"text", kCorrupt | kLate},  {"reordered", kOutOfOrder},
-          {"repeated", kLate},    {"late", kLate | kBurst},    {"jump", kJump},
-          {"nan", kCorrupt},      {"version", kWrongFirmware}, {"own", kOwn},
+  return {{"silent", kLate},
+          {"die", kUnplugged},
+          {"corrupt", kCorrupt},
+          {"cut", kCorrupt},
+          {"text", kCorrupt | kLate},
+          {"reordered", kOutOfOrder},
+          {"repeated", kLate},
+          {"late", kLate},
+          {"jump", kJump},
+          {"nan", kCorrupt},
+          {"version", kWrongFirmware},
+          {"own", kOwn},
           {"deaf", kWriteStalled}};
 }
 
@@ -196,7 +204,7 @@ TEST(BridgeLines, ErrorsHaveReasonAndAdvice) {
   EXPECT_TRUE(test::has_parts(complaint("unix:/nowhere/at/all"), {"/nowhere/at/all", "; "}));
   EXPECT_TRUE(test::has_parts(complaint("/dev/null"), {"/dev/null: ", "serial line; "}));
   EXPECT_TRUE(test::has_parts(complaint("/dev/nowhere"), {"/dev/nowhere: No such file or directory; ", "/dev/tty*"}));
-  EXPECT_TRUE(test::has_parts(complaint("/dev/tty,300"), {"/dev/tty,300:", "9600"}));
+  EXPECT_TRUE(test::has_parts(complaint("/dev/tty,300"), {"/dev/tty,300:", "115200", "2000000"}));
   EXPECT_TRUE(test::has_parts(complaint("tcp:192.0.2.1:5000"), {"192.0.2.1:5000:", "another computer"}));
   EXPECT_TRUE(test::has_parts(complaint("tcp:127.0.0.1:0"), {"--device", "127.0.0.1:0:", "HOST", "PORT",
                                                              "from 1 to 65535", "devices/README.md#bridge"}));

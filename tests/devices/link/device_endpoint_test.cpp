@@ -110,7 +110,7 @@ const std::vector<Injection>& injections() {
            return held.size() < 30 ? test::Reports() : std::exchange(held, {});
          };
        },
-       kLate | kBurst, 0.0},
+       kBurst, 0.0},
       {"encoder jump", [](SimulatedDevice& s) { s.counts_offset = 5000; }, kJump, 0.0},
       {"firmware reset",
        [](SimulatedDevice& s) {

@@ -117,6 +117,15 @@ TEST(ImportTable, SaysWhatIsBrokenAndWhere) {
   EXPECT_TRUE(test::has_parts(message(header + rows_of(",", 4)), {"rig.txt", "4 rows", "10", "; "}));
 }
 
+// With a rate, a row whose own time cannot be read counts; the duration of the others is compared.
+TEST(ImportTable, ARateIsComparedWithTheTimesThatCanBeRead) {
+  std::string text = "t [s],pos [mm],F [N]\n";
+  for (int i = 0; i < 100; ++i) text += (i < 99 ? std::to_string(0.01 * i) : "") + ",0.5,1\n";
+  const auto table = import_bytes(text, request({}, {}, 100.0));
+  ASSERT_TRUE(table.ok());
+  for (const std::string& note : table->notes) EXPECT_EQ(note.find("by the times"), std::string::npos) << note;
+}
+
 TEST(ImportTable, ShiftsTheTimeAndSaysSo) {
   const auto table = import_bytes("t [s],pos [mm],F [N]\n" + rows_of(","));
   ASSERT_TRUE(table.ok());

@@ -86,6 +86,15 @@ TEST(Selection, ErrorsThatAHandCannotNoticeDoNotCount) {
   EXPECT_EQ(best_score(std::vector{errors_of({4.0, 1e-3}), errors_of({1.0, 2e-3})}), 1u);
 }
 
+// Candidates with other corrections of the recordings have other samples. The third fold of the first is empty.
+TEST(Selection, AFoldThatOneCandidateLacksCountsForNone) {
+  FoldErrors lacking(3);
+  for (const std::size_t fold : {0u, 1u}) lacking.add(fold, 3.0);
+  EXPECT_EQ(selected({lacking, errors_of({9, 9, 0})}), 0u);
+  EXPECT_EQ(selected({lacking, errors_of({1, 1, 100})}), 1u);
+  EXPECT_EQ(selected({FoldErrors(3), errors_of({1, 1, 1})}), 0u);
+}
+
 TEST(Selection, TheRootMeanSquareIsOverAllSamples) {
   EXPECT_NEAR(errors_of({4.0, 1.0}).rms(), std::sqrt(2.5), 1e-12);
   EXPECT_EQ(FoldErrors(3).rms(), 0.0);
