@@ -54,8 +54,8 @@ TEST(WindowView, APausedReplayShowsANewModelAndANewReference) {
   const auto session = open_session(folder, "replay:" + folder.file("played.csv"), nullptr);
   session->move_surface(false);
   ASSERT_TRUE(frames_until(*session, [&] {
-    return session->models().all_settled() && session->newest().tick.in_contact &&
-           session->newest().tick.model_count == 1;
+    const TickSnapshot& newest = session->newest().tick;
+    return session->models().all_settled() && newest.depth_m > 1e-3 && newest.model_count == 1;
   }));
   session->replay()->pause(true);
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().samples == 0; }));
@@ -64,6 +64,7 @@ TEST(WindowView, APausedReplayShowsANewModelAndANewReference) {
   ASSERT_TRUE(session->load_file(folder.file("d.json")));
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().tick.model_count == 2; }));
   const TickSnapshot& tick = session->newest().tick;
+  ASSERT_GT(tick.force_N[1], 0.0);
   HistoryPoint now = window_view(*session, {}).models.now;
   EXPECT_EQ(now.force_N[1], static_cast<float>(tick.force_N[1]));
   EXPECT_EQ(now.reference_N, static_cast<float>(session->newest().measured_N));
