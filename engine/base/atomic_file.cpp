@@ -35,7 +35,9 @@ std::string temporary_name_in(const std::string& folder) {
 
 std::string words_for(int error_number) { return std::generic_category().message(error_number); }
 
-Error already_exists(const std::string& path) { return Error{path + " exists; pass --force to replace it"}; }
+Error already_exists(const std::string& path) {
+  return Error{path + " exists; choose another name, or pass --force to replace it"};
+}
 
 // Checks whether something that exists under the final name forbids writing.
 Status check_target(const std::string& path, bool overwrite) {

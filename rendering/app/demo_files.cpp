@@ -134,9 +134,31 @@ std::string stats_text(const LiveSession& session, const WindowView& shown, cons
 
 std::string DemoFiles::new_path(const char* name) {
   const auto folder = data_folder();
-  if (folder) return *folder + local_time_text(name);
-  notify_(folder.error().message, true);
-  return {};
+  if (!folder) {
+    notify_(folder.error().message, true);
+    return {};
+  }
+  const std::string path = *folder + local_time_text(name);
+  same_second_ = path == timed_path_ ? same_second_ + 1 : 1;
+  timed_path_ = path;
+  return same_second_ == 1 ? path : path + "-" + std::to_string(same_second_);
+}
+
+DemoFiles::~DemoFiles() {
+  if (running_.valid()) running_.wait();
+  for (const Task& task : waiting_) {
+    if (task.saves) (void)task.work();
+  }
+}
+
+void DemoFiles::start(Task task) {
+  waiting_.push_back(std::move(task));
+  if (!running_.valid()) start_next();
+}
+
+void DemoFiles::start_next() {
+  running_ = std::async(std::launch::async, std::move(waiting_.front().work));
+  waiting_.pop_front();
 }
 
 void DemoFiles::use_settings(const std::string& file) {
@@ -160,10 +182,7 @@ void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& came
 
 void DemoFiles::update(const LiveSession& session) {
   if (running_.valid() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) running_.get()();
-  if (!running_.valid() && !waiting_.empty()) {
-    running_ = std::async(std::launch::async, std::move(waiting_.front()));
-    waiting_.pop_front();
-  }
+  if (!running_.valid() && !waiting_.empty()) start_next();
   // When a recording is saved, asks for its role.
   const RecordingStatus status = session.recording();
   if (status.active || status.saving) {
@@ -199,7 +218,7 @@ void DemoFiles::open_recording(const std::string& path) {
   const auto into = data_folder();
   if (!into) return notify_(into.error().message, true);
   notify_("reading " + path, false);
-  waiting_.push_back([this, read = read_, path, into = *into]() -> Finish {
+  start({[this, read = read_, path, into = *into]() -> Finish {
     return [this, path, offered = read(path, into)] {
       if (!offered) {
         view_.dialogs.recording_roles.problem = offered.error().message;
@@ -208,7 +227,7 @@ void DemoFiles::open_recording(const std::string& path) {
       view_.dialogs.recording_roles.add({offered->path, offered->words});
       remember(path);
     };
-  });
+  }});
 }
 
 void DemoFiles::record(LiveSession& session) {
@@ -216,13 +235,14 @@ void DemoFiles::record(LiveSession& session) {
     session.stop_recording();
     return;
   }
-  const std::string path = new_path("/session-%Y%m%d-%H%M%S.csv");
+  std::string path = new_path("/session-%Y%m%d-%H%M%S");
   if (path.empty()) return;
+  path += ".csv";
   const Status status = session.start_recording(path);
   notify_(status ? "recording to " + path : status.error().message, !status);
 }
 
-// Saves the data of the visible curves, and draws a figure of them in the background.
+// Saves the data of the visible curves and a figure of them, in the background.
 void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns) {
   const std::string path = new_path("/curves-%Y%m%d-%H%M%S");
   if (path.empty()) return;
@@ -238,21 +258,23 @@ void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown,
     const Rgb colour = slot_colour(shown.models, slot, Theme::light);
     source.models.push_back({slot, shown.models.slots[slot].name, hue_of(colour)});
   }
-  const std::string table = curve_csv(session.comparison().history(), source);
-  if (const Status status = write_file_atomically(path + ".csv", table, false); !status)
-    return notify_(status.error().message, true);
-  waiting_.push_back([this, path, plot = curve_plot(columns, source)]() -> Finish {
+  const auto save = [this, path, table = curve_csv(session.comparison().history(), source),
+                     plot = curve_plot(columns, source)]() -> Finish {
+    if (const Status written = write_file_atomically(path + ".csv", table, false); !written)
+      return [this, written] { notify_(written.error().message, true); };
     return [this, path, drawn = draw_plot(plot, path + ".svg", false)] {
       notify_(drawn ? "saved " + path + ".svg and .csv"
                     : "saved " + path + ".csv without a figure: " + drawn.error().message,
               !drawn);
     };
-  });
+  };
+  start({save, true});
 }
 
 void DemoFiles::save_model(const LiveSession& session) {
-  const std::string path = new_path("/model-%Y%m%d-%H%M%S.json");
+  std::string path = new_path("/model-%Y%m%d-%H%M%S");
   if (path.empty()) return;
+  path += ".json";
   const std::size_t slot = session.models().selected();
   const Status status = session.save_model(slot, path);
   notify_(status ? "saved " + session.models().info(slot).name + " to " + path : status.error().message, !status);
@@ -260,7 +282,13 @@ void DemoFiles::save_model(const LiveSession& session) {
 
 void DemoFiles::look_for_devices() {
   view_.devices.clear();
-  waiting_.push_back([this]() -> Finish { return [this, found = device_choices()] { view_.devices = found; }; });
+  if (std::exchange(searching_, true)) return;
+  start({[this]() -> Finish {
+    return [this, found = device_choices()] {
+      view_.devices = found;
+      searching_ = false;
+    };
+  }});
 }
 
 void DemoFiles::write_to_log(const std::string& text) {

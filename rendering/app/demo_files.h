@@ -35,6 +35,10 @@ class DemoFiles {
   // `view` outlives this. `read` is called in a background thread and may block.
   DemoFiles(ViewState& view, Notify notify, Read read = convert_recording)
       : view_(view), notify_(std::move(notify)), read_(std::move(read)) {}
+  DemoFiles(const DemoFiles&) = delete;
+  DemoFiles& operator=(const DemoFiles&) = delete;
+  // Waits for the work that runs, and completes the saves that wait.
+  ~DemoFiles();
 
   // Reads the settings from `file`; empty: settings are neither read nor saved.
   void use_settings(const std::string& file);
@@ -56,17 +60,27 @@ class DemoFiles {
  private:
   // What is done in `update` after some work in the background.
   using Finish = std::function<void()>;
+  struct Task {
+    std::function<Finish()> work;
+    bool saves = false;  // it is completed even if the window closes
+  };
+  void start(Task task);  // at once if no other task runs
+  void start_next();
   void remember(const std::string& path);  // adds it to the recent files
-  // A path in the user's data folder with a name made of the time; empty, after a notice, where there is no folder.
+  // A path in the user's data folder, with a name made of the time and without extension; empty, after a notice, where
+  // there is no folder. Names of the same second get a number.
   std::string new_path(const char* name);
 
   ViewState& view_;
   Notify notify_;
   Read read_;
   std::string settings_file_;
-  std::deque<std::function<Finish()>> waiting_;  // work for the background, one after the other
+  std::string timed_path_;    // newest path of `new_path` without its number
+  int same_second_ = 0;       // number of paths of this name and second
+  std::deque<Task> waiting_;  // for the background, one after the other
   std::future<Finish> running_;
-  std::string recording_;  // the file that is being recorded; empty: none
+  bool searching_ = false;  // a search for devices waits or runs
+  std::string recording_;   // the file that is being recorded; empty: none
 };
 
 }  // namespace palpate

@@ -202,9 +202,10 @@ void Exhibit::press_key(int key, const LiveSession& session) {
   if (key == GLFW_KEY_L) language_ = (language_ + 1) % languages_.size();
   if (key == GLFW_KEY_KP_1 || key == GLFW_KEY_KP_2) key += GLFW_KEY_1 - GLFW_KEY_KP_1;
   const bool on = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER || key == GLFW_KEY_SPACE;
+  std::string button = on ? "Enter" : key_name(key);
   // Where there is nothing to choose, 1 and Enter are the same.
-  const bool only = buttons_.count("2") == 0 && (on || key == GLFW_KEY_1);
-  press_button(only ? buttons_.count("1") != 0 ? "1" : "Enter" : on ? "Enter" : key_name(key));
+  if (buttons_.count("2") == 0 && (on || key == GLFW_KEY_1)) button = buttons_.count("1") != 0 ? "1" : "Enter";
+  press_button(button);
 }
 
 void Exhibit::press_button(const std::string& key) {

@@ -7,9 +7,12 @@
 //   reveal    the press with the largest difference in slow motion (exhibit_reveal.h), then the result
 //   score     the visitor's score and a summary
 //
-// A key presses the button that shows it. The tool is kept out of the block in all other
-// screens than attract and press. After `stay_s` without a movement, the last `warn_s` of which are counted down, the
-// exhibit starts again. Ctrl+Shift+T shows the day's tally and the loop's health to the host.
+// A key presses the button that shows it; the keypad's 1 and 2 are 1 and 2, its Enter and Space are Enter. Where there
+// is no button 2, nothing is to choose: 1 and Enter both press the only button. L changes the language. The tool is
+// kept out of the block in all other screens than attract and press. After `stay_s` without a movement, the last
+// `warn_s` of which are counted down, the exhibit starts again. Ctrl+Shift+T shows the day's tally and the loop's
+// health to the host.
+//
 // Thread guarantee: the window's thread.
 #pragma once
 

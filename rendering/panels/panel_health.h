@@ -16,7 +16,7 @@ struct HealthWords {
   bool problem = false;
   bool past = false;  // a past alarm that is not acknowledged (LiveSession::reset_figures)
 };
-// `recent_fps`: frames in the last second; 0: unknown.
+// `recent_fps`: frames per second, the mean of the last 120 frames (ImGuiIO::Framerate); 0: unknown.
 HealthWords health_words(const HealthView& health, double recent_fps);
 // Age of the sample, rate, round trip, stiffness limit and heat of a real device; else empty.
 std::string device_line(const HealthView& health);

@@ -62,7 +62,7 @@ std::string in_lines(const std::string& text, float width) {
 }
 
 std::string jnd_text(double error_over_jnd) {
-  // Two digits, which is the precision of the quantile of a stream (stream_errors.h).
+  // Two digits: a quantile of a stream is rounded up by at most 1.1 % (stream_errors.h).
   return fixed(error_over_jnd, error_over_jnd < 0.995 ? 2 : error_over_jnd < 9.95 ? 1 : 0);
 }
 

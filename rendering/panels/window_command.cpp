@@ -23,7 +23,9 @@ std::string key_name(int key) {
   for (const auto& [known, name] : kKeyNames) {
     if (known == key) return name;
   }
-  return {static_cast<char>(key)};  // GLFW numbers printable keys by their letters
+  // GLFW numbers printable keys by their ASCII characters. The other keys have numbers from 256 on.
+  if (key < GLFW_KEY_SPACE || key > GLFW_KEY_GRAVE_ACCENT) return {};
+  return {static_cast<char>(key)};
 }
 
 std::string shown_keys(const WindowCommand& command) {

@@ -30,7 +30,7 @@ struct WindowCommand {
   std::string label_on{};      // label while it is switched on; empty: `label`
 };
 
-// The name of a key of GLFW that occurs in the table: "Space", "H".
+// The name of a key of GLFW: "Space", "H"; empty where it is neither printable nor in the list of names.
 std::string key_name(int key);
 // The keys in the list and in tooltips: "Ctrl+Q", "H, /".
 std::string shown_keys(const WindowCommand& command);

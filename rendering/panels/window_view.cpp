@@ -49,6 +49,15 @@ std::string counted_words(const LiveSession& session) {
   return words;
 }
 
+// While a replay is paused, the history gets no ticks. Shows the forces at its playhead of models that became ready
+// since, and a new reference.
+void show_newest(const LiveSession& session, ModelsView& view) {
+  view.now.reference_N = static_cast<float>(session.comparison().reference_N());
+  for (std::size_t i = 0; i < view.slots.size(); ++i) {
+    if (view.slots[i].state == SlotState::ready) view.now.force_N[i] = static_cast<float>(view.slots[i].force_N);
+  }
+}
+
 ModelsView models_view(const LiveSession& session, double until_s) {
   ModelsView view;
   for (std::size_t i = 0; i < session.models().size(); ++i)
@@ -69,6 +78,7 @@ ModelsView models_view(const LiveSession& session, double until_s) {
   } else if (history.size() > 0) {
     view.now = history[0];  // a pause that is longer than the history
   }
+  if (session.replay() != nullptr && session.replay()->paused() && std::isinf(until_s)) show_newest(session, view);
   return view;
 }
 
@@ -149,13 +159,13 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
   WindowView shown;
   shown.number = ++made;
   shown.models = models_view(session, view.time.end_s(std::numeric_limits<double>::infinity()));
-  shown.health = {session.loop().statistics(),
-                  session.loop().scheduling(),
-                  session.newest(),
-                  session.faults().missed_of_late(),
-                  session.faults().events(),
-                  session.alarms(),
-                  session.device_name()};
+  shown.health = {.loop = session.loop().statistics(),
+                  .scheduling = session.loop().scheduling(),
+                  .newest = session.newest(),
+                  .missed_of_late = session.faults().missed_of_late(),
+                  .faults = session.faults().events(),
+                  .alarms = session.alarms(),
+                  .device_name = session.device_name()};
   const ReferenceKind kind = session.comparison().reference();
   const std::size_t blocks = view.settings.block_count;
   const bool reference = blocks > 1 && kind != ReferenceKind::direct && session.has_reference(kind);

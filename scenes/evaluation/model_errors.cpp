@@ -1,6 +1,7 @@
 #include "scenes/evaluation/model_errors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -8,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kOneSided = 0.05;
+constexpr double kOneSided = 0.05;  // probability beyond a one-sided bound; beyond each end of an interval: half
 
 // The smallest of the values from `begin` to `end` that at least 99 % of them do not exceed.
 double percentile_99(std::vector<float>::const_iterator begin, std::vector<float>::const_iterator end) {
@@ -33,8 +34,12 @@ double central_probability(double t, std::size_t degrees) {
   return odd ? 2.0 / std::numbers::pi * (angle + std::sin(angle) * sum) : std::sin(angle) * sum;
 }
 
+// With more degrees of freedom Student's t is that of kMostDegrees, which is larger by less than 0.7 %: its bounds are
+// slightly too wide, and the sum above stays short.
+constexpr std::size_t kMostDegrees = 200;
+
 // The value that Student's t with `degrees` >= 1 degrees of freedom exceeds with probability `above`, 0 to 0.5.
-double student_t(double above, std::size_t degrees) {
+double compute_student_t(double above, std::size_t degrees) {
   double low = 0.0;
   double high = 1e6;
   for (int i = 0; i < 100; ++i) {
@@ -42,6 +47,30 @@ double student_t(double above, std::size_t degrees) {
     (central_probability(middle, degrees) < 1.0 - 2.0 * above ? low : high) = middle;
   }
   return high;
+}
+
+// The values of Student's t for one probability, each computed once: a window compares all models in every frame.
+class StudentT {
+ public:
+  explicit StudentT(double above) {
+    for (std::size_t degrees = 1; degrees <= kMostDegrees; ++degrees) {
+      values_[degrees] = compute_student_t(above, degrees);
+    }
+  }
+  double at(std::size_t degrees) const { return values_[std::min(degrees, kMostDegrees)]; }
+
+ private:
+  std::array<double, kMostDegrees + 1> values_{};
+};
+
+double one_sided_t(std::size_t degrees) {
+  static const StudentT table(kOneSided);
+  return table.at(degrees);
+}
+
+double two_sided_t(std::size_t degrees) {
+  static const StudentT table(0.5 * kOneSided);
+  return table.at(degrees);
 }
 
 // Standard error of sum(numerators) / sum(denominators), with one of each per unit; NaN with fewer than kLeastUnits.
@@ -61,14 +90,15 @@ double standard_error(const std::vector<double>& values) {
   return ratio_standard_error(values, std::vector<double>(values.size(), 1.0));
 }
 
-// estimate + t error, one-sided, where t is exceeded with probability `above`; a negative error gives the lower bound.
-// NaN with fewer than kLeastUnits.
-double bound(double above, double estimate, double error, std::size_t units) {
-  return units < kLeastUnits ? kUnknown : estimate + student_t(above, units - 1) * error;
+// One-sided 95 % bound: estimate + t error; a negative error gives the lower bound. NaN with fewer than kLeastUnits.
+double bound(double estimate, double error, std::size_t units) {
+  return units < kLeastUnits ? kUnknown : estimate + one_sided_t(units - 1) * error;
 }
 
 Interval interval_95(double estimate, double error, std::size_t units) {
-  return {bound(0.025, estimate, -error, units), bound(0.025, estimate, error, units)};
+  if (units < kLeastUnits) return {kUnknown, kUnknown};
+  const double width = two_sided_t(units - 1) * error;
+  return {estimate - width, estimate + width};
 }
 
 }  // namespace
@@ -79,13 +109,11 @@ Interval UnitErrors::p99_interval() const {
   return interval;
 }
 
-double UnitErrors::p99_at_most() const {
-  return bound(kOneSided, p99_error_over_jnd, standard_error(unit_p99), units());
-}
+double UnitErrors::p99_at_most() const { return bound(p99_error_over_jnd, standard_error(unit_p99), units()); }
 
 double UnitErrors::within_at_least() const {
   if (has_intervals() && units_above_jnd == 0) return std::pow(kOneSided, 1.0 / static_cast<double>(units()));
-  return std::max(bound(kOneSided, within_jnd, -ratio_standard_error(unit_within, unit_samples), units()), 0.0);
+  return std::max(bound(within_jnd, -ratio_standard_error(unit_within, unit_samples), units()), 0.0);
 }
 
 PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
@@ -94,8 +122,7 @@ PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& othe
     differences.push_back(one.unit_p99[i] - other.unit_p99[i]);
   const double error = standard_error(differences);
   const double difference = one.p99_error_over_jnd - other.p99_error_over_jnd;
-  return {difference, interval_95(difference, error, differences.size()),
-          bound(kOneSided, difference, error, differences.size())};
+  return {difference, interval_95(difference, error, differences.size()), bound(difference, error, differences.size())};
 }
 
 bool StrokeCounter::begins_stroke(double time_s, bool in_contact) {

@@ -13,7 +13,7 @@ constexpr double kLongestStep_s = 0.1;
 constexpr double kBeginning_s = 0.05;
 // After 5 time constants a first-order filter has less than 1 % of its initial error.
 constexpr double kSettled_memories = 5.0;
-constexpr double kUnitErrors_s = 2.0;
+constexpr double kUnitErrorsInterval_s = 2.0;  // between two updates of the errors by stroke
 
 }  // namespace
 
@@ -149,7 +149,7 @@ void Comparison::show(const LoopSnapshot& newest) {
   const PublishedSet* set = models_.set_of(newest);
   reference_N_ = reference_in(newest, set);
   if (newest.loop_time_s >= unit_errors_s_ && counted_s_ >= kLeastContact_s) {
-    unit_errors_s_ = newest.loop_time_s + kUnitErrors_s;
+    unit_errors_s_ = newest.loop_time_s + kUnitErrorsInterval_s;
     for (Slot& slot : slots_) slot.unit_errors = slot.errors.unit_errors(jnd_);
   }
   if (set == nullptr) return;

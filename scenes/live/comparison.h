@@ -66,8 +66,8 @@ class Comparison {
   std::size_t mostly_outside() const noexcept;
 
   ModelFigures figures(std::size_t slot) const;
-  // The errors by stroke, for a ranking. They are updated every 2 s, so that the ranking does not flicker; without
-  // samples before kLeastContact_s.
+  // The errors by stroke, for a ranking. They are recomputed only every 2 s, because they grow to hundreds of strokes
+  // and the ranking shall not flicker; without samples before kLeastContact_s.
   const UnitErrors& unit_errors(std::size_t slot) const noexcept { return slots_[slot].unit_errors; }
 
   // Contact that a ranking needs at least.

@@ -28,7 +28,9 @@ std::string replayed_file(const std::string& device) {
 }
 
 // Limits the simulated hand to the forces, depths and speeds of the training data. Returns whether there is any force.
+// Where no position is positive (a surface at negative positions), only the force is limited.
 // Speeds are differences over at least 20 ms, to suppress encoder steps. The fastest 1 % are ignored as noise.
+// The rows of a recording are not empty (read_recording).
 bool limit_hand(const std::vector<Recording>& recordings, HandSettings& hand) {
   constexpr double kInside = 0.8;  // of the largest values, because the simulated hand overshoots
   constexpr double kSpan_s = 0.02;
@@ -45,11 +47,12 @@ bool limit_hand(const std::vector<Recording>& recordings, HandSettings& hand) {
       before = row;
     }
   }
-  if (strongest_N <= 0.0 || speeds_m_per_s.empty()) return false;
+  if (strongest_N <= 0.0) return false;
+  hand.strongest_press_N = kInside * strongest_N;
+  if (deepest_m > 0.0) hand.deepest_m = kInside * deepest_m;
+  if (speeds_m_per_s.empty()) return true;
   const auto fast = speeds_m_per_s.begin() + static_cast<std::ptrdiff_t>(99 * (speeds_m_per_s.size() - 1) / 100);
   std::nth_element(speeds_m_per_s.begin(), fast, speeds_m_per_s.end());
-  hand.strongest_press_N = kInside * strongest_N;
-  hand.deepest_m = kInside * deepest_m;
   hand.fastest_m_per_s = kInside * *fast;
   return true;
 }
@@ -278,9 +281,9 @@ Verdict LiveSession::verdict() const {
   for (const std::size_t slot : models_.ready_slots()) {
     if (of_model && models_.reference() == slot) continue;
     const UnitErrors* errors =
-        tests_recording() ? test_.errors(models_.model(slot).get()) : &comparison_.unit_errors(slot);
+        tests_recording() ? test_.as_recorded(models_.model(slot).get()) : &comparison_.unit_errors(slot);
     if (errors == nullptr || errors->samples == 0) continue;
-    evaluated.push_back({slot, *errors, figures(slot).errors.p99_error_over_jnd});
+    evaluated.push_back({slot, errors, figures(slot).errors.p99_error_over_jnd});
   }
   if (evaluated.empty()) return {{}, false, why_no_verdict(), {}};
   Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");

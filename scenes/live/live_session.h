@@ -85,6 +85,7 @@ class LiveSession {
   ModelFigures figures(std::size_t slot) const;
   // Whether a recording is replayed, its force is the reference, and ReplayTest has a result.
   bool tests_recording() const noexcept;
+  // With tests_recording() the errors as recorded rank the models, as in a report. The words use those of `figures`.
   Verdict verdict() const;
   // Whether the recording that is replayed belongs to the training set.
   bool replays_training() const noexcept;

@@ -51,11 +51,21 @@ ReplayTest::Outcome ReplayTest::run(const std::vector<std::shared_ptr<const Forc
   return outcome;
 }
 
-const UnitErrors* ReplayTest::errors(const ForceModel* model) const noexcept {
+const ReplayTest::Tested* ReplayTest::find(const ForceModel* model) const noexcept {
   const auto found = std::find_if(found_.models.begin(), found_.models.end(),
                                   [&](const Tested& one) { return one.model.get() == model; });
-  if (found == found_.models.end()) return nullptr;
-  return moved_ ? &found->surface_moved : &found->as_recorded;
+  return found == found_.models.end() ? nullptr : &*found;
+}
+
+const UnitErrors* ReplayTest::errors(const ForceModel* model) const noexcept {
+  const Tested* tested = find(model);
+  if (tested == nullptr) return nullptr;
+  return moved_ ? &tested->surface_moved : &tested->as_recorded;
+}
+
+const UnitErrors* ReplayTest::as_recorded(const ForceModel* model) const noexcept {
+  const Tested* tested = find(model);
+  return tested == nullptr ? nullptr : &tested->as_recorded;
 }
 
 bool ReplayTest::move(bool moved) {

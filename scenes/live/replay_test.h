@@ -36,8 +36,10 @@ class ReplayTest {
   double found_m() const noexcept { return found_.surface.at; }  // estimated offset; 0: none yet, or not significant
   // The offset that is subtracted from the positions now.
   double offset_m() const noexcept { return moved_ ? found_m() : 0.0; }
-  // The errors of a model over the whole recording; null: not tested yet.
+  // The errors of a model over the whole recording; null: not tested yet. `errors` are those to show, with the surface
+  // moved or as recorded (`moved`). `as_recorded` always decide the ranking, as in a report.
   const UnitErrors* errors(const ForceModel* model) const noexcept;
+  const UnitErrors* as_recorded(const ForceModel* model) const noexcept;
   // Number of finished tests.
   int rounds() const noexcept { return rounds_; }
 
@@ -51,6 +53,7 @@ class ReplayTest {
     std::vector<Tested> models;
   };
   Outcome run(const std::vector<std::shared_ptr<const ForceModel>>& models) const;
+  const Tested* find(const ForceModel* model) const noexcept;  // null: not tested yet
   bool apply();
 
   ReplayControl* replay_;

@@ -112,6 +112,7 @@ void SessionRecorder::drain() {
 }
 
 void SessionRecorder::write(const RecordedSample& sample) {
+  // The ring may still hold samples of an earlier recording.
   if (sample.recording != number_) return;
   restart_pending_ = restart_pending_ || sample.restart;
   if (!sample.usable || !std::isfinite(sample.tool.time_s)) {

@@ -1,4 +1,4 @@
-// Error statistics of an endless stream of ticks: constant time and memory, but for 24 bytes per stroke.
+// Error statistics of an endless stream of ticks: constant time per tick and bounded memory.
 // Thread guarantee: value types; slow side.
 #pragma once
 
@@ -41,10 +41,15 @@ class ErrorQuantile {
 };
 
 // The errors of one model in total and by stroke. ModelErrors has them exactly, but keeps every sample.
+// After kMostStrokes strokes the last one goes on, so that a session of days needs no more memory or time. All models
+// of a comparison begin their strokes together, so their units stay paired.
 class StreamErrors {
  public:
+  static constexpr std::size_t kMostStrokes = 600;  // the standard error of a mean over them is 4 % of their scatter
+
   void begin_stroke() {
-    strokes_ = unit_strokes();
+    if (strokes_.units() + 1 == kMostStrokes) return;
+    append_stroke(strokes_);
     stroke_ = {};
     stroke_within_ = stroke_samples_ = 0.0;
   }
@@ -64,26 +69,25 @@ class StreamErrors {
     return summary;
   }
   UnitErrors unit_errors(const JndLine& jnd) const {
-    UnitErrors errors = unit_strokes();
+    UnitErrors errors = strokes_;
+    append_stroke(errors);
     static_cast<ErrorSummary&>(errors) = summary(jnd);
     return errors;
   }
 
  private:
-  // The strokes with the one that goes on, without the figures in total.
-  UnitErrors unit_strokes() const {
-    UnitErrors strokes = strokes_;
-    if (stroke_samples_ == 0.0) return strokes;
+  // Appends the stroke that goes on, if it has samples.
+  void append_stroke(UnitErrors& strokes) const {
+    if (stroke_samples_ == 0.0) return;
     strokes.unit_samples.push_back(stroke_samples_);
     strokes.unit_within.push_back(stroke_within_);
     strokes.unit_p99.push_back(stroke_.p99());
     strokes.units_above_jnd += stroke_within_ < stroke_samples_ ? 1 : 0;
-    return strokes;
   }
 
   ErrorFigures figures_;
   ErrorQuantile quantile_;
-  UnitErrors strokes_;  // those that ended
+  UnitErrors strokes_;  // those that ended, without the figures in total
   ErrorQuantile stroke_;
   double stroke_samples_ = 0.0;
   double stroke_within_ = 0.0;

@@ -17,7 +17,7 @@ bool is_trend(const ModelInfo& info) {
 // Whether both are the trend of the same recordings: their errors are equal.
 bool are_one_trend(const EvaluatedSlot& a, const EvaluatedSlot& b, const SessionModels& models) {
   return is_trend(models.info(a.slot)) && is_trend(models.info(b.slot)) &&
-         a.unit_errors.p99_error_over_jnd == b.unit_errors.p99_error_over_jnd;
+         a.unit_errors->p99_error_over_jnd == b.unit_errors->p99_error_over_jnd;
 }
 
 // The recommended model; of several that are one trend, the one with its name.
@@ -41,7 +41,7 @@ std::string tick_share(double tick_ns) {
 Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
               const std::string& reference_name) {
   std::vector<Candidate> candidates;
-  for (const EvaluatedSlot& one : evaluated) candidates.push_back({one.unit_errors, models.info(one.slot).tick});
+  for (const EvaluatedSlot& one : evaluated) candidates.push_back({*one.unit_errors, models.info(one.slot).tick});
   const Ranking ranking = rank(candidates);
   Verdict verdict;
   const std::size_t best = recommended(evaluated, models, ranking.recommended);

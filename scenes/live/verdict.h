@@ -17,8 +17,8 @@ class SessionModels;
 // The errors of one model; those of all are over the same samples.
 struct EvaluatedSlot {
   std::size_t slot = 0;
-  UnitErrors unit_errors;  // decide which model is recommended
-  // The newest 99 % error, which the list of models shows too: what the verdict says about the models.
+  const UnitErrors* unit_errors = nullptr;  // decide which model is recommended; not null
+  // The 99 % error that the list of models shows, too: what the verdict says about the models.
   double p99_error_over_jnd = 0.0;
 };
 

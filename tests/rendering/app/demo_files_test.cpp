@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <thread>
@@ -47,6 +48,41 @@ TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
   }
   ASSERT_EQ(view.dialogs.recording_roles.recordings.size(), 2u) << "none is lost";
   EXPECT_EQ(view.dialogs.recording_roles.test(), "b.csv");
+}
+
+// Two saves within a second, and a window that closes while another file is still being read.
+TEST(DemoFiles, SavesThatWereRequestedAreCompletedWhenTheWindowCloses) {
+  const test::TemporaryFolder folder;
+  setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
+  const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
+  ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
+  auto session = LiveSession::open(test::session_request("skin", "hand", {folder.file("m.json")}));
+  ASSERT_TRUE(session.ok()) << session.error().message;
+  ASSERT_TRUE(test::frames_until(**session, [&] { return (*session)->comparison().history().size() > 100; }));
+  std::promise<void> gate;
+  const std::shared_future<void> opened = gate.get_future().share();
+  ViewState view;
+  std::vector<std::string> problems;
+  {
+    DemoFiles files(
+        view,
+        [&](const std::string& text, bool problem) {
+          if (problem) problems.push_back(text);
+        },
+        [opened](const std::string& path, const std::string&) -> Result<ConvertedRecording> {
+          opened.wait();
+          return ConvertedRecording{path, {}};
+        });
+    files.open_recording("a.csv");
+    for (int i = 0; i < 2; ++i) files.save_curves(**session, window_view(**session, view), CurveColumns());
+    gate.set_value();
+  }
+  EXPECT_EQ(problems, std::vector<std::string>());
+  std::size_t tables = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
+    if (entry.path().filename().string().rfind("curves-", 0) == 0 && entry.path().extension() == ".csv") ++tables;
+  }
+  EXPECT_EQ(tables, 2u);
 }
 
 TEST(Settings, ComeBackAsTheyWere) {

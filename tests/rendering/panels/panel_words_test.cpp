@@ -1,4 +1,6 @@
 // The texts of the panels from plain views, without session, threads or device.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -7,6 +9,7 @@
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/panels/scene_overlay.h"
+#include "rendering/panels/window_command.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {
@@ -126,6 +129,15 @@ TEST(PanelWords, BeforeTheFirstModelTheFitIsTheNumber) {
   EXPECT_EQ(big_number(models, true).number, "34 %");
   EXPECT_NE(big_number(models, true).below.find("true material"), std::string::npos);
   EXPECT_EQ(big_number(models, false).below.find("true material"), std::string::npos) << "there is none";
+}
+
+// GLFW numbers them from 256 on, and 256 + 'V' is not V.
+TEST(PanelWords, KeysThatPrintNothingAreNoLetters) {
+  EXPECT_EQ(key_name(GLFW_KEY_V), "V");
+  EXPECT_EQ(key_name(GLFW_KEY_1), "1");
+  EXPECT_EQ(key_name(GLFW_KEY_GRAVE_ACCENT), "`");
+  EXPECT_EQ(key_name(GLFW_KEY_HOME), "Home");
+  for (const int key : {GLFW_KEY_LEFT_ALT, GLFW_KEY_KP_4, GLFW_KEY_F1, GLFW_KEY_UNKNOWN}) EXPECT_EQ(key_name(key), "");
 }
 
 TEST(PanelWords, ARecordingHasNameAndLength) {

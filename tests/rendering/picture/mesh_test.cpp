@@ -51,6 +51,14 @@ TEST(Mesh, TopAndSidesMeetWithoutAGap) {
   }
 }
 
+// A slow computer draws the coarse block.
+TEST(Mesh, ACoarseBlockHasFarFewerTriangles) {
+  const auto count = [](const Detail& detail) {
+    return block_top({0.1F, 0.1F}, detail).triangles.size() + block_sides({0.1F, 0.1F}, 0.04F, detail).triangles.size();
+  };
+  EXPECT_LT(5 * count(kCoarse), 2 * count(kFine));
+}
+
 TEST(Mesh, ALatheFacesOutwards) {
   expect_consistent(lathe_mesh({{1e-4F, 0.0F}, {0.7F, 0.3F}, {1.0F, 1.0F}, {0.7F, 1.7F}, {1e-4F, 2.0F}}, 24));
 }

@@ -53,7 +53,8 @@ TEST(UnitErrors, IntervalsHaveStudentsT) {
     double one_sided;  // 5 % beyond
     double two_sided;  // 2.5 % beyond
   };
-  for (const Row& row : {Row{2, 2.920, 4.303}, {3, 2.353, 3.182}, {10, 1.812, 2.228}, {29, 1.699, 2.045}}) {
+  for (const Row& row :
+       {Row{2, 2.920, 4.303}, {3, 2.353, 3.182}, {10, 1.812, 2.228}, {29, 1.699, 2.045}, {200, 1.6525, 1.9719}}) {
     SCOPED_TRACE(row.degrees);
     const auto units = static_cast<double>(row.degrees + 1);
     UnitErrors errors;
@@ -65,6 +66,17 @@ TEST(UnitErrors, IntervalsHaveStudentsT) {
     EXPECT_NEAR(errors.p99_interval().low, 10.0 - row.two_sided, 5e-4);
     EXPECT_NEAR(errors.p99_interval().high, 10.0 + row.two_sided, 5e-4);
   }
+}
+
+// With very many units the bound is at least that of the normal distribution, 1.645, and larger by less than 0.7 %.
+TEST(UnitErrors, WithManyUnitsTheBoundIsThatOfTheNormalDistribution) {
+  constexpr std::size_t kUnits = 100'000;
+  UnitErrors errors;
+  errors.unit_samples.assign(kUnits, 1.0);
+  errors.unit_p99.assign(kUnits, 0.0);
+  errors.unit_p99.front() = kUnits;
+  EXPECT_GE(errors.p99_at_most(), 1.6448);
+  EXPECT_LT(errors.p99_at_most(), 1.007 * 1.6449);
 }
 
 TEST(ModelErrors, TooFewUnitsHaveNoIntervalAnywhere) {

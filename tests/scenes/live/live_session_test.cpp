@@ -11,6 +11,8 @@
 
 #include "engine/tick/replay.h"
 #include "models/model/file/model_io.h"
+#include "scenes/evaluation/evaluate.h"
+#include "scenes/evaluation/ranking.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
 #include "tests/support/message_parts.h"
@@ -148,6 +150,42 @@ TEST_F(SessionOfFiles, MovesTheSurfaceOfARecordingToThatOfTheModels) {
   EXPECT_GT(session->figures(0).errors.rms_error_N, 3.0 * moved_N);
 }
 
+// The window and a report name the same model on the same recording, wherever the window moves the surface.
+TEST_F(SessionOfFiles, RecommendsTheModelThatAReportRecommends) {
+  auto shifted = std::make_shared<Recording>(test::example_recording(3000, 1000.0, 30e-6));
+  const auto fit_to = [&](const std::shared_ptr<Recording>& training, const char* file) {
+    const auto model = test::fit(test::prepare({training}, test::scene_request("silicone_block")), &kRandomMethod);
+    EXPECT_TRUE(save_model(folder.file(file), model->data(), false).ok());
+  };
+  fit_to(shifted, "elsewhere.json");
+  for (RecordingRow& row : shifted->rows) row.position_m += 0.3e-3;
+  fit_to(shifted, "here.json");
+  ASSERT_TRUE(write_recording(folder.file("shifted.csv"), *shifted, {}, false).ok());
+  SessionRequest request = of_files("replay:" + folder.file("shifted.csv"));
+  request.models = {folder.file("a.json"), folder.file("elsewhere.json"), folder.file("here.json")};
+  const Session session = must(LiveSession::open(request));
+  ASSERT_TRUE(frames_until(*session, [&] {
+    if (!session->models().all_settled() || !session->tests_recording()) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (session->replay_test().as_recorded(session->models().model(i).get()) == nullptr) return false;
+    }
+    return true;
+  }));
+  std::vector<EvaluatedModel> models;
+  for (std::size_t i = 0; i < 3; ++i) models.push_back({session->models().model(i), session->jnd()});
+  recording = must(read_recording(folder.file("shifted.csv")));
+  const auto evaluation = evaluate(rows_of(recording), models);
+  ASSERT_TRUE(evaluation.ok());
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < 3; ++i)
+    candidates.push_back({evaluation->models[i].as_recorded.unit_errors(), session->models().info(i).tick});
+  EXPECT_EQ(rank(candidates).recommended, 2u);
+  for (const bool moved : {true, false}) {
+    session->move_surface(moved);
+    EXPECT_EQ(session->verdict().chosen, 2u) << moved;
+  }
+}
+
 TEST_F(SessionOfFiles, LoadsAFileAndKeepsTheChoice) {
   SessionRequest request = of_files("hand");
   request.models = {folder.file("a.json")};
@@ -225,6 +263,21 @@ TEST(LiveSession, TheHandStaysInTheRecordedRange) {
   }
   const auto recorded = std::ranges::max_element(slow.rows, {}, &RecordingRow::position_m);
   EXPECT_LT(deepest_m, 1.02 * recorded->position_m);
+}
+
+// The zero of the positions may be anywhere, also deep inside the block.
+TEST_F(SessionOfFiles, TheHandPressesNoHarderThanARecordingAtNegativePositions) {
+  Recording negative = *test::rig_recording(test::train_settings("elastic"));
+  for (RecordingRow& row : negative.rows) {
+    row.position_m -= 0.1;
+    row.force_N *= 0.1;  // weaker than the usual press of the scene
+  }
+  ASSERT_TRUE(write_recording(folder.file("negative.csv"), negative, {}, false).ok());
+  SessionRequest request = of_files("hand");
+  request.recordings = {folder.file("negative.csv")};
+  const Session session = must(LiveSession::open(request));
+  const auto strongest = std::ranges::max_element(negative.rows, {}, &RecordingRow::force_N);
+  EXPECT_LE(session->scene().strongest_press_N, strongest->force_N);
 }
 
 TEST_F(SessionOfFiles, ClosingCompletesTheRecording) {

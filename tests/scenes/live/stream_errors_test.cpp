@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace palpate {
 namespace {
@@ -46,6 +47,25 @@ TEST(StreamErrors, AreThoseOfAllSamplesInTotalAndByStroke) {
   EXPECT_EQ(errors.units_above_jnd, exact.units_above_jnd);
   ASSERT_EQ(errors.unit_p99.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(errors.unit_p99[i], exact.unit_p99[i], 0.011 * exact.unit_p99[i]);
+}
+
+// A session that runs for days. Two models keep the same units, and no sample is lost.
+TEST(StreamErrors, HaveABoundedNumberOfStrokes) {
+  const JndLine jnd;
+  StreamErrors one, other;
+  for (int stroke = 0; stroke < 5000; ++stroke) {
+    for (StreamErrors* errors : {&one, &other}) errors->begin_stroke();
+    for (int i = 0; i < 3; ++i) {
+      one.add(1.0, 1.0, jnd);
+      other.add(stroke == 4999 ? 2.0 : 1.0, 1.0, jnd);
+    }
+  }
+  const UnitErrors of_one = one.unit_errors(jnd), of_other = other.unit_errors(jnd);
+  EXPECT_EQ(of_one.units(), StreamErrors::kMostStrokes);
+  EXPECT_EQ(of_one.unit_samples, of_other.unit_samples);
+  EXPECT_EQ(std::accumulate(of_one.unit_samples.begin(), of_one.unit_samples.end(), 0.0), 15000.0);
+  EXPECT_EQ(of_one.units_above_jnd, 0u);
+  EXPECT_EQ(of_other.units_above_jnd, 1u) << "the newest stroke counts";
 }
 
 TEST(SustainedError, IsTheSignedMeanOfTheLast50Milliseconds) {
