@@ -26,8 +26,8 @@ class SpaceMouse final : public LinkListener {
   Status start(MouseDevice& tool);
   void stop() noexcept { link_.stop(); }
   std::string description() const { return link_.description(); }
-  // Any thread, wait-free.
-  bool is_connected() const noexcept { return connected_.load(std::memory_order_relaxed); }
+  // Any thread, wait-free. Bits of device_fault; an unreadable report counts for 0.1 s.
+  std::uint32_t faults(double now_s) const noexcept;
 
   // Reader thread, wait-free.
   void connected(double) noexcept override { connected_.store(true, std::memory_order_relaxed); }
@@ -39,6 +39,8 @@ class SpaceMouse final : public LinkListener {
 
   DeviceCalibration calibration_;
   std::atomic<bool> connected_{false};
+  std::atomic<double> corrupt_until_s_{0.0};
+  static_assert(std::atomic<double>::is_always_lock_free);
   MouseDevice* tool_ = nullptr;  // not null after `start`
   int counts_ = 0;               // reader thread only: the deflection of the cap
   DeviceLink link_;
@@ -52,9 +54,7 @@ class SpaceMouseDevice final : public MouseDevice {
 
   Status open() override { return mouse_->start(*this); }
   void close() noexcept override { mouse_->stop(); }
-  DeviceHealth health(double) noexcept override {
-    return {.faults = mouse_->is_connected() ? 0 : device_fault::kUnplugged};
-  }
+  DeviceHealth health(double now_s) noexcept override { return {.faults = mouse_->faults(now_s)}; }
   std::string note() const override { return mouse_->description(); }
   ToolInput* tool_input() noexcept override { return nullptr; }  // only the SpaceMouse moves the tool
 

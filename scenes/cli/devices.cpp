@@ -1,4 +1,6 @@
 // palpate devices: lists the devices, and the reason if one cannot be opened.
+#include "scenes/cli/devices.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -15,6 +17,31 @@
 #include "scenes/scene/folders.h"
 
 namespace palpate::cli {
+
+std::string plugged_in_text(DeviceBus& bus, const std::string& assets) {
+  std::string text = "\nPLUGGED IN (hidraw)\n";
+  const std::vector<DeviceNode> nodes = bus.list();
+  if (nodes.empty()) text += "  none; a haptic device appears here when it is plugged in\n";
+  bool problems = false;
+  for (const DeviceNode& node : nodes) {
+    const DeviceProtocol* const protocol = hid_protocol_of(node);
+    char ids[16];
+    std::snprintf(ids, sizeof ids, "%04x:%04x", node.vendor_id, node.product_id);
+    text += "  " + (node.path.empty() ? "(no node)" : node.path) + "  " + ids + "  " + node.product + ": " +
+            (protocol != nullptr ? protocol->description : "not supported") + "\n";
+    if (protocol == nullptr) continue;
+    const auto opened = bus.open(node);
+    if (opened) continue;
+    problems = true;
+    text += "    cannot be used: " + opened.error().message + "\n";
+  }
+  if (problems) {
+    text += "\nInstall the udev rule once: sudo cp " + assets +
+            "/udev/70-palpate.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm trigger\n";
+  }
+  return text;
+}
+
 namespace {
 
 void print_hid_protocols() {
@@ -22,28 +49,6 @@ void print_hid_protocols() {
   for (const DeviceProtocol* protocol : kHidProtocols) {
     std::printf("  %s: %s; tested %s\n", protocol->name, protocol->description, kTestedOn);
   }
-}
-
-void print_plugged_in(DeviceBus& bus, const std::string& assets) {
-  std::printf("\nPLUGGED IN (hidraw)\n");
-  const std::vector<DeviceNode> nodes = bus.list();
-  if (nodes.empty()) std::printf("  none; a haptic device appears here when it is plugged in\n");
-  bool problems = false;
-  for (const DeviceNode& node : nodes) {
-    const DeviceProtocol* const protocol = hid_protocol_of(node);
-    std::printf("  %s  %04x:%04x  %s: %s\n", node.path.empty() ? "(no node)" : node.path.c_str(), node.vendor_id,
-                node.product_id, node.product.c_str(), protocol != nullptr ? protocol->description : "not supported");
-    if (protocol == nullptr) continue;
-    const auto opened = bus.open(node);
-    if (opened) continue;
-    problems = true;
-    std::printf("    cannot be used: %s\n", opened.error().message.c_str());
-  }
-  if (!problems) return;
-  std::printf(
-      "\nInstall the udev rule once: sudo cp %s/udev/70-palpate.rules /etc/udev/rules.d/ && sudo udevadm control "
-      "--reload && sudo udevadm trigger\n",
-      assets.c_str());
 }
 
 Status print_devices() {
@@ -59,7 +64,7 @@ Status print_devices() {
     if (!device.problem.empty()) std::printf("%*s  %s\n", column + 15, "", device.problem.c_str());
   }
   print_hid_protocols();
-  print_plugged_in(system_hid_bus(), assets ? *assets : "assets");
+  std::fputs(plugged_in_text(system_hid_bus(), assets ? *assets : "assets").c_str(), stdout);
   return {};
 }
 

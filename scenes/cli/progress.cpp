@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -15,6 +16,7 @@ constexpr auto kDrawInterval = std::chrono::milliseconds(100);
 }  // namespace
 
 std::string progress_text(const std::string& label, double fraction, double elapsed_s) {
+  fraction = fraction > 0.0 ? std::min(fraction, 1.0) : 0.0;  // a NaN is 0
   char numbers[64];
   std::snprintf(numbers, sizeof numbers, "  %3.0f %%", 100.0 * fraction);
   std::string text = label + numbers;

@@ -43,8 +43,8 @@ TEST(ClosedLoop, NeitherScaleNorDampingOfTheUserDrivesAHand) {
         settings.scale = scale;
         const Rest one = swing(3000.0, settings);
         std::printf("x %.0f, %2.0f N s/m, %.0f ms, %2.0f um: %.3f mm\n", scale.stiffness, scale.damping_Ns_per_m,
-                    1e3 * delay_s, 1e6 * encoder_m, 1e3 * one.position_m);
-        EXPECT_LE(one.position_m, kSwing_m) << scale.stiffness << ", " << scale.damping_Ns_per_m << ", " << delay_s;
+                    1e3 * delay_s, 1e6 * encoder_m, 1e3 * one.span_m);
+        EXPECT_LE(one.span_m, kSwing_m) << scale.stiffness << ", " << scale.damping_Ns_per_m << ", " << delay_s;
       }
     }
   }
@@ -65,14 +65,14 @@ TEST(ClosedLoop, NoHandIsDrivenHoweverLateOrSlowTheLineIs) {
             const std::string row = grip.name + ", " + std::to_string(stiffness_N_per_m) + " N/m, " +
                                     std::to_string(1e3 * delay_s) + " ms, every " + std::to_string(1e3 * sample_s) +
                                     " ms, encoder " + std::to_string(1e6 * encoder_m) + " um";
-            EXPECT_LE(one.position_m, encoder_m < kCoarse_m ? kSwing_m : kCoarseSwing_m) << row << ", " << one.share;
+            EXPECT_LE(one.span_m, encoder_m < kCoarse_m ? kSwing_m : kCoarseSwing_m) << row << ", " << one.share;
             EXPECT_LE(one.given_J, encoder_m < kCoarse_m ? kGiven_J : kCoarseGiven_J) << row;
             worst.keep_worse(one);
           }
         }
-        worst_m = std::max(worst_m, worst.position_m);
+        worst_m = std::max(worst_m, worst.span_m);
         std::printf("%9.0f %6.1f ms %6.0f Hz %12.3f  %5.1f %%\n", stiffness_N_per_m, 1e3 * delay_s, 1.0 / sample_s,
-                    1e3 * worst.position_m, 100.0 * worst.share);
+                    1e3 * worst.span_m, 100.0 * worst.share);
       }
     }
   }

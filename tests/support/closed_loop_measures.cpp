@@ -52,6 +52,7 @@ HandPress half_press(const ModelPtr& model) {
 double held_and_late_Ns_per_m(double stiffness_N_per_m) { return -stiffness_N_per_m * (0.5 * kOneTick_s + kOneTick_s); }
 
 void Rest::keep_worse(const Rest& other) {
+  span_m = std::max(span_m, other.span_m);
   position_m = std::max(position_m, other.position_m);
   position_steps = std::max(position_steps, other.position_steps);
   force_jnd = std::max(force_jnd, other.force_jnd);
@@ -89,6 +90,9 @@ Rest hold(const ForcePtr& model, const LoopSettings& settings, const HandPress& 
     force_N.push_back(snapshot.rendered_N);
   });
   EXPECT_EQ(loop.faults() & loop_fault::kStops, 0u);
+  EXPECT_EQ(loop.offences(), 0);
+  const auto [lowest_m, highest_m] = std::minmax_element(position_m.begin(), position_m.end());
+  rest.span_m = *highest_m - *lowest_m;
   rest.position_m = ripple(position_m);
   rest.position_steps = rest.position_m / settings.encoder_step_m;
   rest.force_jnd = ripple(force_N) / JndLine{}.at(press.force_N);

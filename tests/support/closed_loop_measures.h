@@ -41,8 +41,9 @@ inline constexpr double kStiffSpring_N_per_m = 3000.0;
 // The damping of a spring force that is held for a tick and one tick late; negative.
 double held_and_late_Ns_per_m(double stiffness_N_per_m);
 
-// Motion when the hand holds still, peak to peak.
+// Motion when the hand holds still, peak to peak. Drift, a straight line, is subtracted except in `span_m`.
 struct Rest {
+  double span_m = 0.0;
   double position_m = 0.0;
   double position_steps = 0.0;  // in encoder steps
   double force_jnd = 0.0;

@@ -23,10 +23,10 @@ inline void require(bool holds, const char* what) {
 std::size_t check_bridge_stream(const std::uint8_t* data, std::size_t size);
 
 // `data`: the kind of device, then reports, each preceded by its length and the
-// time since the previous one. Decodes each and feeds it to a DeviceEndpoint and a
-// SpaceMouse. Aborts if an accepted reading cannot have been written by the encoder
-// of that protocol, time does not increase, a value for the haptics thread is not
-// finite, or a force above the peak would be sent. Returns the number of reports.
+// time since the previous one. Decodes each and feeds it to a DeviceEndpoint. Aborts
+// if an accepted reading cannot have been written by the encoder of that protocol,
+// time does not increase, a value for the haptics thread is not finite, or a force
+// above the peak would be sent. Returns the number of reports.
 std::size_t check_hid_reports(const std::uint8_t* data, std::size_t size);
 
 // Parses `data` as a recording, in one piece and in small pieces. Aborts if the

@@ -119,6 +119,7 @@ class BridgeModel final : public DeviceModel {
   std::uint32_t samples = 0;
   double clock_drift = 0.0;  // relative error of the clock in its frames
   std::uint32_t clock_offset_us = 0;
+  std::int32_t measured_uN = 250'000;  // of its force sensor
 
   // The functions of a board that bridge_firmware.h requires.
   std::uint32_t now_us() const { return now_us_; }
@@ -135,7 +136,7 @@ class BridgeModel final : public DeviceModel {
     ++samples;
     if (next_period_us) period_us = next_period_us();
     position_nm = counts_;
-    force_uN = 250'000;
+    force_uN = measured_uN;
     return true;
   }
   std::uint8_t condition() const { return conditions; }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -63,6 +64,15 @@ TEST(BridgeProtocol, ReadsTheFramesOfTheDevice) {
   EXPECT_TRUE(reading.driving);
   EXPECT_FALSE(reading.stopped);
   EXPECT_FALSE(reading.own_fault);
+}
+
+TEST(BridgeProtocol, ReadsNoForceFromADeviceWithoutASensor) {
+  Bytes frame(bridge::kDeviceBytes);
+  bridge::encode(bridge::FromDevice{1, 1, 0, bridge::kNoForce, 0, 0}, frame.data());
+  EXPECT_EQ(wire::read32(frame.data() + 16), 0x80000000u);
+  DeviceReading reading;
+  ASSERT_EQ(verdict_of(frame, &reading), ReportVerdict::position);
+  EXPECT_TRUE(std::isnan(reading.measured_N));
 }
 
 TEST(BridgeProtocol, PushesOutwardForAPositiveForce) {

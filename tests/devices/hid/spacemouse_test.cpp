@@ -76,10 +76,19 @@ TEST(SpaceMouse, KeepsItsTargetWhileSilentAndIsAtZeroNearZero) {
 TEST(SpaceMouse, LetsGoWhenItIsUnplugged) {
   Moved moved;
   moved.report(200, 1.0);
-  EXPECT_TRUE(moved.mouse.is_connected());
+  EXPECT_EQ(moved.mouse.faults(1.0), 0u);
   moved.mouse.unplugged();
-  EXPECT_FALSE(moved.mouse.is_connected());
+  EXPECT_EQ(moved.mouse.faults(1.0), device_fault::kUnplugged);
   EXPECT_NEAR(moved.tool.target_m(), -0.006, 1e-12);
+}
+
+TEST(SpaceMouse, AnUnreadableReportIsAFaultForATenthOfASecond) {
+  Moved moved;
+  moved.report(200, 1.0);
+  moved.report(5000, 2.0);
+  EXPECT_EQ(moved.mouse.faults(2.05), device_fault::kCorrupt);
+  EXPECT_EQ(moved.mouse.faults(2.2), 0u);
+  EXPECT_NEAR(moved.tool.target_m(), -0.006 + 200.0 / 17500.0, 1e-12) << "it moves nothing";
 }
 
 // A SpaceMouse whose cap is pushed by 300 counts.

@@ -261,8 +261,8 @@ TEST(DeviceEndpoint, DoesNothingForbiddenInTheTick) {
     SimulatedDevice simulated(protocol);
     simulated.press();
     int offences = 0;
-    for (int i = 0; i < 2000; ++i) {
-      if (i == 1000) simulated.device.unplugged();
+    for (int i = 0; i < 10000; ++i) {
+      if (i == 5000) simulated.device.unplugged();
       simulated.tick();
       test::RtGuard guard;
       simulated.live.run(simulated.now_s + 1e-4, {});

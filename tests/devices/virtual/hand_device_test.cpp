@@ -18,6 +18,7 @@ std::vector<double> explore(HandDevice& device, double stiffness_N_per_m, int ti
   DeviceSample sample;
   for (int i = 0; i < ticks; ++i) {
     EXPECT_TRUE(device.read(kTick_s * i, sample));
+    EXPECT_LT(std::abs(sample.tool.position_m), 0.1) << "finite and stable";
     positions_m.push_back(sample.tool.position_m);
     device.write(stiffness_N_per_m * std::max(0.0, sample.tool.position_m));
   }
@@ -47,6 +48,8 @@ TEST(HandDevice, IsPushedBackByTheForce) {
     EXPECT_GT(*std::min_element(positions_m.begin(), positions_m.end()), -0.03) << "stable";
     before_m = deepest_m;
   }
+  HandDevice other(3);
+  explore(other, 3000.0, 30000);
   HandDevice device;
   const std::vector<double> in_air_m = explore(device, 0.0, 30000);
   EXPECT_LT(*std::max_element(in_air_m.begin(), in_air_m.end()), 1.1 * HandSettings().deepest_m)

@@ -94,6 +94,18 @@ TEST(Recording, AcceptsBlanksPlusSignsAndExponents) {
   EXPECT_EQ(recording.rows[9].force_N, 10.0);
 }
 
+TEST(Recording, AcceptsALongSlowRecordingWithAGap) {
+  std::string text = test::good_header();
+  for (int i = 0; i < 2000; ++i) {
+    const int tenths = i < 1000 ? i : i + 600;  // 10 Hz; nothing for a minute
+    text += std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + ",0.001,0.5\n";
+  }
+  const Recording recording = accepted(text);
+  ASSERT_EQ(recording.rows.size(), 2000u);
+  EXPECT_EQ(recording.rows[999].time_s, 99.9);
+  EXPECT_EQ(recording.rows[1000].time_s, 160.0);
+}
+
 // A German locale, if the machine has one, while the object lives.
 class GermanNumbers {
  public:

@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -33,17 +34,27 @@ RbfFunction least_squares(const Sites& sites, KernelKind kernel, const Eigen::Ma
 
 using Leaf = std::vector<Eigen::Index>;
 
-// Splits a leaf at the median of its widest dimension, in which no two sites are equal.
+// Splits a leaf in its widest dimension, between two different values, as near to the median as possible.
 bool split(std::vector<Leaf>& leaves, std::size_t at, const Eigen::MatrixXd& points) {
   Leaf& leaf = leaves[at];
   if (leaf.size() < 2) return false;
   const Eigen::MatrixXd mine = points(Eigen::all, leaf);
   Eigen::Index widest = 0;
   (mine.rowwise().maxCoeff() - mine.rowwise().minCoeff()).maxCoeff(&widest);
-  std::sort(leaf.begin(), leaf.end(),
-            [&](Eigen::Index a, Eigen::Index b) { return points(widest, a) < points(widest, b); });
-  Leaf upper(leaf.begin() + static_cast<std::ptrdiff_t>(leaf.size() / 2), leaf.end());
-  leaf.resize(leaf.size() / 2);
+  std::sort(leaf.begin(), leaf.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::pair(points(widest, a), a) < std::pair(points(widest, b), b);
+  });
+  const auto from_median = [&](std::size_t i) {
+    return std::abs(static_cast<double>(i) - static_cast<double>(leaf.size() / 2));
+  };
+  std::size_t cut = 0;
+  for (std::size_t i = 1; i < leaf.size(); ++i) {
+    const bool differs = points(widest, leaf[i - 1]) < points(widest, leaf[i]);
+    if (differs && (cut == 0 || from_median(i) < from_median(cut))) cut = i;
+  }
+  if (cut == 0) return false;
+  Leaf upper(leaf.begin() + static_cast<std::ptrdiff_t>(cut), leaf.end());
+  leaf.resize(cut);
   leaves.push_back(std::move(upper));
   return true;
 }
@@ -79,12 +90,15 @@ Eigen::MatrixXd plain_centres(const Sites& sites, const Eigen::VectorXd& jnd_N, 
 }
 
 TEST(FitKdTree, EqualsAFullRefitAfterEverySplit) {
-  const Sites sites = smooth_sites(3, 500, 0.05, 1);
-  const Eigen::VectorXd jnd_N = jnd_of(sites);
-  for (const KernelKind kernel : kKernelKinds) {
-    const auto fitted = fit_kdtree(sites, jnd_N, {.centres = 25, .kernel = kernel});
-    ASSERT_TRUE(fitted.ok());
-    EXPECT_EQ(fitted->function.centres, plain_centres(sites, jnd_N, kernel, 25)) << kernel_name(kernel);
+  Sites repeated = smooth_sites(3, 500, 0.05, 1);
+  repeated.points.row(0) = (repeated.points.row(0).array() * 10.0).round() / 10.0;
+  for (const Sites& sites : {smooth_sites(3, 500, 0.05, 1), repeated}) {
+    const Eigen::VectorXd jnd_N = jnd_of(sites);
+    for (const KernelKind kernel : kKernelKinds) {
+      const auto fitted = fit_kdtree(sites, jnd_N, {.centres = 25, .kernel = kernel});
+      ASSERT_TRUE(fitted.ok());
+      EXPECT_EQ(fitted->function.centres, plain_centres(sites, jnd_N, kernel, 25)) << kernel_name(kernel);
+    }
   }
 }
 

@@ -9,6 +9,7 @@
 #include <future>
 #include <thread>
 
+#include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/session_frames.h"
@@ -83,6 +84,38 @@ TEST(DemoFiles, SavesThatWereRequestedAreCompletedWhenTheWindowCloses) {
     if (entry.path().filename().string().rfind("curves-", 0) == 0 && entry.path().extension() == ".csv") ++tables;
   }
   EXPECT_EQ(tables, 2u);
+}
+
+TEST(DemoFiles, AnotherProgramsTableIsOfferedAsARecordingWithTheGuesses) {
+  const test::TemporaryFolder folder;
+  setenv("XDG_DATA_HOME", folder.file("data").c_str(), 1);
+  const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
+  ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
+  auto session = LiveSession::open(test::session_request("skin", "hand", {folder.file("m.json")}));
+  ASSERT_TRUE(session.ok()) << session.error().message;
+  const std::string foreign = folder.file("trial.txt");
+  std::ofstream file(foreign);
+  file << "Zeit [s];Weg [mm];Kraft [N]\n";
+  for (int i = 0; i < 200; ++i) file << "0," << 1000 + i << ";1," << 100 + i << ";0," << 100 + i << "\n";
+  file.close();
+
+  ViewState view;
+  DemoFiles files(view, [](const std::string&, bool) {});
+  files.open(foreign, **session);
+  for (int i = 0; i < 2000 && !view.dialogs.recording_roles.any(); ++i) {
+    files.update(**session);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(view.dialogs.recording_roles.problem, "");
+  ASSERT_EQ(view.dialogs.recording_roles.recordings.size(), 1u);
+  const OpenedRecording& offered = view.dialogs.recording_roles.recordings[0];
+  ASSERT_GE(offered.words.size(), 4u);
+  EXPECT_EQ(offered.words[2].rfind("position: column 2 \"Weg [mm]\" ", 0), 0u) << offered.words[2];
+  EXPECT_EQ(offered.path.rfind(folder.file("data/"), 0), 0u) << offered.path;
+  const auto recording = read_recording(offered.path);
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ(recording->rows.size(), 200u);
+  EXPECT_EQ(view.settings.recent, std::vector<std::string>{foreign});
 }
 
 TEST(Settings, ComeBackAsTheyWere) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <limits>
+
 namespace palpate::cli {
 namespace {
 
@@ -14,6 +16,12 @@ TEST(Progress, HasShareAndRemainingTime) {
 TEST(Progress, DoesNotGuessTooEarly) {
   EXPECT_EQ(progress_text("fitting", 0.5, 0.2), "fitting   50 %");
   EXPECT_EQ(progress_text("fitting", 0.01, 10.0), "fitting    1 %");
+}
+
+TEST(Progress, SurvivesFractionsOutOfRange) {
+  EXPECT_EQ(progress_text("a", -1.0, 0.0), "a    0 %");
+  EXPECT_EQ(progress_text("a", 7.0, 0.0), "a  100 %");
+  EXPECT_EQ(progress_text("a", std::numeric_limits<double>::quiet_NaN(), 5.0), "a    0 %");
 }
 
 TEST(Progress, FirstInterruptAsksToStop) {

@@ -203,6 +203,13 @@ TEST_F(ReplayVerb, SeveralRecordingsHaveAForcesFileEach) {
   std::filesystem::remove(other);
 }
 
+TEST_F(ReplayVerb, TheSameCommandGivesTheSameBytesInAnotherProcess) {
+  for (const char* name : {"first.csv", "second.csv"}) {
+    ASSERT_EQ(run(models_, {"--out", folder_.file(name)}).exit_code, 0);
+  }
+  EXPECT_EQ(test::read_text(folder_.file("first.csv")), test::read_text(folder_.file("second.csv")));
+}
+
 TEST_F(ReplayVerb, ModelsOfOneNameGetDistinctNames) {
   const std::string out = folder_.file("forces.csv");
   const auto ran = run({models_[5], models_[5], models_[5]}, {"--json", "--out", out});

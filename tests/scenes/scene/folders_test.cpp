@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
@@ -24,6 +25,7 @@ TEST(Assets, AnInstalledProgramFindsItsOwn) {
   std::filesystem::create_directories(prefix.file("bin"));
   std::filesystem::copy_file(PALPATE_BINARY, prefix.file("bin/palpate"));
   std::filesystem::create_directories(prefix.file("share/palpate/scenes"));
+  std::ofstream(prefix.file("share/palpate/scenes/note.txt")) << "no scene";
   const auto run = test::run_program({prefix.file("bin/palpate"), "scenes"});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_EQ(run.out, "SCENE  TITLE  MATERIAL  FEATURES\n");
