@@ -247,6 +247,16 @@ class Checker {
                 1e3 * surface_.standard_error_m),
           "a model fitted to this recording has its surface there; to test another model, move the surface");
     }
+    // A model takes the material to be at rest at the first position.
+    const double first_N = recording_.rows.front().force_N - surface_.force_zero_N;
+    if (recording_.rows.front().position_m > 0.0 &&
+        first_N > std::max(request_.jnd.at(0.0), certain_force_N(noise_N_))) {
+      add("begins_in_contact", Severity::note, first_N,
+          words("the recording begins in contact with %.3g N: what the material went through before is unknown, so the "
+                "first forces may have larger errors than the bound of a model",
+                first_N),
+          "begin outside of the material, after it has rested");
+    }
     if (surface_.air.tool_mass_kg > 0.0) {
       add("tool_mass", Severity::note, surface_.air.tool_mass_kg,
           words("the force sensor carries a mass of %.3g g: in free air the force follows the acceleration",

@@ -180,6 +180,10 @@ TEST(CheckRecording, WithoutFreeAirNothingIsToldOfSurfaceAndZero) {
   EXPECT_EQ(check.surface_offset_m, 0.0);
   EXPECT_EQ(check.force_zero_N, 0.0);
   EXPECT_NE(find(check, "surface_unknown"), nullptr) << all_of(check);
+  const Finding* const begins = find(check, "begins_in_contact");
+  ASSERT_NE(begins, nullptr) << all_of(check);
+  EXPECT_NEAR(begins->value, 1.5, 0.1);
+  EXPECT_EQ(find(checked(silicone(), kSilicone), "begins_in_contact"), nullptr);
   for (const char* code : {"surface_offset", "force_zero", "force_zero_drift", "lag"}) {
     EXPECT_EQ(find(check, code), nullptr) << all_of(check);
   }
