@@ -103,7 +103,10 @@ struct CorrectedRecordings {
   std::vector<RowCorrection> corrections;
   double surface_m = 0.0;  // position of the surface, in positions as recorded
   TrainingExtent extent{};
-  std::string omitted{};  // those corrections of the registration that are not used
+  // The corrections of the registration that are used.
+  bool offsets = true;
+  bool force_zeros = true;
+  bool lag = true;
 };
 
 // Applies the corrections and measures the recordings.
@@ -147,33 +150,54 @@ Result<FoldErrors> error_of(MotionSource& source, const TrainingExtent& extent, 
   return simple_law_error(source, dictionary_of(source, extent), problem_of(source, extent, request), control, 0.05);
 }
 
-// All corrections of the registration, then those without offsets, then none, as far as they differ.
-std::vector<CorrectedRecordings> possible_corrections(const RegisteredSurfaces& found) {
-  CorrectedRecordings all;
-  CorrectedRecordings unmoved;
-  CorrectedRecordings none;
-  all.surface_m = found.surface_position_m;
-  unmoved.surface_m = none.surface_m = found.unmoved_surface_position_m;
-  unmoved.omitted = "surface offsets";
-  none.omitted = "surface offsets, force zeros and lag";
-  bool offsets = false;
-  bool forces = false;
+// The registration's corrections, without those of a kind that is not used.
+CorrectedRecordings some_of(const RegisteredSurfaces& found, bool offsets, bool force_zeros, bool lag) {
+  CorrectedRecordings some;
+  some.offsets = offsets;
+  some.force_zeros = force_zeros;
+  some.lag = lag;
+  some.surface_m = offsets ? found.surface_position_m : found.unmoved_surface_position_m;
   for (const RecordingSurface& one : found.recordings) {
-    all.corrections.push_back({one.offset_m + all.surface_m, one.force_zero_N, one.lag_s});
-    unmoved.corrections.push_back({unmoved.surface_m, one.force_zero_N, one.lag_s});
-    none.corrections.push_back({none.surface_m, 0.0, 0.0});
-    offsets = offsets || one.offset_m != 0.0;
-    forces = forces || one.force_zero_N != 0.0 || one.lag_s != 0.0;
+    some.corrections.push_back(
+        {some.surface_m + (offsets ? one.offset_m : 0.0), force_zeros ? one.force_zero_N : 0.0, lag ? one.lag_s : 0.0});
   }
-  std::vector<CorrectedRecordings> possible{std::move(all)};
-  if (offsets) possible.push_back(std::move(unmoved));
-  if (forces) possible.push_back(std::move(none));
+  return some;
+}
+
+// The candidates, from the one that is preferred. A lag of the force must be significant, because viscosity and the
+// memory of a material look like one; the others are preferred, because free air or overlapping positions show them.
+std::vector<CorrectedRecordings> possible_corrections(const RegisteredSurfaces& found) {
+  const auto any = [&](double RecordingSurface::*correction) {
+    return std::ranges::any_of(found.recordings, [&](const RecordingSurface& one) { return one.*correction != 0.0; });
+  };
+  const bool lag = any(&RecordingSurface::lag_s);
+  const bool offsets = any(&RecordingSurface::offset_m);
+  const bool force_zeros = any(&RecordingSurface::force_zero_N);
+  std::vector<CorrectedRecordings> possible;
+  if (lag) possible.push_back(some_of(found, true, true, false));
+  possible.push_back(some_of(found, true, true, true));
+  if (offsets) possible.push_back(some_of(found, false, true, true));
+  if (offsets || force_zeros) possible.push_back(some_of(found, false, false, false));
   return possible;
 }
 
-// Corrects the recordings by their offsets, force zeros and lag, unless a trend predicts them significantly better
-// without: an effect of the material that the registration does not know may look like an offset. The candidates differ
-// in the samples that are in contact, so the comparison is paired only by pieces of strokes.
+// Of the kinds of corrections that were found and are not used, as text; empty: all are used.
+std::string unused(const RegisteredSurfaces& found, const CorrectedRecordings& chosen) {
+  std::string names;
+  const auto add = [&](bool used, double RecordingSurface::*correction, const char* name) {
+    const auto& all = found.recordings;
+    if (used || std::ranges::all_of(all, [&](const RecordingSurface& one) { return one.*correction == 0.0; })) return;
+    names.append(names.empty() ? "" : " and ").append(name);
+  };
+  add(chosen.offsets, &RecordingSurface::offset_m, "surface offsets");
+  add(chosen.force_zeros, &RecordingSurface::force_zero_N, "force zeros");
+  add(chosen.lag, &RecordingSurface::lag_s, "force lag");
+  return names;
+}
+
+// Corrects the recordings by their offsets, force zeros and lag as far as a trend confirms it: an effect of the
+// material that the registration does not know may look like an offset. The candidates differ in the samples that are
+// in contact, so the comparison is paired only by pieces of strokes.
 Result<CorrectedRecordings> correct_recordings(MotionSource& source, const TrainingRequest& request,
                                                PreparedTraining& prepared, const FitControl& control) {
   if (request.surface == Surface::recorded) {
@@ -196,16 +220,14 @@ Result<CorrectedRecordings> correct_recordings(MotionSource& source, const Train
   }
   CorrectedRecordings& chosen = candidates[errors.empty() ? 0 : simplest_adequate(errors)];
   source.correct(chosen.corrections);
-  if (!chosen.omitted.empty()) {
-    prepared.notes.push_back("the " + chosen.omitted +
-                             " that were found are not used: the cross-validated error is lower without them");
-    for (std::size_t i = 0; i < found->recordings.size(); ++i) {
-      RecordingSurface& one = found->recordings[i];
-      one.offset_m = 0.0;
-      one.standard_error_m = std::numeric_limits<double>::infinity();
-      one.force_zero_N = chosen.corrections[i].force_zero_N;
-      one.lag_s = chosen.corrections[i].lag_s;
-    }
+  if (const std::string names = unused(*found, chosen); !names.empty()) {
+    prepared.notes.push_back("the " + names + " found are not used: they do not lower the cross-validated error");
+  }
+  for (RecordingSurface& one : found->recordings) {
+    if (!chosen.offsets && one.offset_m != 0.0) one.standard_error_m = std::numeric_limits<double>::infinity();
+    if (!chosen.offsets) one.offset_m = 0.0;
+    if (!chosen.force_zeros) one.force_zero_N = 0.0;
+    if (!chosen.lag) one.lag_s = 0.0;
   }
   prepared.common.provenance.surfaces = std::move(found->recordings);
   return std::move(chosen);

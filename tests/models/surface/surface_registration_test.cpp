@@ -163,6 +163,9 @@ TEST(SurfaceRegistration, ALagThatTheRecordingsShareIsTheRigs) {
     return RecordingPtr(copy);
   };
   EXPECT_NEAR(registered({late(1), late(2)}).recordings[0].lag_s, 10e-3, 2e-3);
+  // The trend confirms it.
+  const PreparedTraining prepared = test::prepare({late(1), late(2)}, test::default_request("silicone_block"));
+  for (const auto& surface : prepared.common.provenance.surfaces) EXPECT_NEAR(surface.lag_s, 10e-3, 2e-3);
 }
 
 // A press from 1.2 mm to 3.2 mm and back, always in contact.
