@@ -84,8 +84,8 @@ struct ForceScale {
 // The force scaled by what is wanted, without a kick.
 class ScaledForce {
  public:
-  // Moves towards `wanted`, which is not clamped, with a time constant of 50 ms, so that the change is not felt as a
-  // kick, and returns the scaled force. With the default scale the force stays bit-identical.
+  // Moves towards `wanted`, which is not clamped, with a time constant of 50 ms, so that the force has no step, and
+  // returns the scaled force. With the default scale the force stays bit-identical.
   double apply(double force_N, double velocity_m_per_s, bool in_contact, const ForceScale& wanted,
                double step_s) noexcept {
     const double share = std::clamp(step_s / kEasing_s, 0.0, 1.0);

@@ -177,11 +177,11 @@ std::vector<CorrectedRecordings> possible_corrections(const RegisteredSurfaces& 
   if (lag) possible.push_back(some_of(found, true, true, false));
   possible.push_back(some_of(found, true, true, true));
   if (offsets) possible.push_back(some_of(found, false, true, true));
-  if (offsets || force_zeros) possible.push_back(some_of(found, false, false, false));
+  if (force_zeros || (offsets && lag)) possible.push_back(some_of(found, false, false, false));
   return possible;
 }
 
-// Of the kinds of corrections that were found and are not used, as text; empty: all are used.
+// The names of the kinds of corrections that were found and are not used; empty: all are used.
 std::string unused(const RegisteredSurfaces& found, const CorrectedRecordings& chosen) {
   std::string names;
   const auto add = [&](bool used, double RecordingSurface::*correction, const char* name) {
@@ -221,7 +221,8 @@ Result<CorrectedRecordings> correct_recordings(MotionSource& source, const Train
   CorrectedRecordings& chosen = candidates[errors.empty() ? 0 : simplest_adequate(errors)];
   source.correct(chosen.corrections);
   if (const std::string names = unused(*found, chosen); !names.empty()) {
-    prepared.notes.push_back("the " + names + " found are not used: they do not lower the cross-validated error");
+    prepared.notes.push_back("the " + names +
+                             " found are not used: they do not lower the cross-validated error significantly");
   }
   for (RecordingSurface& one : found->recordings) {
     if (!chosen.offsets && one.offset_m != 0.0) one.standard_error_m = std::numeric_limits<double>::infinity();

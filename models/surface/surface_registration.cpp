@@ -191,6 +191,7 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
     result.recordings.push_back(member.result);
   }
   result.surface_position_m = outermost_contact_m(members, force_noise_N, common_surface_m(members));
+  // The members' offsets are in the result; without them the recordings are as recorded.
   for (Member& member : members) member.result.offset_m = 0.0;
   result.unmoved_surface_position_m = outermost_contact_m(members, force_noise_N, common_surface_m(members));
   return result;
@@ -218,9 +219,10 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
   std::vector<Member> members;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     std::vector<SurfaceRow>& rows = recordings[r];
-    // A recording shorter than the lag stays as it is.
-    if (std::vector<SurfaceRow> moved = without_lag(rows, lag_s); lag_s != 0.0 && !moved.empty())
-      rows = std::move(moved);
+    if (lag_s != 0.0) {
+      // A recording shorter than the lag stays as it is.
+      if (auto moved = without_lag(rows, lag_s); !moved.empty()) rows = std::move(moved);
+    }
     const bool same_lag = offsets[r].lag.at == lag_s;
     Member& member = members.emplace_back();
     member.own = same_lag ? offsets[r].surface : estimate_surface(rows, source.force_noise_N());

@@ -71,7 +71,8 @@ struct FoldErrors {
 // Index of the candidate with the lowest mean score.
 std::size_t best_score(std::span<const FoldErrors> candidates);
 
-// Index of the selected candidate. `candidates`: at least one, from the simplest to the most complex, same folds.
+// Index of the selected candidate. `candidates`: at least one, from the simplest to the most complex, with as many
+// folds each. A fold without samples in one of them counts for none.
 std::size_t simplest_adequate(std::span<const FoldErrors> candidates);
 
 }  // namespace palpate
