@@ -1,10 +1,9 @@
 // Detects two recordings of one set with different forces at the same depth, which no single model can render: another
 // specimen, a preload, or a force zero.
 //
-// The depths that both reach are divided into sixty bins. The recordings contradict each other if in four of five bins
-// the central 90 % of their forces do not overlap, if the medians of their loading forces differ by more than two JND
-// at the median bin, and if no shift of one against the other reduces that to one JND: a shift is another surface,
-// which a fit identifies.
+// The recordings contradict each other if in four of five bins of their positions the central 90 % of their forces do
+// not overlap, if the medians of their forces differ by more than two JND at the median bin, and if no shift of one
+// against the other explains this (models/recordings/force_curve.h): a shift is another surface, which a fit corrects.
 // Thread guarantee: slow side, pure.
 #pragma once
 

@@ -206,7 +206,7 @@ Result<CorrectedRecordings> correct_recordings(MotionSource& source, const Train
     return recorded;
   }
   source.correct({});
-  auto found = register_surfaces(source, control);
+  auto found = register_surfaces(source, request.jnd, control);
   if (!found) return found.error();
   std::vector<CorrectedRecordings> candidates = possible_corrections(*found);
   std::vector<FoldErrors> errors;

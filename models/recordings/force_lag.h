@@ -1,9 +1,14 @@
 // Estimates the lag of the force channel of a recording against its position channel.
 //
-// The memory of a material makes the force lead the depth, never lag. A common fit (common_fit.h) with non-negative
-// springs, dashpots and branches therefore has a larger residual where the force is late. Where it is early, it looks
-// like viscosity until force begins before contact. Lags of -50 to 50 ms are searched; a lag that does not improve the
-// fit significantly is 0 (profile_search.h).
+// The memory of a material makes the force lead the depth, never lag. A regression with non-negative weights,
+//
+//   F(t) ~ c + E(p) + sum_t b_t + eta(p) v,   p, v: position and velocity at t - lag, c: force zero,
+//
+// therefore has a larger residual where the force is late. Where it is early, it looks like viscosity until force
+// begins before contact. E and the spring of each Maxwell branch b_t are rising splines over the positions, and eta is
+// not negative. All are 0 in air, so the position of the surface is not needed. Residuals are divided by the noise plus
+// 3 % of the force, with a Huber loss beyond 3; a row without force counts only where the fit is positive. Lags of
+// -50 to 50 ms are searched; a lag that does not improve the fit significantly is 0 (profile_search.h).
 // Thread guarantee: slow side, pure.
 #pragma once
 

@@ -82,7 +82,7 @@ class Search {
     if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans)) return {};
     scan();
     const Candidate zero = candidate_at(cost_, 0.0);
-    const double effect = range_.systematic_effect.value_or(0.0);
+    const double effect = range_.systematic_effect;
     const bool any_better = std::any_of(scanned_.begin(), scanned_.end(), [&](const Candidate& one) {
       return is_significantly_worse(zero.costs, one.costs);
     });
@@ -91,8 +91,6 @@ class Search {
     look_around();
     OffsetEstimate found;
     found.standard_error = jackknife_error();
-    // If 0 is outside of the range, recordings do not overlap there and the cost at 0 has no meaning.
-    const bool zero_counts = range_.low <= 0.0 && range_.high >= 0.0;
     double half = kSignificantErrors * found.standard_error;
     found.identified = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
     if (effect > 0.0) {
@@ -101,9 +99,8 @@ class Search {
       half += effect;
       found.standard_error = std::max(found.standard_error, effect / kSignificantErrors);
     }
-    found.not_zero = !zero_counts || std::abs(best_.at) > half;
-    if (found.not_zero && zero_counts && range_.systematic_effect && !is_significantly_worse(zero.costs, best_.costs))
-      found.identified = false;
+    found.not_zero = std::abs(best_.at) > half;
+    if (effect > 0.0 && found.not_zero && !is_significantly_worse(zero.costs, best_.costs)) found.identified = false;
     if (!found.identified) found.standard_error = kUnknownError;
     if (found.identified && found.not_zero) found.at = best_.at;
     found.minimum_at = best_.at;

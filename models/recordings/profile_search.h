@@ -5,23 +5,22 @@
 // sections at its lowest minima find the best offset. Its standard error is the jackknife's, with one block left out
 // at a time (Quenouille 1956; Tukey 1958): sqrt((n - 1)/n sum_b (x_b - mean)^2). The offset is not identified if two
 // standard errors reach an end of the range or exceed `widest`, or if another minimum is not significantly worse.
-// Within two standard errors of 0 it is 0, unless 0 is outside the range.
+// Within two standard errors of 0 it is 0.
 //
 // Two candidates, a and b, are compared by their costs a_k and b_k over the same n blocks. Block k gives the relative
 // difference r_k = (a_k - b_k) / (a_k + b_k + m / 10), where m is the mean of the b_k. Candidate a is significantly
 // worse if mean r > 2 s / sqrt(n), s the standard deviation of r: a paired t-test at two standard errors.
 //
-// An effect of the material that looks like an offset (friction like a shift, viscosity like a lag) is the same in all
-// blocks, so that the jackknife does not show it. With such an effect the offset is identified only if 0 is
-// significantly worse. If its size is given (`systematic_effect`), the costs at this distance on either side must be
-// significantly worse, too, and the offset must exceed this distance plus two standard errors to differ from 0.
+// An effect of the material that looks like an offset (viscosity looks like a lag) is the same in all blocks, so that
+// the jackknife does not show it. With such an effect of known size (`systematic_effect`) the offset is identified only
+// if the costs at 0 and at this distance on either side are significantly worse, and it must exceed this distance plus
+// two standard errors to differ from 0.
 // Thread guarantee: slow side, pure.
 #pragma once
 
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <vector>
 
 namespace palpate {
@@ -65,12 +64,11 @@ struct SearchRange {
   double high = 0.0;
   double coarse_step = 0.0;
   double fine_step = 0.0;
-  double widest = 0.0;  // limit of two standard errors
-  // Of the material, one that looks like an offset: its size, 0 if it is unknown; none without such an effect.
-  std::optional<double> systematic_effect{};
+  double widest = 0.0;             // limit of two standard errors
+  double systematic_effect = 0.0;  // of the material, one that looks like an offset; 0: there is none
 };
 
-// The minimum of `cost` in `range`. Not identified where the range is empty.
+// The minimum of `cost` in `range`, which contains 0. Not identified where the range is empty.
 OffsetEstimate estimate_offset(const CostFunction& cost, const SearchRange& range);
 
 // Tests whether a force offset explains the data as well as `shift`: whether the lowest cost over force offsets of

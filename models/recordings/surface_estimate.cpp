@@ -54,8 +54,7 @@ SurfaceEstimate estimate_surface(const std::vector<SurfaceRow>& rows, double for
   for (std::size_t i = touches.front().begin; i < touches.front().end; ++i) {
     speed_m_per_s = std::max(speed_m_per_s, rows[i].motion.velocity_m_per_s);
   }
-  estimate.law_error_m = std::hypot(onset.standard_error_m, lag_error_s * speed_m_per_s);
-  onset.standard_error_m = std::hypot(estimate.law_error_m, onset.misfit_m);
+  onset.standard_error_m = std::hypot(onset.standard_error_m, lag_error_s * speed_m_per_s, onset.misfit_m);
   if (kSignificantErrors * onset.standard_error_m > kWidestSurface_m) return estimate;
   estimate.raw_offset_m = onset.at_m;
   estimate.standard_error_m = onset.standard_error_m;

@@ -32,7 +32,6 @@ struct SurfaceEstimate {
   double offset_m = 0.0;
   double raw_offset_m = 0.0;
   double standard_error_m = kUnknownError;  // infinite if the surface is not identified
-  double law_error_m = 0.0;                 // the part of it that is independent between similar touches
   double force_zero_N = 0.0;                // to be subtracted from force_N; 0 where that of the air is not significant
   // The surface at the last touch at rest minus that at the first; the error is infinite with fewer than two.
   double offset_drift_m = 0.0;

@@ -53,14 +53,15 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows, std::size_t blocks) {
+std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows) {
   std::vector<double> path_m(rows.size(), 0.0);
   for (std::size_t i = 1; i < rows.size(); ++i) {
     path_m[i] = path_m[i - 1] + std::abs(rows[i].motion.position_m - rows[i - 1].motion.position_m);
   }
   std::vector<std::size_t> block(rows.size(), 0);
   for (std::size_t i = 0; i < rows.size() && path_m.back() > 0.0; ++i) {
-    block[i] = std::min(blocks - 1, static_cast<std::size_t>(path_m[i] / path_m.back() * static_cast<double>(blocks)));
+    block[i] =
+        std::min(kBlocks - 1, static_cast<std::size_t>(path_m[i] / path_m.back() * static_cast<double>(kBlocks)));
   }
   return block;
 }

@@ -64,7 +64,8 @@ std::pair<double, double> position_range_m(const std::vector<SurfaceRow>& rows);
 // The median (the upper one of an even number); 0 for no values.
 double median_of(std::vector<double> values);
 
-// The block of each row, of `blocks` blocks of equal path length of the tool.
-std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows, std::size_t blocks);
+// The block of each row, of kBlocks blocks of equal path length of the tool.
+inline constexpr std::size_t kBlocks = 10;
+std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows);
 
 }  // namespace palpate

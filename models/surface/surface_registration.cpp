@@ -3,23 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
-#include "models/recordings/common_fit.h"
+#include "models/recordings/force_curve.h"
 #include "models/recordings/force_lag.h"
 #include "models/recordings/surface_estimate.h"
 
 namespace palpate {
 namespace {
 
-// The minimum of rows of a recording in the common fit, which has kSearchRows rows in all.
-constexpr std::size_t kLeastMemberRows = 300;
-// Two recordings must overlap by this share of the smaller range of positions.
-constexpr double kLeastOverlap = 0.3;
-constexpr double kCoarseSteps = 120.0;
 // A share of the rows with a certain force: if more of them are outside of the surface, it is moved outwards.
 constexpr double kOuterShare = 0.005;
 constexpr double kOuterRange = 0.01;  // of the largest force: sensors drift
@@ -54,64 +48,38 @@ double largest_force_N(const std::vector<SurfaceRow>& rows) {
   return largest_N;
 }
 
-// Estimates the offset of `member` to the recordings in `fit`, whose positions range from `low_m` to `high_m`.
-OffsetEstimate offset_of(const CommonFit& fit, const Member& member, double low_m, double high_m) {
-  const double overlap_m = kLeastOverlap * std::min(member.range_m(), high_m - low_m);
-  const double from_m = member.low_m - high_m + overlap_m;
-  const double to_m = member.high_m - low_m - overlap_m;
-  const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFinest_m, kWidestSurface_m, 0.0};
-  const OffsetEstimate offset =
-      estimate_offset([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
-  // Recordings that do not overlap as recorded are consistent with any force offset.
-  if (from_m > 0.0 || to_m < 0.0) return offset;
-  std::vector<SurfaceRow> rows = member.rows;
-  return unless_force_offset(
-      offset,
-      [&](double offset_N) {
-        for (std::size_t i = 0; i < rows.size(); ++i) rows[i].force_N = member.rows[i].force_N - offset_N;
-        return fit.residual(rows, 0.0);
-      },
-      largest_force_N(member.rows));
+std::vector<ForceAtPosition> forces_of(const Member& member) {
+  std::vector<ForceAtPosition> forces;
+  for (const SurfaceRow& row : member.rows) forces.push_back({row.motion.position_m, row.force_N});
+  return forces;
 }
 
-// The offset is 0 if it contradicts the onsets of both recordings, each estimated by itself, and these agree: the
-// material causes it, because recordings at two speeds look shifted.
-OffsetEstimate unless_onsets_agree(OffsetEstimate offset, const SurfaceEstimate& own, const SurfaceEstimate& first) {
-  if (!own.identified() || !first.identified()) return offset;
-  const double apart_m = own.raw_offset_m - first.raw_offset_m;
-  const double error_m = std::hypot(own.law_error_m, first.law_error_m);
-  const double off_m = std::abs(offset.at - apart_m);
-  if (std::abs(apart_m) <= std::max(kLeastOffset_m, kSignificantErrors * error_m) &&
-      off_m > kSignificantErrors * std::hypot(error_m, offset.standard_error)) {
+// A position of the surface is significant if it is this far from 0.
+bool is_significant(double at_m, double standard_error_m) {
+  return std::abs(at_m) > std::max(0.5 * kWidestSurface_m, kSignificantErrors * standard_error_m);
+}
+
+// The offset of `member` to the reference: the difference of their surfaces, where both are identified, otherwise the
+// shift between their forces.
+OffsetEstimate offset_of(const Member& member, const Member& reference, const JndLine& jnd) {
+  OffsetEstimate offset;
+  if (member.own.identified() && reference.own.identified()) {
+    const double at_m = member.own.raw_offset_m - reference.own.raw_offset_m;
     offset.identified = true;
-    offset.standard_error = error_m;
-    offset.at = 0.0;
+    offset.standard_error = std::hypot(member.own.standard_error_m, reference.own.standard_error_m);
+    offset.at = is_significant(at_m, offset.standard_error) ? at_m : 0.0;
+    return offset;
+  }
+  const std::vector<ForceAtPosition> a = forces_of(reference);
+  const std::vector<ForceAtPosition> b = forces_of(member);
+  const double bin_m = common_bin_m(a, b);
+  if (!(bin_m > 0.0)) return offset;
+  if (const auto shift_m = find_shift_m(ForceCurve(a, bin_m), ForceCurve(b, bin_m), jnd)) {
+    offset.identified = true;
+    offset.at = *shift_m;
+    offset.standard_error = bin_m / 8.0;  // half a step of the search
   }
   return offset;
-}
-
-// The recording with the largest range of positions has the offset 0. The offsets of the others are estimated in
-// descending order of their range, each to all identified recordings before it.
-void estimate_offsets_of_all(std::vector<Member>& members, double force_noise_N, const FitControl& control) {
-  std::vector<std::size_t> order(members.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return members[a].range_m() > members[b].range_m(); });
-  Member& first = members[order.front()];
-  first.offset.identified = true;
-  first.offset.standard_error = 0.0;
-  double low_m = first.low_m;
-  double high_m = first.high_m;
-  CommonFit fit(low_m, high_m, force_noise_N);
-  fit.add(first.rows, 0.0);
-  for (std::size_t k = 1; k < order.size() && control.may_continue(0.0); ++k) {
-    Member& member = members[order[k]];
-    member.offset = unless_onsets_agree(offset_of(fit, member, low_m, high_m), member.own, first.own);
-    if (!member.offset.identified) continue;
-    fit.add(member.rows, member.offset.at);
-    low_m = std::min(low_m, member.low_m - member.offset.at);
-    high_m = std::max(high_m, member.high_m - member.offset.at);
-  }
 }
 
 bool unmoved(const Member& member, double shift_m) {
@@ -150,7 +118,7 @@ double common_surface_m(const std::vector<Member>& members) {
   }
   if (!(weights > 0.0)) return 0.0;
   const double at_m = sum / weights;
-  return std::abs(at_m) > std::max(0.5 * kWidestSurface_m, kSignificantErrors / std::sqrt(weights)) ? at_m : 0.0;
+  return is_significant(at_m, 1.0 / std::sqrt(weights)) ? at_m : 0.0;
 }
 
 // The outermost position with a certain force, after the offsets, if more than kOuterShare of these rows are outside
@@ -175,15 +143,17 @@ double outermost_contact_m(const std::vector<Member>& members, double force_nois
   return *at < surface_m ? *std::min_element(positions_m.begin(), at + 1) : surface_m;
 }
 
-RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N, const FitControl& control) {
+RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N, const JndLine& jnd) {
   const bool zeros = std::all_of(members.begin(), members.end(), [](const Member& one) { return one.own.air.found; });
   for (Member& member : members) {
     if (!zeros) member.own.force_zero_N = 0.0;
     for (SurfaceRow& row : member.rows) row.force_N -= member.own.force_zero_N;
   }
   RegisteredSurfaces result;
-  if (members.size() > 1) estimate_offsets_of_all(members, force_noise_N, control);
-  const double shift_m = members.size() > 1 ? common_shift_m(members) : 0.0;
+  const Member& reference = *std::ranges::max_element(
+      members, {}, [](const Member& one) { return std::pair(one.own.identified(), one.range_m()); });
+  for (Member& member : members) member.offset = offset_of(member, reference, jnd);
+  const double shift_m = common_shift_m(members);
   for (Member& member : members) {
     member.result.force_zero_N = member.own.force_zero_N;
     member.result.standard_error_m = members.size() == 1 ? member.own.standard_error_m : member.offset.standard_error;
@@ -199,7 +169,7 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
 
 }  // namespace
 
-Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control) {
+Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const JndLine& jnd, const FitControl& control) {
   if (const Status status = source.load(control); !status) return status.error();
   std::vector<std::vector<SurfaceRow>> recordings;
   std::vector<RecordingOffsets> offsets;
@@ -215,7 +185,6 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
     if (!control.may_continue(0.0)) return interrupted();
   }
   const double lag_s = common_lag_s(offsets);
-  const std::size_t share = std::max(kLeastMemberRows, kSearchRows / recordings.size());
   std::vector<Member> members;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     std::vector<SurfaceRow>& rows = recordings[r];
@@ -226,14 +195,14 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
     const bool same_lag = offsets[r].lag.at == lag_s;
     Member& member = members.emplace_back();
     member.own = same_lag ? offsets[r].surface : estimate_surface(rows, source.force_noise_N());
-    member.rows = thinned_rows(rows, share);
+    member.rows = thinned_rows(rows, kSearchRows);
     std::tie(member.low_m, member.high_m) = position_range_m(rows);
     member.result.name = source.recordings()[r].name;
     member.result.lag_s = lag_s;
     member.result.content_hash = source.recordings()[r].hash;
   }
   if (!control.may_continue(0.0)) return interrupted();
-  RegisteredSurfaces result = registered(std::move(members), source.force_noise_N(), control);
+  RegisteredSurfaces result = registered(std::move(members), source.force_noise_N(), jnd);
   if (!control.may_continue(0.0)) return interrupted();
   return result;
 }

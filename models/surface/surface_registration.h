@@ -1,9 +1,10 @@
 // Estimates the offsets of the training recordings to each other, and their common surface.
 //
-// The recording with the longest range of positions is the reference. Every other one is shifted over all offsets at
-// which the ranges overlap by 30 %, to the one at which one force law explains both best (common_fit.h,
-// profile_search.h). The common offset belongs to the rig, so the recording with the medoid of the offsets keeps its
-// positions (of two, the later one). A recording whose offset is not identified stays as recorded.
+// The reference is the recording with the largest range of positions, of those whose surface is identified if there are
+// any. The offset of every other one is the difference of their surfaces where both are identified
+// (models/recordings/surface_estimate.h), otherwise the shift between their forces (models/recordings/force_curve.h).
+// The common offset belongs to the rig, so the recording with the medoid of the offsets keeps its positions (of two,
+// the later one). A recording whose offset is not identified stays as recorded.
 //
 // The surface of the model is the weighted mean of the onsets of force in these positions, on either side of 0; it is 0
 // without free air or if it does not differ from 0 significantly and by 0.25 mm. If measured forces reach further out
@@ -17,6 +18,7 @@
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
+#include "engine/tick/jnd.h"
 #include "models/model/fitted_model.h"
 #include "models/training/motion_source.h"
 
@@ -29,6 +31,6 @@ struct RegisteredSurfaces {
 };
 
 // `source` must have no corrections. Errors: those of the source; interrupted.
-Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control = {});
+Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const JndLine& jnd, const FitControl& control = {});
 
 }  // namespace palpate

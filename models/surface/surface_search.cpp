@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/tick/features.h"
-#include "models/recordings/common_fit.h"
 
 namespace palpate {
 namespace {
@@ -45,10 +44,10 @@ OffsetEstimate locate_surface(const std::vector<SurfaceRow>& rows,
   const auto [low_m, high_m] = position_range_m(rows);
   // The range reaches from a recording that is all in air to one that begins at the greatest depth of this one.
   const double reach_m = std::max({high_m - low_m, std::abs(low_m), std::abs(high_m)});
-  const std::vector<std::size_t> blocks = blocks_by_path(rows, CommonFit::kBlocks);
+  const std::vector<std::size_t> blocks = blocks_by_path(rows);
   const OffsetEstimate shift = estimate_offset(
       [&](double offset_m) {
-        BlockCosts costs(CommonFit::kBlocks, 0.0);
+        BlockCosts costs(kBlocks, 0.0);
         for (const auto& model : models) add_costs(errors_of(*model, rows, offset_m), 0.0, rows, blocks, jnd, costs);
         return costs;
       },
@@ -63,7 +62,7 @@ OffsetEstimate locate_surface(const std::vector<SurfaceRow>& rows,
   return unless_force_offset(
       shift,
       [&](double offset_N) {
-        BlockCosts costs(CommonFit::kBlocks, 0.0);
+        BlockCosts costs(kBlocks, 0.0);
         for (const ForceErrors& errors : unmoved) add_costs(errors, offset_N, rows, blocks, jnd, costs);
         return costs;
       },

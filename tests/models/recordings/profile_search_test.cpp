@@ -19,7 +19,7 @@ BlockCosts bowl(double x, double at, double floor) {
   return costs;
 }
 
-TEST(ProfileSearch, FindsThePlaceThatAllBlocksAgreeOn) {
+TEST(ProfileSearch, FindsTheOffsetThatAllBlocksAgreeOn) {
   const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 7.3, 0.01); }, kRange);
   EXPECT_TRUE(found.identified);
   EXPECT_NEAR(found.at, 7.3, 0.01);
@@ -34,9 +34,9 @@ TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
 
 // If the material can imitate an offset, all blocks have the same error. The jackknife gives
 // 0.05 +- 0.02, but the cost is not significantly lower than at 0.
-TEST(ProfileSearch, WhatTheMaterialImitatesIsNotTold) {
+TEST(ProfileSearch, AnOffsetThatTheMaterialImitatesIsNotIdentified) {
   SearchRange with_effect = kRange;
-  with_effect.systematic_effect = 0.0;
+  with_effect.systematic_effect = 0.3;
   const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 0.05, 1.0); }, with_effect);
   EXPECT_FALSE(found.identified);
   EXPECT_EQ(found.at, 0.0);
@@ -52,14 +52,6 @@ TEST(ProfileSearch, ABlurIsPartOfTheError) {
   EXPECT_EQ(at(0.9).at, 0.0);
   EXPECT_NEAR(at(3.0).at, 3.0, 0.01);
   EXPECT_GE(at(3.0).standard_error, 0.5);
-}
-
-// Recordings that do not overlap at offset 0 have no cost there, which is no evidence for 0.
-TEST(ProfileSearch, ZeroOutsideOfTheRangeSaysNothing) {
-  const auto apart = [](double x) { return x == 0.0 ? BlockCosts(10, 0.0) : bowl(x, 5.0, 0.01); };
-  const OffsetEstimate found = estimate_offset(apart, {2.0, 10.0, 0.5, 1e-3, 1.0});
-  EXPECT_TRUE(found.identified);
-  EXPECT_NEAR(found.at, 5.0, 0.01);
 }
 
 TEST(ProfileSearch, AnEdgeTwoMinimaOrOneBlockIdentifyNothing) {

@@ -38,12 +38,12 @@ RegisteredSurfaces registered(const std::vector<RecordingPtr>& recordings) {
   std::vector<MotionSource::Input> inputs;
   for (const RecordingPtr& recording : recordings) inputs.push_back({"", prepare_recording(*recording)});
   MotionSource source(std::move(inputs));
-  return test::must(register_surfaces(source));
+  return test::must(register_surfaces(source, JndLine{}));
 }
 
 // A MotionSource orders recordings by length: seed 3, 2, 1.
 TEST(SurfaceRegistration, FindsEveryShiftAndZeroOfASet) {
-  for (const double shift_m : {-0.5e-3, 0.5e-3, 4e-3}) {
+  for (const double shift_m : {-2e-3, 2e-3, 4e-3}) {
     const auto surfaces =
         registered({rig("maxwell", 1), rig("maxwell", 2, shift_m, -0.05), rig("maxwell", 3)}).recordings;
     ASSERT_EQ(surfaces.size(), 3u);
@@ -130,13 +130,10 @@ RecordingPtr porous_presses(double frequency_per_s, double depth_m, double secon
   return recording;
 }
 
-// The registration does not know this law, and offsets of some 0.3 mm make its fit better. A trend that knows more
-// laws predicts these recordings better without them.
-TEST(SurfaceRegistration, AnOffsetThatMakesTheTrendWorseIsNotUsed) {
+// The faster a press, the stiffer the solid: no offset explains that.
+TEST(SurfaceRegistration, FrequenciesOfAPorousSolidAreNoOffsets) {
   const std::vector<RecordingPtr> recordings{porous_presses(0.2, 4e-3, 20.0), porous_presses(1.0, 4e-3, 10.0),
                                              porous_presses(0.5, 2e-3, 10.0)};
-  const auto raw = registered(recordings).recordings;
-  EXPECT_TRUE(std::any_of(raw.begin(), raw.end(), [](const auto& one) { return std::abs(one.offset_m) > 0.2e-3; }));
   const PreparedTraining prepared = test::prepare(recordings, test::default_request("silicone_block"));
   for (const auto& surface : prepared.common.provenance.surfaces) EXPECT_EQ(surface.offset_m, 0.0) << surface.name;
   const test::ModelPtr model = test::fit(prepared, find_method("trend"));
