@@ -66,8 +66,6 @@ void expect_all_methods(const Recordings& recordings, const TrainingRequest& req
     ASSERT_TRUE(fit.ok()) << method->name << ": " << fit.error().message;
     expect_safe(fit->data);
     EXPECT_GE(fit->data.provenance.training_within_jnd, least_within) << method->name;
-    EXPECT_TRUE(std::isfinite(fit->report.condition)) << method->name;
-    EXPECT_TRUE(std::isfinite(fit->report.residual_rms)) << method->name;
   }
 }
 
