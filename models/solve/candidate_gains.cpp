@@ -17,42 +17,53 @@ Eigen::MatrixXd CandidateGains::columns(std::span<const Eigen::Index> sites) con
   return values;
 }
 
+Eigen::Index CandidateGains::least_known(std::span<const Eigen::Index> sites) const {
+  const auto known = [&](Eigen::Index site) { return candidates_[static_cast<std::size_t>(site)].known; };
+  return known(std::ranges::min(sites, {}, known));
+}
+
 void CandidateGains::update(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis) {
   constexpr std::size_t kGroup = 32;  // sites at a time, whose columns stay in the cache
+  const auto all = basis.data_and_columns();
+  // Those that one of the sites lacks, scaled instead of the kernel columns.
+  const Eigen::MatrixXd directions = sites_.row_scale.asDiagonal() * all.rightCols(all.cols() - least_known(sites));
   const auto groups = static_cast<int>((sites.size() + kGroup - 1) / kGroup);
   parallel_for(groups, [&](int group) {
     const std::size_t first = static_cast<std::size_t>(group) * kGroup;
     const auto some = sites.subspan(first, std::min(kGroup, sites.size() - first));
-    update_group(some, basis);
+    update_group(some, directions, basis);
     recompute_cancelled(some, basis);
   });
 }
 
-void CandidateGains::update_group(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis) {
+void CandidateGains::update_group(std::span<const Eigen::Index> sites, const Eigen::MatrixXd& directions,
+                                  const OrthogonalBasis& basis) {
   const auto count = static_cast<Eigen::Index>(sites.size());
   const Eigen::MatrixXd centres = sites_.points(Eigen::all, sites);
-  // The products with all directions that one of the sites lacks, and with the residual.
-  Eigen::Index known = basis.size();
-  for (const Eigen::Index site : sites) known = std::min(known, candidate(site).known_to);
-  const auto all = basis.columns_and_residual();
-  const auto directions = all.rightCols(all.cols() - known);
-  Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(count, directions.cols());
+  const Eigen::Index known = least_known(sites);
+  const auto fresh = directions.rightCols(basis.size() + 1 - known);
+  Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(count, fresh.cols());
   Eigen::VectorXd lengths = Eigen::VectorXd::Zero(count);
   Eigen::MatrixXd memory(kBlockRows, count);
   for (Eigen::Index row = 0; row < sites_.count(); row += kBlockRows) {
     const Eigen::Index rows = std::min(kBlockRows, sites_.count() - row);
     auto block = memory.topRows(rows);
     kernel_matrix(kernel_, points_, centres, block, row);
-    block.array().colwise() *= sites_.row_scale.segment(row, rows).array();
-    lengths += block.colwise().squaredNorm().transpose();
-    multiply(block, true, directions.middleRows(row, rows), false, 1.0, 1.0, shares);
+    multiply(block, true, fresh.middleRows(row, rows), false, 1.0, 1.0, shares);
+    if (known > 0) continue;
+    lengths += (sites_.row_scale.segment(row, rows).asDiagonal() * block).colwise().squaredNorm().transpose();
   }
   for (Eigen::Index j = 0; j < count; ++j) {
     Candidate& one = candidate(sites[static_cast<std::size_t>(j)]);
-    if (one.known_to == 0) one.length = one.outside = one.exact = lengths(j);
-    one.outside -= shares.row(j).segment(one.known_to - known, basis.size() - one.known_to).squaredNorm();
-    one.correlation = shares(j, shares.cols() - 1);
-    one.known_to = basis.size();
+    if (one.known == 0) {
+      one.length = one.outside = one.exact = lengths(j);
+      one.correlation = shares(j, 0);
+    }
+    const Eigen::Index lacking = basis.size() - std::max<Eigen::Index>(0, one.known - 1);
+    const Eigen::VectorXd along = shares.row(j).tail(lacking);
+    one.outside -= along.squaredNorm();
+    one.correlation -= along.dot(basis.shares().tail(lacking));
+    one.known = basis.size() + 1;
   }
 }
 

@@ -1,7 +1,7 @@
 // The gain of each site as the next centre: the decrease (c . r)^2 / |c'|^2 of the squared error, given the basis
 // selected so far. c is the site's scaled kernel column, c' its part orthogonal to the basis and r the residual.
 //
-// The squares |c'|^2 are stored: the basis only grows, so an update subtracts only the components along the directions
+// c . r and |c'|^2 are stored: the basis only grows, so an update subtracts only the components along the directions
 // that are new to the site.
 //
 // |c'|^2 = |c|^2 - |Q^T c|^2, with the basis Q, suffers from cancellation when c is almost in the span of the basis.
@@ -39,14 +39,17 @@ class CandidateGains {
 
  private:
   struct Candidate {
-    Eigen::Index known_to = 0;  // number of directions that `outside` accounts for; 0: nothing is known
-    double length = 0.0;        // |c|^2
-    double outside = 0.0;       // |c'|^2, 0 for a column in the span of the basis
-    double exact = 0.0;         // last fully computed |c'|^2
-    double correlation = 0.0;   // c . r
+    Eigen::Index known = 0;    // columns of data_and_columns() that are accounted for
+    double length = 0.0;       // |c|^2
+    double outside = 0.0;      // |c'|^2, 0 for a column in the span of the basis
+    double exact = 0.0;        // last fully computed |c'|^2
+    double correlation = 0.0;  // c . r
   };
   Candidate& candidate(Eigen::Index site) { return candidates_[static_cast<std::size_t>(site)]; }
-  void update_group(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis);
+  Eigen::Index least_known(std::span<const Eigen::Index> sites) const;
+  // `directions`: the last columns of data_and_columns(), scaled: those that one of the sites lacks.
+  void update_group(std::span<const Eigen::Index> sites, const Eigen::MatrixXd& directions,
+                    const OrthogonalBasis& basis);
   void recompute_cancelled(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis);
 
   const Sites& sites_;

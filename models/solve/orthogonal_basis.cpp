@@ -8,12 +8,13 @@ namespace palpate {
 OrthogonalBasis::OrthogonalBasis(const Sites& sites, KernelKind kernel, Eigen::Index more) {
   const Eigen::MatrixXd tail = sites.row_scale.asDiagonal() * tail_matrix(tail_degree(kernel), sites.points);
   memory_.resize(sites.count(), tail.cols() + more + 1);
-  memory_.col(0) = sites.target_N.cwiseProduct(sites.row_scale);
+  shares_.resize(tail.cols() + more);
+  residual_ = memory_.col(0) = sites.target_N.cwiseProduct(sites.row_scale);
   for (Eigen::Index k = 0; k < tail.cols(); ++k) add(tail.col(k));
 }
 
 void OrthogonalBasis::project_out(Eigen::MatrixXd& columns) const {
-  const auto basis = memory_.leftCols(size_);
+  const auto basis = memory_.middleCols(1, size_);
   Eigen::MatrixXd shares(size_, columns.cols());
   for (int pass = 0; pass < 2; ++pass) {
     multiply(basis, true, columns, false, 1.0, 0.0, shares);
@@ -29,9 +30,9 @@ void OrthogonalBasis::add(const Eigen::VectorXd& column) {
   const double length = part.norm();
   if (!(length > kDependent * column.norm())) return;
   const Eigen::VectorXd q = part / length;
-  const Eigen::VectorXd left = residual() - q.dot(residual()) * q;
-  memory_.col(size_) = q;
-  memory_.col(++size_) = left;
+  shares_(size_) = q.dot(residual_);
+  residual_ -= shares_(size_) * q;
+  memory_.col(++size_) = q;
 }
 
 }  // namespace palpate

@@ -23,13 +23,17 @@ class OrthogonalBasis {
   // the basis (up to a relative 1e-10) is not added.
   void add(const Eigen::VectorXd& column);
 
-  // N x (size + 1): the basis columns, then the residual.
-  Eigen::Ref<const Eigen::MatrixXd> columns_and_residual() const { return memory_.leftCols(size_ + 1); }
-  Eigen::Ref<const Eigen::VectorXd> residual() const { return memory_.col(size_); }
+  // N x (size + 1): the data, then the basis columns.
+  Eigen::Ref<const Eigen::MatrixXd> data_and_columns() const { return memory_.leftCols(size_ + 1); }
+  // The product of each basis column with the data.
+  Eigen::Ref<const Eigen::VectorXd> shares() const { return shares_.head(size_); }
+  const Eigen::VectorXd& residual() const { return residual_; }
   Eigen::Index size() const { return size_; }
 
  private:
   Eigen::MatrixXd memory_;
+  Eigen::VectorXd shares_;
+  Eigen::VectorXd residual_;
   Eigen::Index size_ = 0;
 };
 
