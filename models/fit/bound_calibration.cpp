@@ -78,10 +78,10 @@ Sites sites_without(const PreparedTraining& prepared, int fold) {
   const std::vector<Eigen::Index> others = rows.outside(fold);
   Sites sites;
   sites.points = rows.points(Eigen::all, others);
-  sites.target_N = rows.residual_N(fold)(others);
+  const double strength = prepared.strength ? prepared.strength->strength : 1.0;
+  sites.target_N = strength * rows.residual_N(fold)(others);
   sites.row_scale = rows.row_scale(others);
   sites.smoothing = prepared.sites.smoothing;
-  sites.strength = prepared.sites.strength;
   return even_subset(sites, kLeftOutSites);
 }
 

@@ -27,7 +27,8 @@ struct CrossValidationPrediction {
 std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPrediction>& predictions,
                                           double inner_radius, const JndLine& jnd, double largest_force_N);
 
-// The sites of a correction without a fold, at most 1500. The targets are the residuals of the trend without that fold.
+// The sites of a correction without a fold, at most 1500. The targets are the strength times the residuals of the trend
+// without that fold.
 Sites sites_without(const PreparedTraining& prepared, int fold);
 
 // The error bound of a model of `prepared`; with fewer than three strokes it is at least 5 % of the force.

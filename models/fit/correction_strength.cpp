@@ -12,7 +12,7 @@
 #include "models/model/domain_guard.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/solve_weights.h"
+#include "models/solve/projected_kernel.h"
 #include "models/training/cross_validation.h"
 #include "models/training/sites.h"
 
@@ -34,8 +34,9 @@ class LeftOutFits {
   explicit LeftOutFits(const CrossValidationRows& rows)
       : rows_(rows),
         centres_(random_centres(rows.points)),
-        space_(penalty_space(kKernel, centres_)),
-        columns_(space_.free + tail_size(tail_degree(kKernel), static_cast<int>(rows.points.rows()))),
+        kernel_(kKernel, centres_, Eigen::VectorXd::Ones(centres_.cols())),
+        penalty_(kernel_.matrix(kernel_.mean_eigenvalue(), kernel_.smallest_smoothing())),
+        columns_(centres_.cols() + tail_size(tail_degree(kKernel), static_cast<int>(rows.points.rows()))),
         design_(rows.points.cols(), columns_),
         folds_(static_cast<std::size_t>(rows.folds())) {
     const auto blocks = static_cast<int>((design_.rows() + kBlockRows - 1) / kBlockRows);
@@ -49,8 +50,7 @@ class LeftOutFits {
   // The mean eigenvalue of the kernel between all scaled rows, estimated at the centres: the unit of the smoothing.
   double unit() const {
     const double mean_scale = rows_.row_scale.squaredNorm() / static_cast<double>(rows_.row_scale.size());
-    const double value = space_.penalty.trace() / static_cast<double>(centres_.cols()) * mean_scale;
-    return value > 0.0 ? value : 1.0;
+    return mean_scale > 0.0 ? kernel_.mean_eigenvalue() * mean_scale : 1.0;
   }
 
   // Predicts the correction at every row from the rows of the other folds.
@@ -59,7 +59,7 @@ class LeftOutFits {
     for (const Fold& fold : folds_) {
       if (fold.count == 0) continue;
       Eigen::MatrixXd penalised = fold.gram;
-      penalised.topLeftCorner(space_.free, space_.free) += smoothing * space_.penalty;
+      penalised.topLeftCorner(penalty_.rows(), penalty_.cols()).triangularView<Eigen::Lower>() += smoothing * penalty_;
       const Eigen::VectorXd coefficients = solve_with_ridge(penalised, fold.right, 1e-14);
       Eigen::VectorXd of_fold(fold.count);
       multiply(design_.middleRows(fold.first, fold.count), false, coefficients, false, 1.0, 0.0, of_fold);
@@ -84,16 +84,17 @@ class LeftOutFits {
     return points(Eigen::all, order);
   }
 
-  // Fills a block of rows of [K Z, G].
+  // Fills a block of rows of [K P, G].
   void fill_design(int block) {
     const Eigen::Index first = block * kBlockRows;
     const Eigen::Index rows = std::min(kBlockRows, design_.rows() - first);
     const Eigen::MatrixXd some = rows_.points.middleCols(first, rows);
-    Eigen::MatrixXd kernel(rows, centres_.cols());
+    const Eigen::Index n = centres_.cols();
+    Eigen::MatrixXd kernel(rows, n);
     kernel_matrix(kKernel, PointArrays(some), centres_, kernel);
-    multiply_by_basis(kernel, space_);
-    design_.block(first, 0, rows, space_.free) = kernel.leftCols(space_.free);
-    design_.block(first, space_.free, rows, columns_ - space_.free) = tail_matrix(tail_degree(kKernel), some);
+    kernel_.project_rows(kernel);
+    design_.block(first, 0, rows, n) = kernel;
+    design_.block(first, n, rows, columns_ - n) = tail_matrix(tail_degree(kKernel), some);
   }
 
   void gather(int fold) {
@@ -117,9 +118,10 @@ class LeftOutFits {
 
   const CrossValidationRows& rows_;
   Eigen::MatrixXd centres_;
-  PenaltySpace space_;
+  ProjectedKernel kernel_;   // of the centres
+  Eigen::MatrixXd penalty_;  // its lower triangle
   Eigen::Index columns_;
-  Eigen::MatrixXd design_;  // [K Z, G]
+  Eigen::MatrixXd design_;  // [K P, G]
   std::vector<Fold> folds_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "engine/base/parallel.h"
@@ -65,53 +64,43 @@ Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
   return jnd_N;
 }
 
-Result<MethodFit> model_of(const PreparedTraining& prepared, const MethodRequest& request, FittedCorrection fitted,
-                           const std::vector<CorrectionPtr>& of_folds) {
-  MethodFit fit{prepared.common, std::move(fitted.report)};
+Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request, const FitControl& control,
+                             const MethodFit* base) {
+  const Eigen::VectorXd jnd_N = site_thresholds(prepared);
+  // If cross-validation rejected the correction, every method returns the trend, a model without centres.
+  MethodRequest asked = request;
+  if (!prepared.corrects()) asked.method = &kTrendMethod;
+  const CorrectionPtr from = base == nullptr || asked.method->base == nullptr ? nullptr : base->data.correction;
+  auto fitted = fit_correction({prepared.sites, jnd_N, asked, from}, control);
+  if (!fitted) return fitted.error();
+  if (!prepared.corrects() && request.method->can_take(kTakesCentres)) fitted->size = "0";
+  MethodFit fit{prepared.common, std::move(fitted->notes)};
+  fit.notes.insert(fit.notes.end(), prepared.notes.begin(), prepared.notes.end());
+  if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
+    fit.notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
+                        " samples were used: the beginnings and some sections of the recordings");
+  }
   ModelData& data = fit.data;
   data.method = request.method->name;
-  data.name = data.method + (fitted.size.empty() ? "" : "-" + fitted.size);
+  data.name = data.method + (fitted->size.empty() ? "" : "-" + fitted->size);
   data.provenance.seed = request.seed;
-  data.correction = std::move(fitted.correction);
-  if (prepared.left_out) data.error_bound = bound_of(prepared, of_folds);
+  data.correction = std::move(fitted->correction);
+  if (prepared.left_out) {
+    std::vector<CorrectionPtr> of_folds;
+    const int folds = data.correction->is_none() ? 0 : prepared.left_out->folds();
+    for (int fold = 0; fold < folds; ++fold) {
+      auto of_fold = fit_without(prepared, fold, request, control);
+      if (!of_fold) return of_fold.error();
+      of_folds.push_back(std::move(*of_fold));
+    }
+    data.error_bound = bound_of(prepared, of_folds);
+  }
   if (const Status valid = check_forces(data); !valid) {
     return Error{"the " + data.name + " fit did not give a usable model (" + valid.error().message +
                  "); try more smoothing or fewer centres"};
   }
-  return fit;
-}
-
-Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request, const FitControl& control,
-                             const MethodFit* base) {
-  const Eigen::VectorXd jnd_N = site_thresholds(prepared);
-  const Method& method = *request.method;
-  const bool corrects = prepared.corrects();
-  std::optional<FittedCorrection> from;
-  if (base != nullptr && method.base != nullptr) from = FittedCorrection{base->data.correction, base->report, ""};
-  // If cross-validation rejected the correction, every method returns the trend, a model without centres.
-  MethodRequest of_trend;
-  of_trend.method = &kTrendMethod;
-  auto fitted = fit_correction(
-      {prepared.sites, jnd_N, corrects ? request : of_trend, from && corrects ? &*from : nullptr}, control);
-  if (!fitted) return fitted.error();
-  if (!corrects && method.can_take(kTakesCentres)) fitted->size = "0";
-  auto& notes = fitted->report.notes;
-  notes.insert(notes.end(), prepared.notes.begin(), prepared.notes.end());
-  if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
-    notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
-                    " samples were used: the beginnings and some sections of the recordings");
-  }
-  std::vector<CorrectionPtr> of_folds;
-  const int folds = prepared.left_out && !fitted->correction->is_none() ? prepared.left_out->folds() : 0;
-  for (int fold = 0; fold < folds; ++fold) {
-    auto of_fold = fit_without(prepared, fold, request, control);
-    if (!of_fold) return of_fold.error();
-    of_folds.push_back(std::move(*of_fold));
-  }
-  auto fit = model_of(prepared, request, std::move(*fitted), of_folds);
-  if (!fit) return fit;
   if (!control.may_continue(0.99)) return interrupted();
-  fit->data.provenance.training_within_jnd = share_within_jnd(prepared, fit->data);
+  data.provenance.training_within_jnd = share_within_jnd(prepared, data);
   if (!control.may_continue(1.0)) return interrupted();
   return fit;
 }

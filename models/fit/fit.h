@@ -55,17 +55,17 @@ struct TrainingRequest {
 // The request of a scene with the recipe of Hoever & Harders (2009), for comparison: 50 mN reduction; rows scaled by
 // 1/f; depth, velocity and low-pass velocities as features, with two relaxation times identified from these recordings,
 // as the paper identifies its two from the transients of its own (none for a scene without low-pass velocities); the
-// force itself as target; weights by truncated singular values (truncated_svd.h); positions as recorded, no trust, an
+// force itself as target; weights by truncated singular values (solve_weights.h); positions as recorded, no trust, an
 // even grid. Forces are limited as in every model, to 1.2 times the largest measured one and to 0, or to the lowest one
 // of a material that pulls. Pure.
 TrainingRequest recipe_2009_request(TrainingRequest request);
 
 struct PreparedTraining {
   TrainingSet set;
-  Sites sites;                                  // normalised; target: residual of the trend, or the force
-  ModelData common;                             // the parts of the model that all methods have in common
-  std::vector<PartGain> gains;                  // of each term of the dictionary; empty unless FeatureChoice::automatic
-  std::optional<StrengthChoice> strength;       // none in the paper's recipe
+  Sites sites;                             // normalised; target: strength times residual of the trend, or the force
+  ModelData common;                        // the parts of the model that all methods have in common
+  std::vector<PartGain> gains;             // of each term of the dictionary; empty unless FeatureChoice::automatic
+  std::optional<StrengthChoice> strength;  // none in the paper's recipe
   std::optional<CrossValidationRows> left_out;  // rows for cross-validation; none in the paper's recipe
   std::size_t strokes = 0;
   std::vector<std::string> notes;  // for the report of every fit
@@ -76,13 +76,8 @@ struct PreparedTraining {
 
 struct MethodFit {
   ModelData data;
-  FitReport report;
+  std::vector<std::string> notes;  // sentences for the user
 };
-
-// Makes the model of a fitted correction. `of_folds`: the corrections without each fold, for its error bound; empty for
-// a trend alone. Errors: the forces are not finite.
-Result<MethodFit> model_of(const PreparedTraining& prepared, const MethodRequest& request, FittedCorrection fitted,
-                           const std::vector<CorrectionPtr>& of_folds);
 
 // Errors: those of the recordings; no sample in contact; the request does not suit the scene; interrupted.
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
@@ -92,7 +87,8 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
 Eigen::VectorXd site_thresholds(const PreparedTraining& prepared);
 
 // Fits a method. Deterministic. `base`: a fit of the same prepared training and kernel by the method's base
-// (methods.h), which is then not repeated. Errors: the method cannot be fitted to these sites (says why); interrupted.
+// (methods.h), which is then not repeated. Errors: the method cannot be fitted to these sites (says why); the forces of
+// the model are not finite; interrupted.
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
                              const FitControl& control = {}, const MethodFit* base = nullptr);
 

@@ -1,74 +1,59 @@
 #include "models/fit/fit_direct.h"
 
-#include <algorithm>
-#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "engine/base/parallel.h"
 #include "models/linear/lapack.h"
+#include "models/model/rbf/polynomial_tail.h"
 #include "models/solve/projected_kernel.h"
-#include "models/solve/truncated_svd.h"
 
 namespace palpate {
 namespace {
 
-// Fractions of the fit, for its progress.
-constexpr double kFactorisingFrom = 0.25;
-constexpr double kFactorised = 0.95;
-
-Result<FittedRbf> solve(const Sites& sites, const ProjectedKernel& kernel, double smoothing,
-                        const FitControl& control) {
-  bool cancelled = false;
-  const auto may_continue = [&](double share) {
-    cancelled = !control.may_continue(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
-    return !cancelled;
-  };
-  // If rounding made the matrix indefinite, the smoothing is multiplied by ten.
-  for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
-    Eigen::MatrixXd matrix = kernel.matrix(kernel.mean_eigenvalue(), smoothing);
-    const BlasThreads threads(thread_count());
-    const double norm = symmetric_norm(matrix);
-    const bool factorised = cholesky_in_place(matrix, may_continue);
-    if (cancelled) return interrupted();
-    if (!factorised) continue;
-    Eigen::VectorXd u = kernel.data();
-    cholesky_solve(matrix, u);
-    u = kernel.project(u);
-    FittedRbf fitted;
-    fitted.function = kernel.function(u);
-    fitted.function.weights *= sites.strength;
-    fitted.function.tail *= sites.strength;
-    FitReport& report = fitted.report;
-    report.centres_used = sites.count();
-    report.condition = cholesky_condition(matrix, norm);
-    report.residual_rms = smoothing * u.norm() / std::sqrt(static_cast<double>(sites.count()));  // of the scaled rows
-    report.smoothing = smoothing;
-    return fitted;
-  }
-  return Error{"the kernel matrix could not be factorised; check the recording for extreme values"};
+// The solution of eq. 4 by the paper's truncated singular values, here eigenvalues.
+Result<RbfFunction> truncated_interpolant(const Sites& sites, KernelKind kernel, const FitControl& control) {
+  const Eigen::Index n = sites.count();
+  const Eigen::MatrixXd g = tail_matrix(tail_degree(kernel), sites.points);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + g.cols(), n + g.cols());
+  kernel_matrix(kernel, PointArrays(sites.points), sites.points, matrix.topLeftCorner(n, n));
+  matrix.bottomLeftCorner(g.cols(), n) = g.transpose();
+  Eigen::VectorXd values;
+  if (!symmetric_eigen(matrix, values))
+    return Error{"the eigenvalues of the kernel matrix did not converge; check the recording for extreme values"};
+  if (!control.may_continue(0.95)) return interrupted();
+  const double rounding = static_cast<double>(values.size()) * std::numeric_limits<double>::epsilon();
+  const Eigen::ArrayXd sizes = values.array().abs();
+  const Eigen::ArrayXd shares = (matrix.topRows(n).transpose() * sites.target_N).array();
+  const Eigen::ArrayXd inverted = (sizes > rounding * sizes.maxCoeff()).select(shares / values.array(), 0.0);
+  const Eigen::VectorXd unknowns = matrix * inverted.matrix();
+  return RbfFunction{kernel, sites.points, unknowns.head(n), unknowns.tail(g.cols())};
 }
 
 }  // namespace
 
-Result<FittedRbf> fit_direct(const Sites& sites, KernelKind kind, std::optional<double> smoothing,
-                             const FitControl& control) {
+Result<RbfFunction> fit_direct(const Sites& sites, KernelKind kind, const FitControl& control) {
   if (sites.count() > kMostDirectSites)
     return Error{"a direct fit of " + std::to_string(sites.count()) + " sites is too large, at most " +
                  std::to_string(kMostDirectSites) + "; reduce the recording further or use greedy"};
-  if (sites.as_2009) return truncated_interpolant(sites, kind, control);
   if (!control.may_continue(0.0)) return interrupted();
-  const ProjectedKernel kernel(sites, kind);
+  const BlasThreads threads(thread_count());
+  if (sites.as_2009) return truncated_interpolant(sites, kind, control);
+  const ProjectedKernel kernel(kind, sites.points, sites.row_scale);
   if (!control.may_continue(0.1)) return interrupted();
-  if (!smoothing) {
-    const auto found = smoothing_of(sites, kind);
-    if (!found) return found.error();
-    smoothing = *found;
-  }
+  const double smoothing = choose_smoothing(sites, kind);
   if (!control.may_continue(0.2)) return interrupted();
-  auto fitted = solve(sites, kernel, std::max(*smoothing, kernel.smallest_smoothing()), control);
-  if (!control.may_continue(kFactorised)) return interrupted();
-  return fitted;
+  const auto factor = kernel.cholesky(smoothing);
+  if (!factor) return Error{"the kernel matrix could not be factorised; check the recording for extreme values"};
+  if (!control.may_continue(0.95)) return interrupted();
+  const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
+  Eigen::VectorXd u = kernel.project(data);
+  cholesky_solve(*factor, u);
+  u = kernel.project(u);
+  // S G d = S f - K u - smoothing u, whose last term is orthogonal to the columns of S G.
+  const Eigen::VectorXd tail = kernel.tail_of(data - kernel.multiply_kernel(u));
+  return RbfFunction{kind, sites.points, definiteness_sign(kind) * u.cwiseProduct(sites.row_scale), tail};
 }
 
 const Method kDirectMethod{
@@ -76,11 +61,11 @@ const Method kDirectMethod{
     .label = "direct",
     .colour = kNeutralColour,
     .takes = kTakesKernel,
-    .expected_seconds = [](const MethodRequest&) { return 3.0; },
+    .expected_seconds = 3.0,
     .fit = [](const MethodTask& task, const FitControl& control) -> Result<FittedCorrection> {
-      auto fitted = fit_direct(task.sites, task.request.kernel, {}, control);
-      if (!fitted) return fitted.error();
-      return rbf_correction(std::move(*fitted), "");
+      auto function = fit_direct(task.sites, task.request.kernel, control);
+      if (!function) return function.error();
+      return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(*function)), {}, ""};
     },
 };
 

@@ -8,14 +8,11 @@
 namespace palpate {
 namespace {
 
-Result<CentreSequence> choose_random(const MethodTask& task, const FitControl&) {
-  const MethodRequest& request = task.request;
+Result<FittedCorrection> fit_random(const MethodTask& task, const FitControl&) {
   std::vector<Eigen::Index> order = distinct_sites(task.sites);
-  SplitMix64 random(request.seed);
-  order.resize(draw_first(order, request.centres, random));
-  CentreSequence sequence = CentreSequence::growing(task.sites.points(Eigen::all, order));
-  if (sequence.most() < request.centres) sequence.shortage = "there are no more distinct sites";
-  return sequence;
+  SplitMix64 random(task.request.seed);
+  order.resize(draw_first(order, task.request.centres, random));
+  return fit_centres(task, task.sites.points(Eigen::all, order), "there are no more distinct sites");
 }
 
 }  // namespace
@@ -25,9 +22,8 @@ const Method kRandomMethod{
     .label = "random",
     .colour = 0xE69F00,
     .takes = kTakesCentres | kTakesKernel | kTakesSeed,
-    .expected_seconds =
-        [](const MethodRequest& request) { return 0.08 + 0.02 * (0.01 * request.centres) * (0.01 * request.centres); },
-    .choose = choose_random,
+    .expected_seconds = 0.1,
+    .fit = fit_random,
 };
 
 }  // namespace palpate

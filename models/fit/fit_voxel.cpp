@@ -23,14 +23,15 @@ constexpr int kPositionOnlyNodes = 200;
 // The limit for a requested grid and for a model file.
 constexpr double kMaximumGridNodes = 1e7;
 
+double node_count(const std::vector<int>& sizes) {
+  return std::accumulate(sizes.begin(), sizes.end(), 1.0, [](double product, int n) { return product * n; });
+}
+
 std::vector<int> default_grid(std::size_t features) {
   if (features == 1) return {kPositionOnlyNodes};
   std::vector<int> grid(features, kOtherNodes);
   grid[0] = kDepthNodes;
-  const auto nodes = [&] {
-    return std::accumulate(grid.begin(), grid.end(), 1.0, [](double product, int n) { return product * n; });
-  };
-  while (nodes() > kMostNodes && grid.back() > 2) {
+  while (node_count(grid) > kMostNodes && grid.back() > 2) {
     for (std::size_t i = 1; i < features; ++i) --grid[i];
   }
   return grid;
@@ -61,47 +62,33 @@ std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count, bool ev
   return nodes;
 }
 
-Result<VoxelGrid> make_grid(const Sites& sites, const RbfFunction& function, std::vector<int> sizes,
-                            const FitControl& control) {
+Result<FittedCorrection> fit_voxel(const MethodTask& task, const FitControl& control) {
+  const Sites& sites = task.sites;
   const auto d = static_cast<std::size_t>(sites.dimension());
-  if (sizes.empty()) sizes = default_grid(d);
+  const std::vector<int> sizes = task.request.grid.empty() ? default_grid(d) : task.request.grid;
   if (sizes.size() != d) {
     return Error{"the grid has " + std::to_string(sizes.size()) + " sizes, the scene has " + std::to_string(d) +
                  " features; give one size per feature, e.g. --grid 25x11x11x11 for four"};
   }
-  VoxelGrid grid;
-  const double nodes =
-      std::accumulate(sizes.begin(), sizes.end(), 1.0, [](double product, int n) { return product * n; });
-  if (nodes > kMaximumGridNodes) {
+  if (node_count(sizes) > kMaximumGridNodes) {
     char asked[32];
-    std::snprintf(asked, sizeof asked, "%.3g", nodes);
+    std::snprintf(asked, sizeof asked, "%.3g", node_count(sizes));
     return Error{"the grid would have " + std::string(asked) + " nodes, at most 1e7 can be saved; give smaller sizes"};
   }
+  VoxelGrid grid;
+  std::string size_text;
   for (std::size_t k = 0; k < d; ++k) {
     if (sizes[k] < 2)
       return Error{"a grid needs at least 2 nodes along every feature, found " + std::to_string(sizes[k])};
     grid.nodes.push_back(axis_nodes(sites.points.row(static_cast<Eigen::Index>(k)), sizes[k], sites.as_2009));
+    size_text.append(size_text.empty() ? "" : "x").append(std::to_string(sizes[k]));
   }
-  const RbfCorrection evaluator(function);
+  const RbfCorrection evaluator(*rbf_of(task.base));
   const Status filled = fill_grid(
       grid, [&](const Eigen::MatrixXd& points, Eigen::VectorXd& out) { evaluator.evaluate_many(points, out); },
       control);
   if (!filled) return filled.error();
-  return grid;
-}
-
-std::string grid_size_text(const VoxelGrid& grid) {
-  std::string text;
-  for (const std::vector<double>& axis : grid.nodes)
-    text.append(text.empty() ? "" : "x").append(std::to_string(axis.size()));
-  return text;
-}
-
-Result<FittedCorrection> fit_voxel(const MethodTask& task, const FitControl& control) {
-  auto grid = make_grid(task.sites, *rbf_of(task.base->correction), task.request.grid, control);
-  if (!grid) return grid.error();
-  std::string size = grid_size_text(*grid);
-  return FittedCorrection{std::make_shared<const GridCorrection>(std::move(*grid)), task.base->report, std::move(size)};
+  return FittedCorrection{std::make_shared<const GridCorrection>(std::move(grid)), {}, std::move(size_text)};
 }
 
 }  // namespace
@@ -112,7 +99,7 @@ const Method kVoxelMethod{
     .colour = 0x56B4E9,
     .takes = kTakesGrid | kTakesKernel,
     .base = &kDirectMethod,
-    .expected_seconds = [](const MethodRequest&) { return 0.2; },
+    .expected_seconds = 0.2,
     .fit = fit_voxel,
 };
 

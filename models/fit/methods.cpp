@@ -1,81 +1,59 @@
 #include "models/fit/methods.h"
 
 #include <algorithm>
-#include <utility>
 
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/solve/solve_weights.h"
 
 namespace palpate {
-namespace {
-
-template <typename Wanted>
-std::string joined_names(Wanted wanted) {
-  std::string names;
-  for (const Method* method : methods()) {
-    if (wanted(*method)) names += (names.empty() ? "" : ", ") + std::string(method->name);
-  }
-  return names;
-}
-
-// The correction of a method that selects centres.
-Result<FittedCorrection> fit_chosen(const MethodTask& task, const FitControl& control) {
-  const MethodRequest& request = task.request;
-  const auto chosen = request.method->choose(task, control);
-  if (!chosen) return chosen.error();
-  auto fitted = solve_weights(task.sites, request.kernel, chosen->centres_of(chosen->most()));
-  if (!control.may_continue(1.0)) return interrupted();
-  if (!fitted) return fitted.error();
-  if (!chosen->shortage.empty()) {
-    fitted->report.notes.push_back("only " + std::to_string(chosen->most()) + " centres: " + chosen->shortage);
-  }
-  return rbf_correction(std::move(*fitted), std::to_string(request.centres));
-}
-
-}  // namespace
 
 const std::vector<const Method*>& methods() {
-#define PALPATE_LIST_METHOD(row) &row,
-  static const std::vector<const Method*> table = {PALPATE_METHODS(PALPATE_LIST_METHOD)};
-#undef PALPATE_LIST_METHOD
+  static const std::vector<const Method*> table{&kTrendMethod,  &kDirectMethod, &kVoxelMethod,
+                                                &kRandomMethod, &kKdTreeMethod, &kGreedyMethod};
   return table;
 }
 
 const Method* find_method(std::string_view name) {
-  const auto& all = methods();
-  const auto at = std::find_if(all.begin(), all.end(), [&](const Method* method) { return method->name == name; });
-  return at == all.end() ? nullptr : *at;
+  const auto at = std::ranges::find(methods(), name, &Method::name);
+  return at == methods().end() ? nullptr : *at;
 }
 
-std::string method_names() {
-  return joined_names([](const Method&) { return true; });
+std::string method_names(unsigned option) {
+  std::string names;
+  for (const Method* method : methods()) {
+    if ((method->takes & option) == option) names += (names.empty() ? "" : ", ") + std::string(method->name);
+  }
+  return names;
 }
 
-std::string methods_that_take(MethodOption option) {
-  return joined_names([option](const Method& method) { return method.can_take(option); });
-}
-
-FittedCorrection rbf_correction(FittedRbf fitted, std::string size) {
-  return {std::make_shared<const RbfCorrection>(std::move(fitted.function)), std::move(fitted.report), std::move(size)};
+double expected_seconds(const Method& method) {
+  return method.expected_seconds + (method.base == nullptr ? 0.0 : expected_seconds(*method.base));
 }
 
 Result<FittedCorrection> fit_correction(const MethodTask& task, const FitControl& control) {
   if (const Status status = validate_sites(task.sites); !status) return status.error();
+  if (!control.may_continue(0.0)) return interrupted();
   const Method& method = *task.request.method;
-  if (method.choose != nullptr) return fit_chosen(task, control);
+  if (task.sites.smoothing && task.request.kernel != KernelKind::cubic) {
+    Sites sites = task.sites;
+    sites.smoothing.reset();  // it was selected for the cubic kernel
+    return fit_correction({sites, task.jnd_N, task.request, task.base}, control);
+  }
   if (method.base == nullptr || task.base != nullptr) return method.fit(task, control);
   MethodRequest of_base = task.request;
   of_base.method = method.base;
   const auto base = fit_correction({task.sites, task.jnd_N, of_base}, control);
   if (!base) return base.error();
-  return method.fit({task.sites, task.jnd_N, task.request, &*base}, control);
+  return method.fit({task.sites, task.jnd_N, task.request, base->correction}, control);
 }
 
-double expected_seconds(const MethodRequest& request) {
-  double seconds = 0.0;
-  for (const Method* method = request.method; method != nullptr; method = method->base) {
-    seconds += method->expected_seconds(request);
+FittedCorrection fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres, const std::string& shortage) {
+  RbfFunction function = solve_weights(task.sites, task.request.kernel, centres);
+  FittedCorrection fitted{
+      std::make_shared<const RbfCorrection>(std::move(function)), {}, std::to_string(task.request.centres)};
+  if (centres.cols() < task.request.centres) {
+    fitted.notes.push_back("only " + std::to_string(centres.cols()) + " centres: " + shortage);
   }
-  return seconds;
+  return fitted;
 }
 
 }  // namespace palpate

@@ -291,7 +291,7 @@ void select_strength(PreparedTraining& prepared) {
   const double outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
   prepared.strength = choice;
   prepared.sites.smoothing = choice.smoothing;
-  prepared.sites.strength = choice.strength;
+  prepared.sites.target_N *= choice.strength;
   common.cover.inner_radius = choice.inner_radius;
   common.cover.outer_radius = outer_to_inner * choice.inner_radius;
 }

@@ -66,7 +66,7 @@ nlohmann::ordered_json fit_json(const RecordingsFit& fitted, const FitOptions& o
           {"name", data.name},
           {"features", features},
           {"recordings", surfaces_json(data.provenance)},
-          {"notes", fitted.fit.report.notes}};
+          {"notes", fitted.fit.notes}};
 }
 
 }  // namespace palpate

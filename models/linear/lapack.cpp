@@ -13,18 +13,13 @@ void dgemm_(const char*, const char*, const int*, const int*, const int*, const 
 void dgemv_(const char*, const int*, const int*, const double*, const double*, const int*, const double*, const int*,
             const double*, double*, const int*);
 void dgeqrt_(const int*, const int*, const int*, double*, const int*, double*, const int*, double*, int*);
-void dtrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
-            const int*, double*, const int*);
 void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
             double*, const int*);
 void dsyevd_(const char*, const char*, const int*, double*, const int*, double*, double*, const int*, int*, const int*,
              int*);
-void dgesvd_(const char*, const char*, const int*, const int*, double*, const int*, double*, double*, const int*,
-             double*, const int*, double*, const int*, int*);
+void dgelsd_(const int*, const int*, const int*, double*, const int*, double*, const int*, double*, const double*, int*,
+             double*, const int*, int*, int*);
 void dpotrf_(const char*, const int*, double*, const int*, int*);
-void dpotrs_(const char*, const int*, const int*, const double*, const int*, double*, const int*, int*);
-void dpocon_(const char*, const int*, const double*, const int*, const double*, double*, double*, int*, int*);
-double dlansy_(const char*, const char*, const int*, const double*, const int*, double*);
 // Only in OpenBLAS; null with another BLAS.
 [[gnu::weak]] void openblas_set_num_threads(int);
 [[gnu::weak]] int openblas_get_num_threads(void);
@@ -97,12 +92,15 @@ void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b
   const int lda = leading(a);
   const int ldb = leading(b);
   const int ldc = leading(c);
-  if (n == 1 && !transpose_b) {
+  if (n <= 2 && !transpose_b) {
     // dgemm would copy all of `a`, which takes longer than the product.
     const int rows = to_int(a.rows());
     const int columns = to_int(a.cols());
     const int one = 1;
-    dgemv_(transpose_a ? "T" : "N", &rows, &columns, &alpha, a.data(), &lda, b.data(), &one, &beta, c.data(), &one);
+    for (int j = 0; j < n; ++j) {
+      dgemv_(transpose_a ? "T" : "N", &rows, &columns, &alpha, a.data(), &lda, b.col(j).data(), &one, &beta,
+             c.col(j).data(), &one);
+    }
     return;
   }
   dgemm_(transpose_a ? "T" : "N", transpose_b ? "T" : "N", &m, &n, &k, &alpha, a.data(), &lda, b.data(), &ldb, &beta,
@@ -152,59 +150,41 @@ bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values) {
   return info == 0;
 }
 
-bool singular_values(Eigen::MatrixXd& a, Eigen::VectorXd& values, Eigen::MatrixXd& v_transposed) {
+Eigen::VectorXd least_squares(Eigen::MatrixXd a, Eigen::VectorXd b, double smallest) {
   const int m = to_int(a.rows());
   const int n = to_int(a.cols());
+  const int one = 1;
   const int lda = std::max(1, m);
-  const int ldv = std::max(1, n);
-  values.resize(n);
-  v_transposed.resize(n, n);
+  const int ldb = std::max({1, m, n});
+  b.conservativeResize(ldb);
+  Eigen::VectorXd singular(std::min(m, n));
   double wanted = 0.0;
-  int size = -1;
+  int wanted_integers = 0;
+  int query = -1;
+  int rank = 0;
   int info = 0;
-  dgesvd_("O", "S", &m, &n, a.data(), &lda, values.data(), nullptr, &lda, v_transposed.data(), &ldv, &wanted, &size,
-          &info);
-  size = static_cast<int>(wanted);
-  Eigen::VectorXd work(size);
-  dgesvd_("O", "S", &m, &n, a.data(), &lda, values.data(), nullptr, &lda, v_transposed.data(), &ldv, work.data(), &size,
-          &info);
+  dgelsd_(&m, &n, &one, a.data(), &lda, b.data(), &ldb, singular.data(), &smallest, &rank, &wanted, &query,
+          &wanted_integers, &info);
+  const int work_size = static_cast<int>(wanted);
+  Eigen::VectorXd work(work_size);
+  std::vector<int> integers(static_cast<std::size_t>(wanted_integers));
+  dgelsd_(&m, &n, &one, a.data(), &lda, b.data(), &ldb, singular.data(), &smallest, &rank, work.data(), &work_size,
+          integers.data(), &info);
+  if (info != 0) b.setZero();
+  return b.head(n);
+}
+
+bool cholesky_in_place(MatrixRef a) {
+  const int n = to_int(a.rows());
+  const int lda = leading(a);
+  int info = 0;
+  dpotrf_("L", &n, a.data(), &lda, &info);
   return info == 0;
 }
 
-// Works by panels, so that a large matrix can be interrupted: a panel takes half a second at 6,850 sites on one slow
-// core. The whole is as fast as LAPACK's own routine.
-bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue) {
-  constexpr int kPanel = 512;
-  const int n = to_int(a.rows());
-  const int lda = leading(a);
-  const double one = 1.0;
-  const double minus_one = -1.0;
-  for (int first = 0; first < n; first += kPanel) {
-    const int columns = std::min(kPanel, n - first);
-    const int rest = n - first - columns;
-    const double left = static_cast<double>(n - first) / n;
-    if (may_continue && !may_continue(1.0 - left * left * left)) return false;
-    double* const corner = &a.coeffRef(first, first);
-    int info = 0;
-    dpotrf_("L", &columns, corner, &lda, &info);
-    if (info != 0) return false;
-    if (rest == 0) break;
-    double* const below = corner + columns;
-    dtrsm_("R", "L", "T", "N", &rest, &columns, &one, corner, &lda, below, &lda);
-    double* const next = &a.coeffRef(first + columns, first + columns);
-    dsyrk_("L", "N", &rest, &columns, &minus_one, below, &lda, &one, next, &lda);
-  }
-  return true;
-}
-
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) {
-  const int n = to_int(factor.rows());
-  const int one = 1;
-  const int lda = leading(factor);
-  const int ldb = std::max(1, n);
-  int info = 0;
-  dpotrs_("L", &n, &one, factor.data(), &lda, b.data(), &ldb, &info);
-  assert(info == 0);
+  factor.triangularView<Eigen::Lower>().solveInPlace(b);
+  factor.triangularView<Eigen::Lower>().transpose().solveInPlace(b);
 }
 
 Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double ridge) {
@@ -220,24 +200,6 @@ Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd
     return x.cwiseProduct(scale);
   }
   return Eigen::VectorXd::Zero(b.size());
-}
-
-double cholesky_condition(const ConstMatrixRef& factor, double norm) {
-  const int n = to_int(factor.rows());
-  const int lda = leading(factor);
-  Eigen::VectorXd work(3 * n);
-  std::vector<int> integers(static_cast<std::size_t>(n));
-  double reciprocal = 0.0;
-  int info = 0;
-  dpocon_("L", &n, factor.data(), &lda, &norm, &reciprocal, work.data(), integers.data(), &info);
-  return 1.0 / std::max(reciprocal, 1e-300);
-}
-
-double symmetric_norm(const ConstMatrixRef& a) {
-  const int n = to_int(a.rows());
-  const int lda = leading(a);
-  Eigen::VectorXd work(std::max(1, n));
-  return dlansy_("1", "L", &n, a.data(), &lda, work.data());
 }
 
 }  // namespace palpate

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <mutex>
 
 namespace palpate {
@@ -50,22 +49,17 @@ void qr_in_place(MatrixRef a);
 // read. False if the iteration did not converge.
 bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values);
 
-// Singular values of `a` (rows >= columns) in descending order in `values`; `a` becomes U, and `v_transposed` V^T.
-// False if the iteration did not converge.
-bool singular_values(Eigen::MatrixXd& a, Eigen::VectorXd& values, Eigen::MatrixXd& v_transposed);
+// Minimises |a x - b| and returns the x of least norm. Singular values up to `smallest` times the largest count as 0.
+// Returns 0 if the iteration did not converge.
+Eigen::VectorXd least_squares(Eigen::MatrixXd a, Eigen::VectorXd b, double smallest);
 
-// Cholesky factor in the lower triangle of `a`. False if `a` is not positive definite, or if `may_continue`, which is
-// called with the finished share from time to time, returns false.
-bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue = {});
+// Cholesky factor in the lower triangle of `a`. False if `a` is not positive definite.
+bool cholesky_in_place(MatrixRef a);
 // Solves a x = b in place, `factor` from cholesky_in_place.
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
 // Solves a x = b for a positive semidefinite `a`, given by its lower triangle: its rows and columns are scaled to a
 // diagonal of ones, and `ridge`, multiplied by 100 until a Cholesky factor exists, is added to the diagonal. Unknowns
 // whose diagonal is 0 are 0.
 Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double ridge);
-// Estimated condition number in the 1-norm. `norm`: the 1-norm of the matrix.
-double cholesky_condition(const ConstMatrixRef& factor, double norm);
-// The 1-norm of a symmetric matrix given by its lower triangle.
-double symmetric_norm(const ConstMatrixRef& a);
 
 }  // namespace palpate

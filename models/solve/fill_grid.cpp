@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <string>
 #include <vector>
 
 namespace palpate {
@@ -11,11 +10,7 @@ Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitContro
   constexpr std::size_t kGridBatch = 8192;
   const std::size_t dimension = grid.nodes.size();
   std::size_t count = 1;
-  for (const std::vector<double>& axis : grid.nodes) {
-    if (axis.size() > kMostVoxels / count)
-      return Error{"the grid has more than " + std::to_string(kMostVoxels) + " nodes; use a coarser one"};
-    count *= axis.size();
-  }
+  for (const std::vector<double>& axis : grid.nodes) count *= axis.size();
   grid.values_N.resize(count);
   Eigen::VectorXd out;
   for (std::size_t first = 0; first < count; first += kGridBatch) {

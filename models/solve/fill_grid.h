@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <functional>
 
 #include "engine/base/fit_control.h"
@@ -16,10 +15,7 @@ namespace palpate {
 // Sets out[i] to the value at points.col(i), for a batch of points, d x M.
 using BatchFunction = std::function<void(const Eigen::MatrixXd& points, Eigen::VectorXd& out)>;
 
-// The maximum number of nodes (800 MB).
-inline constexpr std::size_t kMostVoxels = 100'000'000;
-
-// Sets the values of a grid to those of the function at its nodes. Errors: too many nodes; interrupted. Slow side.
+// Sets the values of a grid to those of the function at its nodes. Errors: interrupted. Slow side.
 Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitControl& control = {});
 
 }  // namespace palpate

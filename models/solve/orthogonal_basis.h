@@ -16,28 +16,24 @@ class OrthogonalBasis {
   // columns to be added.
   OrthogonalBasis(const Sites& sites, KernelKind kernel, Eigen::Index more);
 
-  // The part of a column orthogonal to the basis, by two passes of Gram-Schmidt (orthogonal to rounding).
-  struct Outside {
-    Eigen::VectorXd column;
-    double squared = 0.0;      // squared length of `column`
-    double correlation = 0.0;  // its product with the residual
-  };
-  Outside outside(const Eigen::VectorXd& column) const;
-  // Replaces each column (N rows) by its part orthogonal to the basis, in the same way.
+  // Replaces each column (N rows) by its part orthogonal to the basis, by two passes of Gram-Schmidt (orthogonal to
+  // rounding).
   void project_out(Eigen::MatrixXd& columns) const;
+  // Adds the direction of a column to the basis and subtracts its component from the residual. A column in the span of
+  // the basis (up to a relative 1e-10) is not added.
+  void add(const Eigen::VectorXd& column);
 
-  // Adds the direction of `part` to the basis and subtracts its component from the residual. Returns q, the new unit
-  // column. `part.squared` must be > 0.
-  Eigen::VectorXd add(const Outside& part);
-
-  // N x (size + 1): the basis columns, then the residual.
-  Eigen::Ref<const Eigen::MatrixXd> columns_and_residual() const { return memory_.leftCols(size_ + 1); }
-  Eigen::Ref<const Eigen::MatrixXd> columns() const { return memory_.leftCols(size_); }
-  Eigen::Ref<const Eigen::VectorXd> residual() const { return memory_.col(size_); }
+  // N x (size + 1): the data, then the basis columns.
+  Eigen::Ref<const Eigen::MatrixXd> data_and_columns() const { return memory_.leftCols(size_ + 1); }
+  // The product of each basis column with the data.
+  Eigen::Ref<const Eigen::VectorXd> shares() const { return shares_.head(size_); }
+  const Eigen::VectorXd& residual() const { return residual_; }
   Eigen::Index size() const { return size_; }
 
  private:
   Eigen::MatrixXd memory_;
+  Eigen::VectorXd shares_;
+  Eigen::VectorXd residual_;
   Eigen::Index size_ = 0;
 };
 

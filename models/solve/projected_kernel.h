@@ -1,18 +1,20 @@
-// The symmetric system of direct interpolation, with the polynomial tail projected out, and the smoothing that is most
-// likely in it.
+// The kernel matrix between points, with the polynomial tail projected out.
 //
-// With S = diag(row_scale), K = sign S Phi S and q an orthonormal basis of the
-// columns of S G, the weights w = sign S u of the smoothing spline
-//   minimise sum_i row_scale_i^2 (f_i - h(x_i))^2 + smoothing w^T (sign Phi) w
-//   subject to G^T w = 0
-// solve (P K P + smoothing) u = P S f with P = I - q q^T. On the complement of q the matrix is positive semi-definite,
-// unlike the saddle matrix of eq. 4. P K P + fill q q^T is stored, which can be factorised as a whole.
+// With S = diag(scale), K = sign S Phi S, q an orthonormal basis of the columns of S G and P = I - q q^T, the weights
+// w = sign S u of a u = P u satisfy the side condition G^T w = 0, and w^T (sign Phi) w = u^T P K P u is their
+// roughness, which is never negative (the saddle matrix of eq. 4 is indefinite). Two fits use the matrix:
+// - All sites are centres (fit_direct.h). The smoothing spline, which minimises
+//     sum_i scale_i^2 (f_i - h(x_i))^2 + smoothing w^T (sign Phi) w,
+//   solves (P K P + smoothing I) u = P S f.
+// - Some points are centres (solve_weights.h). The matrix of the centres, with S = I, is the penalty.
 // Source: Hoever & Harders (2009), eqs. 2-8; Wahba (1990) for the form.
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/QR>
+#include <optional>
 
-#include "engine/base/result.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/training/sites.h"
 
@@ -20,58 +22,52 @@ namespace palpate {
 
 class ProjectedKernel {
  public:
-  // `sites` must pass validate_sites and outlive this.
-  ProjectedKernel(const Sites& sites, KernelKind kernel);
+  // `points`: d x N, N >= 1; `scale`: N factors >= 0.
+  ProjectedKernel(KernelKind kernel, const Eigen::MatrixXd& points, const Eigen::VectorXd& scale);
 
   // The lower triangle of P K P + fill q q^T + smoothing I, N x N; the upper one is not set. Uses all cores.
   Eigen::MatrixXd matrix(double fill, double smoothing) const;
+  // The Cholesky factor of that matrix with the mean eigenvalue as fill. A smoothing that is too small because of
+  // rounding is multiplied by ten until the factor exists; none: it never does.
+  std::optional<Eigen::MatrixXd> cholesky(double smoothing) const;
 
-  // P S f, the right-hand side, and P v.
-  const Eigen::VectorXd& data() const { return data_; }
+  // P v.
   Eigen::VectorXd project(const Eigen::VectorXd& v) const { return v - q_ * (q_.transpose() * v); }
+  // Replaces a matrix with N columns by its product with P.
+  void project_rows(MatrixRef matrix) const;
+  // K v.
+  Eigen::VectorXd multiply_kernel(const Eigen::VectorXd& v) const;
+  // The least squares solution d of S G d = v.
+  Eigen::VectorXd tail_of(const Eigen::VectorXd& v) const { return tail_.solve(v).cwiseQuotient(tail_scale_); }
 
-  // The function with the weights sign S u and their tail.
-  RbfFunction function(const Eigen::VectorXd& u) const;
-
-  // Mean eigenvalue of P K P; at least 1 if that is zero to rounding (all sites at one point).
+  // Mean eigenvalue of P K P; at least 1 if that is zero to rounding (all points are the same).
   double mean_eigenvalue() const { return mean_eigenvalue_; }
   // A smaller smoothing is below the rounding errors of the matrix.
   double smallest_smoothing() const { return smallest_smoothing_; }
   Eigen::Index tail_rank() const { return q_.cols(); }
 
  private:
-  void find_tail_space();
-  Eigen::VectorXd multiply_kernel(const Eigen::VectorXd& v) const;  // K v
-
-  const Sites& sites_;
   KernelKind kernel_;
-  PointArrays points_;
-  Eigen::MatrixXd q_;            // N x rank
-  Eigen::MatrixXd to_tail_;      // L x rank: transforms coefficients of q into those of G
-  Eigen::MatrixXd half_update_;  // V of P K P = K - q V^T - V q^T
-  Eigen::VectorXd data_;
+  Eigen::MatrixXd points_;
+  PointArrays arrays_;  // the same points
+  Eigen::VectorXd scale_;
+  Eigen::VectorXd tail_scale_;                                    // the length of each column of S G
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> tail_;  // of S G with columns of length 1
+  Eigen::MatrixXd q_;                                             // N x rank
+  Eigen::MatrixXd half_update_;                                   // V of P K P = K - q V^T - V q^T
   double mean_eigenvalue_ = 1.0;
   double smallest_smoothing_ = 0.0;
 };
 
-// Selects the smoothing of a fit by maximum likelihood, from the data alone and without refitting, where
-// cross-validation (models/fit/correction_strength.h) has not selected it.
+// The smoothing of a fit: that of the sites, otherwise the most likely one.
 //
-// One eigendecomposition of P K P (projected_kernel.h) for an evenly spaced subset of up to 500 sites gives the
-// likelihood of every smoothing, for normal noise and a normal prior whose scale is profiled out,
+// One eigendecomposition of P K P for an evenly spaced subset of up to 500 sites gives the likelihood of every
+// smoothing, for normal noise and a normal prior whose scale is profiled out,
 //   minimise N ln(sum_i z_i^2 / (e_i + smoothing)) + sum_i ln(e_i + smoothing),
 // with the eigenvalues e and the components z of the data. The largest smoothing within two units of the maximum log
-// likelihood is taken. Cross-validation by samples does not see errors between clusters of samples and can select
-// almost no smoothing; the likelihood does not have this fault. The smoothing is the ratio of noise variance to prior
-// variance and does not depend on N, so that of the subset is valid for all sites.
-// Source: Wahba (1985).
-// Errors: the eigendecomposition did not converge. Deterministic. Slow side.
-Result<double> choose_smoothing(const Sites& sites, KernelKind kernel);
-// Whether cross-validation has selected the smoothing; its value is valid for the cubic kernel only.
-inline bool is_smoothing_selected(const Sites& sites, KernelKind kernel) {
-  return sites.smoothing && kernel == KernelKind::cubic;
-}
-// The smoothing selected by cross-validation, otherwise by maximum likelihood.
-Result<double> smoothing_of(const Sites& sites, KernelKind kernel);
+// likelihood is taken, because it gives the best conditioned system. The smoothing is the ratio of noise variance to
+// prior variance and does not depend on N, so that of the subset is valid for all sites.
+// Source: Wahba (1985). Deterministic. Slow side.
+double choose_smoothing(const Sites& sites, KernelKind kernel);
 
 }  // namespace palpate

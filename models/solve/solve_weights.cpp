@@ -1,16 +1,15 @@
 #include "models/solve/solve_weights.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "engine/base/parallel.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/projected_kernel.h"
-#include "models/solve/truncated_svd.h"
 
 namespace palpate {
 namespace {
@@ -19,7 +18,11 @@ namespace {
 // most likely smoothing, that of a function through all sites, triples the error of 100 centres; with few sites it
 // reduces it by two points.
 constexpr Eigen::Index kSitesEach = 10;
-
+// Relative to the norm of a column. Its square is a thousandth of the value at which 100 centres begin to lose
+// accuracy.
+constexpr double kRidge = 1e-6;
+// Singular values below this share of the largest are rounding.
+constexpr double kNothing = 1e-13;
 // The rows are reduced in two halves, one thread each. The number is fixed, so that the result does not depend on the
 // number of cores.
 constexpr int kHalves = 2;
@@ -32,104 +35,11 @@ Eigen::MatrixXd triangle_of(const Eigen::MatrixXd& above, const Eigen::MatrixXd&
   return stack.topRows(stack.cols()).triangularView<Eigen::Upper>();
 }
 
-// Eigenvalues below this share of the largest are rounding.
-constexpr double kNothing = 1e-13;
-// Relative to the norm of a column. Its square is a thousandth of the value at which 100 centres begin to lose
-// accuracy.
-constexpr double kRidge = 1e-6;
-
-Eigen::MatrixXd kernel_at_centres(KernelKind kernel, const Eigen::MatrixXd& centres) {
-  Eigen::MatrixXd values(centres.cols(), centres.cols());
-  kernel_matrix(kernel, PointArrays(centres), centres, values);
-  return values;
-}
-
-// Upper C with C^T C = the penalty, for the directions of Z that give a function other than 0 (opposite weights of
-// equal centres give 0).
-struct Root {
-  std::optional<Eigen::MatrixXd> directions;  // orthonormal; none: all directions
-  Eigen::MatrixXd upper;
-};
-
-Root root_of(const Eigen::MatrixXd& penalty) {
-  Eigen::MatrixXd factor = penalty;
-  if (cholesky_in_place(factor)) {
-    const Eigen::VectorXd pivots = factor.diagonal().cwiseAbs2();
-    if (pivots.size() == 0 || pivots.minCoeff() > kNothing * pivots.maxCoeff()) {
-      return {std::nullopt, factor.triangularView<Eigen::Lower>().toDenseMatrix().transpose()};
-    }
-  }
-  Eigen::MatrixXd vectors = penalty;
-  Eigen::VectorXd values;
-  if (!symmetric_eigen(vectors, values)) values.setZero();
-  const Eigen::Index count = (values.array() > kNothing * values.maxCoeff()).count();
-  return {vectors.rightCols(count), values.tail(count).cwiseSqrt().asDiagonal()};
-}
-
-// Least squares of the triangle [R z] with columns scaled to length 1; directions at the level of rounding get 0.
-struct TriangleSolution {
-  Eigen::VectorXd unknowns;
-  double condition = 0.0;
-};
-
-TriangleSolution solve_scaled(const Eigen::MatrixXd& triangle) {
-  const Eigen::Index n = triangle.cols() - 1;
-  Eigen::MatrixXd r = triangle.topLeftCorner(n, n);
-  Eigen::VectorXd scale = r.colwise().stableNorm().transpose();
-  scale = (scale.array() > 0.0).select(scale, 1.0);
-  r.array().rowwise() /= scale.transpose().array();
-  const Eigen::VectorXd diagonal = r.diagonal().cwiseAbs();
-  TriangleSolution solution;
-  if (diagonal.minCoeff() > kNothing * diagonal.maxCoeff()) {
-    solution.unknowns = r.triangularView<Eigen::Upper>().solve(triangle.col(n).head(n)).cwiseQuotient(scale);
-    solution.condition = diagonal.maxCoeff() / diagonal.minCoeff();
-    return solution;
-  }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted;
-  pivoted.setThreshold(kNothing);
-  pivoted.compute(r);
-  solution.unknowns = pivoted.solve(triangle.col(n).head(n)).cwiseQuotient(scale);
-  const double least = std::abs(pivoted.matrixQR()(n - 1, n - 1));
-  solution.condition = least > 0.0 ? pivoted.maxPivot() / least : 1e300;
-  return solution;
-}
-
-// The product of the first `count` reflectors I - tau w w^T as I - u v^T.
-void gather_reflectors(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index count, PenaltySpace& space) {
-  const Eigen::Index n = qr.rows();
-  space.u.resize(n, count);
-  space.v = Eigen::MatrixXd::Zero(n, count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    auto w = space.v.col(k);
-    w(k) = 1.0;
-    w.tail(n - k - 1) = qr.matrixQR().col(k).tail(n - k - 1);
-    const Eigen::VectorXd along = space.v.leftCols(k).transpose() * w;
-    space.u.col(k) = qr.hCoeffs()(k) * (w - space.u.leftCols(k) * along);
-  }
-}
-
-// Z times the unknowns.
-Eigen::VectorXd weights_of(const Eigen::VectorXd& unknowns, const PenaltySpace& space) {
-  Eigen::VectorXd weights = -space.u * (space.v.bottomRows(space.free).transpose() * unknowns);
-  weights.tail(space.free) += unknowns;
-  return weights;
-}
-
-}  // namespace
-
-Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
-  const BlasThreads one_thread(1);
-  FactorisedRows factorised{{}, sites.count(), 0, 0.0, sites.strength, sites.as_2009};
+// The R factor of row_scale * (G Phi f), tail + n + 1 columns: the tail, the kernel at the n centres and the data.
+Eigen::MatrixXd reduced_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
   const PointArrays points(sites.points);
   const Eigen::Index tail = tail_size(tail_degree(kernel), sites.dimension());
-  const Eigen::Index columns = centres.cols() + tail;
-  if (!is_smoothing_selected(sites, kernel))
-    factorised.plain_unknowns_limit = (sites.row_scale.array() > 0.0).count() / kSitesEach;
-  if (columns > factorised.plain_unknowns_limit && !sites.as_2009) {
-    const auto smoothing = smoothing_of(sites, kernel);
-    if (!smoothing) return smoothing.error();
-    factorised.smoothing = *smoothing;
-  }
+  const Eigen::Index columns = tail + centres.cols();
   const Eigen::Index block_rows = std::max<Eigen::Index>(1024, (2 * columns + 9) / 8 * 8);
   const Eigen::Index blocks = (sites.count() + block_rows - 1) / block_rows;
   std::array<Eigen::MatrixXd, kHalves> halves;
@@ -147,92 +57,47 @@ Result<FactorisedRows> factorise_rows(const Sites& sites, KernelKind kernel, con
       triangle = triangle_of(triangle, rows_of_block);
     }
   });
-  factorised.triangle = triangle_of(halves[0], halves[1]);
-  return factorised;
+  return triangle_of(halves[0], halves[1]);
 }
 
-PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres) {
-  const Eigen::Index n = centres.cols();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(tail_matrix(tail_degree(kernel), centres));
-  PenaltySpace space;
-  gather_reflectors(qr, qr.rank(), space);
-  space.free = n - qr.rank();
-  Eigen::MatrixXd product = definiteness_sign(kernel) * kernel_at_centres(kernel, centres);
-  multiply_by_basis(product, space);
-  Eigen::MatrixXd turned = product.leftCols(space.free).transpose();
-  multiply_by_basis(turned, space);
-  const auto penalty = turned.leftCols(space.free);
-  space.penalty = 0.5 * (penalty + penalty.transpose());
-  return space;
-}
+}  // namespace
 
-void multiply_by_basis(MatrixRef matrix, const PenaltySpace& space) {
-  const Eigen::Index rank = space.v.cols();
-  const Eigen::Index free = space.free;
-  Eigen::MatrixXd along(matrix.rows(), rank);
-  multiply(matrix, false, space.u, false, 1.0, 0.0, along);
-  for (Eigen::Index j = 0; j < free; ++j) matrix.col(j) = matrix.col(j + rank);
-  multiply(along, false, space.v.bottomRows(free), true, -1.0, 1.0, matrix.leftCols(free));
-}
-
-FittedRbf penalised_weights(const FactorisedRows& factorised, KernelKind kernel, const Eigen::MatrixXd& centres) {
-  if (factorised.as_2009) return truncated_weights(factorised, kernel, centres);
+RbfFunction solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
   const BlasThreads one_thread(1);
-  const Eigen::MatrixXd& triangle = factorised.triangle;
+  const Eigen::MatrixXd triangle = reduced_rows(sites, kernel, centres);
   const Eigen::Index n = centres.cols();
   const Eigen::Index tail = triangle.cols() - 1 - n;
-  const auto kernels = triangle.middleCols(tail, n);
-  PenaltySpace space;
-  Root root;
-  const bool plain = n + tail <= factorised.plain_unknowns_limit;
-  if (!plain && n > 0) {
-    space = penalty_space(kernel, centres);
-    root = root_of(space.penalty);
-    root.upper *= std::sqrt(factorised.smoothing);
+  // [G Phi] of the sites, above the rows of the penalty or of the side condition.
+  const Eigen::Index below = sites.as_2009 ? tail : n;
+  Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(triangle.rows() + below, tail + n);
+  stack.topRows(triangle.rows()) = triangle.leftCols(tail + n);
+  auto of_sites = stack.topRightCorner(triangle.rows(), n);
+  auto added = stack.bottomRightCorner(below, n);
+  Eigen::VectorXd data = Eigen::VectorXd::Zero(stack.rows());
+  data.head(triangle.rows()) = triangle.rightCols(1);
+  std::optional<ProjectedKernel> projected;
+  if (n > 0 && sites.as_2009) {
+    added = tail_matrix(tail_degree(kernel), centres).transpose();
+  } else if (n > 0 && !sites.smoothing && kSitesEach * (tail + n) <= (sites.row_scale.array() > 0.0).count()) {
+    added.diagonal() = kRidge * of_sites.colwise().norm().transpose();
   } else if (n > 0) {
-    space = {n, {}, Eigen::MatrixXd(n, 0), Eigen::MatrixXd(n, 0)};
-    root.upper = (kRidge * kernels.colwise().norm()).asDiagonal();
+    projected.emplace(kernel, centres, Eigen::VectorXd::Ones(n));
+    projected->project_rows(of_sites);
+    const auto root = projected->cholesky(0.0);
+    if (root) added = root->transpose().triangularView<Eigen::Upper>();
+    added *= std::sqrt(choose_smoothing(sites, kernel));
   }
-  const Eigen::Index free = root.upper.cols();
-  const Eigen::Index columns = free + tail + 1;
-  // [K Z, G, f] of the sites above, the root of the penalty below.
-  Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(triangle.rows() + free, columns);
-  if (free > 0) {
-    Eigen::MatrixXd product = kernels;
-    multiply_by_basis(product, space);
-    const auto projected = product.leftCols(space.free);
-    stack.topLeftCorner(triangle.rows(), free) =
-        root.directions ? Eigen::MatrixXd(projected * *root.directions) : projected;
-    stack.bottomLeftCorner(free, free) = root.upper;
+  Eigen::VectorXd unit = Eigen::VectorXd::Ones(stack.cols());
+  double smallest = static_cast<double>(stack.rows()) * std::numeric_limits<double>::epsilon();
+  if (!sites.as_2009) {
+    // Columns of length 1.
+    unit = stack.colwise().stableNorm().transpose();
+    unit = (unit.array() > 0.0).select(unit.cwiseInverse(), 1.0);
+    smallest = kNothing;
   }
-  stack.block(0, free, triangle.rows(), tail) = triangle.leftCols(tail);
-  stack.block(0, free + tail, triangle.rows(), 1) = triangle.rightCols(1);
-  if (stack.rows() > columns) {
-    qr_in_place(stack);
-  }
-  const Eigen::MatrixXd reduced = stack.topRows(columns).triangularView<Eigen::Upper>();
-  const TriangleSolution solution = solve_scaled(reduced);
-  Eigen::VectorXd unknowns = solution.unknowns.head(free);
-  if (root.directions) unknowns = *root.directions * unknowns;
-  FittedRbf fitted;
-  fitted.function = {kernel, centres, free > 0 ? weights_of(unknowns, space) : Eigen::VectorXd::Zero(n),
-                     solution.unknowns.tail(tail)};
-  FitReport& report = fitted.report;
-  report.centres_used = n;
-  report.condition = solution.condition;
-  report.smoothing = plain ? 0.0 : factorised.smoothing;
-  const Eigen::VectorXd rest =
-      triangle.rightCols(1) - kernels * fitted.function.weights - triangle.leftCols(tail) * fitted.function.tail;
-  report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(factorised.sites));
-  fitted.function.weights *= factorised.strength;
-  fitted.function.tail *= factorised.strength;
-  return fitted;
-}
-
-Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
-  const auto factorised = factorise_rows(sites, kernel, centres);
-  if (!factorised) return factorised.error();
-  return penalised_weights(*factorised, kernel, centres);
+  const Eigen::VectorXd unknowns = least_squares(stack * unit.asDiagonal(), data, smallest).cwiseProduct(unit);
+  const Eigen::VectorXd weights = unknowns.tail(n);
+  return {kernel, centres, projected ? projected->project(weights) : weights, unknowns.head(tail)};
 }
 
 }  // namespace palpate

@@ -57,7 +57,7 @@ void check_usage(const CLI::App& verb, const FitArguments& arguments) {
   for (const MethodOnly& only : kMethodOnly) {
     if (verb.count(only.option) == 0 || method.can_take(only.takes)) continue;
     throw CLI::ValidationError(only.option, std::string("method ") + method.name + " does not take this option, only " +
-                                                methods_that_take(only.takes) + "; leave it out");
+                                                method_names(only.takes) + "; leave it out");
   }
 }
 
@@ -153,7 +153,7 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
             << "fit time            " << fixed(seconds, 2) << " s\n"
             << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %"
             << (accelerometer ? " (with the accelerometer)" : " (from positions alone)") << "\n";
-  for (const std::string& note : fit.report.notes) std::cout << "note                " << note << "\n";
+  for (const std::string& note : fit.notes) std::cout << "note                " << note << "\n";
   std::cout << "written             " << out << "\n";
 }
 
@@ -202,12 +202,12 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   verb->add_flag_callback("--list-methods", list_methods, "Print the names of the methods, one per line");
   verb->option_defaults()->always_capture_default();
   verb->add_option("--centres", arguments->options.centres,
-                   "Number of centres, for " + methods_that_take(kTakesCentres) + "; direct uses every site")
+                   "Number of centres, for " + method_names(kTakesCentres) + "; direct uses every site")
       ->check(CLI::Range(1, kMostFittedCentres));
   verb->add_option("--candidates", arguments->options.candidates,
-                   "Candidate sites per step, a number or all, for " + methods_that_take(kTakesCandidates))
+                   "Candidate sites per step, a number or all, for " + method_names(kTakesCandidates))
       ->check(CLI::Validator(check_candidates, "N|all"));
-  verb->add_option("--kernel", arguments->options.kernel, "Kernel, for " + methods_that_take(kTakesKernel))
+  verb->add_option("--kernel", arguments->options.kernel, "Kernel, for " + method_names(kTakesKernel))
       ->check(CLI::IsMember(kernel_names()));
   verb->add_option("--weighting", arguments->options.weighting,
                    "Weight of an error: jnd (1/JND), relative (1/force, as in the paper) or none (1)")
@@ -236,11 +236,11 @@ void add_fit(CLI::App& app, Verbs& verbs) {
       ->check(CLI::IsMember({"auto", "recorded"}));
   for (const char* decided : {"--features", "--surface"}) recipe->excludes(decided);
   verb->add_option("--grid", arguments->options.grid,
-                   "Nodes of the grid along each feature [25x11x11x11], for " + methods_that_take(kTakesGrid))
+                   "Nodes of the grid along each feature [25x11x11x11], for " + method_names(kTakesGrid))
       ->check(CLI::Validator(check_grid, "NxN"));
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line");
   verb->add_option("--seed", arguments->options.seed,
-                   "Seed of the random numbers, for " + methods_that_take(kTakesSeed));
+                   "Seed of the random numbers, for " + method_names(kTakesSeed));
   verb->add_option("--out", arguments->out, "Model file to write (JSON)")->required()->type_name("JSON");
   verb->add_flag("--force", arguments->force, "Replace an existing file");
   verb->add_flag("--json", arguments->json, "Print one JSON object");

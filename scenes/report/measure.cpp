@@ -71,7 +71,7 @@ class Measurement {
       model.recorded_samples = model.moved_samples = ModelErrors(data_.scene.jnd);
       const MethodRequest& request = model.plan.request;
       total += kEvaluateSeconds;
-      if (model.plan.recipe != Recipe::no_force) total += request.method->expected_seconds(request);
+      if (model.plan.recipe != Recipe::no_force) total += request.method->expected_seconds;
     }
     return static_cast<double>(data_.recordings.folds.size()) * total;
   }
@@ -102,7 +102,7 @@ class Measurement {
       MethodRequest request = plan.request;
       // The preparation may have selected other features than the scene has.
       if (!request.grid.empty()) request.grid.resize(on.common.features.size(), request.grid.back());
-      auto one = fit_method(on, request, progress_.next(request.method->expected_seconds(request)),
+      auto one = fit_method(on, request, progress_.next(request.method->expected_seconds),
                             base == bases.end() ? nullptr : &base->second.first);
       if (!one && !progress_.next(0.0).may_continue(0.0)) return interrupted();
       if (!one) return Error{plan.name + ": " + one.error().message};

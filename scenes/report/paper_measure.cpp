@@ -195,7 +195,7 @@ Status PaperMeasurement::time_dimensions() {
     asked.method = &kVoxelMethod;
     asked.grid.assign(d, kNodesOfFigure2);
     start = std::chrono::steady_clock::now();
-    const auto grid = fit_correction({prepared->sites, jnd_N, asked, &*solved}, part());
+    const auto grid = fit_correction({prepared->sites, jnd_N, asked, solved->correction}, part());
     if (!grid) return grid.error();
     times.grid_s = seconds_since(start);
     data_.by_dimension.push_back(times);

@@ -32,10 +32,7 @@ constexpr double kChoosesFeatures_s = 2.0;
 // Approximate time to make a model; only the order matters. It puts a method after its base, from which it starts.
 double expected_cost_s(const SlotPlan& plan) {
   if (plan.loaded != nullptr) return 0.0;
-  MethodRequest request;
-  request.method = plan.method;
-  if (plan.centres > 0) request.centres = plan.centres;
-  return expected_seconds(request) + (plan.paper ? 0.0 : kChoosesFeatures_s) +
+  return expected_seconds(*plan.method) + (plan.paper ? 0.0 : kChoosesFeatures_s) +
          (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
 }
 
@@ -175,18 +172,6 @@ Status ModelWorker::prepare(Recipe& recipe, const SlotPlan& plan) {
   return {};
 }
 
-Result<MethodFit> ModelWorker::fit_nested(Recipe& recipe, const MethodRequest& request, const FitControl& control) {
-  std::optional<NestedFit>& nested = recipe.nested[request.method];
-  if (!nested) {
-    MethodRequest largest = request;
-    largest.centres = kMostCentres;
-    auto made = NestedFit::make(*recipe.prepared, largest, control);
-    if (!made) return made.error();
-    nested.emplace(std::move(*made));
-  }
-  return nested->fit(request.centres);
-}
-
 Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   Recipe of_position;
   const bool position = plan.origin == ModelOrigin::position;
@@ -199,13 +184,9 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   request.method = plan.method;
   request.seed = seed_;
   if (plan.centres > 0) request.centres = plan.centres;
-  const bool nested = !position && recipe.prepared->corrects() && plan.method->choose != nullptr &&
-                      request.centres <= kMostCentres && !recipe.nested.try_emplace(plan.method).second;
   const auto base = recipe.bases.find(plan.method->base);
-  const FitControl rest = control(prepared, 1.0);
-  Result<MethodFit> fitted =
-      nested ? fit_nested(recipe, request, rest)
-             : fit_method(*recipe.prepared, request, rest, base == recipe.bases.end() ? nullptr : &base->second);
+  Result<MethodFit> fitted = fit_method(*recipe.prepared, request, control(prepared, 1.0),
+                                        base == recipe.bases.end() ? nullptr : &base->second);
   if (!fitted) return fitted.error();
   if (plan.centres == 0) recipe.bases.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);

@@ -1,8 +1,6 @@
 // A background thread that fits the models of a session, those of the least expected time first. The training set is
 // the scene's recordings, or the recording that `palpate synth` makes of its virtual material with the same seed.
 // The models are bit-identical to those of `palpate fit`.
-// When a method is fitted a second time with another number of centres (a slider), the worker selects centres for
-// kMostCentres once; every further number then takes milliseconds (models/fit/nested_fit.h).
 // The thread has a lower priority than graphics and haptics. A fit is interrupted within some 20 ms, except during the
 // factorisation of the direct fit, which is one call to LAPACK.
 // Thread guarantee: one thread, slow side; only the destructor waits for the worker.
@@ -21,7 +19,6 @@
 #include <vector>
 
 #include "models/fit/fit.h"
-#include "models/fit/nested_fit.h"
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/model_timing.h"
 #include "scenes/scene/scene.h"
@@ -82,12 +79,9 @@ class ModelWorker {
   struct Recipe {
     std::optional<PreparedTraining> prepared;
     std::map<const Method*, MethodFit> bases;  // finished fits, from which other methods start
-    // The first fit of a method adds an empty entry, the second one fills it.
-    std::map<const Method*, std::optional<NestedFit>> nested;
   };
   void work();  // until cancelled
   Result<ModelData> fit(const SlotPlan& plan);
-  Result<MethodFit> fit_nested(Recipe& recipe, const MethodRequest& request, const FitControl& control);
   Status prepare_recordings();
   Status prepare(Recipe& recipe, const SlotPlan& plan);
   FitControl control(double from, double to);

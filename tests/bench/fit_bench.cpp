@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "models/fit/fit_direct.h"
-#include "models/fit/nested_fit.h"
 #include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/fill_grid.h"
@@ -21,13 +20,13 @@ namespace {
 
 constexpr int kCentres = 100;
 
-using Fit = std::function<Result<FittedRbf>(const Sites&, const Eigen::VectorXd& jnd_N)>;
+using Fit = std::function<Result<RbfFunction>(const Sites&, const Eigen::VectorXd& jnd_N)>;
 
-Result<FittedRbf> random_fit(const Sites& sites, const Eigen::VectorXd&) {
+Result<RbfFunction> random_fit(const Sites& sites, const Eigen::VectorXd&) {
   return test::fit_random(sites, {.centres = kCentres});
 }
 
-Result<FittedRbf> kdtree_fit(const Sites& sites, const Eigen::VectorXd& jnd_N) {
+Result<RbfFunction> kdtree_fit(const Sites& sites, const Eigen::VectorXd& jnd_N) {
   return test::fit_kdtree(sites, jnd_N, {.centres = kCentres});
 }
 
@@ -37,28 +36,16 @@ Fit greedy_fit(int candidates, int centres = kCentres) {
   };
 }
 
-// Fits with every number of centres up to the maximum of the slider. Compare the time with that of one fit with that
-// maximum.
-constexpr int kMostCentres = 200;
-
-void slider_all(benchmark::State& state) {
-  for (auto _ : state) {
-    const auto chosen = test::choose(kGreedyMethod, recorded_sites(), {}, {.centres = kMostCentres});
-    const auto nested = NestedWeights::factorise(recorded_sites(), KernelKind::cubic, *chosen);
-    for (Eigen::Index count = 1; count <= nested->most(); ++count) benchmark::DoNotOptimize(nested->solve(count));
-  }
-}
-
 Status fill(VoxelGrid& grid, const RbfFunction& function) {
   const RbfCorrection evaluator(function);
   return fill_grid(grid, [&](const Eigen::MatrixXd& p, Eigen::VectorXd& out) { evaluator.evaluate_many(p, out); });
 }
 
-Result<FittedRbf> direct_and_grid(const Sites& sites, const Eigen::VectorXd&) {
-  Result<FittedRbf> fitted = fit_direct(sites);
+Result<RbfFunction> direct_and_grid(const Sites& sites, const Eigen::VectorXd&) {
+  Result<RbfFunction> fitted = fit_direct(sites);
   if (!fitted) return fitted;
   VoxelGrid grid = even_grid(sites, {25, 11, 11, 11});
-  if (const Status filled = fill(grid, fitted->function); !filled) return filled.error();
+  if (const Status filled = fill(grid, *fitted); !filled) return filled.error();
   benchmark::DoNotOptimize(grid.values_N.data());
   return fitted;
 }
@@ -74,7 +61,7 @@ class TimedFit {
     if (!peak_bytes_) peak_bytes_ = peak_memory_of([&] { benchmark::DoNotOptimize(fit_(sites, jnd_N)); });
     for (auto _ : state) {
       const auto start = Clock::now();
-      const Result<FittedRbf> fitted = fit_(sites, jnd_N);
+      const Result<RbfFunction> fitted = fit_(sites, jnd_N);
       state.SetIterationTime(std::chrono::duration<double>(Clock::now() - start).count());
       if (!fitted) state.SkipWithError(fitted.error().message.c_str());
     }
@@ -129,10 +116,10 @@ void grid_against_dimension() {
     add_fit("dimension/grid_10_a_side/" + std::to_string(d), 1, [d](benchmark::State& state) {
       const Sites sites = made_sites(d, kPaperSites);
       const RbfFunction function{KernelKind::cubic, sites.points, sites.target_N, Eigen::VectorXd::Ones(1 + d)};
-      TimedFit timed([&](const Sites& all, const Eigen::VectorXd&) -> Result<FittedRbf> {
+      TimedFit timed([&](const Sites& all, const Eigen::VectorXd&) -> Result<RbfFunction> {
         VoxelGrid grid = even_grid(all, std::vector<int>(static_cast<std::size_t>(d), 10));
         if (const Status filled = fill(grid, function); !filled) return filled.error();
-        return FittedRbf{};
+        return RbfFunction{};
       });
       timed.run(state, sites, sites.target_N);
     });
@@ -161,8 +148,7 @@ const int registered = [] {
   at_paper_size("kdtree-100", kdtree_fit, 7);
   at_paper_size("greedy-100_of_20", greedy_fit(20), 5);
   at_paper_size("greedy-100_of_100", greedy_fit(100), 5);
-  at_paper_size("greedy-200_of_100", greedy_fit(100, kMostCentres), 3);
-  in_single_fits(benchmark::RegisterBenchmark("fit/greedy-1_to_200_of_100", slider_all), 3)->UseRealTime();
+  at_paper_size("greedy-200_of_100", greedy_fit(100, 200), 3);
   at_paper_size("greedy-100_of_all", greedy_fit(0), 3);
   at_paper_size("direct+grid", direct_and_grid, 3);
   against_size("random-100", random_fit);

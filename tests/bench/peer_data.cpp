@@ -16,7 +16,6 @@ constexpr int kLeaveOut = 5;  // every fifth stroke is left out
 PreparedTraining with_targets(const PreparedTraining& prepared, bool forces) {
   PreparedTraining other = prepared;
   if (forces) {
-    other.sites.strength = 1.0;  // the strength was chosen for the residuals of the trend
     for (std::size_t i = 0; i < other.set.sites.size(); ++i)
       other.sites.target_N[static_cast<Eigen::Index>(i)] = other.set.sites[i].force_N;
   }

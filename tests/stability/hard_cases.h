@@ -21,7 +21,6 @@ namespace palpate::test {
 // One method in one case.
 struct HardCase {
   std::string method;
-  FitReport report;
   std::string refusal;                       // empty if the fit was accepted
   std::shared_ptr<const FittedModel> model;  // null for sites, or if refused
   // The values so far.

@@ -97,7 +97,7 @@ TEST(FitKdTree, EqualsAFullRefitAfterEverySplit) {
     for (const KernelKind kernel : kKernelKinds) {
       const auto fitted = fit_kdtree(sites, jnd_N, {.centres = 25, .kernel = kernel});
       ASSERT_TRUE(fitted.ok());
-      EXPECT_EQ(fitted->function.centres, plain_centres(sites, jnd_N, kernel, 25)) << kernel_name(kernel);
+      EXPECT_EQ(fitted->centres, plain_centres(sites, jnd_N, kernel, 25)) << kernel_name(kernel);
     }
   }
 }

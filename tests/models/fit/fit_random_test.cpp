@@ -15,12 +15,12 @@ TEST(FitRandom, CentresAreDistinctSitesThatDependOnTheSeed) {
   sites.points.rightCols(30) = sites.points.leftCols(30);
   const auto fitted = fit_random(sites, {.centres = 30});
   ASSERT_TRUE(fitted.ok());
-  const Eigen::MatrixXd& centres = fitted->function.centres;
+  const Eigen::MatrixXd& centres = fitted->centres;
   for (int j = 0; j < 30; ++j) {
     EXPECT_EQ((sites.points.colwise() - centres.col(j)).colwise().norm().minCoeff(), 0.0);
     for (int k = 0; k < j; ++k) EXPECT_GT((centres.col(j) - centres.col(k)).norm(), 0.0);
   }
-  EXPECT_NE(centres, fit_random(sites, {.centres = 30, .seed = 6})->function.centres);
+  EXPECT_NE(centres, fit_random(sites, {.centres = 30, .seed = 6})->centres);
 }
 
 TEST(FitRandom, IdenticalSitesGiveTheirWeightedMean) {
@@ -31,7 +31,7 @@ TEST(FitRandom, IdenticalSitesGiveTheirWeightedMean) {
   const auto fitted = fit_random(sites, {});
   ASSERT_TRUE(fitted.ok());
   // The ridge may reduce the force by a relative 1e-5 with four sites.
-  EXPECT_NEAR(rbf_value(fitted->function, sites.points.data()), 3.0, 1e-4);
+  EXPECT_NEAR(rbf_value(*fitted, sites.points.data()), 3.0, 1e-4);
 }
 
 }  // namespace

@@ -66,8 +66,6 @@ void expect_all_methods(const Recordings& recordings, const TrainingRequest& req
     ASSERT_TRUE(fit.ok()) << method->name << ": " << fit.error().message;
     expect_safe(fit->data);
     EXPECT_GE(fit->data.provenance.training_within_jnd, least_within) << method->name;
-    EXPECT_TRUE(std::isfinite(fit->report.condition)) << method->name;
-    EXPECT_TRUE(std::isfinite(fit->report.residual_rms)) << method->name;
   }
 }
 
@@ -254,7 +252,6 @@ TEST(Fit, AVoxelGridFromADirectFitIsTheSame) {
   ASSERT_TRUE(alone.ok() && shared.ok());
   EXPECT_EQ(grid_of(shared->data.correction)->nodes, grid_of(alone->data.correction)->nodes);
   EXPECT_EQ(grid_of(shared->data.correction)->values_N, grid_of(alone->data.correction)->values_N);
-  EXPECT_EQ(shared->report.smoothing, alone->report.smoothing);
 }
 
 }  // namespace

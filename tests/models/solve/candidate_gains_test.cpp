@@ -21,14 +21,14 @@ double gain_from_scratch(const Sites& sites, const CandidateGains& gains, const 
   Eigen::MatrixXd columns(sites.count(), tail.cols() + static_cast<Eigen::Index>(chosen.size()));
   columns.leftCols(tail.cols()) = sites.row_scale.asDiagonal() * tail;
   for (std::size_t k = 0; k < chosen.size(); ++k)
-    columns.col(tail.cols() + static_cast<Eigen::Index>(k)) = gains.column(chosen[k]);
+    columns.col(tail.cols() + static_cast<Eigen::Index>(k)) = gains.columns({&chosen[k], 1});
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
   const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
   const auto outside = [&](Eigen::VectorXd v) {
     for (int pass = 0; pass < 2; ++pass) v -= q * (q.transpose() * v);
     return v;
   };
-  const Eigen::VectorXd c = outside(gains.column(site));
+  const Eigen::VectorXd c = outside(gains.columns({&site, 1}));
   const Eigen::VectorXd r = outside(sites.target_N.cwiseProduct(sites.row_scale));
   return c.dot(r) * c.dot(r) / c.squaredNorm();
 }
@@ -55,7 +55,7 @@ TEST(CandidateGains, AreThoseOfAFreshLookHoweverLongAgoTheLastWas) {
         EXPECT_NEAR(gains.gain(site), expected, 1e-6 * expected) << "site " << site << " at step " << step;
       }
     if (std::find(chosen.begin(), chosen.end(), next) != chosen.end()) continue;
-    basis.add(basis.outside(gains.column(next)));
+    basis.add(gains.columns({&next, 1}));
     chosen.push_back(next);
   }
   EXPECT_GT(chosen.size(), 50U);
@@ -73,7 +73,8 @@ TEST(CandidateGains, KnowsAColumnAllButInsideTheBasis) {
   sites.points.col(2) = sites.points.col(0);
   CandidateGains gains(sites, kKernel);
   OrthogonalBasis basis(sites, kKernel, 1);
-  basis.add(basis.outside(gains.column(0)));
+  const Eigen::Index chosen = 0;
+  basis.add(gains.columns({&chosen, 1}));
   const std::vector<Eigen::Index> looked_at{1, 2};
   gains.update(looked_at, basis);
   const double expected = gain_from_scratch(sites, gains, {0}, 1);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "models/fit/fit_direct.h"
+#include "models/solve/projected_kernel.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
@@ -32,38 +33,40 @@ double worst_error(const RbfFunction& function, const Sites& sites) {
   return worst;
 }
 
+double residual_norm(const RbfFunction& function, const Sites& sites) {
+  Eigen::VectorXd values;
+  RbfCorrection(function).evaluate_many(sites.points, values);
+  return (values - sites.target_N).cwiseProduct(sites.row_scale).norm();
+}
+
 TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
   for (const KernelKind kernel : kKernelKinds) {
     Sites sites = smooth_sites(2, 200, 0.0, 1);
     const Eigen::VectorXd tail = random_points(1, tail_size(tail_degree(kernel), 2), 3).transpose();
     sites.target_N = tail_matrix(tail_degree(kernel), sites.points) * tail;
-    const Result<FittedRbf> fitted = solve_weights(sites, kernel, sites.points.leftCols(20));
-    ASSERT_TRUE(fitted.ok());
-    EXPECT_LE((fitted->function.tail - tail).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
-    EXPECT_LE(fitted->function.weights.cwiseAbs().maxCoeff(), 1e-10);
+    const RbfFunction fitted = solve_weights(sites, kernel, sites.points.leftCols(20));
+    EXPECT_LE((fitted.tail - tail).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
+    EXPECT_LE(fitted.weights.cwiseAbs().maxCoeff(), 1e-10);
   }
 }
 
 // With as few sites as unknowns, signal and noise cannot be separated reliably.
 TEST(SolveWeights, FollowsAsManySitesAsUnknownsToWithinTheSmoothing) {
   const Sites sites = smooth_sites(3, 40, 0.0, 2);
-  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points);
-  ASSERT_TRUE(fitted.ok());
-  EXPECT_LE(worst_error(fitted->function, sites), 0.1);
+  const RbfFunction fitted = solve_weights(sites, KernelKind::cubic, sites.points);
+  EXPECT_LE(worst_error(fitted, sites), 0.1);
 }
 
 TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
   const Sites sites = smooth_sites(2, 300, 0.0, 2);
   Eigen::MatrixXd centres(2, 16);
   centres << sites.points.leftCols(8), sites.points.leftCols(8);
-  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, centres);
-  ASSERT_TRUE(fitted.ok());
+  const RbfFunction fitted = solve_weights(sites, KernelKind::cubic, centres);
   const auto alone = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(8));
-  ASSERT_TRUE(alone.ok());
-  const auto& weights = fitted->function.weights;
-  EXPECT_LT(weights.cwiseAbs().maxCoeff(), 2.0 * alone->function.weights.cwiseAbs().maxCoeff());
+  const auto& weights = fitted.weights;
+  EXPECT_LT(weights.cwiseAbs().maxCoeff(), 2.0 * alone.weights.cwiseAbs().maxCoeff());
   EXPECT_LT((weights.head(8) - weights.tail(8)).cwiseAbs().maxCoeff(), 1e-6);
-  EXPECT_LT((weights.head(8) + weights.tail(8) - alone->function.weights).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((weights.head(8) + weights.tail(8) - alone.weights).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 // Forty clusters of six sites each, 1e-6 apart: the data determine 40 of 44
@@ -81,76 +84,67 @@ TEST(SolveWeights, TheLikelihoodKeepsNoiseOutOfUnknownsThatTheDataDoNotTell) {
   const Eigen::VectorXd plain = matrix.bdcSvd(Eigen::ComputeThinU | Eigen::ComputeThinV).solve(data);
   const RbfFunction least_squares{KernelKind::cubic, base.points, plain.head(40), plain.tail(4)};
   const auto likely = solve_weights(sites, KernelKind::cubic, base.points);
-  ASSERT_TRUE(likely.ok());
   EXPECT_GT(worst_error(least_squares, truth), 100.0);
-  EXPECT_LT(worst_error(likely->function, truth), 2.0);  // 40 clusters in a cube, with forces up to 5 N
-  EXPECT_GT(likely->report.smoothing, 0.0);
-  EXPECT_LT(likely->report.residual_rms, 1.1 * (matrix * plain - data).norm() / std::sqrt(240.0));
+  EXPECT_LT(worst_error(likely, truth), 2.0);  // 40 clusters in a cube, with forces up to 5 N
+  EXPECT_LT(residual_norm(likely, sites), 1.1 * (matrix * plain - data).norm());
 }
 
 // Many sites determine all unknowns: least squares without the side condition.
 TEST(SolveWeights, ManySitesAreLeftAlone) {
-  const Sites sites = smooth_sites(3, 2000, 0.001, 1);
+  Sites sites = smooth_sites(3, 2000, 0.001, 1);
   const Eigen::MatrixXd centres = sites.points.leftCols(100);
-  const auto likely = solve_weights(sites, KernelKind::cubic, centres);
-  auto factorised = factorise_rows(sites, KernelKind::cubic, centres);
-  ASSERT_TRUE(likely.ok() && factorised.ok());
-  factorised->plain_unknowns_limit = 0;
-  factorised->smoothing = 0.0;
-  const FittedRbf plain = penalised_weights(*factorised, KernelKind::cubic, centres);
-  EXPECT_LT(likely->report.residual_rms, plain.report.residual_rms);
+  const double without = residual_norm(solve_weights(sites, KernelKind::cubic, centres), sites);
+  sites.smoothing = 1e-12;
+  EXPECT_LT(without, residual_norm(solve_weights(sites, KernelKind::cubic, centres), sites));
 }
 
 TEST(SolveWeights, OneSiteGivesItsForce) {
   const Sites sites = smooth_sites(4, 1, 0.0, 2);
-  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points);
-  ASSERT_TRUE(fitted.ok());
-  EXPECT_NEAR(rbf_value(fitted->function, sites.points.data()), sites.target_N[0], 1e-13);
+  const RbfFunction fitted = solve_weights(sites, KernelKind::cubic, sites.points);
+  EXPECT_NEAR(rbf_value(fitted, sites.points.data()), sites.target_N[0], 1e-13);
 }
 
 TEST(SolveWeights, ZeroForcesGiveAZeroFunction) {
   Sites sites = smooth_sites(4, 100, 0.0, 2);
   sites.target_N.setZero();
-  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
-  ASSERT_TRUE(fitted.ok());
-  EXPECT_EQ(fitted->function.weights.norm(), 0.0);
-  EXPECT_EQ(fitted->function.tail.norm(), 0.0);
+  const RbfFunction fitted = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
+  EXPECT_EQ(fitted.weights.norm(), 0.0);
+  EXPECT_EQ(fitted.tail.norm(), 0.0);
 }
 
 TEST(SolveWeights, ASiteWithScaleZeroDoesNotCount) {
   Sites sites = smooth_sites(2, 200, 0.0, 2);
-  const Result<FittedRbf> before = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
+  const RbfFunction before = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
   sites.row_scale[150] = 0.0;
-  const Result<FittedRbf> without = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
+  const RbfFunction without = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
   sites.target_N[150] = 1e6;
-  const Result<FittedRbf> wild = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
-  ASSERT_TRUE(before.ok() && without.ok() && wild.ok());
-  EXPECT_EQ(without->function.weights, wild->function.weights);
+  const RbfFunction wild = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
+  EXPECT_EQ(without.weights, wild.weights);
 }
 
-FittedRbf penalised(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
-  auto factorised = factorise_rows(sites, kernel, centres);
-  EXPECT_TRUE(factorised.ok());
-  factorised->plain_unknowns_limit = 0;
-  factorised->smoothing = *sites.smoothing;
-  return penalised_weights(*factorised, kernel, centres);
-}
-
-TEST(PenaltySpace, ItsColumnsAreOrthogonalToTheTailAndMultiplyInPlace) {
+TEST(ProjectedKernel, ProjectsTheTailOutAndIsFactorised) {
   const Sites sites = smooth_sites(2, 60, 0.1, 7);
-  const PenaltySpace space = penalty_space(KernelKind::cubic, sites.points);
-  const Eigen::MatrixXd tail = tail_matrix(tail_degree(KernelKind::cubic), sites.points);
-  const Eigen::Index free = space.free;
-  EXPECT_EQ(free, sites.count() - tail.cols());
-  Eigen::MatrixXd all = Eigen::MatrixXd::Identity(60, 60);
-  multiply_by_basis(all, space);
-  const Eigen::MatrixXd basis = all.leftCols(free);
-  EXPECT_LT((basis.transpose() * tail).cwiseAbs().maxCoeff(), 1e-13);
-  EXPECT_LT((basis.transpose() * basis - Eigen::MatrixXd::Identity(free, free)).cwiseAbs().maxCoeff(), 1e-13);
-  const Eigen::MatrixXd matrix = random_points(37, 60, 5);
-  Eigen::MatrixXd product = matrix;
-  multiply_by_basis(product, space);
-  EXPECT_LT((product.leftCols(free) - matrix * basis).cwiseAbs().maxCoeff(), 1e-13);
+  const Eigen::MatrixXd tail = sites.row_scale.asDiagonal() * tail_matrix(1, sites.points);
+  for (const KernelKind kind : kKernelKinds) {
+    const ProjectedKernel projected(kind, sites.points, sites.row_scale);
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(60, 60);
+    projected.project_rows(basis);
+    if (kind != KernelKind::linear) {
+      EXPECT_LT((basis * tail).cwiseAbs().maxCoeff(), 1e-12 * tail.norm());
+    }
+    EXPECT_LT((basis * basis - basis).cwiseAbs().maxCoeff(), 1e-13);
+    EXPECT_LT((basis.col(7) - projected.project(Eigen::VectorXd::Unit(60, 7))).norm(), 1e-13);
+    const Eigen::MatrixXd kernel =
+        definiteness_sign(kind) * naive_matrix(sites, kind, sites.points).leftCols(60) * sites.row_scale.asDiagonal();
+    const double fill = projected.mean_eigenvalue();
+    Eigen::MatrixXd expected = basis * kernel * basis + fill * (Eigen::MatrixXd::Identity(60, 60) - basis);
+    expected.diagonal().array() += 0.1;
+    EXPECT_NEAR(fill, (basis * kernel * basis).trace() / 60.0, 1e-12 * fill) << kernel_name(kind);
+    const auto factor = projected.cholesky(0.1);
+    ASSERT_TRUE(factor);
+    const Eigen::MatrixXd lower = factor->triangularView<Eigen::Lower>();
+    EXPECT_LT((lower * lower.transpose() - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.norm());
+  }
 }
 
 TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
@@ -158,11 +152,11 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
   for (const KernelKind kernel : {KernelKind::cubic, KernelKind::linear, KernelKind::thin_plate}) {
     for (const double smoothing : {1e-2, 1.0}) {
       sites.smoothing = smoothing;
-      const auto some = penalised(sites, kernel, sites.points);
-      const auto all = fit_direct(sites, kernel, smoothing);
+      const auto some = solve_weights(sites, kernel, sites.points);
+      const auto all = fit_direct(sites, kernel);
       ASSERT_TRUE(all.ok());
       // Two algorithms for systems with condition numbers up to some 1e6.
-      EXPECT_LT(test::largest_difference(some.function, all->function, sites.points), 1e-7) << kernel_name(kernel);
+      EXPECT_LT(test::largest_difference(some, *all, sites.points), 1e-7) << kernel_name(kernel);
     }
   }
 }
@@ -170,18 +164,22 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
 TEST(PenalisedWeights, MuchSmoothingLeavesTheTail) {
   Sites sites = smooth_sites(2, 200, 0.1, 7);
   sites.smoothing = 1e14;
-  const auto fitted = penalised(sites, KernelKind::cubic, sites.points.leftCols(30));
-  EXPECT_LT(fitted.function.weights.cwiseAbs().maxCoeff(), 1e-9);
+  const auto fitted = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(30));
+  EXPECT_LT(fitted.weights.cwiseAbs().maxCoeff(), 1e-9);
 }
 
-TEST(PenalisedWeights, TheStrengthMultipliesTheFunction) {
-  Sites sites = smooth_sites(2, 150, 0.1, 7);
-  sites.smoothing = 0.1;
-  const auto full = penalised(sites, KernelKind::cubic, sites.points.leftCols(20));
-  sites.strength = 0.25;
-  const auto quarter = penalised(sites, KernelKind::cubic, sites.points.leftCols(20));
-  EXPECT_LT((0.25 * full.function.weights - quarter.function.weights).norm(), 1e-12);
-  EXPECT_LT((0.25 * full.function.tail - quarter.function.tail).norm(), 1e-12);
+// The recipe of 2009.
+TEST(SolveWeights, TruncatedSingularValuesShareTheWeightOfCoincidingCentres) {
+  Sites sites = smooth_sites(2, 300, 0.0, 3);
+  sites.row_scale = sites.target_N.cwiseInverse();
+  sites.as_2009 = true;
+  Eigen::MatrixXd centres = sites.points.leftCols(40);
+  centres.col(39) = centres.col(0);
+  const RbfFunction fitted = solve_weights(sites, KernelKind::cubic, centres);
+  const RbfFunction once = solve_weights(sites, KernelKind::cubic, centres.leftCols(39));
+  EXPECT_NEAR(fitted.weights(0), fitted.weights(39), 1e-6 * fitted.weights.cwiseAbs().maxCoeff());
+  // The same least squares error as without the duplicate.
+  EXPECT_NEAR(worst_error(fitted, sites), worst_error(once, sites), 1e-6);
 }
 
 TEST(DistinctSites, KeepsTheFirstOfEachPoint) {

@@ -49,7 +49,7 @@ TEST(ModelWorker, EqualsPalpateFitAndFitsTheFastestFirst) {
   }
 }
 
-// A slider requests several numbers of centres. The second is computed by the nested fit.
+// A slider requests several numbers of centres.
 TEST(ModelWorker, AnotherNumberOfCentresEqualsPalpateFit) {
   constexpr double kRounding_N = 1e-9;
   ModelWorker worker(test::must(load_scene("elastic_block")), 1);

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -103,12 +102,10 @@ TEST(GridCorrection, ClampsInfinitiesAndTakesNanAsTheLowerEdge) {
   EXPECT_DOUBLE_EQ(lookup.evaluate(&nan), grid.values_N.front());
 }
 
-TEST(FillGrid, CanBeInterruptedAndRefusesHugeGrids) {
+TEST(FillGrid, CanBeInterrupted) {
   VoxelGrid grid = even_grid(0.0, 1.0, {200, 200});
   const BatchFunction zero = [](const Eigen::MatrixXd&, Eigen::VectorXd& out) { out.setZero(); };
   EXPECT_EQ(fill_grid(grid, zero, {[](double done) { return done < 0.3; }}).error().message, "interrupted");
-  VoxelGrid huge = even_grid(0.0, 1.0, std::vector<int>(8, 40));
-  EXPECT_TRUE(test::has_parts(fill_grid(huge, zero).error().message, {"100000000", "; "}));
 }
 
 }  // namespace
