@@ -24,21 +24,16 @@ std::string literal(double value, bool single) {
 
 std::string CText::number(double value) const { return literal(value, single_); }
 
-void CText::rows(const std::string& declaration, const Eigen::MatrixXd& values, bool single) {
-  const bool braces = declaration.find("][") != std::string::npos;  // two dimensions
-  text_ += declaration + " = {\n";
-  for (Eigen::Index j = 0; j < values.cols(); ++j) {
-    text_ += braces ? "  {" : "  ";
-    for (Eigen::Index i = 0; i < values.rows(); ++i) text_ += (i == 0 ? "" : ", ") + literal(values(i, j), single);
-    text_ += braces ? "},\n" : ",\n";
-  }
-  text_ += "};\n";
-  table_bytes_ += static_cast<std::size_t>(values.size()) * (single ? sizeof(float) : sizeof(double));
-}
-
 void CText::table(const std::string& name, const Eigen::MatrixXd& values, const std::string& type) {
-  const std::string sizes = "[" + std::to_string(values.cols()) + "][" + std::to_string(values.rows()) + "]";
-  rows("static const " + type + " " + name + sizes, values, single_ || type == "float");
+  const bool single = single_ || type == "float";
+  const bool braces = name.find("][") != std::string::npos;
+  add("static const " + type + " " + name + " = {\n");
+  for (Eigen::Index j = 0; j < values.cols(); ++j) {
+    add(braces ? "  {" : "  ");
+    for (Eigen::Index i = 0; i < values.rows(); ++i) add((i == 0 ? "" : ", ") + literal(values(i, j), single));
+    add(braces ? "},\n" : ",\n");
+  }
+  add("};\n");
 }
 
 }  // namespace palpate

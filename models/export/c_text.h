@@ -3,41 +3,37 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace palpate {
 
-// Collects the text of the file and counts the bytes of its tables.
 class CText {
  public:
   explicit CText(bool single_precision) : single_(single_precision) {}
 
-  void add(std::string_view text) { text_ += text; }
+  bool single() const { return single_; }
+  const std::string& text() const { return text_; }
 
   // The shortest decimal that reads back as the same number, as a literal of type `real`.
   std::string number(double value) const;
-  // "static const TYPE NAME[ROWS][COLUMNS] = {...};": each column of `values` is one row of the table. `type`: real, or
-  // float for single precision in any file.
+
+  void add(std::string_view text) { text_ += text; }
+  // "#define NAME VALUE".
+  void define(const std::string& name, const std::string& value) { add("#define " + name + " " + value + "\n"); }
+  void define(const std::string& name, double value) { define(name, number(value)); }
+  void define(const std::string& name, std::size_t value) { define(name, std::to_string(value)); }
+  // "static const TYPE NAME[] = {...};" of all values, or for a NAME of two dimensions, such as "centres[][3]", with
+  // each column of `values` as one row of the table. `type`: real, or float for single precision in any file.
   void table(const std::string& name, const Eigen::MatrixXd& values, const std::string& type = "real");
-  // "static const real NAME[SIZE] = {...};" `values`: a vector or an array of doubles.
+  // The same for a vector or an array of doubles.
   void list(const std::string& name, const auto& values) {
-    const auto size = static_cast<Eigen::Index>(values.size());
-    rows("static const real " + name + "[" + std::to_string(size) + "]",
-         Eigen::Map<const Eigen::RowVectorXd>(values.data(), size), single_);
+    table(name + "[]", Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   }
 
-  bool single() const { return single_; }
-  const std::string& text() const { return text_; }
-  std::size_t table_bytes() const { return table_bytes_; }
-
  private:
-  void rows(const std::string& declaration, const Eigen::MatrixXd& values, bool single);
-
   bool single_;
   std::string text_;
-  std::size_t table_bytes_ = 0;
 };
 
 }  // namespace palpate

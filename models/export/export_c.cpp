@@ -1,10 +1,10 @@
 #include "models/export/export_c.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdlib>
 
+#include "engine/base/csv_scanner.h"
 #include "models/export/feature_c.h"
 #include "models/export/motion_filter_c.h"
 #include "models/model/grid/voxel_grid.h"
@@ -13,9 +13,6 @@
 namespace palpate {
 namespace {
 
-// The size of the state of the motion filter, the depth and the last sample, in numbers.
-constexpr std::size_t kMotionNumbers = 2 * (3 + 9 + 1) + 2 + 6;
-
 // Replaces characters that are not safe in a C comment.
 std::string in_comment(std::string text) {
   std::ranges::replace_if(
@@ -23,58 +20,27 @@ std::string in_comment(std::string text) {
   return text;
 }
 
-// Describes the sensor that the file assumes.
-std::string sensor_text(const CText& exact, const SensorSpec& sensor) {
-  const std::string step =
-      sensor.encoder_step_m > 0.0 ? "in steps of " + exact.number(sensor.encoder_step_m) + " m" : "";
-  const std::string noise =
-      sensor.position_noise_m > 0.0 ? "with a noise of " + exact.number(sensor.position_noise_m) + " m" : "";
-  if (step.empty() && noise.empty()) return "exact";
-  return step + (step.empty() || noise.empty() ? "" : " ") + noise;
-}
+constexpr const char* kHeadC = R"C( *
+ * C99; needs sqrt and exp, and log for a thin-plate kernel. `real` is double or float.
+ *
+ * real palpate_force(real time_s, real position_m): the force in N, positive out of the
+ *   material. position_m: as in the recordings, whose undisturbed surface is at
+ *   SURFACE_POSITION_M, positive inside. If a value is not finite or the time is not later than
+ *   the last one: 0 N, and the state is kept.
+ * real palpate_force_after(real step_s, real position_m): the same, `step_s` after the last
+ *   call; better in single precision, where a large time has coarse steps.
+ * int palpate_out_of_domain(void): 1 if the last motion was outside the recorded domain.
+ * void palpate_reset(void): the next sample begins a new contact.
+ *
+ * One tool, one thread: the state is static. For two models in one program compile one
+ * with -Dpalpate_force=other_force and so on.
+ * For another sensor than that of the next two macros define them when compiling: the step of
+ * the positions (0 if there is none) and the standard deviation of the additional noise. A
+ * recording of such positions, without measured velocity or acceleration, gives the forces of
+ * palpate replay.
+ */
 
-std::string head(const ModelData& data, const ExportRequest& request) {
-  const std::string real = request.single_precision ? "float" : "double";
-  const CText exact(false);
-  std::string features;
-  for (const FeatureSpec& spec : data.features) features += (features.empty() ? "" : ", ") + feature_name(spec);
-  return "/* Force model " + in_comment(data.name) +
-         ", written by palpate export. C99; needs sqrt and exp, and log for a thin-plate kernel.\n"
-         " * Features: " +
-         features +
-         "\n"
-         " *\n"
-         " * " +
-         real + " palpate_force(" + real + " time_s, " + real +
-         " position_m): the force in N, positive out of the\n"
-         " *   material. position_m: as in the recordings, whose undisturbed surface is at\n"
-         " *   " +
-         exact.number(surface_position_m(data.features)) +
-         " m, positive inside. If a value\n"
-         " *   is not finite or the time is not later than the last one: 0 N, and the state is kept.\n"
-         " * " +
-         real + " palpate_force_after(" + real + " step_s, " + real +
-         " position_m): the same, `step_s` after the last\n"
-         " *   call; better in single precision, where a large time has coarse steps.\n"
-         " * int palpate_out_of_domain(void): 1 if the last motion was outside the recorded domain.\n"
-         " * void palpate_reset(void): the next sample begins a new contact.\n"
-         " *\n"
-         " * One tool, one thread: the state is static. For two models in one program compile one\n"
-         " * with -Dpalpate_force=other_force and so on.\n"
-         " * The positions are assumed to be " +
-         sensor_text(exact, request.sensor) +
-         ". For another sensor define\n"
-         " * PALPATE_ENCODER_STEP_M and PALPATE_POSITION_NOISE_M when compiling: the step of the\n"
-         " * positions (0 if there is none) and the standard deviation of the additional noise.\n"
-         " * A recording of such positions, without measured velocity or acceleration, gives the\n"
-         " * forces of palpate replay.\n"
-         " */\n"
-         "\n"
-         "#ifndef PALPATE_ENCODER_STEP_M\n#define PALPATE_ENCODER_STEP_M " +
-         exact.number(request.sensor.encoder_step_m) +
-         "\n#endif\n#ifndef PALPATE_POSITION_NOISE_M\n#define PALPATE_POSITION_NOISE_M " +
-         exact.number(request.sensor.position_noise_m) + "\n#endif\n\n";
-}
+)C";
 
 constexpr const char* kDoubleC = R"C(typedef double real;
 extern double sqrt(double x);
@@ -94,6 +60,14 @@ extern float logf(float x);
 #define LOG logf
 )C";
 
+constexpr const char* kPrototypesC = R"C(#define R(x) ((real)(x))
+
+real palpate_force(real time_s, real position_m);
+real palpate_force_after(real step_s, real position_m);
+void palpate_reset(void);
+int palpate_out_of_domain(void);
+)C";
+
 constexpr const char* kMotionStateC = R"C(
 static MotionState motion;
 static real last_time_s;
@@ -103,52 +77,60 @@ static real absolute(real x) { return x < R(0.0) ? -x : x; }
 static int finite_number(real x) { return x - x == R(0.0); }
 )C";
 
-std::string tail_text(const RbfFunction& function) {
-  const int degree = tail_degree(function.kernel);
-  std::string text = "  real sum = tail[0];\n  int i, k;\n";
-  if (degree >= 1) text += "  for (k = 0; k < FEATURES; ++k) sum += tail[1 + k] * u[k];\n";
-  if (degree >= 2) {
-    text +=
-        "  {\n    const real *quadratic_tail = tail + 1 + FEATURES;\n    for (i = 0; i < FEATURES; ++i) {\n"
-        "      real row = R(0.0);\n      for (k = i; k < FEATURES; ++k) row += *quadratic_tail++ * u[k];\n"
-        "      sum += row * u[i];\n    }\n  }\n";
+constexpr const char* kRbfC = R"C(
+static real correction_of(const real *u) {
+  const real *term = tail;
+  real sum = *term++;
+  int i, k;
+  for (k = 0; TAIL_DEGREE >= 1 && k < FEATURES; ++k) sum += *term++ * u[k];
+  for (i = 0; TAIL_DEGREE >= 2 && i < FEATURES; ++i) {
+    real row = R(0.0);
+    for (k = i; k < FEATURES; ++k) row += *term++ * u[k];
+    sum += row * u[i];
   }
-  return text;
+  for (i = 0; i < CENTRES; ++i) {
+    real squared = R(0.0);
+    for (k = 0; k < FEATURES; ++k) {
+      const real difference = u[k] - centres[i][k];
+      squared += difference * difference;
+    }
+    squared = larger(squared, R(1e-36));
+    sum += centres[i][FEATURES] * (KERNEL);
+  }
+  return sum;
 }
+)C";
 
-void emit_rbf(CText& out, const RbfFunction& function) {
-  const auto n = static_cast<std::size_t>(function.centre_count());
-  const std::string kernel = kernel_facts(function.kernel).c_text;
+void write_rbf(CText& out, const RbfFunction& function) {
   Eigen::MatrixXd rows(function.dimension() + 1, function.centre_count());
   rows << function.centres, function.weights.transpose();
   out.add("\n/* ---- correction: radial basis functions; a row: the centre, then its weight ---- */\n\n");
+  out.define("CENTRES", static_cast<std::size_t>(function.centre_count()));
+  out.define("TAIL_DEGREE", static_cast<std::size_t>(tail_degree(function.kernel)));
+  out.define("KERNEL", kernel_facts(function.kernel).c_text);
   out.list("tail", function.tail);
-  out.table("centres", rows);
-  out.add("\nstatic real correction_of(const real *u) {\n" + tail_text(function) + "  for (i = 0; i < " +
-          std::to_string(n) +
-          "; ++i) {\n    real squared = R(0.0);\n    for (k = 0; k < FEATURES; ++k) {\n"
-          "      const real difference = u[k] - centres[i][k];\n      squared += difference * difference;\n    }\n"
-          "    squared = larger(squared, R(1e-36));\n    sum += centres[i][FEATURES] * (" +
-          kernel + ");\n  }\n  return sum;\n}\n");
+  out.table("centres[][FEATURES + 1]", rows);
+  out.add(kRbfC);
 }
 
 constexpr const char* kGridC = R"C(
 static real correction_of(const real *u) {
   real corner[CORNERS];
   real fraction[FEATURES];
-  int base = 0;
+  int cell[FEATURES];
+  const real *axis = axes;
   int k, c, half;
   for (k = 0; k < FEATURES; ++k) {
-    const real *const axis = axes + axis_begin[k];
     const real at = clamped(u[k], axis[0], axis[axis_size[k] - 1]);
-    int cell = 0;
-    while (cell + 2 < axis_size[k] && axis[cell + 1] <= at) ++cell;
-    base += cell * axis_stride[k];
-    fraction[k] = (at - axis[cell]) / (axis[cell + 1] - axis[cell]);
+    int i = 0;
+    while (i + 2 < axis_size[k] && axis[i + 1] <= at) ++i;
+    cell[k] = i;
+    fraction[k] = (at - axis[i]) / (axis[i + 1] - axis[i]);
+    axis += axis_size[k];
   }
   for (c = 0; c < CORNERS; ++c) {
-    int node = base;
-    for (k = 0; k < FEATURES; ++k) node += ((c >> k) & 1) * axis_stride[k];
+    int node = 0;
+    for (k = 0; k < FEATURES; ++k) node = node * axis_size[k] + cell[k] + ((c >> k) & 1);
     corner[c] = grid_values[node];
   }
   for (k = FEATURES - 1, half = CORNERS / 2; k >= 0; --k, half /= 2) {
@@ -158,25 +140,16 @@ static real correction_of(const real *u) {
 }
 )C";
 
-void emit_grid(CText& out, const VoxelGrid& grid) {
-  const std::size_t d = grid.nodes.size();
-  const std::size_t corners = std::size_t{1} << d;
+void write_grid(CText& out, const VoxelGrid& grid) {
   std::vector<double> nodes;
-  std::string sizes;
-  std::string begins;
-  std::string strides;
-  std::size_t stride = grid.values_N.size();
+  std::vector<std::string> sizes;
   for (const std::vector<double>& axis : grid.nodes) {
-    const std::string comma = sizes.empty() ? "" : ", ";
-    stride /= axis.size();
-    begins += comma + std::to_string(nodes.size());
-    sizes += comma + std::to_string(axis.size());
-    strides += comma + std::to_string(stride);
+    sizes.push_back(std::to_string(axis.size()));
     nodes.insert(nodes.end(), axis.begin(), axis.end());
   }
-  out.add("\n/* ---- correction: a grid, the last axis fastest ---- */\n\n#define CORNERS " + std::to_string(corners) +
-          "\nstatic const int axis_begin[FEATURES] = {" + begins + "};\nstatic const int axis_size[FEATURES] = {" +
-          sizes + "};\nstatic const int axis_stride[FEATURES] = {" + strides + "};\n");
+  out.add("\n/* ---- correction: a grid, the last axis fastest ---- */\n\n");
+  out.define("CORNERS", std::size_t{1} << grid.nodes.size());
+  out.add("static const int axis_size[FEATURES] = {" + joined(sizes) + "};\n");
   out.list("axes", nodes);
   out.list("grid_values", grid.values_N);
   out.add(kGridC);
@@ -211,8 +184,8 @@ static real trust_in(const real *u) {
 
 // "static real correction_of(const real *u)": newtons, from normalised features.
 void write_correction(CText& out, const CorrectionPtr& correction) {
-  if (const RbfFunction* function = rbf_of(correction)) return emit_rbf(out, *function);
-  if (const VoxelGrid* grid = grid_of(correction)) return emit_grid(out, *grid);
+  if (const RbfFunction* function = rbf_of(correction)) return write_rbf(out, *function);
+  if (const VoxelGrid* grid = grid_of(correction)) return write_grid(out, *grid);
   if (!correction->is_none()) std::abort();  // a kind without C text: a mistake of the program
   out.add(
       "\n/* no correction: the model is its trend */\n\nstatic real correction_of(const real *u) {\n"
@@ -221,16 +194,17 @@ void write_correction(CText& out, const CorrectionPtr& correction) {
 
 // "static real trust_in(const real *u)": 1 near the data, 0 out of domain.
 void write_trust(CText& out, const DomainCover& cover) {
-  const auto n = static_cast<std::size_t>(cover.points.cols());
+  out.add("\n/* ---- trust: the distance to the nearest of the data ---- */\n\n");
+  out.define("COVER_POINTS", static_cast<std::size_t>(cover.points.cols()));
+  const CText exact(false);
+  out.define("INNER_RADIUS", exact.number(cover.inner_radius));
+  out.define("OUTER_RADIUS", exact.number(cover.outer_radius));
   // Compared in single precision, as in the library, whose instructions add a square with one rounding; a sum in double
   // precision with one rounding to single gives the same.
-  out.add("\n/* ---- trust: the distance to the nearest of the data ---- */\n\n#define COVER_POINTS " +
-          std::to_string(n) + "\n#define INNER_RADIUS ");
-  const CText exact(false);
-  out.add(exact.number(cover.inner_radius) + "\n#define OUTER_RADIUS " + exact.number(cover.outer_radius) + "\n");
-  out.add(out.single() ? "#define ADD_SQUARE(sum, x) sum += (x) * (x)\n"
-                       : "#define ADD_SQUARE(sum, x) sum = (float)((double)(x) * (double)(x) + (double)sum)\n");
-  out.table("cover", cover.points.unaryExpr([](double x) { return std::abs(x) < 1e-11 ? 0.0 : x; }), "float");
+  out.define("ADD_SQUARE(sum, x)",
+             out.single() ? "sum += (x) * (x)" : "sum = (float)((double)(x) * (double)(x) + (double)sum)");
+  out.table("cover[][FEATURES]", cover.points.unaryExpr([](double x) { return std::abs(x) < 1e-11 ? 0.0 : x; }),
+            "float");
   out.add(kTrustC);
 }
 
@@ -244,7 +218,7 @@ static real model_force(void) {
   for (k = 0; k < FEATURES; ++k) u[k] = (value[k] - offset[k]) * inverse_scale[k];
   force_N = trend_of();
   trust = trust_in(u);
-  is_out_of_domain = trust < R(0.5) || IS_TOO_DEEP;
+  is_out_of_domain = trust < R(0.5) || value[DEPTH_FEATURE] > DEEPEST_M;
   if (trust > R(0.0)) {
     const real correction_N = correction_of(u) - CORRECTED_SHARE * force_N;
     force_N += trust * clamped(correction_N, -CORRECTION_LIMIT_N, CORRECTION_LIMIT_N);
@@ -274,48 +248,57 @@ void palpate_reset(void) {
 
 int palpate_out_of_domain(void) { return is_out_of_domain; }
 
+static int accepted(real step_s, real position_m) {
+  return finite_number(step_s) && finite_number(position_m) && (!motion.started || step_s > R(0.0));
+}
+
 real palpate_force_after(real step_s, real position_m) {
-  if (!finite_number(step_s) || !finite_number(position_m) || (motion.started && !(step_s > R(0.0)))) return R(0.0);
+  if (!accepted(step_s, position_m)) return R(0.0);
   last_time_s += step_s;
   return force_of(step_s, position_m);
 }
 
 real palpate_force(real time_s, real position_m) {
   const real step_s = time_s - last_time_s;
-  if (!finite_number(time_s) || !finite_number(position_m) || (motion.started && !(step_s > R(0.0)))) return R(0.0);
+  if (!accepted(step_s, position_m)) return R(0.0);
   last_time_s = time_s;
   return force_of(step_s, position_m);
 }
 )C";
 
 void write_constants(CText& out, const ModelData& data) {
-  out.add("\n/* ---- the force ---- */\n\n#define CORRECTED_SHARE " +
-          std::string(data.corrects_trend || data.correction->is_none() ? "R(0.0)" : "R(1.0)") +
-          "\n#define CORRECTION_LIMIT_N " + out.number(data.correction_limit_N) + "\n#define LARGEST_FORCE_N " +
-          out.number(kForceMargin * data.largest_force_N) + "\n#define LOWEST_FORCE_N " +
-          out.number(data.lowest_force_N) + "\n");
-  // A press deeper than the recorded ones, as in the library.
+  out.add("\n/* ---- the force ---- */\n\n");
+  out.define("CORRECTED_SHARE", data.corrects_trend || data.correction->is_none() ? 0.0 : 1.0);
+  out.define("CORRECTION_LIMIT_N", data.correction_limit_N);
+  out.define("LARGEST_FORCE_N", kForceMargin * data.largest_force_N);
+  out.define("LOWEST_FORCE_N", data.lowest_force_N);
+  // A press deeper than the recorded ones, as in the library. Infinity has no literal in C.
   std::size_t depth = 0;
-  const double deepest_m = deepest_in_domain_m(data, depth);
-  out.add("#define IS_TOO_DEEP " +
-          (std::isfinite(deepest_m) ? "(value[" + std::to_string(depth) + "] > " + out.number(deepest_m) + ")" : "0") +
-          "\n");
+  const double deepest_m = std::min(deepest_in_domain_m(data, depth), 1e30);
+  out.define("DEPTH_FEATURE", depth);
+  out.define("DEEPEST_M", deepest_m);
   out.list("offset", data.offset);
   out.list("inverse_scale", Eigen::VectorXd(data.scale.cwiseInverse()));
 }
 
 }  // namespace
 
-ExportedC export_c(const ModelData& data, const ExportRequest& request) {
-  CText out(request.single_precision);
-  out.add(head(data, request));
-  out.add(request.single_precision ? kFloatC : kDoubleC);
-  out.add("#define R(x) ((real)(x))\n#define MOTION_STATES 3\n#define FEATURES " +
-          std::to_string(data.features.size()) + "\n#define SURFACE_POSITION_M " +
-          out.number(surface_position_m(data.features)) +
-          "\n\nreal palpate_force(real time_s, real position_m);\n"
-          "real palpate_force_after(real step_s, real position_m);\n"
-          "void palpate_reset(void);\nint palpate_out_of_domain(void);\n");
+std::string export_c(const ModelData& data, const SensorSpec& sensor, bool single_precision) {
+  CText out(single_precision);
+  out.add("/* Force model " + in_comment(data.name) + ", written by palpate export.\n * Features:");
+  for (const FeatureSpec& spec : data.features) out.add(std::string(" ").append(feature_name(spec)));
+  out.add("\n");
+  out.add(kHeadC);
+  out.add("#ifndef PALPATE_ENCODER_STEP_M\n");
+  out.define("PALPATE_ENCODER_STEP_M", sensor.encoder_step_m);
+  out.add("#endif\n#ifndef PALPATE_POSITION_NOISE_M\n");
+  out.define("PALPATE_POSITION_NOISE_M", sensor.position_noise_m);
+  out.add("#endif\n\n");
+  out.add(single_precision ? kFloatC : kDoubleC);
+  out.define("MOTION_STATES", std::size_t{3});
+  out.define("FEATURES", data.features.size());
+  out.define("SURFACE_POSITION_M", surface_position_m(data.features));
+  out.add(kPrototypesC);
   out.add(kMotionFilterC);
   out.add(kMotionStateC);
   write_features(out, data.features);
@@ -324,9 +307,7 @@ ExportedC export_c(const ModelData& data, const ExportRequest& request) {
   write_trust(out, data.cover);
   write_constants(out, data);
   out.add(kTickC);
-  const std::size_t numbers = kMotionNumbers + 3 * data.features.size();
-  const std::size_t size = request.single_precision ? sizeof(float) : sizeof(double);
-  return {out.text(), out.table_bytes(), numbers * size};
+  return out.text();
 }
 
 }  // namespace palpate

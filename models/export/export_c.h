@@ -12,26 +12,13 @@
 // Thread guarantee: pure function, slow side (allocates).
 #pragma once
 
-#include <cstddef>
 #include <string>
 
-#include "models/export/c_text.h"
 #include "models/model/fitted_model.h"
 
 namespace palpate {
 
-struct ExportRequest {
-  bool single_precision = false;
-  // Defaults of two macros of the file; both 0: exact positions.
-  SensorSpec sensor;
-};
-
-struct ExportedC {
-  std::string text;
-  std::size_t table_bytes = 0;  // size of the constants in the compiled program
-  std::size_t state_bytes = 0;  // size of the variables
-};
-
-ExportedC export_c(const ModelData& data, const ExportRequest& request);
+// `sensor`: the defaults of the macros of the file for step and noise; both 0: exact positions.
+std::string export_c(const ModelData& data, const SensorSpec& sensor, bool single_precision = false);
 
 }  // namespace palpate

@@ -1,5 +1,4 @@
-// Writes the features (engine/tick/features.h) and the trend (models/model/trend.h) as C99 text, with one function for
-// each kind of feature.
+// Writes the features (engine/tick/features.h) and the trend (models/model/trend.h) as C99 text.
 // Thread guarantee: pure functions, slow side (allocate).
 #pragma once
 

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <utility>
 
+#include "engine/base/csv_scanner.h"
 #include "models/model/rbf/kernels.h"
 
 namespace palpate {
@@ -26,10 +30,8 @@ std::vector<double> parse_values(std::string_view text, char separator, std::str
   for (std::string_view part : split(text, separator)) {
     if (!part.ends_with(unit)) return {};
     part.remove_suffix(unit.size());
-    double value = 0.0;
-    const auto [next, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc() || next != part.data() + part.size() || !(value > 0.0) || !std::isfinite(value)) return {};
-    values.push_back(value);
+    const char* const end = part.data() + part.size();
+    if (parse_number(part.data(), end, values.emplace_back()) != end || !(values.back() > 0.0)) return {};
   }
   return values;
 }
@@ -44,42 +46,42 @@ std::vector<int> parse_grid(const std::string& text) {
   return sizes;
 }
 
-Error wrong(std::string_view item, const std::string& expected) {
-  return Error{"found \"" + std::string(item) + "\", expected " + expected};
+std::string found(std::string_view item, const std::string& expected) {
+  return "found \"" + std::string(item) + "\", expected " + expected;
 }
 
 // A kind of feature with one to eight values after its colon.
 struct ListedKind {
   std::string_view kind;
   std::string_view unit;
+  double unit_size;
+  std::vector<double> FeatureList::*values;  // null: maxwell, which may be repeated
   const char* expected;
 };
 constexpr ListedKind kListed[] = {
-    {"maxwell", "", "maxwell: with one to eight times in seconds such as maxwell:0.4+1.27"},
-    {"stops", "mm", "stops: with one to eight thresholds such as stops:0.05mm+0.1mm"},
-    {"creep", "", "creep: with one to eight times in seconds such as creep:0.1+1"}};
+    {"maxwell", "", 1.0, nullptr, "maxwell: with one to eight times in seconds such as maxwell:0.4+1.27"},
+    {"stops", "mm", 1e-3, &FeatureList::stop_thresholds_m,
+     "stops: with one to eight thresholds such as stops:0.05mm+0.1mm"},
+    {"creep", "", 1.0, &FeatureList::creep_times_s, "creep: with one to eight times in seconds such as creep:0.1+1"}};
 
 Status add_item(std::string_view item, FeatureList& list) {
-  const std::size_t colon = item.find(':');
-  const std::string_view rest = colon == std::string_view::npos ? std::string_view() : item.substr(colon + 1);
   if (item == "depth") return {};
   if (item == "velocity" && !list.velocity) {
     list.velocity = true;
     return {};
   }
+  const std::size_t colon = item.find(':');
+  const std::string_view rest = colon == std::string_view::npos ? std::string_view() : item.substr(colon + 1);
   for (const ListedKind& one : kListed) {
-    const bool again = (one.kind == "stops" && !list.stop_thresholds_m.empty()) ||
-                       (one.kind == "creep" && !list.creep_times_s.empty());
-    if (item.substr(0, colon) != one.kind || again) continue;
-    auto values = parse_values(rest, '+', one.unit);
-    if (values.empty() || values.size() > kMaxFeatureParts) return wrong(item, one.expected);
-    if (one.kind == "maxwell") list.relaxation_times_s.push_back(values);
-    if (one.kind == "creep") list.creep_times_s = values;
-    if (one.kind != "stops") return {};
-    for (const double threshold_mm : values) list.stop_thresholds_m.push_back(1e-3 * threshold_mm);
+    if (item.substr(0, colon) != one.kind) continue;
+    auto& values = one.values == nullptr ? list.relaxation_times_s.emplace_back() : list.*one.values;
+    if (!values.empty()) break;
+    values = parse_values(rest, '+', one.unit);
+    if (values.empty() || values.size() > kMaxFeatureParts) return Error{found(item, one.expected)};
+    for (double& value : values) value *= one.unit_size;
     return {};
   }
-  return wrong(item, "depth, velocity, maxwell:, stops: and creep:, where only maxwell: may be repeated");
+  return Error{found(item, "depth, velocity, maxwell:, stops: and creep:, where only maxwell: may be repeated")};
 }
 
 std::size_t feature_count(const FeatureList& list) {
@@ -95,12 +97,42 @@ std::size_t index_of(const Names& names, const std::string& name) {
 template <typename Names>
 std::string check_one_of(const Names& names, const std::string& text) {
   if (index_of(names, text) < names.size()) return "";
-  std::string known;
-  for (const auto& name : names) known += (known.empty() ? "" : ", ") + std::string(name);
-  return "found \"" + text + "\", expected one of " + known;
+  return found(text, "one of " + joined({names.begin(), names.end()}));
 }
 
-const std::vector<std::string> kSurfaces = {"auto", "recorded"};
+std::string check_method(const std::string& text) {
+  return find_method(text) != nullptr ? "" : found(text, "one of " + method_names());
+}
+
+std::optional<std::uint64_t> whole_number(const std::string& text, std::uint64_t least, std::uint64_t most) {
+  std::uint64_t value = 0;
+  const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && next == text.data() + text.size();
+  return whole && value >= least && value <= most ? std::optional(value) : std::nullopt;
+}
+
+struct FitOption {
+  std::string_view name;
+  std::string FitOptions::*value;
+  std::string (*check)(const std::string& text);
+};
+constexpr FitOption kFitOptions[] = {
+    {"method", &FitOptions::method, check_method},
+    {"centres", &FitOptions::centres, check_centres},
+    {"candidates", &FitOptions::candidates, check_candidates},
+    {"kernel", &FitOptions::kernel, [](const std::string& text) { return check_one_of(kernel_names(), text); }},
+    {"weighting", &FitOptions::weighting, [](const std::string& text) { return check_one_of(kWeightingNames, text); }},
+    {"reduction", &FitOptions::reduction, [](const std::string& text) { return check_one_of(kReductionNames, text); }},
+    {"recipe", &FitOptions::recipe,
+     [](const std::string& text) { return text == kRecipe2009 ? "" : found(text, kRecipe2009); }},
+    {"features", &FitOptions::features, check_features},
+    {"relaxation", &FitOptions::relaxation, check_relaxation},
+    {"surface", &FitOptions::surface,
+     [](const std::string& text) {
+       return text == "auto" || text == "recorded" ? "" : found(text, "auto, or recorded");
+     }},
+    {"grid", &FitOptions::grid, check_grid},
+    {"seed", &FitOptions::seed, check_seed}};
 
 }  // namespace
 
@@ -116,79 +148,57 @@ Result<FeatureList> parse_feature_list(const std::string& text) {
   return list;
 }
 
-Result<std::vector<FeatureSpec>> parse_scene_features(const std::string& text) {
-  constexpr std::string_view kLowPass = "lowpass_velocity:";
-  std::vector<FeatureSpec> features;
-  bool has_depth = false;
-  for (const std::string_view item : split(text, ',')) {
-    FeatureSpec& spec = features.emplace_back();
-    if (item == "velocity") {
-      spec.kind = FeatureKind::velocity;
-    } else if (item.starts_with(kLowPass)) {
-      const std::vector<double> times = parse_values(item.substr(kLowPass.size()), '+');
-      if (times.size() != 1) return wrong(item, "one time in seconds such as lowpass_velocity:0.17");
-      spec.kind = FeatureKind::lowpass_velocity;
-      spec.relaxation_time_s = times.front();
-    } else if (item != "depth") {
-      return wrong(item, "depth, velocity and lowpass_velocity:");
-    }
-    has_depth = has_depth || item == "depth";
-  }
-  if (has_depth && features.size() <= kMaxFeatures) return features;
-  return wrong(text, "at most " + std::to_string(kMaxFeatures) + " features, depth among them");
-}
-
 std::string check_features(const std::string& text) {
   if (text == "auto" || text == "scene") return "";
   const auto list = parse_feature_list(text);
   return list ? "" : list.error().message + "; or auto, or scene";
 }
 
+std::string check_centres(const std::string& text) {
+  const std::string most = std::to_string(kMostFittedCentres);
+  return whole_number(text, 1, kMostFittedCentres) ? "" : found(text, "1 to " + most + "; direct uses every site");
+}
+
 std::string check_candidates(const std::string& text) {
-  int value = 0;
-  const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool number = error == std::errc() && next == text.data() + text.size() && value >= 1;
-  return number || text == "all" ? "" : "found \"" + text + "\", expected a whole number of at least 1, or all";
+  const bool valid = text == "all" || whole_number(text, 1, std::numeric_limits<int>::max());
+  return valid ? "" : found(text, "a whole number of at least 1, or all");
 }
 
 std::string check_relaxation(const std::string& text) {
-  if (text == "scene" || text == "auto") return "";
   const std::size_t count = parse_values(text, ',').size();
-  if (count >= 1 && count <= 6) return "";
-  return "found \"" + text + "\", expected scene, auto, or one to six times in seconds such as 0.17,1.27";
+  const bool valid = text == "scene" || text == "auto" || (count >= 1 && count <= 6);
+  return valid ? "" : found(text, "scene, auto, or one to six times in seconds such as 0.17,1.27");
 }
 
 std::string check_grid(const std::string& text) {
-  return parse_grid(text).empty() ? "found \"" + text + "\", expected sizes such as 25x11x11x11" : "";
+  return parse_grid(text).empty() ? found(text, "sizes such as 25x11x11x11") : "";
 }
 
-Status check_fit_options(const FitOptions& options) {
-  std::vector<std::string> names;
-  for (const Method* method : methods()) names.emplace_back(method->name);
-  const std::string centres = options.centres >= 1 && options.centres <= kMostFittedCentres
-                                  ? ""
-                                  : "found " + std::to_string(options.centres) + ", expected 1 to " +
-                                        std::to_string(kMostFittedCentres) + "; direct uses every site";
-  const std::pair<const char*, std::string> checks[] = {
-      {"method", check_one_of(names, options.method)},
-      {"centres", centres},
-      {"candidates", check_candidates(options.candidates)},
-      {"kernel", check_one_of(kernel_names(), options.kernel)},
-      {"weighting", check_one_of(kWeightingNames, options.weighting)},
-      {"reduction", check_one_of(kReductionNames, options.reduction)},
-      {"recipe", options.recipe.empty() ? "" : check_one_of(std::vector<std::string>{kRecipe2009}, options.recipe)},
-      {"features", check_features(options.features)},
-      {"relaxation", options.relaxation.empty() ? "" : check_relaxation(options.relaxation)},
-      {"surface", check_one_of(kSurfaces, options.surface)},
-      {"grid", options.grid.empty() ? "" : check_grid(options.grid)}};
-  for (const auto& [name, wrong] : checks) {
-    if (!wrong.empty()) return Error{std::string(name) + ": " + wrong};
+std::string check_seed(const std::string& text) {
+  return whole_number(text, 0, std::numeric_limits<std::uint64_t>::max()) ? "" : found(text, "a whole number");
+}
+
+Result<FitOptions> parse_fit_options(const std::string& text) {
+  FitOptions options;
+  for (const std::string_view item : split(text, ' ')) {
+    if (item.empty()) continue;
+    const std::size_t end = std::min(item.find('='), item.size());
+    const auto option = std::ranges::find(kFitOptions, item.substr(0, end), &FitOption::name);
+    if (option == std::end(kFitOptions) || end == item.size()) {
+      std::vector<std::string> names;
+      for (const FitOption& known : kFitOptions) names.emplace_back(known.name);
+      return Error{found(item, "NAME=VALUE with a name of " + joined(names))};
+    }
+    const std::string value(item.substr(end + 1));
+    if (const std::string wrong = option->check(value); !wrong.empty())
+      return Error{std::string(option->name) + ": " + wrong};
+    options.*option->value = value;
   }
   if (!options.relaxation.empty() && options.features != "auto" && options.features != "scene") {
     return Error{"relaxation: found the features \"" + options.features +
                  "\", expected the scene's features; leave one of the two out"};
   }
-  return {};
+  return options;
 }
 
 TrainingRequest training_request(const FitOptions& options, TrainingRequest scene) {
@@ -223,11 +233,11 @@ TrainingRequest training_request(const FitOptions& options, TrainingRequest scen
 MethodRequest method_request(const FitOptions& options) {
   MethodRequest request;
   request.method = find_method(options.method);
-  request.centres = options.centres;
+  request.centres = std::stoi(options.centres);
   request.candidates = options.candidates == "all" ? 0 : std::stoi(options.candidates);
   request.kernel = *kernel_from_name(options.kernel);
   request.grid = parse_grid(options.grid);
-  request.seed = options.seed;
+  request.seed = std::stoull(options.seed);
   return request;
 }
 

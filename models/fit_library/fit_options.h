@@ -9,10 +9,7 @@
 // Thread guarantee: pure functions, slow side.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "engine/base/result.h"
 #include "models/fit/fit.h"
@@ -27,40 +24,39 @@ inline constexpr const char* kFeatureListExample =
 // with every site as a centre, has hardly more.
 inline constexpr int kMostFittedCentres = 2000;
 
+inline constexpr const char* kRecipe2009 = "paper-2009";
+
 struct FitOptions {
-  std::string method = "greedy";
-  int centres = 100;                   // 1 to kMostFittedCentres
+  std::string method = "greedy";       // the names of methods()
+  std::string centres = "100";         // 1 to kMostFittedCentres
   std::string candidates = "100";      // a number, or all
   std::string kernel = "cubic";        // kernel_names()
   std::string weighting = "jnd";       // kWeightingNames
   std::string reduction = "coverage";  // kReductionNames
-  std::string recipe;                  // empty: none; paper-2009: that of Hoever & Harders (2009)
+  std::string recipe;                  // empty: none; kRecipe2009
   std::string features = "auto";       // auto, scene, or a list
   std::string relaxation;              // empty: default; scene, auto, or times such as 0.17,1.27
   std::string surface = "auto";        // auto, recorded
   std::string grid;                    // empty: default; nodes per feature such as 25x11x11x11
-  std::uint64_t seed = 1;
+  std::string seed = "1";
 };
 
-inline constexpr const char* kRecipe2009 = "paper-2009";
-
 // Checks of one option each: empty, or "found ..., expected ...".
+std::string check_centres(const std::string& text);
 std::string check_candidates(const std::string& text);
+std::string check_features(const std::string& text);
 std::string check_relaxation(const std::string& text);
 std::string check_grid(const std::string& text);
-std::string check_features(const std::string& text);
+std::string check_seed(const std::string& text);
 
-// Errors: the first option with a value that is not allowed: "name: found ..., expected ...".
-Status check_fit_options(const FitOptions& options);
+// Reads "method=random centres=40": pairs separated by blanks, with the names of FitOptions. Errors: an unknown name;
+// the first value that is not allowed: "name: found ..., expected ...".
+Result<FitOptions> parse_fit_options(const std::string& text);
 
 // Errors: the item, the value found and the value expected.
 Result<FeatureList> parse_feature_list(const std::string& text);
 
-// "depth,velocity,lowpass_velocity:0.17": the features that a scene's file may have; depth is required.
-Result<std::vector<FeatureSpec>> parse_scene_features(const std::string& text);
-
-// The request of a fit. `scene`: a request with the scene's name, features and JND line. The options must have passed
-// check_fit_options.
+// The request of a fit. `scene`: a request with the scene's name, features and JND line. The options must be valid.
 TrainingRequest training_request(const FitOptions& options, TrainingRequest scene);
 MethodRequest method_request(const FitOptions& options);
 

@@ -1,17 +1,19 @@
-// The model handle of the C interface, and its error reports: text in the caller's buffer, never an exception.
+// The model handle of the C interface, the conversion of recordings, and error reports: text in the caller's buffer,
+// never an exception.
 // Thread guarantee: pure functions, any thread.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <memory>
-#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/recording/recording.h"
 #include "models/library/palpate/palpate.h"
 #include "models/model/fitted_model.h"
 
@@ -28,56 +30,56 @@ struct palpate_model {
 
 namespace palpate::library {
 
-// The caller's buffer for one text; `text` may be null.
-struct TextBuffer {
-  char* text = nullptr;
-  std::size_t size = 0;
-
-  // Writes as much of `message` as fits, in whole UTF-8 characters, with a terminating zero.
-  void write(std::string_view message) const noexcept {
-    if (text == nullptr || size == 0) return;
-    std::size_t count = message.size() < size ? message.size() : size - 1;
-    if (count < message.size()) {
-      while (count > 0 && (static_cast<unsigned char>(message[count]) & 0xC0U) == 0x80U) --count;
-    }
-    message.copy(text, count);
-    text[count] = '\0';
+// The rows of a recording in columns; a column that is missing is 0.
+inline Recording recording_of(const palpate_recording& given) {
+  const auto at = [](const double* column, std::size_t i) { return column == nullptr ? 0.0 : column[i]; };
+  Recording recording{given.name == nullptr ? "" : given.name,
+                      {given.velocity_m_per_s != nullptr, given.acceleration_m_per_s2 != nullptr},
+                      std::vector<RecordingRow>(given.size)};
+  for (std::size_t i = 0; i < given.size; ++i) {
+    recording.rows[i] = {at(given.time_s, i), at(given.position_m, i), at(given.force_N, i),
+                         at(given.velocity_m_per_s, i), at(given.acceleration_m_per_s2, i)};
   }
-};
-
-// Returns the value of the Result that `work` returns, or `failed` if it has an error or `work` throws, with the text
-// of the error at `buffer`. Without an error the text is empty.
-template <typename T, typename Work>
-T guarded(T failed, TextBuffer buffer, Work&& work) noexcept {
-  buffer.write("");
-  try {
-    const Result<T> done = work();
-    if (done) return *done;
-    buffer.write(done.error().message);
-  } catch (const std::bad_alloc&) {
-    buffer.write("out of memory");
-  } catch (const std::exception& error) {
-    buffer.write(error.what());
-  } catch (...) {
-    buffer.write("unexpected: an exception that is not a std::exception");
-  }
-  return failed;
+  return recording;
 }
 
-// For functions that return a handle, or null after an error.
+// Writes as much of `message` as fits into the caller's buffer, which may be null, in whole UTF-8 characters and with a
+// terminating zero.
+inline void write_text(char* text, std::size_t size, std::string_view message) noexcept {
+  if (text == nullptr || size == 0) return;
+  std::size_t count = std::min(message.size(), size - 1);
+  const auto in_character = [&] { return (static_cast<unsigned char>(message[count]) & 0xC0U) == 0x80U; };
+  while (count > 0 && count < message.size() && in_character()) --count;
+  message.copy(text, count);
+  text[count] = '\0';
+}
+
+// For functions that return a handle: the value of the Result that `work` returns. If it has an error or `work` throws,
+// null, and the text of the error in `error`, which is otherwise empty.
 template <typename T, typename Work>
 T* made(char* error, std::size_t error_size, Work&& work) noexcept {
-  return guarded<T*>(nullptr, {error, error_size}, std::forward<Work>(work));
+  write_text(error, error_size, "");
+  try {
+    const Result<T*> done = work();
+    if (done) return *done;
+    write_text(error, error_size, done.error().message);
+  } catch (const std::exception& exception) {
+    write_text(error, error_size, exception.what());
+  }
+  return nullptr;
 }
 
-// For functions that return 0, or -1 after an error. `work` returns a Status.
+// The same for functions that return 0, or -1 after an error. `work` returns a Status.
 template <typename Work>
 int status_of(char* error, std::size_t error_size, Work&& work) noexcept {
-  return guarded<int>(-1, {error, error_size}, [&]() -> Result<int> {
+  int done = -1;
+  made<int>(error, error_size, [&]() -> Result<int*> {
     const Status status = work();
     if (!status) return status.error();
-    return 0;
+    done = 0;
+    return &done;
   });
+  return done;
 }
 
 }  // namespace palpate::library

@@ -11,13 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
 #include "engine/base/result.h"
 #include "engine/live/force_limiter.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
-#include "models/export/export_c.h"
 #include "models/library/c_interface.h"
 #include "models/model/file/model_io.h"
 
@@ -30,6 +28,30 @@ struct palpate_stream {
   // The values of the last accepted sample.
   bool out_of_domain = false;
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
+};
+
+// A recording that owns its name and columns.
+struct OwnedRecording : palpate_recording {
+  explicit OwnedRecording(palpate::Recording recording) : palpate_recording{}, owned_name(std::move(recording.name)) {
+    name = owned_name.c_str();
+    size = recording.rows.size();
+    time_s = add(recording, &palpate::RecordingRow::time_s);
+    position_m = add(recording, &palpate::RecordingRow::position_m);
+    force_N = add(recording, &palpate::RecordingRow::force_N);
+    if (recording.columns.velocity) velocity_m_per_s = add(recording, &palpate::RecordingRow::velocity_m_per_s);
+    if (recording.columns.acceleration)
+      acceleration_m_per_s2 = add(recording, &palpate::RecordingRow::acceleration_m_per_s2);
+  }
+
+ private:
+  const double* add(const palpate::Recording& recording, double palpate::RecordingRow::*column) {
+    std::vector<double>& values = columns.emplace_back();
+    for (const palpate::RecordingRow& row : recording.rows) values.push_back(row.*column);
+    return values.data();
+  }
+
+  std::string owned_name;
+  std::vector<std::vector<double>> columns;
 };
 
 struct palpate_limiter {
@@ -60,39 +82,24 @@ Status check_numbers(std::initializer_list<GivenNumber> numbers) {
 }
 
 Result<SensorSpec> sensor_spec(const palpate_sensor& sensor) {
+  const Status status = check_numbers({{"encoder_step_m", sensor.encoder_step_m, true},
+                                       {"position_noise_m", sensor.position_noise_m, true},
+                                       {"velocity_noise_m_per_s", sensor.velocity_noise_m_per_s, true},
+                                       {"acceleration_noise_m_per_s2", sensor.acceleration_noise_m_per_s2, true}});
+  if (!status) return status.error();
   SensorSpec spec;
   spec.encoder_step_m = sensor.encoder_step_m;
   spec.position_noise_m = sensor.position_noise_m;
-  spec.has_velocity = sensor.has_velocity != 0;
-  spec.has_acceleration = sensor.has_acceleration != 0;
-  if (spec.has_velocity) spec.velocity_noise_m_per_s = sensor.velocity_noise_m_per_s;
-  if (spec.has_acceleration) spec.acceleration_noise_m_per_s2 = sensor.acceleration_noise_m_per_s2;
-  const Status status =
-      check_numbers({{"encoder_step_m", spec.encoder_step_m, true},
-                     {"position_noise_m", spec.position_noise_m, true},
-                     {"velocity_noise_m_per_s", spec.velocity_noise_m_per_s, !spec.has_velocity},
-                     {"acceleration_noise_m_per_s2", spec.acceleration_noise_m_per_s2, !spec.has_acceleration}});
-  if (!status) return status.error();
+  spec.velocity_noise_m_per_s = sensor.velocity_noise_m_per_s;
+  spec.acceleration_noise_m_per_s2 = sensor.acceleration_noise_m_per_s2;
+  spec.has_velocity = sensor.velocity_noise_m_per_s > 0.0;
+  spec.has_acceleration = sensor.acceleration_noise_m_per_s2 > 0.0;
   return spec;
 }
 
 palpate_sensor sensor_from(const SensorSpec& spec) {
-  return {spec.encoder_step_m,         spec.position_noise_m,
-          spec.velocity_noise_m_per_s, spec.acceleration_noise_m_per_s2,
-          spec.has_velocity ? 1 : 0,   spec.has_acceleration ? 1 : 0};
-}
-
-// Identifies the sensor from the first kSensorIdentificationRows samples.
-SensorSpec sensor_of_samples(size_t n, const double* time_s, const double* position_m, const double* velocity_m_per_s,
-                             const double* acceleration_m_per_s2) {
-  std::vector<RecordingRow> rows(std::min(n, kSensorIdentificationRows));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i].time_s = time_s[i];
-    rows[i].position_m = position_m[i];
-    if (velocity_m_per_s != nullptr) rows[i].velocity_m_per_s = velocity_m_per_s[i];
-    if (acceleration_m_per_s2 != nullptr) rows[i].acceleration_m_per_s2 = acceleration_m_per_s2[i];
-  }
-  return identify_sensor(rows.data(), rows.size(), {velocity_m_per_s != nullptr, acceleration_m_per_s2 != nullptr});
+  return {spec.encoder_step_m, spec.position_noise_m, spec.has_velocity ? spec.velocity_noise_m_per_s : 0.0,
+          spec.has_acceleration ? spec.acceleration_noise_m_per_s2 : 0.0};
 }
 
 Result<ForceLimits> force_limits(const palpate_limits& limits) {
@@ -120,9 +127,11 @@ double step(palpate_stream& stream, const ToolSample& sample) noexcept {
 }  // namespace palpate::library
 
 using palpate::Error;
+using palpate::Recording;
 using palpate::Result;
 using palpate::Status;
 using palpate::library::made;
+using palpate::library::recording_of;
 using palpate::library::status_of;
 
 int palpate_abi_version(void) { return PALPATE_ABI_VERSION; }
@@ -151,18 +160,6 @@ int palpate_model_save(const palpate_model* model, const char* path, int overwri
   });
 }
 
-int palpate_model_export_c(const palpate_model* model, double encoder_step_m, int single_precision, const char* path,
-                           int overwrite, char* error, size_t error_size) {
-  return status_of(error, error_size, [&]() -> Status {
-    if (model == nullptr || path == nullptr) return Error{"found no model or no path, expected both"};
-    const Status valid = palpate::library::check_numbers({{"encoder_step_m", encoder_step_m, true}});
-    if (!valid) return valid;
-    const palpate::ModelData& data = model->model->data();
-    const auto file = palpate::export_c(data, {single_precision != 0, sensor_with_step(data, encoder_step_m)});
-    return palpate::write_file_atomically(path, file.text, overwrite != 0);
-  });
-}
-
 size_t palpate_model_feature_count(const palpate_model* model) {
   return model == nullptr ? 0 : model->feature_names.size();
 }
@@ -171,23 +168,29 @@ const char* palpate_model_feature_name(const palpate_model* model, size_t index)
   return index < palpate_model_feature_count(model) ? model->feature_names[index].c_str() : "";
 }
 
-int palpate_model_evaluate(const palpate_model* model, size_t n, const double* features, double* force_N,
-                           double* bound_N, double* trend_N, unsigned char* outside) {
-  if (model == nullptr || features == nullptr) return -1;
-  const palpate::FittedModel& fitted = *model->model;
-  const palpate::TrendInputs inputs(fitted.features());
-  for (size_t i = 0; i < n; ++i, features += fitted.features().size()) {
-    const palpate::ForceEstimate estimate = fitted.evaluate(features);
-    if (force_N != nullptr) force_N[i] = estimate.force_N;
-    if (bound_N != nullptr) bound_N[i] = estimate.predicted_error_N;
-    if (trend_N != nullptr) trend_N[i] = fitted.data().trend.at(features, inputs);
-    if (outside != nullptr) outside[i] = estimate.out_of_domain ? 1 : 0;
-  }
-  return 0;
+palpate_recording* palpate_recording_load(const char* path, char* error, size_t error_size) {
+  return made<palpate_recording>(error, error_size, [&]() -> Result<palpate_recording*> {
+    if (path == nullptr) return Error{"found no path, expected that of a recording"};
+    auto recording = palpate::read_recording(path);
+    if (!recording) return recording.error();
+    return new OwnedRecording(*recording);
+  });
 }
 
-double palpate_jnd_N(const palpate_model* model, double force_N) {
-  return (model == nullptr ? palpate::JndLine{} : model->model->data().jnd).at(force_N);
+void palpate_recording_free(palpate_recording* recording) { delete static_cast<OwnedRecording*>(recording); }
+
+int palpate_in_contact(const palpate_recording* given, unsigned char* in_contact) {
+  if (given == nullptr || in_contact == nullptr) return -1;
+  return status_of(nullptr, 0, [&]() -> Status {
+    const Recording recording = recording_of(*given);
+    // As in a replay, which reads long recordings in chunks, from the first rows.
+    const std::size_t first_rows = std::min(recording.rows.size(), palpate::kSensorIdentificationRows);
+    const double least_N = palpate::least_contact_N(recording.rows.data(), first_rows, 0.0);
+    std::ranges::transform(recording.rows, in_contact, [&](const palpate::RecordingRow& row) {
+      return row.position_m > 0.0 || std::abs(row.force_N) > least_N ? 1 : 0;
+    });
+    return {};
+  });
 }
 
 palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_step_m, char* error, size_t error_size) {
@@ -209,36 +212,12 @@ palpate_stream* palpate_stream_new_with_sensor(const palpate_model* model, const
   });
 }
 
-int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* error, size_t error_size) {
-  return status_of(error, error_size, [&]() -> Status {
-    if (path == nullptr || sensor == nullptr) return Error{"found no path or no sensor to fill, expected both"};
-    auto reader = palpate::RecordingReader::open(path);
-    if (!reader) return reader.error();
-    std::vector<palpate::RecordingRow> rows(palpate::kSensorIdentificationRows);
-    const auto count = reader->read(rows.data(), rows.size());
-    if (!count) return count.error();
-    *sensor = palpate::library::sensor_from(palpate::identify_sensor(rows.data(), *count, reader->columns()));
-    return {};
-  });
-}
-
-int palpate_sensor_of_samples(size_t n, const double* time_s, const double* position_m, const double* velocity_m_per_s,
-                              const double* acceleration_m_per_s2, palpate_sensor* sensor) {
-  if (time_s == nullptr || position_m == nullptr || sensor == nullptr) return -1;
+int palpate_sensor_of(const palpate_recording* given, palpate_sensor* sensor) {
+  if (given == nullptr || sensor == nullptr) return -1;
   return status_of(nullptr, 0, [&]() -> Status {
+    const Recording recording = recording_of(*given);
     *sensor = palpate::library::sensor_from(
-        palpate::library::sensor_of_samples(n, time_s, position_m, velocity_m_per_s, acceleration_m_per_s2));
-    return {};
-  });
-}
-
-int palpate_in_contact(size_t n, const double* position_m, const double* force_N, unsigned char* in_contact) {
-  if (position_m == nullptr || force_N == nullptr || in_contact == nullptr) return -1;
-  return status_of(nullptr, 0, [&]() -> Status {
-    std::vector<palpate::RecordingRow> rows(std::min(n, palpate::kSensorIdentificationRows));
-    for (size_t i = 0; i < rows.size(); ++i) rows[i] = {0.0, position_m[i], force_N[i]};
-    const double least_N = palpate::least_contact_N(rows.data(), rows.size(), 0.0);
-    for (size_t i = 0; i < n; ++i) in_contact[i] = position_m[i] > 0.0 || std::abs(force_N[i]) > least_N ? 1 : 0;
+        palpate::identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns));
     return {};
   });
 }
@@ -265,18 +244,19 @@ double palpate_stream_force_with_motion(palpate_stream* stream, double time_s, d
 
 int palpate_stream_forces(palpate_stream* stream, size_t n, const double* time_s, const double* position_m,
                           double* force_N, double* bound_N) {
-  return palpate_stream_forces_with_motion(stream, n, time_s, position_m, nullptr, nullptr, force_N, bound_N, nullptr);
+  const palpate_recording motion = {"", n, time_s, position_m, nullptr, nullptr, nullptr};
+  return palpate_stream_replay(stream, &motion, force_N, bound_N, nullptr);
 }
 
-int palpate_stream_forces_with_motion(palpate_stream* stream, size_t n, const double* time_s, const double* position_m,
-                                      const double* velocity_m_per_s, const double* acceleration_m_per_s2,
-                                      double* force_N, double* bound_N, double* features) {
-  if (stream == nullptr || time_s == nullptr || position_m == nullptr) return -1;
+int palpate_stream_replay(palpate_stream* stream, const palpate_recording* motion, double* force_N, double* bound_N,
+                          double* features) {
+  if (stream == nullptr || motion == nullptr || motion->time_s == nullptr || motion->position_m == nullptr) return -1;
   const size_t width = stream->tick.model(0).features().size();
-  for (size_t i = 0; i < n; ++i) {
-    const double force = palpate_stream_force_with_motion(
-        stream, time_s[i], position_m[i], velocity_m_per_s != nullptr ? velocity_m_per_s[i] : 0.0,
-        acceleration_m_per_s2 != nullptr ? acceleration_m_per_s2[i] : 0.0);
+  const auto at = [](const double* column, size_t i) { return column == nullptr ? 0.0 : column[i]; };
+  for (size_t i = 0; i < motion->size; ++i) {
+    const double force =
+        palpate_stream_force_with_motion(stream, motion->time_s[i], motion->position_m[i],
+                                         at(motion->velocity_m_per_s, i), at(motion->acceleration_m_per_s2, i));
     if (force_N != nullptr) force_N[i] = force;
     if (bound_N != nullptr) bound_N[i] = stream->predicted_error_N;
     if (features != nullptr) std::copy_n(stream->tick.features_of(0).values.data(), width, features + i * width);

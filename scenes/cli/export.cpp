@@ -24,26 +24,24 @@ std::string source_of_sensor(const ExportArguments& arguments, const ModelData& 
   return data.sensor ? "from the model's recordings" : "the model has no step of its recordings; see --encoder-step";
 }
 
-void print_summary(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
-                   const ExportedC& file) {
+void print_summary(const ExportArguments& arguments, const ModelData& data, const SensorSpec& sensor,
+                   std::size_t bytes) {
   std::printf("%s: %s in %s precision, %zu bytes of C\n", arguments.out.c_str(), data.name.c_str(),
-              arguments.single_precision ? "single" : "double", file.text.size());
+              arguments.single_precision ? "single" : "double", bytes);
   std::printf(
       "expects positions in steps of %g um with an additional noise of %g um (%s);\n"
       "for a recording of such positions alone, it gives the forces of palpate replay\n",
-      1e6 * request.sensor.encoder_step_m, 1e6 * request.sensor.position_noise_m,
-      source_of_sensor(arguments, data).c_str());
-  std::printf("tables %zu bytes, state %zu bytes\n", file.table_bytes, file.state_bytes);
+      1e6 * sensor.encoder_step_m, 1e6 * sensor.position_noise_m, source_of_sensor(arguments, data).c_str());
 }
 
 Status run_export(const ExportArguments& arguments) {
   const auto model = load_model(arguments.model);
   if (!model) return model.error();
   const ModelData& data = (*model)->data();
-  const ExportRequest request{arguments.single_precision, sensor_with_step(data, arguments.encoder_step_m)};
-  const ExportedC file = export_c(data, request);
-  if (Status status = write_file_atomically(arguments.out, file.text, arguments.force); !status) return status;
-  print_summary(arguments, data, request, file);
+  const SensorSpec sensor = sensor_with_step(data, arguments.encoder_step_m);
+  const std::string text = export_c(data, sensor, arguments.single_precision);
+  if (Status status = write_file_atomically(arguments.out, text, arguments.force); !status) return status;
+  print_summary(arguments, data, sensor, text.size());
   return {};
 }
 

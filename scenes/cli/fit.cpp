@@ -203,7 +203,8 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   verb->option_defaults()->always_capture_default();
   verb->add_option("--centres", arguments->options.centres,
                    "Number of centres, for " + method_names(kTakesCentres) + "; direct uses every site")
-      ->check(CLI::Range(1, kMostFittedCentres));
+      ->type_name("INT")
+      ->check(CLI::Validator(check_centres, "1 - " + std::to_string(kMostFittedCentres)));
   verb->add_option("--candidates", arguments->options.candidates,
                    "Candidate sites per step, a number or all, for " + method_names(kTakesCandidates))
       ->check(CLI::Validator(check_candidates, "N|all"));
@@ -240,7 +241,9 @@ void add_fit(CLI::App& app, Verbs& verbs) {
       ->check(CLI::Validator(check_grid, "NxN"));
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line");
   verb->add_option("--seed", arguments->options.seed,
-                   "Seed of the random numbers, for " + method_names(kTakesSeed));
+                   "Seed of the random numbers, for " + method_names(kTakesSeed))
+      ->type_name("INT")
+      ->check(CLI::Validator(check_seed, ""));
   verb->add_option("--out", arguments->out, "Model file to write (JSON)")->required()->type_name("JSON");
   verb->add_flag("--force", arguments->force, "Replace an existing file");
   verb->add_flag("--json", arguments->json, "Print one JSON object");

@@ -8,7 +8,7 @@
 set -euo pipefail
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 packages=$(cd "$1" && pwd)
-debs=("$packages"/palpate_*.deb "$packages"/libpalpate2_*.deb "$packages"/libpalpate-dev_*.deb
+debs=("$packages"/palpate_*.deb "$packages"/libpalpate3_*.deb "$packages"/libpalpate-dev_*.deb
   "$packages"/python3-palpate_*.deb)
 for deb in "${debs[@]}"; do
   [ -f "$deb" ] || { echo "error: found no $deb; make the packages first: cmake --build build --target package" >&2; exit 1; }

@@ -16,9 +16,8 @@ namespace palpate::test {
 template <typename Real>
 class CompiledModel {
  public:
-  CompiledModel(const ModelData& data, ExportRequest request) {
-    request.single_precision = sizeof(Real) == sizeof(float);
-    load(export_c(data, request).text);
+  CompiledModel(const ModelData& data, const SensorSpec& sensor) {
+    load(export_c(data, sensor, sizeof(Real) == sizeof(float)));
   }
   // Compiles and loads the output of `palpate export`.
   explicit CompiledModel(const std::string& text) { load(text); }

@@ -1,5 +1,5 @@
-"""forest.py TRAIN.csv: cross-validates a random forest (Debian: python3-sklearn) on the features of a model, the two
-trivial baselines and Palpate's fit, with the folds of the fit. Takes minutes for a long recording."""
+"""forest.py TRAIN.csv TEST.csv: compares a random forest (Debian: python3-sklearn) on the features of a model with the
+model, on a recording that both have not seen."""
 import sys
 
 from sklearn.ensemble import RandomForestRegressor
@@ -7,20 +7,18 @@ from sklearn.ensemble import RandomForestRegressor
 import palpate
 
 
-def main(train):
-    rec = palpate.read_recording(train)
-    model = palpate.fit([rec])
-    features = model.features(rec["time_s"], rec["position_m"])
-    folds = palpate.find_folds(features[:, 0])
-    simple = palpate.baselines.features(rec)
-    compared = {"bins": (simple, palpate.baselines.Bins()), "ridge": (simple, palpate.baselines.Ridge()),
-                "random forest": (features, RandomForestRegressor(100, min_samples_leaf=5, n_jobs=-1, random_state=1)),
-                "palpate": ([rec], palpate.Estimator())}
-    print("folds: %d; features: %s" % (folds.max() + 1, ", ".join(model.feature_names)))
-    for name, (known, estimator) in compared.items():
-        result = palpate.cross_validate(known, rec["force_N"], estimator, folds)
-        print("%-14s %5.1f %% within the JND, RMS error %.1f mN"
-              % (name, 100 * result.within_jnd, 1e3 * result.rms_error_N))
+def main(train, test):
+    train, test = palpate.read_recording(train), palpate.read_recording(test)
+    model = palpate.fit([train])
+    features, of_test = (model.features(rec["time_s"], rec["position_m"]) for rec in (train, test))
+    contact = features[:, 0] > 0.0
+    forest = RandomForestRegressor(100, min_samples_leaf=5, n_jobs=-1, random_state=1)
+    forest.fit(features[contact], train["force_N"][contact])
+    print("features: %s" % ", ".join(model.feature_names))
+    counts = palpate.in_contact(test["position_m"], test["force_N"])
+    for name, force_N in (("random forest", forest.predict(of_test) * (of_test[:, 0] > 0.0)),
+                          ("palpate", model.render(test["time_s"], test["position_m"])[0])):
+        print("%-14s %5.1f %% within the JND" % (name, 100 * palpate.within_jnd(force_N, test["force_N"], counts)))
 
 
 if __name__ == "__main__":

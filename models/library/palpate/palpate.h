@@ -9,8 +9,8 @@
  * of recordings whose surface was at another position has its surface there. Forces act along the outward normal,
  * positive when the material pushes the tool out.
  *
- * A stream runs the code of `palpate replay`: the same samples, with the same sensor
- * (palpate_sensor_of_recording), give the same forces to the last bit.
+ * A stream runs the code of `palpate replay`: the same samples, with the same sensor (palpate_sensor_of), give the same
+ * forces to the last bit.
  *
  * Errors: functions that can fail return NULL (or -1) and write one line of UTF-8 to `error`, truncated to `error_size`
  * bytes with the terminating zero; `error` may be NULL. No function throws, writes to a terminal, or changes the locale
@@ -33,7 +33,7 @@ extern "C" {
 #endif
 
 /* Increases when a function or a struct of this header changes its meaning or its layout. */
-#define PALPATE_ABI_VERSION 2
+#define PALPATE_ABI_VERSION 3
 
 /* The version of the linked library; a program compares it with PALPATE_ABI_VERSION. */
 PALPATE_API int palpate_abi_version(void);
@@ -55,34 +55,41 @@ PALPATE_API const char* palpate_model_report(const palpate_model*);
 /* Writes the model file atomically. Returns 0, or -1: see error. */
 PALPATE_API int palpate_model_save(const palpate_model*, const char* path, int overwrite, char* error,
                                    size_t error_size);
-/* Writes the model as one self-contained C99 file, as `palpate export`. `encoder_step_m`: as palpate_stream_new.
- * Returns 0, or -1: see error. */
-PALPATE_API int palpate_model_export_c(const palpate_model*, double encoder_step_m, int single_precision,
-                                       const char* path, int overwrite, char* error, size_t error_size);
-
 /* The number of features of the model, 1 to 8, and their names, e.g. "feature_depth_m"; valid until the model is freed,
  * empty for an index beyond the last. */
 PALPATE_API size_t palpate_model_feature_count(const palpate_model*);
 PALPATE_API const char* palpate_model_feature_name(const palpate_model*, size_t index);
-/* Evaluates the model at `n` feature vectors in contact, one after the other. force_N: trend + correction within the
- * model's limits; bound_N: 95 % bound on the error, NaN if the model has none; trend_N: the trend alone; outside: 1 out
- * of the domain, else 0. Each result may be NULL. Returns 0, or -1 for a NULL model or NULL features. Any thread. */
-PALPATE_API int palpate_model_evaluate(const palpate_model*, size_t n, const double* features, double* force_N,
-                                       double* bound_N, double* trend_N, unsigned char* outside);
-/* The just noticeable difference at a force, by the line of the model; NULL model: that of Hoever and Harders (2009),
- * 0.065 N + 0.0633 |force_N|. */
-PALPATE_API double palpate_jnd_N(const palpate_model*, double force_N);
+/* ---- recordings ---- */
+
+/* A recording, or the motion of a tool: `size` samples in columns. A column that was not measured, or that a function
+ * does not use, may be NULL. */
+typedef struct palpate_recording {
+  const char* name; /* of a file, without folder and extension; appears in models that are fitted to the recording */
+  size_t size;
+  const double* time_s;
+  const double* position_m;
+  const double* force_N;
+  const double* velocity_m_per_s;
+  const double* acceleration_m_per_s2;
+} palpate_recording;
+
+/* Reads a recording file. NULL: see error, which has file, line and column. Slow side. */
+PALPATE_API palpate_recording* palpate_recording_load(const char* path, char* error, size_t error_size);
+/* Frees a recording of palpate_recording_load with its columns. */
+PALPATE_API void palpate_recording_free(palpate_recording*);
+/* Selects the samples that error figures are computed over, as in replay: a position above 0, or a measured force
+ * beyond both the JND at 0 N and five times its noise. in_contact: receives 1 or 0 for each sample. Returns 0, or -1
+ * for NULL. */
+PALPATE_API int palpate_in_contact(const palpate_recording*, unsigned char* in_contact);
 
 /* ---- streams ---- */
 
-/* The sensor of the positions. */
+/* The sensor of the tool. */
 typedef struct palpate_sensor {
   double encoder_step_m;              /* 0: not quantised */
   double position_noise_m;            /* standard deviation in addition to the quantisation */
-  double velocity_noise_m_per_s;      /* used with has_velocity, then > 0 */
-  double acceleration_noise_m_per_s2; /* used with has_acceleration, then > 0 */
-  int has_velocity;                   /* samples come with a measured velocity */
-  int has_acceleration;               /* samples come with a measured acceleration */
+  double velocity_noise_m_per_s;      /* standard deviation of measured velocities; 0: none are measured */
+  double acceleration_noise_m_per_s2; /* standard deviation of measured accelerations; 0: none are measured */
 } palpate_sensor;
 
 /* A stream of positions alone, quantised in steps of encoder_step_m (>= 0). If it is 0 (unknown) or the step of the
@@ -94,19 +101,9 @@ PALPATE_API palpate_stream* palpate_stream_new(const palpate_model*, double enco
 /* A stream with exactly this sensor. NULL: a number is out of its range or not finite. Slow side. */
 PALPATE_API palpate_stream* palpate_stream_new_with_sensor(const palpate_model*, const palpate_sensor*, char* error,
                                                            size_t error_size);
-/* The sensor of a recording, as identified by replay from the first 30,000 rows. encoder_step_m is 0 if the positions
- * are not quantised; position_noise_m is then their noise. Slow side. Returns 0, or -1: the file is no recording. */
-PALPATE_API int palpate_sensor_of_recording(const char* path, palpate_sensor*, char* error, size_t error_size);
-/* The same for `n` samples in memory; velocity and acceleration may be NULL. Returns 0, or -1 for NULL. */
-PALPATE_API int palpate_sensor_of_samples(size_t n, const double* time_s, const double* position_m,
-                                          const double* velocity_m_per_s, const double* acceleration_m_per_s2,
-                                          palpate_sensor*);
-
-/* Selects the samples that error figures are computed over, as in replay: a position above 0, or a measured force
- * beyond both the JND at 0 N and five times its noise. in_contact: receives 1 or 0 for each sample. Returns 0, or -1
- * for NULL. */
-PALPATE_API int palpate_in_contact(size_t n, const double* position_m, const double* force_N,
-                                   unsigned char* in_contact);
+/* The sensor of a recording, as identified by replay from the first 30,000 samples. encoder_step_m is 0 if the
+ * positions are not quantised; position_noise_m is then their noise. Slow side. Returns 0, or -1 for NULL. */
+PALPATE_API int palpate_sensor_of(const palpate_recording*, palpate_sensor*);
 
 PALPATE_API void palpate_stream_free(palpate_stream*);
 /* Resets the motion estimate and the filters; the next sample may have any time. Wait-free. */
@@ -124,12 +121,10 @@ PALPATE_API double palpate_stream_force_with_motion(palpate_stream*, double time
  * each sample. bound_N may be NULL. Wait-free. Returns 0, or -1 for NULL. */
 PALPATE_API int palpate_stream_forces(palpate_stream*, size_t n, const double* time_s, const double* position_m,
                                       double* force_N, double* bound_N);
-/* The same with measured velocity and acceleration (NULL: not measured). features: receives the feature vectors, one
- * after the other. Each of the results may be NULL. */
-PALPATE_API int palpate_stream_forces_with_motion(palpate_stream*, size_t n, const double* time_s,
-                                                  const double* position_m, const double* velocity_m_per_s,
-                                                  const double* acceleration_m_per_s2, double* force_N, double* bound_N,
-                                                  double* features);
+/* The same for the motion of a recording, with all its columns. features: receives the feature vectors, one after the
+ * other. Each of the results may be NULL. */
+PALPATE_API int palpate_stream_replay(palpate_stream*, const palpate_recording*, double* force_N, double* bound_N,
+                                      double* features);
 
 /* 1 if the motion at the last accepted sample was out of the domain of the recordings, so that the force is
  * mainly the model's trend; otherwise, and out of contact, 0. Wait-free. */

@@ -6,8 +6,7 @@
 //   for (;;) render(limiter.force(stream.force(time_s, position_m), step_s));
 //
 // With palpate::fit linked also
-//   palpate::import_table("lab.txt", "press.csv");
-//   palpate::fit({"press.csv"}, "block.json");
+//   palpate::fit({palpate::Recording("press.csv")}, "method=random centres=40").save("block.json");
 //
 // All functions are inline and call functions with C linkage, so that a program may use another compiler, or other
 // options, than the library.
@@ -61,38 +60,55 @@ class Model {
  public:
   // Throws: no such file, not a model, damaged; a library of another ABI version.
   explicit Model(const std::string& path)
-      : model_(detail::checked([&](char* error, std::size_t size) {
-                 if (palpate_abi_version() != PALPATE_ABI_VERSION) {
-                   throw Failure("found ABI version " + std::to_string(palpate_abi_version()) +
-                                 " of the palpate library, expected " + std::to_string(PALPATE_ABI_VERSION) +
-                                 "; build the program again");
-                 }
-                 return palpate_model_load(path.c_str(), error, size);
-               }),
-               detail::Free{}) {}
+      : Model(detail::checked([&](char* error, std::size_t size) {
+          if (palpate_abi_version() != PALPATE_ABI_VERSION) {
+            throw Failure("found ABI version " + std::to_string(palpate_abi_version()) +
+                          " of the palpate library, expected " + std::to_string(PALPATE_ABI_VERSION) +
+                          "; build the program again");
+          }
+          return palpate_model_load(path.c_str(), error, size);
+        })) {}
+  // Takes over a handle.
+  explicit Model(palpate_model* model) : model_(model, detail::Free{}) {}
 
   // E.g. "greedy-100".
   std::string name() const { return palpate_model_name(model_.get()); }
+  // Writes the model file atomically. Throws: the file exists and is not to be replaced; it cannot be written.
+  void save(const std::string& path, bool overwrite = false) const {
+    detail::checked([&](char* error, std::size_t size) {
+      return palpate_model_save(model_.get(), path.c_str(), overwrite, error, size) == 0;
+    });
+  }
   const palpate_model* handle() const noexcept { return model_.get(); }
 
  private:
   std::shared_ptr<palpate_model> model_;
 };
 
-// The sensor of the positions; fields as in palpate.h, initially 0.
-struct Sensor : palpate_sensor {
-  Sensor() noexcept : palpate_sensor{} {}
-  // Positions in steps of this many metres; 0: exact.
-  Sensor(double step_m) noexcept : palpate_sensor{} { encoder_step_m = step_m; }
+// A recording in memory. Copies share it.
+class Recording {
+ public:
+  // Throws: not a recording; with file, line and column.
+  explicit Recording(const std::string& path)
+      : recording_(detail::checked([&](char* error, std::size_t size) {
+                     return palpate_recording_load(path.c_str(), error, size);
+                   }),
+                   detail::Free{}) {}
 
-  // The sensor that `palpate replay` identifies. Throws: not a recording.
-  static Sensor of_recording(const std::string& path) {
-    Sensor sensor;
-    detail::checked([&](char* error, std::size_t size) {
-      return palpate_sensor_of_recording(path.c_str(), &sensor, error, size) == 0;
-    });
-    return sensor;
-  }
+  // Size and columns.
+  const palpate_recording& operator*() const noexcept { return *recording_; }
+  const palpate_recording* operator->() const noexcept { return recording_.get(); }
+
+ private:
+  std::shared_ptr<palpate_recording> recording_;
+};
+
+// The sensor of the tool; fields as in palpate.h, initially 0.
+struct Sensor : palpate_sensor {
+  // Positions in steps of this many metres; 0: exact.
+  Sensor(double step_m = 0.0) noexcept : palpate_sensor{} { encoder_step_m = step_m; }
+  // The sensor that `palpate replay` identifies.
+  explicit Sensor(const Recording& recording) noexcept : palpate_sensor{} { palpate_sensor_of(&*recording, this); }
 };
 
 // One tool in one material. Movable; may outlive the model.
@@ -123,6 +139,7 @@ class Stream {
   double predicted_error_N() const noexcept { return palpate_stream_predicted_error(stream_.get()); }
   // Resets the motion estimate and the filters. Wait-free.
   void reset() noexcept { palpate_stream_reset(stream_.get()); }
+  palpate_stream* handle() noexcept { return stream_.get(); }
 
  private:
   std::unique_ptr<palpate_stream, detail::Free> stream_;
@@ -171,68 +188,21 @@ class Limiter {
   std::unique_ptr<palpate_limiter, detail::Free> limiter_;
 };
 
-// ---- with palpate::fit: slow side, read and write files ----
-
-// A recording in memory. Copies share it.
-class Recording {
- public:
-  // Throws: not a recording; with file, line and column.
-  explicit Recording(const std::string& path)
-      : recording_(detail::checked([&](char* error, std::size_t size) {
-                     return palpate_recording_load(path.c_str(), error, size);
-                   }),
-                   detail::Free{}) {}
-
-  std::size_t size() const noexcept { return palpate_recording_row_count(recording_.get()); }
-  const palpate_row* begin() const noexcept { return palpate_recording_rows(recording_.get()); }
-  const palpate_row* end() const noexcept { return begin() + size(); }
-
- private:
-  std::shared_ptr<palpate_recording> recording_;
-};
-
-// The forces of a model along a recording, one a row: `palpate replay`. Throws: as Stream.
+// The forces of a model along a recording, one for each sample: `palpate replay`. Throws: as Stream.
 inline std::vector<double> replay(const Model& model, const Recording& recording, const Sensor& sensor) {
-  Stream stream(model, sensor);
-  std::vector<double> forces_N;
-  for (const palpate_row& row : recording) {
-    forces_N.push_back(stream.force(row.time_s, row.position_m, row.velocity_m_per_s, row.acceleration_m_per_s2));
-  }
+  std::vector<double> forces_N(recording->size);
+  palpate_stream_replay(Stream(model, sensor).handle(), &*recording, forces_N.data(), nullptr, nullptr);
   return forces_N;
 }
 
-// `palpate import`. Throws: something cannot be determined; the recording exists.
-inline void import_table(const std::string& table, const std::string& recording, bool overwrite = false) {
-  detail::checked([&](char* error, std::size_t size) {
-    return palpate_import(table.c_str(), recording.c_str(), overwrite, error, size) == 0;
-  });
-}
-
-// `palpate check`. Throws: not a recording.
-struct Check : palpate_check_result {
-  std::string findings;  // one line each
-
-  explicit Check(const std::string& recording) : palpate_check_result{}, findings(8192, '\0') {
-    detail::checked([&](char* error, std::size_t size) {
-      return palpate_check(recording.c_str(), this, findings.data(), findings.size(), error, size) == 0;
-    });
-    findings.resize(findings.find('\0'));
-  }
-};
-
-// Fields as in palpate_fit.h, with its defaults.
-struct FitOptions : palpate_fit_options {
-  FitOptions() noexcept { palpate_fit_options_default(this); }
-};
-
-// `palpate fit`: one model of all recordings, written to a file. Throws: a recording that is not usable; an option out
-// of its range; the file exists; interrupted.
-inline void fit(const std::vector<std::string>& recordings, const std::string& model, const FitOptions& options = {}) {
-  std::vector<const char*> paths;
-  for (const std::string& path : recordings) paths.push_back(path.c_str());
-  detail::checked([&](char* error, std::size_t size) {
-    return palpate_fit(paths.data(), paths.size(), &options, model.c_str(), error, size) == 0;
-  });
+// `palpate fit`: one model of all recordings; needs palpate::fit. `options`: as palpate_fit. Slow side. Throws: a
+// recording that is not usable; an option that is not valid.
+inline Model fit(const std::vector<Recording>& recordings, const std::string& options = "") {
+  std::vector<palpate_recording> plain;
+  for (const Recording& recording : recordings) plain.push_back(*recording);
+  return Model(detail::checked([&](char* error, std::size_t size) {
+    return palpate_fit(plain.data(), plain.size(), options.c_str(), nullptr, nullptr, error, size);
+  }));
 }
 
 }  // namespace api

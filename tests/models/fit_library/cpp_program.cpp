@@ -1,5 +1,5 @@
-// A separate program that uses the C++ interface of palpate::fit: cpp_program TABLE
-// FOLDER imports the table, checks the recording, fits it and replays it.
+// A separate program that uses the C++ interface of palpate::fit: cpp_program RECORDING
+// FOLDER fits the recording and replays it.
 #include <palpate/palpate.hpp>
 
 #include <cstdio>
@@ -19,37 +19,20 @@ bool fails(Call&& call, const char* part) {
   return false;
 }
 
-int run(const std::string& table, const std::string& folder) {
-  const std::string recording = folder + "/imported.csv";
+int run(const std::string& path, const std::string& folder) {
   const std::string file = folder + "/fitted.json";
-  palpate::import_table(table, recording);
-  const palpate::Check check(recording);
-  palpate::FitOptions options;
-  options.method = "random";
-  options.centres = 40;
-  palpate::fit({recording}, file, options);
-
-  const palpate::Recording rows(recording);
+  const palpate::Recording recording(path);
+  palpate::fit({recording}, "method=random centres=40").save(file);
   const palpate::Model model(file);
-  const auto sensor = palpate::Sensor::of_recording(recording);
-  for (const double force_N : palpate::replay(model, rows, sensor)) std::printf("%.17g\n", force_N);
+  const palpate::Sensor sensor(recording);
+  for (const double force_N : palpate::replay(model, recording, sensor)) std::printf("%.17g\n", force_N);
 
-  bool good = check.usable > 0 && check.noise_floor_within_jnd > 0.5 && rows.size() > 1000;
-  good = fails([&] { palpate::import_table(table, recording); }, "imported.csv") && good;
-  good = fails([&] { palpate::fit({recording}, file, options); }, "fitted.json") && good;
-  options.overwrite = 1;
-  options.method = "nothing";
-  good = fails([&] { palpate::fit({recording}, file, options); }, "expected one of trend") && good;
-  options.method = "random";
-  options.centres = 0;
-  good = fails([&] { palpate::fit({recording}, file, options); }, "centres: found 0") && good;
-  options.centres = 40;
-  options.progress = [](double, void*) { return 0; };
-  good = fails([&] { palpate::fit({recording}, file, options); }, "interrupted") && good;
-  good = fails([&] { palpate::fit({folder + "/none.csv"}, file, {}); }, "none.csv") && good;
-  good = fails([&] { palpate::fit({}, file, {}); }, "found no path") && good;
+  bool good = recording->size > 1000;
+  good = fails([&] { model.save(file); }, "fitted.json") && good;
+  good =
+      fails([&] { palpate::fit({recording}, "method=nothing"); }, "method: found \"nothing\", expected one of") && good;
+  good = fails([&] { palpate::fit({}); }, "found no recording") && good;
   good = fails([&] { palpate::Recording none(folder + "/none.csv"); }, "none.csv") && good;
-  good = fails([&] { palpate::Check none(folder + "/none.csv"); }, "none.csv") && good;
   good = fails([&] { palpate::Stream none(model, palpate::Sensor(-1.0)); }, "encoder_step_m") && good;
   palpate::Limits limits;
   limits.largest_N = 0.0;

@@ -27,22 +27,30 @@ TEST(FeatureListText, SaysWhatIsWrong) {
       << "nine features";
 }
 
-TEST(FitOptionsText, TheDefaultsAreGoodAndEachWrongOneIsNamed) {
-  EXPECT_TRUE(check_fit_options({}).ok());
-  const auto wrong = [](auto FitOptions::*option, auto value) {
-    FitOptions options;
-    options.features = "depth";  // a list excludes relaxation times
-    options.*option = value;
-    return check_fit_options(options).error().message;
-  };
-  EXPECT_EQ(wrong(&FitOptions::method, "nothing").rfind("method: found \"nothing\"", 0), 0U);
-  EXPECT_EQ(wrong(&FitOptions::centres, kMostFittedCentres + 1).rfind("centres: found 2001", 0), 0U);
-  EXPECT_EQ(wrong(&FitOptions::candidates, "0").rfind("candidates: ", 0), 0U);
-  EXPECT_EQ(wrong(&FitOptions::kernel, "gauss").rfind("kernel: ", 0), 0U);
-  EXPECT_EQ(wrong(&FitOptions::grid, "1x2").rfind("grid: ", 0), 0U);
-  EXPECT_EQ(wrong(&FitOptions::recipe, "2009").rfind("recipe: ", 0), 0U);
-  EXPECT_EQ(wrong(&FitOptions::surface, "deep").rfind("surface: ", 0), 0U);
-  EXPECT_EQ(wrong(&FitOptions::relaxation, "0.1").rfind("relaxation: ", 0), 0U);
+TEST(FitOptionsText, ReadsPairsAndNamesEachWrongOne) {
+  const auto options = parse_fit_options(" method=random  centres=40 features=depth,velocity seed=7 ");
+  ASSERT_TRUE(options.ok()) << options.error().message;
+  EXPECT_EQ(options->method, "random");
+  EXPECT_EQ(method_request(*options).centres, 40);
+  EXPECT_EQ(method_request(*options).seed, 7U);
+  EXPECT_EQ(options->features, "depth,velocity");
+  EXPECT_EQ(options->kernel, "cubic");
+  for (const auto& [text, beginning] : {std::pair{"method=nothing", "method: found \"nothing\""},
+                                        {"centres=2001", "centres: found \"2001\""},
+                                        {"candidates=0", "candidates: "},
+                                        {"kernel=gauss", "kernel: "},
+                                        {"grid=1x2", "grid: "},
+                                        {"recipe=2009", "recipe: "},
+                                        {"surface=deep", "surface: "},
+                                        {"seed=-1", "seed: "},
+                                        {"relaxation=", "relaxation: "},
+                                        {"features=depth relaxation=0.1", "relaxation: "},
+                                        {"speed=1", "found \"speed=1\", expected NAME=VALUE"},
+                                        {"method", "found \"method\", expected NAME=VALUE"}}) {
+    const auto wrong = parse_fit_options(text);
+    ASSERT_FALSE(wrong.ok()) << text;
+    EXPECT_EQ(wrong.error().message.rfind(beginning, 0), 0U) << wrong.error().message;
+  }
 }
 
 TEST(FitOptionsText, TheRecipeIsItsTwoOptions) {
@@ -52,16 +60,6 @@ TEST(FitOptionsText, TheRecipeIsItsTwoOptions) {
   EXPECT_EQ(request.reduction, Reduction::force);
   EXPECT_EQ(request.weighting, Weighting::relative);
   EXPECT_EQ(request.choice, FeatureChoice::scene);
-}
-
-TEST(FitOptionsText, ReadsTheFeaturesOfAScene) {
-  const auto features = parse_scene_features("depth,velocity,lowpass_velocity:0.17");
-  ASSERT_TRUE(features.ok()) << features.error().message;
-  ASSERT_EQ(features->size(), 3U);
-  EXPECT_EQ((*features)[2].kind, FeatureKind::lowpass_velocity);
-  EXPECT_EQ((*features)[2].relaxation_time_s, 0.17);
-  for (const char* text : {"", "velocity", "depth,speed", "depth,lowpass_velocity:", "depth,lowpass_velocity:1+2"})
-    EXPECT_FALSE(parse_scene_features(text).ok()) << text;
 }
 
 }  // namespace

@@ -16,10 +16,10 @@ TEST(FitLibrary, FitsAndReplaysAsTheProgramDoes) {
                 {"synth", "--material", "silicone", "--seed", "4", "--seconds", "6", "--out", folder.file("rig.csv")})
                 .exit_code,
             0);
-  const auto run = test::run_program({PALPATE_CPP_PROGRAM, folder.file("rig.csv"), folder.path()});
+  const std::string recording = folder.file("rig.csv");
+  const auto run = test::run_program({PALPATE_CPP_PROGRAM, recording, folder.path()});
   ASSERT_EQ(run.exit_code, 0) << run.err;
 
-  const std::string recording = folder.file("imported.csv");
   const auto fit = test::run_palpate(
       {"fit", "--recording", recording, "--method", "random", "--centres", "40", "--out", folder.file("program.json")});
   ASSERT_EQ(fit.exit_code, 0) << fit.err;

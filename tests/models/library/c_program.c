@@ -35,7 +35,9 @@ static void check_handles(const char* no_model) {
   expect(palpate_stream_force(NULL, 0.0, 0.001) == 0.0, "no stream: no force");
   expect(palpate_stream_out_of_domain(NULL) == 0, "no stream: not out of domain");
   expect(isnan(palpate_stream_predicted_error(NULL)), "no stream: nothing is predicted");
-  expect(palpate_sensor_of_recording(no_model, NULL, error, sizeof error) == -1, "no sensor to fill: -1");
+  expect(palpate_recording_load("/nowhere/rec.csv", error, sizeof error) == NULL, "no such recording: NULL");
+  palpate_recording_free(NULL);
+  expect(palpate_sensor_of(NULL, NULL) == -1, "no recording: -1");
   palpate_limits_default(NULL);
   palpate_limiter_free(NULL);
   palpate_limiter_stop(NULL);
@@ -51,8 +53,8 @@ static void check_samples(const palpate_model* model) {
   expect(palpate_stream_new(model, NAN, error, sizeof error) == NULL, "a step of NaN: NULL");
   expect(palpate_stream_new(model, -1e-6, error, sizeof error) == NULL, "a negative step: NULL");
   expect(strstr(error, "encoder_step_m") != NULL, "the error names the field");
-  sensor.has_velocity = 1;
-  expect(palpate_stream_new_with_sensor(model, &sensor, error, sizeof error) == NULL, "noise of 0: NULL");
+  sensor.velocity_noise_m_per_s = -1.0;
+  expect(palpate_stream_new_with_sensor(model, &sensor, error, sizeof error) == NULL, "a negative noise: NULL");
   expect(palpate_stream_new_with_sensor(model, NULL, error, sizeof error) == NULL, "no sensor: NULL");
   stream = palpate_stream_new(model, 0.0, error, sizeof error);
   expect(stream != NULL && strcmp(error, "") == 0, "a stream, and no error");
@@ -69,12 +71,14 @@ static void check_samples(const palpate_model* model) {
   palpate_stream_free(stream);
 }
 
-static void print_forces(const palpate_model* model, const char* recording) {
+static void print_forces(const palpate_model* model, const char* path) {
   char error[200];
   double time_s, position_m;
   palpate_sensor sensor;
   palpate_stream* stream;
-  expect(palpate_sensor_of_recording(recording, &sensor, error, sizeof error) == 0, error);
+  palpate_recording* recording = palpate_recording_load(path, error, sizeof error);
+  expect(palpate_sensor_of(recording, &sensor) == 0, error);
+  palpate_recording_free(recording);
   stream = palpate_stream_new_with_sensor(model, &sensor, error, sizeof error);
   while (scanf("%lf %lf", &time_s, &position_m) == 2)
     printf("%.17g\n", palpate_stream_force(stream, time_s, position_m));

@@ -8,31 +8,24 @@
     share = palpate.within_jnd(force_N, rec["force_N"])  # of the samples in contact
     u = model.features(rec["time_s"], rec["position_m"])  # columns: model.feature_names
     model.save("model.json")
-    model.export_c("probe.c")
 
 A recording is a `palpate.Recording`: a structured numpy array with the fields time_s, position_m and force_N
-(velocity_m_per_s and acceleration_m_per_s2 where they were measured), and a name. Functions also take any
-structured array or table with these columns, or the path of a file.
+(velocity_m_per_s and acceleration_m_per_s2 where they were measured), and a name. `fit` also takes any structured array
+or table with these columns, or the path of a file.
 
 Units are SI. Positions run along the inward surface normal, 0 at the undisturbed surface; forces are
 positive when the material pushes the tool out. A just noticeable difference (JND) is the smallest
 error that a hand can notice. An invalid file, array or option raises `Error`. Arrays may be of any
 numeric type and need not be contiguous.
 
-`cross_validate` compares any estimator with `fit` and `predict` on the folds that a fit uses;
-`palpate.baselines` has two trivial ones.
-
 The package loads ``libpalpate_fit``: the one named by the environment variable PALPATE_LIBRARY, else that
 of the source tree's ``build`` when it is imported from there (PYTHONPATH=models/library/python), else the
 installed one.
 """
-from . import baselines
-from ._library import Error
-from ._models import Evaluation, Model, fit, jnd_N, load, within_jnd
-from ._recordings import (Check, Recording, Sensor, check, find_folds, find_sensor, import_table, in_contact,
-                          make_recording, read_recording)
-from ._validation import CrossValidation, Estimator, cross_validate
+from ._library import Error, Sensor
+from ._models import Model, fit, load
+from ._recordings import Recording, in_contact, jnd_N, make_recording, read_recording, within_jnd
 
-__all__ = ["Check", "CrossValidation", "Error", "Estimator", "Evaluation", "Model", "Sensor", "baselines",
-           "check", "cross_validate", "find_folds", "find_sensor", "fit", "import_table", "in_contact", "jnd_N",
-           "load", "make_recording", "read_recording", "within_jnd"]
+# Without Recording, whose help would be that of all numpy arrays.
+__all__ = ["Error", "Model", "Sensor", "fit", "in_contact", "jnd_N", "load", "make_recording", "read_recording",
+           "within_jnd"]
