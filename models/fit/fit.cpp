@@ -99,7 +99,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   notes.insert(notes.end(), prepared.notes.begin(), prepared.notes.end());
   if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
     notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
-                    " samples were used: the beginnings and some sections of the recordings");
+                    " samples were used, evenly spaced");
   }
   std::vector<CorrectionPtr> of_folds;
   const int folds = prepared.left_out && !fitted->correction->is_none() ? prepared.left_out->folds() : 0;

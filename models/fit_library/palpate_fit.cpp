@@ -20,7 +20,6 @@
 #include "models/fit_library/fit_recordings.h"
 #include "models/library/c_interface.h"
 #include "models/model/file/model_io.h"
-#include "models/training/cross_validation.h"
 #include "models/training/training_extent.h"
 
 struct palpate_recording {
@@ -147,7 +146,7 @@ int assign_folds(std::size_t n, const double* depth_m, const int* recording, int
     if (first || !(depth_m[i - 1] > 0.0)) stroke[i] = static_cast<int>(++extent.strokes);
     ++extent.contact_samples;
   }
-  FoldAssignment assignment(recordings, extent.strokes, extent.contact_samples, extent.has_unloading());
+  FoldAssignment assignment = extent.folds(recordings);
   for (std::size_t i = 0; i < n; ++i) fold[i] = assignment.next(recording_of(i), stroke[i], depth_m[i] > 0.0);
   return assignment.folds();
 }

@@ -68,6 +68,14 @@ struct FoldErrors {
   std::vector<double> counts;   // samples
 };
 
+// The `errors` of candidates.
+template <typename Candidate>
+std::vector<FoldErrors> errors_of(const std::vector<Candidate>& candidates) {
+  std::vector<FoldErrors> errors;
+  for (const Candidate& one : candidates) errors.push_back(one.errors);
+  return errors;
+}
+
 // Index of the candidate with the lowest mean score.
 std::size_t best_score(std::span<const FoldErrors> candidates);
 

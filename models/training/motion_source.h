@@ -1,19 +1,16 @@
-// The training recordings as streams of motion estimates. Every pass of a fit over its data uses this class, with the
-// estimators of replay and of the live loop.
+// The training recordings as streams of motion estimates. Every pass of a fit over its data uses this class.
 //
-// The sensor of each recording is identified from its first rows, and each recording has its own filter state.
-// Recordings are read and estimated once and kept in memory. If they have more than kMaximumRows together, they are
-// read again and thinned: the beginning stays, from which the surface is estimated, then evenly spaced stretches, and
-// between these every n-th row as a run-up, so that filters keep their memory.
+// The rows of all recordings are in memory. If they are more than kMaximumRows together, every n-th is kept, with the
+// motion that was estimated from all.
 // Thread guarantee: slow side.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/fit_control.h"
@@ -23,7 +20,7 @@
 
 namespace palpate {
 
-// Half an hour at 1 kHz, some 144 MB. A fit of some thousand sites gains nothing from more rows.
+// Half an hour at 1 kHz, some 200 MB. A fit of some thousand sites gains nothing from more rows.
 inline constexpr std::size_t kMaximumRows = 2000000;
 
 // Rows between two calls of FitControl, some 20 ms of reading.
@@ -47,24 +44,16 @@ struct RowCorrection {
 
 class MotionSource {
  public:
-  // One training recording: a file, or rows in memory.
-  struct Input {
-    std::string path;  // used when `prepared` is null
-    PreparedRecordingPointer prepared;
-  };
+  // `recordings`: at least one. `most_rows`: the number of rows to keep in memory.
+  explicit MotionSource(std::vector<PreparedRecordingPointer> recordings, std::size_t most_rows = kMaximumRows)
+      : inputs_(std::move(recordings)), most_rows_(most_rows) {}
 
-  // `most_rows`: the approximate number of rows to keep in memory.
-  explicit MotionSource(std::vector<Input> inputs, std::size_t most_rows = kMaximumRows)
-      : inputs_(std::move(inputs)), most_rows_(most_rows) {}
+  // Fills the rows unless this was done before. Errors: interrupted.
+  Status load(const FitControl& control = {});
 
-  // Reads the recordings unless they are in memory. Errors: those of RecordingReader; interrupted.
-  Status load(const FitControl& control = {}, double fraction = 0.0);
-
-  // Calls `visit` for every kept row in order, the longest recording first. The pass ends with "interrupted" when
-  // `visit` returns false or `control`, called every kRowsPerQuestion rows with `fraction`, asks for it.
-  // Errors: also those of load.
-  Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
-                  double fraction = 0.0);
+  // Calls `visit` for every kept row in order, the longest recording first. `control` is asked every kRowsPerQuestion
+  // rows. Errors: interrupted.
+  Status for_each(const std::function<void(const MotionRow&)>& visit, const FitControl& control = {});
 
   // Sets the corrections of all later passes, one for each of `recordings`. Contact and strokes are
   // determined from the corrected position.
@@ -76,14 +65,13 @@ class MotionSource {
 
   struct OneRecording {
     std::string name;
-    const PreparedRecording* prepared = nullptr;  // null: a file
-    std::size_t recorded = 0;                     // number of rows
-    std::uint64_t hash = 0;                       // engine/recording/recording.h
-    std::vector<MotionRow> rows;                  // those that are kept, without corrections
+    const PreparedRecording* prepared = nullptr;
+    std::uint64_t hash = 0;       // engine/recording/recording.h
+    std::vector<MotionRow> rows;  // those that are kept, without corrections
   };
-  // Valid after the first pass, as all below.
+  // Valid after `load` or the first pass, as all below.
   const std::vector<OneRecording>& recordings() const { return recordings_; }
-  // The number of recorded rows, of which about `most_rows` are kept.
+  // The number of recorded rows.
   std::size_t rows() const { return rows_; }
   // The largest force noise and encoder step of the recordings, and the position noise of the recording with the
   // largest encoder step.
@@ -92,19 +80,7 @@ class MotionSource {
   double position_noise_m() const { return position_noise_m_; }
 
  private:
-  // Keeps all rows before `beginning`, then the first `stretch` rows of every `sparse` * `stretch`; of the others
-  // every `sparse`-th is kept as a run-up.
-  struct Thinning {
-    std::size_t beginning = 0;
-    std::size_t sparse = 1;
-    std::size_t stretch = 1;
-    bool is_run_up(std::size_t row) const { return row >= beginning && row % (sparse * stretch) >= stretch; }
-  };
-
-  Status read(const Input& input, const Thinning& thinning, OneRecording& one, const FitControl& control,
-              double fraction);
-
-  std::vector<Input> inputs_;
+  std::vector<PreparedRecordingPointer> inputs_;
   std::size_t most_rows_;
   std::vector<OneRecording> recordings_;  // empty before loading
   std::vector<RowCorrection> corrections_;

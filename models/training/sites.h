@@ -28,8 +28,7 @@ struct Sites {
   int dimension() const { return static_cast<int>(points.rows()); }
 };
 
-// Checks sizes and finiteness. Errors: names the array and the sizes found and
-// expected, or the first site with a number that is not finite.
+// Errors: a number is not finite.
 Status validate_sites(const Sites& sites);
 
 // At most `most` of the sites, spread evenly over their order.

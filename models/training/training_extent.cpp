@@ -20,10 +20,9 @@ constexpr double kShallow = 0.01;
 
 }  // namespace
 
-bool TrainingExtent::has_unloading() const { return unloading_path_m > kLeastUnloading * loading_path_m; }
-
-FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent) {
-  return {source.recordings().size(), extent.strokes, extent.contact_samples, extent.has_unloading()};
+FoldAssignment TrainingExtent::folds(std::size_t recordings) const {
+  const bool has_unloading = unloading_path_m > kLeastUnloading * loading_path_m;
+  return {recordings, strokes, contact_samples, has_unloading};
 }
 
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control) {
@@ -36,33 +35,26 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
   double last_s = 0.0;
   double duration_s = 0.0;
   double steps = 0.0;
-  bool after_run_up = false;
   const Status status = source.for_each(
       [&](const MotionRow& row) {
-        if (row.sample.position_m > 0.0) {
-          extent.depth_m = std::max({extent.depth_m, row.motion.position_m, 1e-9});
-          extent.force_N = std::max(extent.force_N, row.force_N);
-          if (row.force_N < -JndLine{}.at(0.0)) ++pulls;
-          lowest_N = std::min(lowest_N, row.force_N);
-          squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
-          ++extent.contact_samples;
-          extent.strokes = static_cast<std::size_t>(row.stroke);
-          const double travel_m = row.motion.position_m - last_m;
-          if (!row.first) (travel_m > 0.0 ? extent.loading_path_m : extent.unloading_path_m) += std::abs(travel_m);
-        }
+        if (row.first) start_s = last_s = row.sample.time_s;
+        const double travel_m = row.first ? 0.0 : row.motion.position_m - last_m;
+        duration_s += row.sample.time_s - last_s;
+        steps += row.first ? 0.0 : 1.0;
         last_m = row.motion.position_m;
-        if (row.first) {
-          start_s = row.sample.time_s;
-        } else if (!after_run_up && !row.run_up) {
-          duration_s += row.sample.time_s - last_s;
-          steps += 1.0;
-        }
-        after_run_up = row.run_up;
         last_s = row.sample.time_s;
         extent.longest_recording_s = std::max(extent.longest_recording_s, last_s - start_s);
-        return true;
+        if (!(row.sample.position_m > 0.0)) return;
+        extent.depth_m = std::max({extent.depth_m, row.motion.position_m, 1e-9});
+        extent.force_N = std::max(extent.force_N, row.force_N);
+        if (row.force_N < -JndLine{}.at(0.0)) ++pulls;
+        lowest_N = std::min(lowest_N, row.force_N);
+        squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
+        ++extent.contact_samples;
+        extent.strokes = static_cast<std::size_t>(row.stroke);
+        (travel_m > 0.0 ? extent.loading_path_m : extent.unloading_path_m) += std::abs(travel_m);
       },
-      control, 0.0);
+      control);
   if (!status) return status.error();
   const auto count = static_cast<double>(extent.contact_samples);
   const bool pulling = pulls >= std::max(kLeastPulls, kPullShare * count);
@@ -79,12 +71,11 @@ Result<double> find_preload_surface(MotionSource& source, const TrainingExtent& 
   const Status status = source.for_each(
       [&](const MotionRow& row) {
         const double depth_m = row.motion.position_m;
-        if (!(depth_m > 0.0) || depth_m > kShallow * extent.depth_m) return true;
+        if (!(depth_m > 0.0) || depth_m > kShallow * extent.depth_m) return;
         n += 1.0, x += depth_m, y += row.force_N;
         xx += depth_m * depth_m, xy += depth_m * row.force_N, yy += row.force_N * row.force_N;
-        return true;
       },
-      control, 0.05);
+      control);
   if (!status) return status.error();
   const double spread = n * xx - x * x;
   if (n < 3.0 || !(spread > 0.0)) return 0.0;

@@ -24,11 +24,9 @@ struct TrainingExtent {
   double sample_s = 0.0;          // mean sampling period
   double longest_recording_s = 0.0;
 
-  // Whether the recordings contain unloading in contact.
-  bool has_unloading() const;
+  // The folds of cross-validation. With one recording they are strokes or pieces of them.
+  FoldAssignment folds(std::size_t recordings) const;
 };
-
-FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent);
 
 // Errors: those of the source; interrupted.
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -50,13 +52,7 @@ struct FeatureMoments {
 using CellKey = std::array<std::int32_t, kMaxFeatures + 1>;
 struct CellHash {
   std::size_t operator()(const CellKey& key) const {
-    std::uint64_t value = 0x9E3779B97F4A7C15ULL;
-    for (const std::int32_t one : key) {
-      value ^= static_cast<std::uint32_t>(one);
-      value *= 0xBF58476D1CE4E5B9ULL;
-      value ^= value >> 29;
-    }
-    return value;
+    return std::hash<std::string_view>{}({reinterpret_cast<const char*>(key.data()), sizeof key});
   }
 };
 
@@ -68,7 +64,11 @@ class CoverageReduction {
 
   void add(const TrainingSite& site) {
     add_to_cell(site);
-    while (sites_.size() > kCoverageSites) coarsen();
+    while (sites_.size() > kCoverageSites) {
+      step_ *= kGrowth;
+      cells_.clear();
+      for (const TrainingSite& one : std::exchange(sites_, {})) add_to_cell(one);
+    }
   }
 
  private:
@@ -86,25 +86,15 @@ class CoverageReduction {
 
   void add_to_cell(const TrainingSite& site) {
     const auto [cell, fresh] = cells_.try_emplace(key(site), sites_.size());
-    if (fresh)
+    if (fresh) {
       sites_.push_back(site);
-    else
-      merge(sites_[cell->second], site);
-  }
-
-  static void merge(TrainingSite& into, const TrainingSite& site) {
-    into.count += site.count;
-    const double share = site.count / into.count;
-    for (std::size_t i = 0; i < kMaxFeatures; ++i) into.features[i] += share * (site.features[i] - into.features[i]);
-    into.force_N += share * (site.force_N - into.force_N);
-  }
-
-  void coarsen() {
-    step_ *= kGrowth;
-    const std::vector<TrainingSite> old = std::move(sites_);
-    sites_.clear();
-    cells_.clear();
-    for (const TrainingSite& site : old) add_to_cell(site);
+      return;
+    }
+    TrainingSite& mean = sites_[cell->second];
+    mean.count += site.count;
+    const double share = site.count / mean.count;
+    for (std::size_t i = 0; i < kMaxFeatures; ++i) mean.features[i] += share * (site.features[i] - mean.features[i]);
+    mean.force_N += share * (site.force_N - mean.force_N);
   }
 
   const Normalisation& normalisation_;
@@ -158,9 +148,8 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
           if (row.first) filter.reset();
           const FeatureVector& vector = filter.update(row.sample, row.motion);
           if (vector.in_contact && !row.run_up) handle(row, vector);
-          return true;
         },
-        control, 0.25);
+        control);
   };
 
   FeatureMoments moments(features.size());
@@ -169,11 +158,7 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   });
   if (!status) return status.error();
   set.contact_samples = static_cast<std::size_t>(moments.count);
-  if (set.contact_samples == 0) {
-    return Error{
-        "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; "
-        "record a press, or check the sign and zero of position_m"};
-  }
+  if (set.contact_samples == 0) return Error{"no sample of the training recordings is in contact (position_m > 0)"};
   set.normalisation = moments.normalisation();
 
   CoverageReduction coverage(set.normalisation, set.sites);
@@ -188,7 +173,7 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
       set.evaluation_features.push_back(vector.values);
       set.evaluation_force_N.push_back(row.force_N);
     }
-    const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, row.fold, row.force_N <= force_noise_floor_N};
+    const TrainingSite site{vector.values, row.force_N, 1.0, row.fold, row.force_N <= force_noise_floor_N};
     switch (reduction) {
       case Reduction::coverage:
         coverage.add(site);

@@ -11,7 +11,6 @@
 //   force     the paper's rule (section 2.1): a sample is kept when the force has changed by 50 mN since the last kept
 //             one. The 50 mN grow by a quarter while there are more than kMaximumSites.
 //   none      every sample in contact; of more than kMostSites an evenly spaced part, for the memory of a fit.
-// Recordings stream through in bounded memory.
 //
 // In `coverage`, a site has samples of one fold only (cross_validation.h), so that cross-validation has no leakage, and
 // samples without measured force (contact is one-sided) form sites of their own, which are marked.
@@ -51,7 +50,6 @@ struct TrainingSite {
   std::array<double, kMaxFeatures> features{};  // SI
   double force_N = 0.0;
   double count = 1.0;  // number of samples merged into it
-  int stroke = 0;
   int fold = 0;
   bool no_force = false;  // force at or below the noise floor: one-sided, known only not to be positive
 };

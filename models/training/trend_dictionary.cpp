@@ -1,8 +1,10 @@
 #include "models/training/trend_dictionary.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "engine/base/text.h"
 #include "models/model/bernstein.h"
@@ -30,19 +32,15 @@ std::vector<double> ladder(double shortest_s, double longest_s, double per_decad
   }
 }
 
-std::string range_text(const char* words, const std::vector<double>& values, double unit, const char* unit_name) {
-  std::string text = std::string(words) + " " + general(unit * values.front(), 3);
-  if (values.size() > 1) text.append("-").append(general(unit * values.back(), 3));
-  return text + " " + unit_name;
-}
+double longest_time_s(const TrainingExtent& extent) { return std::min(kLongest_s, extent.longest_recording_s / 3.0); }
 
 Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
   Trend trend;
   trend.reference_depth_m = rows.problem().reference_depth_m;
   trend.elastic = combined_spline(spline_basis(), x.data());
-  auto column = static_cast<Eigen::Index>(kElasticTerms);
-  if (rows.viscous_columns() > 0) {
+  if (has_kind(rows.list().features, FeatureKind::velocity)) {
     trend.thinning_velocity_m_per_s = rows.problem().rms_velocity_m_per_s;
+    auto column = static_cast<Eigen::Index>(kElasticTerms);
     for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
       for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column) {
         const auto power = bernstein<kViscosityCoefficients - 1>(k);
@@ -57,124 +55,118 @@ Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
   return trend;
 }
 
-// Makes one feature of the parts with a weight above 0, or of all parts if `all`.
-FeatureSpec parts_feature(const FeatureColumns& group, const Eigen::VectorXd& x, const TrendRows& rows, bool all) {
-  const double depth_m = rows.problem().reference_depth_m;
-  FeatureSpec spec;
-  spec.kind = group.kind;
-  for (std::size_t p = 0; p < group.constants.size(); ++p) {
-    const double* weights = x.data() + group.columns[p * kCurveTerms];
+// The feature with the drive curves of `weights`, without the parts whose weights are 0, unless `all`.
+FeatureSpec with_drives(const FeatureSpec& candidate, const double* weights, double depth_m, bool all) {
+  FeatureSpec spec = candidate;
+  spec.part_count = 0;
+  spec.parts = {};
+  for (std::size_t p = 0; p < candidate.part_count; ++p, weights += kCurveTerms) {
     const bool carries = std::any_of(weights, weights + kCurveTerms, [](double weight) { return weight > 0.0; });
     if (!carries && !all) continue;
-    FeaturePart& part = spec.parts[spec.part_count++];
-    part.drive = combined_curve(group.kind, weights, depth_m);
-    (group.kind == FeatureKind::stops ? part.threshold_m : part.relaxation_time_s) = group.constants[p];
-    if (group.kind == FeatureKind::creep) part.threshold_m = depth_m;
+    FeaturePart& part = spec.parts[spec.part_count++] = candidate.parts[p];
+    part.drive = combined_curve(spec.kind, weights, depth_m);
+    if (spec.kind == FeatureKind::creep) part.threshold_m = depth_m;
   }
-  if (group.kind == FeatureKind::maxwell_spectrum) spec.slowing = rows.list().slowing;
   return spec;
 }
 
 }  // namespace
 
-FeatureList dictionary(double sample_s, double longest_s, double depth_m, double encoder_step_m) {
+std::vector<double> dictionary_times_s(const TrainingExtent& extent) {
+  return ladder(std::max(kShortest_s, 2.0 * extent.sample_s), longest_time_s(extent), kTimesPerDecade);
+}
+
+FeatureList dictionary(const TrainingExtent& extent, double encoder_step_m) {
   FeatureList list;
-  list.velocity = true;
-  const double longest_time_s = std::min(kLongest_s, longest_s / 3.0);
-  const std::vector<double> times_s = ladder(std::max(kShortest_s, 2.0 * sample_s), longest_time_s, kTimesPerDecade);
+  list.add(FeatureKind::velocity);
+  const std::vector<double> times_s = dictionary_times_s(extent);
   for (std::size_t band = 0; band < kBands; ++band) {
     const auto from = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * band / kBands);
     const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
-    if (from != to) list.relaxation_times_s.emplace_back(from, to);
+    if (from != to) list.add(FeatureKind::maxwell_spectrum, {from, to});
   }
-  for (double threshold_m = 0.5 * depth_m;
-       list.stop_thresholds_m.size() < kMaxFeatureParts && threshold_m >= encoder_step_m; threshold_m *= 0.5) {
-    list.stop_thresholds_m.insert(list.stop_thresholds_m.begin(), threshold_m);
+  std::vector<double> thresholds_m;
+  for (double threshold_m = 0.5 * extent.depth_m;
+       thresholds_m.size() < kMaxFeatureParts && threshold_m >= encoder_step_m; threshold_m *= 0.5) {
+    thresholds_m.insert(thresholds_m.begin(), threshold_m);
   }
-  list.creep_times_s = ladder(kShortest_s, longest_time_s, 1.0);
+  if (!thresholds_m.empty()) list.add(FeatureKind::stops, thresholds_m);
+  const std::vector<double> creep_times_s = ladder(kShortest_s, longest_time_s(extent), 1.0);
+  if (!creep_times_s.empty()) list.add(FeatureKind::creep, creep_times_s);
   return list;
 }
 
-Result<TrendRows> gather_rows(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
-                              std::size_t most_rows, double least_step_s, const FitControl& control, double fraction) {
-  TrendRows rows(list, problem, most_rows);
-  double last_s = 0.0;
-  const Status status = source.for_each(
-      [&](const MotionRow& row) {
-        if (row.first) rows.begin_recording();
-        if (!row.first && row.sample.time_s - last_s < least_step_s) return true;
-        last_s = row.sample.time_s;
-        if (row.run_up)
-          rows.advance(row.sample, row.motion);
-        else
-          rows.add(row.sample, row.motion, row.force_N, row.fold);
-        return true;
-      },
-      control, fraction);
+FeatureList single_times(bool velocity, const std::vector<double>& times_s) {
+  FeatureList list;
+  if (velocity) list.add(FeatureKind::velocity);
+  for (const double time_s : times_s) list.add(FeatureKind::maxwell_spectrum, {time_s});
+  return list;
+}
+
+Result<TrendRows> gather_rows(const TrendData& data, const FeatureList& list, std::size_t most_rows,
+                              double least_step_s) {
+  // Calls `visit` for every sample that is used.
+  const auto pass = [&](const auto& visit) {
+    double last_s = 0.0;
+    return data.source.for_each(
+        [&](const MotionRow& row) {
+          if (!row.first && row.sample.time_s - last_s < least_step_s) return;
+          last_s = row.sample.time_s;
+          visit(row);
+        },
+        data.control);
+  };
+  std::size_t count = 0;
+  Status status = pass([&](const MotionRow& row) {
+    if (row.sample.position_m > 0.0 && !row.run_up) ++count;
+  });
+  if (!status) return status.error();
+  TrendRows rows(list, data.problem, std::bit_ceil((count + most_rows - 1) / most_rows));
+  status = pass([&](const MotionRow& row) { rows.add(row); });
   if (!status) return status.error();
   return rows;
 }
 
-std::vector<FeatureColumns> feature_columns(const TrendRows& rows) {
-  const FeatureList& list = rows.list();
-  std::vector<FeatureColumns> groups;
-  if (list.velocity) {
-    groups.push_back({FeatureKind::velocity, "velocity", {}, columns_from(kElasticTerms, rows.viscous_columns())});
-  }
-  std::size_t first = rows.first_branch();
-  const auto add = [&](FeatureKind kind, const char* words, const std::vector<double>& constants, double unit,
-                       const char* unit_name) {
-    if (constants.empty()) return;
-    const std::size_t count = kCurveTerms * constants.size();
-    groups.push_back({kind, range_text(words, constants, unit, unit_name), constants, columns_from(first, count)});
-    first += count;
-  };
-  for (const auto& times_s : list.relaxation_times_s) {
-    add(FeatureKind::maxwell_spectrum, "relaxation", times_s, 1.0, "s");
-  }
-  add(FeatureKind::stops, "stops", list.stop_thresholds_m, 1e3, "mm");
-  add(FeatureKind::creep, "creep", list.creep_times_s, 1.0, "s");
-  return groups;
+std::string term_name(const FeatureSpec& spec) {
+  if (spec.kind == FeatureKind::velocity) return "velocity";
+  const bool stops = spec.kind == FeatureKind::stops;
+  const char* words = stops ? "stops " : spec.kind == FeatureKind::creep ? "creep " : "relaxation ";
+  const double unit = stops ? 1e3 : 1.0;
+  const std::vector<double> constants = constants_of(spec);
+  std::string text = words + general(unit * constants.front(), 3);
+  if (constants.size() > 1) text.append("-").append(general(unit * constants.back(), 3));
+  return text + (stops ? " mm" : " s");
 }
 
 FittedTrend fitted_trend(const TrendRows& rows, const Eigen::VectorXd& x, bool all) {
-  FittedTrend fitted{trend_from(rows, x), {FeatureSpec{}}, {}};
-  if (!rows.list().surface.empty()) {
-    FeatureSpec lag{FeatureKind::surface_lag};
-    lag.drive = coarse_curve(fitted.trend.elastic, rows.problem().reference_depth_m);
-    fitted.features.push_back(lag);
-  }
-  std::vector<ColumnList> sums;  // the columns of each feature that is a sum of columns
-  for (const FeatureColumns& group : feature_columns(rows)) {
-    if (group.kind == FeatureKind::velocity) {
-      fitted.features.push_back({FeatureKind::velocity});
-    } else if (all || (x(group.columns).array() > 0.0).any()) {
-      fitted.features.push_back(parts_feature(group, x, rows, all));
-      sums.push_back(group.columns);
-    }
-  }
-  fitted.row_features.resize(static_cast<Eigen::Index>(fitted.features.size()),
-                             static_cast<Eigen::Index>(rows.count()));
-  for (std::size_t i = 0; i < rows.count(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    const Eigen::VectorXd row = rows.terms().row(at).transpose();
-    std::size_t sum = 0;
-    for (std::size_t f = 0; f < fitted.features.size(); ++f) {
-      double& value = fitted.row_features(static_cast<Eigen::Index>(f), at);
-      switch (fitted.features[f].kind) {
-        case FeatureKind::depth:
-          value = rows[i].depth_m;
-          break;
-        case FeatureKind::velocity:
-          value = rows[i].velocity_m_per_s;
-          break;
-        case FeatureKind::surface_lag:
-          value = rows[i].lag_m;
-          break;
-        default:
-          value = row(sums[sum]).dot(x(sums[sum]));
-          ++sum;
-      }
+  const double depth_m = rows.problem().reference_depth_m;
+  FittedTrend fitted{trend_from(rows, x), {}, {}};
+  // Adds a feature with its value at each row.
+  const auto add = [&](const FeatureSpec& spec, const auto& value_at) {
+    fitted.features.push_back(spec);
+    Eigen::MatrixXd& values = fitted.row_features;
+    values.conservativeResize(values.rows() + 1, static_cast<Eigen::Index>(rows.count()));
+    for (std::size_t i = 0; i < rows.count(); ++i)
+      values(values.rows() - 1, static_cast<Eigen::Index>(i)) = value_at(i);
+  };
+  for (std::size_t f = 0; f < rows.list().features.size(); ++f) {
+    const FeatureSpec& candidate = rows.list().features[f];
+    const ColumnList& columns = rows.feature_columns()[f];
+    const Eigen::VectorXd weights = x(columns);
+    if (candidate.kind == FeatureKind::depth) {
+      add(candidate, [&](std::size_t i) { return rows[i].depth_m; });
+      if (rows.list().surface.empty()) continue;
+      FeatureSpec lag{FeatureKind::surface_lag};
+      lag.drive = coarse_curve(fitted.trend.elastic, depth_m);
+      add(lag, [&](std::size_t i) { return rows[i].lag_m; });
+    } else if (candidate.kind == FeatureKind::velocity) {
+      add(candidate, [&](std::size_t i) { return rows[i].velocity_m_per_s; });
+    } else if (all || weights.maxCoeff() > 0.0) {
+      add(with_drives(candidate, weights.data(), depth_m, all), [&](std::size_t i) {
+        const auto terms = rows.terms().row(static_cast<Eigen::Index>(i));
+        return std::inner_product(columns.begin(), columns.end(), weights.begin(), 0.0, std::plus<>(),
+                                  [&](Eigen::Index column, double weight) { return terms(column) * weight; });
+      });
     }
   }
   return fitted;

@@ -19,30 +19,34 @@
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "models/model/trend.h"
-#include "models/training/motion_source.h"
+#include "models/training/training_extent.h"
 #include "models/training/trend_regression.h"
 #include "models/training/trend_rows.h"
 
 namespace palpate {
 
-// `sample_s`: mean sampling period; `longest_s`: duration of the longest recording; `depth_m`: greatest depth;
 // `encoder_step_m`: 0 where positions are not quantised.
-FeatureList dictionary(double sample_s, double longest_s, double depth_m, double encoder_step_m);
+FeatureList dictionary(const TrainingExtent& extent, double encoder_step_m);
+// The relaxation times of the dictionary in s, ascending.
+std::vector<double> dictionary_times_s(const TrainingExtent& extent);
 
-// The rows of the regression with the list's terms, at most `most_rows`, with their folds. Samples that follow the
-// last used one by less than `least_step_s` are skipped. Errors: those of the source; interrupted.
-Result<TrendRows> gather_rows(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
-                              std::size_t most_rows, double least_step_s, const FitControl& control, double fraction);
+// A list with a feature of its own for each relaxation time.
+FeatureList single_times(bool velocity, const std::vector<double>& times_s);
 
-// A feature and the columns of the regression whose weighted sum it is.
-struct FeatureColumns {
-  FeatureKind kind = FeatureKind::depth;
-  std::string name;               // for reports, with the range of its constants
-  std::vector<double> constants;  // relaxation times, thresholds or creep times
-  ColumnList columns;
+// The training data of all regressions of one step of a fit.
+struct TrendData {
+  MotionSource& source;
+  TrendProblem problem;
+  FitControl control;
 };
-// All features of the rows' list that have columns, in the order of the model's features.
-std::vector<FeatureColumns> feature_columns(const TrendRows& rows);
+
+// The rows of the regression with the list's terms. While there are more than `most_rows`, every other one is dropped.
+// Samples that follow the last used one by less than `least_step_s` are skipped. Errors: interrupted.
+Result<TrendRows> gather_rows(const TrendData& data, const FeatureList& list, std::size_t most_rows,
+                              double least_step_s = 0.0);
+
+// The name of a candidate feature in reports, with the range of its constants.
+std::string term_name(const FeatureSpec& spec);
 
 struct FittedTrend {
   Trend trend;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "engine/base/parallel.h"
@@ -21,15 +20,9 @@ constexpr double kFirstSmoothness = 1e-8;
 
 }  // namespace
 
-ColumnList columns_from(std::size_t first, std::size_t count) {
-  ColumnList columns(count);
-  std::iota(columns.begin(), columns.end(), static_cast<Eigen::Index>(first));
-  return columns;
-}
-
 TrendRegression::TrendRegression(const TrendRows& rows, Smoothness smoothness)
     : rows_(rows),
-      part_error_(rows.list().creep_times_s.empty() ? kPartErrorOfFew : kPartError),
+      part_error_(has_kind(rows.list().features, FeatureKind::creep) ? kPartError : kPartErrorOfFew),
       smoothness_(kFirstSmoothness),
       folds_(static_cast<std::size_t>(rows.problem().folds)) {
   std::vector<int> fold;

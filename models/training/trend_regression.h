@@ -28,10 +28,6 @@
 
 namespace palpate {
 
-using ColumnList = std::vector<Eigen::Index>;
-// `count` consecutive columns.
-ColumnList columns_from(std::size_t first, std::size_t count);
-
 // alpha; the second without creep, in models with few features: there, 0.1 leaves the trend too little damping to come
 // to rest (tests/accuracy/closed_loop_test.cpp).
 inline constexpr double kPartError = 0.1;
@@ -54,7 +50,9 @@ class TrendRegression {
   CrossValidated cross_validate(const ColumnList& columns) const { return cross_validate(columns, smoothness_); }
   // The weights fitted to all rows, one for each column of the rows; 0 outside `columns`.
   Eigen::VectorXd solve(const ColumnList& columns) const { return weights(all_, columns, smoothness_); }
-  ColumnList all_columns() const { return columns_from(0, rows_.columns()); }
+  ColumnList all_columns() const {
+    return rows_.columns_of([](std::size_t) { return true; });
+  }
 
  private:
   // The normal equations of the rows outside one fold; -1: of all rows.

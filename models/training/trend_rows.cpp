@@ -3,23 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "models/model/bernstein.h"
 
 namespace palpate {
 namespace {
-
-// Keeps the first, third, ... of the groups of `width` values.
-template <typename T>
-void keep_every_other(std::vector<T>& values, std::size_t width) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i * width < values.size(); i += 2, ++kept) {
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * width), width,
-                values.begin() + static_cast<std::ptrdiff_t>(kept * width));
-  }
-  values.resize(kept * width);
-}
 
 // The Bernstein polynomials, computed once because every row uses them.
 constexpr auto kViscousBasis = [] {
@@ -28,45 +18,73 @@ constexpr auto kViscousBasis = [] {
   return basis;
 }();
 
-// Coefficients of u^1 .. u^4: the integrals of the Bernstein polynomials, and the friction of a bristle.
-constexpr std::array kDrives{bernstein_integral<kCurveTerms - 1>(0), bernstein_integral<kCurveTerms - 1>(1),
-                             bernstein_integral<kCurveTerms - 1>(2)};
-constexpr std::array<std::array<double, kDriveCoefficients>, kCurveTerms> kFrictions{
-    {{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
-
-template <typename Shapes>
-DriveCurve weighted_sum(const Shapes& shapes, const double* weights, double reference_depth_m) {
-  DriveCurve curve;
-  curve.reference_depth_m = reference_depth_m;
+// Coefficients of u^1 .. u^4 of each basis function: the integrals of the Bernstein polynomials, and the friction of a
+// bristle.
+using Basis = std::array<std::array<double, kDriveCoefficients>, kCurveTerms>;
+constexpr Basis kDrives = [] {
+  Basis basis{};
   for (std::size_t k = 0; k < kCurveTerms; ++k) {
-    for (std::size_t j = 0; j < shapes[k].size(); ++j) curve.coefficient_N[j] += weights[k] * shapes[k][j];
+    const auto power = bernstein_integral<kCurveTerms - 1>(k);
+    std::copy(power.begin(), power.end(), basis[k].begin());
   }
-  return curve;
-}
+  return basis;
+}();
+constexpr Basis kFrictions{{{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
 
 // One feature for each term of a bristle.
-FeatureFilter bristle(FeatureKind kind, double threshold_m, double time_s, double reference_depth_m) {
+FeatureFilter bristle(FeatureKind kind, FeaturePart part, double reference_depth_m) {
+  if (kind == FeatureKind::creep) part.threshold_m = reference_depth_m;
   std::vector<FeatureSpec> specs;
   for (const DriveCurve& curve : curve_basis(kind, reference_depth_m)) {
-    FeatureSpec& spec = specs.emplace_back();
-    spec.kind = kind;
+    part.drive = curve;
+    FeatureSpec& spec = specs.emplace_back(FeatureSpec{kind});
     spec.part_count = 1;
-    spec.parts[0] = {time_s, threshold_m, curve};
+    spec.parts[0] = part;
   }
   return FeatureFilter(specs);
 }
 
 }  // namespace
 
-std::vector<double> FeatureList::all_times_s() const {
+bool has_kind(const std::vector<FeatureSpec>& features, FeatureKind kind) {
+  return std::ranges::find(features, kind, &FeatureSpec::kind) != features.end();
+}
+
+void FeatureList::add(FeatureKind kind, const std::vector<double>& constants) {
+  FeatureSpec spec{kind};
+  for (const double constant : constants) {
+    FeaturePart& part = spec.parts[spec.part_count++];
+    (kind == FeatureKind::stops ? part.threshold_m : part.relaxation_time_s) = constant;
+  }
+  features.insert(std::ranges::upper_bound(features, kind, {}, &FeatureSpec::kind), spec);
+}
+
+std::vector<double> FeatureList::relaxation_times_s() const {
   std::vector<double> times_s;
-  for (const auto& group : relaxation_times_s) times_s.insert(times_s.end(), group.begin(), group.end());
+  for (const FeatureSpec& spec : features) {
+    if (!is_branch(spec.kind)) continue;
+    for (const double time_s : constants_of(spec)) times_s.push_back(time_s);
+  }
   return times_s;
 }
 
+std::vector<double> constants_of(const FeatureSpec& spec) {
+  std::vector<double> constants;
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    const FeaturePart& part = spec.parts[p];
+    constants.push_back(spec.kind == FeatureKind::stops ? part.threshold_m : part.relaxation_time_s);
+  }
+  return constants;
+}
+
 DriveCurve combined_curve(FeatureKind kind, const double* weights, double reference_depth_m) {
-  return is_bristle(kind) ? weighted_sum(kFrictions, weights, reference_depth_m)
-                          : weighted_sum(kDrives, weights, reference_depth_m);
+  const Basis& basis = is_bristle(kind) ? kFrictions : kDrives;
+  DriveCurve curve;
+  curve.reference_depth_m = reference_depth_m;
+  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+    for (std::size_t j = 0; j < kDriveCoefficients; ++j) curve.coefficient_N[j] += weights[k] * basis[k][j];
+  }
+  return curve;
 }
 
 std::vector<DriveCurve> curve_basis(FeatureKind kind, double reference_depth_m) {
@@ -107,27 +125,47 @@ DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m) 
   return curve;
 }
 
-BranchLadder::BranchLadder(std::vector<double> times_s, double reference_depth_m, double slowing)
-    : times_s_(std::move(times_s)),
-      curves_(curve_basis(FeatureKind::maxwell_spectrum, reference_depth_m)),
-      slowing_(slowing),
-      values_(times_s_.size() * kCurveTerms, 0.0) {}
+TrendRows::TrendRows(FeatureList list, const TrendProblem& problem, std::size_t stride)
+    : list_(std::move(list)),
+      problem_(problem),
+      stride_(stride),
+      elastic_basis_(spline_basis()),
+      times_s_(list_.relaxation_times_s()),
+      drives_(curve_basis(FeatureKind::maxwell_spectrum, problem.reference_depth_m)),
+      branches_N_(times_s_.size() * kCurveTerms, 0.0) {
+  if (!list_.surface.empty()) surface_.emplace_back(list_.surface);
+  for (const FeatureSpec& spec : list_.features) {
+    if (is_branch(spec.kind)) slowing_ = spec.slowing;
+    for (std::size_t p = 0; is_bristle(spec.kind) && p < spec.part_count; ++p) {
+      bristles_.push_back(bristle(spec.kind, spec.parts[p], problem_.reference_depth_m));
+    }
+    const std::size_t count = spec.kind == FeatureKind::depth      ? kElasticTerms
+                              : spec.kind == FeatureKind::velocity ? 2 * kViscosityCoefficients
+                                                                   : kCurveTerms * spec.part_count;
+    ColumnList& columns = feature_columns_.emplace_back(count);
+    std::iota(columns.begin(), columns.end(), static_cast<Eigen::Index>(columns_));
+    columns_ += count;
+  }
+}
 
-void BranchLadder::update(double time_s, double depth_m, double surface_m) {
+// Advances the outputs z_tk of the Maxwell branches for all relaxation times tau_t and drive curves g_k,
+//   dz/dt = g_k'(s) ds/dt - z / tau_t
+// with s the depth of the material's surface (engine/tick/features.h). `depth_m`: that of the tool, at most s.
+void TrendRows::update_branches(double time_s, double depth_m, double surface_m) {
   if (times_s_.empty()) return;
   std::array<double, kCurveTerms> change{};
   for (std::size_t k = 0; k < kCurveTerms; ++k) {
-    const double drive = curves_[k].at(surface_m);
-    change[k] = drive - drive_[k];
-    drive_[k] = drive;
+    const double drive = drives_[k].at(surface_m);
+    change[k] = drive - last_drive_[k];
+    last_drive_[k] = drive;
   }
-  const double step_s = time_s - time_s_;
+  const double step_s = time_s - last_time_s_;
   if (!started_) {
-    std::fill(values_.begin(), values_.end(), 0.0);
+    std::fill(branches_N_.begin(), branches_N_.end(), 0.0);
   } else if (step_s > 0.0) {
-    const double halfway_m = surface_halfway(surface_m_, depth_m_, depth_m);
-    const double factor = relaxation_time_factor(slowing_, halfway_m, curves_.front().reference_depth_m);
-    double* value = values_.data();
+    const double halfway_m = surface_halfway(last_surface_m_, last_depth_m_, depth_m);
+    const double factor = relaxation_time_factor(slowing_, halfway_m, problem_.reference_depth_m);
+    double* value = branches_N_.data();
     for (const double relaxation_time_s : times_s_) {
       const BranchStep step = branch_step(factor * relaxation_time_s, step_s);
       for (std::size_t k = 0; k < kCurveTerms; ++k, ++value) {
@@ -137,70 +175,37 @@ void BranchLadder::update(double time_s, double depth_m, double surface_m) {
     }
   }
   started_ = true;
-  time_s_ = time_s;
-  depth_m_ = depth_m;
-  surface_m_ = surface_m;
+  last_time_s_ = time_s;
+  last_depth_m_ = depth_m;
+  last_surface_m_ = surface_m;
 }
 
-TrendRows::TrendRows(FeatureList list, const TrendProblem& problem, std::size_t most_rows)
-    : list_(std::move(list)),
-      problem_(problem),
-      most_rows_(most_rows),
-      ladder_(list_.all_times_s(), problem.reference_depth_m, list_.slowing),
-      elastic_basis_(spline_basis()) {
-  const double depth_m = problem_.reference_depth_m;
-  if (!list_.surface.empty()) surface_.emplace_back(list_.surface);
-  for (const double threshold_m : list_.stop_thresholds_m) {
-    bristles_.push_back(bristle(FeatureKind::stops, threshold_m, 0.0, depth_m));
-  }
-  for (const double time_s : list_.creep_times_s) {
-    bristles_.push_back(bristle(FeatureKind::creep, depth_m, time_s, depth_m));
-  }
-  columns_ = first_stop() + kCurveTerms * bristles_.size();
-}
-
-void TrendRows::begin_recording() {
-  ladder_.reset();
+void TrendRows::add(const MotionRow& sample) {
+  if (sample.first) started_ = false;
   for (auto* filters : {&surface_, &bristles_}) {
-    for (FeatureFilter& filter : *filters) filter.reset();
+    for (FeatureFilter& filter : *filters) {
+      if (sample.first) filter.reset();
+      filter.update(sample.sample, sample.motion);
+    }
   }
-}
-
-void TrendRows::advance(const ToolSample& sample, const MotionEstimate& motion) {
-  for (auto* filters : {&surface_, &bristles_}) {
-    for (FeatureFilter& filter : *filters) filter.update(sample, motion);
-  }
-  const double depth_m = std::max(0.0, motion.position_m);
-  ladder_.update(sample.time_s, depth_m, surface_.empty() ? depth_m : surface_.front().surface_m());
-}
-
-void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int fold) {
-  advance(sample, motion);
-  if (!(sample.position_m > 0.0)) return;
-  if (phase_++ % stride_ != 0) return;
-  const double depth_m = std::max(0.0, motion.position_m);
-  const double velocity_m_per_s = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
+  const double depth_m = std::max(0.0, sample.motion.position_m);
+  const double surface_m = surface_.empty() ? depth_m : surface_.front().surface_m();
+  update_branches(sample.sample.time_s, depth_m, surface_m);
+  if (sample.run_up || !(sample.sample.position_m > 0.0)) return;
+  if (seen_++ % stride_ != 0) return;
+  const double velocity_m_per_s = depth_m > 0.0 ? sample.motion.velocity_m_per_s : 0.0;
   const double u = std::min(depth_m / problem_.reference_depth_m, 1.0);
   values_.resize(values_.size() + columns_);
   double* to = values_.data() + (values_.size() - columns_);
   for (const ElasticSpline& curve : elastic_basis_) *to++ = curve.at(u);
-  if (list_.velocity) {
+  if (has_kind(list_.features, FeatureKind::velocity)) {
     for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, problem_.rms_velocity_m_per_s)}) {
       for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
     }
   }
-  to = std::copy(ladder_.values().begin(), ladder_.values().end(), to);
+  to = std::copy(branches_N_.begin(), branches_N_.end(), to);
   for (const FeatureFilter& filter : bristles_) to = std::copy_n(filter.vector().values.begin(), kCurveTerms, to);
-  const double lag_m = surface_.empty() ? 0.0 : surface_.front().surface_m() - depth_m;
-  rows_.push_back({force_N, velocity_m_per_s, depth_m, lag_m, fold});
-  if (count() > most_rows_) halve();
-}
-
-void TrendRows::halve() {
-  keep_every_other(values_, columns_);
-  keep_every_other(rows_, 1);
-  stride_ *= 2;
-  phase_ = 1;  // the newest row was kept
+  rows_.push_back({sample.force_N, velocity_m_per_s, depth_m, surface_m - depth_m, sample.fold});
 }
 
 }  // namespace palpate
