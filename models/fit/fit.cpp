@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
-#include "models/fit/bound_calibration.h"
 
 namespace palpate {
 namespace {
@@ -32,7 +31,7 @@ double share_within_jnd(const PreparedTraining& prepared, const ModelData& data)
 // The correction without a fold; none if no other fold has rows.
 Result<CorrectionPtr> fit_without(const PreparedTraining& prepared, int fold, const MethodRequest& request,
                                   const FitControl& control) {
-  const Sites sites = sites_without(prepared, fold);
+  const Sites sites = sites_without(*prepared.left_out, fold, prepared.sites);
   if (sites.count() == 0) return CorrectionPtr{};
   const Eigen::VectorXd jnd_N = sites.row_scale.cwiseInverse();
   auto fitted = fit_correction({sites, jnd_N, request}, control);
@@ -73,7 +72,7 @@ Result<MethodFit> model_of(const PreparedTraining& prepared, const MethodRequest
   data.name = data.method + (fitted.size.empty() ? "" : "-" + fitted.size);
   data.provenance.seed = request.seed;
   data.correction = std::move(fitted.correction);
-  if (prepared.left_out) data.error_bound = bound_of(prepared, of_folds);
+  if (prepared.left_out) data.error_bound = bound_of(*prepared.left_out, data, of_folds);
   if (const Status valid = check_forces(data); !valid) {
     return Error{"the " + data.name + " fit did not give a usable model (" + valid.error().message +
                  "); try more smoothing or fewer centres"};

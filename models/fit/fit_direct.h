@@ -1,5 +1,5 @@
 // Direct interpolation: every site is a centre, with the side condition of eq. 3. The smoothing is selected by
-// cross-validation (correction_strength.h), otherwise by maximum likelihood (projected_kernel.h).
+// cross-validation (model_validation.h), otherwise by maximum likelihood (projected_kernel.h).
 //
 // The projected system (projected_kernel.h) is solved by a Cholesky factorisation; with Sites::as_2009, by the paper's
 // truncated SVD (truncated_svd.h), which takes some thirty times longer.

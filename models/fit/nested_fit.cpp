@@ -4,7 +4,6 @@
 #include <numeric>
 #include <string>
 
-#include "models/fit/bound_calibration.h"
 #include "models/linear/lapack.h"
 
 namespace palpate {
@@ -59,7 +58,7 @@ Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const Method
   if (!weights) return weights.error();
   NestedFit made(prepared, request, std::move(*weights));
   for (int fold = 0; prepared.left_out && fold < prepared.left_out->folds(); ++fold) {
-    const Sites sites = sites_without(prepared, fold);
+    const Sites sites = sites_without(*prepared.left_out, fold, prepared.sites);
     made.without_fold_.emplace_back();
     if (sites.count() == 0) continue;
     auto without = factorised(sites, sites.row_scale.cwiseInverse());

@@ -5,7 +5,7 @@
 //   row_scale * (G Phi f) = Q T,  T upper triangular.
 // The columns of k centres are non-zero only in the rows of T up to the last of these columns, which leaves a system
 // of that size. The weights equal those of a separate fit to rounding, with the same ridge or penalty. Smoothing and
-// strength do not depend on the number of centres (correction_strength.h). Every number has its own error bound: the
+// strength do not depend on the number of centres (model_validation.h). Every number has its own error bound: the
 // rows without each fold are factorised, too.
 // Thread guarantee: immutable; `fit` is slow side and may be called by several threads.
 // Source: Golub & Van Loan, Matrix Computations, section 6.5 (QR of fewer columns).

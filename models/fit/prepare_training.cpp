@@ -289,7 +289,7 @@ Status prepare_list(PreparedTraining& prepared, const TrendData& data, const Fea
   make_sites(prepared, request);
   if (papers) return {};
   prepared.left_out = cross_validation_rows(common, *rows, fitted.row_features, left_out.solutions);
-  prepared.strokes = extent.strokes;
+  prepared.left_out->strokes = extent.strokes;
   select_strength(prepared);
   return {};
 }

@@ -20,7 +20,7 @@
 #include "models/fit_library/fit_recordings.h"
 #include "models/library/c_interface.h"
 #include "models/model/file/model_io.h"
-#include "models/training/training_extent.h"
+#include "models/training/motion_source.h"
 
 struct palpate_recording {
   palpate::Recording recording;

@@ -55,7 +55,7 @@ class ProjectedKernel {
 };
 
 // Selects the smoothing of a fit by maximum likelihood, from the data alone and without refitting, where
-// cross-validation (models/fit/correction_strength.h) has not selected it.
+// cross-validation (models/fit/model_validation.h) has not selected it.
 //
 // One eigendecomposition of P K P (projected_kernel.h) for an evenly spaced subset of up to 500 sites gives the
 // likelihood of every smoothing, for normal noise and a normal prior whose scale is profiled out,

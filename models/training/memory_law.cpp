@@ -60,9 +60,7 @@ std::vector<FeatureSpec> surface_of(const TrendRows& rows) {
   const TrendRegression regression(rows, TrendRegression::Smoothness::fixed);
   const auto columns = rows.columns_of([&](std::size_t f) { return !is_bristle(rows.list().features[f].kind); });
   const FittedTrend fitted = fitted_trend(rows, regression.solve(columns), true);
-  FeatureSpec lag{FeatureKind::surface_lag};
-  lag.drive = coarse_curve(fitted.trend.elastic, rows.problem().reference_depth_m);
-  std::vector<FeatureSpec> surface{lag};
+  std::vector<FeatureSpec> surface{surface_lag_of(fitted.trend.elastic, rows.problem().reference_depth_m)};
   std::ranges::copy_if(fitted.features, std::back_inserter(surface), &is_branch, &FeatureSpec::kind);
   return surface;
 }

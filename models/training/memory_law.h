@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "models/training/trend_dictionary.h"
+#include "models/training/trend_regression.h"
 
 namespace palpate {
 

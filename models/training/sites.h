@@ -18,7 +18,7 @@ struct Sites {
   Eigen::VectorXd target_N;  // N forces
   // N factors >= 0 that multiply the residuals, e.g. 1 / JND(force). With factor 0 a site has no influence.
   Eigen::VectorXd row_scale;
-  // Both selected by cross-validation (models/fit/correction_strength.h).
+  // Both selected by cross-validation (models/fit/model_validation.h).
   std::optional<double> smoothing;  // roughness penalty of the cubic kernel; empty: the method selects it
   double strength = 1.0;            // factor of the correction, 0 to 1
   // Solve as Hoever & Harders (2009): truncated singular values, even grids.

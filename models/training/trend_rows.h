@@ -1,12 +1,11 @@
-// The rows of the regression of the trend.
+// The candidate features of a trend, the rows of its regression, and the trend made from the weights.
 //
-// Each row holds the basis functions of the trend at one sample in contact, u = depth / reference depth:
-//   elastic    int_0^u of the quadratic B-splines (models/model/trend.h), for the depth
-//   viscous    v B_k,2(min(u, 1))      k = 0..2, for the velocity,
-//              then the same with v / (1 + |v| / v_0)
-//   branch     Maxwell branch driven by int_0^u B_k,2, k = 0..2, for each relaxation time
-//   stop       s / r times 1 - (1 - u)^4, u and u^2, for each threshold r
-//   creep      q / r times the same, for each time; r is the greatest depth
+// A row holds the basis functions of the trend at one sample in contact, with u = depth / reference depth:
+//   depth             int_0^u of the quadratic B-splines (models/model/trend.h): the elastic response
+//   velocity          v B_k,2(min(u, 1)), k = 0..2, then the same with v / (1 + |v| / v_0): the viscosity
+//   maxwell_spectrum  for each relaxation time a branch driven by int_0^u B_k,2, k = 0..2
+//   stops             for each threshold r, s / r times 1 - (1 - u)^4, u and u^2
+//   creep             for each time, q / r times the same; r is the greatest depth
 // With a `surface`, branches follow the material's surface instead of the tool (engine/tick/features.h).
 // Thread guarantee: slow side.
 #pragma once
@@ -14,8 +13,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
+#include "engine/base/fit_control.h"
+#include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
 #include "models/model/trend.h"
@@ -28,6 +30,8 @@ namespace palpate {
 inline constexpr std::size_t kCurveTerms = 3;
 
 bool has_kind(const std::vector<FeatureSpec>& features, FeatureKind kind);
+// The constants of the parts of a feature: relaxation times in s, or thresholds in m (stops).
+std::vector<double> constants_of(const FeatureSpec& spec);
 
 // The candidate features of a trend; a regression gives their parts the drive curves.
 struct FeatureList {
@@ -36,14 +40,33 @@ struct FeatureList {
   // A surface_lag feature and the branches that determine the surface; empty: the surface does not lag.
   std::vector<FeatureSpec> surface{};
 
-  // Adds a feature in its place. `constants`: relaxation times in s, thresholds in m (stops), or none (velocity).
+  // Adds a feature in its place. `constants`: as constants_of; none for velocity.
   void add(FeatureKind kind, const std::vector<double>& constants = {});
   // The relaxation times of all maxwell_spectrum features, in order.
   std::vector<double> relaxation_times_s() const;
 };
 
-// The constants of the parts of a feature, as in FeatureList::add.
-std::vector<double> constants_of(const FeatureSpec& spec);
+// The dictionary: all terms that a recording of this length and rate can identify. The non-negative regression sets the
+// weights of terms that do not help to 0.
+//   velocity    viscosity
+//   relaxation  Maxwell branches, four relaxation times a decade, from two samples (at least 1 ms) to a third of the
+//               recording (at most 100 s), in three bands (fast, middle, slow). The sum of a band is one feature.
+//   stops       a Prandtl-Ishlinskii operator of up to 8 stops, whose thresholds halve from half of the greatest depth
+//               down to the encoder step
+//   creep       bristles that creep by a power law, one time a decade, from 1 ms to the same limit
+// `encoder_step_m`: 0 where positions are not quantised.
+FeatureList dictionary(const TrainingExtent& extent, double encoder_step_m);
+// Its relaxation times in s, ascending.
+std::vector<double> dictionary_times_s(const TrainingExtent& extent);
+// A list with a feature of its own for each relaxation time.
+FeatureList single_times(bool velocity, const std::vector<double>& times_s);
+// The name of a candidate feature in reports, with the range of its constants.
+std::string term_name(const FeatureSpec& spec);
+
+// The drive curve of a branch, or the friction curve of a stop or creeping bristle, from its kCurveTerms weights.
+DriveCurve combined_curve(FeatureKind kind, const double* weights, double reference_depth_m);
+// The kCurveTerms curves of its basis.
+std::vector<DriveCurve> curve_basis(FeatureKind kind, double reference_depth_m);
 
 // The parameters that all regressions of one training have in common.
 struct TrendProblem {
@@ -54,16 +77,6 @@ struct TrendProblem {
   JndLine jnd{};
   int folds = 1;
 };
-
-// The drive curve of a branch, or the friction curve of a stop or creeping bristle, from its kCurveTerms weights.
-DriveCurve combined_curve(FeatureKind kind, const double* weights, double reference_depth_m);
-// The kCurveTerms curves of its basis.
-std::vector<DriveCurve> curve_basis(FeatureKind kind, double reference_depth_m);
-
-// The elastic response with only the kDriveKnots knots of a DriveCurve, for surface_lag: a cubic spline through the
-// response at the knot averages (Schoenberg's variation diminishing approximation; de Boor, "A practical guide to
-// splines", chapter 11). It rises where the response rises.
-DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m);
 
 // A row besides its basis functions.
 struct TrendRow {
@@ -133,5 +146,31 @@ class TrendRows {
   double last_surface_m_ = 0.0;
   bool started_ = false;
 };
+
+// The training data of all regressions of one step of a fit.
+struct TrendData {
+  MotionSource& source;
+  TrendProblem problem;
+  FitControl control;
+};
+
+// The rows with the list's terms. While there are more than `most_rows`, every other one is dropped. Samples that
+// follow the last used one by less than `least_step_s` are skipped. Errors: interrupted.
+Result<TrendRows> gather_rows(const TrendData& data, const FeatureList& list, std::size_t most_rows,
+                              double least_step_s = 0.0);
+
+// The surface_lag feature of an elastic response, with only the kDriveKnots knots of a DriveCurve: a cubic spline
+// through the response at the knot averages (Schoenberg's variation diminishing approximation; de Boor, "A practical
+// guide to splines", chapter 11). It rises where the response rises.
+FeatureSpec surface_lag_of(const ElasticSpline& elastic, double reference_depth_m);
+
+struct FittedTrend {
+  Trend trend;
+  std::vector<FeatureSpec> features;
+  // Features x rows: the features at each row, SI.
+  Eigen::MatrixXd row_features;
+};
+// The trend and features for the weights `x` of the regression on `rows`. `all`: keep features whose weights are 0.
+FittedTrend fitted_trend(const TrendRows& rows, const Eigen::VectorXd& x, bool all);
 
 }  // namespace palpate

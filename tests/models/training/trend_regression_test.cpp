@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "models/training/trend_dictionary.h"
 #include "tests/support/feature_specs.h"
 #include "tests/support/random_points.h"
 

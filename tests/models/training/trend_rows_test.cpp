@@ -90,12 +90,12 @@ TEST(TrendRows, CombinedDriveIsTheWeightedSumOfTheBasis) {
 TEST(TrendRows, TheCoarseCurveIsTheSplineAndRises) {
   const std::vector<ElasticSpline> basis = spline_basis();
   const std::vector<double> ones(kElasticTerms, 1.0);
-  const DriveCurve straight = coarse_curve(combined_spline(basis, ones.data()), kDepth_m);
+  const DriveCurve straight = surface_lag_of(combined_spline(basis, ones.data()), kDepth_m).drive;
   std::vector<double> stiffening(kElasticTerms);
   for (std::size_t i = 0; i < kElasticTerms; ++i) stiffening[i] = 1.0 + static_cast<double>(i);
   const ElasticSpline elastic = combined_spline(basis, stiffening.data());
-  const DriveCurve coarse = coarse_curve(elastic, kDepth_m);
-  const DriveCurve bend = coarse_curve(basis[16], kDepth_m);
+  const DriveCurve coarse = surface_lag_of(elastic, kDepth_m).drive;
+  const DriveCurve bend = surface_lag_of(basis[16], kDepth_m).drive;
   for (int i = 1; i <= 240; ++i) {
     const double u = i / 200.0;
     EXPECT_NEAR(straight.at(u * kDepth_m), u, 1e-12);
