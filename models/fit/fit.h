@@ -24,7 +24,6 @@
 #include "models/training/memory_law.h"
 #include "models/training/sites.h"
 #include "models/training/training_set.h"
-#include "models/training/weighting.h"
 
 namespace palpate {
 
@@ -67,7 +66,7 @@ struct PreparedTraining {
   std::vector<PartGain> gains;                  // of each term of the dictionary; empty unless FeatureChoice::automatic
   std::optional<StrengthChoice> strength;       // none in the paper's recipe
   std::optional<CrossValidationRows> left_out;  // rows for cross-validation; none in the paper's recipe
-  std::vector<std::string> notes;  // for the report of every fit
+  std::vector<std::string> notes;               // for the report of every fit
 
   // False if cross-validation rejected the correction; every method then returns the trend.
   bool corrects() const { return !strength || strength->strength > 0.0; }

@@ -46,13 +46,15 @@ class LeftOutFits {
       : rows_(rows),
         centres_(random_centres(rows.points)),
         space_(penalty_space(kKernel, centres_)),
-        columns_(space_.free + tail_size(tail_degree(kKernel), static_cast<int>(rows.points.rows()))),
-        design_(rows.points.cols(), columns_),
+        design_(rows.points.cols(),
+                space_.free + tail_size(tail_degree(kKernel), static_cast<int>(rows.points.rows()))),
         folds_(static_cast<std::size_t>(rows.folds())) {
-    const auto blocks = static_cast<int>((design_.rows() + kBlockRows - 1) / kBlockRows);
-    parallel_for(blocks, [&](int block) { fill_design(block); });
+    Eigen::MatrixXd kernel(design_.rows(), centres_.cols());
+    kernel_matrix(kKernel, PointArrays(rows.points), centres_, kernel);
+    multiply_by_basis(kernel, space_);
+    design_ << kernel.leftCols(space_.free), tail_matrix(tail_degree(kKernel), rows.points);
     parallel_for(rows.folds(), [&](int fold) { gather(fold); });
-    Eigen::MatrixXd total = Eigen::MatrixXd::Zero(columns_, columns_);
+    Eigen::MatrixXd total = Eigen::MatrixXd::Zero(design_.cols(), design_.cols());
     for (const Fold& fold : folds_) total += fold.gram;
     for (Fold& fold : folds_) fold.gram = total - fold.gram;
   }
@@ -72,9 +74,8 @@ class LeftOutFits {
       Eigen::MatrixXd penalised = fold.gram;
       penalised.topLeftCorner(space_.free, space_.free) += smoothing * space_.penalty;
       const Eigen::VectorXd coefficients = solve_with_ridge(penalised, fold.right, 1e-14);
-      Eigen::VectorXd of_fold(fold.count);
-      multiply(design_.middleRows(fold.first, fold.count), false, coefficients, false, 1.0, 0.0, of_fold);
-      values.segment(fold.first, fold.count) = of_fold;
+      multiply(design_.middleRows(fold.first, fold.count), false, coefficients, false, 1.0, 0.0,
+               values.segment(fold.first, fold.count));
     }
     return values;
   }
@@ -95,26 +96,14 @@ class LeftOutFits {
     return points(Eigen::all, order);
   }
 
-  // Fills a block of rows of [K Z, G].
-  void fill_design(int block) {
-    const Eigen::Index first = block * kBlockRows;
-    const Eigen::Index rows = std::min(kBlockRows, design_.rows() - first);
-    const Eigen::MatrixXd some = rows_.points.middleCols(first, rows);
-    Eigen::MatrixXd kernel(rows, centres_.cols());
-    kernel_matrix(kKernel, PointArrays(some), centres_, kernel);
-    multiply_by_basis(kernel, space_);
-    design_.block(first, 0, rows, space_.free) = kernel.leftCols(space_.free);
-    design_.block(first, space_.free, rows, columns_ - space_.free) = tail_matrix(tail_degree(kKernel), some);
-  }
-
   void gather(int fold) {
     Fold& mine = folds_[static_cast<std::size_t>(fold)];
     const auto& of = rows_.fold;
     const auto [from, to] = std::equal_range(of.begin(), of.end(), fold);
     mine.first = from - of.begin();
     mine.count = to - from;
-    mine.gram = Eigen::MatrixXd::Zero(columns_, columns_);
-    mine.right = Eigen::VectorXd::Zero(columns_);
+    mine.gram = Eigen::MatrixXd::Zero(design_.cols(), design_.cols());
+    mine.right = Eigen::VectorXd::Zero(design_.cols());
     if (mine.count > 0) {
       Eigen::MatrixXd part = design_.middleRows(mine.first, mine.count);
       part.array().colwise() *= rows_.row_scale.segment(mine.first, mine.count).array();
@@ -129,7 +118,6 @@ class LeftOutFits {
   const CrossValidationRows& rows_;
   Eigen::MatrixXd centres_;
   PenaltySpace space_;
-  Eigen::Index columns_;
   Eigen::MatrixXd design_;  // [K Z, G]
   std::vector<Fold> folds_;
 };
@@ -138,14 +126,6 @@ class LeftOutFits {
 struct Variant : StrengthChoice {
   FoldErrors errors;
 };
-
-// The trust g at a distance: 1 up to the inner radius, 0 from the outer one, a cubic step between.
-double trust_at_distance(double distance, double inner_radius, double outer_radius) {
-  if (!(distance < outer_radius)) return 0.0;
-  if (distance <= inner_radius) return 1.0;
-  const double t = (outer_radius - distance) / (outer_radius - inner_radius);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 }  // namespace
 

@@ -22,10 +22,7 @@ constexpr double kUnlimited = 100.0;
 
 bool is_papers_recipe(const TrainingRequest& request) { return request.recipe == FitRecipe::paper_2009; }
 
-// The paper's recipe never uses the dictionary.
-bool is_automatic(const TrainingRequest& request) {
-  return request.choice == FeatureChoice::automatic && !is_papers_recipe(request);
-}
+bool is_automatic(const TrainingRequest& request) { return request.choice == FeatureChoice::automatic; }
 
 // The features of the recipe of 2009: the scene's, with low-passes of these times.
 std::vector<FeatureSpec> with_filters(std::vector<FeatureSpec> features, const std::vector<double>& times_s) {
@@ -34,77 +31,51 @@ std::vector<FeatureSpec> with_filters(std::vector<FeatureSpec> features, const s
   return features;
 }
 
-// The relaxation times behind the features of a model.
-std::vector<RelaxationTime> times_of(const std::vector<FeatureSpec>& features) {
-  std::vector<RelaxationTime> times;
-  for (const FeatureSpec& spec : features) {
-    if (has_time(spec.kind)) times.push_back({spec.relaxation_time_s, 0.0});
-    if (!is_branch(spec.kind)) continue;
-    for (const double time_s : constants_of(spec)) times.push_back({time_s, 0.0});
-  }
-  return times;
-}
-
+// The sites of the reduced samples, their cover and the limit of the correction.
 void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
-  const TrainingSet& set = prepared.set;
-  const auto n = static_cast<Eigen::Index>(set.sites.size());
-  const std::vector<FeatureSpec>& features = prepared.common.features;
-  const auto d = static_cast<Eigen::Index>(features.size());
+  ModelData& common = prepared.common;
+  const auto n = static_cast<Eigen::Index>(prepared.set.sites.size());
+  const auto d = static_cast<Eigen::Index>(common.features.size());
   Sites& sites = prepared.sites;
-  sites.points.resize(d, n);
-  sites.target_N.resize(n);
-  sites.row_scale.resize(n);
-  Eigen::VectorXd base_N(n);
-  for (std::size_t i = 0; i < set.sites.size(); ++i) {
-    const TrainingSite& site = set.sites[i];
-    const auto k = static_cast<Eigen::Index>(i);
-    const Eigen::Map<const Eigen::VectorXd> x(site.features.data(), d);
-    sites.points.col(k) = (x - set.normalisation.offset).cwiseQuotient(set.normalisation.scale);
-    base_N(k) = prepared.common.trend.at(site.features.data(), features);
-    const double residual_N = site.force_N - base_N(k);
-    sites.target_N(k) = prepared.common.corrects_trend ? residual_N : site.force_N;
-    // Where no force is measured and the trend is below 0, no correction is needed.
-    if (site.no_force && base_N(k) < 0.0 && prepared.common.corrects_trend) sites.target_N(k) = 0.0;
-    sites.row_scale(k) =
-        row_scale(request.weighting, request.jnd, site.force_N) * std::sqrt(std::min(site.count, kMaximumSiteCount));
-  }
-  prepared.common.cover = make_cover(sites.points);
+  sites = {Eigen::MatrixXd(d, n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
   double largest_N = 0.0;
   for (Eigen::Index k = 0; k < n; ++k) {
-    const double correction_N = sites.target_N(k) - (prepared.common.corrects_trend ? 0.0 : base_N(k));
-    largest_N = std::max(largest_N, std::abs(correction_N));
+    const TrainingSite& site = prepared.set.sites[static_cast<std::size_t>(k)];
+    const Eigen::Map<const Eigen::VectorXd> x(site.features.data(), d);
+    sites.points.col(k) = (x - common.offset).cwiseQuotient(common.scale);
+    const double trend_N = common.trend.at(site.features.data(), common.features);
+    // Where no force is measured and the trend is below 0, no correction is needed.
+    const bool needless = site.no_force && trend_N < 0.0 && common.corrects_trend;
+    const double residual_N = needless ? 0.0 : site.force_N - trend_N;
+    sites.target_N(k) = common.corrects_trend ? residual_N : site.force_N;
+    sites.row_scale(k) =
+        row_scale(request.weighting, request.jnd, site.force_N) * std::sqrt(std::min(site.count, kMaximumSiteCount));
+    largest_N = std::max(largest_N, std::abs(residual_N));
   }
-  prepared.common.correction_limit_N = kCorrectionMargin * largest_N;
+  common.cover = make_cover(sites.points);
+  common.correction_limit_N = kCorrectionMargin * largest_N;
   if (!is_papers_recipe(request)) return;
   // The paper uses its function everywhere, within the limits of the output only, with even grids and with
   // pseudo-inverses by truncated singular values.
   sites.as_2009 = true;
-  prepared.common.cover.inner_radius = kEverywhere;
-  prepared.common.cover.outer_radius = 2.0 * kEverywhere;
-  prepared.common.correction_limit_N *= kUnlimited;
+  common.cover.inner_radius = kEverywhere;
+  common.cover.outer_radius = 2.0 * kEverywhere;
+  common.correction_limit_N *= kUnlimited;
 }
 
 // The recordings with the corrections of the registration that are used.
 struct CorrectedRecordings {
-  std::vector<RecordingSurface> surfaces;  // empty: as recorded
-  double surface_m = 0.0;                  // position of the surface, in positions as recorded
+  std::vector<RecordingSurface> surfaces{};  // empty: as recorded
+  double surface_m = 0.0;                    // position of the surface, in positions as recorded
+  std::string unused{};                      // the names of the kinds that were found and are not used
   TrainingExtent extent{};
 };
-
-// Sets the corrections of the passes.
-void correct(MotionSource& source, const CorrectedRecordings& corrected) {
-  std::vector<RowCorrection> corrections;
-  for (const RecordingSurface& one : corrected.surfaces) {
-    corrections.push_back({corrected.surface_m + one.offset_m, one.force_zero_N, one.lag_s});
-  }
-  source.correct(std::move(corrections));
-}
 
 // Sets the corrections, measures the recordings, and moves the surface out if they begin under a preload.
 Status apply(CorrectedRecordings& corrected, MotionSource& source, const TrainingRequest& request,
              const FitControl& control) {
   const auto measure = [&]() -> Status {
-    correct(source, corrected);
+    source.correct(corrected.surfaces, corrected.surface_m);
     const auto extent = measure_extent(source, control);
     if (!extent) return extent.error();
     corrected.extent = *extent;
@@ -128,15 +99,6 @@ TrendProblem problem_of(const MotionSource& source, const TrainingExtent& extent
           request.jnd,         source.folds()};
 }
 
-// The cross-validated error of a trend of the recordings in their present correction. Its folds are pieces of strokes,
-// of three recordings or more, too, because the question is whether one trend suits all recordings.
-Result<FoldErrors> error_of(MotionSource& source, const TrainingExtent& extent, const TrainingRequest& request,
-                            const FitControl& control) {
-  source.assign_folds(extent.folds(1));
-  return simple_law_error({source, problem_of(source, extent, request), control.at(0.05)},
-                          dictionary(extent, source.encoder_step_m()));
-}
-
 // Whether any recording has this correction.
 bool any_has(const std::vector<RecordingSurface>& surfaces, double RecordingSurface::*correction) {
   return std::ranges::any_of(
@@ -146,12 +108,17 @@ bool any_has(const std::vector<RecordingSurface>& surfaces, double RecordingSurf
 // The registration's corrections, without those of a kind that is not used.
 CorrectedRecordings some_of(const RegisteredSurfaces& found, bool offsets, bool force_zeros, bool lag) {
   CorrectedRecordings some{found.recordings, offsets ? found.surface_position_m : found.unmoved_surface_position_m};
-  for (RecordingSurface& one : some.surfaces) {
-    if (!offsets && one.offset_m != 0.0) one.standard_error_m = std::numeric_limits<double>::infinity();
-    if (!offsets) one.offset_m = 0.0;
-    if (!force_zeros) one.force_zero_N = 0.0;
-    if (!lag) one.lag_s = 0.0;
-  }
+  const auto drop = [&](double RecordingSurface::*correction, const char* name) {
+    if (!any_has(found.recordings, correction)) return;
+    some.unused.append(some.unused.empty() ? "" : " and ").append(name);
+    for (RecordingSurface& one : some.surfaces) {
+      if (!offsets && one.offset_m != 0.0) one.standard_error_m = std::numeric_limits<double>::infinity();
+      one.*correction = 0.0;
+    }
+  };
+  if (!offsets) drop(&RecordingSurface::offset_m, "surface offsets");
+  if (!force_zeros) drop(&RecordingSurface::force_zero_N, "force zeros");
+  if (!lag) drop(&RecordingSurface::lag_s, "force lag");
   return some;
 }
 
@@ -169,47 +136,35 @@ std::vector<CorrectedRecordings> possible_corrections(const RegisteredSurfaces& 
   return possible;
 }
 
-// The names of the kinds of corrections that were found and are not used; empty: all are used.
-std::string unused(const RegisteredSurfaces& found, const CorrectedRecordings& chosen) {
-  constexpr std::pair<double RecordingSurface::*, const char*> kKinds[] = {
-      {&RecordingSurface::offset_m, "surface offsets"},
-      {&RecordingSurface::force_zero_N, "force zeros"},
-      {&RecordingSurface::lag_s, "force lag"}};
-  std::string names;
-  for (const auto& [correction, name] : kKinds) {
-    if (!any_has(found.recordings, correction) || any_has(chosen.surfaces, correction)) continue;
-    names.append(names.empty() ? "" : " and ").append(name);
-  }
-  return names;
-}
-
 // Corrects the recordings by their offsets, force zeros and lag as far as a trend confirms it: an effect of the
 // material that the registration does not know may look like an offset. The candidates differ in the samples that are
 // in contact, so the comparison is paired only by pieces of strokes.
 Result<CorrectedRecordings> correct_recordings(MotionSource& source, const TrainingRequest& request,
                                                std::vector<std::string>& notes, const FitControl& control) {
-  if (request.surface == Surface::recorded) {
-    CorrectedRecordings recorded;
-    if (Status status = apply(recorded, source, request, control); !status) return status.error();
-    return recorded;
-  }
   source.correct({});
-  const auto found = register_surfaces(source, control);
-  if (!found) return found.error();
-  std::vector<CorrectedRecordings> candidates = possible_corrections(*found);
+  std::vector<CorrectedRecordings> candidates(1);  // as recorded
+  if (request.surface == Surface::automatic) {
+    const auto found = register_surfaces(source, control);
+    if (!found) return found.error();
+    candidates = possible_corrections(*found);
+  }
   std::vector<FoldErrors> errors;
   for (CorrectedRecordings& one : candidates) {
     if (Status status = apply(one, source, request, control); !status) return status.error();
     // Without contact there is nothing to compare.
     if (candidates.size() == 1 || !(one.extent.depth_m > 0.0)) break;
-    auto error = error_of(source, one.extent, request, control);
+    // The folds are pieces of strokes, because the question is whether one trend suits all recordings.
+    source.assign_folds(one.extent.folds(1));
+    auto error = simple_law_error({source, problem_of(source, one.extent, request), control.at(0.05)},
+                                  dictionary(one.extent, source.sensor().encoder_step_m));
     if (!error) return error.error();
     errors.push_back(std::move(*error));
   }
   CorrectedRecordings& chosen = candidates[errors.empty() ? 0 : simplest_adequate(errors)];
-  correct(source, chosen);
-  if (const std::string names = unused(*found, chosen); !names.empty()) {
-    notes.push_back("the " + names + " found are not used: they do not lower the cross-validated error significantly");
+  source.correct(chosen.surfaces, chosen.surface_m);
+  if (!chosen.unused.empty()) {
+    notes.push_back("the " + chosen.unused +
+                    " found are not used: they do not lower the cross-validated error significantly");
   }
   return std::move(chosen);
 }
@@ -217,10 +172,7 @@ Result<CorrectedRecordings> correct_recordings(MotionSource& source, const Train
 // The scene's features with the relaxation times of the scene, of the request, or identified ones.
 Result<FeatureList> scene_list(const TrendData& data, const TrainingExtent& extent, const TrainingRequest& request) {
   const bool velocity = has_kind(request.features, FeatureKind::velocity);
-  std::vector<double> times_s;
-  for (const FeatureSpec& spec : request.features) {
-    if (has_time(spec.kind)) times_s.push_back(spec.relaxation_time_s);
-  }
+  std::vector<double> times_s = relaxation_times_s(request.features);
   if (request.relaxation != Relaxation::scene && times_s.empty()) {
     return Error{"scene \"" + request.scene +
                  "\" has no relaxation features; leave out --relaxation, or use a scene "
@@ -248,18 +200,6 @@ void add_gains(std::vector<PartGain>& gains, const TrendRows& rows, const TrendR
   std::ranges::stable_partition(gains, &PartGain::taken);
 }
 
-// Selects smoothing, strength and reach of the correction by cross-validation.
-void select_strength(PreparedTraining& prepared) {
-  ModelData& common = prepared.common;
-  const StrengthChoice choice = choose_strength(*prepared.left_out, common);
-  const double outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
-  prepared.strength = choice;
-  prepared.sites.smoothing = choice.smoothing;
-  prepared.sites.strength = choice.strength;
-  common.cover.inner_radius = choice.inner_radius;
-  common.cover.outer_radius = outer_to_inner * choice.inner_radius;
-}
-
 // Trend, sites and correction strength of one list of features.
 Status prepare_list(PreparedTraining& prepared, const TrendData& data, const FeatureList& list,
                     const TrainingExtent& extent, const TrainingRequest& request) {
@@ -274,7 +214,7 @@ Status prepare_list(PreparedTraining& prepared, const TrendData& data, const Fea
   if (is_automatic(request)) add_gains(prepared.gains, *rows, regression, left_out, x);
   const FittedTrend fitted = fitted_trend(*rows, x, !is_automatic(request));
   common.trend = fitted.trend;
-  common.features = papers ? with_filters(request.features, list.relaxation_times_s()) : fitted.features;
+  common.features = papers ? with_filters(request.features, relaxation_times_s(list.features)) : fitted.features;
   auto set = make_training_set(data.source, common.features, request.reduction, data.problem.force_noise_floor_N,
                                data.control);
   if (!set) return set.error();
@@ -290,7 +230,13 @@ Status prepare_list(PreparedTraining& prepared, const TrendData& data, const Fea
   if (papers) return {};
   prepared.left_out = cross_validation_rows(common, *rows, fitted.row_features, left_out.solutions);
   prepared.left_out->strokes = extent.strokes;
-  select_strength(prepared);
+  const StrengthChoice choice = choose_strength(*prepared.left_out, common);
+  prepared.strength = choice;
+  prepared.sites.smoothing = choice.smoothing;
+  prepared.sites.strength = choice.strength;
+  const double outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
+  common.cover.inner_radius = choice.inner_radius;
+  common.cover.outer_radius = outer_to_inner * choice.inner_radius;
   return {};
 }
 
@@ -312,7 +258,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   const TrendProblem problem = problem_of(source, extent, request);
   Result<FeatureList> list = request.list;
   if (is_automatic(request)) {
-    list = select_memory_law({source, problem, control.at(0.15)}, dictionary(extent, source.encoder_step_m()),
+    list = select_memory_law({source, problem, control.at(0.15)}, dictionary(extent, source.sensor().encoder_step_m),
                              prepared.gains);
   } else if (request.choice != FeatureChoice::given) {
     list = scene_list({source, problem, control.at(0.1)}, extent, request);
@@ -325,17 +271,19 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   for (FeatureSpec& spec : prepared.common.features) {
     if (spec.kind == FeatureKind::depth) spec.surface_position_m = corrected->surface_m;
   }
-  prepared.common.sensor = SensorSpec{source.encoder_step_m(), source.position_noise_m()};
+  prepared.common.sensor = source.sensor();
   Provenance& provenance = prepared.common.provenance;
   provenance.surfaces = std::move(corrected->surfaces);
-  provenance.relaxation_times = times_of(prepared.common.features);
+  for (const double time_s : relaxation_times_s(prepared.common.features)) {
+    provenance.relaxation_times.push_back({time_s, 0.0});
+  }
   for (const auto& recording : source.recordings()) provenance.recordings.push_back(recording.name);
   provenance.scene = request.scene;
   provenance.samples = source.rows();
   provenance.contact_samples = prepared.set.contact_samples;
   provenance.samples_after_reduction = prepared.set.sites.size();
-  provenance.weighting = weighting_name(request.weighting);
-  provenance.reduction = reduction_name(request.reduction);
+  provenance.weighting = kWeightingNames[static_cast<std::size_t>(request.weighting)];
+  provenance.reduction = kReductionNames[static_cast<std::size_t>(request.reduction)];
   const Relaxation relaxation = request.choice == FeatureChoice::automatic ? Relaxation::automatic
                                 : request.choice == FeatureChoice::given   ? Relaxation::given
                                                                            : request.relaxation;

@@ -30,8 +30,7 @@ std::vector<double> evenly(const std::vector<double>& values, std::size_t most) 
 // The list with fewer terms, for comparisons of many regressions.
 FeatureList shortened(const FeatureList& list) {
   FeatureList few;
-  const std::vector<double> times_s = evenly(list.relaxation_times_s(), kSearchedTimes);
-  if (!times_s.empty()) few.add(FeatureKind::maxwell_spectrum, times_s);
+  few.add(FeatureKind::maxwell_spectrum, evenly(relaxation_times_s(list.features), kSearchedTimes));
   for (const FeatureSpec& spec : list.features) {
     if (spec.kind == FeatureKind::velocity) few.add(spec.kind);
     if (is_bristle(spec.kind)) few.add(spec.kind, evenly(constants_of(spec), kSearchedBristles));
@@ -83,25 +82,20 @@ struct Choice {
   FoldErrors errors;
 };
 
-// The errors with elastic response, viscosity and the branches with these times.
-FoldErrors errors_with(const TrendRegression& regression, const TrendRows& rows, const std::vector<int>& times) {
-  const auto& features = rows.list().features;
-  const auto first = std::ranges::find(features, FeatureKind::maxwell_spectrum, &FeatureSpec::kind) - features.begin();
-  const auto columns = rows.columns_of([&](std::size_t f) {
-    const auto time = static_cast<int>(static_cast<std::ptrdiff_t>(f) - first);
-    return time < 0 || std::ranges::binary_search(times, time);
-  });
-  return regression.cross_validate(columns).errors;
-}
-
 // Adds the time with the lowest RMS error, then moves single times to the next candidate while the error falls.
 Choice with_one_more(const TrendRegression& regression, const TrendRows& rows, const Choice& last) {
   Choice best;
-  const auto candidates = static_cast<int>(rows.list().relaxation_times_s().size());
+  const auto candidates = static_cast<int>(relaxation_times_s(rows.list().features).size());
+  const int first = static_cast<int>(rows.list().features.size()) - candidates;
   const auto attempt = [&](std::vector<int> times) {
     std::ranges::sort(times);
     if (std::ranges::adjacent_find(times) != times.end() || times.front() < 0 || times.back() >= candidates) return;
-    const FoldErrors errors = errors_with(regression, rows, times);
+    // Elastic response, viscosity and the branches with these times.
+    const auto columns = rows.columns_of([&](std::size_t f) {
+      const int time = static_cast<int>(f) - first;
+      return time < 0 || std::ranges::binary_search(times, time);
+    });
+    const FoldErrors errors = regression.cross_validate(columns).errors;
     if (best.times.empty() || errors.rms() < best.errors.rms()) best = {std::move(times), errors};
   };
   for (int added = 0; added < candidates; ++added) {
@@ -132,7 +126,7 @@ Result<FoldErrors> simple_law_error(const TrendData& data, const FeatureList& li
 }
 
 Result<FeatureList> select_memory_law(const TrendData& data, const FeatureList& list, std::vector<PartGain>& gains) {
-  if (list.relaxation_times_s().empty()) return list;
+  if (!has_kind(list.features, FeatureKind::maxwell_spectrum)) return list;
   std::vector<Law> surfaces;
   for (const bool lags : {false, true}) {
     auto law = scored(data, shortened(list), lags);

@@ -47,9 +47,10 @@ Status MotionSource::load(const FitControl& control) {
       row.run_up = !prepared->left_out.empty() && prepared->left_out[i];
       if (i % stride == 0) one.rows.push_back(row);
     }
-    const SensorSpec& sensor = prepared->sensor;
-    std::tie(encoder_step_m_, position_noise_m_) = std::max(std::pair{encoder_step_m_, position_noise_m_},
-                                                            std::pair{sensor.encoder_step_m, sensor.position_noise_m});
+    const SensorSpec sensor{prepared->sensor.encoder_step_m, prepared->sensor.position_noise_m};
+    sensor_ = std::max(sensor_, sensor, [](const SensorSpec& a, const SensorSpec& b) {
+      return std::tie(a.encoder_step_m, a.position_noise_m) < std::tie(b.encoder_step_m, b.position_noise_m);
+    });
     force_noise_N_ = std::max(force_noise_N_, prepared->force_noise_N);
   }
   recordings_ = std::move(loaded);
@@ -62,21 +63,22 @@ Status MotionSource::for_each(const std::function<void(const MotionRow&)>& visit
   int stroke = 0;
   std::optional<FoldAssignment> assignment = assignment_;
   for (std::size_t r = 0; r < recordings_.size(); ++r) {
-    const RowCorrection correction = corrections_.empty() ? RowCorrection{} : corrections_[r];
+    const RecordingSurface own = surfaces_.empty() ? RecordingSurface{} : surfaces_[r];
+    const double offset_m = surface_m_ + own.offset_m;
     bool first = true;
     bool was_in_contact = false;
     std::size_t at = 0;
     for (MotionRow row : recordings_[r].rows) {
       if (seen > 0 && seen % kRowsPerQuestion == 0 && !control.may_continue()) return interrupted();
       ++seen;
-      if (correction.lag_s != 0.0) {
-        const auto force_N = force_at(recordings_[r].rows, row.sample.time_s + correction.lag_s, at);
+      if (own.lag_s != 0.0) {
+        const auto force_N = force_at(recordings_[r].rows, row.sample.time_s + own.lag_s, at);
         if (!force_N) continue;
         row.force_N = *force_N;
       }
-      row.sample.position_m -= correction.offset_m;
-      row.motion.position_m -= correction.offset_m;
-      row.force_N -= correction.force_zero_N;
+      row.sample.position_m -= offset_m;
+      row.motion.position_m -= offset_m;
+      row.force_N -= own.force_zero_N;
       const bool in_contact = row.sample.position_m > 0.0;
       if (in_contact && !was_in_contact) ++stroke;
       was_in_contact = in_contact;
@@ -92,28 +94,27 @@ Status MotionSource::for_each(const std::function<void(const MotionRow&)>& visit
 
 FoldAssignment TrainingExtent::folds(std::size_t recordings) const {
   const bool has_unloading = unloading_path_m > kLeastUnloading * loading_path_m;
-  return {recordings, strokes, contact_samples, has_unloading};
+  return {recordings, contact_samples, has_unloading};
 }
 
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control) {
   TrainingExtent extent;
   double squares = 0.0;
-  double last_m = 0.0;
+  MotionRow last;
   double lowest_N = 0.0;
   double pulls = 0.0;
   double start_s = 0.0;
-  double last_s = 0.0;
   double duration_s = 0.0;
   double steps = 0.0;
   const Status status = source.for_each(
       [&](const MotionRow& row) {
-        if (row.first) start_s = last_s = row.sample.time_s;
-        const double travel_m = row.first ? 0.0 : row.motion.position_m - last_m;
-        duration_s += row.sample.time_s - last_s;
+        if (row.first) start_s = row.sample.time_s;
+        if (row.first) last = row;
+        const double travel_m = row.motion.position_m - last.motion.position_m;
+        duration_s += row.sample.time_s - last.sample.time_s;
         steps += row.first ? 0.0 : 1.0;
-        last_m = row.motion.position_m;
-        last_s = row.sample.time_s;
-        extent.longest_recording_s = std::max(extent.longest_recording_s, last_s - start_s);
+        last = row;
+        extent.longest_recording_s = std::max(extent.longest_recording_s, row.sample.time_s - start_s);
         if (!(row.sample.position_m > 0.0)) return;
         extent.depth_m = std::max({extent.depth_m, row.motion.position_m, 1e-9});
         extent.force_N = std::max(extent.force_N, row.force_N);
@@ -137,7 +138,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
 
 Result<double> find_preload_surface(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
                                     const FitControl& control) {
-  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // sums, of depth and force
+  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // sums, of depth x and force y
   const Status status = source.for_each(
       [&](const MotionRow& row) {
         const double depth_m = row.motion.position_m;

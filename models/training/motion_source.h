@@ -17,6 +17,7 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
+#include "models/model/fitted_model.h"
 #include "models/recordings/prepared_recording.h"
 #include "models/training/cross_validation.h"
 
@@ -36,14 +37,6 @@ struct MotionRow : SurfaceRow {
   bool run_up = false;  // only updates filters, is not a training sample
 };
 
-// Subtracted from the rows of one recording; velocity and acceleration stay as they are. With a lag, rows at either end
-// for which no force was recorded are dropped.
-struct RowCorrection {
-  double offset_m = 0.0;
-  double force_zero_N = 0.0;
-  double lag_s = 0.0;  // the force of a row at t is the force recorded at t + lag_s, interpolated
-};
-
 class MotionSource {
  public:
   // `recordings`: at least one. `most_rows`: the number of rows to keep in memory.
@@ -57,9 +50,15 @@ class MotionSource {
   // rows. Errors: interrupted.
   Status for_each(const std::function<void(const MotionRow&)>& visit, const FitControl& control = {});
 
-  // Sets the corrections of all later passes, one for each of `recordings`. Contact and strokes are
-  // determined from the corrected position.
-  void correct(std::vector<RowCorrection> corrections) { corrections_ = std::move(corrections); }
+  // Sets the corrections of all later passes: `surface_m` and the recording's own offset are subtracted from its
+  // positions and its force zero from its forces, and the force at t becomes the one recorded at t + lag_s,
+  // interpolated. Velocity and acceleration stay as they are, and rows for which no force was recorded then are
+  // dropped. Contact and strokes are determined from the corrected position. `surfaces`: one for each of `recordings`,
+  // or none.
+  void correct(std::vector<RecordingSurface> surfaces, double surface_m = 0.0) {
+    surfaces_ = std::move(surfaces);
+    surface_m_ = surface_m;
+  }
 
   // Assigns the rows of all later passes to the folds of `assignment`.
   void assign_folds(const FoldAssignment& assignment) { assignment_ = assignment; }
@@ -75,22 +74,21 @@ class MotionSource {
   const std::vector<OneRecording>& recordings() const { return recordings_; }
   // The number of recorded rows.
   std::size_t rows() const { return rows_; }
-  // The largest force noise and encoder step of the recordings, and the position noise of the recording with the
-  // largest encoder step.
+  // The largest force noise and encoder step of the recordings, with the position noise of the recording with that
+  // step.
   double force_noise_N() const { return force_noise_N_; }
-  double encoder_step_m() const { return encoder_step_m_; }
-  double position_noise_m() const { return position_noise_m_; }
+  const SensorSpec& sensor() const { return sensor_; }
 
  private:
   std::vector<PreparedRecordingPointer> inputs_;
   std::size_t most_rows_;
   std::vector<OneRecording> recordings_;  // empty before loading
-  std::vector<RowCorrection> corrections_;
+  std::vector<RecordingSurface> surfaces_;
+  double surface_m_ = 0.0;
   std::optional<FoldAssignment> assignment_;
   std::size_t rows_ = 0;
   double force_noise_N_ = 0.0;
-  double encoder_step_m_ = 0.0;
-  double position_noise_m_ = 0.0;
+  SensorSpec sensor_;
 };
 
 // The ranges of the rows.

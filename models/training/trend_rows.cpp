@@ -1,7 +1,6 @@
 #include "models/training/trend_rows.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -9,7 +8,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "models/model/bernstein.h"
+#include "models/model/polynomial.h"
 
 namespace palpate {
 namespace {
@@ -36,24 +35,12 @@ std::vector<double> ladder(double shortest_s, double longest_s, double per_decad
 
 double longest_time_s(const TrainingExtent& extent) { return std::min(kLongest_s, extent.longest_recording_s / 3.0); }
 
-// The Bernstein polynomials, computed once because every row uses them.
-constexpr auto kViscousBasis = [] {
-  std::array<std::array<double, kViscosityCoefficients>, kViscosityCoefficients> basis{};
-  for (std::size_t k = 0; k < basis.size(); ++k) basis[k] = bernstein<kViscosityCoefficients - 1>(k);
-  return basis;
-}();
-
-// Coefficients of u^1 .. u^4 of each basis function: the integrals of the Bernstein polynomials, and the friction of a
-// bristle.
+// The quadratic Bernstein polynomials (1 - u)^2, 2 u (1 - u) and u^2: coefficients of u^0 .. u^2.
+constexpr std::array<std::array<double, kViscosityCoefficients>, kViscosityCoefficients> kViscousBasis{
+    {{1.0, -2.0, 1.0}, {0.0, 2.0, -2.0}, {0.0, 0.0, 1.0}}};
+// Their integrals, and the friction of a bristle: coefficients of u^1 .. u^4.
 using Basis = std::array<std::array<double, kDriveCoefficients>, kCurveTerms>;
-constexpr Basis kDrives = [] {
-  Basis basis{};
-  for (std::size_t k = 0; k < kCurveTerms; ++k) {
-    const auto power = bernstein_integral<kCurveTerms - 1>(k);
-    std::copy(power.begin(), power.end(), basis[k].begin());
-  }
-  return basis;
-}();
+constexpr Basis kDrives{{{1.0, -1.0, 1.0 / 3.0, 0.0}, {0.0, 1.0, -2.0 / 3.0, 0.0}, {0.0, 0.0, 1.0 / 3.0, 0.0}}};
 constexpr Basis kFrictions{{{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
 
 // One feature for each term of a bristle.
@@ -69,6 +56,41 @@ FeatureFilter bristle(FeatureKind kind, FeaturePart part, double reference_depth
   return FeatureFilter(specs);
 }
 
+Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
+  Trend trend;
+  trend.reference_depth_m = rows.problem().reference_depth_m;
+  trend.elastic = combined_spline(spline_basis(), x.data());
+  if (has_kind(rows.list().features, FeatureKind::velocity)) {
+    trend.thinning_velocity_m_per_s = rows.problem().rms_velocity_m_per_s;
+    auto column = static_cast<Eigen::Index>(kElasticTerms);
+    for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
+      for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column) {
+        for (std::size_t j = 0; j < kViscosityCoefficients; ++j) (*viscosity)[j] += x(column) * kViscousBasis[k][j];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < rows.count(); ++i) {
+    trend.velocity_limit_m_per_s =
+        std::max(trend.velocity_limit_m_per_s, kVelocityMargin * std::abs(rows[i].velocity_m_per_s));
+  }
+  return trend;
+}
+
+// The feature with the drive curves of `weights`, without the parts whose weights are 0, unless `all`.
+FeatureSpec with_drives(const FeatureSpec& candidate, const double* weights, double depth_m, bool all) {
+  FeatureSpec spec = candidate;
+  spec.part_count = 0;
+  spec.parts = {};
+  for (std::size_t p = 0; p < candidate.part_count; ++p, weights += kCurveTerms) {
+    const bool carries = std::any_of(weights, weights + kCurveTerms, [](double weight) { return weight > 0.0; });
+    if (!carries && !all) continue;
+    FeaturePart& part = spec.parts[spec.part_count++] = candidate.parts[p];
+    part.drive = combined_curve(spec.kind, weights, depth_m);
+    if (spec.kind == FeatureKind::creep) part.threshold_m = depth_m;
+  }
+  return spec;
+}
+
 }  // namespace
 
 bool has_kind(const std::vector<FeatureSpec>& features, FeatureKind kind) {
@@ -76,6 +98,7 @@ bool has_kind(const std::vector<FeatureSpec>& features, FeatureKind kind) {
 }
 
 void FeatureList::add(FeatureKind kind, const std::vector<double>& constants) {
+  if (has_parts(kind) && constants.empty()) return;
   FeatureSpec spec{kind};
   for (const double constant : constants) {
     FeaturePart& part = spec.parts[spec.part_count++];
@@ -84,9 +107,10 @@ void FeatureList::add(FeatureKind kind, const std::vector<double>& constants) {
   features.insert(std::ranges::upper_bound(features, kind, {}, &FeatureSpec::kind), spec);
 }
 
-std::vector<double> FeatureList::relaxation_times_s() const {
+std::vector<double> relaxation_times_s(const std::vector<FeatureSpec>& features) {
   std::vector<double> times_s;
   for (const FeatureSpec& spec : features) {
+    if (has_time(spec.kind)) times_s.push_back(spec.relaxation_time_s);
     if (!is_branch(spec.kind)) continue;
     for (const double time_s : constants_of(spec)) times_s.push_back(time_s);
   }
@@ -113,16 +137,15 @@ FeatureList dictionary(const TrainingExtent& extent, double encoder_step_m) {
   for (std::size_t band = 0; band < kBands; ++band) {
     const auto from = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * band / kBands);
     const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
-    if (from != to) list.add(FeatureKind::maxwell_spectrum, {from, to});
+    list.add(FeatureKind::maxwell_spectrum, {from, to});
   }
   std::vector<double> thresholds_m;
   for (double threshold_m = 0.5 * extent.depth_m;
        thresholds_m.size() < kMaxFeatureParts && threshold_m >= encoder_step_m; threshold_m *= 0.5) {
     thresholds_m.insert(thresholds_m.begin(), threshold_m);
   }
-  if (!thresholds_m.empty()) list.add(FeatureKind::stops, thresholds_m);
-  const std::vector<double> creep_times_s = ladder(kShortest_s, longest_time_s(extent), 1.0);
-  if (!creep_times_s.empty()) list.add(FeatureKind::creep, creep_times_s);
+  list.add(FeatureKind::stops, thresholds_m);
+  list.add(FeatureKind::creep, ladder(kShortest_s, longest_time_s(extent), 1.0));
   return list;
 }
 
@@ -169,7 +192,7 @@ TrendRows::TrendRows(FeatureList list, const TrendProblem& problem, std::size_t 
       problem_(problem),
       stride_(stride),
       elastic_basis_(spline_basis()),
-      times_s_(list_.relaxation_times_s()),
+      times_s_(relaxation_times_s(list_.features)),
       drives_(curve_basis(FeatureKind::maxwell_spectrum, problem.reference_depth_m)),
       branches_N_(times_s_.size() * kCurveTerms, 0.0) {
   if (!list_.surface.empty()) surface_.emplace_back(list_.surface);
@@ -299,46 +322,6 @@ FeatureSpec surface_lag_of(const ElasticSpline& elastic, double reference_depth_
   for (std::size_t k = 0; k < kDriveKnots; ++k) curve.knot_N[k] = cube(k + 1) - cube(k);
   return lag;
 }
-
-namespace {
-
-Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
-  Trend trend;
-  trend.reference_depth_m = rows.problem().reference_depth_m;
-  trend.elastic = combined_spline(spline_basis(), x.data());
-  if (has_kind(rows.list().features, FeatureKind::velocity)) {
-    trend.thinning_velocity_m_per_s = rows.problem().rms_velocity_m_per_s;
-    auto column = static_cast<Eigen::Index>(kElasticTerms);
-    for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
-      for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column) {
-        const auto power = bernstein<kViscosityCoefficients - 1>(k);
-        for (std::size_t j = 0; j < power.size(); ++j) (*viscosity)[j] += x(column) * power[j];
-      }
-    }
-  }
-  for (std::size_t i = 0; i < rows.count(); ++i) {
-    trend.velocity_limit_m_per_s =
-        std::max(trend.velocity_limit_m_per_s, kVelocityMargin * std::abs(rows[i].velocity_m_per_s));
-  }
-  return trend;
-}
-
-// The feature with the drive curves of `weights`, without the parts whose weights are 0, unless `all`.
-FeatureSpec with_drives(const FeatureSpec& candidate, const double* weights, double depth_m, bool all) {
-  FeatureSpec spec = candidate;
-  spec.part_count = 0;
-  spec.parts = {};
-  for (std::size_t p = 0; p < candidate.part_count; ++p, weights += kCurveTerms) {
-    const bool carries = std::any_of(weights, weights + kCurveTerms, [](double weight) { return weight > 0.0; });
-    if (!carries && !all) continue;
-    FeaturePart& part = spec.parts[spec.part_count++] = candidate.parts[p];
-    part.drive = combined_curve(spec.kind, weights, depth_m);
-    if (spec.kind == FeatureKind::creep) part.threshold_m = depth_m;
-  }
-  return spec;
-}
-
-}  // namespace
 
 FittedTrend fitted_trend(const TrendRows& rows, const Eigen::VectorXd& x, bool all) {
   const double depth_m = rows.problem().reference_depth_m;

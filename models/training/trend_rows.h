@@ -22,7 +22,7 @@
 #include "engine/tick/jnd.h"
 #include "models/model/trend.h"
 #include "models/training/motion_source.h"
-#include "models/training/weighting.h"
+#include "models/training/sites.h"
 
 namespace palpate {
 
@@ -32,6 +32,8 @@ inline constexpr std::size_t kCurveTerms = 3;
 bool has_kind(const std::vector<FeatureSpec>& features, FeatureKind kind);
 // The constants of the parts of a feature: relaxation times in s, or thresholds in m (stops).
 std::vector<double> constants_of(const FeatureSpec& spec);
+// The relaxation times of all low-passes and Maxwell branches, in order.
+std::vector<double> relaxation_times_s(const std::vector<FeatureSpec>& features);
 
 // The candidate features of a trend; a regression gives their parts the drive curves.
 struct FeatureList {
@@ -40,10 +42,8 @@ struct FeatureList {
   // A surface_lag feature and the branches that determine the surface; empty: the surface does not lag.
   std::vector<FeatureSpec> surface{};
 
-  // Adds a feature in its place. `constants`: as constants_of; none for velocity.
+  // Adds a feature in its place. `constants`: as constants_of; none for velocity. Without parts nothing is added.
   void add(FeatureKind kind, const std::vector<double>& constants = {});
-  // The relaxation times of all maxwell_spectrum features, in order.
-  std::vector<double> relaxation_times_s() const;
 };
 
 // The dictionary: all terms that a recording of this length and rate can identify. The non-negative regression sets the

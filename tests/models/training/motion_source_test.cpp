@@ -10,6 +10,13 @@
 namespace palpate {
 namespace {
 
+RecordingSurface corrected_by(double offset_m, double force_zero_N) {
+  RecordingSurface surface;
+  surface.offset_m = offset_m;
+  surface.force_zero_N = force_zero_N;
+  return surface;
+}
+
 std::vector<MotionRow> rows_of(MotionSource& source) {
   std::vector<MotionRow> rows;
   const Status status = source.for_each([&](const MotionRow& row) { rows.push_back(row); });
@@ -53,7 +60,7 @@ TEST(MotionSource, OfLongRecordingsKeepsEveryNthRow) {
                                                      prepare_recording(test::example_recording(30000, 1000.0, 0.0))};
   MotionSource whole(inputs);
   MotionSource thinned(inputs, kMost);
-  for (MotionSource* source : {&whole, &thinned}) source->correct({{1e-3, 0.5}, {0.0, 0.0}});
+  for (MotionSource* source : {&whole, &thinned}) source->correct({corrected_by(1e-3, 0.5), {}});
   const auto all = rows_of(whole);
   EXPECT_EQ(thinned.rows(), 0u);
   const auto rows = rows_of(thinned);
@@ -94,14 +101,14 @@ TEST(MotionSource, CorrectsPositionsAndForces) {
   for (int i = 0; i < 40; ++i) recording.rows.push_back({1e-3 * i, i % 10 >= 5 ? 1e-3 : -1e-3, 1.0, 0.0, 0.0});
   MotionSource source({prepare_recording(recording)});
   const auto before = rows_of(source);
-  source.correct({{2e-3, 0.25}});
+  source.correct({corrected_by(0.5e-3, 0.25)}, 1.5e-3);
   const auto out = rows_of(source);
   EXPECT_EQ(out[5].sample.position_m, 1e-3 - 2e-3);
   EXPECT_EQ(out[5].motion.position_m, before[5].motion.position_m - 2e-3);
   EXPECT_EQ(out[5].motion.velocity_m_per_s, before[5].motion.velocity_m_per_s);
   EXPECT_EQ(out[5].force_N, 0.75);
   EXPECT_EQ(out.back().stroke, 0);
-  source.correct({{-2e-3, 0.0}});
+  source.correct({corrected_by(-2e-3, 0.0)});
   EXPECT_EQ(rows_of(source).back().stroke, 1);
   source.correct({});
   expect_same(rows_of(source), before);

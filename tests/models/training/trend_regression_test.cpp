@@ -74,7 +74,7 @@ TEST(TrendRegression, AForceThatWasNotMeasuredIsNoForceToFollow) {
   const TrendRegression regression(rows);
   const Trend trend = fitted_trend(rows, regression.solve(regression.all_columns()), true).trend;
   const double at[] = {kDepth_m};
-  // Within a JND: samples that no feature explains get a small weight (weighting.h).
+  // Within a JND: samples that no feature explains get a small weight (sites.h).
   EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), 3.0, 0.25);
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/model/bernstein.h"
 #include "models/model/trend.h"
 #include "tests/support/feature_specs.h"
 
@@ -135,7 +134,7 @@ TEST(TrendRows, AListIsSortedByKind) {
   list.add(FeatureKind::maxwell_spectrum, {0.1, 0.3});
   list.add(FeatureKind::velocity);
   list.add(FeatureKind::maxwell_spectrum, {0.02});
-  EXPECT_EQ(list.relaxation_times_s(), (std::vector{0.1, 0.3, 0.02}));
+  EXPECT_EQ(relaxation_times_s(list.features), (std::vector{0.1, 0.3, 0.02}));
   const TrendRows rows(list, {kDepth_m});
   const std::size_t counts[] = {kElasticTerms, 2 * kViscosityCoefficients, 2 * kCurveTerms, kCurveTerms, kCurveTerms};
   ASSERT_EQ(rows.feature_columns().size(), std::size(counts));
