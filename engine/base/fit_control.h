@@ -12,7 +12,12 @@ struct FitControl {
   // ends with the error interrupted(). May be empty.
   std::function<bool(double fraction)> progress;
 
-  bool may_continue(double fraction) const { return !progress || progress(fraction); }
+  bool may_continue(double fraction = 0.0) const { return !progress || progress(fraction); }
+  // The control of one step, during which the finished fraction stays `fraction`.
+  FitControl at(double fraction) const {
+    if (!progress) return {};
+    return {[call = progress, fraction](double) { return call(fraction); }};
+  }
 };
 
 inline Error interrupted() { return Error{"interrupted"}; }

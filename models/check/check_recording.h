@@ -15,7 +15,6 @@
 #include "models/check/recording_measures.h"
 #include "models/recordings/prepared_recording.h"
 #include "models/recordings/recording_faults.h"
-#include "models/training/motion_source.h"
 
 namespace palpate {
 
@@ -60,7 +59,7 @@ struct RecordingCheck {
 RecordingCheck check_recording(const PreparedRecording& prepared, const CheckRequest& request,
                                const RecordingFaults& faults = {});
 
-// Of longer recordings only the first rows are checked: 100 minutes at 1 kHz.
+// Of longer recordings only the first rows are checked and fitted: 100 minutes at 1 kHz.
 inline constexpr std::size_t kMostCheckedRows = 6000000;
 
 struct CheckedFile {
@@ -80,8 +79,8 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
 Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths,
                                                        const CheckRequest& request);
 
-// The inputs of a fit from checked files, with their rows and estimates.
-std::vector<MotionSource::Input> training_inputs(std::vector<CheckedFile> files);
+// The recordings of checked files, for a fit.
+std::vector<PreparedRecordingPointer> training_recordings(std::vector<CheckedFile> files);
 
 // An error with the first fatal finding: "path: force_sign: ...; ...".
 Status refuse_unusable(const std::vector<CheckedFile>& files);

@@ -77,12 +77,10 @@ Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::st
   return files;
 }
 
-std::vector<MotionSource::Input> training_inputs(std::vector<CheckedFile> files) {
-  std::vector<MotionSource::Input> inputs;
-  for (CheckedFile& file : files) {
-    inputs.push_back({std::move(file.path), file.whole ? std::move(file.prepared) : nullptr});
-  }
-  return inputs;
+std::vector<PreparedRecordingPointer> training_recordings(std::vector<CheckedFile> files) {
+  std::vector<PreparedRecordingPointer> recordings;
+  for (CheckedFile& file : files) recordings.push_back(std::move(file.prepared));
+  return recordings;
 }
 
 Status refuse_unusable(const std::vector<CheckedFile>& files) {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
-#include "models/fit/bound_calibration.h"
 
 namespace palpate {
 namespace {
@@ -31,7 +30,7 @@ double share_within_jnd(const PreparedTraining& prepared, const ModelData& data)
 // The correction without a fold; none if no other fold has rows.
 Result<CorrectionPtr> fit_without(const PreparedTraining& prepared, int fold, const MethodRequest& request,
                                   const FitControl& control) {
-  const Sites sites = sites_without(prepared, fold);
+  const Sites sites = sites_without(*prepared.left_out, fold, *prepared.strength);
   if (sites.count() == 0) return CorrectionPtr{};
   const Eigen::VectorXd jnd_N = sites.row_scale.cwiseInverse();
   auto fitted = fit_correction({sites, jnd_N, request}, control);
@@ -93,7 +92,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
       if (!of_fold) return of_fold.error();
       of_folds.push_back(std::move(*of_fold));
     }
-    data.error_bound = bound_of(prepared, of_folds);
+    data.error_bound = bound_of(*prepared.left_out, data, of_folds);
   }
   if (const Status valid = check_forces(data); !valid) {
     return Error{"the " + data.name + " fit did not give a usable model (" + valid.error().message +

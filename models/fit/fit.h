@@ -18,13 +18,12 @@
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
-#include "models/fit/correction_strength.h"
 #include "models/fit/methods.h"
+#include "models/fit/model_validation.h"
 #include "models/model/fitted_model.h"
 #include "models/training/memory_law.h"
 #include "models/training/sites.h"
 #include "models/training/training_set.h"
-#include "models/training/weighting.h"
 
 namespace palpate {
 
@@ -33,7 +32,7 @@ enum class Relaxation { scene, automatic, given };
 inline constexpr std::array<const char*, 3> kRelaxationNames{"scene", "auto", "given"};
 // The surface of each recording: estimated, or 0 as recorded.
 enum class Surface { automatic, recorded };
-// The features: the whole dictionary (trend_dictionary.h), those of the scene (with `relaxation`), or a list.
+// The features: the whole dictionary (models/training/trend_rows.h), those of the scene (with `relaxation`), or a list.
 enum class FeatureChoice { automatic, scene, given };
 enum class FitRecipe { standard, paper_2009 };
 
@@ -67,8 +66,7 @@ struct PreparedTraining {
   std::vector<PartGain> gains;             // of each term of the dictionary; empty unless FeatureChoice::automatic
   std::optional<StrengthChoice> strength;  // none in the paper's recipe
   std::optional<CrossValidationRows> left_out;  // rows for cross-validation; none in the paper's recipe
-  std::size_t strokes = 0;
-  std::vector<std::string> notes;  // for the report of every fit
+  std::vector<std::string> notes;               // for the report of every fit
 
   // False if cross-validation rejected the correction; every method then returns the trend.
   bool corrects() const { return !strength || strength->strength > 0.0; }

@@ -50,43 +50,38 @@ std::string found(std::string_view item, const std::string& expected) {
   return "found \"" + std::string(item) + "\", expected " + expected;
 }
 
-// A kind of feature with one to eight values after its colon.
+// A kind of feature with one to eight values after its colon, in multiples of `scale`.
 struct ListedKind {
-  std::string_view kind;
+  FeatureKind kind;
+  std::string_view name;
   std::string_view unit;
-  double unit_size;
-  std::vector<double> FeatureList::*values;  // null: maxwell, which may be repeated
+  double scale;
   const char* expected;
 };
 constexpr ListedKind kListed[] = {
-    {"maxwell", "", 1.0, nullptr, "maxwell: with one to eight times in seconds such as maxwell:0.4+1.27"},
-    {"stops", "mm", 1e-3, &FeatureList::stop_thresholds_m,
-     "stops: with one to eight thresholds such as stops:0.05mm+0.1mm"},
-    {"creep", "", 1.0, &FeatureList::creep_times_s, "creep: with one to eight times in seconds such as creep:0.1+1"}};
+    {FeatureKind::maxwell_spectrum, "maxwell", "", 1.0,
+     "maxwell: with one to eight times in seconds such as maxwell:0.4+1.27"},
+    {FeatureKind::stops, "stops", "mm", 1e-3, "stops: with one to eight thresholds such as stops:0.05mm+0.1mm"},
+    {FeatureKind::creep, "creep", "", 1.0, "creep: with one to eight times in seconds such as creep:0.1+1"}};
 
 Status add_item(std::string_view item, FeatureList& list) {
   if (item == "depth") return {};
-  if (item == "velocity" && !list.velocity) {
-    list.velocity = true;
+  if (item == "velocity" && !has_kind(list.features, FeatureKind::velocity)) {
+    list.add(FeatureKind::velocity);
     return {};
   }
   const std::size_t colon = item.find(':');
   const std::string_view rest = colon == std::string_view::npos ? std::string_view() : item.substr(colon + 1);
   for (const ListedKind& one : kListed) {
-    if (item.substr(0, colon) != one.kind) continue;
-    auto& values = one.values == nullptr ? list.relaxation_times_s.emplace_back() : list.*one.values;
-    if (!values.empty()) break;
-    values = parse_values(rest, '+', one.unit);
+    const bool again = one.kind != FeatureKind::maxwell_spectrum && has_kind(list.features, one.kind);
+    if (item.substr(0, colon) != one.name || again) continue;
+    auto values = parse_values(rest, '+', one.unit);
     if (values.empty() || values.size() > kMaxFeatureParts) return Error{found(item, one.expected)};
-    for (double& value : values) value *= one.unit_size;
+    for (double& value : values) value *= one.scale;
+    list.add(one.kind, values);
     return {};
   }
   return Error{found(item, "depth, velocity, maxwell:, stops: and creep:, where only maxwell: may be repeated")};
-}
-
-std::size_t feature_count(const FeatureList& list) {
-  return 1 + (list.velocity ? 1 : 0) + list.relaxation_times_s.size() + (list.stop_thresholds_m.empty() ? 0 : 1) +
-         (list.creep_times_s.empty() ? 0 : 1);
 }
 
 template <typename Names>
@@ -141,8 +136,8 @@ Result<FeatureList> parse_feature_list(const std::string& text) {
   for (const std::string_view item : split(text, ',')) {
     if (const Status status = add_item(item, list); !status) return status.error();
   }
-  if (feature_count(list) > kMaxFeatures) {
-    return Error{"found " + std::to_string(feature_count(list)) + " features, expected at most " +
+  if (list.features.size() > kMaxFeatures) {
+    return Error{"found " + std::to_string(list.features.size()) + " features, expected at most " +
                  std::to_string(kMaxFeatures) + "; join relaxation times with +"};
   }
   return list;

@@ -13,7 +13,7 @@
 
 #include "engine/base/result.h"
 #include "models/fit/fit.h"
-#include "models/training/trend_dictionary.h"
+#include "models/training/trend_rows.h"
 
 namespace palpate {
 

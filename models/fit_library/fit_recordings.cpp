@@ -37,7 +37,7 @@ nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
 Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingRequest& scene,
                                      const FitOptions& options, std::chrono::steady_clock::time_point began,
                                      const std::function<bool(double)>& progress) {
-  MotionSource source(training_inputs(std::move(recordings)));
+  MotionSource source(training_recordings(std::move(recordings)));
   const TrainingRequest training = training_request(options, scene);
   auto prepared = prepare_training(source, training, part_of(progress, 0.0, kPrepared));
   if (!prepared) return prepared.error();

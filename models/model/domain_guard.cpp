@@ -156,8 +156,13 @@ DomainGuard::DomainGuard(const DomainCover& cover)
 
 double DomainGuard::trust_at(double squared) const noexcept {
   if (squared <= inner_radius_ * inner_radius_) return 1.0;
-  if (!(squared < outer_radius_ * outer_radius_)) return 0.0;
-  const double t = (outer_radius_ - std::sqrt(squared)) / (outer_radius_ - inner_radius_);
+  return trust_at_distance(std::sqrt(squared), inner_radius_, outer_radius_);
+}
+
+double trust_at_distance(double distance, double inner_radius, double outer_radius) noexcept {
+  if (!(distance < outer_radius)) return 0.0;
+  if (distance <= inner_radius) return 1.0;
+  const double t = (outer_radius - distance) / (outer_radius - inner_radius);
   return t * t * (3.0 - 2.0 * t);
 }
 

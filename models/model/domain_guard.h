@@ -33,6 +33,9 @@ struct DomainCover {
   double outer_radius = 0.0;
 };
 
+// The trust g at a distance from the cover.
+double trust_at_distance(double distance, double inner_radius, double outer_radius) noexcept;
+
 // Thins `sites` (d x N, N >= 1) to a cover of at most kMaximumCoverPoints points.
 DomainCover make_cover(const Eigen::MatrixXd& sites);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "models/model/bernstein.h"
+#include "models/model/polynomial.h"
 
 namespace palpate {
 namespace {

@@ -23,21 +23,19 @@
 
 namespace palpate {
 
-inline constexpr int kMaximumFolds = 6;
-
 // Assigns the samples to the folds.
 class FoldAssignment {
  public:
-  // `contact_samples`, `strokes`: totals of all recordings. `has_unloading`: whether the recordings contain unloading.
-  FoldAssignment(std::size_t recordings, std::size_t strokes, std::size_t contact_samples, bool has_unloading = true);
+  // `contact_samples`: of all recordings. `has_unloading`: whether the recordings contain unloading.
+  FoldAssignment(std::size_t recordings, std::size_t contact_samples, bool has_unloading = true);
 
   int folds() const noexcept { return folds_; }
   // The fold of the next row, 0 to folds() - 1. To be called for every row of every recording in order.
   int next(int recording, int stroke, bool in_contact) noexcept;
 
  private:
-  int folds_;
   bool by_recording_;
+  int folds_;
   std::size_t longest_piece_;
   int stroke_ = -1;
   std::size_t in_piece_ = 0;
@@ -67,6 +65,14 @@ struct FoldErrors {
   std::vector<double> squares;  // by fold, in JND^2
   std::vector<double> counts;   // samples
 };
+
+// The `errors` of candidates.
+template <typename Candidate>
+std::vector<FoldErrors> errors_of(const std::vector<Candidate>& candidates) {
+  std::vector<FoldErrors> errors;
+  for (const Candidate& one : candidates) errors.push_back(one.errors);
+  return errors;
+}
 
 // Index of the candidate with the lowest mean score.
 std::size_t best_score(std::span<const FoldErrors> candidates);

@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "models/training/training_extent.h"
-#include "models/training/trend_dictionary.h"
+#include "models/training/trend_regression.h"
 
 namespace palpate {
 
@@ -23,22 +22,18 @@ struct PartGain {
   double error_without = 0.0;
 };
 
-// Returns `list` with the selected surface and slowing, and appends their gains to `gains`. Errors: those of the
-// source; interrupted.
-Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
-                                      std::vector<PartGain>& gains, const FitControl& control, double fraction);
+// Returns `list` with the selected surface and slowing, and appends their gains to `gains`. Errors: interrupted.
+Result<FeatureList> select_memory_law(const TrendData& data, const FeatureList& list, std::vector<PartGain>& gains);
 
 // The cross-validated error of the trend without surface lag and slowing, by which two ways to correct the recordings
-// are compared. Errors: as above.
-Result<FoldErrors> simple_law_error(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
-                                    const FitControl& control, double fraction);
+// are compared. Errors: interrupted.
+Result<FoldErrors> simple_law_error(const TrendData& data, const FeatureList& list);
 
-// Returns relaxation times in seconds, ascending. The candidates are evenly spaced in log time; each is a group of
-// columns of one regression. Times are added one by one, by the lowest cross-validated error, after which each may move
-// to the next candidate. `count`: 1 to 3, or 0: a further time is kept if the common rule prefers it. `velocity`:
-// whether the trend has viscosity. Errors: recordings too short; those of the source; interrupted.
-Result<std::vector<double>> identify_relaxation(MotionSource& source, const TrendProblem& problem,
-                                                const TrainingExtent& extent, bool velocity, std::size_t count,
-                                                const FitControl& control, double fraction);
+// Returns relaxation times in seconds, ascending, of the ascending `candidates_s`. Each candidate is a feature of one
+// regression. Times are added one by one, by the lowest cross-validated error, after which each may move to the next
+// candidate. `count`: 1 to 3, or 0: a further time is kept if the common rule prefers it. `velocity`: whether the trend
+// has viscosity. Errors: no candidates, because the recordings are too short; interrupted.
+Result<std::vector<double>> identify_relaxation(const TrendData& data, const std::vector<double>& candidates_s,
+                                                bool velocity, std::size_t count);
 
 }  // namespace palpate

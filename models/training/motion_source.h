@@ -1,29 +1,29 @@
-// The training recordings as streams of motion estimates. Every pass of a fit over its data uses this class, with the
-// estimators of replay and of the live loop.
+// The training recordings as streams of motion estimates, and their ranges. Every pass of a fit over its data uses this
+// class.
 //
-// The sensor of each recording is identified from its first rows, and each recording has its own filter state.
-// Recordings are read and estimated once and kept in memory. If they have more than kMaximumRows together, they are
-// read again and thinned: the beginning stays, from which the surface is estimated, then evenly spaced stretches, and
-// between these every n-th row as a run-up, so that filters keep their memory.
+// The rows of all recordings are in memory. If they are more than kMaximumRows together, every n-th is kept, with the
+// motion that was estimated from all.
 // Thread guarantee: slow side.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
+#include "engine/tick/jnd.h"
+#include "models/model/fitted_model.h"
 #include "models/recordings/prepared_recording.h"
 #include "models/training/cross_validation.h"
 
 namespace palpate {
 
-// Half an hour at 1 kHz, some 144 MB. A fit of some thousand sites gains nothing from more rows.
+// Half an hour at 1 kHz, some 200 MB. A fit of some thousand sites gains nothing from more rows.
 inline constexpr std::size_t kMaximumRows = 2000000;
 
 // Rows between two calls of FitControl, some 20 ms of reading.
@@ -37,38 +37,28 @@ struct MotionRow : SurfaceRow {
   bool run_up = false;  // only updates filters, is not a training sample
 };
 
-// Subtracted from the rows of one recording; velocity and acceleration stay as they are. With a lag, rows at either end
-// for which no force was recorded are dropped.
-struct RowCorrection {
-  double offset_m = 0.0;
-  double force_zero_N = 0.0;
-  double lag_s = 0.0;  // the force of a row at t is the force recorded at t + lag_s, interpolated
-};
-
 class MotionSource {
  public:
-  // One training recording: a file, or rows in memory.
-  struct Input {
-    std::string path;  // used when `prepared` is null
-    PreparedRecordingPointer prepared;
-  };
+  // `recordings`: at least one. `most_rows`: the number of rows to keep in memory.
+  explicit MotionSource(std::vector<PreparedRecordingPointer> recordings, std::size_t most_rows = kMaximumRows)
+      : inputs_(std::move(recordings)), most_rows_(most_rows) {}
 
-  // `most_rows`: the approximate number of rows to keep in memory.
-  explicit MotionSource(std::vector<Input> inputs, std::size_t most_rows = kMaximumRows)
-      : inputs_(std::move(inputs)), most_rows_(most_rows) {}
+  // Fills the rows unless this was done before. Errors: interrupted.
+  Status load(const FitControl& control = {});
 
-  // Reads the recordings unless they are in memory. Errors: those of RecordingReader; interrupted.
-  Status load(const FitControl& control = {}, double fraction = 0.0);
+  // Calls `visit` for every kept row in order, the longest recording first. `control` is asked every kRowsPerQuestion
+  // rows. Errors: interrupted.
+  Status for_each(const std::function<void(const MotionRow&)>& visit, const FitControl& control = {});
 
-  // Calls `visit` for every kept row in order, the longest recording first. The pass ends with "interrupted" when
-  // `visit` returns false or `control`, called every kRowsPerQuestion rows with `fraction`, asks for it.
-  // Errors: also those of load.
-  Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
-                  double fraction = 0.0);
-
-  // Sets the corrections of all later passes, one for each of `recordings`. Contact and strokes are
-  // determined from the corrected position.
-  void correct(std::vector<RowCorrection> corrections) { corrections_ = std::move(corrections); }
+  // Sets the corrections of all later passes: `surface_m` and the recording's own offset are subtracted from its
+  // positions and its force zero from its forces, and the force at t becomes the one recorded at t + lag_s,
+  // interpolated. Velocity and acceleration stay as they are, and rows for which no force was recorded then are
+  // dropped. Contact and strokes are determined from the corrected position. `surfaces`: one for each of `recordings`,
+  // or none.
+  void correct(std::vector<RecordingSurface> surfaces, double surface_m = 0.0) {
+    surfaces_ = std::move(surfaces);
+    surface_m_ = surface_m;
+  }
 
   // Assigns the rows of all later passes to the folds of `assignment`.
   void assign_folds(const FoldAssignment& assignment) { assignment_ = assignment; }
@@ -76,43 +66,57 @@ class MotionSource {
 
   struct OneRecording {
     std::string name;
-    const PreparedRecording* prepared = nullptr;  // null: a file
-    std::size_t recorded = 0;                     // number of rows
-    std::uint64_t hash = 0;                       // engine/recording/recording.h
-    std::vector<MotionRow> rows;                  // those that are kept, without corrections
+    const PreparedRecording* prepared = nullptr;
+    std::uint64_t hash = 0;       // engine/recording/recording.h
+    std::vector<MotionRow> rows;  // those that are kept, without corrections
   };
-  // Valid after the first pass, as all below.
+  // Valid after `load` or the first pass, as all below.
   const std::vector<OneRecording>& recordings() const { return recordings_; }
-  // The number of recorded rows, of which about `most_rows` are kept.
+  // The number of recorded rows.
   std::size_t rows() const { return rows_; }
-  // The largest force noise and encoder step of the recordings, and the position noise of the recording with the
-  // largest encoder step.
+  // The largest force noise and encoder step of the recordings, with the position noise of the recording with that
+  // step.
   double force_noise_N() const { return force_noise_N_; }
-  double encoder_step_m() const { return encoder_step_m_; }
-  double position_noise_m() const { return position_noise_m_; }
+  const SensorSpec& sensor() const { return sensor_; }
 
  private:
-  // Keeps all rows before `beginning`, then the first `stretch` rows of every `sparse` * `stretch`; of the others
-  // every `sparse`-th is kept as a run-up.
-  struct Thinning {
-    std::size_t beginning = 0;
-    std::size_t sparse = 1;
-    std::size_t stretch = 1;
-    bool is_run_up(std::size_t row) const { return row >= beginning && row % (sparse * stretch) >= stretch; }
-  };
-
-  Status read(const Input& input, const Thinning& thinning, OneRecording& one, const FitControl& control,
-              double fraction);
-
-  std::vector<Input> inputs_;
+  std::vector<PreparedRecordingPointer> inputs_;
   std::size_t most_rows_;
   std::vector<OneRecording> recordings_;  // empty before loading
-  std::vector<RowCorrection> corrections_;
+  std::vector<RecordingSurface> surfaces_;
+  double surface_m_ = 0.0;
   std::optional<FoldAssignment> assignment_;
   std::size_t rows_ = 0;
   double force_noise_N_ = 0.0;
-  double encoder_step_m_ = 0.0;
-  double position_noise_m_ = 0.0;
+  SensorSpec sensor_;
 };
+
+// The ranges of the rows.
+struct TrainingExtent {
+  double depth_m = 0.0;               // greatest
+  double force_N = 0.0;               // largest
+  double lowest_force_N = 0.0;        // < 0 if the material is known to pull (adhesion), else 0
+  double rms_velocity_m_per_s = 0.0;  // in contact
+  std::size_t contact_samples = 0;
+  std::size_t strokes = 0;
+  double loading_path_m = 0.0;    // path of the tool in contact, loading
+  double unloading_path_m = 0.0;  // the same, unloading
+  double sample_s = 0.0;          // mean sampling period
+  double longest_recording_s = 0.0;
+
+  // The folds of cross-validation. With one recording they are strokes or pieces of them.
+  FoldAssignment folds(std::size_t recordings) const;
+};
+
+// Errors: those of the source; interrupted.
+Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control);
+
+// The surface position in m, <= 0, of recordings whose depth counts from a preload; 0 where there is none or it cannot
+// be identified. A straight line is fitted to the samples whose depth is below a hundredth of the greatest; the
+// surface is where it has no force. The line is used if its force at position 0 exceeds the JND and two standard
+// errors, its slope exceeds two standard errors, and the surface is nearer than the greatest depth.
+// Errors: those of the source; interrupted.
+Result<double> find_preload_surface(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
+                                    const FitControl& control);
 
 }  // namespace palpate

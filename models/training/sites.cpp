@@ -1,29 +1,13 @@
 #include "models/training/sites.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <string>
 
 namespace palpate {
+
 Status validate_sites(const Sites& sites) {
-  const Eigen::Index count = sites.count();
-  if (count == 0) return Error{"sites: there are no points to fit; give at least one sample in contact"};
-  if (sites.dimension() < 1 || sites.dimension() > static_cast<int>(kMaxFeatures))
-    return Error{"sites: points have " + std::to_string(sites.dimension()) + " coordinates, expected 1 to " +
-                 std::to_string(kMaxFeatures)};
-  if (sites.target_N.size() != count || sites.row_scale.size() != count)
-    return Error{"sites: found " + std::to_string(sites.target_N.size()) + " entries of target_N and " +
-                 std::to_string(sites.row_scale.size()) + " of row_scale, expected " + std::to_string(count) +
-                 " of each, one per point"};
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const bool finite = sites.points.col(i).allFinite() && std::isfinite(sites.target_N[i]) &&
-                        std::isfinite(sites.row_scale[i]) && sites.row_scale[i] >= 0.0;
-    if (!finite)
-      return Error{"sites: site " + std::to_string(i) +
-                   " is not finite or has a negative row_scale; expected finite points, forces and factors"};
-  }
-  return {};
+  if (sites.points.allFinite() && sites.target_N.allFinite() && sites.row_scale.allFinite()) return {};
+  return Error{"a feature or force of the training is not finite; check the recording for extreme values"};
 }
 
 Sites even_subset(const Sites& sites, Eigen::Index most) {

@@ -1,26 +1,58 @@
 // The data of a fit: normalised feature vectors with the force measured at each (the pairs {u_i; f_i} of Hoever &
-// Harders 2009, section 3).
-// Thread guarantee: a value type; validate_sites may be called from any thread.
+// Harders 2009, section 3), and the factors of their residuals.
+// Thread guarantee: value types and pure functions.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "engine/base/random_stream.h"
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
+#include "engine/tick/jnd.h"
 
 namespace palpate {
+
+// The factor of a residual.
+enum class Weighting {
+  jnd,       // 1 / JND(f), errors relative to perception (default)
+  relative,  // 1 / max(|f|, kReductionForce_N), eq. (8) of the paper
+  none,      // 1
+};
+
+// Names in commands and model files, in the order of the values.
+inline constexpr std::array<const char*, 3> kWeightingNames{"jnd", "relative", "none"};
+
+// The step of the paper's reduction (training_set.h). It separates no smaller forces, so its 1 / |f| is constant below.
+inline constexpr double kReductionForce_N = 0.05;
+
+inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N) noexcept {
+  if (weighting == Weighting::none) return 1.0;
+  return 1.0 / (weighting == Weighting::jnd ? jnd.at(force_N) : std::max(std::abs(force_N), kReductionForce_N));
+}
+
+// Square root of the weight of a Cauchy likelihood (Holland & Welsch 1977): 1 for small errors, less for errors well
+// above the JND, which would otherwise bend the fit elsewhere.
+inline constexpr double kRobustError_jnd = 2.0;
+
+inline double robust_scale(double error_over_jnd) noexcept {
+  const double share = error_over_jnd / kRobustError_jnd;
+  return 1.0 / std::sqrt(1.0 + share * share);
+}
 
 struct Sites {
   Eigen::MatrixXd points;    // d x N, normalised, one column a site, 1 <= d <= kMaxFeatures
   Eigen::VectorXd target_N;  // N forces
   // N factors >= 0 that multiply the residuals, e.g. 1 / JND(force). With factor 0 a site has no influence.
   Eigen::VectorXd row_scale;
-  // Roughness penalty of the cubic kernel, selected by cross-validation (models/fit/correction_strength.h); empty: the
+  // Roughness penalty of the cubic kernel, selected by cross-validation (models/fit/model_validation.h); empty: the
   // method selects it.
-  std::optional<double> smoothing;
+  std::optional<double> smoothing{};
   // Solve as Hoever & Harders (2009): truncated singular values, even grids.
   bool as_2009 = false;
 
@@ -28,8 +60,7 @@ struct Sites {
   int dimension() const { return static_cast<int>(points.rows()); }
 };
 
-// Checks sizes and finiteness. Errors: names the array and the sizes found and
-// expected, or the first site with a number that is not finite.
+// Errors: a number is not finite.
 Status validate_sites(const Sites& sites);
 
 // At most `most` of the sites, spread evenly over their order.

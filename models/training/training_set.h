@@ -10,11 +10,10 @@
 //             noise. The step starts at kCoverageStep and grows by a quarter while there are more than kCoverageSites.
 //   force     the paper's rule (section 2.1): a sample is kept when the force has changed by 50 mN since the last kept
 //             one. The 50 mN grow by a quarter while there are more than kMaximumSites.
-//   none      every sample in contact; of more than kMostSites an evenly spaced part, for the memory of a fit.
-// Recordings stream through in bounded memory.
+//   none      every sample in contact
 //
-// In `coverage`, a site has samples of one fold only (cross_validation.h), so that cross-validation has no leakage, and
-// samples without measured force (contact is one-sided) form sites of their own, which are marked.
+// In `coverage`, a site has samples of one fold only (cross_validation.h), and samples without measured force (contact
+// is one-sided) form sites of their own, which are marked.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -32,10 +31,8 @@ namespace palpate {
 enum class Reduction { coverage, force, none };
 // In commands and model files, in the order of the values.
 inline constexpr std::array<const char*, 3> kReductionNames{"coverage", "force", "none"};
-inline const char* reduction_name(Reduction reduction) { return kReductionNames[static_cast<std::size_t>(reduction)]; }
 
 inline constexpr std::size_t kMaximumSites = 10000;
-inline constexpr std::size_t kMostSites = 1000000;
 inline constexpr std::size_t kCoverageSites = 7500;  // the paper worked with 6,850
 inline constexpr double kCoverageStep = 0.005;       // at the start, in normalised feature space
 inline constexpr std::size_t kMaximumEvaluationSamples = 100000;
@@ -51,7 +48,7 @@ struct TrainingSite {
   std::array<double, kMaxFeatures> features{};  // SI
   double force_N = 0.0;
   double count = 1.0;  // number of samples merged into it
-  int stroke = 0;
+  int recording = 0;
   int fold = 0;
   bool no_force = false;  // force at or below the noise floor: one-sided, known only not to be positive
 };
@@ -66,8 +63,7 @@ struct TrainingSet {
   std::vector<double> evaluation_force_N;
 };
 
-// `force_noise_floor_N`: at or below it a sample has no measured force. Errors: those of the source; no sample in
-// contact; interrupted.
+// `force_noise_floor_N`: at or below it a sample has no measured force. Errors: no sample in contact; interrupted.
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
                                       Reduction reduction, double force_noise_floor_N, const FitControl& control = {});
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "engine/base/parallel.h"
@@ -21,28 +20,20 @@ constexpr double kFirstSmoothness = 1e-8;
 
 }  // namespace
 
-ColumnList columns_from(std::size_t first, std::size_t count) {
-  ColumnList columns(count);
-  std::iota(columns.begin(), columns.end(), static_cast<Eigen::Index>(first));
-  return columns;
-}
-
 TrendRegression::TrendRegression(const TrendRows& rows, Smoothness smoothness)
     : rows_(rows),
-      part_error_(rows.list().creep_times_s.empty() ? kPartErrorOfFew : kPartError),
+      part_error_(has_kind(rows.list().features, FeatureKind::creep) ? kPartError : kPartErrorOfFew),
       smoothness_(kFirstSmoothness),
-      folds_(static_cast<std::size_t>(rows.problem().folds)) {
+      equations_(static_cast<std::size_t>(rows.problem().folds) + 1) {
   std::vector<int> fold;
   std::vector<double> depth_m;
   for (std::size_t i = 0; i < rows.count(); ++i) {
     fold.push_back(rows[i].fold);
     depth_m.push_back(rows[i].depth_m);
   }
-  const int folds = rows.problem().folds;
-  deepest_elsewhere_m_ = deepest_elsewhere_m(fold, depth_m, folds);
+  deepest_elsewhere_m_ = deepest_elsewhere_m(fold, depth_m, rows.problem().folds);
   const BlasThreads one_thread(1);
-  parallel_for(folds + 1,
-               [&](int k) { (k < folds ? folds_[static_cast<std::size_t>(k)] : all_) = gather(k < folds ? k : -1); });
+  parallel_for(rows.problem().folds + 1, [&](int k) { equations_[static_cast<std::size_t>(k)] = gather(k); });
   if (smoothness == Smoothness::fixed) return;
   std::vector<FoldErrors> errors(kSmoothness.size());
   parallel_for(static_cast<int>(kSmoothness.size()), [&](int i) {
@@ -52,7 +43,7 @@ TrendRegression::TrendRegression(const TrendRows& rows, Smoothness smoothness)
   smoothness_ = kSmoothness[simplest_adequate(errors)];
 }
 
-// Iterates weights and active set on the rows outside the fold `left_out` (-1: all rows).
+// Iterates weights and active set on the rows outside the fold `left_out`.
 TrendRegression::Equations TrendRegression::gather(int left_out) const {
   const TrendProblem& problem = rows_.problem();
   std::vector<double> plain(rows_.count());
@@ -60,10 +51,10 @@ TrendRegression::Equations TrendRegression::gather(int left_out) const {
     plain[i] = rows_[i].fold == left_out ? 0.0 : row_scale(problem.weighting, problem.jnd, rows_[i].force_N);
   }
   std::vector<double> scale = plain;
-  Equations equations = sum(left_out, scale);
+  Equations equations = sum(scale);
   for (int pass = 0; pass < kPasses; ++pass) {
-    equations.near_solution = weights(equations, all_columns(), kFirstSmoothness);
-    const Eigen::VectorXd trend_N = rows_.terms() * equations.near_solution;
+    equations.start = weights(equations, all_columns(), kFirstSmoothness);
+    const Eigen::VectorXd trend_N = rows_.terms() * equations.start;
     bool changed = false;
     for (std::size_t i = 0; i < scale.size(); ++i) {
       const double force_N = trend_N(static_cast<Eigen::Index>(i));
@@ -74,16 +65,16 @@ TrendRegression::Equations TrendRegression::gather(int left_out) const {
       scale[i] = now;
     }
     if (!changed) break;
-    Equations next = sum(left_out, scale);
-    next.near_solution = std::move(equations.near_solution);
+    Equations next = sum(scale);
+    next.start = std::move(equations.start);
     equations = std::move(next);
   }
   return equations;
 }
 
-TrendRegression::Equations TrendRegression::sum(int left_out, const std::vector<double>& scale) const {
+TrendRegression::Equations TrendRegression::sum(const std::vector<double>& scale) const {
   const auto n = static_cast<Eigen::Index>(rows_.columns());
-  Equations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0, {}};
+  Equations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0, Eigen::VectorXd::Zero(n)};
   Eigen::MatrixXd block(kBlockRows, n);
   Eigen::VectorXd force_N(kBlockRows);
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(n, n);
@@ -95,7 +86,7 @@ TrendRegression::Equations TrendRegression::sum(int left_out, const std::vector<
     filled = 0;
   };
   for (std::size_t i = 0; i < rows_.count(); ++i) {
-    if (rows_[i].fold == left_out || scale[i] == 0.0) continue;
+    if (scale[i] == 0.0) continue;
     block.row(filled) = scale[i] * rows_.terms().row(static_cast<Eigen::Index>(i));
     force_N(filled) = scale[i] * rows_[i].force_N;
     equations.scale_squares += scale[i] * scale[i];
@@ -120,19 +111,15 @@ Eigen::VectorXd TrendRegression::weights(const Equations& equations, const Colum
     gram(k + 1, k) -= smooth;
   }
   Eigen::VectorXd x = Eigen::VectorXd::Zero(gram.cols());
-  const Eigen::VectorXd& near = equations.near_solution;
-  const Eigen::VectorXd start = near.size() > 0 ? Eigen::VectorXd(near(columns)) : near;
-  x(columns) = columns.size() == static_cast<std::size_t>(gram.cols())
-                   ? solve_non_negative(gram, equations.right_side, start)
-                   : solve_non_negative(gram(columns, columns), equations.right_side(columns), start);
+  x(columns) = solve_non_negative(gram(columns, columns), equations.right_side(columns), equations.start(columns));
   return x;
 }
 
 CrossValidated TrendRegression::cross_validate(const ColumnList& columns, double smoothness) const {
-  CrossValidated result{FoldErrors(folds_.size()),
-                        Eigen::MatrixXd::Zero(all_.gram.cols(), static_cast<Eigen::Index>(folds_.size()))};
-  for (std::size_t k = 0; k < folds_.size(); ++k) {
-    result.solutions.col(static_cast<Eigen::Index>(k)) = weights(folds_[k], columns, smoothness);
+  const int folds = rows_.problem().folds;
+  CrossValidated result{static_cast<std::size_t>(folds), Eigen::MatrixXd(rows_.terms().cols(), folds)};
+  for (int k = 0; k < folds; ++k) {
+    result.solutions.col(k) = weights(equations_[static_cast<std::size_t>(k)], columns, smoothness);
   }
   const TrendProblem& problem = rows_.problem();
   const bool one_sided = std::isfinite(problem.force_noise_floor_N);

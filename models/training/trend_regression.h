@@ -5,7 +5,7 @@
 //   g_jj = sum_i s_i^2 t_ij^2,  S = sum_i s_i^2,  n = kElasticPieces
 //
 // t_ij: term j at row i (trend_rows.h), f_i: force, k: index of an elastic term. s_i = 1 / JND(f_i), or by the chosen
-// weighting, times the weight of a Cauchy likelihood (weighting.h). Contact is one-sided: a sample without measured
+// weighting, times the weight of a Cauchy likelihood (sites.h). Contact is one-sided: a sample without measured
 // force counts only while the trend there is positive (active set). Both are iterated within the training rows of each
 // fold, so that the fold itself has no influence on them. Non-negative weights make the elastic response rise and every
 // viscosity, branch and friction dissipate.
@@ -28,10 +28,6 @@
 
 namespace palpate {
 
-using ColumnList = std::vector<Eigen::Index>;
-// `count` consecutive columns.
-ColumnList columns_from(std::size_t first, std::size_t count);
-
 // alpha; the second without creep, in models with few features: there, 0.1 leaves the trend too little damping to come
 // to rest (tests/accuracy/closed_loop_test.cpp).
 inline constexpr double kPartError = 0.1;
@@ -53,19 +49,21 @@ class TrendRegression {
   // they would be extrapolated.
   CrossValidated cross_validate(const ColumnList& columns) const { return cross_validate(columns, smoothness_); }
   // The weights fitted to all rows, one for each column of the rows; 0 outside `columns`.
-  Eigen::VectorXd solve(const ColumnList& columns) const { return weights(all_, columns, smoothness_); }
-  ColumnList all_columns() const { return columns_from(0, rows_.columns()); }
+  Eigen::VectorXd solve(const ColumnList& columns) const { return weights(equations_.back(), columns, smoothness_); }
+  ColumnList all_columns() const {
+    return rows_.columns_of([](std::size_t) { return true; });
+  }
 
  private:
-  // The normal equations of the rows outside one fold; -1: of all rows.
+  // The normal equations of the rows outside one fold.
   struct Equations {
     Eigen::MatrixXd gram;
     Eigen::VectorXd right_side;
-    double scale_squares = 0.0;     // S
-    Eigen::VectorXd near_solution;  // solution with all columns, the initial value
+    double scale_squares = 0.0;  // S
+    Eigen::VectorXd start;       // the solution with all columns, an initial value
   };
   Equations gather(int left_out) const;
-  Equations sum(int left_out, const std::vector<double>& scale) const;
+  Equations sum(const std::vector<double>& scale) const;
   Eigen::VectorXd weights(const Equations& equations, const ColumnList& columns, double smoothness) const;
   CrossValidated cross_validate(const ColumnList& columns, double smoothness) const;
 
@@ -73,8 +71,7 @@ class TrendRegression {
   double part_error_;
   double smoothness_;
   std::vector<double> deepest_elsewhere_m_;  // by fold
-  std::vector<Equations> folds_;             // index: the fold that is left out
-  Equations all_;
+  std::vector<Equations> equations_;         // index: the fold that is left out; the last of all rows
 };
 
 }  // namespace palpate

@@ -1,72 +1,180 @@
 #include "models/training/trend_rows.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <utility>
 
-#include "models/model/bernstein.h"
+#include "engine/base/text.h"
+#include "models/model/polynomial.h"
 
 namespace palpate {
 namespace {
 
-// Keeps the first, third, ... of the groups of `width` values.
-template <typename T>
-void keep_every_other(std::vector<T>& values, std::size_t width) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i * width < values.size(); i += 2, ++kept) {
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * width), width,
-                values.begin() + static_cast<std::ptrdiff_t>(kept * width));
+// Neighbouring times differ by a factor of 1.8; a sum of two fits any time between them better than the data resolve.
+constexpr double kTimesPerDecade = 4.0;
+// 1 ms is the tick; no exploration shows what takes longer than 100 s.
+constexpr double kShortest_s = 1e-3;
+constexpr double kLongest_s = 100.0;
+constexpr std::size_t kBands = 3;
+// The trend limits velocities to this multiple of the greatest recorded one.
+constexpr double kVelocityMargin = 1.5;
+
+std::vector<double> ladder(double shortest_s, double longest_s, double per_decade) {
+  std::vector<double> times_s;
+  // Rounding must not drop the last time.
+  const double end_s = longest_s * (1.0 + 1e-9);
+  for (int i = 0;; ++i) {
+    const double time_s = shortest_s * std::pow(10.0, i / per_decade);
+    if (!(time_s <= end_s)) return times_s;
+    times_s.push_back(time_s);
   }
-  values.resize(kept * width);
 }
 
-// The Bernstein polynomials, computed once because every row uses them.
-constexpr auto kViscousBasis = [] {
-  std::array<std::array<double, kViscosityCoefficients>, kViscosityCoefficients> basis{};
-  for (std::size_t k = 0; k < basis.size(); ++k) basis[k] = bernstein<kViscosityCoefficients - 1>(k);
-  return basis;
-}();
+double longest_time_s(const TrainingExtent& extent) { return std::min(kLongest_s, extent.longest_recording_s / 3.0); }
 
-// Coefficients of u^1 .. u^4: the integrals of the Bernstein polynomials, and the friction of a bristle.
-constexpr std::array kDrives{bernstein_integral<kCurveTerms - 1>(0), bernstein_integral<kCurveTerms - 1>(1),
-                             bernstein_integral<kCurveTerms - 1>(2)};
-constexpr std::array<std::array<double, kDriveCoefficients>, kCurveTerms> kFrictions{
-    {{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
-
-template <typename Shapes>
-DriveCurve weighted_sum(const Shapes& shapes, const double* weights, double reference_depth_m) {
-  DriveCurve curve;
-  curve.reference_depth_m = reference_depth_m;
-  for (std::size_t k = 0; k < kCurveTerms; ++k) {
-    for (std::size_t j = 0; j < shapes[k].size(); ++j) curve.coefficient_N[j] += weights[k] * shapes[k][j];
-  }
-  return curve;
-}
+// The quadratic Bernstein polynomials (1 - u)^2, 2 u (1 - u) and u^2: coefficients of u^0 .. u^2.
+constexpr std::array<std::array<double, kViscosityCoefficients>, kViscosityCoefficients> kViscousBasis{
+    {{1.0, -2.0, 1.0}, {0.0, 2.0, -2.0}, {0.0, 0.0, 1.0}}};
+// Their integrals, and the friction of a bristle: coefficients of u^1 .. u^4.
+using Basis = std::array<std::array<double, kDriveCoefficients>, kCurveTerms>;
+constexpr Basis kDrives{{{1.0, -1.0, 1.0 / 3.0, 0.0}, {0.0, 1.0, -2.0 / 3.0, 0.0}, {0.0, 0.0, 1.0 / 3.0, 0.0}}};
+constexpr Basis kFrictions{{{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
 
 // One feature for each term of a bristle.
-FeatureFilter bristle(FeatureKind kind, double threshold_m, double time_s, double reference_depth_m) {
+FeatureFilter bristle(FeatureKind kind, FeaturePart part, double reference_depth_m) {
+  if (kind == FeatureKind::creep) part.threshold_m = reference_depth_m;
   std::vector<FeatureSpec> specs;
   for (const DriveCurve& curve : curve_basis(kind, reference_depth_m)) {
-    FeatureSpec& spec = specs.emplace_back();
-    spec.kind = kind;
+    part.drive = curve;
+    FeatureSpec& spec = specs.emplace_back(FeatureSpec{kind});
     spec.part_count = 1;
-    spec.parts[0] = {time_s, threshold_m, curve};
+    spec.parts[0] = part;
   }
   return FeatureFilter(specs);
 }
 
+Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
+  Trend trend;
+  trend.reference_depth_m = rows.problem().reference_depth_m;
+  trend.elastic = combined_spline(spline_basis(), x.data());
+  if (has_kind(rows.list().features, FeatureKind::velocity)) {
+    trend.thinning_velocity_m_per_s = rows.problem().rms_velocity_m_per_s;
+    auto column = static_cast<Eigen::Index>(kElasticTerms);
+    for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
+      for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column) {
+        for (std::size_t j = 0; j < kViscosityCoefficients; ++j) (*viscosity)[j] += x(column) * kViscousBasis[k][j];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < rows.count(); ++i) {
+    trend.velocity_limit_m_per_s =
+        std::max(trend.velocity_limit_m_per_s, kVelocityMargin * std::abs(rows[i].velocity_m_per_s));
+  }
+  return trend;
+}
+
+// The feature with the drive curves of `weights`, without the parts whose weights are 0, unless `all`.
+FeatureSpec with_drives(const FeatureSpec& candidate, const double* weights, double depth_m, bool all) {
+  FeatureSpec spec = candidate;
+  spec.part_count = 0;
+  spec.parts = {};
+  for (std::size_t p = 0; p < candidate.part_count; ++p, weights += kCurveTerms) {
+    const bool carries = std::any_of(weights, weights + kCurveTerms, [](double weight) { return weight > 0.0; });
+    if (!carries && !all) continue;
+    FeaturePart& part = spec.parts[spec.part_count++] = candidate.parts[p];
+    part.drive = combined_curve(spec.kind, weights, depth_m);
+    if (spec.kind == FeatureKind::creep) part.threshold_m = depth_m;
+  }
+  return spec;
+}
+
 }  // namespace
 
-std::vector<double> FeatureList::all_times_s() const {
+bool has_kind(const std::vector<FeatureSpec>& features, FeatureKind kind) {
+  return std::ranges::find(features, kind, &FeatureSpec::kind) != features.end();
+}
+
+void FeatureList::add(FeatureKind kind, const std::vector<double>& constants) {
+  if (has_parts(kind) && constants.empty()) return;
+  FeatureSpec spec{kind};
+  for (const double constant : constants) {
+    FeaturePart& part = spec.parts[spec.part_count++];
+    (kind == FeatureKind::stops ? part.threshold_m : part.relaxation_time_s) = constant;
+  }
+  features.insert(std::ranges::upper_bound(features, kind, {}, &FeatureSpec::kind), spec);
+}
+
+std::vector<double> relaxation_times_s(const std::vector<FeatureSpec>& features) {
   std::vector<double> times_s;
-  for (const auto& group : relaxation_times_s) times_s.insert(times_s.end(), group.begin(), group.end());
+  for (const FeatureSpec& spec : features) {
+    if (has_time(spec.kind)) times_s.push_back(spec.relaxation_time_s);
+    if (!is_branch(spec.kind)) continue;
+    for (const double time_s : constants_of(spec)) times_s.push_back(time_s);
+  }
   return times_s;
 }
 
+std::vector<double> constants_of(const FeatureSpec& spec) {
+  std::vector<double> constants;
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    const FeaturePart& part = spec.parts[p];
+    constants.push_back(spec.kind == FeatureKind::stops ? part.threshold_m : part.relaxation_time_s);
+  }
+  return constants;
+}
+
+std::vector<double> dictionary_times_s(const TrainingExtent& extent) {
+  return ladder(std::max(kShortest_s, 2.0 * extent.sample_s), longest_time_s(extent), kTimesPerDecade);
+}
+
+FeatureList dictionary(const TrainingExtent& extent, double encoder_step_m) {
+  FeatureList list;
+  list.add(FeatureKind::velocity);
+  const std::vector<double> times_s = dictionary_times_s(extent);
+  for (std::size_t band = 0; band < kBands; ++band) {
+    const auto from = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * band / kBands);
+    const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
+    list.add(FeatureKind::maxwell_spectrum, {from, to});
+  }
+  std::vector<double> thresholds_m;
+  for (double threshold_m = 0.5 * extent.depth_m;
+       thresholds_m.size() < kMaxFeatureParts && threshold_m >= encoder_step_m; threshold_m *= 0.5) {
+    thresholds_m.insert(thresholds_m.begin(), threshold_m);
+  }
+  list.add(FeatureKind::stops, thresholds_m);
+  list.add(FeatureKind::creep, ladder(kShortest_s, longest_time_s(extent), 1.0));
+  return list;
+}
+
+FeatureList single_times(bool velocity, const std::vector<double>& times_s) {
+  FeatureList list;
+  if (velocity) list.add(FeatureKind::velocity);
+  for (const double time_s : times_s) list.add(FeatureKind::maxwell_spectrum, {time_s});
+  return list;
+}
+
+std::string term_name(const FeatureSpec& spec) {
+  if (spec.kind == FeatureKind::velocity) return "velocity";
+  const bool stops = spec.kind == FeatureKind::stops;
+  const char* words = stops ? "stops " : spec.kind == FeatureKind::creep ? "creep " : "relaxation ";
+  const double unit = stops ? 1e3 : 1.0;
+  const std::vector<double> constants = constants_of(spec);
+  std::string text = words + general(unit * constants.front(), 3);
+  if (constants.size() > 1) text.append("-").append(general(unit * constants.back(), 3));
+  return text + (stops ? " mm" : " s");
+}
+
 DriveCurve combined_curve(FeatureKind kind, const double* weights, double reference_depth_m) {
-  return is_bristle(kind) ? weighted_sum(kFrictions, weights, reference_depth_m)
-                          : weighted_sum(kDrives, weights, reference_depth_m);
+  const Basis& basis = is_bristle(kind) ? kFrictions : kDrives;
+  DriveCurve curve;
+  curve.reference_depth_m = reference_depth_m;
+  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+    for (std::size_t j = 0; j < kDriveCoefficients; ++j) curve.coefficient_N[j] += weights[k] * basis[k][j];
+  }
+  return curve;
 }
 
 std::vector<DriveCurve> curve_basis(FeatureKind kind, double reference_depth_m) {
@@ -79,7 +187,114 @@ std::vector<DriveCurve> curve_basis(FeatureKind kind, double reference_depth_m) 
   return curves;
 }
 
-DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m) {
+TrendRows::TrendRows(FeatureList list, const TrendProblem& problem, std::size_t stride)
+    : list_(std::move(list)),
+      problem_(problem),
+      stride_(stride),
+      elastic_basis_(spline_basis()),
+      times_s_(relaxation_times_s(list_.features)),
+      drives_(curve_basis(FeatureKind::maxwell_spectrum, problem.reference_depth_m)),
+      branches_N_(times_s_.size() * kCurveTerms, 0.0) {
+  if (!list_.surface.empty()) surface_.emplace_back(list_.surface);
+  for (const FeatureSpec& spec : list_.features) {
+    if (is_branch(spec.kind)) slowing_ = spec.slowing;
+    for (std::size_t p = 0; is_bristle(spec.kind) && p < spec.part_count; ++p) {
+      bristles_.push_back(bristle(spec.kind, spec.parts[p], problem_.reference_depth_m));
+    }
+    const std::size_t count = spec.kind == FeatureKind::depth      ? kElasticTerms
+                              : spec.kind == FeatureKind::velocity ? 2 * kViscosityCoefficients
+                                                                   : kCurveTerms * spec.part_count;
+    ColumnList& columns = feature_columns_.emplace_back(count);
+    std::iota(columns.begin(), columns.end(), static_cast<Eigen::Index>(columns_));
+    columns_ += count;
+  }
+}
+
+// Advances the outputs z_tk of the Maxwell branches for all relaxation times tau_t and drive curves g_k,
+//   dz/dt = g_k'(s) ds/dt - z / tau_t
+// with s the depth of the material's surface (engine/tick/features.h). `depth_m`: that of the tool, at most s.
+void TrendRows::update_branches(double time_s, double depth_m, double surface_m) {
+  if (times_s_.empty()) return;
+  std::array<double, kCurveTerms> change{};
+  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+    const double drive = drives_[k].at(surface_m);
+    change[k] = drive - last_drive_[k];
+    last_drive_[k] = drive;
+  }
+  const double step_s = time_s - last_time_s_;
+  if (!started_) {
+    std::fill(branches_N_.begin(), branches_N_.end(), 0.0);
+  } else if (step_s > 0.0) {
+    const double halfway_m = surface_halfway(last_surface_m_, last_depth_m_, depth_m);
+    const double factor = relaxation_time_factor(slowing_, halfway_m, problem_.reference_depth_m);
+    double* value = branches_N_.data();
+    for (const double relaxation_time_s : times_s_) {
+      const BranchStep step = branch_step(factor * relaxation_time_s, step_s);
+      for (std::size_t k = 0; k < kCurveTerms; ++k, ++value) {
+        *value = step.keep * *value + step.gain * change[k];
+        if (std::abs(*value) < 1e-30) *value = 0.0;
+      }
+    }
+  }
+  started_ = true;
+  last_time_s_ = time_s;
+  last_depth_m_ = depth_m;
+  last_surface_m_ = surface_m;
+}
+
+void TrendRows::add(const MotionRow& sample) {
+  if (sample.first) started_ = false;
+  for (auto* filters : {&surface_, &bristles_}) {
+    for (FeatureFilter& filter : *filters) {
+      if (sample.first) filter.reset();
+      filter.update(sample.sample, sample.motion);
+    }
+  }
+  const double depth_m = std::max(0.0, sample.motion.position_m);
+  const double surface_m = surface_.empty() ? depth_m : surface_.front().surface_m();
+  update_branches(sample.sample.time_s, depth_m, surface_m);
+  if (sample.run_up || !(sample.sample.position_m > 0.0)) return;
+  if (seen_++ % stride_ != 0) return;
+  const double velocity_m_per_s = depth_m > 0.0 ? sample.motion.velocity_m_per_s : 0.0;
+  const double u = std::min(depth_m / problem_.reference_depth_m, 1.0);
+  values_.resize(values_.size() + columns_);
+  double* to = values_.data() + (values_.size() - columns_);
+  for (const ElasticSpline& curve : elastic_basis_) *to++ = curve.at(u);
+  if (has_kind(list_.features, FeatureKind::velocity)) {
+    for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, problem_.rms_velocity_m_per_s)}) {
+      for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
+    }
+  }
+  to = std::copy(branches_N_.begin(), branches_N_.end(), to);
+  for (const FeatureFilter& filter : bristles_) to = std::copy_n(filter.vector().values.begin(), kCurveTerms, to);
+  rows_.push_back({sample.force_N, velocity_m_per_s, depth_m, surface_m - depth_m, sample.fold});
+}
+
+Result<TrendRows> gather_rows(const TrendData& data, const FeatureList& list, std::size_t most_rows,
+                              double least_step_s) {
+  // Calls `visit` for every sample that is used.
+  const auto pass = [&](const auto& visit) {
+    double last_s = 0.0;
+    return data.source.for_each(
+        [&](const MotionRow& row) {
+          if (!row.first && row.sample.time_s - last_s < least_step_s) return;
+          last_s = row.sample.time_s;
+          visit(row);
+        },
+        data.control);
+  };
+  std::size_t count = 0;
+  Status status = pass([&](const MotionRow& row) {
+    if (row.sample.position_m > 0.0 && !row.run_up) ++count;
+  });
+  if (!status) return status.error();
+  TrendRows rows(list, data.problem, std::bit_ceil((count + most_rows - 1) / most_rows));
+  status = pass([&](const MotionRow& row) { rows.add(row); });
+  if (!status) return status.error();
+  return rows;
+}
+
+FeatureSpec surface_lag_of(const ElasticSpline& elastic, double reference_depth_m) {
   constexpr std::size_t kCoarsePieces = kDriveKnots + 1;
   constexpr double kWidth = 1.0 / kCoarsePieces;
   // The Greville abscissae in units of a piece.
@@ -99,108 +314,45 @@ DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m) 
     bend[k] = (k == 0 || k == kCoarsePieces ? 2.0 : 1.0) * (weight[k + 1] - weight[k]) / kWidth;
   }
   const auto cube = [&](std::size_t piece) { return (bend[piece + 1] - bend[piece]) / (6.0 * kWidth); };
-  DriveCurve curve;
+  FeatureSpec lag{FeatureKind::surface_lag};
+  DriveCurve& curve = lag.drive;
   curve.reference_depth_m = reference_depth_m;
   curve.has_knots = true;
   curve.coefficient_N = {weight[0], 0.5 * bend[0], cube(0), 0.0};
   for (std::size_t k = 0; k < kDriveKnots; ++k) curve.knot_N[k] = cube(k + 1) - cube(k);
-  return curve;
+  return lag;
 }
 
-BranchLadder::BranchLadder(std::vector<double> times_s, double reference_depth_m, double slowing)
-    : times_s_(std::move(times_s)),
-      curves_(curve_basis(FeatureKind::maxwell_spectrum, reference_depth_m)),
-      slowing_(slowing),
-      values_(times_s_.size() * kCurveTerms, 0.0) {}
-
-void BranchLadder::update(double time_s, double depth_m, double surface_m) {
-  if (times_s_.empty()) return;
-  std::array<double, kCurveTerms> change{};
-  for (std::size_t k = 0; k < kCurveTerms; ++k) {
-    const double drive = curves_[k].at(surface_m);
-    change[k] = drive - drive_[k];
-    drive_[k] = drive;
-  }
-  const double step_s = time_s - time_s_;
-  if (!started_) {
-    std::fill(values_.begin(), values_.end(), 0.0);
-  } else if (step_s > 0.0) {
-    const double halfway_m = surface_halfway(surface_m_, depth_m_, depth_m);
-    const double factor = relaxation_time_factor(slowing_, halfway_m, curves_.front().reference_depth_m);
-    double* value = values_.data();
-    for (const double relaxation_time_s : times_s_) {
-      const BranchStep step = branch_step(factor * relaxation_time_s, step_s);
-      for (std::size_t k = 0; k < kCurveTerms; ++k, ++value) {
-        *value = step.keep * *value + step.gain * change[k];
-        if (std::abs(*value) < 1e-30) *value = 0.0;
-      }
+FittedTrend fitted_trend(const TrendRows& rows, const Eigen::VectorXd& x, bool all) {
+  const double depth_m = rows.problem().reference_depth_m;
+  FittedTrend fitted{trend_from(rows, x), {}, {}};
+  // Adds a feature with its value at each row.
+  const auto add = [&](const FeatureSpec& spec, const auto& value_at) {
+    fitted.features.push_back(spec);
+    Eigen::MatrixXd& values = fitted.row_features;
+    values.conservativeResize(values.rows() + 1, static_cast<Eigen::Index>(rows.count()));
+    for (std::size_t i = 0; i < rows.count(); ++i)
+      values(values.rows() - 1, static_cast<Eigen::Index>(i)) = value_at(i);
+  };
+  for (std::size_t f = 0; f < rows.list().features.size(); ++f) {
+    const FeatureSpec& candidate = rows.list().features[f];
+    const ColumnList& columns = rows.feature_columns()[f];
+    const Eigen::VectorXd weights = x(columns);
+    if (candidate.kind == FeatureKind::depth) {
+      add(candidate, [&](std::size_t i) { return rows[i].depth_m; });
+      if (rows.list().surface.empty()) continue;
+      add(surface_lag_of(fitted.trend.elastic, depth_m), [&](std::size_t i) { return rows[i].lag_m; });
+    } else if (candidate.kind == FeatureKind::velocity) {
+      add(candidate, [&](std::size_t i) { return rows[i].velocity_m_per_s; });
+    } else if (all || weights.maxCoeff() > 0.0) {
+      add(with_drives(candidate, weights.data(), depth_m, all), [&](std::size_t i) {
+        const auto terms = rows.terms().row(static_cast<Eigen::Index>(i));
+        return std::inner_product(columns.begin(), columns.end(), weights.begin(), 0.0, std::plus<>(),
+                                  [&](Eigen::Index column, double weight) { return terms(column) * weight; });
+      });
     }
   }
-  started_ = true;
-  time_s_ = time_s;
-  depth_m_ = depth_m;
-  surface_m_ = surface_m;
-}
-
-TrendRows::TrendRows(FeatureList list, const TrendProblem& problem, std::size_t most_rows)
-    : list_(std::move(list)),
-      problem_(problem),
-      most_rows_(most_rows),
-      ladder_(list_.all_times_s(), problem.reference_depth_m, list_.slowing),
-      elastic_basis_(spline_basis()) {
-  const double depth_m = problem_.reference_depth_m;
-  if (!list_.surface.empty()) surface_.emplace_back(list_.surface);
-  for (const double threshold_m : list_.stop_thresholds_m) {
-    bristles_.push_back(bristle(FeatureKind::stops, threshold_m, 0.0, depth_m));
-  }
-  for (const double time_s : list_.creep_times_s) {
-    bristles_.push_back(bristle(FeatureKind::creep, depth_m, time_s, depth_m));
-  }
-  columns_ = first_stop() + kCurveTerms * bristles_.size();
-}
-
-void TrendRows::begin_recording() {
-  ladder_.reset();
-  for (auto* filters : {&surface_, &bristles_}) {
-    for (FeatureFilter& filter : *filters) filter.reset();
-  }
-}
-
-void TrendRows::advance(const ToolSample& sample, const MotionEstimate& motion) {
-  for (auto* filters : {&surface_, &bristles_}) {
-    for (FeatureFilter& filter : *filters) filter.update(sample, motion);
-  }
-  const double depth_m = std::max(0.0, motion.position_m);
-  ladder_.update(sample.time_s, depth_m, surface_.empty() ? depth_m : surface_.front().surface_m());
-}
-
-void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int fold) {
-  advance(sample, motion);
-  if (!(sample.position_m > 0.0)) return;
-  if (phase_++ % stride_ != 0) return;
-  const double depth_m = std::max(0.0, motion.position_m);
-  const double velocity_m_per_s = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
-  const double u = std::min(depth_m / problem_.reference_depth_m, 1.0);
-  values_.resize(values_.size() + columns_);
-  double* to = values_.data() + (values_.size() - columns_);
-  for (const ElasticSpline& curve : elastic_basis_) *to++ = curve.at(u);
-  if (list_.velocity) {
-    for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, problem_.rms_velocity_m_per_s)}) {
-      for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
-    }
-  }
-  to = std::copy(ladder_.values().begin(), ladder_.values().end(), to);
-  for (const FeatureFilter& filter : bristles_) to = std::copy_n(filter.vector().values.begin(), kCurveTerms, to);
-  const double lag_m = surface_.empty() ? 0.0 : surface_.front().surface_m() - depth_m;
-  rows_.push_back({force_N, velocity_m_per_s, depth_m, lag_m, fold});
-  if (count() > most_rows_) halve();
-}
-
-void TrendRows::halve() {
-  keep_every_other(values_, columns_);
-  keep_every_other(rows_, 1);
-  stride_ *= 2;
-  phase_ = 1;  // the newest row was kept
+  return fitted;
 }
 
 }  // namespace palpate

@@ -77,12 +77,10 @@ class Measurement {
   }
 
   Result<Preparations> prepare(const std::vector<PreparedRecordingPointer>& training) {
-    std::vector<MotionSource::Input> inputs;
-    for (const PreparedRecordingPointer& recording : training) inputs.push_back({"", recording});
     const TrainingRequest request = training_request(data_.scene);
     std::vector<PreparedTraining> made;
     for (const TrainingRequest& one : {recipe_2009_request(request), request}) {
-      MotionSource source(inputs);
+      MotionSource source(training);
       auto prepared = prepare_training(source, one, progress_.next(kPrepareSeconds));
       if (!prepared) return prepared.error();
       made.push_back(std::move(*prepared));

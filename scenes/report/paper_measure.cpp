@@ -93,7 +93,7 @@ class PaperMeasurement {
 };
 
 Result<PreparedTraining> PaperMeasurement::prepare(TrainingRequest request) {
-  MotionSource source({{"", recordings_[0]}});
+  MotionSource source({recordings_[0]});
   auto prepared = prepare_training(source, request, part());
   if (!prepared) return prepared.error();
   if (prepared->set.reduction_force_N != kStep_N)

@@ -139,21 +139,21 @@ Status ModelWorker::prepare_recordings() {
   if (!recordings_.empty()) return {};
   if (!scene_.has_material())
     return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
-  std::vector<MotionSource::Input> inputs;
+  std::vector<PreparedRecordingPointer> recordings;
   for (const std::string& path : scene_.recordings) {
     Result<Recording> recording = read_usable_recording(path);
     if (!recording) return recording.error();
-    inputs.push_back({"", prepare_recording(std::move(*recording))});
+    recordings.push_back(prepare_recording(std::move(*recording)));
   }
-  if (inputs.empty()) {
+  if (recordings.empty()) {
     RigSettings settings;
     settings.material = *scene_.material;
     settings.seed = seed_;
     Result<Recording> recording = record_sensors(settings, control(0.0, kRecorded).progress);
     if (!recording) return recording.error();
-    inputs.push_back({"", prepare_recording(std::move(*recording))});
+    recordings.push_back(prepare_recording(std::move(*recording)));
   }
-  recordings_ = std::move(inputs);
+  recordings_ = std::move(recordings);
   return {};
 }
 

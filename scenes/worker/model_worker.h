@@ -89,7 +89,7 @@ class ModelWorker {
   Scene scene_;
   std::uint64_t seed_;
   // Used by the worker's thread only.
-  std::vector<MotionSource::Input> recordings_;
+  std::vector<PreparedRecordingPointer> recordings_;
   Recipe own_, of_paper_;
 
   std::thread thread_;

@@ -11,7 +11,7 @@
 namespace palpate::bench {
 namespace {
 
-constexpr int kLeaveOut = 5;  // every fifth stroke is left out
+constexpr int kLeaveOut = 5;  // every fifth fold is left out
 
 PreparedTraining with_targets(const PreparedTraining& prepared, bool forces) {
   PreparedTraining other = prepared;
@@ -113,13 +113,12 @@ PreparedTraining with_some_sites(const PreparedTraining& prepared, Eigen::Index 
 }
 
 std::vector<bool> left_out_sites(const PreparedTraining& prepared) {
-  std::vector<int> stroke_of;
-  for (const TrainingSite& site : prepared.set.sites) stroke_of.push_back(prepared.strength ? site.fold : site.stroke);
-  const std::set<int> strokes(stroke_of.begin(), stroke_of.end());
-  const int every = std::min(kLeaveOut, static_cast<int>(strokes.size()));
+  std::set<int> folds;
+  for (const TrainingSite& site : prepared.set.sites) folds.insert(site.fold);
+  const int every = std::min(kLeaveOut, static_cast<int>(folds.size()));
   std::vector<bool> left_out;
-  for (const int stroke : stroke_of) {
-    const auto rank = static_cast<int>(std::distance(strokes.begin(), strokes.find(stroke)));
+  for (const TrainingSite& site : prepared.set.sites) {
+    const auto rank = static_cast<int>(std::distance(folds.begin(), folds.find(site.fold)));
     // The middle one of each five, so that the hardest of three presses is not left out.
     left_out.push_back(rank % every == every / 2);
   }

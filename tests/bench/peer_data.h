@@ -55,7 +55,7 @@ const PeerSetting& best_setting(const Peer& peer, const PreparedTraining& prepar
 // than the number of sites: all.
 PreparedTraining with_some_sites(const PreparedTraining& prepared, Eigen::Index count);
 
-// Whether each site belongs to a stroke that best_setting leaves out.
+// Whether each site belongs to a fold that best_setting leaves out.
 std::vector<bool> left_out_sites(const PreparedTraining& prepared);
 
 }  // namespace palpate::bench

@@ -48,7 +48,7 @@ TrainingRequest clean_request() {
 }
 
 std::vector<HardCase> fit_methods(const Recording& recording, const TrainingRequest& request) {
-  MotionSource source({{"", prepare_recording(recording)}});
+  MotionSource source({prepare_recording(recording)});
   const Result<PreparedTraining> prepared = prepare_training(source, request);
   std::vector<HardCase> cases;
   for (const Method* method : methods()) {

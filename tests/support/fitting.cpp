@@ -78,9 +78,9 @@ TrainingRequest scene_request(const std::string& scene) {
 TrainingRequest position_request() { return scene_request("elastic_block"); }
 
 PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request) {
-  std::vector<MotionSource::Input> inputs;
-  for (const RecordingPtr& recording : recordings) inputs.push_back({"", prepare_recording(*recording)});
-  MotionSource source(std::move(inputs));
+  std::vector<PreparedRecordingPointer> prepared;
+  for (const RecordingPtr& recording : recordings) prepared.push_back(prepare_recording(*recording));
+  MotionSource source(std::move(prepared));
   return must(prepare_training(source, request));
 }
 

@@ -26,11 +26,9 @@ TrainingRequest request_for(const std::vector<FeatureSpec>& features) {
 
 Result<PreparedTraining> prepare(const Recordings& recordings, const TrainingRequest& request,
                                  const FitControl& control = {}) {
-  std::vector<MotionSource::Input> inputs;
-  for (const Recording& recording : recordings) {
-    inputs.push_back({"", prepare_recording(recording)});
-  }
-  MotionSource source(std::move(inputs));
+  std::vector<PreparedRecordingPointer> prepared;
+  for (const Recording& recording : recordings) prepared.push_back(prepare_recording(recording));
+  MotionSource source(std::move(prepared));
   return prepare_training(source, request, control);
 }
 

@@ -104,11 +104,7 @@ TEST(Methods, RefuseWrongSitesAndCanBeInterrupted) {
     EXPECT_EQ(stopped.error().message, "interrupted");
     sites.target_N[7] = std::nan("");
     EXPECT_TRUE(test::has_parts(test::fit_centres(method, sites, jnd_N, request).error().message,
-                                {"site 7 ", "finite", "row_scale"}));
-    sites.target_N.resize(3);
-    EXPECT_TRUE(test::has_parts(test::fit_centres(method, sites, jnd_N, request).error().message,
-                                {"3 entries of target_N", "expected 30"}));
-    EXPECT_FALSE(test::fit_centres(method, {}, jnd_N, request).ok());
+                                {"not finite", "; check the recording"}));
   });
 }
 

@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 Result<MethodFit> fit_trend_alone(Weighting weighting, Reduction reduction) {
-  MotionSource source({{"", prepare_recording(test::example_recording(1500, 250.0))}});
+  MotionSource source({prepare_recording(test::example_recording(1500, 250.0))});
   TrainingRequest request;
   request.scene = "test";
   request.features = test::paper_features();

@@ -8,11 +8,15 @@ namespace {
 TEST(FeatureListText, ReadsItsOwnExample) {
   const auto list = parse_feature_list(kFeatureListExample);
   ASSERT_TRUE(list.ok()) << list.error().message;
-  EXPECT_TRUE(list->velocity);
-  EXPECT_EQ(list->relaxation_times_s, (std::vector<std::vector<double>>{{0.17}, {0.4, 1.27}}));
-  ASSERT_EQ(list->stop_thresholds_m.size(), 1U);
-  EXPECT_DOUBLE_EQ(list->stop_thresholds_m[0], 1e-4);
-  EXPECT_EQ(list->creep_times_s, (std::vector<double>{0.1, 1.0}));
+  std::vector<FeatureKind> kinds;
+  for (const FeatureSpec& spec : list->features) kinds.push_back(spec.kind);
+  EXPECT_EQ(kinds, (std::vector{FeatureKind::depth, FeatureKind::velocity, FeatureKind::maxwell_spectrum,
+                                FeatureKind::maxwell_spectrum, FeatureKind::stops, FeatureKind::creep}));
+  EXPECT_EQ(constants_of(list->features[2]), std::vector{0.17});
+  EXPECT_EQ(constants_of(list->features[3]), (std::vector{0.4, 1.27}));
+  ASSERT_EQ(list->features[4].part_count, 1U);
+  EXPECT_DOUBLE_EQ(list->features[4].parts[0].threshold_m, 1e-4);
+  EXPECT_EQ(constants_of(list->features[5]), (std::vector{0.1, 1.0}));
 }
 
 TEST(FeatureListText, SaysWhatIsWrong) {

@@ -35,9 +35,9 @@ RecordingPtr rig(const std::string& material, std::uint64_t seed, double offset_
 }
 
 RegisteredSurfaces registered(const std::vector<RecordingPtr>& recordings) {
-  std::vector<MotionSource::Input> inputs;
-  for (const RecordingPtr& recording : recordings) inputs.push_back({"", prepare_recording(*recording)});
-  MotionSource source(std::move(inputs));
+  std::vector<PreparedRecordingPointer> prepared;
+  for (const RecordingPtr& recording : recordings) prepared.push_back(prepare_recording(*recording));
+  MotionSource source(std::move(prepared));
   return test::must(register_surfaces(source, JndLine{}));
 }
 

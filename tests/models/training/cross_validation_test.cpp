@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 TEST(FoldAssignment, WholeRecordingsFromThreeOn) {
-  FoldAssignment assignment(4, 9, 900);
+  FoldAssignment assignment(4, 900);
   EXPECT_EQ(assignment.folds(), 4);
   for (int recording = 0; recording < 4; ++recording) {
     for (int i = 0; i < 50; ++i) EXPECT_EQ(assignment.next(recording, 2 * recording + i / 25, true), recording);
@@ -17,7 +17,7 @@ TEST(FoldAssignment, WholeRecordingsFromThreeOn) {
 }
 
 TEST(FoldAssignment, ShortStrokesStayWhole) {
-  FoldAssignment assignment(1, 20, 2000);
+  FoldAssignment assignment(1, 2000);
   EXPECT_EQ(assignment.folds(), 5);
   for (int stroke = 1; stroke <= 20; ++stroke) {
     std::set<int> folds;
@@ -29,7 +29,7 @@ TEST(FoldAssignment, ShortStrokesStayWhole) {
 
 TEST(FoldAssignment, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
   for (const bool has_unloading : {true, false}) {
-    FoldAssignment assignment(1, 1, 1000, has_unloading);
+    FoldAssignment assignment(1, 1000, has_unloading);
     std::set<int> folds;
     int changes = 0;
     int last = 0;
@@ -45,8 +45,8 @@ TEST(FoldAssignment, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
 }
 
 TEST(FoldAssignment, FreeAirDoesNotChangeTheDeal) {
-  FoldAssignment with_air(1, 8, 80);
-  FoldAssignment without(1, 8, 80);
+  FoldAssignment with_air(1, 80);
+  FoldAssignment without(1, 80);
   for (int stroke = 1; stroke <= 8; ++stroke) {
     for (int i = 0; i < 30; ++i) with_air.next(0, stroke, false);
     for (int i = 0; i < 10; ++i) EXPECT_EQ(with_air.next(0, stroke, true), without.next(0, stroke, true));

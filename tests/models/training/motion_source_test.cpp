@@ -3,23 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/support/example_model.h"
-#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
 
-using Input = MotionSource::Input;
-
-Input in_memory(Recording recording) { return {"", prepare_recording(std::move(recording))}; }
+RecordingSurface corrected_by(double offset_m, double force_zero_N) {
+  RecordingSurface surface;
+  surface.offset_m = offset_m;
+  surface.force_zero_N = force_zero_N;
+  return surface;
+}
 
 std::vector<MotionRow> rows_of(MotionSource& source) {
   std::vector<MotionRow> rows;
-  const Status status = source.for_each([&](const MotionRow& row) {
-    rows.push_back(row);
-    return true;
-  });
+  const Status status = source.for_each([&](const MotionRow& row) { rows.push_back(row); });
   EXPECT_TRUE(status.ok());
   return rows;
 }
@@ -42,83 +42,38 @@ void expect_same(const std::vector<MotionRow>& a, const std::vector<MotionRow>& 
   }
 }
 
-// From memory, with the motion of prepare_recording, and from a file.
-TEST(MotionSource, AFileGivesWhatMemoryGives) {
-  // Longer than the rows used for sensor identification, and than one chunk of the reader.
-  const Recording recording = test::example_recording(45000, 1000.0, 30e-6);
-  const test::TemporaryFolder folder;
-  ASSERT_TRUE(write_recording(folder.file("r.csv"), recording, {}, false).ok());
-  const Input file{folder.file("r.csv"), nullptr};
-  MotionSource read({file});
-  MotionSource known({in_memory(recording)});
-  expect_same(rows_of(read), rows_of(known));
-  expect_same(rows_of(read), rows_of(known));  // a second pass
-  EXPECT_EQ(read.rows(), 45000u);
-  EXPECT_EQ(names_of(read), std::vector<std::string>{"r"});
-  EXPECT_EQ(read.recordings()[0].hash, known.recordings()[0].hash);
-  EXPECT_EQ(read.force_noise_N(), known.force_noise_N());
-
-  // Two of them, with corrections.
-  MotionSource twice({in_memory(recording), in_memory(recording)});
-  MotionSource read_twice({file, file});
-  for (MotionSource* source : {&twice, &read_twice}) source->correct({{1e-3, 0.5}, {0.0, 0.0}});
-  for (int pass = 0; pass < 2; ++pass) expect_same(rows_of(read_twice), rows_of(twice));
-}
-
 TEST(MotionSource, RowsThatAreLeftOutAreARunUpOfTheOthers) {
   const Recording recording = test::example_recording(3000, 1000.0, 30e-6);
-  MotionSource whole({in_memory(recording)});
+  MotionSource whole({prepare_recording(recording)});
   std::vector<bool> left_out(recording.rows.size(), false);
   std::fill(left_out.begin() + 1000, left_out.begin() + 2000, true);
-  MotionSource source({{"", prepare_recording(recording, left_out)}});
+  MotionSource source({prepare_recording(recording, left_out)});
   const auto rows = rows_of(source);
   expect_same(rows_of(whole), rows);
   for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i].run_up, i >= 1000 && i < 2000) << i;
 }
 
-// A long recording is thinned: the rows are a subset in order, in stretches without gaps
-// from the beginning to the end.
-TEST(MotionSource, OfLongRecordingsKeepsTheBeginningAndStretches) {
+// A long recording is thinned, with the motion that was estimated from all rows.
+TEST(MotionSource, OfLongRecordingsKeepsEveryNthRow) {
   constexpr std::size_t kMost = 8000;
-  const std::vector<Input> inputs{in_memory(test::example_recording(60000, 1000.0, 30e-6)),
-                                  in_memory(test::example_recording(30000, 1000.0, 0.0))};
+  const std::vector<PreparedRecordingPointer> inputs{prepare_recording(test::example_recording(60000, 1000.0, 30e-6)),
+                                                     prepare_recording(test::example_recording(30000, 1000.0, 0.0))};
   MotionSource whole(inputs);
   MotionSource thinned(inputs, kMost);
-  for (MotionSource* source : {&whole, &thinned}) source->correct({{1e-3, 0.5}, {0.0, 0.0}});
+  for (MotionSource* source : {&whole, &thinned}) source->correct({corrected_by(1e-3, 0.5), {}});
   const auto all = rows_of(whole);
+  EXPECT_EQ(thinned.rows(), 0u);
   const auto rows = rows_of(thinned);
   EXPECT_EQ(names_of(thinned), names_of(whole));
   EXPECT_EQ(thinned.rows(), 90000u);
   EXPECT_EQ(thinned.force_noise_N(), whole.force_noise_N());
-  EXPECT_LT(rows.size(), kMost + kMost / 10);
-  EXPECT_GT(rows.size(), kMost / 2);
-  constexpr std::size_t kSparse = 3 * 90000 / kMost + 1;
-  std::size_t at = 0;
-  std::size_t last = 0;
-  std::size_t longest_gap = 0;
-  std::vector<std::size_t> stretches(2, 0);
-  bool run_up = true;
-  for (const MotionRow& row : rows) {
-    while (at < all.size() && (all[at].recording != row.recording || all[at].sample.time_s != row.sample.time_s)) ++at;
-    ASSERT_LT(at, all.size());
-    EXPECT_EQ(all[at].sample.position_m, row.sample.position_m);
-    EXPECT_EQ(all[at].force_N, row.force_N);
-    EXPECT_EQ(all[at].first, row.first);
-    longest_gap = std::max(longest_gap, at - last);
-    if (!run_up && !row.run_up && !row.first) {
-      EXPECT_EQ(at, last + 1);
-    }
-    if (at < kMost / 8) {
-      EXPECT_FALSE(row.run_up);
-    }
-    if ((run_up || row.first) && !row.run_up) ++stretches[static_cast<std::size_t>(row.recording)];
-    run_up = row.run_up;
-    last = at;
+  ASSERT_EQ(rows.size(), 7500u);  // every 12th
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(all[12 * i].sample.position_m, rows[i].sample.position_m);
+    EXPECT_EQ(all[12 * i].motion.velocity_m_per_s, rows[i].motion.velocity_m_per_s);
+    EXPECT_EQ(all[12 * i].force_N, rows[i].force_N);
+    EXPECT_EQ(all[12 * i].first, rows[i].first);
   }
-  EXPECT_LE(longest_gap, kSparse);  // between stretches every kSparse-th row is kept
-  EXPECT_LE(all.size() - last, kSparse);
-  EXPECT_GE(stretches[0], 4u);
-  EXPECT_GE(stretches[1], 2u);
 }
 
 TEST(MotionSource, CountsStrokesAndRecordings) {
@@ -127,7 +82,7 @@ TEST(MotionSource, CountsStrokesAndRecordings) {
     const bool pressed = i % 10 < 3 || i >= 38;  // five presses, the first from the beginning and the last to the end
     recording.rows.push_back({1e-3 * i, pressed ? 1e-3 : -1e-3, pressed ? 1.0 : 0.0, 0.0, 0.0});
   }
-  MotionSource source({in_memory(recording), in_memory(recording)});
+  MotionSource source({prepare_recording(recording), prepare_recording(recording)});
   const auto rows = rows_of(source);
   ASSERT_EQ(rows.size(), 80u);
   EXPECT_EQ(rows[0].stroke, 1);
@@ -144,60 +99,44 @@ TEST(MotionSource, CountsStrokesAndRecordings) {
 TEST(MotionSource, CorrectsPositionsAndForces) {
   Recording recording;
   for (int i = 0; i < 40; ++i) recording.rows.push_back({1e-3 * i, i % 10 >= 5 ? 1e-3 : -1e-3, 1.0, 0.0, 0.0});
-  MotionSource source({in_memory(recording)});
+  MotionSource source({prepare_recording(recording)});
   const auto before = rows_of(source);
-  source.correct({{2e-3, 0.25}});
+  source.correct({corrected_by(0.5e-3, 0.25)}, 1.5e-3);
   const auto out = rows_of(source);
   EXPECT_EQ(out[5].sample.position_m, 1e-3 - 2e-3);
   EXPECT_EQ(out[5].motion.position_m, before[5].motion.position_m - 2e-3);
   EXPECT_EQ(out[5].motion.velocity_m_per_s, before[5].motion.velocity_m_per_s);
   EXPECT_EQ(out[5].force_N, 0.75);
   EXPECT_EQ(out.back().stroke, 0);
-  source.correct({{-2e-3, 0.0}});
+  source.correct({corrected_by(-2e-3, 0.0)});
   EXPECT_EQ(rows_of(source).back().stroke, 1);
   source.correct({});
   expect_same(rows_of(source), before);
 }
 
 TEST(MotionSource, TheOrderOfInputsChangesNothing) {
-  const test::TemporaryFolder folder;
-  const Recording a = test::example_recording(2000, 1000.0, 30e-6);
-  Recording b = a;
-  for (RecordingRow& row : b.rows) row.force_N *= 2.0;
-  const Recording c = test::example_recording(3000, 1000.0);
-  ASSERT_TRUE(write_recording(folder.file("b.csv"), b, {}, false).ok());
-  const Input file{folder.file("b.csv"), nullptr};
-  MotionSource one({in_memory(a), file, in_memory(c)});
-  MotionSource other({in_memory(c), in_memory(a), file});
-  MotionSource files({file, in_memory(c), in_memory(a)}, 7000);
-  const auto rows = rows_of(one);
-  expect_same(rows_of(other), rows);
-  expect_same(rows_of(files), rows);
+  const Recording first = test::example_recording(2000, 1000.0, 30e-6);
+  Recording second = first;
+  for (RecordingRow& row : second.rows) row.force_N *= 2.0;
+  const auto a = prepare_recording(first);
+  const auto b = prepare_recording(second);
+  const auto c = prepare_recording(test::example_recording(3000, 1000.0));
+  MotionSource one({a, b, c});
+  MotionSource other({c, a, b});
+  expect_same(rows_of(other), rows_of(one));
   EXPECT_EQ(names_of(other), names_of(one));
-  EXPECT_EQ(names_of(files), names_of(one));
-}
-
-TEST(MotionSource, APassThatBrokeOffLeavesNothingBehind) {
-  MotionSource source({in_memory(test::example_recording(1000, 1000.0))});
-  std::size_t seen = 0;
-  const Status stopped = source.for_each([&](const MotionRow&) { return ++seen < 300; });
-  ASSERT_FALSE(stopped.ok());
-  EXPECT_EQ(stopped.error().message, "interrupted");
-  EXPECT_EQ(rows_of(source).size(), 1000u);
-  EXPECT_EQ(rows_of(source).size(), 1000u);
-  EXPECT_EQ(source.rows(), 1000u);
 }
 
 TEST(MotionSource, AsksNowAndThenWhetherToGoOn) {
-  MotionSource source({in_memory(test::example_recording(200000, 1000.0))});
+  MotionSource source({prepare_recording(test::example_recording(200000, 1000.0))});
   const FitControl stop{[](double) { return false; }};
   std::size_t seen = 0;
-  const auto count = [&](const MotionRow&) { return ++seen > 0; };
+  const auto count = [&](const MotionRow&) { ++seen; };
   EXPECT_FALSE(source.for_each(count, stop).ok());  // during the first pass
   EXPECT_EQ(seen, 0u);
   int questions = 0;
   const FitControl on{[&](double fraction) { return ++questions > 0 && fraction == 0.5; }};
-  ASSERT_TRUE(source.for_each(count, on, 0.5).ok());
+  ASSERT_TRUE(source.for_each(count, on.at(0.5)).ok());
   EXPECT_EQ(seen, 200000u);
   EXPECT_GE(questions, 6);
   seen = 0;
@@ -205,11 +144,50 @@ TEST(MotionSource, AsksNowAndThenWhetherToGoOn) {
   EXPECT_EQ(seen, kRowsPerQuestion);
 }
 
-TEST(MotionSource, AMissingFileIsTold) {
-  MotionSource source({{"none.csv", nullptr}});
-  const Status status = source.for_each([](const MotionRow&) { return true; });
-  ASSERT_FALSE(status.ok());
-  EXPECT_NE(status.error().message.find("none.csv"), std::string::npos);
+// Presses of 2 mm, a second each, by a spring of 500 N/m.
+Recording presses(int rows) {
+  Recording recording;
+  recording.name = "presses";
+  for (int i = 0; i < rows; ++i) {
+    const double position_m = 2e-3 * std::sin(2.0 * M_PI * 1e-3 * i);
+    recording.rows.push_back({1e-3 * i, position_m, 500.0 * std::max(0.0, position_m), 0.0, 0.0});
+  }
+  return recording;
+}
+
+TEST(TrainingExtent, MeasuresDepthStrokesAndWays) {
+  MotionSource source({prepare_recording(presses(10000))});
+  const auto extent = measure_extent(source, {});
+  ASSERT_TRUE(extent.ok());
+  EXPECT_NEAR(extent->depth_m, 2e-3, 1e-4);  // the error of the motion estimate at a turn
+  EXPECT_NEAR(extent->force_N, 1.0, 1e-3);
+  EXPECT_EQ(extent->strokes, 10u);
+  EXPECT_NEAR(static_cast<double>(extent->contact_samples), 5000.0, 20.0);
+  EXPECT_GT(extent->unloading_path_m, 0.9 * extent->loading_path_m);
+  EXPECT_NEAR(extent->sample_s, 1e-3, 1e-9);
+  EXPECT_NEAR(extent->longest_recording_s, 9.999, 1e-9);
+}
+
+// The surface position found for a spring with a preload, with alternating noise of +-`noise_N`.
+double beginning_of(double preload_N, double noise_N, double stiffness_N_per_m) {
+  Recording recording = presses(10000);
+  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+    RecordingRow& row = recording.rows[i];
+    row.force_N = preload_N + (i % 2 == 0 ? noise_N : -noise_N) + stiffness_N_per_m * row.position_m;
+  }
+  MotionSource source({prepare_recording(recording)});
+  const auto extent = measure_extent(source, {});
+  const auto beginning_m = find_preload_surface(source, *extent, {}, {});
+  return beginning_m.ok() ? *beginning_m : 1.0;
+}
+
+TEST(FindBeginning, IsWhereAForceThatIsFeltBeginsAndElseTheZeroOfPositions) {
+  EXPECT_NEAR(beginning_of(0.3, 0.0, 500.0), -0.6e-3, 0.03e-3);
+  EXPECT_EQ(beginning_of(0.0, 0.0, 500.0), 0.0);
+  EXPECT_EQ(beginning_of(0.05, 0.0, 500.0), 0.0);  // the preload is below the JND
+  EXPECT_EQ(beginning_of(0.3, 3.0, 500.0), 0.0);   // the preload is within two standard errors of 0
+  EXPECT_EQ(beginning_of(3.0, 0.0, 500.0), 0.0);   // 6 mm outside, farther than the recording's depth
+  EXPECT_EQ(beginning_of(-8.0, 0.0, 500.0), 0.0);  // a negative offset is not a preload
 }
 
 }  // namespace

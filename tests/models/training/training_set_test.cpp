@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-MotionSource source_of(Recording recording) { return MotionSource({{"", prepare_recording(std::move(recording))}}); }
+MotionSource source_of(Recording recording) { return MotionSource({prepare_recording(std::move(recording))}); }
 
 // A recording at 1 kHz with given positions and forces.
 template <typename Function>
@@ -151,7 +151,7 @@ TEST(TrainingSet, RefusesRecordingsWithoutContact) {
   MotionSource source = source_of(recording_of(100, [](int) { return std::pair{-1e-3, 0.0}; }));
   const auto set = make_training_set(source, test::position_features(), Reduction::coverage, 0.01);
   ASSERT_FALSE(set.ok());
-  EXPECT_TRUE(test::has_parts(set.error().message, {"in contact (position_m > 0)", "; ", "position_m"}));
+  EXPECT_TRUE(test::has_parts(set.error().message, {"in contact (position_m > 0)"}));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "models/training/trend_dictionary.h"
 #include "tests/support/feature_specs.h"
 #include "tests/support/random_points.h"
 
@@ -19,13 +18,10 @@ constexpr int kFolds = 5;
 // Strokes of growing depth and speed, a second each, measured at 500 Hz.
 template <typename Force>
 TrendRows rows_of(const FeatureList& list, double force_noise_floor_N, Force force_N) {
-  TrendRows rows(list,
-                 {.reference_depth_m = kDepth_m,
-                  .rms_velocity_m_per_s = 0.02,
-                  .force_noise_floor_N = force_noise_floor_N,
-                  .folds = kFolds},
-                 10000);
-  rows.begin_recording();
+  TrendRows rows(list, {.reference_depth_m = kDepth_m,
+                        .rms_velocity_m_per_s = 0.02,
+                        .force_noise_floor_N = force_noise_floor_N,
+                        .folds = kFolds});
   for (int i = 0; i < 10000; ++i) {
     const double t = 2e-3 * i;
     const int stroke = i / 500;
@@ -35,7 +31,7 @@ TrendRows rows_of(const FeatureList& list, double force_noise_floor_N, Force for
     const ToolSample sample{t, position_m, 0.0, 0.0};
     const MotionEstimate motion{position_m,
                                 amplitude_m * std::cos(angle) * 2.0 * std::numbers::pi * (1.0 + stroke % 3)};
-    rows.add(sample, motion, force_N(sample, motion), stroke % kFolds);
+    rows.add({{sample, motion, force_N(sample, motion)}, 0, stroke, stroke % kFolds, i == 0});
   }
   return rows;
 }
@@ -52,8 +48,8 @@ double rms_of(const TrendRows& rows, const Eigen::VectorXd& x) {
 TEST(TrendRegression, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
   FeatureFilter branch({test::spectrum({0.1}, {kDepth_m, {1.5, 0.5, 0.0, 0.0}})});
   FeatureList list;
-  list.velocity = true;
-  list.relaxation_times_s = {{0.01, 0.1, 1.0}};
+  list.add(FeatureKind::velocity);
+  list.add(FeatureKind::maxwell_spectrum, {0.01, 0.1, 1.0});
   const TrendRows rows = rows_of(list, -std::numeric_limits<double>::infinity(),
                                  [&](const ToolSample& sample, const MotionEstimate& motion) {
                                    const double u = std::max(0.0, motion.position_m) / kDepth_m;
@@ -78,7 +74,7 @@ TEST(TrendRegression, AForceThatWasNotMeasuredIsNoForceToFollow) {
   const TrendRegression regression(rows);
   const Trend trend = fitted_trend(rows, regression.solve(regression.all_columns()), true).trend;
   const double at[] = {kDepth_m};
-  // Within a JND: samples that no feature explains get a small weight (weighting.h).
+  // Within a JND: samples that no feature explains get a small weight (sites.h).
   EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), 3.0, 0.25);
 }
 

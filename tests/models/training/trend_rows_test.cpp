@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/model/bernstein.h"
 #include "models/model/trend.h"
 #include "tests/support/feature_specs.h"
 
@@ -15,17 +14,13 @@ namespace {
 constexpr double kDepth_m = 5e-3;
 constexpr double kThinning_m_per_s = 0.02;
 
-struct Step {
-  ToolSample sample;
-  MotionEstimate motion;
-};
-
 // Two strokes a second and a half long, half of the time outside.
-Step step_at(int i) {
+MotionRow row_at(int i) {
   const double time_s = 1e-3 * i;
   const double angle = 2.0 * std::numbers::pi * time_s / 1.5;
   const double position_m = kDepth_m * std::sin(angle);
-  return {{time_s, position_m, 0.0, 0.0}, {position_m, kDepth_m * std::cos(angle) * 2.0 * std::numbers::pi / 1.5}};
+  const double velocity_m_per_s = kDepth_m * std::cos(angle) * 2.0 * std::numbers::pi / 1.5;
+  return {{{time_s, position_m, 0.0, 0.0}, {position_m, velocity_m_per_s}, 0.5}, 0, 0, 7, i == 0};
 }
 
 // One branch for each drive curve of the basis.
@@ -39,18 +34,19 @@ std::vector<FeatureSpec> branch_basis(double relaxation_time_s) {
 
 TEST(TrendRows, ColumnsAreTheTrendsTerms) {
   FeatureList list;
-  list.velocity = true;
-  list.relaxation_times_s = {{0.17}, {1.27}};
-  TrendRows rows(list, {kDepth_m, kThinning_m_per_s}, 4000);
+  list.add(FeatureKind::velocity);
+  list.add(FeatureKind::maxwell_spectrum, {0.17});
+  list.add(FeatureKind::maxwell_spectrum, {1.27});
+  TrendRows rows(list, {kDepth_m, kThinning_m_per_s});
   const std::vector<ElasticSpline> elastic = spline_basis();
   ASSERT_EQ(rows.columns(), kElasticTerms + 2 * kViscosityCoefficients + 2 * kCurveTerms);
   FeatureFilter first(branch_basis(0.17));
   FeatureFilter second(branch_basis(1.27));
-  rows.begin_recording();
   std::size_t contact = 0;
   for (int i = 0; i < 3000; ++i) {
-    const auto [sample, motion] = step_at(i);
-    rows.add(sample, motion, 0.5, 7);
+    const MotionRow added = row_at(i);
+    const auto& [sample, motion, force_N] = static_cast<const SurfaceRow&>(added);
+    rows.add(added);
     const FeatureVector a = first.update(sample, motion);
     const FeatureVector b = second.update(sample, motion);
     if (!(sample.position_m > 0.0)) continue;
@@ -70,6 +66,7 @@ TEST(TrendRows, ColumnsAreTheTrendsTerms) {
       ASSERT_EQ(row[9 + k], b.values[k]);
     }
     ASSERT_EQ(rows[contact - 1].fold, 7);
+    ASSERT_EQ(rows[contact - 1].force_N, force_N);
   }
   EXPECT_GT(contact, 1000u);
 }
@@ -81,10 +78,10 @@ TEST(TrendRows, CombinedDriveIsTheWeightedSumOfTheBasis) {
   FeatureFilter basis(branch_basis(0.3));
   FeatureFilter one({test::spectrum({0.3}, combined_curve(FeatureKind::maxwell_spectrum, weights, kDepth_m))});
   for (int i = 0; i < 2000; ++i) {
-    const auto [sample, motion] = step_at(i);
-    const FeatureVector& parts = basis.update(sample, motion);
+    const MotionRow row = row_at(i);
+    const FeatureVector& parts = basis.update(row.sample, row.motion);
     const double sum = 0.5 * parts.values[0] + 2.0 * parts.values[1] + 0.25 * parts.values[2];
-    ASSERT_NEAR(one.update(sample, motion).values[0], sum, 1e-12);  // rounding of 2,000 steps
+    ASSERT_NEAR(one.update(row.sample, row.motion).values[0], sum, 1e-12);  // rounding of 2,000 steps
   }
 }
 
@@ -92,12 +89,12 @@ TEST(TrendRows, CombinedDriveIsTheWeightedSumOfTheBasis) {
 TEST(TrendRows, TheCoarseCurveIsTheSplineAndRises) {
   const std::vector<ElasticSpline> basis = spline_basis();
   const std::vector<double> ones(kElasticTerms, 1.0);
-  const DriveCurve straight = coarse_curve(combined_spline(basis, ones.data()), kDepth_m);
+  const DriveCurve straight = surface_lag_of(combined_spline(basis, ones.data()), kDepth_m).drive;
   std::vector<double> stiffening(kElasticTerms);
   for (std::size_t i = 0; i < kElasticTerms; ++i) stiffening[i] = 1.0 + static_cast<double>(i);
   const ElasticSpline elastic = combined_spline(basis, stiffening.data());
-  const DriveCurve coarse = coarse_curve(elastic, kDepth_m);
-  const DriveCurve bend = coarse_curve(basis[16], kDepth_m);
+  const DriveCurve coarse = surface_lag_of(elastic, kDepth_m).drive;
+  const DriveCurve bend = surface_lag_of(basis[16], kDepth_m).drive;
   for (int i = 1; i <= 240; ++i) {
     const double u = i / 200.0;
     EXPECT_NEAR(straight.at(u * kDepth_m), u, 1e-12);
@@ -107,38 +104,48 @@ TEST(TrendRows, TheCoarseCurveIsTheSplineAndRises) {
   }
 }
 
-TEST(TrendRows, ALadderIsItsBranches) {
-  for (const double slowing : {0.0, 2.0}) {
-    std::vector<FeatureSpec> specs = branch_basis(0.3);
-    for (FeatureSpec& spec : specs) spec.slowing = slowing;
-    FeatureFilter filter(specs);
-    BranchLadder ladder({0.02, 0.3}, kDepth_m, slowing);
-    for (int i = 0; i < 2000; ++i) {
-      const auto [sample, motion] = step_at(i);
-      const double depth_m = std::max(0.0, motion.position_m);
-      ladder.update(sample.time_s, depth_m, depth_m);
-      const FeatureVector& vector = filter.update(sample, motion);
-      for (std::size_t k = 0; k < kCurveTerms; ++k)
-        ASSERT_DOUBLE_EQ(ladder.values()[kCurveTerms + k], vector.values[k]);
+TEST(TrendRows, RelaxationThatDependsOnDepthIsThatOfTheFeatures) {
+  FeatureList list;
+  list.add(FeatureKind::maxwell_spectrum, {0.02, 0.3});
+  list.features.back().slowing = 2.0;
+  TrendRows rows(list, {kDepth_m});
+  std::vector<FeatureSpec> specs = branch_basis(0.3);
+  for (FeatureSpec& spec : specs) spec.slowing = 2.0;
+  FeatureFilter filter(specs);
+  for (int i = 0; i < 2000; ++i) {
+    const MotionRow row = row_at(i);
+    rows.add(row);
+    const FeatureVector& vector = filter.update(row.sample, row.motion);
+    if (!vector.in_contact) continue;
+    const auto terms = rows.terms().bottomRows<1>();
+    for (std::size_t k = 0; k < kCurveTerms; ++k) {
+      ASSERT_DOUBLE_EQ(terms(static_cast<Eigen::Index>(kElasticTerms + kCurveTerms + k)), vector.values[k]);
     }
   }
 }
 
 TEST(TrendRows, WithoutVelocityOrTimesOnlyTheElasticColumnsAreLeft) {
-  TrendRows rows({}, {kDepth_m}, 1000);
-  EXPECT_EQ(rows.columns(), kElasticTerms);
-  EXPECT_EQ(rows.viscous_columns(), 0u);
+  EXPECT_EQ(TrendRows({}, {kDepth_m}).columns(), kElasticTerms);
 }
 
-TEST(TrendRows, HalvingBoundsTheRowsAndKeepsEvenOnesInOrder) {
-  TrendRows rows({}, {1.0}, 1000);
-  rows.begin_recording();
-  const int count = 4800;
-  for (int i = 0; i < count; ++i) {
-    rows.add({1e-3 * i, 0.5, 0.0, 0.0}, {0.5, 0.0}, static_cast<double>(i), i);
-    ASSERT_LE(rows.count(), 1000u);
+TEST(TrendRows, AListIsSortedByKind) {
+  FeatureList list;
+  list.add(FeatureKind::creep, {1.0});
+  list.add(FeatureKind::maxwell_spectrum, {0.1, 0.3});
+  list.add(FeatureKind::velocity);
+  list.add(FeatureKind::maxwell_spectrum, {0.02});
+  EXPECT_EQ(relaxation_times_s(list.features), (std::vector{0.1, 0.3, 0.02}));
+  const TrendRows rows(list, {kDepth_m});
+  const std::size_t counts[] = {kElasticTerms, 2 * kViscosityCoefficients, 2 * kCurveTerms, kCurveTerms, kCurveTerms};
+  ASSERT_EQ(rows.feature_columns().size(), std::size(counts));
+  for (std::size_t f = 0; f < std::size(counts); ++f) EXPECT_EQ(rows.feature_columns()[f].size(), counts[f]) << f;
+}
+
+TEST(TrendRows, AStrideKeepsEveryNthSampleInContact) {
+  TrendRows rows({}, {1.0}, 8);
+  for (int i = 0; i < 4800; ++i) {
+    rows.add({{{1e-3 * i, 0.5, 0.0, 0.0}, {0.5, 0.0}, static_cast<double>(i)}, 0, 0, i, i == 0});
   }
-  // 4,800 rows are more than four times the maximum, so every eighth row is kept.
   ASSERT_EQ(rows.count(), 600u);
   for (std::size_t i = 0; i < rows.count(); ++i) {
     ASSERT_EQ(rows[i].force_N, 8.0 * static_cast<double>(i));

@@ -1,4 +1,4 @@
-#include "models/fit/correction_strength.h"
+#include "models/fit/model_validation.h"
 
 #include <algorithm>
 #include <array>
@@ -8,13 +8,14 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/random_stream.h"
+#include "engine/tick/sensor_identification.h"
 #include "models/linear/lapack.h"
+#include "models/linear/non_negative.h"
 #include "models/model/domain_guard.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/projected_kernel.h"
 #include "models/training/cross_validation.h"
-#include "models/training/sites.h"
 
 namespace palpate {
 namespace {
@@ -28,6 +29,16 @@ constexpr int kHighestDecade = 1;
 constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
 
+// One or two strokes do not show how the next one differs. The bound is then at least 5 % of the force, the difference
+// between two specimens of a cast silicone (Dawood et al. 2026).
+constexpr std::size_t kFewStrokes = 3;
+constexpr double kLeastPerForce = 0.05;
+constexpr std::size_t kFewest = 50;
+constexpr double kCoverage = 0.975;
+constexpr double kLeastPerDistance = 0.25;    // of the largest force
+constexpr double kLeastShape_N = 1e-3;        // above 0, so that the factor enlarges it
+constexpr Eigen::Index kLeftOutSites = 1500;  // a tenth of a second for each fold
+
 // The fits without each fold, for any smoothing. The rows are sorted by fold.
 class LeftOutFits {
  public:
@@ -36,13 +47,15 @@ class LeftOutFits {
         centres_(random_centres(rows.points)),
         kernel_(kKernel, centres_, Eigen::VectorXd::Ones(centres_.cols())),
         penalty_(kernel_.matrix(kernel_.mean_eigenvalue(), kernel_.smallest_smoothing())),
-        columns_(centres_.cols() + tail_size(tail_degree(kKernel), static_cast<int>(rows.points.rows()))),
-        design_(rows.points.cols(), columns_),
+        design_(rows.points.cols(),
+                centres_.cols() + tail_size(tail_degree(kKernel), static_cast<int>(rows.points.rows()))),
         folds_(static_cast<std::size_t>(rows.folds())) {
-    const auto blocks = static_cast<int>((design_.rows() + kBlockRows - 1) / kBlockRows);
-    parallel_for(blocks, [&](int block) { fill_design(block); });
+    Eigen::MatrixXd kernel(design_.rows(), centres_.cols());
+    kernel_matrix(kKernel, PointArrays(rows.points), centres_, kernel);
+    kernel_.project_rows(kernel);
+    design_ << kernel, tail_matrix(tail_degree(kKernel), rows.points);
     parallel_for(rows.folds(), [&](int fold) { gather(fold); });
-    Eigen::MatrixXd total = Eigen::MatrixXd::Zero(columns_, columns_);
+    Eigen::MatrixXd total = Eigen::MatrixXd::Zero(design_.cols(), design_.cols());
     for (const Fold& fold : folds_) total += fold.gram;
     for (Fold& fold : folds_) fold.gram = total - fold.gram;
   }
@@ -61,9 +74,8 @@ class LeftOutFits {
       Eigen::MatrixXd penalised = fold.gram;
       penalised.topLeftCorner(penalty_.rows(), penalty_.cols()).triangularView<Eigen::Lower>() += smoothing * penalty_;
       const Eigen::VectorXd coefficients = solve_with_ridge(penalised, fold.right, 1e-14);
-      Eigen::VectorXd of_fold(fold.count);
-      multiply(design_.middleRows(fold.first, fold.count), false, coefficients, false, 1.0, 0.0, of_fold);
-      values.segment(fold.first, fold.count) = of_fold;
+      multiply(design_.middleRows(fold.first, fold.count), false, coefficients, false, 1.0, 0.0,
+               values.segment(fold.first, fold.count));
     }
     return values;
   }
@@ -84,27 +96,14 @@ class LeftOutFits {
     return points(Eigen::all, order);
   }
 
-  // Fills a block of rows of [K P, G].
-  void fill_design(int block) {
-    const Eigen::Index first = block * kBlockRows;
-    const Eigen::Index rows = std::min(kBlockRows, design_.rows() - first);
-    const Eigen::MatrixXd some = rows_.points.middleCols(first, rows);
-    const Eigen::Index n = centres_.cols();
-    Eigen::MatrixXd kernel(rows, n);
-    kernel_matrix(kKernel, PointArrays(some), centres_, kernel);
-    kernel_.project_rows(kernel);
-    design_.block(first, 0, rows, n) = kernel;
-    design_.block(first, n, rows, columns_ - n) = tail_matrix(tail_degree(kKernel), some);
-  }
-
   void gather(int fold) {
     Fold& mine = folds_[static_cast<std::size_t>(fold)];
     const auto& of = rows_.fold;
     const auto [from, to] = std::equal_range(of.begin(), of.end(), fold);
     mine.first = from - of.begin();
     mine.count = to - from;
-    mine.gram = Eigen::MatrixXd::Zero(columns_, columns_);
-    mine.right = Eigen::VectorXd::Zero(columns_);
+    mine.gram = Eigen::MatrixXd::Zero(design_.cols(), design_.cols());
+    mine.right = Eigen::VectorXd::Zero(design_.cols());
     if (mine.count > 0) {
       Eigen::MatrixXd part = design_.middleRows(mine.first, mine.count);
       part.array().colwise() *= rows_.row_scale.segment(mine.first, mine.count).array();
@@ -120,23 +119,14 @@ class LeftOutFits {
   Eigen::MatrixXd centres_;
   ProjectedKernel kernel_;   // of the centres
   Eigen::MatrixXd penalty_;  // its lower triangle
-  Eigen::Index columns_;
-  Eigen::MatrixXd design_;  // [K P, G]
+  Eigen::MatrixXd design_;   // [K P, G]
   std::vector<Fold> folds_;
 };
 
-struct Variant {
-  double smoothing = 0.0;
-  double strength = 0.0;
-  double inner_radius = 0.0;
+// A candidate.
+struct Variant : StrengthChoice {
   FoldErrors errors;
 };
-
-std::vector<FoldErrors> errors_of(const std::vector<Variant>& variants) {
-  std::vector<FoldErrors> errors;
-  for (const Variant& variant : variants) errors.push_back(variant.errors);
-  return errors;
-}
 
 }  // namespace
 
@@ -156,17 +146,12 @@ Eigen::VectorXd CrossValidationRows::residual_N(int without) const {
   return residual_N;
 }
 
-double CrossValidationRows::predicted_N(const ModelData& common, std::size_t i, double trust, double h) const {
+double CrossValidationRows::predicted_N(const ModelData& common, std::size_t i, double inner_radius, double h) const {
+  const double outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
+  const double trust = trust_at_distance(distance[i], inner_radius, outer_to_inner * inner_radius);
   const double limit_N = common.correction_limit_N;
   const double trend = trend_N(static_cast<Eigen::Index>(i), fold[i]);
   return std::max(common.lowest_force_N, trend + trust * std::clamp(h, -limit_N, limit_N));
-}
-
-double trust_at_distance(double distance, double inner_radius, double outer_radius) {
-  if (!(distance < outer_radius)) return 0.0;
-  if (distance <= inner_radius) return 1.0;
-  const double t = (outer_radius - distance) / (outer_radius - inner_radius);
-  return t * t * (3.0 - 2.0 * t);
 }
 
 void find_distances(CrossValidationRows& rows) {
@@ -212,58 +197,105 @@ CrossValidationRows cross_validation_rows(const ModelData& common, const TrendRo
 
 StrengthChoice choose_strength(const CrossValidationRows& rows, const ModelData& common) {
   const double least_radius = common.cover.inner_radius;
-  const double outer_to_inner = common.cover.outer_radius / least_radius;
-  StrengthChoice choice;
-  choice.inner_radius = least_radius;
-  choice.strength = 0.0;
-  const int folds = rows.folds();
-  if (rows.fold.size() < 2 || folds < 2) return choice;
+  const auto folds = static_cast<std::size_t>(rows.folds());
+  if (rows.fold.size() < 2 || folds < 2) return {.inner_radius = least_radius};
   const BlasThreads one_thread(1);
   const LeftOutFits fits(rows);
-  const std::vector<double> deepest_m = deepest_elsewhere_m(rows.fold, {rows.depth_m.data(), rows.fold.size()}, folds);
-  const auto score = [&](double smoothing, double strength, double radius, const Eigen::VectorXd& h) {
-    Variant variant{smoothing, strength, radius, FoldErrors(static_cast<std::size_t>(folds))};
+  const std::vector<double> deepest_m =
+      deepest_elsewhere_m(rows.fold, {rows.depth_m.data(), rows.fold.size()}, rows.folds());
+  // Adds the errors of a candidate. `h`: its correction at every row, with strength 1.
+  const auto score = [&](Variant& variant, const Eigen::VectorXd& h) {
     for (std::size_t i = 0; i < rows.fold.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       const auto fold = static_cast<std::size_t>(rows.fold[i]);
       if (rows.depth_m(row) > deepest_m[fold]) continue;
-      const double trust = strength > 0.0 ? trust_at_distance(rows.distance[i], radius, outer_to_inner * radius) : 0.0;
-      const double force_N = rows.predicted_N(common, i, trust, strength * h(row));
+      const double force_N = rows.predicted_N(common, i, variant.inner_radius, variant.strength * h(row));
       const double error = common.jnd.error_over_jnd(force_N, rows.force_N(row));
       variant.errors.add(fold, error * robust_scale(error));
     }
-    return variant;
   };
-  const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(rows.force_N.size());
-  constexpr int kDecades = kHighestDecade - kLowestDecade + 1;
-  std::array<Eigen::VectorXd, kDecades> predictions;
-  std::array<std::vector<Variant>, kDecades> of_decade;
-  parallel_for(kDecades, [&](int part) {
-    const auto at = static_cast<std::size_t>(part);
-    const double smoothing = fits.unit() * std::pow(10.0, kHighestDecade - part);
-    predictions[at] = fits.predictions(smoothing);
+  std::vector<Variant> variants{{{fits.unit(), 0.0, least_radius}, folds}};  // no correction
+  for (int decade = kHighestDecade; decade >= kLowestDecade; --decade) {
     for (const double factor : kRadiusFactors) {
       for (const double strength : kStrengths) {
-        of_decade[at].push_back(score(smoothing, strength, factor * least_radius, predictions[at]));
+        variants.push_back({{fits.unit() * std::pow(10.0, decade), strength, factor * least_radius}, folds});
       }
     }
+  }
+  score(variants.front(), Eigen::VectorXd::Zero(rows.force_N.size()));
+  parallel_for(kHighestDecade - kLowestDecade + 1, [&](int part) {
+    constexpr std::size_t kOfDecade = kRadiusFactors.size() * kStrengths.size();
+    const auto first = variants.begin() + 1 + static_cast<std::ptrdiff_t>(kOfDecade) * part;
+    const Eigen::VectorXd h = fits.predictions(first->smoothing);
+    for (std::size_t i = 0; i < kOfDecade; ++i) score(first[static_cast<std::ptrdiff_t>(i)], h);
   });
-  const Variant none = score(fits.unit(), 0.0, least_radius, nothing);
-  std::vector<Variant> variants{none};
-  for (const auto& some : of_decade) variants.insert(variants.end(), some.begin(), some.end());
   const double strength = variants[best_score(errors_of(variants))].strength;
   // From the simplest to the most complex: no correction, then by growing reach and, with the same reach, by falling
   // smoothing. (Similar strokes do not identify the reach.)
   std::erase_if(variants, [&](const Variant& one) { return one.strength != 0.0 && one.strength != strength; });
-  std::stable_sort(variants.begin() + 1, variants.end(),
-                   [](const Variant& a, const Variant& b) { return a.inner_radius < b.inner_radius; });
-  const Variant* chosen = &variants[simplest_adequate(errors_of(variants))];
-  choice.smoothing = chosen->smoothing;
-  choice.strength = chosen->strength;
-  choice.inner_radius = chosen->inner_radius;
-  choice.trend_error_over_jnd = none.errors.rms_at_mean_score();
-  choice.error_over_jnd = chosen->errors.rms_at_mean_score();
+  std::ranges::stable_sort(variants.begin() + 1, variants.end(), {}, &Variant::inner_radius);
+  const Variant& chosen = variants[simplest_adequate(errors_of(variants))];
+  StrengthChoice choice = chosen;
+  choice.trend_error_over_jnd = variants.front().errors.rms_at_mean_score();
+  choice.error_over_jnd = chosen.errors.rms_at_mean_score();
   return choice;
+}
+
+Sites sites_without(const CrossValidationRows& rows, int fold, const StrengthChoice& choice) {
+  const std::vector<Eigen::Index> others = rows.outside(fold);
+  Sites sites{rows.points(Eigen::all, others), choice.strength * rows.residual_N(fold)(others), rows.row_scale(others)};
+  sites.smoothing = choice.smoothing;
+  return even_subset(sites, kLeftOutSites);
+}
+
+std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPrediction>& predictions, const JndLine& jnd,
+                                          double largest_force_N) {
+  if (predictions.size() < kFewest) return std::nullopt;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(3, 3);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
+  for (const CrossValidationPrediction& one : predictions) {
+    const double scale = 1.0 / jnd.at(one.predicted_N);
+    const Eigen::Vector3d row = scale * Eigen::Vector3d(1.0, one.predicted_N, one.beyond);
+    gram += row * row.transpose();
+    right += row * scale * one.error_N;
+  }
+  const Eigen::VectorXd shape = solve_non_negative(gram, right);
+  ErrorBound bound{std::max(shape(0), kLeastShape_N), shape(1),
+                   std::max(shape(2), kLeastPerDistance * largest_force_N)};
+  std::vector<double> ratios;
+  for (const CrossValidationPrediction& one : predictions) {
+    ratios.push_back(one.error_N / bound.at(one.predicted_N, one.beyond));
+  }
+  // The smallest factor that covers ceil((n + 1) 97.5 %) of them.
+  const auto n = static_cast<double>(ratios.size());
+  const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * kCoverage)) - 1);
+  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(rank), ratios.end());
+  const double factor = ratios[rank];
+  bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);
+  bound.per_force *= factor;
+  bound.per_distance_N = std::max(factor * bound.per_distance_N, kLeastPerDistance * largest_force_N);
+  return bound;
+}
+
+std::optional<ErrorBound> bound_of(const CrossValidationRows& rows, const ModelData& common,
+                                   const std::vector<CorrectionPtr>& corrections) {
+  const double inner_radius = common.cover.inner_radius;
+  std::vector<CrossValidationPrediction> predictions;
+  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
+    if (!std::isfinite(rows.distance[i])) continue;  // there is no other fold
+    const auto row = static_cast<Eigen::Index>(i);
+    double correction_N = 0.0;
+    if (!corrections.empty()) {
+      const Eigen::VectorXd point = rows.points.col(row);
+      correction_N = corrections[static_cast<std::size_t>(rows.fold[i])]->evaluate(point.data());
+    }
+    const double force_N = rows.predicted_N(common, i, inner_radius, correction_N);
+    predictions.push_back(
+        {std::abs(force_N - rows.force_N(row)), force_N, std::max(0.0, rows.distance[i] - inner_radius)});
+  }
+  auto bound = calibrate_bound(predictions, common.jnd, common.largest_force_N);
+  if (bound && rows.strokes < kFewStrokes) bound->per_force = std::max(bound->per_force, kLeastPerForce);
+  return bound;
 }
 
 }  // namespace palpate

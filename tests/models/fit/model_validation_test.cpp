@@ -1,10 +1,9 @@
-#include "models/fit/correction_strength.h"
+#include "models/fit/model_validation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "models/fit/bound_calibration.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -91,16 +90,16 @@ TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
     // A triangular error that grows with the force.
     const double error_N =
         (0.01 + 0.02 * force_N) * std::abs(between(numbers, -1.0, 1.0) + between(numbers, -1.0, 1.0));
-    (i % 2 == 0 ? past : future).push_back({error_N, force_N, 0.05});
+    (i % 2 == 0 ? past : future).push_back({error_N, force_N, 0.0});
   }
-  const auto bound = calibrate_bound(past, 0.1, JndLine{}, 5.0);
+  const auto bound = calibrate_bound(past, JndLine{}, 5.0);
   ASSERT_TRUE(bound.has_value());
   int held = 0;
   for (const CrossValidationPrediction& one : future) held += one.error_N <= bound->at(one.predicted_N, 0.0) ? 1 : 0;
   // The expected coverage is 97 % of 4000. The tolerance is three standard deviations of each half.
   EXPECT_NEAR(held / 4000.0, 0.97, 0.012);
   EXPECT_GE(bound->at(1.0, 1.0), bound->at(1.0, 0.0) + 1.25) << "a quarter of the largest force";
-  EXPECT_FALSE(calibrate_bound({}, 0.1, JndLine{}, 5.0).has_value());
+  EXPECT_FALSE(calibrate_bound({}, JndLine{}, 5.0).has_value());
 }
 
 }  // namespace
