@@ -96,8 +96,9 @@ TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
 
 // A left-out fold does not influence the solution that predicts it, nor the robust row weights.
 TEST(TrendRegression, AFoldThatIsLeftOutHasNoInfluence) {
-  const auto rows_with = [](double other_N) {
-    return rows_of(FeatureList{}, 1e-3, [&](const ToolSample& sample, const MotionEstimate& motion) {
+  const FeatureList depth_alone;
+  const auto rows_with = [&](double other_N) {
+    return rows_of(depth_alone, 1e-3, [&](const ToolSample& sample, const MotionEstimate& motion) {
       const bool first_fold = static_cast<int>(sample.time_s) % kFolds == 0;
       return (first_fold ? other_N : 3.0) * std::max(0.0, motion.position_m) / kDepth_m;
     });
