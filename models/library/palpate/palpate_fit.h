@@ -29,9 +29,9 @@ extern "C" {
  *
  * Slow side: allocates, and may take minutes. Returns NULL, see error: a sample or an option is not valid; a recording
  * is not usable, as in `palpate check`; interrupted. */
-PALPATE_API palpate_model* palpate_fit(const palpate_recording* recordings, size_t recording_count,
-                                       const char* options, int (*progress)(double fraction, void* context),
-                                       void* context, char* error, size_t error_size);
+PALPATE_API palpate_model* palpate_fit(const palpate_recording* recordings, size_t recording_count, const char* options,
+                                       int (*progress)(double fraction, void* context), void* context, char* error,
+                                       size_t error_size);
 
 #ifdef __cplusplus
 }
