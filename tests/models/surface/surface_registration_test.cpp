@@ -43,7 +43,7 @@ RegisteredSurfaces registered(const std::vector<RecordingPtr>& recordings) {
 
 // A MotionSource orders recordings by length: seed 3, 2, 1.
 TEST(SurfaceRegistration, FindsEveryShiftAndZeroOfASet) {
-  for (const double shift_m : {-2e-3, 2e-3, 4e-3}) {
+  for (const double shift_m : {-4e-3, 4e-3}) {
     const auto surfaces =
         registered({rig("maxwell", 1), rig("maxwell", 2, shift_m, -0.05), rig("maxwell", 3)}).recordings;
     ASSERT_EQ(surfaces.size(), 3u);
