@@ -60,8 +60,13 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
   if (!recording) return recording.error();
   const bool whole = faults.rows < kMostCheckedRows;
   PreparedRecordingPointer prepared = prepare_recording(std::move(*recording));
-  RecordingCheck check = check_recording(*prepared, request, faults);
-  return CheckedFile{path, std::move(prepared), whole, std::move(check)};
+  CheckedFile file{path, prepared, whole, check_recording(*prepared, request, faults)};
+  if (!whole) {
+    add_finding(file, {"truncated", Severity::warning, static_cast<double>(kMostCheckedRows),
+                       "only the first " + std::to_string(kMostCheckedRows) + " rows are used",
+                       "split the recording to use all of it"});
+  }
+  return file;
 }
 
 Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths,

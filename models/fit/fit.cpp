@@ -77,7 +77,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   fit.notes.insert(fit.notes.end(), prepared.notes.begin(), prepared.notes.end());
   if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
     fit.notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
-                        " samples were used: the beginnings and some sections of the recordings");
+                        " samples were used, evenly spaced");
   }
   ModelData& data = fit.data;
   data.method = request.method->name;

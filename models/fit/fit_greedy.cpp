@@ -41,8 +41,7 @@ Result<FittedCorrection> fit_greedy(const MethodTask& task, const FitControl& co
       continue;
     }
     without_gain = 0;
-    basis.add(gains.columns({&*best, 1}));
-    selected.push_back(*best);
+    if (basis.add(gains.columns({&*best, 1}))) selected.push_back(*best);
     left.erase(best);
   }
   if (selected.empty() && most > 0) selected.push_back(first);  // a model file has at least one centre

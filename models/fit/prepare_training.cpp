@@ -197,7 +197,7 @@ void add_gains(std::vector<PartGain>& gains, const TrendRows& rows, const TrendR
     gains.push_back({term_name(features[f]), taken, with_all.errors.rms_at_mean_score(),
                      regression.cross_validate(others).errors.rms_at_mean_score()});
   }
-  std::ranges::stable_partition(gains, &PartGain::taken);
+  std::stable_partition(gains.begin(), gains.end(), [](const PartGain& one) { return one.taken; });
 }
 
 // Trend, sites and correction strength of one list of features.
@@ -228,6 +228,7 @@ Status prepare_list(PreparedTraining& prepared, const TrendData& data, const Fea
   common.jnd = request.jnd;
   make_sites(prepared, request);
   if (papers) return {};
+  if (!data.control.may_continue()) return interrupted();
   prepared.left_out = cross_validation_rows(common, *rows, fitted.row_features, left_out.solutions);
   prepared.left_out->strokes = extent.strokes;
   const StrengthChoice choice = choose_strength(*prepared.left_out, common);

@@ -44,7 +44,8 @@ Status check_rows(const Recording& recording) {
 // As check_recording_file, for a recording in memory.
 Result<CheckedFile> checked(const palpate_recording& given, const CheckRequest& request) {
   if (given.time_s == nullptr || given.position_m == nullptr || given.force_N == nullptr)
-    return Error{"found no time, position or force, expected all of them"};
+    return Error{std::string(given.name == nullptr ? "" : given.name) +
+                 ": found no time, position or force, expected all of them"};
   Recording recording = recording_of(given);
   if (Status status = check_rows(recording); !status) return status.error();
   const RecordingFaults faults = remove_faults(recording);

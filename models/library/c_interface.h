@@ -65,6 +65,8 @@ T* made(char* error, std::size_t error_size, Work&& work) noexcept {
     write_text(error, error_size, done.error().message);
   } catch (const std::exception& exception) {
     write_text(error, error_size, exception.what());
+  } catch (...) {
+    write_text(error, error_size, "an exception that is not a std::exception");
   }
   return nullptr;
 }

@@ -30,6 +30,16 @@ struct palpate_stream {
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
 };
 
+struct palpate_limiter {
+  explicit palpate_limiter(const palpate::ForceLimits& limits) : limiter(limits) {}
+
+  palpate::ForceLimiter limiter;
+  bool stop = false;
+};
+
+namespace palpate::library {
+namespace {
+
 // A recording that owns its name and columns.
 struct OwnedRecording : palpate_recording {
   explicit OwnedRecording(palpate::Recording recording) : palpate_recording{}, owned_name(std::move(recording.name)) {
@@ -53,16 +63,6 @@ struct OwnedRecording : palpate_recording {
   std::string owned_name;
   std::vector<std::vector<double>> columns;
 };
-
-struct palpate_limiter {
-  explicit palpate_limiter(const palpate::ForceLimits& limits) : limiter(limits) {}
-
-  palpate::ForceLimiter limiter;
-  bool stop = false;
-};
-
-namespace palpate::library {
-namespace {
 
 // A number from the caller, and whether it may be 0 or infinite.
 struct GivenNumber {
@@ -173,14 +173,16 @@ palpate_recording* palpate_recording_load(const char* path, char* error, size_t 
     if (path == nullptr) return Error{"found no path, expected that of a recording"};
     auto recording = palpate::read_recording(path);
     if (!recording) return recording.error();
-    return new OwnedRecording(*recording);
+    return new palpate::library::OwnedRecording(*recording);
   });
 }
 
-void palpate_recording_free(palpate_recording* recording) { delete static_cast<OwnedRecording*>(recording); }
+void palpate_recording_free(palpate_recording* recording) {
+  delete static_cast<palpate::library::OwnedRecording*>(recording);
+}
 
 int palpate_in_contact(const palpate_recording* given, unsigned char* in_contact) {
-  if (given == nullptr || in_contact == nullptr) return -1;
+  if (given == nullptr || in_contact == nullptr || given->position_m == nullptr || given->force_N == nullptr) return -1;
   return status_of(nullptr, 0, [&]() -> Status {
     const Recording recording = recording_of(*given);
     // As in a replay, which reads long recordings in chunks, from the first rows.
@@ -213,7 +215,7 @@ palpate_stream* palpate_stream_new_with_sensor(const palpate_model* model, const
 }
 
 int palpate_sensor_of(const palpate_recording* given, palpate_sensor* sensor) {
-  if (given == nullptr || sensor == nullptr) return -1;
+  if (given == nullptr || sensor == nullptr || given->position_m == nullptr) return -1;
   return status_of(nullptr, 0, [&]() -> Status {
     const Recording recording = recording_of(*given);
     *sensor = palpate::library::sensor_from(

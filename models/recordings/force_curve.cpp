@@ -72,33 +72,36 @@ double common_bin_m(const std::vector<ForceAtPosition>& first, const std::vector
 }
 
 std::optional<CurveDifference> difference(const ForceCurve& first, const ForceCurve& second, double shift_m,
-                                          const JndLine& jnd) {
+                                          const JndLine& jnd, double force_offset_N) {
   CurveDifference result;
   std::vector<double> jnds;
   std::vector<double> forces_N;
+  std::size_t cells = 0;
   std::size_t compared = 0;
   std::size_t apart = 0;
   for (std::size_t i = 0; i < second.bins().size(); ++i) {
     const ForceCurve::Bin& bin = second.bins()[i];
     const double position_m = second.first_m() + static_cast<double>(i) * second.bin_m() - shift_m;
-    const std::size_t before = jnds.size();
+    const std::size_t before = cells;
     for (std::size_t direction = 0; direction < 2; ++direction) {
       const auto first_N = force_N(first, direction, position_m);
       if (!first_N || !bin.median_N[direction]) continue;
-      const double second_N = *bin.median_N[direction];
+      const double second_N = *bin.median_N[direction] - force_offset_N;
       forces_N.push_back(second_N - *first_N);
-      jnds.push_back(std::abs(second_N - *first_N) / jnd.at(0.5 * (*first_N + second_N)));
-      result.loss += huber(jnds.back(), kNoticed_jnd);
+      const double error = std::abs(second_N - *first_N) / jnd.at(0.5 * (*first_N + second_N));
+      result.loss += huber(error, kNoticed_jnd);
+      ++cells;
+      if (std::max(std::abs(*first_N), std::abs(second_N)) > jnd.at(0.0)) jnds.push_back(error);
     }
-    if (jnds.size() == before) continue;
+    if (cells == before) continue;
     ++compared;
     const ForceCurve::Bin& other =
-        first.bins()[static_cast<std::size_t>((position_m - first.first_m()) / first.bin_m())];
+        first.bins()[static_cast<std::size_t>((position_m - first.first_m()) / first.bin_m() + 0.5)];
     if (bin.low_N > other.high_N || other.low_N > bin.high_N) ++apart;
   }
   const auto fewer = static_cast<double>(std::min(first.bins().size(), second.bins().size()));
   if (static_cast<double>(compared) < std::max(1.0, kLeastOverlap * fewer)) return std::nullopt;
-  result.loss /= static_cast<double>(jnds.size());
+  result.loss /= static_cast<double>(cells);
   result.median_jnds = median_of(std::move(jnds));
   result.median_N = median_of(std::move(forces_N));
   result.apart_share = static_cast<double>(apart) / static_cast<double>(compared);
@@ -121,7 +124,12 @@ std::optional<double> find_shift_m(const ForceCurve& first, const ForceCurve& se
     best = *tried;
     best_m = shift_m;
   }
-  return best_m && best.median_jnds <= kNoticed_jnd ? best_m : std::nullopt;
+  if (!best_m || best.median_jnds > kNoticed_jnd) return std::nullopt;
+  for (const double beside_m : {*best_m - step_m, *best_m + step_m}) {
+    if (!difference(first, second, beside_m, jnd)) return std::nullopt;
+  }
+  if (as_recorded && difference(first, second, 0.0, jnd, as_recorded->median_N)->loss <= best.loss) return std::nullopt;
+  return best_m;
 }
 
 }  // namespace palpate

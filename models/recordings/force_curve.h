@@ -5,8 +5,10 @@
 // between those of the first: e = (F2(p + shift) - F1(p)) / JND. They are comparable if they overlap by 30 %.
 //
 // Shift registration (Ramsay & Silverman, "Functional data analysis", 2005, section 7.2): the shift minimises the mean
-// Huber loss of e beyond 1. If the median of |e| is at most 1 as recorded, the shift is 0, because such a difference
-// cannot be felt. If it is still above 1 with the shift, the difference has another cause and no shift is identified.
+// Huber loss of e beyond 1. If the median of |e|, where one of the forces is above the JND at 0 N, is at most 1 as
+// recorded, the shift is 0, because such a difference cannot be felt. No shift is identified if the median is still
+// above 1 with it, if it is at an end of the comparable ones, or if an offset of the force explains the difference as
+// well.
 // Thread guarantee: slow side, value type and pure functions.
 #pragma once
 
@@ -49,13 +51,14 @@ double common_bin_m(const std::vector<ForceAtPosition>& first, const std::vector
 
 struct CurveDifference {
   double loss = 0.0;         // mean Huber loss
-  double median_jnds = 0.0;  // of |e|
+  double median_jnds = 0.0;  // of |e|, where one of the forces is above the JND at 0 N
   double median_N = 0.0;     // of F2 - F1
   double apart_share = 0.0;  // of the bins whose central 90 % do not overlap
 };
-// None if the curves are not comparable at this shift. Both have the same width of bins.
+// None if the curves are not comparable at this shift. Both have the same width of bins. `force_offset_N`: subtracted
+// from the forces of `second`.
 std::optional<CurveDifference> difference(const ForceCurve& first, const ForceCurve& second, double shift_m,
-                                          const JndLine& jnd);
+                                          const JndLine& jnd, double force_offset_N = 0.0);
 
 // The shift in m, to a quarter of a bin, to be subtracted from the positions of `second`; none if it is not identified.
 std::optional<double> find_shift_m(const ForceCurve& first, const ForceCurve& second, const JndLine& jnd);

@@ -1,6 +1,5 @@
 #include "models/recordings/prepared_recording.h"
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -10,6 +9,9 @@
 
 namespace palpate {
 
+namespace {
+
+// The offsets of rows in time order.
 RecordingOffsets estimate_offsets(const std::vector<SurfaceRow>& rows, double force_noise_N) {
   RecordingOffsets offsets{{}, estimate_surface(rows, force_noise_N)};
   SurfaceEstimate& surface = offsets.surface;
@@ -25,26 +27,24 @@ RecordingOffsets estimate_offsets(const std::vector<SurfaceRow>& rows, double fo
   return offsets;
 }
 
-PreparedRecordingPointer prepare_recording(Recording recording, std::vector<bool> left_out) {
+}  // namespace
+
+PreparedRecordingPointer prepare_recording(Recording recording) {
   const auto prepared = std::make_shared<PreparedRecording>();
   prepared->recording = std::move(recording);
-  prepared->left_out = std::move(left_out);
   const Recording& given = prepared->recording;
   prepared->content_hash = content_hash(given);
   prepared->sensor = identify_sensor(given.rows.data(), given.rows.size(), given.columns);
   prepared->force_noise_N = identify_force_noise_N(given.rows.data(), given.rows.size());
-  const auto first_left_out = std::find(prepared->left_out.begin(), prepared->left_out.end(), true);
-  const auto used = prepared->left_out.empty() ? given.rows.size()
-                                               : static_cast<std::size_t>(first_left_out - prepared->left_out.begin());
   MotionEstimator estimator(prepared->sensor);
   GrowingStride rows(kOnsetRows, kCoarsestOnset_s);
   const bool keeps_motion = given.rows.size() <= kOnsetRows;
   if (keeps_motion) prepared->motion.reserve(given.rows.size());
-  for (std::size_t i = 0; i < given.rows.size(); ++i) {
-    const ToolSample sample = tool_sample(given.rows[i]);
+  for (const RecordingRow& row : given.rows) {
+    const ToolSample sample = tool_sample(row);
     const MotionEstimate motion = estimator.update(sample);
     if (keeps_motion) prepared->motion.push_back(motion);
-    if (i < used) rows.add({sample, motion, given.rows[i].force_N});
+    rows.add({sample, motion, row.force_N});
   }
   prepared->offsets = estimate_offsets(rows.rows(), prepared->force_noise_N);
   return prepared;

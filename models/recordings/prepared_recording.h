@@ -28,23 +28,18 @@ struct RecordingOffsets {
   SurfaceEstimate surface;
 };
 
-// `rows`: in time order. `force_noise_N`: standard deviation.
-RecordingOffsets estimate_offsets(const std::vector<SurfaceRow>& rows, double force_noise_N);
-
 struct PreparedRecording {
   Recording recording;
-  // True for rows that only update filters, because validation uses them. Empty: none.
-  std::vector<bool> left_out;
   std::uint64_t content_hash = 0;  // engine/recording/recording.h
   SensorSpec sensor;
   double force_noise_N = 0.0;          // standard deviation
   std::vector<MotionEstimate> motion;  // of every row; empty for more than kOnsetRows rows
-  RecordingOffsets offsets;            // from the rows before the first one that is left out
+  RecordingOffsets offsets;
 };
 
 using PreparedRecordingPointer = std::shared_ptr<const PreparedRecording>;
 
-// `recording`: at least one row. `left_out`: empty, or one value for each row.
-PreparedRecordingPointer prepare_recording(Recording recording, std::vector<bool> left_out = {});
+// `recording`: at least one row.
+PreparedRecordingPointer prepare_recording(Recording recording);
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "models/solve/candidate_gains.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/parallel.h"
 #include "models/linear/lapack.h"
@@ -68,12 +69,14 @@ void CandidateGains::update_group(std::span<const Eigen::Index> sites, const Eig
 }
 
 void CandidateGains::recompute_cancelled(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis) {
-  constexpr double kCancelled = 1e-11;    // relative to the last full |c'|^2
+  // The error of |c'|^2 after a subtraction is about 2e-14 |c'| |c|, so that above this multiple of |c'| |c| (of the
+  // last full |c'|) it is below 1 %.
+  constexpr double kCancelled = 2e-12;
   constexpr double kInsideBasis = 1e-20;  // relative to |c|^2
   std::vector<Eigen::Index> cancelled;
   std::copy_if(sites.begin(), sites.end(), std::back_inserter(cancelled), [&](Eigen::Index site) {
     const Candidate& one = candidate(site);
-    return one.exact > 0.0 && one.outside <= kCancelled * one.exact;
+    return one.exact > 0.0 && one.outside <= kCancelled * std::sqrt(one.exact * one.length);
   });
   if (cancelled.empty()) return;
   Eigen::MatrixXd parts = columns(cancelled);

@@ -5,9 +5,8 @@
 // that are new to the site.
 //
 // |c'|^2 = |c|^2 - |Q^T c|^2, with the basis Q, suffers from cancellation when c is almost in the span of the basis.
-// Sums of N products are accurate to some 1e-14 of |c|^2. Below 1e-11 of the last fully computed value, c' itself is
-// computed, and a site with |c'| <= 1e-10 |c| has gain 0. Gains are thus accurate to better than 1 %, far below any
-// difference that matters for the selection.
+// Sums of N products are accurate to some 1e-14. Where the error of |c'|^2 may exceed 1 %, c' itself is computed, and a
+// site with |c'| <= 1e-10 |c| has gain 0.
 // Thread guarantee: one object, one thread; it starts others itself.
 #pragma once
 

@@ -22,17 +22,18 @@ void OrthogonalBasis::project_out(Eigen::MatrixXd& columns) const {
   }
 }
 
-void OrthogonalBasis::add(const Eigen::VectorXd& column) {
+bool OrthogonalBasis::add(const Eigen::VectorXd& column) {
   // Such a column, for example of a constant feature, is rounding only.
   constexpr double kDependent = 1e-10;
   Eigen::MatrixXd part = column;
   project_out(part);
   const double length = part.norm();
-  if (!(length > kDependent * column.norm())) return;
+  if (!(length > kDependent * column.norm())) return false;
   const Eigen::VectorXd q = part / length;
   shares_(size_) = q.dot(residual_);
   residual_ -= shares_(size_) * q;
   memory_.col(++size_) = q;
+  return true;
 }
 
 }  // namespace palpate

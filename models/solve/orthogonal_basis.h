@@ -20,8 +20,8 @@ class OrthogonalBasis {
   // rounding).
   void project_out(Eigen::MatrixXd& columns) const;
   // Adds the direction of a column to the basis and subtracts its component from the residual. A column in the span of
-  // the basis (up to a relative 1e-10) is not added.
-  void add(const Eigen::VectorXd& column);
+  // the basis (up to a relative 1e-10) is not added; returns whether it was.
+  bool add(const Eigen::VectorXd& column);
 
   // N x (size + 1): the data, then the basis columns.
   Eigen::Ref<const Eigen::MatrixXd> data_and_columns() const { return memory_.leftCols(size_ + 1); }

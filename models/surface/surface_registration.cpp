@@ -54,20 +54,23 @@ std::vector<ForceAtPosition> forces_of(const Member& member) {
   return forces;
 }
 
-// A position of the surface is significant if it is this far from 0.
-bool is_significant(double at_m, double standard_error_m) {
-  return std::abs(at_m) > std::max(0.5 * kWidestSurface_m, kSignificantErrors * standard_error_m);
-}
+// Surfaces that differ by less count as equal; two standard errors.
+constexpr double kLeastSurface_m = 0.5 * kWidestSurface_m;
 
 // The offset of `member` to the reference: the difference of their surfaces, where both are identified, otherwise the
 // shift between their forces.
 OffsetEstimate offset_of(const Member& member, const Member& reference, const JndLine& jnd) {
   OffsetEstimate offset;
-  if (member.own.identified() && reference.own.identified()) {
-    const double at_m = member.own.raw_offset_m - reference.own.raw_offset_m;
+  if (&member == &reference) {
     offset.identified = true;
-    offset.standard_error = std::hypot(member.own.standard_error_m, reference.own.standard_error_m);
-    offset.at = is_significant(at_m, offset.standard_error) ? at_m : 0.0;
+    offset.standard_error = 0.0;
+    return offset;
+  }
+  if (member.own.identified() && reference.own.identified()) {
+    offset.identified = true;
+    offset.at = member.own.raw_offset_m - reference.own.raw_offset_m;
+    offset.standard_error = std::max(kLeastSurface_m / kSignificantErrors,
+                                     std::hypot(member.own.standard_error_m, reference.own.standard_error_m));
     return offset;
   }
   const std::vector<ForceAtPosition> a = forces_of(reference);
@@ -118,7 +121,7 @@ double common_surface_m(const std::vector<Member>& members) {
   }
   if (!(weights > 0.0)) return 0.0;
   const double at_m = sum / weights;
-  return is_significant(at_m, 1.0 / std::sqrt(weights)) ? at_m : 0.0;
+  return std::abs(at_m) > std::max(kLeastSurface_m, kSignificantErrors / std::sqrt(weights)) ? at_m : 0.0;
 }
 
 // The outermost position with a certain force, after the offsets, if more than kOuterShare of these rows are outside
@@ -175,13 +178,9 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const JndLine
   std::vector<RecordingOffsets> offsets;
   for (const auto& recording : source.recordings()) {
     GrowingStride kept(kOnsetRows, kCoarsestOnset_s);
-    for (const MotionRow& row : recording.rows) {
-      if (row.run_up && !kept.rows().empty()) break;
-      kept.add(row);
-    }
+    for (const MotionRow& row : recording.rows) kept.add(row);
     recordings.push_back(kept.rows());
-    offsets.push_back(recording.prepared != nullptr ? recording.prepared->offsets
-                                                    : estimate_offsets(kept.rows(), source.force_noise_N()));
+    offsets.push_back(recording.prepared->offsets);
     if (!control.may_continue(0.0)) return interrupted();
   }
   const double lag_s = common_lag_s(offsets);

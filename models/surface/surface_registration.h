@@ -3,8 +3,9 @@
 // The reference is the recording with the largest range of positions, of those whose surface is identified if there are
 // any. The offset of every other one is the difference of their surfaces where both are identified
 // (models/recordings/surface_estimate.h), otherwise the shift between their forces (models/recordings/force_curve.h).
-// The common offset belongs to the rig, so the recording with the medoid of the offsets keeps its positions (of two,
-// the later one). A recording whose offset is not identified stays as recorded.
+// Surfaces that differ by less than 0.25 mm count as equal. The common offset belongs to the rig, so the recording with
+// the medoid of the offsets keeps its positions (of two, the later one). A recording whose offset is not identified
+// stays as recorded.
 //
 // The surface of the model is the weighted mean of the onsets of force in these positions, on either side of 0; it is 0
 // without free air or if it does not differ from 0 significantly and by 0.25 mm. If measured forces reach further out

@@ -44,7 +44,6 @@ Status MotionSource::load(const FitControl& control) {
       row.sample = tool_sample(recorded[i]);
       row.motion = prepared->motion.empty() ? estimator.update(row.sample) : prepared->motion[i];
       row.force_N = recorded[i].force_N;
-      row.run_up = !prepared->left_out.empty() && prepared->left_out[i];
       if (i % stride == 0) one.rows.push_back(row);
     }
     const SensorSpec sensor{prepared->sensor.encoder_step_m, prepared->sensor.position_noise_m};

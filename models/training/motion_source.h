@@ -31,10 +31,9 @@ inline constexpr std::size_t kRowsPerQuestion = 65536;
 
 struct MotionRow : SurfaceRow {
   int recording = 0;
-  int stroke = 0;       // number of the contact, counted over all recordings
-  int fold = 0;         // of the cross-validation (cross_validation.h); 0 before `assign_folds`
-  bool first = false;   // of its recording: filters are reset
-  bool run_up = false;  // only updates filters, is not a training sample
+  int stroke = 0;      // number of the contact, counted over all recordings
+  int fold = 0;        // of the cross-validation (cross_validation.h); 0 before `assign_folds`
+  bool first = false;  // of its recording: filters are reset
 };
 
 class MotionSource {
@@ -104,7 +103,7 @@ struct TrainingExtent {
   double sample_s = 0.0;          // mean sampling period
   double longest_recording_s = 0.0;
 
-  // The folds of cross-validation. With one recording they are strokes or pieces of them.
+  // The folds of cross-validation. With one or two recordings they are strokes or pieces of them.
   FoldAssignment folds(std::size_t recordings) const;
 };
 

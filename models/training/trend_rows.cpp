@@ -253,7 +253,7 @@ void TrendRows::add(const MotionRow& sample) {
   const double depth_m = std::max(0.0, sample.motion.position_m);
   const double surface_m = surface_.empty() ? depth_m : surface_.front().surface_m();
   update_branches(sample.sample.time_s, depth_m, surface_m);
-  if (sample.run_up || !(sample.sample.position_m > 0.0)) return;
+  if (!(sample.sample.position_m > 0.0)) return;
   if (seen_++ % stride_ != 0) return;
   const double velocity_m_per_s = depth_m > 0.0 ? sample.motion.velocity_m_per_s : 0.0;
   const double u = std::min(depth_m / problem_.reference_depth_m, 1.0);
@@ -285,7 +285,7 @@ Result<TrendRows> gather_rows(const TrendData& data, const FeatureList& list, st
   };
   std::size_t count = 0;
   Status status = pass([&](const MotionRow& row) {
-    if (row.sample.position_m > 0.0 && !row.run_up) ++count;
+    if (row.sample.position_m > 0.0) ++count;
   });
   if (!status) return status.error();
   TrendRows rows(list, data.problem, std::bit_ceil((count + most_rows - 1) / most_rows));

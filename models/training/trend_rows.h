@@ -94,7 +94,7 @@ class TrendRows {
   // Of the samples in contact, every `stride`-th makes a row.
   TrendRows(FeatureList list, const TrendProblem& problem, std::size_t stride = 1);
 
-  // Adds the next sample, in contact or not. A run-up only updates the filters.
+  // Adds the next sample, in contact or not.
   void add(const MotionRow& sample);
 
   std::size_t count() const { return rows_.size(); }

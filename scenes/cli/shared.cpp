@@ -35,7 +35,6 @@ std::string check_text(const CheckedFile& file) {
   }
   text << "  the noise of the force sensor alone leaves " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
        << " % of the contact samples within the JND; this says nothing about a model\n";
-  if (!file.whole) text << "  only the first " << kMostCheckedRows << " rows are checked and fitted\n";
   return text.str();
 }
 

@@ -121,8 +121,8 @@ PALPATE_API double palpate_stream_force_with_motion(palpate_stream*, double time
  * each sample. bound_N may be NULL. Wait-free. Returns 0, or -1 for NULL. */
 PALPATE_API int palpate_stream_forces(palpate_stream*, size_t n, const double* time_s, const double* position_m,
                                       double* force_N, double* bound_N);
-/* The same for the motion of a recording, with all its columns. features: receives the feature vectors, one after the
- * other. Each of the results may be NULL. */
+/* The same for the motion of a recording. A channel that the stream's sensor measures needs its column. features:
+ * receives the feature vectors, one after the other. Each of the results may be NULL. */
 PALPATE_API int palpate_stream_replay(palpate_stream*, const palpate_recording*, double* force_N, double* bound_N,
                                       double* features);
 

@@ -42,17 +42,6 @@ void expect_same(const std::vector<MotionRow>& a, const std::vector<MotionRow>& 
   }
 }
 
-TEST(MotionSource, RowsThatAreLeftOutAreARunUpOfTheOthers) {
-  const Recording recording = test::example_recording(3000, 1000.0, 30e-6);
-  MotionSource whole({prepare_recording(recording)});
-  std::vector<bool> left_out(recording.rows.size(), false);
-  std::fill(left_out.begin() + 1000, left_out.begin() + 2000, true);
-  MotionSource source({prepare_recording(recording, left_out)});
-  const auto rows = rows_of(source);
-  expect_same(rows_of(whole), rows);
-  for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i].run_up, i >= 1000 && i < 2000) << i;
-}
-
 // A long recording is thinned, with the motion that was estimated from all rows.
 TEST(MotionSource, OfLongRecordingsKeepsEveryNthRow) {
   constexpr std::size_t kMost = 8000;

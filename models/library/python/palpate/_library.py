@@ -99,14 +99,14 @@ def library():
     try:
         loaded = ctypes.CDLL(path)
         found = loaded.palpate_abi_version()
+        functions = {name: getattr(loaded, name) for name in _SIGNATURES} if found == ABI_VERSION else {}
     except (OSError, AttributeError) as error:
         raise Error("found no %s (%s); build it with: cmake --build build --target palpate_fit_shared, or name "
                     "the file in the environment variable PALPATE_LIBRARY" % (_NAME, error)) from None
     if found != ABI_VERSION:
         raise Error("%s: found ABI version %d, expected %d; build it again" % (path, found, ABI_VERSION))
-    for name, (result, arguments) in _SIGNATURES.items():
-        function = getattr(loaded, name)
-        function.restype, function.argtypes = result, arguments
+    for name, function in functions.items():
+        function.restype, function.argtypes = _SIGNATURES[name]
     return loaded
 
 
@@ -118,6 +118,14 @@ def call(name, *arguments):
         text = message.value.decode(errors="replace")
         raise Error(text.replace("pass --force to", "pass overwrite=True to"))
     return result
+
+
+def path_bytes(path):
+    """The bytes of a file's name."""
+    try:
+        return os.fsencode(path)
+    except TypeError:
+        raise Error("path: found %s, expected the name of a file" % type(path).__name__) from None
 
 
 def doubles(name, values):

@@ -6,7 +6,7 @@ from typing import Callable, Mapping, Optional, Sequence, Tuple, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import Error, Progress, RecordingStruct, Sensor, address, call, library
+from ._library import Error, Progress, RecordingStruct, Sensor, address, call, library, path_bytes
 from ._recordings import as_recording
 
 
@@ -81,6 +81,10 @@ class Model:
         if sensor is None:
             sensor = Sensor()
             library().palpate_sensor_of(motion, sensor)
+        else:  # a channel without a column is not measured
+            sensor = Sensor(sensor.encoder_step_m, sensor.position_noise_m,
+                            sensor.velocity_noise_m_per_s if columns[2] is not None else 0.0,
+                            sensor.acceleration_noise_m_per_s2 if columns[3] is not None else 0.0)
         force_N, bound_N = np.empty(motion.size), np.empty(motion.size)
         features = np.empty((motion.size, library().palpate_model_feature_count(self._handle)))
         stream = call("palpate_stream_new_with_sensor", self._handle, sensor)
@@ -95,12 +99,12 @@ class Model:
 
         Raises `Error` if the file exists, or cannot be written.
         """
-        call("palpate_model_save", self._handle, os.fsencode(path), int(overwrite))
+        call("palpate_model_save", self._handle, path_bytes(path), int(overwrite))
 
 
 def load(path: Union[str, os.PathLike]) -> Model:
     """Reads a model file. Raises `Error`: no such file, not a model, damaged."""
-    return Model(call("palpate_model_load", os.fsencode(path)))
+    return Model(call("palpate_model_load", path_bytes(path)))
 
 
 def fit(recordings: object, method: str = "greedy", centres: int = 100, *,

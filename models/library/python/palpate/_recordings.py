@@ -5,7 +5,7 @@ from typing import Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, address, call, doubles, library
+from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, address, call, doubles, library, path_bytes
 
 # Hoever & Harders (2009).
 _JND_OFFSET_N, _JND_WEBER_FRACTION = 0.065, 0.0633
@@ -47,7 +47,7 @@ def read_recording(path: Union[str, os.PathLike]) -> Recording:
 
     Raises `Error` with file, line and column, what was found and what was expected.
     """
-    loaded = call("palpate_recording_load", os.fsencode(path))
+    loaded = call("palpate_recording_load", path_bytes(path))
     try:
         return _recording(loaded.contents)
     finally:
@@ -110,6 +110,8 @@ def within_jnd(force_N: ArrayLike, measured_N: ArrayLike, in_contact: Optional[A
         0 to 1; NaN without a sample in contact.
     """
     force_N, measured_N = doubles("force_N", force_N), doubles("measured_N", measured_N)
+    if force_N.shape != measured_N.shape:
+        raise Error("measured_N: found %d values, expected %d as of force_N" % (len(measured_N), len(force_N)))
     if in_contact is None:
         in_contact = (force_N != 0.0) | (np.abs(measured_N) > _JND_OFFSET_N)
     counts = np.asarray(in_contact)
