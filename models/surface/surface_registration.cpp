@@ -54,7 +54,7 @@ std::vector<ForceAtPosition> forces_of(const Member& member) {
   return forces;
 }
 
-// Surfaces that differ by less count as equal; two standard errors.
+// Surfaces that differ by less count as equal.
 constexpr double kLeastSurface_m = 0.5 * kWidestSurface_m;
 
 // The offset of `member` to the reference: the difference of their surfaces, where both are identified, otherwise the
@@ -69,8 +69,7 @@ OffsetEstimate offset_of(const Member& member, const Member& reference, const Jn
   if (member.own.identified() && reference.own.identified()) {
     offset.identified = true;
     offset.at = member.own.raw_offset_m - reference.own.raw_offset_m;
-    offset.standard_error = std::max(kLeastSurface_m / kSignificantErrors,
-                                     std::hypot(member.own.standard_error_m, reference.own.standard_error_m));
+    offset.standard_error = std::hypot(member.own.standard_error_m, reference.own.standard_error_m);
     return offset;
   }
   const std::vector<ForceAtPosition> a = forces_of(reference);
@@ -87,7 +86,7 @@ OffsetEstimate offset_of(const Member& member, const Member& reference, const Jn
 
 bool unmoved(const Member& member, double shift_m) {
   return std::abs(member.offset.at - shift_m) <=
-         std::max(kLeastOffset_m, kSignificantErrors * member.offset.standard_error);
+         std::max(kLeastSurface_m, kSignificantErrors * member.offset.standard_error);
 }
 
 // The identified offset with the smallest sum of distances to the others; of nearly equal ones that of the latest
