@@ -240,8 +240,7 @@ void add_fit(CLI::App& app, Verbs& verbs) {
                    "Nodes of the grid along each feature [25x11x11x11], for " + method_names(kTakesGrid))
       ->check(CLI::Validator(check_grid, "NxN"));
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line");
-  verb->add_option("--seed", arguments->options.seed,
-                   "Seed of the random numbers, for " + method_names(kTakesSeed))
+  verb->add_option("--seed", arguments->options.seed, "Seed of the random numbers, for " + method_names(kTakesSeed))
       ->type_name("INT")
       ->check(CLI::Validator(check_seed, ""));
   verb->add_option("--out", arguments->out, "Model file to write (JSON)")->required()->type_name("JSON");
