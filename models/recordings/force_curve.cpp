@@ -34,6 +34,15 @@ std::optional<double> force_N(const ForceCurve& curve, std::size_t direction, do
   return *before_N + (at - static_cast<double>(bin)) * (*after_N - *before_N);
 }
 
+// The number of medians above the JND at 0 N.
+double contact_cells(const ForceCurve& curve, const JndLine& jnd) {
+  double count = 0.0;
+  for (const ForceCurve::Bin& bin : curve.bins()) {
+    for (const auto& median_N : bin.median_N) count += median_N && std::abs(*median_N) > jnd.at(0.0) ? 1.0 : 0.0;
+  }
+  return count;
+}
+
 }  // namespace
 
 ForceCurve::ForceCurve(const std::vector<ForceAtPosition>& rows, double bin_m) : bin_m_(bin_m) {
@@ -102,6 +111,7 @@ std::optional<CurveDifference> difference(const ForceCurve& first, const ForceCu
   const auto fewer = static_cast<double>(std::min(first.bins().size(), second.bins().size()));
   if (static_cast<double>(compared) < std::max(1.0, kLeastOverlap * fewer)) return std::nullopt;
   result.loss /= static_cast<double>(cells);
+  result.contact_cells = static_cast<double>(jnds.size());
   result.median_jnds = median_of(std::move(jnds));
   result.median_N = median_of(std::move(forces_N));
   result.apart_share = static_cast<double>(apart) / static_cast<double>(compared);
@@ -115,12 +125,14 @@ std::optional<double> find_shift_m(const ForceCurve& first, const ForceCurve& se
   const double apart_m = second.first_m() - first.first_m();
   const int from = -kStepsPerBin * static_cast<int>(first.bins().size());
   const int to = kStepsPerBin * static_cast<int>(second.bins().size());
+  // Curves that overlap only in air agree at any shift.
+  const double least_cells = kLeastOverlap * std::min(contact_cells(first, jnd), contact_cells(second, jnd));
   std::optional<double> best_m;
   CurveDifference best{std::numeric_limits<double>::infinity()};
   for (int step = from; step <= to; ++step) {
     const double shift_m = apart_m + step * step_m;
     const auto tried = difference(first, second, shift_m, jnd);
-    if (!tried || !(tried->loss < best.loss)) continue;
+    if (!tried || tried->contact_cells < least_cells || !(tried->loss < best.loss)) continue;
     best = *tried;
     best_m = shift_m;
   }

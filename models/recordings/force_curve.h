@@ -7,8 +7,8 @@
 // Shift registration (Ramsay & Silverman, "Functional data analysis", 2005, section 7.2): the shift minimises the mean
 // Huber loss of e beyond 1. If the median of |e|, where one of the forces is above the JND at 0 N, is at most 1 as
 // recorded, the shift is 0, because such a difference cannot be felt. No shift is identified if the median is still
-// above 1 with it, if it is at an end of the comparable ones, or if an offset of the force explains the difference as
-// well.
+// above 1 with it, if it is at an end of the comparable ones, if less than 30 % of the forces in contact overlap, or if
+// an offset of the force explains the difference as well.
 // Thread guarantee: slow side, value type and pure functions.
 #pragma once
 
@@ -50,10 +50,11 @@ class ForceCurve {
 double common_bin_m(const std::vector<ForceAtPosition>& first, const std::vector<ForceAtPosition>& second);
 
 struct CurveDifference {
-  double loss = 0.0;         // mean Huber loss
-  double median_jnds = 0.0;  // of |e|, where one of the forces is above the JND at 0 N
-  double median_N = 0.0;     // of F2 - F1
-  double apart_share = 0.0;  // of the bins whose central 90 % do not overlap
+  double loss = 0.0;           // mean Huber loss
+  double contact_cells = 0.0;  // the number of compared medians where one of the forces is above the JND at 0 N
+  double median_jnds = 0.0;    // of |e| of these
+  double median_N = 0.0;       // of F2 - F1
+  double apart_share = 0.0;    // of the bins whose central 90 % do not overlap
 };
 // None if the curves are not comparable at this shift. Both have the same width of bins. `force_offset_N`: subtracted
 // from the forces of `second`.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
@@ -49,6 +50,24 @@ TEST(ForceCurve, ComparesOnlyCurvesThatOverlap) {
   const double bin_m = common_bin_m(first, second);
   EXPECT_FALSE(difference(ForceCurve(first, bin_m), ForceCurve(second, bin_m), 0.0, JndLine{}));
   EXPECT_TRUE(difference(ForceCurve(first, bin_m), ForceCurve(second, bin_m), 1.9e-3, JndLine{}));
+}
+
+// Presses from 10 mm outside of the material to 3 mm inside, with pseudo-noise of 3 mN.
+std::vector<ForceAtPosition> presses_from_air(double shift_m) {
+  std::vector<ForceAtPosition> rows;
+  for (int i = 0; i < 20000; ++i) {
+    const double position_m = -3.5e-3 - 6.5e-3 * std::cos(2e-3 * std::acos(-1.0) * i);
+    const double depth_m = std::max(0.0, position_m);
+    rows.push_back({position_m + shift_m, 8e5 * depth_m * depth_m + 4e-3 * std::sin(977.0 * i * 1e-3 * i)});
+  }
+  return rows;
+}
+
+// Most of both curves is air, where any shift fits.
+TEST(ForceCurve, AirDoesNotDecide) {
+  const auto found = shift_of(presses_from_air(0.0), presses_from_air(2e-3));
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(*found, 2e-3, 0.11e-3);  // half a bin
 }
 
 TEST(ForceCurve, AToolAtRestHasNoBins) {
