@@ -6,7 +6,7 @@
 //
 // Shift registration (Ramsay & Silverman, "Functional data analysis", 2005, section 7.2): the shift minimises the mean
 // Huber loss of e beyond 1. If the median of |e|, where one of the forces is above the JND at 0 N, is at most 1 as
-// recorded, the shift is 0, because such a difference cannot be felt. No shift is identified if the median is still
+// recorded, the shift is 0, because such a difference is below the JND. No shift is identified if the median is still
 // above 1 with it, if it is at an end of the comparable ones, if less than 30 % of the forces in contact overlap, or if
 // an offset of the force explains the difference as well.
 // Thread guarantee: slow side, value type and pure functions.

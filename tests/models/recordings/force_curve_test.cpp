@@ -34,7 +34,7 @@ TEST(ForceCurve, FindsAShift) {
   }
 }
 
-TEST(ForceCurve, ADifferenceThatCannotBeFeltIsNoShift) {
+TEST(ForceCurve, ADifferenceBelowTheJndIsNoShift) {
   EXPECT_EQ(shift_of(strokes(0.0), strokes(0.0)), 0.0);
   EXPECT_EQ(shift_of(strokes(0.0), strokes(0.02e-3)), 0.0);
 }
