@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -170,7 +171,7 @@ Eigen::VectorXd least_squares(Eigen::MatrixXd a, Eigen::VectorXd b, double small
   std::vector<int> integers(static_cast<std::size_t>(wanted_integers));
   dgelsd_(&m, &n, &one, a.data(), &lda, b.data(), &ldb, singular.data(), &smallest, &rank, work.data(), &work_size,
           integers.data(), &info);
-  if (info != 0) b.setZero();
+  if (info != 0) b.setConstant(std::numeric_limits<double>::quiet_NaN());
   return b.head(n);
 }
 

@@ -23,8 +23,12 @@ Eigen::Index CandidateGains::least_known(std::span<const Eigen::Index> sites) co
   return known(std::ranges::min(sites, {}, known));
 }
 
-void CandidateGains::update(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis) {
+void CandidateGains::update(std::span<const Eigen::Index> distinct, const OrthogonalBasis& basis) {
   constexpr std::size_t kGroup = 32;  // sites at a time, whose columns stay in the cache
+  // A group costs as much as its site with the most new directions, so that equal ones are put together.
+  std::vector<Eigen::Index> sorted(distinct.begin(), distinct.end());
+  std::ranges::stable_sort(sorted, {}, [&](Eigen::Index site) { return candidate(site).known; });
+  const std::span<const Eigen::Index> sites = sorted;
   const auto all = basis.data_and_columns();
   // Those that one of the sites lacks, scaled instead of the kernel columns.
   const Eigen::MatrixXd directions = sites_.row_scale.asDiagonal() * all.rightCols(all.cols() - least_known(sites));
