@@ -30,7 +30,7 @@ double share_within_jnd(const PreparedTraining& prepared, const ModelData& data)
 // The correction without a fold; none if no other fold has rows.
 Result<CorrectionPtr> fit_without(const PreparedTraining& prepared, int fold, const MethodRequest& request,
                                   const FitControl& control) {
-  const Sites sites = sites_without(*prepared.left_out, fold, *prepared.strength);
+  const Sites sites = sites_without(*prepared.left_out, fold, prepared.correction->smoothing);
   if (sites.count() == 0) return CorrectionPtr{};
   const Eigen::VectorXd jnd_N = sites.row_scale.cwiseInverse();
   auto fitted = fit_correction({sites, jnd_N, request}, control);

@@ -2,7 +2,7 @@
 // once.
 //
 //   prepare_training   surfaces, greatest depth, relaxation times, trend, features, normalisation, reduction,
-//                      one-sided contact, domain cover, strength of the correction
+//                      one-sided contact, domain cover, whether the correction is used
 //   fit_method         one of the methods of models/fit/methods.h on the prepared sites
 //
 // The methods fit the residual of the trend. In the paper's recipe (recipe_2009_request) they fit the force itself,
@@ -61,15 +61,15 @@ TrainingRequest recipe_2009_request(TrainingRequest request);
 
 struct PreparedTraining {
   TrainingSet set;
-  Sites sites;                             // normalised; target: strength times residual of the trend, or the force
-  ModelData common;                        // the parts of the model that all methods have in common
-  std::vector<PartGain> gains;             // of each term of the dictionary; empty unless FeatureChoice::automatic
-  std::optional<StrengthChoice> strength;  // none in the paper's recipe
+  Sites sites;                                  // normalised; target: the residual of the trend, or the force
+  ModelData common;                             // the parts of the model that all methods have in common
+  std::vector<PartGain> gains;                  // of each term of the dictionary; empty unless FeatureChoice::automatic
+  std::optional<CorrectionChoice> correction;   // none in the paper's recipe
   std::optional<CrossValidationRows> left_out;  // rows for cross-validation; none in the paper's recipe
   std::vector<std::string> notes;               // for the report of every fit
 
   // False if cross-validation rejected the correction; every method then returns the trend.
-  bool corrects() const { return !strength || strength->strength > 0.0; }
+  bool corrects() const { return !correction || correction->used; }
 };
 
 struct MethodFit {

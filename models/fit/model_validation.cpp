@@ -26,7 +26,6 @@ constexpr KernelKind kKernel = KernelKind::cubic;
 constexpr Eigen::Index kCentres = 200;
 constexpr int kLowestDecade = -9;  // of the smoothing, relative to the mean eigenvalue
 constexpr int kHighestDecade = 1;
-constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
 
 // One or two strokes do not show how the next one differs. The bound is then at least 5 % of the force, the difference
@@ -124,7 +123,7 @@ class LeftOutFits {
 };
 
 // A candidate.
-struct Variant : StrengthChoice {
+struct Variant : CorrectionChoice {
   FoldErrors errors;
 };
 
@@ -195,7 +194,7 @@ CrossValidationRows cross_validation_rows(const ModelData& common, const TrendRo
   return out;
 }
 
-StrengthChoice choose_strength(const CrossValidationRows& rows, const ModelData& common) {
+CorrectionChoice choose_correction(const CrossValidationRows& rows, const ModelData& common) {
   const double least_radius = common.cover.inner_radius;
   const auto folds = static_cast<std::size_t>(rows.folds());
   if (rows.fold.size() < 2 || folds < 2) return {.inner_radius = least_radius};
@@ -203,48 +202,43 @@ StrengthChoice choose_strength(const CrossValidationRows& rows, const ModelData&
   const LeftOutFits fits(rows);
   const std::vector<double> deepest_m =
       deepest_elsewhere_m(rows.fold, {rows.depth_m.data(), rows.fold.size()}, rows.folds());
-  // Adds the errors of a candidate. `h`: its correction at every row, with strength 1.
+  // Adds the errors of a candidate. `h`: its correction at every row.
   const auto score = [&](Variant& variant, const Eigen::VectorXd& h) {
     for (std::size_t i = 0; i < rows.fold.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       const auto fold = static_cast<std::size_t>(rows.fold[i]);
       if (rows.depth_m(row) > deepest_m[fold]) continue;
-      const double force_N = rows.predicted_N(common, i, variant.inner_radius, variant.strength * h(row));
+      const double force_N = rows.predicted_N(common, i, variant.inner_radius, h(row));
       const double error = common.jnd.error_over_jnd(force_N, rows.force_N(row));
       variant.errors.add(fold, error * robust_scale(error));
     }
   };
-  std::vector<Variant> variants{{{fits.unit(), 0.0, least_radius}, folds}};  // no correction
+  std::vector<Variant> variants{{{false, fits.unit(), least_radius}, folds}};  // no correction
   for (int decade = kHighestDecade; decade >= kLowestDecade; --decade) {
     for (const double factor : kRadiusFactors) {
-      for (const double strength : kStrengths) {
-        variants.push_back({{fits.unit() * std::pow(10.0, decade), strength, factor * least_radius}, folds});
-      }
+      variants.push_back({{true, fits.unit() * std::pow(10.0, decade), factor * least_radius}, folds});
     }
   }
   score(variants.front(), Eigen::VectorXd::Zero(rows.force_N.size()));
   parallel_for(kHighestDecade - kLowestDecade + 1, [&](int part) {
-    constexpr std::size_t kOfDecade = kRadiusFactors.size() * kStrengths.size();
-    const auto first = variants.begin() + 1 + static_cast<std::ptrdiff_t>(kOfDecade) * part;
+    const auto first = variants.begin() + 1 + static_cast<std::ptrdiff_t>(kRadiusFactors.size()) * part;
     const Eigen::VectorXd h = fits.predictions(first->smoothing);
-    for (std::size_t i = 0; i < kOfDecade; ++i) score(first[static_cast<std::ptrdiff_t>(i)], h);
+    for (std::size_t i = 0; i < kRadiusFactors.size(); ++i) score(first[static_cast<std::ptrdiff_t>(i)], h);
   });
-  const double strength = variants[best_score(errors_of(variants))].strength;
   // From the simplest to the most complex: no correction, then by growing reach and, with the same reach, by falling
   // smoothing. (Similar strokes do not identify the reach.)
-  std::erase_if(variants, [&](const Variant& one) { return one.strength != 0.0 && one.strength != strength; });
   std::ranges::stable_sort(variants.begin() + 1, variants.end(), {}, &Variant::inner_radius);
   const Variant& chosen = variants[simplest_adequate(errors_of(variants))];
-  StrengthChoice choice = chosen;
+  CorrectionChoice choice = chosen;
   choice.trend_error_over_jnd = variants.front().errors.rms_at_mean_score();
   choice.error_over_jnd = chosen.errors.rms_at_mean_score();
   return choice;
 }
 
-Sites sites_without(const CrossValidationRows& rows, int fold, const StrengthChoice& choice) {
+Sites sites_without(const CrossValidationRows& rows, int fold, double smoothing) {
   const std::vector<Eigen::Index> others = rows.outside(fold);
-  Sites sites{rows.points(Eigen::all, others), choice.strength * rows.residual_N(fold)(others), rows.row_scale(others)};
-  sites.smoothing = choice.smoothing;
+  Sites sites{rows.points(Eigen::all, others), rows.residual_N(fold)(others), rows.row_scale(others)};
+  sites.smoothing = smoothing;
   return even_subset(sites, kLeftOutSites);
 }
 

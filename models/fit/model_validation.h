@@ -1,16 +1,15 @@
-// Cross-validation of trend and correction together. It selects strength, smoothing and reach of the correction, and
-// calibrates the error bound of the model.
+// Cross-validation of trend and correction together. It selects whether the correction is used, its smoothing and its
+// reach, and calibrates the error bound of the model.
 //
 // A correction h of the residual of the trend helps only as far as other strokes have the same residual. For each fold
 // (models/training/cross_validation.h), h is fitted to the rows of the others, by penalised least squares on up to 200
 // random centres,
 //   minimise sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,
 // where r is the residual of a trend fitted to the same rows. The rows of the fold are then predicted by
-//   f = max(lowest, T(x) + g(x) clamp(strength h(x), -limit, limit))
-// with g the trust around the rows of the other folds. The strength (0, none, to 1) is that of the combination with
-// the lowest mean score. The common rule then selects smoothing and inner radius of the trust at this strength. No
-// correction is its simplest candidate, followed by the smallest radius with the most smoothing. The smoothing is the
-// ratio of noise variance to prior variance and does not depend on the number of centres, so one value serves every
+//   f = max(lowest, T(x) + g(x) clamp(h(x), -limit, limit))
+// with g the trust around the rows of the other folds. The common rule selects smoothing and inner radius of the trust.
+// No correction is its simplest candidate, followed by the smallest radius with the most smoothing. The smoothing is
+// the ratio of noise variance to prior variance and does not depend on the number of centres, so one value serves every
 // method, and with more centres each approaches the smoothing spline through all sites.
 // Sources: Wahba (1990) (smoothing splines; regression splines as subsets of the basis); Craven & Wahba (1979); Hastie,
 // Tibshirani & Friedman (2009), 7.10.
@@ -45,8 +44,8 @@ struct CrossValidationRows {
   std::vector<Eigen::Index> outside(int without) const;
   // The residual of the trend without that fold. Where no force is measured, a trend below 0 needs no correction.
   Eigen::VectorXd residual_N(int without) const;
-  // The force at row `i` without its fold, as FittedModel computes it, with the inner radius of the trust. `h`:
-  // strength times correction, N.
+  // The force at row `i` without its fold, as FittedModel computes it, with the inner radius of the trust. `h`: the
+  // correction, N.
   double predicted_N(const ModelData& common, std::size_t i, double inner_radius, double h) const;
 };
 
@@ -58,20 +57,19 @@ void find_distances(CrossValidationRows& rows);
 CrossValidationRows cross_validation_rows(const ModelData& common, const TrendRows& rows,
                                           const Eigen::MatrixXd& row_features, const Eigen::MatrixXd& left_out_trends);
 
-struct StrengthChoice {
+struct CorrectionChoice {
+  bool used = false;
   double smoothing = 0.0;
-  double strength = 0.0;
   double inner_radius = 0.0;
   double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::rms_at_mean_score), without the correction
   double error_over_jnd = 0.0;        // the same, with the correction
 };
 // `common`: with the JND, the limits of correction and force, and a cover whose inner radius is the smallest candidate,
 // with every site inside.
-StrengthChoice choose_strength(const CrossValidationRows& rows, const ModelData& common);
+CorrectionChoice choose_correction(const CrossValidationRows& rows, const ModelData& common);
 
-// The sites of a correction without a fold, at most 1500. The targets are the residuals of the trend without that fold,
-// times the strength.
-Sites sites_without(const CrossValidationRows& rows, int fold, const StrengthChoice& choice);
+// The sites of a correction without a fold, at most 1500. The targets are the residuals of the trend without that fold.
+Sites sites_without(const CrossValidationRows& rows, int fold, double smoothing);
 
 // The prediction of one row by a model fitted without its fold.
 struct CrossValidationPrediction {

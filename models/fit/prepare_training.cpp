@@ -200,7 +200,7 @@ void add_gains(std::vector<PartGain>& gains, const TrendRows& rows, const TrendR
   std::stable_partition(gains.begin(), gains.end(), [](const PartGain& one) { return one.taken; });
 }
 
-// Trend, sites and correction strength of one list of features.
+// Trend, sites and choice of the correction of one list of features.
 Status prepare_list(PreparedTraining& prepared, const TrendData& data, const FeatureList& list,
                     const TrainingExtent& extent, const TrainingRequest& request) {
   const bool papers = is_papers_recipe(request);
@@ -231,10 +231,9 @@ Status prepare_list(PreparedTraining& prepared, const TrendData& data, const Fea
   if (!data.control.may_continue()) return interrupted();
   prepared.left_out = cross_validation_rows(common, *rows, fitted.row_features, left_out.solutions);
   prepared.left_out->strokes = extent.strokes;
-  const StrengthChoice choice = choose_strength(*prepared.left_out, common);
-  prepared.strength = choice;
+  const CorrectionChoice choice = choose_correction(*prepared.left_out, common);
+  prepared.correction = choice;
   prepared.sites.smoothing = choice.smoothing;
-  prepared.sites.target_N *= choice.strength;
   const double outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
   common.cover.inner_radius = choice.inner_radius;
   common.cover.outer_radius = outer_to_inner * choice.inner_radius;

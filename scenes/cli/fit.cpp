@@ -115,11 +115,10 @@ void print_gains(const std::vector<PartGain>& gains) {
   std::fflush(stdout);
 }
 
-std::string strength_text(const StrengthChoice& strength) {
-  if (strength.strength == 0.0)
-    return "off: it does not lower the cross-validated error, so the model is the trend alone";
-  return "strength " + fixed(strength.strength, 2) + "; cross-validated error " + fixed(strength.error_over_jnd, 3) +
-         " JND, trend alone " + fixed(strength.trend_error_over_jnd, 3) + " JND";
+std::string correction_text(const CorrectionChoice& choice) {
+  if (!choice.used) return "off: it does not lower the cross-validated error, so the model is the trend alone";
+  return "cross-validated error " + fixed(choice.error_over_jnd, 3) + " JND, trend alone " +
+         fixed(choice.trend_error_over_jnd, 3) + " JND";
 }
 
 void print_surfaces(const Provenance& provenance) {
@@ -148,7 +147,8 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
     std::cout << "depth starts        at " << fixed(1e3 * begins_m, 3)
               << " mm, where the force of the recordings begins\n";
   std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
-            << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "full strength")
+            << "correction          "
+            << (prepared.correction ? correction_text(*prepared.correction) : "the whole force, without a trend")
             << "\n"
             << "fit time            " << fixed(seconds, 2) << " s\n"
             << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %"

@@ -139,7 +139,7 @@ class Measurement {
     const Provenance& provenance = prepared.palpate.common.provenance;
     data_.surfaces = provenance.surfaces;
     data_.gains = prepared.palpate.gains;
-    if (prepared.palpate.strength) data_.correction_strength = prepared.palpate.strength->strength;
+    if (prepared.palpate.correction) data_.corrects = prepared.palpate.correction->used;
     for (const RelaxationTime& one : prepared.paper.common.provenance.relaxation_times)
       data_.times_2009_s.push_back(one.time_s);
   }

@@ -78,10 +78,10 @@ struct ReportData {
   NoiseFloor floor;                  // of all test recordings together
   std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces
   Choice choice;
-  WorstStretch worst;                         // of the recommended model
-  std::vector<RecordingSurface> surfaces;     // of the training recordings
-  std::vector<double> times_2009_s;           // relaxation times fitted for the 2009 recipe
-  std::optional<double> correction_strength;  // 0 to 1
+  WorstStretch worst;                      // of the recommended model
+  std::vector<RecordingSurface> surfaces;  // of the training recordings
+  std::vector<double> times_2009_s;        // relaxation times fitted for the 2009 recipe
+  std::optional<bool> corrects;            // whether cross-validation selected the correction
   std::vector<PartGain> gains;
 };
 

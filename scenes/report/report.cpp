@@ -266,9 +266,9 @@ std::string learnt_html(const ReportData& data) {
            "</td></tr>\n";
   };
   std::string html = "<table class=\"learnt\">" + row("Features", features);
-  if (data.correction_strength)
-    html += row("Strength of the correction by centres",
-                fixed(100.0 * *data.correction_strength, 0) + " % of the fitted correction, by cross-validation");
+  if (data.corrects)
+    html += row("Correction by centres", *data.corrects ? "used: it lowers the cross-validated error"
+                                                        : "not used: it does not lower the cross-validated error");
   if (!times.empty()) html += row("Relaxation times, recipe of 2009", times + " s, fitted to the training recordings");
   for (const RecordingSurface& surface : data.surfaces) {
     html += row(("Surface of " + escape_html(surface.name)).c_str(),

@@ -39,47 +39,45 @@ CrossValidationRows make_rows(double shared, double own, double first = 0.0) {
   return rows;
 }
 
-StrengthChoice choose(const CrossValidationRows& rows) {
+CorrectionChoice choose(const CrossValidationRows& rows) {
   ModelData common;
   common.correction_limit_N = 1.0;
   common.cover = {{}, 0.1, 0.3};
-  return choose_strength(rows, common);
+  return choose_correction(rows, common);
 }
 
-TEST(CorrectionStrength, WhatEveryStrokeHasIsCorrected) {
-  const StrengthChoice choice = choose(make_rows(0.3, 0.0));
-  EXPECT_GE(choice.strength, 0.75);
+TEST(CorrectionChoice, WhatEveryStrokeHasIsCorrected) {
+  const CorrectionChoice choice = choose(make_rows(0.3, 0.0));
+  EXPECT_TRUE(choice.used);
   // The remaining error is the noise of 5 mN (with a JND of 190 mN) and the smoothing bias.
   EXPECT_LT(choice.error_over_jnd, 0.1 * choice.trend_error_over_jnd);
 }
 
 // The first stroke has nine tenths of the squared error, but every stroke has the same weight.
-TEST(CorrectionStrength, AStrokeWithMostOfTheErrorHasOneVoteOfAll) {
-  EXPECT_GE(choose(make_rows(0.3, 0.0, 0.8)).strength, 0.75);
-}
+TEST(CorrectionChoice, AStrokeWithMostOfTheErrorHasOneVoteOfAll) { EXPECT_TRUE(choose(make_rows(0.3, 0.0, 0.8)).used); }
 
-TEST(CorrectionStrength, WhatOnlyOneStrokeHasIsNot) {
-  const StrengthChoice choice = choose(make_rows(0.0, 0.3));
-  EXPECT_EQ(choice.strength, 0.0);
+TEST(CorrectionChoice, WhatOnlyOneStrokeHasIsNot) {
+  const CorrectionChoice choice = choose(make_rows(0.0, 0.3));
+  EXPECT_FALSE(choice.used);
   EXPECT_EQ(choice.error_over_jnd, choice.trend_error_over_jnd);
 }
 
 // Every row has close rows of other strokes, so a larger reach than 0.1 has no significant
 // gain in cross-validation.
-TEST(CorrectionStrength, ReachesNoFartherThanStrokesLeftOutReward) {
-  const StrengthChoice choice = choose(make_rows(0.3, 0.1));
-  EXPECT_GT(choice.strength, 0.0);
+TEST(CorrectionChoice, ReachesNoFartherThanStrokesLeftOutReward) {
+  const CorrectionChoice choice = choose(make_rows(0.3, 0.1));
+  EXPECT_TRUE(choice.used);
   EXPECT_EQ(choice.inner_radius, 0.1);
 }
 
-TEST(CorrectionStrength, NeverWorseThanNoneOnWhatIsLeftOut) {
+TEST(CorrectionChoice, NeverWorseThanNoneOnWhatIsLeftOut) {
   for (const double own : {0.05, 0.1, 0.2}) {
-    const StrengthChoice choice = choose(make_rows(0.1, own));
+    const CorrectionChoice choice = choose(make_rows(0.1, own));
     EXPECT_LE(choice.error_over_jnd, choice.trend_error_over_jnd) << own;
   }
 }
 
-TEST(CorrectionStrength, NothingToLeaveOutMeansNone) { EXPECT_EQ(choose({}).strength, 0.0); }
+TEST(CorrectionChoice, NothingToLeaveOutMeansNone) { EXPECT_FALSE(choose({}).used); }
 
 TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
   test::Numbers numbers(5);
