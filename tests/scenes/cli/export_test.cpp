@@ -16,7 +16,6 @@
 namespace palpate {
 namespace {
 
-using test::run_palpate;
 
 class ExportVerb : public ::testing::Test {
  protected:
@@ -39,12 +38,10 @@ class ExportVerb : public ::testing::Test {
     std::vector<std::string> fit = {"fit",   "--recording",          folder_.file("train.csv"),
                                     "--out", folder_.file("m.json"), "--force"};
     fit.insert(fit.end(), fit_options.begin(), fit_options.end());
-    const auto fitted = run_palpate(fit);
-    EXPECT_EQ(fitted.exit_code, 0) << fitted.err;
+    test::must_run(fit);
     std::vector<std::string> arguments = {"export", folder_.file("m.json"), "--c", folder_.file("m.c"), "--force"};
     arguments.insert(arguments.end(), export_options.begin(), export_options.end());
-    const auto run = run_palpate(arguments);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const auto run = test::must_run(arguments);
     printed_ = run.out;
     return test::read_text(folder_.file("m.c"));
   }

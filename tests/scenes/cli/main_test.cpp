@@ -18,8 +18,7 @@ bool is_one_error_line(const std::string& text) {
 TEST(Main, HelpAndVersionGoToStandardOutput) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"--help"}, {"--version"}, {"scenes", "--help"}, {"devices", "--help"}}) {
-    const auto run = run_palpate(arguments);
-    EXPECT_EQ(run.exit_code, 0);
+    const auto run = test::must_run(arguments);
     EXPECT_FALSE(run.out.empty());
     EXPECT_EQ(run.err, "");
   }
@@ -37,14 +36,11 @@ TEST(Main, WrongUsageIsOneLineThatNamesTheVerbs) {
 }
 
 TEST(Main, UnknownOptionPointsToTheVerbsHelp) {
-  const auto run = run_palpate({"scenes", "--dance"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_TRUE(test::has_parts(run.err, {"error: ", "--dance", "palpate scenes", "--help"}));
+  EXPECT_TRUE(test::fails(2, {"scenes", "--dance"}, {"error: ", "--dance", "palpate scenes", "--help"}));
 }
 
 TEST(Main, ScenesListsEveryScene) {
-  const auto run = run_palpate({"scenes"});
-  EXPECT_EQ(run.exit_code, 0);
+  const auto run = test::must_run({"scenes"});
   EXPECT_EQ(run.err, "");
   for (const char* name : {"silicone_block", "button", "foam_block", "elastic_block", "stiff_block", "skin"}) {
     EXPECT_TRUE(test::has_parts(run.out, {name}));

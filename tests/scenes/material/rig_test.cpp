@@ -43,14 +43,7 @@ std::size_t count_force_steps(const Recording& recording, double step_N) {
 }
 
 RigRecording made(const std::string& material, std::uint64_t seed, double seconds = 0.0, double rate_Hz = 1000.0) {
-  RigSettings settings;
-  settings.material = material;
-  settings.seed = seed;
-  settings.seconds = seconds;
-  settings.rate_Hz = rate_Hz;
-  Result<RigRecording> result = record(settings);
-  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
-  return std::move(result.value());
+  return test::must(record({material, seed, seconds, rate_Hz}));
 }
 
 struct Spread {
@@ -166,10 +159,9 @@ TEST(Rig, ForceCellClipsAtItsRange) {
   RigSettings settings;
   settings.seconds = 10.0;
   settings.sensors.force_range_N = 2.0;
-  const Result<RigRecording> rig = record(settings);
-  ASSERT_TRUE(rig.ok());
+  const RigRecording rig = test::must(record(settings));
   double strongest_N = 0.0;
-  for (const RecordingRow& row : rig->recording.rows) strongest_N = std::max(strongest_N, row.force_N);
+  for (const RecordingRow& row : rig.recording.rows) strongest_N = std::max(strongest_N, row.force_N);
   EXPECT_DOUBLE_EQ(strongest_N, 2.0 * 2047.0 / 2048.0);
 }
 
@@ -217,7 +209,7 @@ TEST(Rig, DisplacesTheSurfaceAndTheForceZero) {
 TEST(Rig, RefusesInvalidSettings) {
   RigSettings unknown;
   unknown.material = "Silicone";
-  EXPECT_TRUE(test::has_parts(record(unknown).error().message, {"'Silicone'", std::string(materials()[0].name)}));
+  EXPECT_TRUE(test::has_parts(record(unknown), {"'Silicone'", std::string(materials()[0].name)}));
   struct Case {
     double RigSettings::*setting;
     double value;
@@ -234,7 +226,7 @@ TEST(Rig, RefusesInvalidSettings) {
                          {&RigSettings::seconds, 1e9, {"seconds", "50 million"}}}) {
     RigSettings settings;
     settings.*setting = value;
-    EXPECT_TRUE(test::has_parts(record(settings).error().message, parts));
+    EXPECT_TRUE(test::has_parts(record(settings), parts));
   }
 }
 
@@ -259,9 +251,7 @@ TEST(Rig, RecordsTheSensorsAndCanBeInterrupted) {
   const auto& rows = whole.recording.rows;
   ASSERT_EQ(sensors.rows.size(), rows.size());
   EXPECT_EQ(std::memcmp(sensors.rows.data(), rows.data(), rows.size() * sizeof(RecordingRow)), 0);
-  const auto stopped = record_sensors(settings, [](double) { return false; });
-  ASSERT_FALSE(stopped.ok());
-  EXPECT_EQ(stopped.error().message, "interrupted");
+  EXPECT_EQ(test::message_of(record_sensors(settings, [](double) { return false; })), "interrupted");
 }
 
 }  // namespace

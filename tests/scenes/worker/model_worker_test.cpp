@@ -63,10 +63,7 @@ TEST(ModelWorker, AnotherNumberOfCentresEqualsPalpateFit) {
     worker.add_job(0, plan);
     const std::vector<FinishedModel> made = wait_for(worker, 1);
     ASSERT_NE(made[0].model, nullptr) << made[0].problem;
-    MethodRequest request;
-    request.method = plan.method;
-    request.centres = centres;
-    const FittedModel expected(test::must(fit_method(prepared, request)).data);
+    const FittedModel expected(test::must(fit_method(prepared, {plan.method, centres})).data);
     EXPECT_EQ(made[0].model->name(), expected.name());
     for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
       const std::array<double, kMaxFeatures> held{depth_m};
