@@ -9,6 +9,7 @@
 #include <map>
 #include <thread>
 
+#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/plot/inline_svg.h"
@@ -225,14 +226,16 @@ std::string notes_html(const ReportData& data) {
       three_digits(kMargin_jnd) + " JND apart 57 % of the answers are correct; guessing gives 50 %.");
   for (const ModelResult& one : data.models) {
     if (one.same.empty()) continue;
-    std::string names;
-    for (const std::string& name : one.same) names += (names.empty() ? "" : ", ") + name;
-    notes.push_back("The same forces as " + one.plan.name + ": " + names + ".");
+    notes.push_back("The same forces as " + one.plan.name + ": " + joined(one.same) + ".");
   }
   const std::string& tested_on = data.recordings.folds.front().words;
   if (!tested_on.empty()) notes.push_back("No test recording: " + tested_on + ".");
-  const auto& facts = data.recordings.facts;
-  const double largest_N = std::ranges::max_element(facts, {}, &RecordingFacts::largest_force_N)->largest_force_N;
+  double largest_N = 0.0;
+  bool accelerometer = false;
+  for (const PreparedRecordingPointer& one : data.recordings.all) {
+    largest_N = std::max(largest_N, presses_of(one->recording).largest_force_N);
+    accelerometer = accelerometer || one->recording.columns.acceleration;
+  }
   const JndLine paper;
   const JndLine& jnd = data.scene.jnd;
   notes.push_back(
@@ -246,9 +249,8 @@ std::string notes_html(const ReportData& data) {
                   " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
                   " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +
                   " mN, from second differences in the quietest fifth of each test recording, without drift).");
-  notes.push_back(std::ranges::any_of(facts, &RecordingFacts::accelerometer)
-                      ? "With the accelerometer of the recordings."
-                      : "From positions alone, without an accelerometer.");
+  notes.push_back(accelerometer ? "With the accelerometer of the recordings."
+                                : "From positions alone, without an accelerometer.");
   std::string html = "<ul class=\"notes\">";
   for (const std::string& note : notes) html += "<li>" + escape_html(note) + "</li>";
   return html + "</ul>\n";
@@ -256,20 +258,20 @@ std::string notes_html(const ReportData& data) {
 
 std::string learnt_html(const ReportData& data) {
   const ModelResult& chosen = data.models[data.choice.recommended];
-  std::string features;
+  std::vector<std::string> features, times;
   for (const FeatureSpec& spec : chosen.model->features())
-    features += (features.empty() ? "" : ", ") + feature_name(spec).substr(std::string("feature_").size());
-  std::string times;
-  for (const double time_s : data.times_2009_s) times += (times.empty() ? "" : " and ") + three_digits(time_s);
+    features.push_back(feature_name(spec).substr(std::string("feature_").size()));
+  for (const double time_s : data.times_2009_s) times.push_back(three_digits(time_s));
   const auto row = [](const char* name, const std::string& value) {
     return "<tr><td class=\"text\">" + std::string(name) + "</td><td class=\"text\">" + escape_html(value) +
            "</td></tr>\n";
   };
-  std::string html = "<table class=\"learnt\">" + row("Features", features);
+  std::string html = "<table class=\"learnt\">" + row("Features", joined(features));
   if (data.correction_strength)
     html += row("Strength of the correction by centres",
                 fixed(100.0 * *data.correction_strength, 0) + " % of the fitted correction, by cross-validation");
-  if (!times.empty()) html += row("Relaxation times, recipe of 2009", times + " s, fitted to the training recordings");
+  if (!times.empty())
+    html += row("Relaxation times, recipe of 2009", joined(times, " and ") + " s, fitted to the training recordings");
   for (const RecordingSurface& surface : data.surfaces) {
     html += row(("Surface of " + escape_html(surface.name)).c_str(),
                 fixed(1e3 * surface.offset_m, 3) + " mm" +
@@ -284,13 +286,16 @@ std::string learnt_html(const ReportData& data) {
 // of fill_page.
 Result<std::string> make_page(const ReportData& data, const Sentence& answer, const std::string& origin,
                               const std::vector<Table>& tables, const std::vector<Figure>& figures) {
-  std::string tests;
-  for (const RecordingFacts& facts : data.recordings.facts) {
-    if (facts.role != "train") tests += (tests.empty() ? "" : ", ") + facts.name;
+  std::vector<std::string> tests;
+  for (std::size_t i = 0; i < data.recordings.all.size(); ++i) {
+    if (data.recordings.is_tested(i)) tests.push_back(data.recordings.all[i]->recording.name);
   }
-  std::map<std::string, std::string> values{
-      {"title", escape_html(tests)}, {"answer", answer.html()},     {"headline", table_html(headline_table(data))},
-      {"notes", notes_html(data)},   {"learnt", learnt_html(data)}, {"origin", escape_html(origin)}};
+  std::map<std::string, std::string> values{{"title", escape_html(joined(tests))},
+                                            {"answer", answer.html()},
+                                            {"headline", table_html(headline_table(data))},
+                                            {"notes", notes_html(data)},
+                                            {"learnt", learnt_html(data)},
+                                            {"origin", escape_html(origin)}};
   for (const Table& one : tables) values[one.name] = one.rows.empty() ? "" : table_html(one);
   for (const Figure& one : figures) values[one.plot.name] = figure_html(one);
   return fill_page("page.html", std::move(values));

@@ -46,10 +46,10 @@ TEST(ReportRecordings, TrainAndTestStayApart) {
   EXPECT_EQ(names(set.folds[0].train), (Names{"a", "b"}));
   EXPECT_EQ(names(set.folds[0].tested), (Names{"c"}));
   EXPECT_EQ(set.folds[0].words, "");
-  EXPECT_EQ(set.facts[2].role, "test");
-  EXPECT_EQ(set.facts[2].name, "c");
-  EXPECT_EQ(set.facts[2].samples, 1000u);
-  EXPECT_NEAR(set.facts[2].rate_Hz, 1000.0, 1e-6);
+  EXPECT_EQ(set.trained, 2u);
+  EXPECT_TRUE(set.is_tested(2));
+  EXPECT_FALSE(set.is_tested(1));
+  EXPECT_EQ(set.all[2]->recording.name, "c");
 }
 
 TEST(ReportRecordings, WithoutATestEveryRecordingIsTestedOnceByTheOthers) {
@@ -77,17 +77,18 @@ TEST(ReportRecordings, OfASingleOneABlockAtItsEndIsTested) {
   EXPECT_NEAR(fold.train[0]->recording.rows.back().time_s + 1e-3, fold.counted_from_s, 1e-9) << "the next row";
   EXPECT_TRUE(test::has_parts(fold.words, {"block at the end"}));
   EXPECT_EQ(fold.tested[0]->recording.rows.size(), 3000u);
-  ASSERT_EQ(set.facts.size(), 1u);
-  EXPECT_EQ(set.facts[0].role, "both");
+  ASSERT_EQ(set.all.size(), 1u);
+  EXPECT_EQ(set.trained, 1u);
+  EXPECT_TRUE(set.is_tested(0)) << "by a fit to the rest of it";
 }
 
 TEST(ReportRecordings, TheirOrderDoesNotMatter) {
   const auto one = split({noisy("a"), noisy("b")}, {noisy("c")});
   const auto other = split({noisy("b"), noisy("a")}, {noisy("c")});
   ASSERT_TRUE(one.ok() && other.ok());
-  for (std::size_t i = 0; i < one->facts.size(); ++i) {
-    EXPECT_EQ(one->facts[i].name, other->facts[i].name);
-    EXPECT_EQ(one->facts[i].content_hash, other->facts[i].content_hash);
+  for (std::size_t i = 0; i < one->all.size(); ++i) {
+    EXPECT_EQ(one->all[i]->recording.name, other->all[i]->recording.name);
+    EXPECT_EQ(one->all[i]->content_hash, other->all[i]->content_hash);
   }
 }
 
