@@ -95,15 +95,13 @@ void zero_on_enter(Device& device, const DeviceHealth& health, bool& announced, 
 
 RecorderRequest recorder_request(const RecordOptions& options, Device& device) {
   const SensorSpec sensor = device.sensor();
-  RecorderRequest request;
-  request.path = options.out;
-  request.force = ReferenceKind::measured;
-  request.columns = {sensor.has_velocity, sensor.has_acceleration, device.measures_force()};
-  request.overwrite = options.force;
-  request.comments = {"recorded by palpate record; device " + options.device,
-                      "position_m: as the device gave it; " +
-                          std::string(device.measures_force() ? "force_N: as it measured it" : "it measures no force")};
-  return request;
+  return {options.out,
+          ReferenceKind::measured,
+          {sensor.has_velocity, sensor.has_acceleration, device.measures_force()},
+          {"recorded by palpate record; device " + options.device,
+           "position_m: as the device gave it; " +
+               std::string(device.measures_force() ? "force_N: as it measured it" : "it measures no force")},
+          options.force};
 }
 
 // Records until the time is over or the user stops it.

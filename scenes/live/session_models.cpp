@@ -305,10 +305,7 @@ bool SessionModels::load_file(const std::string& path) {
     notices_.push_back({model.error().message, true});
     return false;
   }
-  SlotPlan plan;
-  plan.origin = ModelOrigin::file;
-  plan.path = path;
-  plan.loaded = std::move(*model);
+  const SlotPlan plan{ModelOrigin::file, &kGreedyMethod, path, std::move(*model)};
   const std::size_t index = add_slot(plan);
   const Slot& slot = slots_[index];
   loaded_.push_back(index);

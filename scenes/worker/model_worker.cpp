@@ -146,10 +146,7 @@ Status ModelWorker::prepare_recordings() {
     recordings.push_back(prepare_recording(std::move(*recording)));
   }
   if (recordings.empty()) {
-    RigSettings settings;
-    settings.material = *scene_.material;
-    settings.seed = seed_;
-    Result<Recording> recording = record_sensors(settings, control(0.0, kRecorded).progress);
+    Result<Recording> recording = record_sensors({*scene_.material, seed_}, control(0.0, kRecorded).progress);
     if (!recording) return recording.error();
     recordings.push_back(prepare_recording(std::move(*recording)));
   }
@@ -180,9 +177,7 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   if (!recipe.prepared) {
     if (const Status status = prepare(recipe, plan); !status) return status.error();
   }
-  MethodRequest request;
-  request.method = plan.method;
-  request.seed = seed_;
+  MethodRequest request{.method = plan.method, .seed = seed_};
   if (plan.centres > 0) request.centres = plan.centres;
   const auto base = recipe.bases.find(plan.method->base);
   Result<MethodFit> fitted = fit_method(*recipe.prepared, request, control(prepared, 1.0),
