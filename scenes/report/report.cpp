@@ -44,41 +44,35 @@ constexpr double kGoodShare = 0.9;
 // The answer mentions the surface only if moving it changes the share within the JND by more.
 constexpr double kShareThatMatters = 0.005;
 
-// A part of a sentence: text, a model's name, or a number. A number has its model and figure of merit, so that
-// tests/scenes/report/check_report.py can recompute it.
+// A model's name, or a number with its model and figure of merit, so that tests/scenes/report/check_report.py can
+// recompute it.
 struct SentencePart {
   std::string text;
-  std::string model{};   // name of the model; empty for text
-  std::string figure{};  // figure of merit of a number, e.g. "within_jnd"; else empty
+  std::string model{};
+  std::string figure{};  // "within_jnd"; empty: `text` is the name
 };
 
 // The answer of a report in words, which page, report.json and terminal show.
 class Sentence {
  public:
-  Sentence& operator<<(const std::string& text) { return *this << SentencePart{text}; }
-  Sentence& operator<<(const SentencePart& part) {
-    parts_.push_back(part);
+  Sentence& operator<<(const std::string& text) {
+    plain_ += text;
+    html_ += escape_html(text);
     return *this;
   }
-  std::string html() const {
-    std::string html;
-    for (const SentencePart& words : parts_) {
-      const std::string text = escape_html(words.text);
-      const std::string model = "<span data-model=\"" + escape_html(words.model) + "\" data-figure=\"";
-      html += words.model.empty()    ? text
-              : words.figure.empty() ? "<b>" + text + "</b>"
-                                     : model + words.figure + "\">" + text + "</span>";
-    }
-    return html;
+  Sentence& operator<<(const SentencePart& part) {
+    plain_ += part.text;
+    const std::string begin = part.figure.empty() ? "<b>"
+                                                  : "<span data-model=\"" + escape_html(part.model) +
+                                                        "\" data-figure=\"" + part.figure + "\">";
+    html_ += begin + escape_html(part.text) + (part.figure.empty() ? "</b>" : "</span>");
+    return *this;
   }
-  std::string plain_text() const {
-    std::string text;
-    for (const SentencePart& words : parts_) text += words.text;
-    return text.substr(0, text.find_last_not_of(' ') + 1);
-  }
+  const std::string& html() const { return html_; }
+  std::string plain_text() const { return plain_.substr(0, plain_.find_last_not_of(' ') + 1); }
 
  private:
-  std::vector<SentencePart> parts_;
+  std::string html_, plain_;
 };
 
 // Two decimals, rounded down: 99.996 % is "99.99 %".
@@ -88,7 +82,7 @@ SentencePart number(const ModelResult& model, const char* figure, const std::str
   return {text, model.plan.name, figure};
 }
 
-SentencePart name(const ModelResult& model) { return {model.plan.name, model.plan.name}; }
+SentencePart name(const ModelResult& model) { return {model.plan.name}; }
 
 SentencePart tick(const ModelResult& model) {
   return number(model, "tick_ns", with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns");
