@@ -36,7 +36,8 @@ double expected_cost_s(const SlotPlan& plan) {
          (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
 }
 
-// Times the tick on one second of strokes within the model's training domain, which takes some milliseconds.
+}  // namespace
+
 Timing time_of_tick(const std::shared_ptr<const FittedModel>& model) {
   std::size_t feature = 0;
   const double depth_m = std::min(0.8 * deepest_in_domain_m(model->data(), feature), 0.01);
@@ -52,13 +53,6 @@ Timing time_of_tick(const std::shared_ptr<const FittedModel>& model) {
     samples.push_back(tool);
   }
   return time_models({model}, {{sensor, std::move(samples)}}).front().tick;
-}
-
-}  // namespace
-
-FinishedModel finished_model(std::size_t job_id, const SlotPlan& plan, std::shared_ptr<const FittedModel> model) {
-  const Timing tick = time_of_tick(model);
-  return {job_id, plan, std::move(model), "", tick};
 }
 
 // On Linux, the niceness of one thread is set by its thread id.
@@ -111,9 +105,8 @@ void ModelWorker::work() {
     working_on_ = job.job_id;
     share_.store(0.0, std::memory_order_relaxed);
     lock.unlock();
-    const auto model = make(job.plan);
-    FinishedModel made = model ? finished_model(job.job_id, job.plan, *model)
-                               : FinishedModel{job.job_id, job.plan, nullptr, model.error().message, {}};
+    FinishedModel made{job.job_id, job.plan.centres, make(job.plan), {}};
+    if (made.model) made.tick = time_of_tick(*made.model);
     lock.lock();
     finished_.push_back(std::move(made));
   }
