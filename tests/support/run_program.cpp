@@ -81,11 +81,16 @@ ProgramRun must_run(const std::vector<std::string>& arguments) {
   return run;
 }
 
+testing::AssertionResult is_refused(const ProgramRun& run, int exit_code, const std::vector<std::string>& parts) {
+  const bool one_line = run.err.rfind("error: ", 0) == 0 && run.err.find('\n') == run.err.size() - 1;
+  if (run.exit_code == exit_code && run.out.empty() && one_line) return has_parts(run.err, parts);
+  return testing::AssertionFailure() << "exit code " << run.exit_code << ", expected " << exit_code
+                                     << " and one error line: " << run.out << run.err;
+}
+
 testing::AssertionResult fails(int exit_code, const std::vector<std::string>& arguments,
                                const std::vector<std::string>& parts) {
-  const ProgramRun run = run_palpate(arguments);
-  if (run.exit_code == exit_code) return has_parts(run.err, parts);
-  return testing::AssertionFailure() << "exit code " << run.exit_code << ", expected " << exit_code << ": " << run.err;
+  return is_refused(run_palpate(arguments), exit_code, parts);
 }
 
 }  // namespace palpate::test

@@ -25,8 +25,10 @@ ProgramRun run_palpate(const std::vector<std::string>& arguments, const std::vec
 // The same; throws the error line if the exit code is not 0, which fails the test.
 ProgramRun must_run(const std::vector<std::string>& arguments);
 
-// Success if `palpate` ends with `exit_code` and an error line that has `parts` in this order.
+// Success if the program ended with `exit_code` and printed nothing but one error line that has `parts` in this order.
+testing::AssertionResult is_refused(const ProgramRun& run, int exit_code, const std::vector<std::string>& parts);
+// The same for a run of `palpate`.
 testing::AssertionResult fails(int exit_code, const std::vector<std::string>& arguments,
-                               const std::vector<std::string>& parts = {"error: "});
+                               const std::vector<std::string>& parts = {});
 
 }  // namespace palpate::test

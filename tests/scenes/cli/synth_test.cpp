@@ -69,9 +69,7 @@ TEST(Synth, WrongUsageEndsWithTwoAndLeavesNoFile) {
   };
   for (std::vector<std::string> arguments : wrong) {
     arguments.insert(arguments.begin(), "synth");
-    const auto run = run_palpate(arguments);
-    EXPECT_EQ(run.exit_code, 2) << run.err;
-    EXPECT_EQ(run.err.rfind("error: ", 0), 0u) << run.err;
+    EXPECT_TRUE(test::fails(2, arguments));
   }
   EXPECT_TRUE(folder.entries().empty());
 }

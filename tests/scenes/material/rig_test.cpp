@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "scenes/evaluation/error_figures.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {
@@ -46,18 +47,11 @@ RigRecording made(const std::string& material, std::uint64_t seed, double second
   return test::must(record({material, seed, seconds, rate_Hz}));
 }
 
-struct Spread {
-  double mean = 0.0, deviation = 0.0;
-};
 template <typename Sample>
-Spread spread(std::size_t count, Sample sample) {
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    sum += sample(i);
-    squares += sample(i) * sample(i);
-  }
-  const double n = static_cast<double>(count);
-  return {sum / n, std::sqrt(squares / n - sum / n * sum / n)};
+Moments moments(std::size_t count, Sample sample) {
+  Moments moments;
+  for (std::size_t i = 0; i < count; ++i) moments.add(sample(i));
+  return moments;
 }
 
 // The paper's recording, section 4: 41,499 samples, of which the reduction keeps
@@ -145,14 +139,14 @@ TEST(Rig, EncoderReadsTheNearestThirtyMicrometres) {
 TEST(Rig, ForceNoiseIsAsStatedAndInTwelveBitSteps) {
   const RigRecording rig = made("silicone", 1);
   const double step_N = 20.0 / 4096.0;
-  const Spread error = spread(rig.truth.size(), [&](std::size_t i) {
+  const Moments error = moments(rig.truth.size(), [&](std::size_t i) {
     const double count = rig.recording.rows[i].force_N / step_N;
     EXPECT_NEAR(count, std::round(count), 1e-9);
     return rig.recording.rows[i].force_N - rig.truth[i].force_N;
   });
   // The variances of noise and rounding add. The standard errors are 2.5e-5 and 1.8e-5 N.
-  EXPECT_NEAR(error.mean, 0.0, 1e-4);
-  EXPECT_NEAR(error.deviation, std::hypot(0.005, step_N / std::sqrt(12.0)), 1e-4);
+  EXPECT_NEAR(error.mean(), 0.0, 1e-4);
+  EXPECT_NEAR(error.deviation(), std::hypot(0.005, step_N / std::sqrt(12.0)), 1e-4);
 }
 
 TEST(Rig, ForceCellClipsAtItsRange) {
@@ -177,16 +171,16 @@ TEST(Rig, AccelerometerHasWhiteNoiseAndASlowBias) {
   }
   // Differences of adjacent samples have twice the white variance and no bias.
   // The standard error is 0.2 %.
-  const Spread steps = spread(count - 1, [&](std::size_t i) { return error(i + 1) - error(i); });
-  EXPECT_NEAR(steps.deviation / std::sqrt(2.0), 0.07, 0.001);
+  const Moments steps = moments(count - 1, [&](std::size_t i) { return error(i + 1) - error(i); });
+  EXPECT_NEAR(steps.deviation() / std::sqrt(2.0), 0.07, 0.001);
   // In 200 s the bias has about ten independent values of 0.1, so its mean and
   // spread are accurate to a factor of two.
-  const Spread bias = spread(count / 1000, [&](std::size_t second) {
-    return spread(1000, [&](std::size_t i) { return error(1000 * second + i); }).mean;
+  const Moments bias = moments(count / 1000, [&](std::size_t second) {
+    return moments(1000, [&](std::size_t i) { return error(1000 * second + i); }).mean();
   });
-  EXPECT_LT(std::abs(bias.mean), 0.15);
-  EXPECT_GT(bias.deviation, 0.03);
-  EXPECT_LT(bias.deviation, 0.2);
+  EXPECT_LT(std::abs(bias.mean()), 0.15);
+  EXPECT_GT(bias.deviation(), 0.03);
+  EXPECT_LT(bias.deviation(), 0.2);
 }
 
 // As in real rigs: the same motion and noise with another origin of position and force.
