@@ -121,7 +121,7 @@ class Measurement {
     if (data_.gains.empty()) remember(*prepared);
     if (const Status fitted = fit(*prepared); !fitted) return fitted;
     for (const PreparedRecordingPointer& recording : fold.tested) {
-      if (const Status status = evaluate_test(recording->recording, fold.counted_from_s); !status) return status;
+      if (const Status status = evaluate_test(recording, fold.counted_from_s); !status) return status;
     }
     return {};
   }
@@ -144,7 +144,7 @@ class Measurement {
       data_.times_2009_s.push_back(one.time_s);
   }
 
-  Status evaluate_test(const Recording& recording, double counted_from_s) {
+  Status evaluate_test(const PreparedRecordingPointer& tested, double counted_from_s) {
     std::vector<EvaluatedModel> models;
     EvaluationRequest request;
     request.counted_from_s = counted_from_s;
@@ -154,7 +154,7 @@ class Measurement {
       if (one.plan.main && one.plan.recipe == Recipe::palpate) request.surface_models.push_back(one.model);
     }
     request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
-    const auto result = evaluate(rows_of(recording), models, request);
+    const auto result = evaluate(rows_of(tested->recording), models, request);
     if (!result) return result.error();
     auto errors = result->models.begin();
     for (ModelResult& one : models_) {
@@ -163,8 +163,8 @@ class Measurement {
       if (one.model) ++errors;
     }
     timing_.push_back(result->timing);
-    data_.tested.push_back({recording.name, result->models.front().surface.at});
-    tested_.push_back(&recording);
+    data_.tested.push_back({tested->recording.name, result->models.front().surface.at});
+    tested_.push_back(tested);
     return {};
   }
 
@@ -220,7 +220,7 @@ class Measurement {
   ReportData& data_;
   std::vector<ModelResult>& models_;
   Progress progress_;
-  std::vector<const Recording*> tested_;
+  std::vector<PreparedRecordingPointer> tested_;
   std::vector<TimedSamples> timing_;  // one per test recording
 };
 
