@@ -120,12 +120,10 @@ Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const SlotPlan& pla
 }
 
 FitControl ModelWorker::control(double from, double to) {
-  FitControl result;
-  result.progress = [this, from, to](double fraction) {
+  return {[this, from, to](double fraction) {
     share_.store(from + (to - from) * fraction, std::memory_order_relaxed);
     return !cancelled_.load(std::memory_order_relaxed);
-  };
-  return result;
+  }};
 }
 
 Status ModelWorker::prepare_recordings() {
