@@ -16,7 +16,6 @@
 namespace palpate {
 namespace {
 
-
 class ExportVerb : public ::testing::Test {
  protected:
   // Positions and forces of the virtual rig.
@@ -41,8 +40,7 @@ class ExportVerb : public ::testing::Test {
     test::must_run(fit);
     std::vector<std::string> arguments = {"export", folder_.file("m.json"), "--c", folder_.file("m.c"), "--force"};
     arguments.insert(arguments.end(), export_options.begin(), export_options.end());
-    const auto run = test::must_run(arguments);
-    printed_ = run.out;
+    printed_ = test::must_run(arguments).out;
     return test::read_text(folder_.file("m.c"));
   }
 

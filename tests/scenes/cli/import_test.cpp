@@ -18,8 +18,7 @@ TEST(ImportVerb, WritesARecordingAndPrintsTheGuesses) {
   const auto run = test::must_run({"import", kFiles + "08_excel_de.csv", "--out", folder.file("rec.csv")});
   EXPECT_TRUE(test::has_parts(
       run.out, {"semicolon", "decimal comma", "UTF-8", "line 1", "line 2", "position", "2 \"Weg [mm]\"", "mm"}));
-  const auto recording = test::must(read_recording(folder.file("rec.csv")));
-  EXPECT_EQ(recording.rows.size(), 24u);
+  EXPECT_EQ(test::must(read_recording(folder.file("rec.csv"))).rows.size(), 24u);
 }
 
 TEST(ImportVerb, WritesOverNothingWithoutForceAndLeavesNothingAfterAnError) {

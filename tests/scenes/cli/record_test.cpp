@@ -46,8 +46,8 @@ TEST(Record, WritesMotionAndForceOfADeviceAndChecksThem) {
 TEST(Record, KeepsMotionAloneOfADeviceThatMeasuresNoForce) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("motion.csv");
-  const auto run = test::must_run({"record", "--device", "hand", "--seconds", "1.5", "--out", path});
-  EXPECT_TRUE(test::has_parts(run.out, {"has no force"}));
+  EXPECT_TRUE(test::has_parts(test::must_run({"record", "--device", "hand", "--seconds", "1.5", "--out", path}).out,
+                              {"has no force"}));
   EXPECT_TRUE(test::has_parts(test::read_text(path), {"\ntime_s,position_m,velocity_m_per_s"}));
   EXPECT_TRUE(test::fails(1, {"record", "--device", "hand", "--guide", "--out", folder.file("guided.csv")},
                           {"error: --guide", "hand", "; "}));
@@ -61,8 +61,7 @@ TEST(Record, ARunThatIsStoppedOrKilledLeavesWholeRows) {
     test::ChildProcess program({PALPATE_BINARY, "record", "--device", replayed(folder), "--out", path});
     ASSERT_TRUE(test::wait_for([&] { return std::filesystem::exists(path); }, 120)) << "after its first 1000 rows";
     EXPECT_EQ(program.end(signal), exit_code);
-    const auto recording = test::must(read_recording(path));
-    EXPECT_GE(recording.rows.size(), 1000u);
+    EXPECT_GE(test::must(read_recording(path)).rows.size(), 1000u);
   }
 }
 
@@ -75,8 +74,8 @@ TEST(Record, RefusesDevicesWithAReason) {
 }
 
 TEST(DevicesTest, ADeviceShowsThatItsWatchdogStopsIt) {
-  const auto run = test::must_run({"devices", "--test", kBridge});
-  EXPECT_TRUE(test::has_parts(run.out, {"watchdog    stopped", "heartbeat   stopped"}));
+  EXPECT_TRUE(test::has_parts(test::must_run({"devices", "--test", kBridge}).out,
+                              {"watchdog    stopped", "heartbeat   stopped"}));
   EXPECT_EQ(run_palpate({"devices", "--test", "hand"}).exit_code, 2);
 }
 

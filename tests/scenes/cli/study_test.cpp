@@ -54,8 +54,7 @@ TEST(Study, SimulatedSubjectsDiscriminateStrokes) {
   EXPECT_TRUE(test::has_parts(
       run.out, {"comparison   greedy-0\nstroke       foam, ", "Predicted above the JND", "one JND: consistent."}))
       << "a model of silicone against foam: " << run.out;
-  const auto data = test::must(read_study(out + "/S02.csv"));
-  EXPECT_EQ(data.records.size(), 104u);
+  EXPECT_EQ(test::must(read_study(out + "/S02.csv")).records.size(), 104u);
 
   const auto again =
       test::must_run({"study", "analyse", out + "/S01.csv", out + "/S02.csv", "--out", folder.file("again")});

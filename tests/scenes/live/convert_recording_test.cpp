@@ -40,8 +40,7 @@ TEST(ConvertedRecording, AnotherTableBecomesOneInTheFolder) {
   const auto converted = test::must(convert_recording(path, data.path()));
   EXPECT_EQ(converted.path.rfind(data.path() + "/trial-", 0), 0u) << converted.path;
   EXPECT_EQ(converted.words.at(2).rfind("position: column 2 \"Position [mm]\" in mm", 0), 0u) << converted.words.at(2);
-  const auto recording = test::must(read_recording(converted.path));
-  EXPECT_NEAR(recording.rows.back().force_N, 0.98e-3, 1e-9);
+  EXPECT_NEAR(test::must(read_recording(converted.path)).rows.back().force_N, 0.98e-3, 1e-9);
 }
 
 TEST(ConvertedRecording, ErrorsNameTheKindOfTheFile) {

@@ -135,15 +135,13 @@ TEST(Plot, ALegendOfSeveralLinesHasAsManyLinesOfRoom) {
 TEST(Plot, NamesAreTextAndNoCommands) {
   Plot plot = errors_up_to(1.0);
   plot.panels[0].title = "a\"; system('touch hit') #`x`\\";
-  const auto script = test::must(plot_script(plot));
-  EXPECT_NE(script.find("set title \"a'; system('touch hit') #'x''\""), std::string::npos);
+  EXPECT_NE(test::must(plot_script(plot)).find("set title \"a'; system('touch hit') #'x''\""), std::string::npos);
 }
 
 TEST(Plot, AGapBreaksTheLine) {
   Plot plot = errors_up_to(1.0);
   plot.panels[0].series[0].rows[4].y = kNoValue;
-  const auto script = test::must(plot_script(plot));
-  EXPECT_NE(script.find("\n\n0.6 "), std::string::npos);
+  EXPECT_NE(test::must(plot_script(plot)).find("\n\n0.6 "), std::string::npos);
 }
 
 TEST(Gnuplot, AnErrorNamesTheScript) {

@@ -35,8 +35,7 @@ Recording presses(const std::vector<double>& depths_m, double offset_N, double r
 
 TEST(PrepareStrokes, TakesTheStrokeThatDiffersMost) {
   const JndLine jnd{0.1, 0.0};
-  const auto strokes = test::must(strokes_of(presses({0.02, 0.01, 0.01}, 0.05), nullptr, spring(100.0), jnd));
-  const StrokePair& pair = *strokes;
+  const StrokePair pair = *test::must(strokes_of(presses({0.02, 0.01, 0.01}, 0.05), nullptr, spring(100.0), jnd));
   EXPECT_EQ(pair.reference, "recorded force");
   EXPECT_EQ(pair.comparison, "spring");
   EXPECT_EQ(pair.recording, "spring");

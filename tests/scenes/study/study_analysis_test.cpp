@@ -87,8 +87,7 @@ TEST(StudyAnalysis, UsesTheRenderedForces) {
   data.records[0].second_rendered_N *= 0.7;  // the device was off for part of the time
   data.records[1].trial.training = true;
   data.records[2].rendered = false;  // a rehearsal
-  const auto analysis = test::must(analyse_study({data}, false));
-  const SubjectJnd& subject = analysis.subjects.front();
+  const SubjectJnd subject = test::must(analyse_study({data}, false)).subjects.front();
   EXPECT_EQ(subject.unusable, 2u);
   EXPECT_EQ(subject.references[0].count, 1597u);
   EXPECT_NEAR(subject.references[3].rendered_N, 2.45, 1e-9);

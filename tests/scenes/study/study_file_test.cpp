@@ -92,8 +92,7 @@ TEST_F(StudyFileTest, OtherStudiesAndOtherFilesAreRefusedAndKept) {
 TEST_F(StudyFileTest, ACommaInTheNameOfADeviceBreaksNoRow) {
   auto file = StudyFile::open(path_, {"S01", nullptr, "bridge:a,b", true});
   ASSERT_TRUE(file.ok() && file->consent("").ok() && file->append(answer_to(0)).ok());
-  const auto data = test::must(read_study(path_));
-  EXPECT_EQ(data.records.at(0).device, "bridge:a;b");
+  EXPECT_EQ(test::must(read_study(path_)).records.at(0).device, "bridge:a;b");
 }
 
 TEST_F(StudyFileTest, AFullDiskLosesNothingThatWasAnswered) {
