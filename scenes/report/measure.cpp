@@ -43,8 +43,8 @@ struct Preparations {
 
 class Measurement {
  public:
-  Measurement(ReportData& data, const FitControl& control)
-      : data_(data), models_(data.models), progress_(control, plan_models()) {}
+  Measurement(ReportData& data, bool quick, const FitControl& control)
+      : data_(data), models_(data.models), progress_(control, plan_models(quick)) {}
 
   Status run() {
     for (const Split& fold : data_.recordings.folds) {
@@ -63,9 +63,9 @@ class Measurement {
 
  private:
   // Returns the expected time of the whole measurement, s.
-  double plan_models() {
+  double plan_models(bool quick) {
     double total = 2.0 * kPrepareSeconds;
-    for (PlannedModel& plan : make_plan(data_.quick, data_.scene.features.size())) {
+    for (PlannedModel& plan : make_plan(quick, data_.scene.features.size())) {
       ModelResult& model = models_.emplace_back();
       model.plan = std::move(plan);
       model.recorded_samples = model.moved_samples = ModelErrors(data_.scene.jnd);
@@ -266,8 +266,7 @@ Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, b
   ReportData data;
   data.scene = scene;
   data.recordings = recordings;
-  data.quick = quick;
-  if (const Status status = Measurement(data, control).run(); !status) return status.error();
+  if (const Status status = Measurement(data, quick, control).run(); !status) return status.error();
   return data;
 }
 

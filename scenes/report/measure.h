@@ -73,7 +73,6 @@ struct Choice {
 struct ReportData {
   Scene scene;
   RecordingSet recordings;
-  bool quick = false;
   std::vector<MovedSurface> tested;  // every test recording
   NoiseFloor floor;                  // of all test recordings together
   std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces

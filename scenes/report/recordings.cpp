@@ -153,16 +153,16 @@ SharedStretch shared_stretch(const Recording& trained, const Recording& tested) 
 Result<RecordingSet> split_recordings(std::vector<PreparedRecordingPointer> train,
                                       std::vector<PreparedRecordingPointer> test) {
   RecordingSet set;
-  set.virtual_recordings = train.empty();
+  const bool is_virtual = train.empty();
   sort_recordings(train);
   sort_recordings(test);
   std::vector<PreparedRecordingPointer>& all = set.all = std::move(train);
-  if (set.virtual_recordings) {
+  if (is_virtual) {
     auto made = virtual_recordings("silicone");
     if (!made) return made.error();
     all = std::move(*made);
   }
-  set.trained = set.virtual_recordings ? 1 : all.size();
+  set.trained = is_virtual ? 1 : all.size();
   all.insert(all.end(), test.begin(), test.end());
   if (const Status status = refuse_leakage(all, set.trained); !status) return status.error();
   if (set.trained < all.size()) {

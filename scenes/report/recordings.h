@@ -36,7 +36,6 @@ struct RecordingSet {
   std::vector<Split> folds;                   // several for a cross-validation
   std::vector<PreparedRecordingPointer> all;  // those to train on come first
   std::size_t trained = 0;                    // their number; all.size(): each of them is tested as well
-  bool virtual_recordings = false;
 
   bool is_tested(std::size_t i) const { return i >= trained || trained == all.size(); }
 };
