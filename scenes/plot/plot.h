@@ -6,7 +6,6 @@
 // Thread guarantee: value types and pure functions; plot_script reads the asset.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>

@@ -2,6 +2,8 @@
 // Thread guarantee: slow side; the fits start threads.
 #pragma once
 
+#include <optional>
+
 #include "engine/base/fit_control.h"
 #include "models/fit/fit.h"
 #include "models/model/fitted_model.h"

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "engine/base/csv_scanner.h"
-#include "scenes/evaluation/ranking.h"
+#include "engine/base/text.h"
 #include "scenes/plot/inline_svg.h"
 
 namespace palpate {

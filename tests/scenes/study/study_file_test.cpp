@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "tests/support/full_disk.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/study_driving.h"

@@ -3,13 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 
 #include <chrono>
 #include <thread>
 
-#include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
 #include "tests/support/message_parts.h"
 
