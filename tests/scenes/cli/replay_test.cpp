@@ -39,6 +39,14 @@ class ReplayVerb : public ::testing::Test {
     return run_palpate(arguments);
   }
 
+  // The object that it prints with --json, without a word on stderr.
+  Json results(const std::vector<std::string>& models, std::vector<std::string> more = {}) {
+    more.emplace_back("--json");
+    const test::ProgramRun ran = run(models, more);
+    if (ran.exit_code != 0 || !ran.err.empty()) throw std::runtime_error(ran.err);
+    return Json::parse(ran.out);
+  }
+
   test::TemporaryFolder folder_;
   std::string recording_;
   std::vector<std::string> models_;
@@ -58,10 +66,7 @@ std::vector<std::string> fields(const std::string& line) {
 }
 
 TEST_F(ReplayVerb, JsonHasTheContractsFields) {
-  const auto ran = run(models_, {"--json"});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  EXPECT_EQ(ran.err, "");
-  const Json object = Json::parse(ran.out);
+  const Json object = results(models_);
   EXPECT_EQ(keys(object),
             (std::vector<std::string>{"recording", "samples", "contact_samples", "surface_offset_m", "models"}));
   EXPECT_EQ(object["recording"], recording_);
@@ -95,9 +100,7 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
 
 TEST_F(ReplayVerb, FiguresFollowFromTheForcesFile) {
   const std::string out = folder_.file("forces.csv");
-  const auto ran = run({models_[0], models_[3], models_[5]}, {"--json", "--out", out});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  const Json object = Json::parse(ran.out);
+  const Json object = results({models_[0], models_[3], models_[5]}, {"--out", out});
   std::istringstream file(test::read_text(out));
   std::string line;
   ASSERT_TRUE(std::getline(file, line));
@@ -161,9 +164,7 @@ TEST_F(ReplayVerb, GivesEveryErrorAsRecordedAndWithTheSurfaceMoved) {
   const std::string shifted = folder_.file("shifted.csv");
   ASSERT_TRUE(write_recording(shifted, recording, {}, false).ok());
 
-  const auto both = run({model}, {"--recording", shifted, "--json"});
-  ASSERT_EQ(both.exit_code, 0) << both.err;
-  const Json list = Json::parse(both.out);
+  const Json list = results({model}, {"--recording", shifted});
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0]["surface_offset_m"], 0.0);
   EXPECT_NEAR(list[1]["surface_offset_m"], 0.3e-3, 0.02e-3);
@@ -203,9 +204,7 @@ TEST_F(ReplayVerb, TheSameCommandGivesTheSameBytesInAnotherProcess) {
 
 TEST_F(ReplayVerb, ModelsOfOneNameGetDistinctNames) {
   const std::string out = folder_.file("forces.csv");
-  const auto ran = run({models_[5], models_[5], models_[5]}, {"--json", "--out", out});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  const Json object = Json::parse(ran.out);
+  const Json object = results({models_[5], models_[5], models_[5]}, {"--out", out});
   EXPECT_EQ(object["models"][0]["name"], "greedy-cubic-6");
   EXPECT_EQ(object["models"][1]["name"], "greedy-cubic-6-2");
   EXPECT_EQ(object["models"][2]["name"], "greedy-cubic-6-3");
