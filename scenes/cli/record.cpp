@@ -41,7 +41,7 @@ class RecordProgress {
   ~RecordProgress() { clear(); }
 
   void show(const LoopSnapshot& snapshot, const RecordingStatus& status) {
-    tell_faults(snapshot.device_faults_latched);
+    show_faults(snapshot.device_faults_latched);
     if (!terminal_) return;
     const double step_s = snapshot.tick.time_s - last_s_;
     const double speed_m_per_s = step_s > 0.0 ? (snapshot.tick.position_m - last_m_) / step_s : 0.0;
@@ -62,9 +62,9 @@ class RecordProgress {
   }
 
  private:
-  void tell_faults(std::uint32_t faults) {
-    for (const std::string& words : device_fault_words(faults & ~told_)) line("device: " + words);
-    told_ |= faults;
+  void show_faults(std::uint32_t faults) {
+    for (const std::string& words : device_fault_words(faults & ~shown_faults_)) line("device: " + words);
+    shown_faults_ |= faults;
   }
   void clear() {
     if (drawn_) std::fputs("\r\033[K", stderr);
@@ -74,7 +74,7 @@ class RecordProgress {
   bool measures_force_;
   bool terminal_ = isatty(STDERR_FILENO) == 1;
   bool drawn_ = false;
-  std::uint32_t told_ = 0;
+  std::uint32_t shown_faults_ = 0;
   double last_s_ = 0.0, last_m_ = 0.0;
 };
 
@@ -114,12 +114,12 @@ Result<std::string> record(const RecordOptions& options, const CheckRequest& che
   controls.recording = recorder.number();
   loop.set_controls(controls);
   RecordGuide guide(options.out, check);
-  bool zeroing_told = false;
+  bool zeroing_announced = false;
   std::optional<Notice> outcome;
   for (const double start_s = steady_now_s(); !outcome && stop_requested() == 0;) {
     std::this_thread::sleep_for(kPause);
     progress.show(loop.newest(), recorder.status());
-    zero_on_enter(device, loop.newest().device, zeroing_told, progress);
+    zero_on_enter(device, loop.newest().device, zeroing_announced, progress);
     if (options.guide) {
       for (const std::string& line : guide.update(steady_now_s())) progress.line(line);
     }

@@ -164,8 +164,7 @@ Legend legend_of(const Plot& plot) {
 
 }  // namespace
 
-Result<std::string> plot_script(const Plot& asked) {
-  Plot plot = asked;
+Result<std::string> plot_script(Plot plot) {
   for (Panel& panel : plot.panels) {
     std::vector<Series> marks = cut_marks(panel);
     panel.series.insert(panel.series.end(), marks.begin(), marks.end());

@@ -85,6 +85,6 @@ struct Plot {
 };
 
 // Errors: the asset is missing.
-Result<std::string> plot_script(const Plot& plot);
+Result<std::string> plot_script(Plot plot);
 
 }  // namespace palpate
