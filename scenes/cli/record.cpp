@@ -41,7 +41,9 @@ class RecordProgress {
   ~RecordProgress() { clear(); }
 
   void show(const LoopSnapshot& snapshot, const RecordingStatus& status) {
-    show_faults(snapshot.device_faults_latched);
+    const std::uint32_t faults = snapshot.device_faults_latched;
+    for (const std::string& words : device_fault_words(faults & ~shown_faults_)) line("device: " + words);
+    shown_faults_ |= faults;
     if (!terminal_) return;
     const double step_s = snapshot.tick.time_s - last_s_;
     const double speed_m_per_s = step_s > 0.0 ? (snapshot.tick.position_m - last_m_) / step_s : 0.0;
@@ -62,10 +64,6 @@ class RecordProgress {
   }
 
  private:
-  void show_faults(std::uint32_t faults) {
-    for (const std::string& words : device_fault_words(faults & ~shown_faults_)) line("device: " + words);
-    shown_faults_ |= faults;
-  }
   void clear() {
     if (drawn_) std::fputs("\r\033[K", stderr);
     drawn_ = false;
