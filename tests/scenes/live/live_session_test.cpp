@@ -285,8 +285,6 @@ TEST_F(SessionOfFiles, ClosingCompletesTheRecording) {
   EXPECT_GT(live.rows.size(), 200u);
 }
 
-// A session with fits: error figures relative to the material's true force, then a
-// recording of the session that a fit accepts.
 // The true force belongs to one material; a model file names the material that it was fitted to.
 TEST_F(SessionOfFiles, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   SessionRequest request = of_files("hand");
