@@ -1,7 +1,6 @@
 // palpate devices: lists the devices, and the reason if one cannot be opened.
 #include "scenes/cli/devices.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -13,6 +12,7 @@
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/registry/device_registry.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/folders.h"
 
@@ -44,26 +44,20 @@ std::string plugged_in_text(DeviceBus& bus, const std::string& assets) {
 
 namespace {
 
-void print_hid_protocols() {
+Status print_devices() {
+  const Result<std::string> assets = find_assets();
+  std::vector<std::vector<std::string>> rows = {{"DEVICE", "FORCE", "USABLE", "DESCRIPTION"}};
+  for (const DeviceDescription& device : list_devices({.calibrations = calibrations_folder()})) {
+    const std::string& problem = device.problem;
+    rows.push_back(
+        {device.name, device.holder != Holder::none ? "yes" : "no", problem.empty() ? "yes" : "no", device.summary});
+    if (!problem.empty()) rows.push_back({"", "", "", problem});
+  }
+  print_table(rows, false);
   std::printf("\nSUPPORTED BY hid\n");
   for (const DeviceProtocol* protocol : kHidProtocols) {
     std::printf("  %s: %s; tested %s\n", protocol->name, protocol->description, kTestedOn);
   }
-}
-
-Status print_devices() {
-  const Result<std::string> assets = find_assets();
-  const std::vector<DeviceDescription> devices = list_devices({.calibrations = calibrations_folder()});
-  std::size_t width = 0;
-  for (const DeviceDescription& device : devices) width = std::max(width, device.name.size());
-  const int column = static_cast<int>(width);
-  std::printf("%-*s  %-5s  %-6s  %s\n", column, "DEVICE", "FORCE", "USABLE", "DESCRIPTION");
-  for (const DeviceDescription& device : devices) {
-    std::printf("%-*s  %-5s  %-6s  %s\n", column, device.name.c_str(), device.holder != Holder::none ? "yes" : "no",
-                device.problem.empty() ? "yes" : "no", device.summary.c_str());
-    if (!device.problem.empty()) std::printf("%*s  %s\n", column + 15, "", device.problem.c_str());
-  }
-  print_hid_protocols();
   std::fputs(plugged_in_text(system_hid_bus(), assets ? *assets : "assets").c_str(), stdout);
   return {};
 }

@@ -19,11 +19,6 @@ struct ExportArguments {
   bool force = false;
 };
 
-std::string source_of_sensor(const ExportArguments& arguments, const ModelData& data) {
-  if (arguments.encoder_step_m > 0.0) return "from --encoder-step";
-  return data.sensor ? "from the model's recordings" : "the model has no step of its recordings; see --encoder-step";
-}
-
 void print_summary(const ExportArguments& arguments, const ModelData& data, const SensorSpec& sensor,
                    std::size_t bytes) {
   std::printf("%s: %s in %s precision, %zu bytes of C\n", arguments.out.c_str(), data.name.c_str(),
@@ -31,7 +26,10 @@ void print_summary(const ExportArguments& arguments, const ModelData& data, cons
   std::printf(
       "expects positions in steps of %g um with an additional noise of %g um (%s);\n"
       "for a recording of such positions alone, it gives the forces of palpate replay\n",
-      1e6 * sensor.encoder_step_m, 1e6 * sensor.position_noise_m, source_of_sensor(arguments, data).c_str());
+      1e6 * sensor.encoder_step_m, 1e6 * sensor.position_noise_m,
+      arguments.encoder_step_m > 0.0 ? "from --encoder-step"
+      : data.sensor                  ? "from the model's recordings"
+                                     : "the model has no step of its recordings; see --encoder-step");
 }
 
 Status run_export(const ExportArguments& arguments) {

@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "engine/tick/replay.h"
 #include "models/fit_library/fit_recordings.h"
@@ -37,15 +39,11 @@ struct FitArguments {
   bool json = false;
 };
 
-// An option that only some methods have.
-struct MethodOnly {
-  const char* option;
-  MethodOption takes;
-};
-constexpr MethodOnly kMethodOnly[] = {{"--centres", kTakesCentres},
-                                      {"--candidates", kTakesCandidates},
-                                      {"--grid", kTakesGrid},
-                                      {"--kernel", kTakesKernel}};
+// The options that only some methods have.
+constexpr std::pair<const char*, MethodOption> kMethodOnly[] = {{"--centres", kTakesCentres},
+                                                                {"--candidates", kTakesCandidates},
+                                                                {"--grid", kTakesGrid},
+                                                                {"--kernel", kTakesKernel}};
 
 // Checks for options that exclude each other by their values, and for those that the method does not have.
 void check_usage(const CLI::App& verb, const FitArguments& arguments) {
@@ -54,10 +52,10 @@ void check_usage(const CLI::App& verb, const FitArguments& arguments) {
                                                    "\", expected the scene's features; leave one of the two out");
   }
   const Method& method = *find_method(arguments.options.method);
-  for (const MethodOnly& only : kMethodOnly) {
-    if (verb.count(only.option) == 0 || method.can_take(only.takes)) continue;
-    throw CLI::ValidationError(only.option, std::string("method ") + method.name + " does not take this option, only " +
-                                                method_names(only.takes) + "; leave it out");
+  for (const auto& [option, takes] : kMethodOnly) {
+    if (verb.count(option) == 0 || method.can_take(takes)) continue;
+    throw CLI::ValidationError(option, std::string("method ") + method.name + " does not take this option, only " +
+                                           method_names(takes) + "; leave it out");
   }
 }
 
@@ -92,12 +90,12 @@ std::string training_contradiction(const std::vector<std::string>& recordings, c
 }
 
 std::string relaxation_text(const std::vector<RelaxationTime>& times) {
-  std::string text;
+  std::vector<std::string> texts;
   for (const RelaxationTime& time : times) {
-    text += (text.empty() ? "" : ", ") + general(time.time_s, 3) + " s" +
-            (time.standard_error_s > 0.0 ? " +- " + general(time.standard_error_s, 2) : "");
+    texts.push_back(general(time.time_s, 3) + " s" +
+                    (time.standard_error_s > 0.0 ? " +- " + general(time.standard_error_s, 2) : ""));
   }
-  return text.empty() ? "none" : text;
+  return texts.empty() ? "none" : joined(texts);
 }
 
 // One row for each feature: the cross-validated error of the trend with it and without it. The rule that selects

@@ -2,9 +2,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -43,7 +41,9 @@ class RecordProgress {
   ~RecordProgress() { clear(); }
 
   void show(const LoopSnapshot& snapshot, const RecordingStatus& status) {
-    tell_faults(snapshot.device_faults_latched);
+    const std::uint32_t faults = snapshot.device_faults_latched;
+    for (const std::string& words : device_fault_words(faults & ~shown_faults_)) line("device: " + words);
+    shown_faults_ |= faults;
     if (!terminal_) return;
     const double step_s = snapshot.tick.time_s - last_s_;
     const double speed_m_per_s = step_s > 0.0 ? (snapshot.tick.position_m - last_m_) / step_s : 0.0;
@@ -64,10 +64,6 @@ class RecordProgress {
   }
 
  private:
-  void tell_faults(std::uint32_t faults) {
-    for (const std::string& words : device_fault_words(faults & ~told_)) line("device: " + words);
-    told_ |= faults;
-  }
   void clear() {
     if (drawn_) std::fputs("\r\033[K", stderr);
     drawn_ = false;
@@ -76,7 +72,7 @@ class RecordProgress {
   bool measures_force_;
   bool terminal_ = isatty(STDERR_FILENO) == 1;
   bool drawn_ = false;
-  std::uint32_t told_ = 0;
+  std::uint32_t shown_faults_ = 0;
   double last_s_ = 0.0, last_m_ = 0.0;
 };
 
@@ -95,15 +91,13 @@ void zero_on_enter(Device& device, const DeviceHealth& health, bool& announced, 
 
 RecorderRequest recorder_request(const RecordOptions& options, Device& device) {
   const SensorSpec sensor = device.sensor();
-  RecorderRequest request;
-  request.path = options.out;
-  request.force = ReferenceKind::measured;
-  request.columns = {sensor.has_velocity, sensor.has_acceleration, device.measures_force()};
-  request.overwrite = options.force;
-  request.comments = {"recorded by palpate record; device " + options.device,
-                      "position_m: as the device gave it; " +
-                          std::string(device.measures_force() ? "force_N: as it measured it" : "it measures no force")};
-  return request;
+  return {options.out,
+          ReferenceKind::measured,
+          {sensor.has_velocity, sensor.has_acceleration, device.measures_force()},
+          {"recorded by palpate record; device " + options.device,
+           "position_m: as the device gave it; " +
+               std::string(device.measures_force() ? "force_N: as it measured it" : "it measures no force")},
+          options.force};
 }
 
 // Records until the time is over or the user stops it.
@@ -118,12 +112,12 @@ Result<std::string> record(const RecordOptions& options, const CheckRequest& che
   controls.recording = recorder.number();
   loop.set_controls(controls);
   RecordGuide guide(options.out, check);
-  bool zeroing_told = false;
+  bool zeroing_announced = false;
   std::optional<Notice> outcome;
   for (const double start_s = steady_now_s(); !outcome && stop_requested() == 0;) {
     std::this_thread::sleep_for(kPause);
     progress.show(loop.newest(), recorder.status());
-    zero_on_enter(device, loop.newest().device, zeroing_told, progress);
+    zero_on_enter(device, loop.newest().device, zeroing_announced, progress);
     if (options.guide) {
       for (const std::string& line : guide.update(steady_now_s())) progress.line(line);
     }

@@ -67,10 +67,10 @@ std::vector<std::string> RecordGuide::update(double now_s) {
   // The file does not exist before its first 1000 rows.
   const auto file = check_recording_file(path_, request_);
   next_s_ = std::max(next_s_, now_s + kRest * (steady_now_s() - now_s));
-  const auto telling = [&](const std::string& text) { return std::exchange(printed_, text) != text; };
+  const auto is_new = [&](const std::string& text) { return std::exchange(printed_, text) != text; };
   if (!file || file->check.measures.contact_rows == 0) {
     const std::string touch = "next: touch the block, then press it slowly";
-    return telling(touch) ? std::vector<std::string>{touch} : std::vector<std::string>{};
+    return is_new(touch) ? std::vector<std::string>{touch} : std::vector<std::string>{};
   }
   const RecordingMeasures& measures = file->check.measures;
   const std::string advice = guide_advice(measures, request_.longest_relaxation_s);
@@ -78,7 +78,7 @@ std::vector<std::string> RecordGuide::update(double now_s) {
   for (const auto& quarter : measures.seconds) {
     for (const double seconds : quarter) cells += seconds >= kLeastCell_s ? '+' : '-';
   }
-  if (!telling(advice + cells)) return {};
+  if (!is_new(advice + cells)) return {};
   std::vector<std::string> lines = guide_cells(measures, file->check.surface_offset_m);
   lines.push_back(advice.empty() ? "  nothing is missing: Ctrl-C ends the recording" : "  next: " + advice);
   return lines;

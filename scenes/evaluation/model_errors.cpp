@@ -38,23 +38,18 @@ double central_probability(double t, std::size_t degrees) {
 // slightly too wide, and the sum above stays short.
 constexpr std::size_t kMostDegrees = 200;
 
-// The value that Student's t with `degrees` >= 1 degrees of freedom exceeds with probability `above`, 0 to 0.5.
-double compute_student_t(double above, std::size_t degrees) {
-  double low = 0.0;
-  double high = 1e6;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (central_probability(middle, degrees) < 1.0 - 2.0 * above ? low : high) = middle;
-  }
-  return high;
-}
-
-// The values of Student's t for one probability, each computed once: a window compares all models in every frame.
+// The values that Student's t exceeds with the probability `above`, 0 to 0.5, by its degrees of freedom. Each is
+// computed once, because a window compares all models in every frame.
 class StudentT {
  public:
   explicit StudentT(double above) {
     for (std::size_t degrees = 1; degrees <= kMostDegrees; ++degrees) {
-      values_[degrees] = compute_student_t(above, degrees);
+      double low = 0.0;
+      double& high = values_[degrees] = 1e6;
+      for (int i = 0; i < 100; ++i) {
+        const double middle = 0.5 * (low + high);
+        (central_probability(middle, degrees) < 1.0 - 2.0 * above ? low : high) = middle;
+      }
     }
   }
   double at(std::size_t degrees) const { return values_[std::min(degrees, kMostDegrees)]; }
@@ -62,16 +57,6 @@ class StudentT {
  private:
   std::array<double, kMostDegrees + 1> values_{};
 };
-
-double one_sided_t(std::size_t degrees) {
-  static const StudentT table(kOneSided);
-  return table.at(degrees);
-}
-
-double two_sided_t(std::size_t degrees) {
-  static const StudentT table(0.5 * kOneSided);
-  return table.at(degrees);
-}
 
 // Standard error of sum(numerators) / sum(denominators), with one of each per unit; NaN with fewer than kLeastUnits.
 double ratio_standard_error(const std::vector<double>& numerators, const std::vector<double>& denominators) {
@@ -92,12 +77,14 @@ double standard_error(const std::vector<double>& values) {
 
 // One-sided 95 % bound: estimate + t error; a negative error gives the lower bound. NaN with fewer than kLeastUnits.
 double bound(double estimate, double error, std::size_t units) {
-  return units < kLeastUnits ? kUnknown : estimate + one_sided_t(units - 1) * error;
+  static const StudentT one_sided(kOneSided);
+  return units < kLeastUnits ? kUnknown : estimate + one_sided.at(units - 1) * error;
 }
 
 Interval interval_95(double estimate, double error, std::size_t units) {
+  static const StudentT two_sided(0.5 * kOneSided);
   if (units < kLeastUnits) return {kUnknown, kUnknown};
-  const double width = two_sided_t(units - 1) * error;
+  const double width = two_sided.at(units - 1) * error;
   return {estimate - width, estimate + width};
 }
 

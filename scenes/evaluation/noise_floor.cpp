@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/tick/sensor_identification.h"
-
 namespace palpate {
 namespace {
 
@@ -12,12 +10,12 @@ constexpr std::size_t kMostSamples = 10000;  // of a recording; of a longer one 
 
 }  // namespace
 
-NoiseFloor noise_floor(const std::vector<const Recording*>& recordings, const JndLine& jnd) {
+NoiseFloor noise_floor(const std::vector<PreparedRecordingPointer>& recordings, const JndLine& jnd) {
   std::vector<double> noise_over_jnd;
   double squares_N2 = 0.0;
-  for (const Recording* recording : recordings) {
-    const std::vector<RecordingRow>& rows = recording->rows;
-    const double noise_N = identify_force_noise_N(rows.data(), std::min(rows.size(), kSensorIdentificationRows));
+  for (const PreparedRecordingPointer& prepared : recordings) {
+    const std::vector<RecordingRow>& rows = prepared->recording.rows;
+    const double noise_N = prepared->force_noise_N;
     for (std::size_t i = 0; i < rows.size(); i += rows.size() / kMostSamples + 1) {
       if (rows[i].position_m <= 0.0) continue;
       noise_over_jnd.push_back(noise_N / jnd.at(rows[i].force_N));

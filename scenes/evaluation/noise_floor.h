@@ -2,15 +2,15 @@
 // standard deviation s of the sensor:
 //   within the JND = mean over the samples of P(|e| <= JND(f))
 //   99 % error: the q with mean P(|e| <= q JND(f)) = 0.99
-// s is estimated from each recording: second differences of the force over the quietest fifth of its first 30,000
-// rows (engine/tick/sensor_identification.h). It contains white noise, but neither drift nor hysteresis.
-// Thread guarantee: pure function, slow side.
+// s is that of each prepared recording: second differences of the force over the quietest fifth of its first 30,000
+// rows (engine/tick/sensor_identification.h). It contains white noise, but neither drift nor hysteresis. Thread
+// guarantee: pure function, slow side.
 #pragma once
 
 #include <vector>
 
-#include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
+#include "models/recordings/prepared_recording.h"
 
 namespace palpate {
 
@@ -21,6 +21,6 @@ struct NoiseFloor {
 };
 
 // Uses the samples in contact (position_m > 0) of all `recordings`, at most 10,000 rows of each, evenly spaced.
-NoiseFloor noise_floor(const std::vector<const Recording*>& recordings, const JndLine& jnd);
+NoiseFloor noise_floor(const std::vector<PreparedRecordingPointer>& recordings, const JndLine& jnd);
 
 }  // namespace palpate

@@ -6,9 +6,7 @@
 // Thread guarantee: one thread.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>

@@ -20,11 +20,11 @@ bool ReplayTest::update(const SessionModels& models) {
     ++rounds_;
     return apply();
   }
-  if (!asked_.empty() && !models.all_settled()) return false;
+  if (!requested_.empty() && !models.all_settled()) return false;
   std::vector<std::shared_ptr<const ForceModel>> ready;
   for (const std::size_t slot : models.ready_slots()) ready.push_back(models.model(slot));
-  if (ready.empty() || ready == asked_) return false;
-  asked_ = ready;
+  if (ready.empty() || ready == requested_) return false;
+  requested_ = ready;
   try {
     running_ = std::async(std::launch::async, [this, ready = std::move(ready)] {
       lower_thread_priority();

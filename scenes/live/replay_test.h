@@ -60,7 +60,7 @@ class ReplayTest {
   JndLine jnd_;
   bool moved_ = true;
   int rounds_ = 0;
-  std::vector<std::shared_ptr<const ForceModel>> asked_;  // models of the last test
+  std::vector<std::shared_ptr<const ForceModel>> requested_;  // models of the last test
   Outcome found_;
   std::atomic<bool> cancelled_{false};
   std::future<Outcome> running_;

@@ -4,19 +4,10 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/csv_scanner.h"
 #include "models/model/file/model_io.h"
 
 namespace palpate {
-namespace {
-
-std::string recordings_of(const FittedModel& model) {
-  std::string names;
-  for (const std::string& name : model.data().provenance.recordings) names += (names.empty() ? "" : ", ") + name;
-  return names;
-}
-
-}  // namespace
-
 SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices)
     : scene_(scene), notices_(notices), worker_(scene_, seed) {}
 
@@ -68,12 +59,12 @@ std::vector<std::size_t> SessionModels::update() {
     if (info.state == SlotState::fitting) info.progress = progress.share;
   }
   std::vector<std::size_t> ready = std::exchange(loaded_, {});
-  for (FinishedModel& finished : worker_.read_finished()) {
+  for (const FinishedModel& finished : worker_.read_finished()) {
     const std::optional<std::size_t> index = slot_of_job(finished.job_id);
     if (!index) continue;  // the model was removed meanwhile
     Slot& slot = slots_[*index];
     // The user has asked for another number of centres meanwhile: another fit follows.
-    const bool old = slot.info.refitting && finished.plan.centres != slot.plan.centres;
+    const bool old = slot.info.refitting && finished.centres != slot.plan.centres;
     if (join(*index, finished)) ready.push_back(*index);
     slot.info.refitting = old;
   }
@@ -130,16 +121,16 @@ std::vector<std::size_t> SessionModels::ready_slots() const {
   return shown;
 }
 
-bool SessionModels::join(std::size_t index, FinishedModel& finished) {
+bool SessionModels::join(std::size_t index, const FinishedModel& finished) {
   Slot& slot = slots_[index];
-  if (finished.model == nullptr) {
-    notices_.push_back({slot.info.name + ": " + finished.problem, true});
-    slot.info.problem = finished.problem;
+  if (!finished.model) {
+    slot.info.problem = finished.model.error().message;
+    notices_.push_back({slot.info.name + ": " + slot.info.problem, true});
     if (!slot.hidden()) slot.show();  // an earlier model stays in use
     return false;
   }
   const bool first = ready_slots().empty();
-  slot.model = finished.model;
+  slot.model = *finished.model;
   if (!slot.hidden()) slot.show();
   slot.info.progress = 1.0;
   slot.info.centres = slot.model->centre_count();
@@ -305,19 +296,16 @@ bool SessionModels::load_file(const std::string& path) {
     notices_.push_back({model.error().message, true});
     return false;
   }
-  SlotPlan plan;
-  plan.origin = ModelOrigin::file;
-  plan.path = path;
-  plan.loaded = std::move(*model);
+  const SlotPlan plan{ModelOrigin::file, &kGreedyMethod, path, std::move(*model)};
   const std::size_t index = add_slot(plan);
   const Slot& slot = slots_[index];
   loaded_.push_back(index);
-  FinishedModel finished = finished_model(slot.job, plan, plan.loaded);
-  join(index, finished);
-  notices_.push_back(
-      {"loaded " + slot.info.name + " from " + path +
-           (slot.info.other_material ? ": of " + recordings_of(*slot.model) + ", without a reference force here" : ""),
-       false});
+  join(index, {slot.job, 0, plan.loaded, time_of_tick(plan.loaded)});
+  notices_.push_back({"loaded " + slot.info.name + " from " + path +
+                          (slot.info.other_material ? ": of " + joined(slot.model->data().provenance.recordings) +
+                                                          ", without a reference force here"
+                                                    : ""),
+                      false});
   return true;
 }
 

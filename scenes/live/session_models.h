@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -153,7 +152,7 @@ class SessionModels {
 
   std::size_t add_slot(const SlotPlan& plan);
   bool is_of_other_material(const Slot& slot) const;
-  bool join(std::size_t index, FinishedModel& finished);
+  bool join(std::size_t index, const FinishedModel& finished);
   std::optional<std::size_t> room() const noexcept;
   bool has_room(const std::string& what);
   void select_what_is_there();

@@ -153,14 +153,9 @@ Notice SessionRecorder::finish() {
 }
 
 RecordingStatus SessionRecorder::status() const {
-  RecordingStatus status;
-  if (!thread_.joinable()) return status;
-  status.active = !stop_;
-  status.saving = stop_;
-  status.path = request_.path;
-  status.rows = rows_.load(std::memory_order_relaxed);
-  status.seconds = seconds_.load(std::memory_order_relaxed);
-  return status;
+  if (!thread_.joinable()) return {};
+  return {!stop_, stop_, request_.path, rows_.load(std::memory_order_relaxed),
+          seconds_.load(std::memory_order_relaxed)};
 }
 
 std::optional<Notice> SessionRecorder::read_outcome() {

@@ -1,5 +1,6 @@
 #include "scenes/live/verdict.h"
 
+#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/live/session_models.h"
@@ -48,15 +49,14 @@ Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& 
   const EvaluatedSlot& chosen = evaluated[best];
   verdict.chosen = chosen.slot;
   verdict.noticeable = chosen.p99_error_over_jnd > 1.0;
-  std::string as_good, noticed;  // names
-  const auto add = [](std::string& names, const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+  std::vector<std::string> as_good, noticed;  // names
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const EvaluatedSlot& one = evaluated[i];
     if (i == best || are_one_trend(one, chosen, models)) continue;
     if (ranking.qualified[i]) {
-      add(as_good, models.info(one.slot).name);
+      as_good.push_back(models.info(one.slot).name);
     } else if (one.p99_error_over_jnd > 1.0) {
-      add(noticed, models.info(one.slot).name);
+      noticed.push_back(models.info(one.slot).name);
     }
   }
   const ModelInfo& info = models.info(chosen.slot);
@@ -68,8 +68,8 @@ Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& 
   if (verdict.noticeable)
     verdict.detail =
         "99 % of its errors are at most " + fixed(chosen.p99_error_over_jnd, 1) + " times what a hand can feel. ";
-  if (!as_good.empty()) verdict.detail += "Equally good, but not faster: " + as_good + ". ";
-  if (!noticed.empty()) verdict.detail += "You can feel the difference of " + noticed + ".";
+  if (!as_good.empty()) verdict.detail += "Equally good, but not faster: " + joined(as_good) + ". ";
+  if (!noticed.empty()) verdict.detail += "You can feel the difference of " + joined(noticed) + ".";
   return verdict;
 }
 

@@ -47,8 +47,6 @@ class Block {
   // The force of a short press to `depth_m`, when the material is about half relaxed; rises with the depth. The
   // simulated hand chooses its depth by it.
   virtual double half_relaxed_force_N(double depth_m) const noexcept = 0;
-  // The force at `depth_m` when the material is fully relaxed.
-  virtual double relaxed_force_N(double depth_m) const noexcept = 0;
 
  protected:
   Block() = default;

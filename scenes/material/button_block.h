@@ -33,11 +33,20 @@ class ButtonBlock final : public Block {
   static constexpr double kFloor_m = 0.005;               // s_b
   static constexpr double kFloor_N_per_m1_5 = 30000.0;    // k_b
 
-  // The largest force on the way to `depth_m`, because beyond the peak the force does not determine the depth.
+  // The static force up to the first peak; beyond it, where the force does not determine the depth, a rise of 1 N/m, or
+  // the force above the floor if it is larger.
   double half_relaxed_force_N(double depth_m) const noexcept override {
-    return rising_N(depth_m, kLeg_N_per_m + 0.5 * kLegBranch_N_per_m);
+    const auto at_rest_N = [](double s) {
+      return dome_N(s, (kLeg_N_per_m + 0.5 * kLegBranch_N_per_m) * shortened_m(s), 0.0);
+    };
+    constexpr double kStep_m = 2e-5;
+    constexpr double kLeast_N_per_m = 1.0;
+    double peak_m = 0.0;
+    while (peak_m < kRise_m && at_rest_N(peak_m + kStep_m) > at_rest_N(peak_m)) peak_m += kStep_m;
+    if (depth_m <= peak_m) return at_rest_N(depth_m);
+    return std::max(at_rest_N(peak_m) + kLeast_N_per_m * (depth_m - peak_m),
+                    depth_m < kRise_m ? 0.0 : at_rest_N(depth_m));
   }
-  double relaxed_force_N(double depth_m) const noexcept override { return rising_N(depth_m, kLeg_N_per_m); }
 
  private:
   struct Leg {
@@ -74,18 +83,6 @@ class ButtonBlock final : public Block {
     return 2.0 * leg_N * (kRise_m - surface_m) / leg_length_m(surface_m) + kSkirt_N_per_m * surface_m +
            kSkirt_Ns_per_m * rate_m_per_s + kFloor_N_per_m1_5 * beyond_m * std::sqrt(beyond_m);
   }
-  // The static force up to the first peak; beyond it a rise of 1 N/m, or the force above the floor if it is larger.
-  static double rising_N(double depth_m, double leg_N_per_m) noexcept {
-    const auto at_rest_N = [&](double s) { return dome_N(s, leg_N_per_m * shortened_m(s), 0.0); };
-    constexpr double kStep_m = 2e-5;
-    constexpr double kLeast_N_per_m = 1.0;
-    double peak_m = 0.0;
-    while (peak_m < kRise_m && at_rest_N(peak_m + kStep_m) > at_rest_N(peak_m)) peak_m += kStep_m;
-    if (depth_m <= peak_m) return at_rest_N(depth_m);
-    return std::max(at_rest_N(peak_m) + kLeast_N_per_m * (depth_m - peak_m),
-                    depth_m < kRise_m ? 0.0 : at_rest_N(depth_m));
-  }
-
   Leg leg_;  // at the last surface
   MaxwellStep branch_;
 };

@@ -25,7 +25,6 @@ class HereditaryBlock : public Block {
   double half_relaxed_force_N(double depth_m) const noexcept override {
     return elastic_force_N(depth_m) * (1.0 + 0.5 * total_weight_);
   }
-  double relaxed_force_N(double depth_m) const noexcept override { return elastic_force_N(depth_m); }
 
  protected:
   // `density(time_s)`: w per unit of ln tau, >= 0, sampled from `shortest_s` to `longest_s` by the midpoint rule.

@@ -33,11 +33,9 @@ class LayeredBlock final : public HereditaryBlock {
 
   double elastic_force_N(double depth_m) const noexcept override { return kTop.force_N(depth_m); }
   double half_relaxed_force_N(double depth_m) const noexcept override {
+    constexpr double kHalfRelaxed_N_per_m = kSupport_N_per_m + 0.5 * kSupportBranch_N_per_m;
     return HereditaryBlock::half_relaxed_force_N(depth_m) +
-           supported_N(depth_m, kSupport_N_per_m + 0.5 * kSupportBranch_N_per_m);
-  }
-  double relaxed_force_N(double depth_m) const noexcept override {
-    return kTop.force_N(depth_m) + supported_N(depth_m, kSupport_N_per_m);
+           kHalfRelaxed_N_per_m * balance_m(depth_m, kHalfRelaxed_N_per_m, 0.0, 0.0);
   }
   double inclusion_depth_m() const noexcept { return inclusion_m_; }
 
@@ -64,10 +62,6 @@ class LayeredBlock final : public HereditaryBlock {
     branch_N_ = 0.0;
   }
 
-  // The force of the inclusion at rest on a support of this stiffness.
-  static double supported_N(double depth_m, double slope_N_per_m) noexcept {
-    return slope_N_per_m * balance_m(depth_m, slope_N_per_m, 0.0, 0.0);
-  }
   double inclusion_after_m(double surface_m) const noexcept {
     const double branch_N_per_m = kSupportBranch_N_per_m * support_.gain;
     return balance_m(surface_m, kSupport_N_per_m + branch_N_per_m,

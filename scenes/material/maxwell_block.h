@@ -100,7 +100,6 @@ class MaxwellBlock final : public Block {
     for (std::size_t b = 0; b < kMaximumBranches; ++b) held_N += 0.5 * material_.unrelaxed_force_N(b, depth_m);
     return held_N;
   }
-  double relaxed_force_N(double depth_m) const noexcept override { return material_.elastic_force_N(depth_m); }
 
  private:
   // The elements with memory.

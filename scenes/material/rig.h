@@ -61,7 +61,7 @@ struct RigSettings {
   std::uint64_t seed = 1;
   double seconds = 0.0;     // 0: the material's default
   double rate_Hz = 1000.0;  // kSlowestRate_Hz .. kFastestRate_Hz
-  SensorSettings sensors;
+  SensorSettings sensors{};
   std::optional<HandSettings> hand{};  // empty: the material's default
 };
 

@@ -39,7 +39,7 @@ class SpongeBlock final : public Block {
     return relaxed_force_N(depth_m) + 0.1 * kArea_m2 * kPore_Pa * depth_m / kHeight_m;
   }
   // A sigma(e).
-  double relaxed_force_N(double depth_m) const noexcept override {
+  double relaxed_force_N(double depth_m) const noexcept {
     constexpr double kMostClosed = 0.9;  // upper limit of e / e_d in the denominator
     const double strain = depth_m / kHeight_m;
     const double closed = std::min(kMostClosed, strain / kClosed_strain);

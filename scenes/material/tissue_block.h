@@ -31,7 +31,6 @@ class TissueBlock final : public HereditaryBlock {
 
   double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
   double half_relaxed_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
-  double relaxed_force_N(double depth_m) const noexcept override { return held_share_ * kContact.force_N(depth_m); }
 
  private:
   // The density of the power law, per unit of ln tau.

@@ -25,12 +25,12 @@ std::string shell_quoted(const std::string& text) {
   return safe;
 }
 
-// Whether the command succeeds; its output is appended to `said`.
-bool run_in_shell(const std::string& command, std::string& said) {
+// Whether the command succeeds; its output is appended to `text`.
+bool run_in_shell(const std::string& command, std::string& text) {
   std::FILE* const output = popen(command.c_str(), "r");
   if (output == nullptr) return false;
   char chunk[4096];
-  while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, output)) said.append(chunk, count);
+  while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, output)) text.append(chunk, count);
   return pclose(output) == 0;
 }
 
@@ -46,12 +46,12 @@ std::string first_line(const std::string& text) {
 
 // Runs gnuplot without the user's settings.
 Status run_gnuplot(const std::string& folder, const std::string& script) {
-  std::string said;
+  std::string message;
   if (run_in_shell("cd " + shell_quoted(folder) + " && LC_ALL=C gnuplot -d " + shell_quoted(script) +
                        " 2>&1 >/dev/null </dev/null",
-                   said))
+                   message))
     return {};
-  return Error{"gnuplot could not draw " + script + ": " + first_line(said) +
+  return Error{"gnuplot could not draw " + script + ": " + first_line(message) +
                "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
 }
 

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "engine/base/csv_scanner.h"
-#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "scenes/plot/layout.h"
 #include "scenes/scene/folders.h"
@@ -165,8 +164,7 @@ Legend legend_of(const Plot& plot) {
 
 }  // namespace
 
-Result<std::string> plot_script(const Plot& asked) {
-  Plot plot = asked;
+Result<std::string> plot_script(Plot plot) {
   for (Panel& panel : plot.panels) {
     std::vector<Series> marks = cut_marks(panel);
     panel.series.insert(panel.series.end(), marks.begin(), marks.end());

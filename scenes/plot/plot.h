@@ -6,7 +6,6 @@
 // Thread guarantee: value types and pure functions; plot_script reads the asset.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -86,6 +85,6 @@ struct Plot {
 };
 
 // Errors: the asset is missing.
-Result<std::string> plot_script(const Plot& plot);
+Result<std::string> plot_script(Plot plot);
 
 }  // namespace palpate

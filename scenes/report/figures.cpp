@@ -132,36 +132,29 @@ Figure worst_figure(const ReportData& data) {
   force.y.title = "Force [N]";
   difference.x.title = "Time [s]";
   difference.y.title = "Difference [JND]";
-  Series band{"within 1 JND", kMutedColour, Mark::area, {}};
-  Series measured{"measured", kMeasuredColour, Mark::line, {}};
-  std::vector<Series> said;
-  std::vector<Series> differs;
-  for (const std::size_t index : worst.models) {
-    const PlannedModel& plan = data.models[index].plan;
-    said.push_back({plan.name, model_colour(plan), plan.recipe == Recipe::paper ? Mark::dashed : Mark::line, {}});
-    differs.push_back(said.back());
+  force.series = {{"measured", kMeasuredColour, Mark::line, {}}};
+  difference.series = {{"within 1 JND", kMutedColour, Mark::area, {}}};
+  // The recommended model, the first one, is drawn last, on top of the others.
+  for (std::size_t i = worst.models.size(); i-- > 0;) {
+    const PlannedModel& plan = data.models[worst.models[i]].plan;
+    const Mark mark = plan.recipe == Recipe::paper ? Mark::dashed : Mark::line;
+    for (Panel* panel : {&force, &difference}) panel->series.push_back({plan.name, model_colour(plan), mark, {}});
   }
   double largest = 1.2;
   for (const StretchRow& row : worst.rows) {
-    measured.rows.push_back({row.time_s, row.measured_N});
-    band.rows.push_back({row.time_s, 0.0, -1.0, 1.0});
-    for (std::size_t i = 0; i < said.size(); ++i) {
+    force.series[0].rows.push_back({row.time_s, row.measured_N});
+    difference.series[0].rows.push_back({row.time_s, 0.0, -1.0, 1.0});
+    for (std::size_t i = 0; i < worst.models.size(); ++i) {
       const double over = (row.force_N[i] - row.measured_N) / data.scene.jnd.at(row.measured_N);
-      said[i].rows.push_back({row.time_s, row.force_N[i]});
-      differs[i].rows.push_back({row.time_s, row.in_contact ? over : kNoValue});
+      const std::size_t drawn = worst.models.size() - i;
+      force.series[drawn].rows.push_back({row.time_s, row.force_N[i]});
+      difference.series[drawn].rows.push_back({row.time_s, row.in_contact ? over : kNoValue});
       if (i == 0 && row.in_contact) largest = std::max(largest, std::abs(over));
     }
   }
   // The recommended model determines the scale. Larger differences of other models are cut and marked.
   difference.y.low = -1.5 * largest;
   difference.y.high = 1.5 * largest;
-  force.series = {std::move(measured)};
-  difference.series = {std::move(band)};
-  // The recommended model, the first one, is drawn last, on top of the others.
-  for (std::size_t i = said.size(); i-- > 0;) {
-    force.series.push_back(std::move(said[i]));
-    difference.series.push_back(std::move(differs[i]));
-  }
   if (!worst.rows.empty()) {
     for (Panel* panel : {&force, &difference}) {
       panel->x.low = worst.rows.front().time_s;

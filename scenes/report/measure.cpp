@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "scenes/evaluation/ranking.h"
@@ -43,8 +42,8 @@ struct Preparations {
 
 class Measurement {
  public:
-  Measurement(ReportData& data, const FitControl& control)
-      : data_(data), models_(data.models), progress_(control, plan_models()) {}
+  Measurement(ReportData& data, bool quick, const FitControl& control)
+      : data_(data), models_(data.models), progress_(control, plan_models(quick)) {}
 
   Status run() {
     for (const Split& fold : data_.recordings.folds) {
@@ -63,9 +62,9 @@ class Measurement {
 
  private:
   // Returns the expected time of the whole measurement, s.
-  double plan_models() {
+  double plan_models(bool quick) {
     double total = 2.0 * kPrepareSeconds;
-    for (PlannedModel& plan : make_plan(data_.quick, data_.scene.features.size())) {
+    for (PlannedModel& plan : make_plan(quick, data_.scene.features.size())) {
       ModelResult& model = models_.emplace_back();
       model.plan = std::move(plan);
       model.recorded_samples = model.moved_samples = ModelErrors(data_.scene.jnd);
@@ -121,7 +120,7 @@ class Measurement {
     if (data_.gains.empty()) remember(*prepared);
     if (const Status fitted = fit(*prepared); !fitted) return fitted;
     for (const PreparedRecordingPointer& recording : fold.tested) {
-      if (const Status status = evaluate_test(recording->recording, fold.counted_from_s); !status) return status;
+      if (const Status status = evaluate_test(recording, fold.counted_from_s); !status) return status;
     }
     return {};
   }
@@ -144,7 +143,7 @@ class Measurement {
       data_.times_2009_s.push_back(one.time_s);
   }
 
-  Status evaluate_test(const Recording& recording, double counted_from_s) {
+  Status evaluate_test(const PreparedRecordingPointer& tested, double counted_from_s) {
     std::vector<EvaluatedModel> models;
     EvaluationRequest request;
     request.counted_from_s = counted_from_s;
@@ -154,7 +153,7 @@ class Measurement {
       if (one.plan.main && one.plan.recipe == Recipe::palpate) request.surface_models.push_back(one.model);
     }
     request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
-    const auto result = evaluate(rows_of(recording), models, request);
+    const auto result = evaluate(rows_of(tested->recording), models, request);
     if (!result) return result.error();
     auto errors = result->models.begin();
     for (ModelResult& one : models_) {
@@ -163,8 +162,8 @@ class Measurement {
       if (one.model) ++errors;
     }
     timing_.push_back(result->timing);
-    data_.tested.push_back({recording.name, result->models.front().surface.at});
-    tested_.push_back(&recording);
+    data_.tested.push_back({tested->recording.name, result->models.front().surface.at});
+    tested_.push_back(tested);
     return {};
   }
 
@@ -220,7 +219,7 @@ class Measurement {
   ReportData& data_;
   std::vector<ModelResult>& models_;
   Progress progress_;
-  std::vector<const Recording*> tested_;
+  std::vector<PreparedRecordingPointer> tested_;
   std::vector<TimedSamples> timing_;  // one per test recording
 };
 
@@ -266,8 +265,7 @@ Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, b
   ReportData data;
   data.scene = scene;
   data.recordings = recordings;
-  data.quick = quick;
-  if (const Status status = Measurement(data, control).run(); !status) return status.error();
+  if (const Status status = Measurement(data, quick, control).run(); !status) return status.error();
   return data;
 }
 

@@ -2,6 +2,8 @@
 // Thread guarantee: slow side; the fits start threads.
 #pragma once
 
+#include <optional>
+
 #include "engine/base/fit_control.h"
 #include "models/fit/fit.h"
 #include "models/model/fitted_model.h"
@@ -73,7 +75,6 @@ struct Choice {
 struct ReportData {
   Scene scene;
   RecordingSet recordings;
-  bool quick = false;
   std::vector<MovedSurface> tested;  // every test recording
   NoiseFloor floor;                  // of all test recordings together
   std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces

@@ -72,99 +72,97 @@ class Claims {
       if (!all && claim.why.empty()) claim.why = why;
     }
   }
-  void add_accuracy();
-  void add_times();
+
+  void add_accuracy() {
+    add({"random: at every force some samples err above the JND", "every force"}, [&](const PaperRun& run) {
+      const PaperModel& model = run.models[kRandomCentres];
+      const std::size_t above = bins_above(data_, model, largest);
+      return Claim::Result{of_bins(above, model), above == model.bins.size()};
+    });
+    for (const auto& [which, name] :
+         {std::pair{kTreeCentres, "kD-tree"}, {kGreedy20, "greedy-20"}, {kGreedy100, "greedy-100"}}) {
+      add({std::string(name) + ": mean plus deviation always below the JND", "0 bins above"},
+          [&, which = which](const PaperRun& run) {
+            const std::size_t above = bins_above(data_, run.models[which], spread);
+            return Claim::Result{of_bins(above, run.models[which]), above == 0};
+          });
+    }
+    add({"kD-tree is better than random, above all at large forces", "yes"}, [](const PaperRun& run) {
+      const double share = ratio(run, kTreeCentres, kRandomCentres, spread, kLargeForce_N);
+      return Claim::Result{three_digits(share) + " times the error above 2.5 N", share < 1.0};
+    });
+    add({"greedy-100 is almost as accurate as the interpolant", "almost identical"}, [](const PaperRun& run) {
+      const double share = ratio(run, kGreedy100, kGridOfAll, spread);
+      return Claim::Result{three_digits(share) + " times mean plus deviation", share < kAlmost};
+    });
+    add({"20 and 100 candidates: mean plus deviation almost identical", "almost identical"}, [](const PaperRun& run) {
+      const double share = ratio(run, kGreedy20, kGreedy100, spread);
+      return Claim::Result{three_digits(share) + " times", share < kAlmost && share > 1.0 / kAlmost};
+    });
+    add({"100 candidates: maxima at small forces considerably lower", "considerably lower"}, [](const PaperRun& run) {
+      const double share = ratio(run, kGreedy100, kGreedy20, largest, 0.0, kSmallForce_N);
+      return Claim::Result{three_digits(share) + " times the maxima below 0.5 N", share < kConsiderably};
+    });
+    add({"the maxima exceed the JND for every method", "all"}, [&](const PaperRun& run) {
+      std::size_t methods = 0;
+      for (const PaperModel& model : run.models) methods += bins_above(data_, model, largest) > 0 ? 1 : 0;
+      return Claim::Result{std::to_string(methods) + " of " + std::to_string(run.models.size()) + " methods",
+                           methods == run.models.size()};
+    });
+  }
+
+  void add_times() {
+    add({"samples after the reduction to 50 mN steps", "6,850", "another material and hand"}, [](const PaperRun& run) {
+      return Claim::Result{with_thousands(std::to_string(run.sites)), true};
+    });
+    add({"one evaluation with 100 centres", "60 us", "a processor of today"}, [](const PaperRun& run) {
+      const ModelTiming& time = run.models[kGreedy100].time;
+      return Claim::Result{
+          three_digits(time.evaluation.median_ns) + " ns; whole tick " + three_digits(time.tick.median_ns) + " ns",
+          time.evaluation.median_ns < kTickBudget_ns};
+    });
+    add({"time of a fit: random, kD-tree, greedy-20, greedy-100, grid", "4 s, 5 min, 9 min, 41 min, 50 min"},
+        [](const PaperRun& run) {
+          Claim::Result result{"", true};
+          double before = 0.0;
+          for (const PaperMethod which : {kRandomCentres, kTreeCentres, kGreedy20, kGreedy100, kGridOfAll}) {
+            const double seconds = run.models[which].fit_seconds;
+            result.text += (result.text.empty() ? "" : ", ") + three_digits(seconds) + " s";
+            result.reproduced = result.reproduced && seconds > before;
+            before = seconds;
+          }
+          return result;
+        });
+    // Exponent of a power law through the last two numbers of sites.
+    const FitTimes& most = data_.by_sites.back();
+    const FitTimes& fewer = data_.by_sites[data_.by_sites.size() - 2];
+    const auto exponent = [&](PaperMethod which) {
+      return std::log(most.seconds[which] / fewer.seconds[which]) /
+             std::log(static_cast<double>(most.sites) / static_cast<double>(fewer.sites));
+    };
+    std::string linear;
+    double steepest = 0.0;
+    for (const PaperMethod which : {kRandomCentres, kTreeCentres, kGreedy20, kGreedy100}) {
+      const double slope = exponent(which);
+      steepest = std::max(steepest, slope);
+      linear += (linear.empty() ? "exponents " : ", ") + fixed(slope, 2);
+    }
+    add_once({"cost of random, kD-tree and greedy is linear in the samples", "linear"}, linear, steepest < kLinear);
+    const double cubic = exponent(kGridOfAll);
+    add_once({"that of the interpolant grows with their third power", "3", "the grid's cost is in it"},
+             "exponent " + fixed(cubic, 2), cubic > 2.0);
+    const DimensionTimes& last = data_.by_dimension.back();
+    const DimensionTimes& before = data_.by_dimension[data_.by_dimension.size() - 2];
+    add_once({"the grid's cost grows tenfold with each dimension of 10 nodes", "308 min in 6-D, solve 50 min"},
+             three_digits(last.grid_s / before.grid_s) + " times from " + std::to_string(before.dimensions) + "-D to " +
+                 std::to_string(last.dimensions) + "-D: " + three_digits(last.grid_s) + " s, solve " +
+                 three_digits(last.solve_s) + " s",
+             last.grid_s > 5.0 * before.grid_s);
+  }
 
   const PaperData& data_;
   std::vector<Claim> claims_;
 };
-
-void Claims::add_accuracy() {
-  add({"random: at every force some samples err above the JND", "every force"}, [&](const PaperRun& run) {
-    const PaperModel& model = run.models[kRandomCentres];
-    const std::size_t above = bins_above(data_, model, largest);
-    return Claim::Result{of_bins(above, model), above == model.bins.size()};
-  });
-  for (const auto& [which, name] :
-       {std::pair{kTreeCentres, "kD-tree"}, {kGreedy20, "greedy-20"}, {kGreedy100, "greedy-100"}}) {
-    add({std::string(name) + ": mean plus deviation always below the JND", "0 bins above"},
-        [&, which = which](const PaperRun& run) {
-          const std::size_t above = bins_above(data_, run.models[which], spread);
-          return Claim::Result{of_bins(above, run.models[which]), above == 0};
-        });
-  }
-  add({"kD-tree is better than random, above all at large forces", "yes"}, [](const PaperRun& run) {
-    const double share = ratio(run, kTreeCentres, kRandomCentres, spread, kLargeForce_N);
-    return Claim::Result{three_digits(share) + " times the error above 2.5 N", share < 1.0};
-  });
-  add({"greedy-100 is almost as accurate as the interpolant", "almost identical"}, [](const PaperRun& run) {
-    const double share = ratio(run, kGreedy100, kGridOfAll, spread);
-    return Claim::Result{three_digits(share) + " times mean plus deviation", share < kAlmost};
-  });
-  add({"20 and 100 candidates: mean plus deviation almost identical", "almost identical"}, [](const PaperRun& run) {
-    const double share = ratio(run, kGreedy20, kGreedy100, spread);
-    return Claim::Result{three_digits(share) + " times", share < kAlmost && share > 1.0 / kAlmost};
-  });
-  add({"100 candidates: maxima at small forces considerably lower", "considerably lower"}, [](const PaperRun& run) {
-    const double share = ratio(run, kGreedy100, kGreedy20, largest, 0.0, kSmallForce_N);
-    return Claim::Result{three_digits(share) + " times the maxima below 0.5 N", share < kConsiderably};
-  });
-  add({"the maxima exceed the JND for every method", "all"}, [&](const PaperRun& run) {
-    std::size_t methods = 0;
-    for (const PaperModel& model : run.models) methods += bins_above(data_, model, largest) > 0 ? 1 : 0;
-    return Claim::Result{std::to_string(methods) + " of " + std::to_string(run.models.size()) + " methods",
-                         methods == run.models.size()};
-  });
-}
-
-void Claims::add_times() {
-  add({"samples after the reduction to 50 mN steps", "6,850", "another material and hand"}, [](const PaperRun& run) {
-    return Claim::Result{with_thousands(std::to_string(run.sites)), true};
-  });
-  add({"one evaluation with 100 centres", "60 us", "a processor of today"}, [](const PaperRun& run) {
-    const ModelTiming& time = run.models[kGreedy100].time;
-    return Claim::Result{
-        three_digits(time.evaluation.median_ns) + " ns; whole tick " + three_digits(time.tick.median_ns) + " ns",
-        time.evaluation.median_ns < kTickBudget_ns};
-  });
-  add({"time of a fit: random, kD-tree, greedy-20, greedy-100, grid", "4 s, 5 min, 9 min, 41 min, 50 min"},
-      [](const PaperRun& run) {
-        Claim::Result result{"", true};
-        double before = 0.0;
-        for (const PaperMethod which : {kRandomCentres, kTreeCentres, kGreedy20, kGreedy100, kGridOfAll}) {
-          const double seconds = run.models[which].fit_seconds;
-          result.text += (result.text.empty() ? "" : ", ") + three_digits(seconds) + " s";
-          result.reproduced = result.reproduced && seconds > before;
-          before = seconds;
-        }
-        return result;
-      });
-  // Exponent of a power law through the last two numbers of sites.
-  const FitTimes& most = data_.by_sites.back();
-  const FitTimes& fewer = data_.by_sites[data_.by_sites.size() - 2];
-  const auto exponent = [&](PaperMethod which) {
-    return std::log(most.seconds[which] / fewer.seconds[which]) /
-           std::log(static_cast<double>(most.sites) / static_cast<double>(fewer.sites));
-  };
-  std::string linear;
-  double steepest = 0.0;
-  for (const PaperMethod which : {kRandomCentres, kTreeCentres, kGreedy20, kGreedy100}) {
-    const double slope = exponent(which);
-    steepest = std::max(steepest, slope);
-    linear += (linear.empty() ? "exponents " : ", ") + fixed(slope, 2);
-  }
-  add_once({"cost of random, kD-tree and greedy is linear in the samples", "linear"}, linear, steepest < kLinear);
-  const double cubic = exponent(kGridOfAll);
-  add_once({"that of the interpolant grows with their third power", "3", "the grid's cost is in it"},
-           "exponent " + fixed(cubic, 2), cubic > 2.0);
-  const DimensionTimes& last = data_.by_dimension.back();
-  const DimensionTimes& before = data_.by_dimension[data_.by_dimension.size() - 2];
-  add_once({"the grid's cost grows tenfold with each dimension of 10 nodes", "308 min in 6-D, solve 50 min"},
-           three_digits(last.grid_s / before.grid_s) + " times from " + std::to_string(before.dimensions) + "-D to " +
-               std::to_string(last.dimensions) + "-D: " + three_digits(last.grid_s) + " s, solve " +
-               three_digits(last.solve_s) + " s",
-           last.grid_s > 5.0 * before.grid_s);
-}
 
 }  // namespace
 

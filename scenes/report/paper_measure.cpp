@@ -40,12 +40,7 @@ void add_to_bin(std::vector<PaperBin>& bins, double force_N, double error_N, con
 MethodRequest request_of(std::size_t which) {
   const Method* methods[kPaperMethods] = {&kVoxelMethod, &kRandomMethod, &kKdTreeMethod, &kGreedyMethod,
                                           &kGreedyMethod};
-  MethodRequest request;
-  request.method = methods[which];
-  request.centres = kCentres;
-  request.candidates = which == kGreedy20 ? 20 : 100;
-  request.grid = kGrid;
-  return request;
+  return {methods[which], kCentres, which == kGreedy20 ? 20 : 100, KernelKind::cubic, kGrid};
 }
 
 const char* const kNames[kPaperMethods] = {"grid", "random", "kD-tree", "greedy-20", "greedy-100"};
@@ -78,11 +73,117 @@ class PaperMeasurement {
         [this, parts](double fraction) { return control_.may_continue(std::min(0.99, (done_ + fraction) / parts)); }};
   }
 
-  Status run_material(const std::string& material);
-  Result<PreparedTraining> prepare(TrainingRequest request);
-  Status measure_run(PaperRun run, const PreparedTraining& prepared);
-  Status time_sites(const PreparedTraining& prepared);
-  Status time_dimensions();
+  Result<PreparedTraining> prepare(TrainingRequest request) {
+    MotionSource source({recordings_[0]});
+    auto prepared = prepare_training(source, request, part());
+    if (!prepared) return prepared.error();
+    if (prepared->set.reduction_force_N != kStep_N)
+      return Error{"the steps of the reduction grew to " + std::to_string(prepared->set.reduction_force_N) +
+                   " N, expected 0.05 N as in the paper"};
+    return prepared;
+  }
+
+  Status run_material(const std::string& material) {
+    auto made = virtual_recordings(material, quick_ ? kQuickShare : 1.0);
+    if (!made) return made.error();
+    recordings_ = std::move(*made);
+    for (const bool fitted : {false, true}) {
+      if (fitted && quick_) continue;
+      TrainingRequest request = recipe_2009_request(training_request(scene_));
+      if (!fitted) request.relaxation = Relaxation::scene;  // 0.17 and 1.27 s, the paper's
+      const auto prepared = prepare(request);
+      if (!prepared) return prepared.error();
+      PaperRun run{material,
+                   fitted,
+                   {},
+                   recordings_[0]->recording.rows.size(),
+                   recordings_[1]->recording.rows.size(),
+                   static_cast<std::uint64_t>(prepared->sites.count()),
+                   {}};
+      for (const RelaxationTime& one : prepared->common.provenance.relaxation_times) run.times_s.push_back(one.time_s);
+      if (const Status status = measure_run(std::move(run), *prepared); !status) return status;
+      if (data_.runs.size() > 1) continue;
+      if (const Status status = time_sites(*prepared); !status) return status;
+      if (const Status status = time_dimensions(); !status) return status;
+    }
+    return {};
+  }
+
+  Status measure_run(PaperRun run, const PreparedTraining& prepared) {
+    std::vector<ModelPointer> models;
+    for (std::size_t which = 0; which < kPaperMethods; ++which) {
+      const auto start = std::chrono::steady_clock::now();
+      auto fit = fit_method(prepared, request_of(which), part());
+      if (!fit) return Error{run.material + ", " + kNames[which] + ": " + fit.error().message};
+      run.models.push_back({kNames[which], colour_of(which), seconds_since(start), {}, 0.0, {}});
+      models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
+    }
+    std::vector<Moments> errors_N(models.size());
+    TimedSamples timing;
+    const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+      if (!snapshot.in_contact) return;
+      if (timing.samples.size() < kTimedSamples) timing.samples.push_back(tool_sample(row));
+      for (std::size_t i = 0; i < models.size(); ++i) {
+        const double error_N = std::abs(snapshot.force_N[i] - row.force_N);
+        errors_N[i].add(error_N);
+        add_to_bin(run.models[i].bins, std::abs(row.force_N), error_N, data_.jnd);
+      }
+    };
+    timing.sensor = replay(recordings_[1]->recording, models, visitor).sensor;
+    const std::vector<ModelTiming> times = time_models(models, {timing});
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      run.models[i].rms_N = std::hypot(errors_N[i].mean(), errors_N[i].deviation());
+      run.models[i].time = times[i];
+      std::erase_if(run.models[i].bins, [](const PaperBin& bin) { return bin.force_N.count() < kReducedSamples; });
+    }
+    data_.runs.push_back(std::move(run));
+    return {};
+  }
+
+  Status time_sites(const PreparedTraining& prepared) {
+    const Eigen::Index all = prepared.sites.count();
+    for (const double share :
+         quick_ ? std::vector<double>{0.25, 0.5, 1.0} : std::vector<double>{0.125, 0.25, 0.5, 1.0}) {
+      const Sites some = even_subset(prepared.sites, static_cast<Eigen::Index>(share * static_cast<double>(all)));
+      const Eigen::VectorXd jnd_N = some.target_N.unaryExpr([&](double force_N) { return data_.jnd.at(force_N); });
+      FitTimes times{static_cast<std::size_t>(some.count()), {}};
+      for (std::size_t which = 0; which < kPaperMethods; ++which) {
+        const auto start = std::chrono::steady_clock::now();
+        const auto fit = fit_correction({some, jnd_N, request_of(which)}, part());
+        if (!fit) return fit.error();
+        times.seconds.push_back(seconds_since(start));
+      }
+      data_.by_sites.push_back(std::move(times));
+    }
+    return {};
+  }
+
+  Status time_dimensions() {
+    std::vector<FeatureSpec> features = scene_.features;
+    for (const double time_s : kMoreTimes_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
+    for (std::size_t d = 1; d <= (quick_ ? std::size_t{4} : features.size()); ++d) {
+      TrainingRequest request = recipe_2009_request(training_request(scene_));
+      request.features.assign(features.begin(), features.begin() + static_cast<std::ptrdiff_t>(d));
+      request.relaxation = Relaxation::scene;
+      const auto prepared = prepare(request);
+      if (!prepared) return prepared.error();
+      const Eigen::VectorXd jnd_N = site_thresholds(*prepared);
+      MethodRequest asked = request_of(kGridOfAll);
+      asked.method = &kDirectMethod;
+      auto start = std::chrono::steady_clock::now();
+      const auto solved = fit_correction({prepared->sites, jnd_N, asked}, part());
+      if (!solved) return solved.error();
+      DimensionTimes times{d, seconds_since(start), 0.0};
+      asked.method = &kVoxelMethod;
+      asked.grid.assign(d, kNodesOfFigure2);
+      start = std::chrono::steady_clock::now();
+      const auto grid = fit_correction({prepared->sites, jnd_N, asked, solved->correction}, part());
+      if (!grid) return grid.error();
+      times.grid_s = seconds_since(start);
+      data_.by_dimension.push_back(times);
+    }
+    return {};
+  }
 
   bool quick_;
   const FitControl& control_;
@@ -91,117 +192,6 @@ class PaperMeasurement {
   PaperData data_;
   std::vector<PreparedRecordingPointer> recordings_;  // to train and to test
 };
-
-Result<PreparedTraining> PaperMeasurement::prepare(TrainingRequest request) {
-  MotionSource source({recordings_[0]});
-  auto prepared = prepare_training(source, request, part());
-  if (!prepared) return prepared.error();
-  if (prepared->set.reduction_force_N != kStep_N)
-    return Error{"the steps of the reduction grew to " + std::to_string(prepared->set.reduction_force_N) +
-                 " N, expected 0.05 N as in the paper"};
-  return prepared;
-}
-
-Status PaperMeasurement::run_material(const std::string& material) {
-  auto made = virtual_recordings(material, quick_ ? kQuickShare : 1.0);
-  if (!made) return made.error();
-  recordings_ = std::move(*made);
-  for (const bool fitted : {false, true}) {
-    if (fitted && quick_) continue;
-    TrainingRequest request = recipe_2009_request(training_request(scene_));
-    if (!fitted) request.relaxation = Relaxation::scene;  // 0.17 and 1.27 s, the paper's
-    const auto prepared = prepare(request);
-    if (!prepared) return prepared.error();
-    PaperRun run{material,
-                 fitted,
-                 {},
-                 recordings_[0]->recording.rows.size(),
-                 recordings_[1]->recording.rows.size(),
-                 static_cast<std::uint64_t>(prepared->sites.count()),
-                 {}};
-    for (const RelaxationTime& one : prepared->common.provenance.relaxation_times) run.times_s.push_back(one.time_s);
-    if (const Status status = measure_run(std::move(run), *prepared); !status) return status;
-    if (data_.runs.size() > 1) continue;
-    if (const Status status = time_sites(*prepared); !status) return status;
-    if (const Status status = time_dimensions(); !status) return status;
-  }
-  return {};
-}
-
-Status PaperMeasurement::measure_run(PaperRun run, const PreparedTraining& prepared) {
-  std::vector<ModelPointer> models;
-  for (std::size_t which = 0; which < kPaperMethods; ++which) {
-    const auto start = std::chrono::steady_clock::now();
-    auto fit = fit_method(prepared, request_of(which), part());
-    if (!fit) return Error{run.material + ", " + kNames[which] + ": " + fit.error().message};
-    run.models.push_back({kNames[which], colour_of(which), seconds_since(start), {}, 0.0, {}});
-    models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
-  }
-  std::vector<Moments> errors_N(models.size());
-  TimedSamples timing;
-  const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-    if (!snapshot.in_contact) return;
-    if (timing.samples.size() < kTimedSamples) timing.samples.push_back(tool_sample(row));
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      const double error_N = std::abs(snapshot.force_N[i] - row.force_N);
-      errors_N[i].add(error_N);
-      add_to_bin(run.models[i].bins, std::abs(row.force_N), error_N, data_.jnd);
-    }
-  };
-  timing.sensor = replay(recordings_[1]->recording, models, visitor).sensor;
-  const std::vector<ModelTiming> times = time_models(models, {timing});
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    run.models[i].rms_N = std::hypot(errors_N[i].mean(), errors_N[i].deviation());
-    run.models[i].time = times[i];
-    std::erase_if(run.models[i].bins, [](const PaperBin& bin) { return bin.force_N.count() < kReducedSamples; });
-  }
-  data_.runs.push_back(std::move(run));
-  return {};
-}
-
-Status PaperMeasurement::time_sites(const PreparedTraining& prepared) {
-  const Eigen::Index all = prepared.sites.count();
-  for (const double share : quick_ ? std::vector<double>{0.25, 0.5, 1.0} : std::vector<double>{0.125, 0.25, 0.5, 1.0}) {
-    const Sites some = even_subset(prepared.sites, static_cast<Eigen::Index>(share * static_cast<double>(all)));
-    const Eigen::VectorXd jnd_N = some.target_N.unaryExpr([&](double force_N) { return data_.jnd.at(force_N); });
-    FitTimes times{static_cast<std::size_t>(some.count()), {}};
-    for (std::size_t which = 0; which < kPaperMethods; ++which) {
-      const auto start = std::chrono::steady_clock::now();
-      const auto fit = fit_correction({some, jnd_N, request_of(which)}, part());
-      if (!fit) return fit.error();
-      times.seconds.push_back(seconds_since(start));
-    }
-    data_.by_sites.push_back(std::move(times));
-  }
-  return {};
-}
-
-Status PaperMeasurement::time_dimensions() {
-  std::vector<FeatureSpec> features = scene_.features;
-  for (const double time_s : kMoreTimes_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
-  for (std::size_t d = 1; d <= (quick_ ? std::size_t{4} : features.size()); ++d) {
-    TrainingRequest request = recipe_2009_request(training_request(scene_));
-    request.features.assign(features.begin(), features.begin() + static_cast<std::ptrdiff_t>(d));
-    request.relaxation = Relaxation::scene;
-    const auto prepared = prepare(request);
-    if (!prepared) return prepared.error();
-    const Eigen::VectorXd jnd_N = site_thresholds(*prepared);
-    MethodRequest asked = request_of(kGridOfAll);
-    asked.method = &kDirectMethod;
-    auto start = std::chrono::steady_clock::now();
-    const auto solved = fit_correction({prepared->sites, jnd_N, asked}, part());
-    if (!solved) return solved.error();
-    DimensionTimes times{d, seconds_since(start), 0.0};
-    asked.method = &kVoxelMethod;
-    asked.grid.assign(d, kNodesOfFigure2);
-    start = std::chrono::steady_clock::now();
-    const auto grid = fit_correction({prepared->sites, jnd_N, asked, solved->correction}, part());
-    if (!grid) return grid.error();
-    times.grid_s = seconds_since(start);
-    data_.by_dimension.push_back(times);
-  }
-  return {};
-}
 
 }  // namespace
 

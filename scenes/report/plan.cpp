@@ -14,13 +14,7 @@ const std::vector<std::pair<int, int>> kGrids{{7, 4}, {13, 6}};
 constexpr std::size_t kMostGridFeatures = 5;  // with more, a fit takes minutes
 
 PlannedModel planned(Recipe of, const Method& method, int centres) {
-  PlannedModel model;
-  model.recipe = of;
-  model.request.method = &method;
-  model.request.centres = centres;
-  model.main = centres == kMainCentres;
-  model.name = model_name(of, method, centres);
-  return model;
+  return {model_name(of, method, centres), of, {.method = &method, .centres = centres}, centres == kMainCentres};
 }
 
 // A direct fit, and a method that starts from one, takes longer than all else in a quick report.

@@ -1,7 +1,6 @@
 #include "scenes/report/recordings.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <set>
 #include <string_view>
@@ -19,28 +18,6 @@ namespace {
 constexpr std::size_t kLeakValues = 12;
 constexpr std::size_t kSmallestRecording = 1000;  // rows; a shorter recording is not divided
 constexpr double kKeptShare = 0.6;                // of a single recording
-
-RecordingFacts facts_of(const PreparedRecording& prepared, const std::string& role) {
-  const Recording& recording = prepared.recording;
-  RecordingFacts facts;
-  char hash[24];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(prepared.content_hash));
-  facts.content_hash = hash;
-  facts.role = role;
-  facts.name = recording.name;
-  facts.samples = recording.rows.size();
-  facts.seconds = recording.rows.back().time_s - recording.rows.front().time_s;
-  facts.rate_Hz = static_cast<double>(recording.rows.size() - 1) / facts.seconds;
-  for (const RecordingRow& row : recording.rows) {
-    if (row.position_m <= 0.0) continue;
-    ++facts.contact_samples;
-    facts.deepest_m = std::max(facts.deepest_m, row.position_m);
-    facts.largest_force_N = std::max(facts.largest_force_N, row.force_N);
-  }
-  facts.force_noise_N = prepared.force_noise_N;
-  facts.accelerometer = recording.columns.acceleration;
-  return facts;
-}
 
 // Makes at most `most` folds: each recording is tested once, with models that are fitted to the other folds.
 std::vector<Split> folds_of(const std::vector<PreparedRecordingPointer>& all, std::size_t most) {
@@ -137,14 +114,21 @@ Status refuse_leakage(const std::vector<PreparedRecordingPointer>& all, std::siz
 
 }  // namespace
 
+Presses presses_of(const Recording& recording) {
+  Presses presses;
+  for (const RecordingRow& row : recording.rows) {
+    if (row.position_m <= 0.0) continue;
+    ++presses.samples;
+    presses.deepest_m = std::max(presses.deepest_m, row.position_m);
+    presses.largest_force_N = std::max(presses.largest_force_N, row.force_N);
+  }
+  return presses;
+}
+
 Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share) {
   std::vector<PreparedRecordingPointer> made;
   for (const double seconds : {41.499, 45.272}) {
-    RigSettings settings;
-    settings.material = material;
-    settings.seconds = share * seconds;
-    settings.seed = made.size() + 1;
-    auto recording = record_sensors(settings);
+    auto recording = record_sensors({material, made.size() + 1, share * seconds});
     if (!recording) return recording.error();
     made.push_back(prepare_recording(std::move(*recording)));
   }
@@ -169,22 +153,21 @@ SharedStretch shared_stretch(const Recording& trained, const Recording& tested) 
 Result<RecordingSet> split_recordings(std::vector<PreparedRecordingPointer> train,
                                       std::vector<PreparedRecordingPointer> test) {
   RecordingSet set;
-  set.virtual_recordings = train.empty();
+  const bool is_virtual = train.empty();
   sort_recordings(train);
   sort_recordings(test);
-  std::vector<PreparedRecordingPointer> all = std::move(train);
-  if (set.virtual_recordings) {
+  std::vector<PreparedRecordingPointer>& all = set.all = std::move(train);
+  if (is_virtual) {
     auto made = virtual_recordings("silicone");
     if (!made) return made.error();
     all = std::move(*made);
   }
-  const std::size_t trained = set.virtual_recordings ? 1 : all.size();
+  set.trained = is_virtual ? 1 : all.size();
   all.insert(all.end(), test.begin(), test.end());
-  if (const Status status = refuse_leakage(all, trained); !status) return status.error();
-  const bool tests = trained < all.size();
-  if (tests) {
+  if (const Status status = refuse_leakage(all, set.trained); !status) return status.error();
+  if (set.trained < all.size()) {
     Split& split = set.folds.emplace_back();
-    for (std::size_t i = 0; i < all.size(); ++i) (i < trained ? split.train : split.tested).push_back(all[i]);
+    for (std::size_t i = 0; i < all.size(); ++i) (set.is_tested(i) ? split.tested : split.train).push_back(all[i]);
   } else {
     set.folds = all.size() == 1 ? std::vector<Split>{leave_out(all.front())} : folds_of(all, kMostFolds);
   }
@@ -195,8 +178,7 @@ Result<RecordingSet> split_recordings(std::vector<PreparedRecordingPointer> trai
                  " to leave a part out; give another recording with --test"};
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
-    set.facts.push_back(facts_of(*all[i], !tests ? "both" : i < trained ? "train" : "test"));
-    if (set.facts.back().role == "train" || set.facts.back().contact_samples > 0) continue;
+    if (!set.is_tested(i) || presses_of(all[i]->recording).samples > 0) continue;
     return Error{all[i]->recording.name +
                  ": no sample is in contact (position_m > 0), expected a press to test on; check the "
                  "sign and zero of position_m"};

@@ -16,19 +16,13 @@ namespace palpate {
 // test. `share`: of both durations. Errors: those of record_sensors.
 Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share = 1.0);
 
-struct RecordingFacts {
-  std::string role;  // "train", "test" or "both"
-  std::string name;
-  std::string content_hash;  // engine/recording/recording.h, hexadecimal
+// The samples with position_m > 0; all values are 0 without any.
+struct Presses {
   std::uint64_t samples = 0;
-  std::uint64_t contact_samples = 0;
-  double seconds = 0.0;
-  double rate_Hz = 0.0;
   double deepest_m = 0.0;
   double largest_force_N = 0.0;
-  double force_noise_N = 0.0;  // standard deviation of the white noise
-  bool accelerometer = false;
 };
+Presses presses_of(const Recording& recording);
 
 // Training and test data of one fold.
 struct Split {
@@ -39,9 +33,11 @@ struct Split {
 };
 
 struct RecordingSet {
-  std::vector<Split> folds;  // several for a cross-validation
-  std::vector<RecordingFacts> facts;
-  bool virtual_recordings = false;
+  std::vector<Split> folds;                   // several for a cross-validation
+  std::vector<PreparedRecordingPointer> all;  // those to train on come first
+  std::size_t trained = 0;                    // their number; all.size(): each of them is tested as well
+
+  bool is_tested(std::size_t i) const { return i >= trained || trained == all.size(); }
 };
 
 // Equal forces in this number of successive rows, with enough different values among them (kLeakValues in the source),

@@ -9,6 +9,7 @@
 #include <map>
 #include <thread>
 
+#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/plot/inline_svg.h"
@@ -43,41 +44,35 @@ constexpr double kGoodShare = 0.9;
 // The answer mentions the surface only if moving it changes the share within the JND by more.
 constexpr double kShareThatMatters = 0.005;
 
-// A part of a sentence: text, a model's name, or a number. A number has its model and figure of merit, so that
-// tests/scenes/report/check_report.py can recompute it.
+// A model's name, or a number with its model and figure of merit, so that tests/scenes/report/check_report.py can
+// recompute it.
 struct SentencePart {
   std::string text;
-  std::string model{};   // name of the model; empty for text
-  std::string figure{};  // figure of merit of a number, e.g. "within_jnd"; else empty
+  std::string model{};
+  std::string figure{};  // "within_jnd"; empty: `text` is the name
 };
 
 // The answer of a report in words, which page, report.json and terminal show.
 class Sentence {
  public:
-  Sentence& operator<<(const std::string& text) { return *this << SentencePart{text}; }
-  Sentence& operator<<(const SentencePart& part) {
-    parts_.push_back(part);
+  Sentence& operator<<(const std::string& text) {
+    plain_ += text;
+    html_ += escape_html(text);
     return *this;
   }
-  std::string html() const {
-    std::string html;
-    for (const SentencePart& words : parts_) {
-      const std::string text = escape_html(words.text);
-      const std::string model = "<span data-model=\"" + escape_html(words.model) + "\" data-figure=\"";
-      html += words.model.empty()    ? text
-              : words.figure.empty() ? "<b>" + text + "</b>"
-                                     : model + words.figure + "\">" + text + "</span>";
-    }
-    return html;
+  Sentence& operator<<(const SentencePart& part) {
+    plain_ += part.text;
+    const std::string begin = part.figure.empty() ? "<b>"
+                                                  : "<span data-model=\"" + escape_html(part.model) +
+                                                        "\" data-figure=\"" + part.figure + "\">";
+    html_ += begin + escape_html(part.text) + (part.figure.empty() ? "</b>" : "</span>");
+    return *this;
   }
-  std::string plain_text() const {
-    std::string text;
-    for (const SentencePart& words : parts_) text += words.text;
-    return text.substr(0, text.find_last_not_of(' ') + 1);
-  }
+  const std::string& html() const { return html_; }
+  std::string plain_text() const { return plain_.substr(0, plain_.find_last_not_of(' ') + 1); }
 
  private:
-  std::vector<SentencePart> parts_;
+  std::string html_, plain_;
 };
 
 // Two decimals, rounded down: 99.996 % is "99.99 %".
@@ -87,7 +82,7 @@ SentencePart number(const ModelResult& model, const char* figure, const std::str
   return {text, model.plan.name, figure};
 }
 
-SentencePart name(const ModelResult& model) { return {model.plan.name, model.plan.name}; }
+SentencePart name(const ModelResult& model) { return {model.plan.name}; }
 
 SentencePart tick(const ModelResult& model) {
   return number(model, "tick_ns", with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns");
@@ -189,8 +184,8 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
           {"version", 1},
           {"scene", data.scene.name},
           {"jnd", {{"offset_N", data.scene.jnd.offset_N}, {"weber_fraction", data.scene.jnd.weber_fraction}}},
-          {"quick", data.quick},
-          {"virtual_recordings", data.recordings.virtual_recordings},
+          {"quick", request.quick},
+          {"virtual_recordings", request.train.empty()},
           {"folds", data.recordings.folds.size() > 1 ? data.recordings.folds.size() : 0},
           {"noise_floor",
            {{"force_noise_N", data.floor.force_noise_N},
@@ -225,14 +220,16 @@ std::string notes_html(const ReportData& data) {
       three_digits(kMargin_jnd) + " JND apart 57 % of the answers are correct; guessing gives 50 %.");
   for (const ModelResult& one : data.models) {
     if (one.same.empty()) continue;
-    std::string names;
-    for (const std::string& name : one.same) names += (names.empty() ? "" : ", ") + name;
-    notes.push_back("The same forces as " + one.plan.name + ": " + names + ".");
+    notes.push_back("The same forces as " + one.plan.name + ": " + joined(one.same) + ".");
   }
   const std::string& tested_on = data.recordings.folds.front().words;
   if (!tested_on.empty()) notes.push_back("No test recording: " + tested_on + ".");
-  const auto& facts = data.recordings.facts;
-  const double largest_N = std::ranges::max_element(facts, {}, &RecordingFacts::largest_force_N)->largest_force_N;
+  double largest_N = 0.0;
+  bool accelerometer = false;
+  for (const PreparedRecordingPointer& one : data.recordings.all) {
+    largest_N = std::max(largest_N, presses_of(one->recording).largest_force_N);
+    accelerometer = accelerometer || one->recording.columns.acceleration;
+  }
   const JndLine paper;
   const JndLine& jnd = data.scene.jnd;
   notes.push_back(
@@ -246,9 +243,8 @@ std::string notes_html(const ReportData& data) {
                   " within the JND and 99 % of its errors below " + three_digits(data.floor.p99_error_over_jnd) +
                   " JND, because of the noise of the force sensor (" + three_digits(1e3 * data.floor.force_noise_N) +
                   " mN, from second differences in the quietest fifth of each test recording, without drift).");
-  notes.push_back(std::ranges::any_of(facts, &RecordingFacts::accelerometer)
-                      ? "With the accelerometer of the recordings."
-                      : "From positions alone, without an accelerometer.");
+  notes.push_back(accelerometer ? "With the accelerometer of the recordings."
+                                : "From positions alone, without an accelerometer.");
   std::string html = "<ul class=\"notes\">";
   for (const std::string& note : notes) html += "<li>" + escape_html(note) + "</li>";
   return html + "</ul>\n";
@@ -256,20 +252,20 @@ std::string notes_html(const ReportData& data) {
 
 std::string learnt_html(const ReportData& data) {
   const ModelResult& chosen = data.models[data.choice.recommended];
-  std::string features;
+  std::vector<std::string> features, times;
   for (const FeatureSpec& spec : chosen.model->features())
-    features += (features.empty() ? "" : ", ") + feature_name(spec).substr(std::string("feature_").size());
-  std::string times;
-  for (const double time_s : data.times_2009_s) times += (times.empty() ? "" : " and ") + three_digits(time_s);
+    features.push_back(feature_name(spec).substr(std::string("feature_").size()));
+  for (const double time_s : data.times_2009_s) times.push_back(three_digits(time_s));
   const auto row = [](const char* name, const std::string& value) {
     return "<tr><td class=\"text\">" + std::string(name) + "</td><td class=\"text\">" + escape_html(value) +
            "</td></tr>\n";
   };
-  std::string html = "<table class=\"learnt\">" + row("Features", features);
+  std::string html = "<table class=\"learnt\">" + row("Features", joined(features));
   if (data.corrects)
     html += row("Correction by centres", *data.corrects ? "used: it lowers the cross-validated error"
                                                         : "not used: it does not lower the cross-validated error");
-  if (!times.empty()) html += row("Relaxation times, recipe of 2009", times + " s, fitted to the training recordings");
+  if (!times.empty())
+    html += row("Relaxation times, recipe of 2009", joined(times, " and ") + " s, fitted to the training recordings");
   for (const RecordingSurface& surface : data.surfaces) {
     html += row(("Surface of " + escape_html(surface.name)).c_str(),
                 fixed(1e3 * surface.offset_m, 3) + " mm" +
@@ -284,13 +280,16 @@ std::string learnt_html(const ReportData& data) {
 // of fill_page.
 Result<std::string> make_page(const ReportData& data, const Sentence& answer, const std::string& origin,
                               const std::vector<Table>& tables, const std::vector<Figure>& figures) {
-  std::string tests;
-  for (const RecordingFacts& facts : data.recordings.facts) {
-    if (facts.role != "train") tests += (tests.empty() ? "" : ", ") + facts.name;
+  std::vector<std::string> tests;
+  for (std::size_t i = 0; i < data.recordings.all.size(); ++i) {
+    if (data.recordings.is_tested(i)) tests.push_back(data.recordings.all[i]->recording.name);
   }
-  std::map<std::string, std::string> values{
-      {"title", escape_html(tests)}, {"answer", answer.html()},     {"headline", table_html(headline_table(data))},
-      {"notes", notes_html(data)},   {"learnt", learnt_html(data)}, {"origin", escape_html(origin)}};
+  std::map<std::string, std::string> values{{"title", escape_html(joined(tests))},
+                                            {"answer", answer.html()},
+                                            {"headline", table_html(headline_table(data))},
+                                            {"notes", notes_html(data)},
+                                            {"learnt", learnt_html(data)},
+                                            {"origin", escape_html(origin)}};
   for (const Table& one : tables) values[one.name] = one.rows.empty() ? "" : table_html(one);
   for (const Figure& one : figures) values[one.plot.name] = figure_html(one);
   return fill_page("page.html", std::move(values));

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "engine/base/csv_scanner.h"
-#include "scenes/evaluation/ranking.h"
+#include "engine/base/text.h"
 #include "scenes/plot/inline_svg.h"
 
 namespace palpate {
@@ -107,19 +108,25 @@ Table times_table(const ReportData& data) {
 
 Table recordings_table(const ReportData& data) {
   Table table{"recordings"};
-  for (const RecordingFacts& one : data.recordings.facts) {
+  const RecordingSet& set = data.recordings;
+  for (std::size_t i = 0; i < set.all.size(); ++i) {
+    const auto& [name, columns, rows] = set.all[i]->recording;
+    const double seconds = rows.back().time_s - rows.front().time_s;
+    const Presses presses = presses_of(set.all[i]->recording);
+    char hash[24];
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(set.all[i]->content_hash));
     table.begin_row();
-    table.add({"role", "role"}, one.role);
-    table.add({"name", "recording"}, one.name);
-    table.add({"samples", "samples"}, one.samples);
-    table.add({"contact_samples", "in contact"}, one.contact_samples);
-    table.add({"seconds", "[s]"}, one.seconds);
-    table.add({"rate_Hz", "[Hz]"}, one.rate_Hz);
-    table.add({"deepest_m", "deepest [mm]", kInMilli}, one.deepest_m);
-    table.add({"largest_force_N", "largest [N]"}, one.largest_force_N);
-    table.add({"force_noise_N", "force noise [mN]", kInMilli}, one.force_noise_N);
-    table.add({"accelerometer", "accelerometer"}, yes_or_no(one.accelerometer));
-    table.add({"content_hash", ""}, one.content_hash);
+    table.add({"role", "role"}, i >= set.trained ? "test" : set.is_tested(i) ? "both" : "train");
+    table.add({"name", "recording"}, name);
+    table.add({"samples", "samples"}, rows.size());
+    table.add({"contact_samples", "in contact"}, presses.samples);
+    table.add({"seconds", "[s]"}, seconds);
+    table.add({"rate_Hz", "[Hz]"}, static_cast<double>(rows.size() - 1) / seconds);
+    table.add({"deepest_m", "deepest [mm]", kInMilli}, presses.deepest_m);
+    table.add({"largest_force_N", "largest [N]"}, presses.largest_force_N);
+    table.add({"force_noise_N", "force noise [mN]", kInMilli}, set.all[i]->force_noise_N);
+    table.add({"accelerometer", "accelerometer"}, yes_or_no(columns.acceleration));
+    table.add({"content_hash", ""}, hash);
   }
   return table;
 }

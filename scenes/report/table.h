@@ -2,15 +2,12 @@
 // Thread guarantee: value types and pure functions.
 #pragma once
 
-#include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "engine/base/text.h"
 #include "scenes/report/measure.h"
 
 namespace palpate {

@@ -133,10 +133,7 @@ Result<Recording> test_recording(const Scene& scene, const std::string& recordin
     return Error{"the scene \"" + scene.name +
                  "\" has no virtual material to record; name a recording: --discriminate REC.csv"};
   }
-  RigSettings settings;
-  settings.material = *scene.material;
-  settings.seed = kTestSeed;
-  return record_sensors(settings);
+  return record_sensors({*scene.material, kTestSeed});
 }
 
 }  // namespace
@@ -188,10 +185,8 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
     const Trace& at = traces[from + i];
     strokes->reference_N.push_back(rounded(at.reference_N, 1e4));
     strokes->comparison_N.push_back(rounded(at.comparison_N, 1e4));
-    RecordingRow row;
-    row.position_m = strokes->comparison_N.back();  // the hash is of numbers, whatever their meaning
-    row.force_N = strokes->reference_N.back();
-    hash.add(row);
+    // The hash is of numbers, whatever their meaning.
+    hash.add({0.0, strokes->comparison_N.back(), strokes->reference_N.back()});
   }
   strokes->reference_mean_N = mean_of(strokes->reference_N);
   strokes->comparison_mean_N = mean_of(strokes->comparison_N);

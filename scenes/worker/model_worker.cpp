@@ -36,7 +36,8 @@ double expected_cost_s(const SlotPlan& plan) {
          (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
 }
 
-// Times the tick on one second of strokes within the model's training domain, which takes some milliseconds.
+}  // namespace
+
 Timing time_of_tick(const std::shared_ptr<const FittedModel>& model) {
   std::size_t feature = 0;
   const double depth_m = std::min(0.8 * deepest_in_domain_m(model->data(), feature), 0.01);
@@ -52,13 +53,6 @@ Timing time_of_tick(const std::shared_ptr<const FittedModel>& model) {
     samples.push_back(tool);
   }
   return time_models({model}, {{sensor, std::move(samples)}}).front().tick;
-}
-
-}  // namespace
-
-FinishedModel finished_model(std::size_t job_id, const SlotPlan& plan, std::shared_ptr<const FittedModel> model) {
-  const Timing tick = time_of_tick(model);
-  return {job_id, plan, std::move(model), "", tick};
 }
 
 // On Linux, the niceness of one thread is set by its thread id.
@@ -111,9 +105,8 @@ void ModelWorker::work() {
     working_on_ = job.job_id;
     share_.store(0.0, std::memory_order_relaxed);
     lock.unlock();
-    const auto model = make(job.plan);
-    FinishedModel made = model ? finished_model(job.job_id, job.plan, *model)
-                               : FinishedModel{job.job_id, job.plan, nullptr, model.error().message, {}};
+    FinishedModel made{job.job_id, job.plan.centres, make(job.plan), {}};
+    if (made.model) made.tick = time_of_tick(*made.model);
     lock.lock();
     finished_.push_back(std::move(made));
   }
@@ -127,12 +120,10 @@ Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const SlotPlan& pla
 }
 
 FitControl ModelWorker::control(double from, double to) {
-  FitControl result;
-  result.progress = [this, from, to](double fraction) {
+  return {[this, from, to](double fraction) {
     share_.store(from + (to - from) * fraction, std::memory_order_relaxed);
     return !cancelled_.load(std::memory_order_relaxed);
-  };
-  return result;
+  }};
 }
 
 Status ModelWorker::prepare_recordings() {
@@ -146,10 +137,7 @@ Status ModelWorker::prepare_recordings() {
     recordings.push_back(prepare_recording(std::move(*recording)));
   }
   if (recordings.empty()) {
-    RigSettings settings;
-    settings.material = *scene_.material;
-    settings.seed = seed_;
-    Result<Recording> recording = record_sensors(settings, control(0.0, kRecorded).progress);
+    Result<Recording> recording = record_sensors({*scene_.material, seed_}, control(0.0, kRecorded).progress);
     if (!recording) return recording.error();
     recordings.push_back(prepare_recording(std::move(*recording)));
   }
@@ -180,9 +168,7 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   if (!recipe.prepared) {
     if (const Status status = prepare(recipe, plan); !status) return status.error();
   }
-  MethodRequest request;
-  request.method = plan.method;
-  request.seed = seed_;
+  MethodRequest request{.method = plan.method, .seed = seed_};
   if (plan.centres > 0) request.centres = plan.centres;
   const auto base = recipe.bases.find(plan.method->base);
   Result<MethodFit> fitted = fit_method(*recipe.prepared, request, control(prepared, 1.0),

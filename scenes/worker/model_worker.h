@@ -13,9 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "models/fit/fit.h"
@@ -28,14 +26,13 @@ namespace palpate {
 
 struct FinishedModel {
   std::size_t job_id = 0;
-  SlotPlan plan;
-  std::shared_ptr<const FittedModel> model;  // null: `problem` has the reason
-  std::string problem;
+  int centres = 0;  // of its plan
+  Result<std::shared_ptr<const FittedModel>> model;
   Timing tick;  // a whole tick with this model alone
 };
 
-// Wraps a model that exists already, and measures its tick.
-FinishedModel finished_model(std::size_t job_id, const SlotPlan& plan, std::shared_ptr<const FittedModel> model);
+// Times the tick on one second of strokes within the model's training domain, which takes some milliseconds.
+Timing time_of_tick(const std::shared_ptr<const FittedModel>& model);
 
 // Lowers the priority of this thread, and of those that it starts later, below graphics and haptics.
 void lower_thread_priority() noexcept;

@@ -12,17 +12,6 @@
 namespace palpate {
 namespace {
 
-Error needs_files(const Scene& scene) {
-  return Error{"the scene \"" + scene.name +
-               "\" has no virtual material to fit models to; pass model files, made by palpate fit --scene " +
-               scene.name};
-}
-
-Error unknown_model(const std::string& asked) {
-  return Error{"found no model \"" + asked + "\", expected a method (" + method_names() +
-               ") or a model file that exists"};
-}
-
 // Parses "greedy", "greedy-10" or "paper:greedy-10"; empty if it names no method.
 std::optional<SlotPlan> plan_method_of(std::string asked) {
   SlotPlan plan;
@@ -45,11 +34,16 @@ std::optional<SlotPlan> plan_method_of(std::string asked) {
 
 Result<SlotPlan> plan_one(const Scene& scene, const std::string& asked) {
   if (auto plan = plan_method_of(asked)) {
-    if (!scene.has_material()) return needs_files(scene);
-    return std::move(*plan);
+    if (scene.has_material()) return std::move(*plan);
+    return Error{"the scene \"" + scene.name +
+                 "\" has no virtual material to fit models to; pass model files, made by palpate fit --scene " +
+                 scene.name};
   }
   std::error_code missing;
-  if (!std::filesystem::exists(asked, missing)) return unknown_model(asked);
+  if (!std::filesystem::exists(asked, missing)) {
+    return Error{"found no model \"" + asked + "\", expected a method (" + method_names() +
+                 ") or a model file that exists"};
+  }
   auto model = load_model(asked);
   if (!model) return model.error();
   return SlotPlan{ModelOrigin::file, &kGreedyMethod, asked, std::move(*model)};

@@ -8,23 +8,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "models/fit/fit.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/material/rig.h"
+#include "tests/support/message_parts.h"
 
 namespace palpate::test {
 
 using RecordingPtr = std::shared_ptr<const Recording>;
 using ModelPtr = std::shared_ptr<const FittedModel>;
-
-// Returns the value of `result` or throws.
-template <typename T>
-T must(Result<T> result);
 
 // The common training recording (seed 1, 41.499 s) and test recording (45.272 s
 // of another seed).
@@ -66,11 +61,5 @@ double worst_bin_over_jnd(const ErrorSummary& summary, double from_N = 0.0);
 
 // One line of error figures for the log.
 std::string figures(const std::string& name, const ErrorSummary& summary);
-
-template <typename T>
-T must(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().message);
-  return std::move(*result);
-}
 
 }  // namespace palpate::test

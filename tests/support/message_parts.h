@@ -1,12 +1,30 @@
-// Compares only the position, values and advice of a message, so that its wording may change.
+// Values and error messages of results. Of a message only the position, values and advice are compared, so that its
+// wording may change.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/base/result.h"
+
 namespace palpate::test {
+
+// Returns the value of `result` or throws its message, which fails the test.
+template <typename T>
+T must(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().message);
+  return std::move(*result);
+}
+
+// The message of the error, "accepted" without one.
+template <typename T>
+std::string message_of(const Result<T>& result) {
+  return result ? "accepted" : result.error().message;
+}
 
 // Returns `text` with the first `from` (which must occur) replaced by `to`.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -24,6 +42,12 @@ inline testing::AssertionResult has_parts(const std::string& message, const std:
     at = found + part.size();
   }
   return testing::AssertionSuccess();
+}
+
+// Success if `result` has an error with these parts.
+template <typename T>
+testing::AssertionResult has_parts(const Result<T>& result, const std::vector<std::string>& parts) {
+  return has_parts(message_of(result), parts);
 }
 
 // A change of a valid text, and the parts of the message about it.

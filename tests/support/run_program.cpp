@@ -7,6 +7,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <stdexcept>
+
+#include "tests/support/message_parts.h"
 
 namespace palpate::test {
 namespace {
@@ -70,6 +73,24 @@ ProgramRun run_palpate(const std::vector<std::string>& arguments, const std::vec
   std::vector<std::string> command = {PALPATE_BINARY};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run_program(command, environment);
+}
+
+ProgramRun must_run(const std::vector<std::string>& arguments) {
+  ProgramRun run = run_palpate(arguments);
+  if (run.exit_code != 0) throw std::runtime_error("exit code " + std::to_string(run.exit_code) + ", " + run.err);
+  return run;
+}
+
+testing::AssertionResult is_refused(const ProgramRun& run, int exit_code, const std::vector<std::string>& parts) {
+  const bool one_line = run.err.rfind("error: ", 0) == 0 && run.err.find('\n') == run.err.size() - 1;
+  if (run.exit_code == exit_code && run.out.empty() && one_line) return has_parts(run.err, parts);
+  return testing::AssertionFailure() << "exit code " << run.exit_code << ", expected " << exit_code
+                                     << " and one error line: " << run.out << run.err;
+}
+
+testing::AssertionResult fails(int exit_code, const std::vector<std::string>& arguments,
+                               const std::vector<std::string>& parts) {
+  return is_refused(run_palpate(arguments), exit_code, parts);
 }
 
 }  // namespace palpate::test

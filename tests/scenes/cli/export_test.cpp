@@ -16,8 +16,6 @@
 namespace palpate {
 namespace {
 
-using test::run_palpate;
-
 class ExportVerb : public ::testing::Test {
  protected:
   // Positions and forces of the virtual rig.
@@ -39,13 +37,10 @@ class ExportVerb : public ::testing::Test {
     std::vector<std::string> fit = {"fit",   "--recording",          folder_.file("train.csv"),
                                     "--out", folder_.file("m.json"), "--force"};
     fit.insert(fit.end(), fit_options.begin(), fit_options.end());
-    const auto fitted = run_palpate(fit);
-    EXPECT_EQ(fitted.exit_code, 0) << fitted.err;
+    test::must_run(fit);
     std::vector<std::string> arguments = {"export", folder_.file("m.json"), "--c", folder_.file("m.c"), "--force"};
     arguments.insert(arguments.end(), export_options.begin(), export_options.end());
-    const auto run = run_palpate(arguments);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    printed_ = run.out;
+    printed_ = test::must_run(arguments).out;
     return test::read_text(folder_.file("m.c"));
   }
 

@@ -15,21 +15,16 @@ const std::string kFiles = std::string(PALPATE_SOURCE_DIR) + "/tests/engine/impo
 
 TEST(ImportVerb, WritesARecordingAndPrintsTheGuesses) {
   const test::TemporaryFolder folder;
-  const auto run = run_palpate({"import", kFiles + "08_excel_de.csv", "--out", folder.file("rec.csv")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto run = test::must_run({"import", kFiles + "08_excel_de.csv", "--out", folder.file("rec.csv")});
   EXPECT_TRUE(test::has_parts(
       run.out, {"semicolon", "decimal comma", "UTF-8", "line 1", "line 2", "position", "2 \"Weg [mm]\"", "mm"}));
-  const auto recording = read_recording(folder.file("rec.csv"));
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  EXPECT_EQ(recording->rows.size(), 24u);
+  EXPECT_EQ(test::must(read_recording(folder.file("rec.csv"))).rows.size(), 24u);
 }
 
 TEST(ImportVerb, WritesOverNothingWithoutForceAndLeavesNothingAfterAnError) {
   const test::TemporaryFolder folder;
   const std::string kept = folder.with_file("kept.csv", "mine\n");
-  const auto refused = run_palpate({"import", kFiles + "02_matlab.csv", "--out", kept});
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(refused.err, {"--force"}));
+  EXPECT_TRUE(test::fails(1, {"import", kFiles + "02_matlab.csv", "--out", kept}, {"--force"}));
   EXPECT_EQ(test::read_text(kept), "mine\n");
   EXPECT_EQ(run_palpate({"import", kFiles + "20_bare.txt", "--out", folder.file("new.csv")}).exit_code, 1);
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"kept.csv"});
@@ -39,8 +34,7 @@ TEST(ImportVerb, FlipsPositionForceOrBoth) {
   const test::TemporaryFolder folder;
   const auto first_row = [&](const std::string& flip) {
     const std::string out = folder.file(flip + ".csv");
-    const auto run = run_palpate({"import", kFiles + "02_matlab.csv", "--out", out, "--flip", flip});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+    test::must_run({"import", kFiles + "02_matlab.csv", "--out", out, "--flip", flip});
     return read_recording(out)->rows[5];
   };
   const RecordingRow position = first_row("position"), force = first_row("force"), both = first_row("both");

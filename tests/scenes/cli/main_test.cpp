@@ -10,16 +10,10 @@ namespace {
 using test::run_palpate;
 using test::run_program;
 
-// Exactly one line that starts with "error: ".
-bool is_one_error_line(const std::string& text) {
-  return text.rfind("error: ", 0) == 0 && text.find('\n') == text.size() - 1;
-}
-
 TEST(Main, HelpAndVersionGoToStandardOutput) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"--help"}, {"--version"}, {"scenes", "--help"}, {"devices", "--help"}}) {
-    const auto run = run_palpate(arguments);
-    EXPECT_EQ(run.exit_code, 0);
+    const auto run = test::must_run(arguments);
     EXPECT_FALSE(run.out.empty());
     EXPECT_EQ(run.err, "");
   }
@@ -28,23 +22,16 @@ TEST(Main, HelpAndVersionGoToStandardOutput) {
 
 TEST(Main, WrongUsageIsOneLineThatNamesTheVerbs) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"dance"}, {"--dance"}, {""}}) {
-    const auto run = run_palpate(arguments);
-    EXPECT_EQ(run.exit_code, 2);
-    EXPECT_EQ(run.out, "");
-    EXPECT_TRUE(is_one_error_line(run.err)) << run.err;
-    EXPECT_TRUE(test::has_parts(run.err, {"known verbs: ", "scenes, devices"}));
+    EXPECT_TRUE(test::fails(2, arguments, {"known verbs: ", "scenes, devices"}));
   }
 }
 
 TEST(Main, UnknownOptionPointsToTheVerbsHelp) {
-  const auto run = run_palpate({"scenes", "--dance"});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_TRUE(test::has_parts(run.err, {"error: ", "--dance", "palpate scenes", "--help"}));
+  EXPECT_TRUE(test::fails(2, {"scenes", "--dance"}, {"error: ", "--dance", "palpate scenes", "--help"}));
 }
 
 TEST(Main, ScenesListsEveryScene) {
-  const auto run = run_palpate({"scenes"});
-  EXPECT_EQ(run.exit_code, 0);
+  const auto run = test::must_run({"scenes"});
   EXPECT_EQ(run.err, "");
   for (const char* name : {"silicone_block", "button", "foam_block", "elastic_block", "stiff_block", "skin"}) {
     EXPECT_TRUE(test::has_parts(run.out, {name}));
@@ -57,8 +44,7 @@ TEST(Main, ScenesReadsTheSameInEveryLocale) {
 
 TEST(Main, ResultsThatCannotBePrintedAreAFailure) {
   const auto run = run_program({"/bin/sh", "-c", "\"$0\" scenes > /dev/full", PALPATE_BINARY});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(run.err, {"error: ", "standard output\n"}));
+  EXPECT_TRUE(test::is_refused(run, 1, {"standard output\n"}));
 }
 
 }  // namespace

@@ -30,31 +30,27 @@ std::string replayed(const test::TemporaryFolder& folder) {
 TEST(Record, WritesMotionAndForceOfADeviceAndChecksThem) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("press.csv");
-  const auto run = run_palpate({"record", "--device", kBridge, "--seconds", "3", "--out", path});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto run = test::must_run({"record", "--device", kBridge, "--seconds", "3", "--out", path});
   EXPECT_EQ(run.out.rfind("recorded ", 0), 0u) << run.out;
   EXPECT_TRUE(test::has_parts(run.out, {"% of the contact samples within the JND"}));
-  const auto recording = read_recording(path);
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  EXPECT_GT(recording->rows.size(), 500u);
-  for (const RecordingRow& row : recording->rows) {
+  const auto recording = test::must(read_recording(path));
+  EXPECT_GT(recording.rows.size(), 500u);
+  for (const RecordingRow& row : recording.rows) {
     ASSERT_NEAR(row.force_N, 400.0 * std::max(0.0, row.position_m), 2e-6) << "the spring of the example";
   }
   const auto again = run_palpate({"record", "--device", kBridge, "--seconds", "1", "--out", path});
   EXPECT_EQ(again.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(again.err, {"exists"}));
+  EXPECT_TRUE(test::has_parts(again.err, {"exists"})) << "after the device's note";
 }
 
 TEST(Record, KeepsMotionAloneOfADeviceThatMeasuresNoForce) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("motion.csv");
-  const auto run = run_palpate({"record", "--device", "hand", "--seconds", "1.5", "--out", path});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(test::has_parts(run.out, {"has no force"}));
+  EXPECT_TRUE(test::has_parts(test::must_run({"record", "--device", "hand", "--seconds", "1.5", "--out", path}).out,
+                              {"has no force"}));
   EXPECT_TRUE(test::has_parts(test::read_text(path), {"\ntime_s,position_m,velocity_m_per_s"}));
-  const auto guided = run_palpate({"record", "--device", "hand", "--guide", "--out", folder.file("guided.csv")});
-  EXPECT_EQ(guided.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(guided.err, {"error: --guide", "hand", "; "})) << guided.err;
+  EXPECT_TRUE(test::fails(1, {"record", "--device", "hand", "--guide", "--out", folder.file("guided.csv")},
+                          {"error: --guide", "hand", "; "}));
 }
 
 TEST(Record, ARunThatIsStoppedOrKilledLeavesWholeRows) {
@@ -65,25 +61,21 @@ TEST(Record, ARunThatIsStoppedOrKilledLeavesWholeRows) {
     test::ChildProcess program({PALPATE_BINARY, "record", "--device", replayed(folder), "--out", path});
     ASSERT_TRUE(test::wait_for([&] { return std::filesystem::exists(path); }, 120)) << "after its first 1000 rows";
     EXPECT_EQ(program.end(signal), exit_code);
-    const auto recording = read_recording(path);
-    ASSERT_TRUE(recording.ok()) << recording.error().message;
-    EXPECT_GE(recording->rows.size(), 1000u);
+    EXPECT_GE(test::must(read_recording(path)).rows.size(), 1000u);
   }
 }
 
 TEST(Record, RefusesDevicesWithAReason) {
   const test::TemporaryFolder folder;
-  const auto run = run_palpate({"record", "--device", "bridge:exec:false", "--out", folder.file("a.csv")});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(run.err, {"error: ", "exit code", "1", "; "}));
+  EXPECT_TRUE(test::fails(1, {"record", "--device", "bridge:exec:false", "--out", folder.file("a.csv")},
+                          {"error: ", "exit code", "1", "; "}));
   EXPECT_EQ(run_palpate({"record", "--device", "hand"}).exit_code, 2) << "no --out";
   EXPECT_EQ(run_palpate({"record", "--device", "hand", "--seconds", "0", "--out", "a.csv"}).exit_code, 2);
 }
 
 TEST(DevicesTest, ADeviceShowsThatItsWatchdogStopsIt) {
-  const auto run = run_palpate({"devices", "--test", kBridge});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(test::has_parts(run.out, {"watchdog    stopped", "heartbeat   stopped"}));
+  EXPECT_TRUE(test::has_parts(test::must_run({"devices", "--test", kBridge}).out,
+                              {"watchdog    stopped", "heartbeat   stopped"}));
   EXPECT_EQ(run_palpate({"devices", "--test", "hand"}).exit_code, 2);
 }
 
@@ -93,10 +85,9 @@ TEST(DevicesTest, RefusesADeviceThatDoesNotReportItsWatchdog) {
   // A device reports by the flag 2 that its watchdog stopped it. This one does not.
   folder.with_file("mute.py", test::read_text(peer).insert(0, "").replace(
                                   test::read_text(peer).find("(2 if heard_s and silent else 0)"), 32, "0"));
-  const auto run = run_palpate(
-      {"devices", "--test", "bridge:exec:python3 " + folder.file("mute.py") + " none 1 " + folder.file("log")});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(run.err, {"100 ms", "watchdog"}));
+  EXPECT_TRUE(test::fails(
+      1, {"devices", "--test", "bridge:exec:python3 " + folder.file("mute.py") + " none 1 " + folder.file("log")},
+      {"100 ms", "watchdog"}));
 }
 
 // A complete exploration.

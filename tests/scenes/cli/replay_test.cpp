@@ -39,13 +39,12 @@ class ReplayVerb : public ::testing::Test {
     return run_palpate(arguments);
   }
 
-  // Expects that the run ended with one error line that has `parts`, and printed nothing else.
-  static void expect_refused(const test::ProgramRun& ran, const std::vector<std::string>& parts) {
-    EXPECT_EQ(ran.exit_code, 1);
-    EXPECT_EQ(ran.out, "");
-    EXPECT_EQ(ran.err.rfind("error: ", 0), 0u) << ran.err;
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
-    EXPECT_TRUE(test::has_parts(ran.err, parts));
+  // The object that it prints with --json, without a word on stderr.
+  Json results(const std::vector<std::string>& models, std::vector<std::string> more = {}) {
+    more.emplace_back("--json");
+    const test::ProgramRun ran = run(models, more);
+    if (ran.exit_code != 0 || !ran.err.empty()) throw std::runtime_error(ran.err);
+    return Json::parse(ran.out);
   }
 
   test::TemporaryFolder folder_;
@@ -67,10 +66,7 @@ std::vector<std::string> fields(const std::string& line) {
 }
 
 TEST_F(ReplayVerb, JsonHasTheContractsFields) {
-  const auto ran = run(models_, {"--json"});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  EXPECT_EQ(ran.err, "");
-  const Json object = Json::parse(ran.out);
+  const Json object = results(models_);
   EXPECT_EQ(keys(object),
             (std::vector<std::string>{"recording", "samples", "contact_samples", "surface_offset_m", "models"}));
   EXPECT_EQ(object["recording"], recording_);
@@ -104,9 +100,7 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
 
 TEST_F(ReplayVerb, FiguresFollowFromTheForcesFile) {
   const std::string out = folder_.file("forces.csv");
-  const auto ran = run({models_[0], models_[3], models_[5]}, {"--json", "--out", out});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  const Json object = Json::parse(ran.out);
+  const Json object = results({models_[0], models_[3], models_[5]}, {"--out", out});
   std::istringstream file(test::read_text(out));
   std::string line;
   ASSERT_TRUE(std::getline(file, line));
@@ -170,9 +164,7 @@ TEST_F(ReplayVerb, GivesEveryErrorAsRecordedAndWithTheSurfaceMoved) {
   const std::string shifted = folder_.file("shifted.csv");
   ASSERT_TRUE(write_recording(shifted, recording, {}, false).ok());
 
-  const auto both = run({model}, {"--recording", shifted, "--json"});
-  ASSERT_EQ(both.exit_code, 0) << both.err;
-  const Json list = Json::parse(both.out);
+  const Json list = results({model}, {"--recording", shifted});
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0]["surface_offset_m"], 0.0);
   EXPECT_NEAR(list[1]["surface_offset_m"], 0.3e-3, 0.02e-3);
@@ -212,9 +204,7 @@ TEST_F(ReplayVerb, TheSameCommandGivesTheSameBytesInAnotherProcess) {
 
 TEST_F(ReplayVerb, ModelsOfOneNameGetDistinctNames) {
   const std::string out = folder_.file("forces.csv");
-  const auto ran = run({models_[5], models_[5], models_[5]}, {"--json", "--out", out});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  const Json object = Json::parse(ran.out);
+  const Json object = results({models_[5], models_[5], models_[5]}, {"--out", out});
   EXPECT_EQ(object["models"][0]["name"], "greedy-cubic-6");
   EXPECT_EQ(object["models"][1]["name"], "greedy-cubic-6-2");
   EXPECT_EQ(object["models"][2]["name"], "greedy-cubic-6-3");
@@ -225,19 +215,19 @@ TEST_F(ReplayVerb, ModelsOfOneNameGetDistinctNames) {
 
 TEST_F(ReplayVerb, FailuresAreOneErrorLine) {
   const std::string none = folder_.file("none.json");
-  expect_refused(run({none}), {none, "no such file", "palpate fit"});
-  expect_refused(run({recording_}), {recording_, "JSON", "palpate fit", "--recording"});
-  expect_refused(run(std::vector<std::string>(17, models_[0])), {"17 models", "16", "; "});
+  EXPECT_TRUE(test::is_refused(run({none}), 1, {none, "no such file", "palpate fit"}));
+  EXPECT_TRUE(test::is_refused(run({recording_}), 1, {recording_, "JSON", "palpate fit", "--recording"}));
+  EXPECT_TRUE(test::is_refused(run(std::vector<std::string>(17, models_[0])), 1, {"17 models", "16", "; "}));
   const std::string before = test::read_text(recording_);
-  expect_refused(run({models_[0]}, {"--out", recording_, "--force"}), {recording_, "--out", "; "});
+  EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--out", recording_, "--force"}), 1, {recording_, "--out", "; "}));
   EXPECT_EQ(test::read_text(recording_), before);
   Recording air = test::example_recording(100, 1000.0);
   for (RecordingRow& row : air.rows) row.position_m = -1e-3 - 1e-6 * row.time_s;
   recording_ = folder_.file("air.csv");
   ASSERT_TRUE(write_recording(recording_, air, {}, false).ok());
-  expect_refused(run({models_[0]}, {"--json"}), {recording_ + ": no_"});
+  EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--json"}), 1, {recording_ + ": no_"}));
   recording_ = folder_.file("none.csv");
-  expect_refused(run({models_[0]}), {recording_, "no such file"});
+  EXPECT_TRUE(test::is_refused(run({models_[0]}), 1, {recording_, "no such file"}));
 }
 
 TEST_F(ReplayVerb, WrongUsageIsTwo) {
@@ -248,7 +238,7 @@ TEST_F(ReplayVerb, WrongUsageIsTwo) {
 
 TEST_F(ReplayVerb, NothingIsLostWithoutForceOrAfterAnError) {
   const std::string out = folder_.with_file("forces.csv", "mine");
-  expect_refused(run({models_[0]}, {"--out", out}), {out, "--force"});
+  EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--out", out}), 1, {out, "--force"}));
   EXPECT_EQ(test::read_text(out), "mine");
 
   const std::string whole = test::read_text(recording_);

@@ -24,9 +24,8 @@ class ReportVerb : public ::testing::Test {
   static void SetUpTestSuite() {
     folder_ = new test::TemporaryFolder;
     for (const int seed : {1, 2}) {
-      const auto ran = run_palpate({"synth", "--material", "silicone", "--seed", std::to_string(seed), "--seconds", "4",
-                                    "--rate", "100", "--out", recording(seed)});
-      ASSERT_EQ(ran.exit_code, 0) << ran.err;
+      test::must_run({"synth", "--material", "silicone", "--seed", std::to_string(seed), "--seconds", "4", "--rate",
+                      "100", "--out", recording(seed)});
     }
     report_ = report({"--train", recording(1), "--test", recording(2), "--out", out()});
   }

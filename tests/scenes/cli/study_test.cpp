@@ -18,8 +18,7 @@ TEST(Study, MeasuresTheJndOfAScene) {
   const test::TemporaryFolder folder;
   const std::string out = folder.file("study");
   const std::vector<std::string> simulate = {"study", "simulate", "--subjects", "3", "--seed", "2", "--out", out};
-  const auto run = run_palpate(simulate);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto run = test::must_run(simulate);
   EXPECT_EQ(run.err, "");
   EXPECT_TRUE(test::has_parts(run.out, {"conservative "}));
   for (const char* name : {"S01.csv", "S03.csv", "results.csv", "jnd.json"}) {
@@ -31,49 +30,42 @@ TEST(Study, MeasuresTheJndOfAScene) {
   EXPECT_TRUE(test::has_parts(again.err, {"error: ", out, "/S01.csv", "--force"}));
 
   // The same files give the same result.
-  const auto analysed = run_palpate(
+  const auto analysed = test::must_run(
       {"study", "analyse", out + "/S01.csv", out + "/S02.csv", out + "/S03.csv", "--out", folder.file("again")});
-  ASSERT_EQ(analysed.exit_code, 0) << analysed.err;
   EXPECT_EQ(analysed.out, run.out);
   EXPECT_EQ(test::read_text(folder.file("again/jnd.json")), test::read_text(out + "/jnd.json"));
 
-  const auto scene = load_scene("silicone_block");
-  ASSERT_TRUE(scene.ok());
+  const auto scene = test::must(load_scene("silicone_block"));
   std::string text = test::read_text(std::string(PALPATE_SOURCE_DIR) + "/assets/scenes/silicone_block.json");
   const std::size_t begin = text.find("\"jnd\""), end = text.find('}', begin);
   text.replace(begin, end + 1 - begin, "\"jnd_file\": \"jnd.json\"");
-  const auto judged = parse_scene(text, out + "/silicone_block.json");
-  ASSERT_TRUE(judged.ok()) << judged.error().message;
-  EXPECT_EQ(judged->jnd.offset_N, read_jnd_file(out + "/jnd.json")->offset_N);
-  EXPECT_NE(judged->jnd.weber_fraction, scene->jnd.weber_fraction);
+  const auto judged = test::must(parse_scene(text, out + "/silicone_block.json"));
+  EXPECT_EQ(judged.jnd.offset_N, read_jnd_file(out + "/jnd.json")->offset_N);
+  EXPECT_NE(judged.jnd.weber_fraction, scene.jnd.weber_fraction);
 }
 
 TEST(Study, SimulatedSubjectsDiscriminateStrokes) {
   const test::TemporaryFolder folder;
   const std::string foam = folder.file("foam.csv"), out = folder.file("out");
   ASSERT_EQ(run_palpate({"synth", "--material", "foam", "--seed", "2", "--seconds", "20", "--out", foam}).exit_code, 0);
-  const auto run =
-      run_palpate({"study", "simulate", "--discriminate", foam, "--model", "greedy", "--subjects", "2", "--out", out});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto run = test::must_run(
+      {"study", "simulate", "--discriminate", foam, "--model", "greedy", "--subjects", "2", "--out", out});
   EXPECT_EQ(run.err, "");
   EXPECT_TRUE(test::has_parts(
       run.out, {"comparison   greedy-0\nstroke       foam, ", "Predicted above the JND", "one JND: consistent."}))
       << "a model of silicone against foam: " << run.out;
-  const auto data = read_study(out + "/S02.csv");
-  ASSERT_TRUE(data.ok()) << data.error().message;
-  EXPECT_EQ(data->records.size(), 104u);
+  EXPECT_EQ(test::must(read_study(out + "/S02.csv")).records.size(), 104u);
 
   const auto again =
-      run_palpate({"study", "analyse", out + "/S01.csv", out + "/S02.csv", "--out", folder.file("again")});
-  ASSERT_EQ(again.exit_code, 0) << again.err;
+      test::must_run({"study", "analyse", out + "/S01.csv", out + "/S02.csv", "--out", folder.file("again")});
   EXPECT_EQ(again.out, run.out);
   EXPECT_EQ(test::read_text(folder.file("again/results.csv")), test::read_text(out + "/results.csv"));
 }
 
 TEST(Study, RecordsTheSceneWithoutAFile) {
   const test::TemporaryFolder folder;
-  const auto run = run_palpate({"study", "simulate", "--discriminate", "--subjects", "1", "--out", folder.file("out")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto run =
+      test::must_run({"study", "simulate", "--discriminate", "--subjects", "1", "--out", folder.file("out")});
   EXPECT_TRUE(test::has_parts(run.out, {"reference    recorded force\ncomparison   greedy-0\nstroke       silicone_2, ",
                                         "Predicted below the JND"}));
 }
@@ -85,9 +77,7 @@ TEST(Study, RefusesWrongUsage) {
   EXPECT_EQ(run_palpate({"study", "analyse", "--out", "x"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--model", "greedy"}).exit_code, 2)
       << "needs --discriminate";
-  const auto missing = run_palpate({"study", "analyse", "/none/S01.csv", "--out", "/none/out"});
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(missing.err, {"/none/S01.csv"}));
+  EXPECT_TRUE(test::fails(1, {"study", "analyse", "/none/S01.csv", "--out", "/none/out"}, {"/none/S01.csv"}));
 }
 
 }  // namespace

@@ -13,8 +13,7 @@ namespace {
 using test::run_palpate;
 
 TEST(Synth, ListsTheMaterialsWithTheirRelaxationTimes) {
-  const auto run = run_palpate({"synth", "--list"});
-  EXPECT_EQ(run.exit_code, 0);
+  const auto run = test::must_run({"synth", "--list"});
   EXPECT_EQ(run.err, "");
   for (const Material& material : materials())
     EXPECT_TRUE(test::has_parts(run.out, {std::string(material.name), std::string(material.relaxation_times)}));
@@ -24,28 +23,20 @@ TEST(Synth, WritesTheRecordingOfTheLibrary) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("gel.csv");
   const auto run =
-      run_palpate({"synth", "--material", "gel", "--seed", "3", "--seconds", "2", "--rate", "500", "--out", path});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+      test::must_run({"synth", "--material", "gel", "--seed", "3", "--seconds", "2", "--rate", "500", "--out", path});
   EXPECT_EQ(run.out, "");
   EXPECT_EQ(run.err, "");
-  const Result<Recording> read = read_recording(path);
-  ASSERT_TRUE(read.ok()) << read.error().message;
+  const Recording read = test::must(read_recording(path));
   EXPECT_EQ(test::read_text(path).rfind("# virtual recording by palpate synth", 0), 0u);
-  RigSettings settings;
-  settings.material = "gel";
-  settings.seed = 3;
-  settings.seconds = 2.0;
-  settings.rate_Hz = 500.0;
-  const Result<Recording> rig = record_sensors(settings);
-  ASSERT_TRUE(rig.ok());
-  ASSERT_EQ(read->rows.size(), 1000u);
-  EXPECT_TRUE(read->columns.acceleration);
-  for (std::size_t i = 0; i < read->rows.size(); ++i) {
-    const RecordingRow& expected = rig->rows[i];
-    ASSERT_EQ(read->rows[i].time_s, expected.time_s);
-    ASSERT_EQ(read->rows[i].position_m, expected.position_m);
-    ASSERT_EQ(read->rows[i].force_N, expected.force_N);
-    ASSERT_EQ(read->rows[i].acceleration_m_per_s2, expected.acceleration_m_per_s2);
+  const Recording rig = test::must(record_sensors({"gel", 3, 2.0, 500.0}));
+  ASSERT_EQ(read.rows.size(), 1000u);
+  EXPECT_TRUE(read.columns.acceleration);
+  for (std::size_t i = 0; i < read.rows.size(); ++i) {
+    const RecordingRow& expected = rig.rows[i];
+    ASSERT_EQ(read.rows[i].time_s, expected.time_s);
+    ASSERT_EQ(read.rows[i].position_m, expected.position_m);
+    ASSERT_EQ(read.rows[i].force_N, expected.force_N);
+    ASSERT_EQ(read.rows[i].acceleration_m_per_s2, expected.acceleration_m_per_s2);
   }
 }
 
@@ -53,9 +44,7 @@ TEST(Synth, WritesOverNothingWithoutForce) {
   const test::TemporaryFolder folder;
   const std::string path = folder.with_file("kept.csv", "mine\n");
   const std::vector<std::string> command = {"synth", "--material", "stiff", "--seconds", "1", "--out", path};
-  const auto refused = run_palpate(command);
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_TRUE(test::has_parts(refused.err, {"--force"}));
+  EXPECT_TRUE(test::fails(1, command, {"--force"}));
   EXPECT_EQ(test::read_text(path), "mine\n");
   std::vector<std::string> forced = command;
   forced.push_back("--force");
@@ -80,9 +69,7 @@ TEST(Synth, WrongUsageEndsWithTwoAndLeavesNoFile) {
   };
   for (std::vector<std::string> arguments : wrong) {
     arguments.insert(arguments.begin(), "synth");
-    const auto run = run_palpate(arguments);
-    EXPECT_EQ(run.exit_code, 2) << run.err;
-    EXPECT_EQ(run.err.rfind("error: ", 0), 0u) << run.err;
+    EXPECT_TRUE(test::fails(2, arguments));
   }
   EXPECT_TRUE(folder.entries().empty());
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -26,17 +27,16 @@ TEST(Evaluate, TakesMoreModelsThanOneTick) {
     ++rows;
     EXPECT_EQ(snapshot.model_count, 16u);
   };
-  const auto result = evaluate(rows_of(recording), models, request);
-  ASSERT_TRUE(result.ok());
-  ASSERT_EQ(result->models.size(), 20u);
-  EXPECT_EQ(result->samples, 500u);
+  const auto result = test::must(evaluate(rows_of(recording), models, request));
+  ASSERT_EQ(result.models.size(), 20u);
+  EXPECT_EQ(result.samples, 500u);
   EXPECT_EQ(rows, 500);
-  const ErrorSummary first = result->models[0].as_recorded.summary();
-  const ErrorSummary last = result->models[19].as_recorded.summary();
-  EXPECT_EQ(first.samples, result->contact_samples);
+  const ErrorSummary first = result.models[0].as_recorded.summary();
+  const ErrorSummary last = result.models[19].as_recorded.summary();
+  EXPECT_EQ(first.samples, result.contact_samples);
   EXPECT_EQ(first.rms_error_N, last.rms_error_N) << "the same model";
-  EXPECT_EQ(first.rms_error_N == result->models[0].surface_moved.summary().rms_error_N,
-            result->models[0].surface.at == 0.0);
+  EXPECT_EQ(first.rms_error_N == result.models[0].surface_moved.summary().rms_error_N,
+            result.models[0].surface.at == 0.0);
 }
 
 TEST(Evaluate, AFileAndItsRecordingGiveTheSame) {
@@ -62,23 +62,21 @@ TEST(Evaluate, SamplesThatAreNotCountedAreReplayed) {
     ++counted;
     largest_N = std::max(largest_N, std::abs(snapshot.force_N[0] - row.force_N));
   };
-  const auto result = evaluate(rows_of(recording), example_list(), request);
-  ASSERT_TRUE(result.ok());
-  EXPECT_EQ(result->samples, 800u);
+  const auto result = test::must(evaluate(rows_of(recording), example_list(), request));
+  EXPECT_EQ(result.samples, 800u);
   EXPECT_GT(counted, 0u);
-  EXPECT_EQ(result->contact_samples, counted);
-  EXPECT_EQ(result->models[0].as_recorded.summary().max_error_N, largest_N);
+  EXPECT_EQ(result.contact_samples, counted);
+  EXPECT_EQ(result.models[0].as_recorded.summary().max_error_N, largest_N);
 }
 
 TEST(Evaluate, NoForceErrsByTheWholeForce) {
   const Recording recording = test::example_recording(300, 1000.0);
-  const auto result = evaluate(rows_of(recording), example_list());
-  ASSERT_TRUE(result.ok());
+  const auto result = test::must(evaluate(rows_of(recording), example_list()));
   double largest_N = 0.0;
   for (const RecordingRow& row : recording.rows) {
     if (row.position_m > 0.0) largest_N = std::max(largest_N, std::abs(row.force_N));
   }
-  EXPECT_EQ(result->no_force.summary().max_error_N, largest_N);
+  EXPECT_EQ(result.no_force.summary().max_error_N, largest_N);
 }
 
 }  // namespace

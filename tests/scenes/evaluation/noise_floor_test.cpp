@@ -15,7 +15,7 @@ TEST(NoiseFloor, IsThatOfANormalErrorAtOneForce) {
   Recording recording;
   RandomStream random(1, 0);
   for (int i = 0; i < 20000; ++i) recording.rows.push_back({1e-3 * i, 1e-3, 0.065 * random.normal()});
-  const NoiseFloor floor = noise_floor({&recording}, JndLine{0.065, 0.0});
+  const NoiseFloor floor = noise_floor({prepare_recording(recording)}, JndLine{0.065, 0.0});
   // The noise is identified from the quietest fifth of the recording. In pure noise this
   // underestimates it by up to a seventh.
   EXPECT_NEAR(floor.force_noise_N, 0.065, 0.010);
@@ -27,7 +27,7 @@ TEST(NoiseFloor, IsThatOfANormalErrorAtOneForce) {
 TEST(NoiseFloor, OutOfContactCountsNothing) {
   Recording recording;
   for (int i = 0; i < 100; ++i) recording.rows.push_back({1e-3 * i, -1e-3, 0.0});
-  EXPECT_EQ(noise_floor({&recording}, JndLine{}).within_jnd, 1.0);
+  EXPECT_EQ(noise_floor({prepare_recording(recording)}, JndLine{}).within_jnd, 1.0);
 }
 
 }  // namespace

@@ -28,36 +28,30 @@ TEST(ConvertedRecording, EverythingButAModelMayBeARecording) {
 TEST(ConvertedRecording, ARecordingStaysAsItIs) {
   const test::TemporaryFolder folder;
   const std::string path = folder.with_file("a.csv", rows("time_s,position_m,force_N", ","));
-  const auto converted = convert_recording(path, folder.path());
-  ASSERT_TRUE(converted.ok()) << converted.error().message;
-  EXPECT_EQ(converted->path, path);
-  EXPECT_TRUE(converted->words.empty());
+  const auto converted = test::must(convert_recording(path, folder.path()));
+  EXPECT_EQ(converted.path, path);
+  EXPECT_TRUE(converted.words.empty());
 }
 
 TEST(ConvertedRecording, AnotherTableBecomesOneInTheFolder) {
   const test::TemporaryFolder folder;
   const test::TemporaryFolder data;
   const std::string path = folder.with_file("trial.txt", rows("Time [s]\tPosition [mm]\tForce [mN]", "\t"));
-  const auto converted = convert_recording(path, data.path());
-  ASSERT_TRUE(converted.ok()) << converted.error().message;
-  EXPECT_EQ(converted->path.rfind(data.path() + "/trial-", 0), 0u) << converted->path;
-  EXPECT_EQ(converted->words.at(2).rfind("position: column 2 \"Position [mm]\" in mm", 0), 0u)
-      << converted->words.at(2);
-  const auto recording = read_recording(converted->path);
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  EXPECT_NEAR(recording->rows.back().force_N, 0.98e-3, 1e-9);
+  const auto converted = test::must(convert_recording(path, data.path()));
+  EXPECT_EQ(converted.path.rfind(data.path() + "/trial-", 0), 0u) << converted.path;
+  EXPECT_EQ(converted.words.at(2).rfind("position: column 2 \"Position [mm]\" in mm", 0), 0u) << converted.words.at(2);
+  EXPECT_NEAR(test::must(read_recording(converted.path)).rows.back().force_N, 0.98e-3, 1e-9);
 }
 
 TEST(ConvertedRecording, ErrorsNameTheKindOfTheFile) {
   const test::TemporaryFolder folder;
-  const auto broken =
-      convert_recording(folder.with_file("a.csv", "# mine\ntime_s,position_m,force_N\n0,0,x\n"), folder.path());
-  ASSERT_FALSE(broken.ok());
-  EXPECT_TRUE(test::has_parts(broken.error().message, {"a.csv:3"}));
-  const auto two = convert_recording(
-      folder.with_file("b.csv", "t [s],x [mm],F1 [N],F2 [N]\n0,1,2,3\n1,2,3,4\n2,3,4,5\n3,4,5,6\n"), folder.path());
-  ASSERT_FALSE(two.ok());
-  EXPECT_TRUE(test::has_parts(two.error().message, {"--columns"}));
+  EXPECT_TRUE(test::has_parts(
+      convert_recording(folder.with_file("a.csv", "# mine\ntime_s,position_m,force_N\n0,0,x\n"), folder.path()),
+      {"a.csv:3"}));
+  EXPECT_TRUE(test::has_parts(
+      convert_recording(folder.with_file("b.csv", "t [s],x [mm],F1 [N],F2 [N]\n0,1,2,3\n1,2,3,4\n2,3,4,5\n3,4,5,6\n"),
+                        folder.path()),
+      {"--columns"}));
   EXPECT_FALSE(convert_recording(folder.file("none.csv"), folder.path()).ok());
 }
 

@@ -12,12 +12,7 @@ namespace {
 constexpr double kTau_s = 0.5;
 constexpr double kStep_s = 1e-3;
 
-std::vector<FeatureSpec> with_memory() {
-  FeatureSpec low_pass;
-  low_pass.kind = FeatureKind::lowpass_velocity;
-  low_pass.relaxation_time_s = kTau_s;
-  return {FeatureSpec{}, low_pass};
-}
+std::vector<FeatureSpec> with_memory() { return {FeatureSpec{}, FeatureSpec{FeatureKind::lowpass_velocity, kTau_s}}; }
 
 // m = d - tau y with y the low-pass feature of engine/tick/features.h.
 TEST(Dent, IsTheDepthLessTheLowPassedVelocity) {

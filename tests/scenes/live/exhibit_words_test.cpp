@@ -10,23 +10,19 @@ namespace palpate {
 namespace {
 
 TEST(ExhibitWords, AllLanguagesSayTheSameThings) {
-  const auto languages = read_exhibit_words(find_assets().value() + "/exhibit");
-  ASSERT_TRUE(languages.ok()) << languages.error().message;
-  ASSERT_GE(languages->size(), 2u);
-  EXPECT_EQ((*languages)[0]("language"), "English");
-  EXPECT_EQ((*languages)[1]("language"), "Deutsch");
-  for (const ExhibitWords& words : *languages) EXPECT_EQ(words.keys(), languages->front().keys());
+  const auto languages = test::must(read_exhibit_words(find_assets().value() + "/exhibit"));
+  ASSERT_GE(languages.size(), 2u);
+  EXPECT_EQ(languages[0]("language"), "English");
+  EXPECT_EQ(languages[1]("language"), "Deutsch");
+  for (const ExhibitWords& words : languages) EXPECT_EQ(words.keys(), languages.front().keys());
 }
 
 TEST(ExhibitWords, FillInNumbersAndShowMissingKeys) {
-  const auto words = ExhibitWords::parse("# a comment\n\nwas = Block %1: %2\r\n", "x.txt");
-  ASSERT_TRUE(words.ok());
-  EXPECT_EQ((*words)("was", "1", "soft"), "Block 1: soft");
-  EXPECT_EQ((*words)("nothing"), "nothing");
-  EXPECT_TRUE(
-      test::has_parts(ExhibitWords::parse("a = b\nno sign\n", "x.txt").error().message, {"x.txt:2:", "\"no sign\""}));
-  EXPECT_TRUE(test::has_parts(ExhibitWords::parse("a = b\na = c", "x.txt").error().message,
-                              {"x.txt:2:", "\"a\"", "second time"}));
+  const auto words = test::must(ExhibitWords::parse("# a comment\n\nwas = Block %1: %2\r\n", "x.txt"));
+  EXPECT_EQ(words("was", "1", "soft"), "Block 1: soft");
+  EXPECT_EQ(words("nothing"), "nothing");
+  EXPECT_TRUE(test::has_parts(ExhibitWords::parse("a = b\nno sign\n", "x.txt"), {"x.txt:2:", "\"no sign\""}));
+  EXPECT_TRUE(test::has_parts(ExhibitWords::parse("a = b\na = c", "x.txt"), {"x.txt:2:", "\"a\"", "second time"}));
 }
 
 TEST(ExhibitTally, OutlivesARestart) {

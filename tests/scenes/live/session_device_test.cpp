@@ -50,9 +50,7 @@ class SessionDevice : public ::testing::Test {
     ASSERT_TRUE(save_model(folder_.file("model.json"), data, false).ok());
     SessionRequest request = test::session_request("skin", "hid", {folder_.file("model.json")});
     request.bus = &bus_;
-    auto session = LiveSession::open(request);
-    ASSERT_TRUE(session.ok()) << session.error().message;
-    session_ = std::move(*session);
+    session_ = test::must(LiveSession::open(request));
     ASSERT_TRUE(frames_until([&] { return session_->models().all_settled(); }));
   }
   void TearDown() override {
@@ -154,9 +152,7 @@ TEST_F(SessionDevice, UnpluggingReleasesTheForceAndKeepsTheRecording) {
   ASSERT_TRUE(frames_until([&] { return session_->recording().rows > rows + 50; })) << "it goes on";
   session_->stop_recording();
   ASSERT_TRUE(frames_until([&] { return !session_->recording().active && !session_->recording().saving; }));
-  const auto recording = read_recording(path);
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  EXPECT_GT(recording->rows.size(), rows);
+  EXPECT_GT(test::must(read_recording(path)).rows.size(), rows);
 }
 
 }  // namespace

@@ -21,6 +21,8 @@ using test::TemporaryFolder;
 
 using Session = std::unique_ptr<LiveSession>;
 
+// A session with fits: error figures relative to the material's true force, then a
+// recording of the session that a fit accepts.
 TEST(SessionModels, ItsRecordingCanBeFitted) {
   const TemporaryFolder folder;
   SessionRequest request = session_request("elastic_block", "hand", {"greedy", "random"});

@@ -80,17 +80,16 @@ TEST(SessionRecorder, WritesEverySampleOfAHand) {
   EXPECT_FALSE(notice.problem) << notice.text;
   EXPECT_TRUE(test::has_parts(notice.text, {"20000 rows", "20.0 s", "hand.csv"}));
   EXPECT_FALSE(rig.recorder.status().active);
-  const Result<Recording> recording = read_recording(folder.file("hand.csv"));
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  ASSERT_EQ(recording->rows.size(), 20000u);
-  EXPECT_TRUE(recording->columns.velocity);
-  EXPECT_EQ(recording->rows.front().time_s, 0.0);
+  const Recording recording = test::must(read_recording(folder.file("hand.csv")));
+  ASSERT_EQ(recording.rows.size(), 20000u);
+  EXPECT_TRUE(recording.columns.velocity);
+  EXPECT_EQ(recording.rows.front().time_s, 0.0);
   double most_m = 0.0;
-  for (std::size_t i = 0; i < recording->rows.size(); ++i) {
-    const RecordingRow& row = recording->rows[i];
+  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+    const RecordingRow& row = recording.rows[i];
     ASSERT_EQ(row.force_N, 250.0 * std::max(0.0, row.position_m));
     if (i > 0) {
-      ASSERT_NEAR(row.time_s - recording->rows[i - 1].time_s, 1e-3, 1e-9);
+      ASSERT_NEAR(row.time_s - recording.rows[i - 1].time_s, 1e-3, 1e-9);
     }
     most_m = std::max(most_m, row.position_m);
   }
@@ -124,13 +123,12 @@ TEST(SessionRecorder, ContinuesWhenAReplayRestarts) {
   rig.run(1300);
   const Notice notice = rig.finish();
   EXPECT_FALSE(notice.problem);
-  const Result<Recording> recording = read_recording(folder.file("a.csv"));
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  EXPECT_NEAR(static_cast<double>(recording->rows.size()), 5200.0, 12.0);
+  const Recording recording = test::must(read_recording(folder.file("a.csv")));
+  EXPECT_NEAR(static_cast<double>(recording.rows.size()), 5200.0, 12.0);
   EXPECT_EQ(notice.text.find(';'), std::string::npos) << notice.text;
   int restarts = 0;
-  for (std::size_t i = 1; i < recording->rows.size(); ++i) {
-    const double step_s = recording->rows[i].time_s - recording->rows[i - 1].time_s;
+  for (std::size_t i = 1; i < recording.rows.size(); ++i) {
+    const double step_s = recording.rows[i].time_s - recording.rows[i - 1].time_s;
     if (step_s > 1.0) {
       ++restarts;
       EXPECT_NEAR(step_s, kStreamGap_s, 1e-9);
@@ -149,9 +147,8 @@ TEST(SessionRecorder, OmitsSamplesThatTheLoopRefused) {
   rig.run(1000);
   const Notice notice = rig.finish();
   EXPECT_TRUE(test::has_parts(notice.text, {"left out"}));
-  const Result<Recording> recording = read_recording(folder.file("a.csv"));
-  ASSERT_TRUE(recording.ok()) << recording.error().message;
-  EXPECT_NEAR(static_cast<double>(recording->rows.size()), 950.0, 12.0);
+  const Recording recording = test::must(read_recording(folder.file("a.csv")));
+  EXPECT_NEAR(static_cast<double>(recording.rows.size()), 950.0, 12.0);
 }
 
 TEST(SessionRecorder, RecordsOneFileAtATime) {
@@ -159,12 +156,11 @@ TEST(SessionRecorder, RecordsOneFileAtATime) {
   PathDevice device(test::strokes);
   Rig rig(device);
   ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-  EXPECT_TRUE(test::has_parts(rig.start(folder.file("b.csv"), ReferenceKind::truth).error().message,
-                              {folder.file("a.csv"), "; "}));
+  EXPECT_TRUE(test::has_parts(rig.start(folder.file("b.csv"), ReferenceKind::truth), {folder.file("a.csv"), "; "}));
   rig.run(100);
   EXPECT_FALSE(rig.finish().problem);
   // The loop may still send samples of the ended recording. They must be discarded.
-  EXPECT_TRUE(test::has_parts(rig.recorder.start({folder.file("a.csv"), ReferenceKind::truth, {}, {}}).error().message,
+  EXPECT_TRUE(test::has_parts(rig.recorder.start({folder.file("a.csv"), ReferenceKind::truth, {}, {}}),
                               {folder.file("a.csv"), "; "}));
   ASSERT_TRUE(rig.recorder.start({folder.file("b.csv"), ReferenceKind::truth, {}, {}}).ok());
   const Notice notice = rig.finish();
@@ -238,9 +234,8 @@ TEST(SessionRecorder, KeepsThePublishedRowsWhenTheDiskIsFull) {
     ASSERT_EQ(folder.entries().empty(), !published);
     EXPECT_TRUE(rig.start(folder.file("b.csv"), ReferenceKind::truth).ok());
     if (!published) continue;
-    const auto kept = read_recording(folder.file("a.csv"));
-    ASSERT_TRUE(kept.ok()) << kept.error().message;
-    EXPECT_TRUE(test::has_parts(notice.text, {"first " + std::to_string(kept->rows.size()) + " rows"}));
+    const auto kept = test::must(read_recording(folder.file("a.csv")));
+    EXPECT_TRUE(test::has_parts(notice.text, {"first " + std::to_string(kept.rows.size()) + " rows"}));
   }
 }
 

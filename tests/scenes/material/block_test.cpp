@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <vector>
 
 #include "scenes/material/material.h"
 #include "tests/support/rt_guard.h"

@@ -25,7 +25,6 @@ TEST(LayeredBlock, RelaxedIsAContactOnASpring) {
   EXPECT_GT(y_m, 1e-4);
   EXPECT_NEAR(contact_N, LayeredBlock::kSupport_N_per_m * y_m, 1e-9);
   EXPECT_NEAR(block.force_N(), LayeredBlock::kTop.force_N(8e-3) + contact_N, 1e-9);
-  EXPECT_NEAR(block.force_N(), block.relaxed_force_N(8e-3), 1e-9);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ double go(Block& block, double from_m, double to_m, double seconds, double hold_
 
 TEST(SofteningBlock, FirstSlowPressIsTheElasticLaw) {
   SofteningBlock block;
-  EXPECT_NEAR(go(block, 0.0, 6e-3, 1.0, 60.0), block.relaxed_force_N(6e-3), 1e-6);
+  EXPECT_NEAR(go(block, 0.0, 6e-3, 1.0, 60.0), block.elastic_force_N(6e-3), 1e-6);
 }
 
 // Shortly after a deep press a smaller depth is softer, by at most about kSoftening. After

@@ -11,6 +11,7 @@
 #include "scenes/report/plan.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
+#include "tests/support/message_parts.h"
 
 namespace palpate {
 namespace {
@@ -127,24 +128,17 @@ TEST(WorstStretch, OfAShortRecordingIsTheWhole) {
 
 // In one fold the recipe of 2009 has fewer sites than centres, in the other more.
 TEST(Measure, ANameHasTheNumberOfCentresInEveryOrderOfTheFolds) {
-  const auto scene = load_scene("silicone_block");
-  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  const auto scene = test::must(load_scene("silicone_block"));
   for (const bool long_first : {false, true}) {
     std::vector<PreparedRecordingPointer> recordings;
     for (const bool first : {true, false}) {
-      RigSettings settings;
-      settings.seed = first ? 1 : 2;
-      settings.rate_Hz = 100.0;
-      settings.seconds = first == long_first ? 20.0 : 4.0;
-      Recording recording = *record_sensors(settings);
+      Recording recording = *record_sensors({"silicone", first ? 1U : 2U, first == long_first ? 20.0 : 4.0, 100.0});
       recording.name = first ? "a" : "b";
       recordings.push_back(prepare_recording(std::move(recording)));
     }
-    const auto set = split_recordings(recordings, {});
-    ASSERT_TRUE(set.ok()) << set.error().message;
-    const auto data = measure(*set, *scene, true, {});
-    ASSERT_TRUE(data.ok()) << data.error().message;
-    for (const ModelResult& one : data->models) {
+    const auto set = test::must(split_recordings(recordings, {}));
+    const auto data = test::must(measure(set, scene, true, {}));
+    for (const ModelResult& one : data.models) {
       if (!one.model || !one.plan.request.method->can_take(kTakesCentres)) continue;
       EXPECT_EQ(one.plan.name, model_name(one.plan.recipe, *one.plan.request.method, one.size));
     }

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "tests/support/full_disk.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/study_driving.h"
@@ -30,15 +28,7 @@ StudyRecord answer_to(std::size_t trial) {
 
 class StudyFileTest : public ::testing::Test {
  protected:
-  StudyFile opened() {
-    auto file = StudyFile::open(path_, kHeader);
-    EXPECT_TRUE(file.ok()) << file.error().message;
-    return std::move(*file);
-  }
-  std::string complaint(const std::string& path, const StudyHeader& header = kHeader) {
-    const auto file = StudyFile::open(path, header);
-    return file.ok() ? "accepted" : file.error().message;
-  }
+  StudyFile opened() { return test::must(StudyFile::open(path_, kHeader)); }
 
   const test::TemporaryFolder folder_;
   const std::string path_ = folder_.file("S01.csv");
@@ -75,33 +65,32 @@ TEST_F(StudyFileTest, IsResumedAfterTheLastCompleteRow) {
 TEST_F(StudyFileTest, ChangesOfAnotherSessionAreKept) {
   StudyFile first = opened(), second = opened();  // both have no consent yet
   ASSERT_TRUE(first.consent("").ok());
-  EXPECT_TRUE(has_parts(second.consent("").error().message, {path_, "another session", "start again"}));
+  EXPECT_TRUE(has_parts(second.consent(""), {path_, "another session", "start again"}));
   StudyFile third = opened();
   ASSERT_TRUE(third.append(answer_to(0)).ok());
   const std::string text = read_text(path_);
-  EXPECT_TRUE(has_parts(first.append(answer_to(0)).error().message, {path_, "another session", "start again"}));
+  EXPECT_TRUE(has_parts(first.append(answer_to(0)), {path_, "another session", "start again"}));
   EXPECT_EQ(read_text(path_), text);
 }
 
 TEST_F(StudyFileTest, OtherStudiesAndOtherFilesAreRefusedAndKept) {
   ASSERT_TRUE(opened().consent("").ok());
-  EXPECT_TRUE(has_parts(complaint(folder_.with_file("S02.csv", read_text(path_)), {"S02"}),
+  EXPECT_TRUE(has_parts(StudyFile::open(folder_.with_file("S02.csv", read_text(path_)), {"S02"}),
                         {"S02.csv", "S01", "S02", "another folder"}));
-  EXPECT_TRUE(has_parts(complaint(path_, test::discrimination_header(0.8)), {path_, "same forces", "another folder"}));
+  EXPECT_TRUE(
+      has_parts(StudyFile::open(path_, test::discrimination_header(0.8)), {path_, "same forces", "another folder"}));
   const std::string strokes = folder_.with_file("S03.csv", study_header_text(test::discrimination_header(0.8), ""));
-  EXPECT_TRUE(has_parts(complaint(strokes, test::discrimination_header(0.9)), {strokes, "same forces"}));
-  EXPECT_TRUE(has_parts(complaint(path_, {"Anna"}), {"Anna", "such as S01"}));
+  EXPECT_TRUE(has_parts(StudyFile::open(strokes, test::discrimination_header(0.9)), {strokes, "same forces"}));
+  EXPECT_TRUE(has_parts(StudyFile::open(path_, {"Anna"}), {"Anna", "such as S01"}));
   const std::string notes = folder_.with_file("notes.csv", "time_s,position_m\n");
-  EXPECT_TRUE(has_parts(complaint(notes), {notes + ":1:1:", "time_s,position_m", "# palpate-study 1"}));
+  EXPECT_TRUE(has_parts(StudyFile::open(notes, kHeader), {notes + ":1:1:", "time_s,position_m", "# palpate-study 1"}));
   EXPECT_EQ(read_text(notes), "time_s,position_m\n");
 }
 
 TEST_F(StudyFileTest, ACommaInTheNameOfADeviceBreaksNoRow) {
   auto file = StudyFile::open(path_, {"S01", nullptr, "bridge:a,b", true});
   ASSERT_TRUE(file.ok() && file->consent("").ok() && file->append(answer_to(0)).ok());
-  const auto data = read_study(path_);
-  ASSERT_TRUE(data.ok()) << data.error().message;
-  EXPECT_EQ(data->records.at(0).device, "bridge:a;b");
+  EXPECT_EQ(test::must(read_study(path_)).records.at(0).device, "bridge:a;b");
 }
 
 TEST_F(StudyFileTest, AFullDiskLosesNothingThatWasAnswered) {
@@ -110,9 +99,7 @@ TEST_F(StudyFileTest, AFullDiskLosesNothingThatWasAnswered) {
   const std::string text = read_text(path_);
   {
     const test::FullDisk full(text.size() + 20);  // room for half a row
-    const Status refused = file.append(answer_to(1));
-    ASSERT_FALSE(refused.ok());
-    EXPECT_TRUE(has_parts(refused.error().message, {path_, "File too large"}));
+    EXPECT_TRUE(has_parts(file.append(answer_to(1)), {path_, "File too large"}));
   }
   EXPECT_EQ(read_text(path_), text);
   EXPECT_EQ(file.records().size(), 1u);
@@ -126,20 +113,16 @@ const std::string kGood = study_header_text(kHeader, "2024-05-06") +
 const std::string kGoodStrokes = study_header_text(test::discrimination_header(0.8), "2024-05-06") +
                                  "training,1,1.5495,0.7748,1,0.7,1.5,0,first,20,1.7,0.001,paddle,true\n";
 
-std::string complaint_of(const std::string& text) {
-  const auto data = parse_study(text, "S01.csv");
-  return data.ok() ? "accepted" : data.error().message;
-}
+std::string complaint_of(const std::string& text) { return test::message_of(parse_study(text, "S01.csv")); }
 
 TEST(StudyReader, ReadsEveryField) {
-  const auto data = parse_study(kGood, "S01.csv");
-  ASSERT_TRUE(data.ok()) << data.error().message;
-  EXPECT_EQ(data->header.subject, "S01");
-  EXPECT_EQ(data->header.strokes, nullptr);
-  ASSERT_EQ(data->records.size(), 2u);
-  EXPECT_TRUE(data->records[0].trial.training);
-  EXPECT_TRUE(data->records[0].rendered);
-  const StudyRecord& record = data->records[1];
+  const auto data = test::must(parse_study(kGood, "S01.csv"));
+  EXPECT_EQ(data.header.subject, "S01");
+  EXPECT_EQ(data.header.strokes, nullptr);
+  ASSERT_EQ(data.records.size(), 2u);
+  EXPECT_TRUE(data.records[0].trial.training);
+  EXPECT_TRUE(data.records[0].rendered);
+  const StudyRecord& record = data.records[1];
   EXPECT_EQ(record.trial, (StudyTrial{2.5, 3.5, false, true, 2}));
   EXPECT_EQ(record.first_rendered_N, 2.4);
   EXPECT_TRUE(record.limited);
@@ -149,11 +132,10 @@ TEST(StudyReader, ReadsEveryField) {
   EXPECT_FALSE(record.found_larger());
   EXPECT_DOUBLE_EQ(record.rendered_difference(), 1.1 / 2.4);
   EXPECT_EQ(kGood.find(study_row(record, false)), kGood.rfind("training,2"));
-  const auto strokes = parse_study(kGoodStrokes, "S01.csv");
-  ASSERT_TRUE(strokes.ok()) << strokes.error().message;
-  EXPECT_EQ(strokes->records.front().worst_N, 0.001);
-  EXPECT_EQ(strokes->header.strokes->recording, "silicone 2");
-  EXPECT_EQ(kGoodStrokes.find(study_row(strokes->records.front(), true)), kGoodStrokes.rfind("training,1"));
+  const auto strokes = test::must(parse_study(kGoodStrokes, "S01.csv"));
+  EXPECT_EQ(strokes.records.front().worst_N, 0.001);
+  EXPECT_EQ(strokes.header.strokes->recording, "silicone 2");
+  EXPECT_EQ(kGoodStrokes.find(study_row(strokes.records.front(), true)), kGoodStrokes.rfind("training,1"));
 }
 
 // Every message has the place, the text found there and what was expected.
@@ -193,20 +175,19 @@ TEST(StudyReader, RefusesWithPlaceFoundAndExpected) {
   for (const char* broken : {"{", "\"checksum\"", "\"offset_N\"", "\"silicone 2\"", "12.3,"})
     EXPECT_TRUE(has_parts(complaint_of(test::replaced(kGoodStrokes, broken, "?")), {"S01.csv:5:1: ", "JSON"}));
   EXPECT_TRUE(has_parts(complaint_of(test::replaced(kGood, "S01", "Anna")), {"S01.csv:2:1: ", "Anna", "such as S01"}));
-  EXPECT_TRUE(has_parts(read_study("/none/S01.csv").error().message, {"/none/S01.csv", "no such file"}));
+  EXPECT_TRUE(has_parts(read_study("/none/S01.csv"), {"/none/S01.csv", "no such file"}));
 }
 
 TEST(StudyFiles, AreOfDifferentSubjectsAndTheSameForces) {
-  const auto complaint = [](const StudyHeader& one, const StudyHeader& other) {
-    const Status checked = check_study_files({{one, {}}, {other, {}}});
-    return checked ? "accepted" : checked.error().message;
+  const auto checked = [](const StudyHeader& one, const StudyHeader& other) {
+    return test::message_of(check_study_files({{one, {}}, {other, {}}}));
   };
   const StudyHeader strokes = test::discrimination_header(0.9);
-  EXPECT_EQ(complaint({"S01"}, {"S02"}), "accepted");
-  EXPECT_EQ(complaint(strokes, {"S02", strokes.strokes}), "accepted");
-  EXPECT_TRUE(has_parts(complaint(strokes, strokes), {"two files of subject S01", "leave"}));
-  EXPECT_TRUE(has_parts(complaint(strokes, {"S02"}), {"S02", "S01", "separate commands"}));
-  EXPECT_TRUE(has_parts(complaint(strokes, {"S02", test::example_strokes(0.8)}), {"S02", "S01", "separate commands"}));
+  EXPECT_EQ(checked({"S01"}, {"S02"}), "accepted");
+  EXPECT_EQ(checked(strokes, {"S02", strokes.strokes}), "accepted");
+  EXPECT_TRUE(has_parts(checked(strokes, strokes), {"two files of subject S01", "leave"}));
+  EXPECT_TRUE(has_parts(checked(strokes, {"S02"}), {"S02", "S01", "separate commands"}));
+  EXPECT_TRUE(has_parts(checked(strokes, {"S02", test::example_strokes(0.8)}), {"S02", "S01", "separate commands"}));
 }
 
 TEST(StudyReader, RefusesRowsAfterTheLastTrial) {

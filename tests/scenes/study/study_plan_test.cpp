@@ -13,9 +13,7 @@ namespace {
 TEST(StudyPlan, AcceptsCodesAndNoNames) {
   for (const char* code : {"S1", "S01", "AB12", "XYZ9999"}) EXPECT_TRUE(check_subject_code(code).ok()) << code;
   for (const char* name : {"", "Anna", "S", "01", "s01", "S01 ", "ABCD1", "S12345", "S0A", "../S01", "Müller1"}) {
-    const Status status = check_subject_code(name);
-    ASSERT_FALSE(status.ok()) << name;
-    EXPECT_TRUE(test::has_parts(status.error().message, {std::string("\"") + name + "\"", "such as S01"}));
+    EXPECT_TRUE(test::has_parts(check_subject_code(name), {std::string("\"") + name + "\"", "such as S01"}));
   }
 }
 

@@ -20,10 +20,9 @@ class StudySessionTest : public ::testing::Test {
  protected:
   // A session of a subject who has given consent.
   std::unique_ptr<StudySession> begun(const StudyHeader& header = {"S01"}, std::uint64_t rest_ticks = 0) {
-    auto session = test::session_at(path_, header, rest_ticks);
-    EXPECT_TRUE(session.ok()) << session.error().message;
-    (*session)->accept_consent("today");
-    return std::move(*session);
+    auto session = test::must(test::session_at(path_, header, rest_ticks));
+    session->accept_consent("today");
+    return session;
   }
 
   const test::TemporaryFolder folder_;
@@ -54,14 +53,13 @@ TEST_F(StudySessionTest, RepeatsATrialInWhichTheDeviceDropsOut) {
 }
 
 TEST_F(StudySessionTest, NothingIsPresentedBeforeTheConsent) {
-  const auto session = test::session_at(path_);
-  ASSERT_TRUE(session.ok());
-  EXPECT_EQ((*session)->state(), StudyState::consent);
-  EXPECT_TRUE(test::has_parts((*session)->view().message, {"Do you agree to take part?"}));
-  (*session)->proceed();
-  (*session)->answer(true);
-  for (int i = 0; i < 1000; ++i) ASSERT_EQ((*session)->next_force_N(0.0), 0.0);
-  EXPECT_EQ((*session)->state(), StudyState::consent);
+  const auto session = test::must(test::session_at(path_));
+  EXPECT_EQ(session->state(), StudyState::consent);
+  EXPECT_TRUE(test::has_parts(session->view().message, {"Do you agree to take part?"}));
+  session->proceed();
+  session->answer(true);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(session->next_force_N(0.0), 0.0);
+  EXPECT_EQ(session->state(), StudyState::consent);
 }
 
 TEST_F(StudySessionTest, RunsFromConsentToTheEnd) {
@@ -154,11 +152,10 @@ TEST_F(StudySessionTest, AsksAgainForAnAnswerThatCouldNotBeStored) {
 }
 
 TEST_F(StudySessionTest, ConsentCountsOnceItIsStored) {
-  const auto session = test::session_at(folder_.file("none/S01.csv"));
-  ASSERT_TRUE(session.ok());
-  (*session)->accept_consent("");
-  EXPECT_EQ((*session)->state(), StudyState::consent);
-  EXPECT_TRUE(test::has_parts((*session)->view().message, {"does not exist"}));
+  const auto session = test::must(test::session_at(folder_.file("none/S01.csv")));
+  session->accept_consent("");
+  EXPECT_EQ(session->state(), StudyState::consent);
+  EXPECT_TRUE(test::has_parts(session->view().message, {"does not exist"}));
 }
 
 TEST_F(StudySessionTest, AbortWorksInEveryState) {
@@ -193,9 +190,7 @@ TEST_F(StudySessionTest, ResumesAfterTheLastAnswer) {
       session = begun(header);
       answer_trials(*session, until, right);
       session.reset();
-      auto resumed = test::session_at(path_, header);
-      ASSERT_TRUE(resumed.ok()) << resumed.error().message;
-      session = std::move(*resumed);
+      session = test::must(test::session_at(path_, header));
       EXPECT_EQ(session->state(), StudyState::ready) << "consent is asked once";
       answer_trials(*session, 1000, right);
       EXPECT_EQ(test::read_text(path_), whole);

@@ -3,13 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 
 #include <chrono>
 #include <thread>
 
-#include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
 #include "tests/support/message_parts.h"
 
@@ -41,10 +39,10 @@ TEST(ModelWorker, EqualsPalpateFitAndFitsTheFastestFirst) {
   const std::vector<test::ModelPtr> expected{test::fit(prepared, &kRandomMethod), test::fit(prepared, &kKdTreeMethod),
                                              test::fit(position, &kGreedyMethod)};
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    ASSERT_NE(made[i].model, nullptr) << made[i].problem;
+    const auto model = test::must(made[i].model);
     for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
       const std::array<double, kMaxFeatures> held{depth_m};  // at rest
-      ASSERT_EQ(made[i].model->evaluate(held.data()).force_N, expected[i]->evaluate(held.data()).force_N) << i;
+      ASSERT_EQ(model->evaluate(held.data()).force_N, expected[i]->evaluate(held.data()).force_N) << i;
     }
   }
 }
@@ -61,16 +59,12 @@ TEST(ModelWorker, AnotherNumberOfCentresEqualsPalpateFit) {
   for (const int centres : {10, 12, 3}) {
     plan.centres = centres;
     worker.add_job(0, plan);
-    const std::vector<FinishedModel> made = wait_for(worker, 1);
-    ASSERT_NE(made[0].model, nullptr) << made[0].problem;
-    MethodRequest request;
-    request.method = plan.method;
-    request.centres = centres;
-    const FittedModel expected(test::must(fit_method(prepared, request)).data);
-    EXPECT_EQ(made[0].model->name(), expected.name());
+    const auto model = test::must(wait_for(worker, 1)[0].model);
+    const FittedModel expected(test::must(fit_method(prepared, {plan.method, centres})).data);
+    EXPECT_EQ(model->name(), expected.name());
     for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
       const std::array<double, kMaxFeatures> held{depth_m};
-      ASSERT_NEAR(made[0].model->evaluate(held.data()).force_N, expected.evaluate(held.data()).force_N, kRounding_N);
+      ASSERT_NEAR(model->evaluate(held.data()).force_N, expected.evaluate(held.data()).force_N, kRounding_N);
     }
   }
 }
@@ -79,7 +73,7 @@ TEST(ModelWorker, ReportsErrors) {
   ModelWorker worker(test::must(load_scene("skin")), 1);
   ASSERT_TRUE(worker.start().ok());
   worker.add_job(2, {ModelOrigin::method, &kGreedyMethod, ""});
-  EXPECT_TRUE(test::has_parts(wait_for(worker, 1)[0].problem, {"\"skin\""}));
+  EXPECT_TRUE(test::has_parts(wait_for(worker, 1)[0].model, {"\"skin\""}));
 }
 
 TEST(ModelWorker, EndsInTheMiddleOfAFit) {
