@@ -78,7 +78,7 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   // with the correction, and the distances in the leaf with the last square roots of the correction. No other order is
   // faster, some are slower by up to 26 ns (Zen 4).
   const double trend_N = data_.trend.at(features, trend_inputs_);
-  const float* leaf = guard_.leaf(u.data());
+  const DomainGuard::Leaf leaf = guard_.leaf(u.data());
   double correction_N = correction_ != nullptr ? correction_->evaluate(u.data()) : 0.0;
   const double squared_distance = guard_.squared_distance(u.data(), leaf);
   const double trust = guard_.trust_at(squared_distance);

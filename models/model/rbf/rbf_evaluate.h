@@ -19,7 +19,7 @@
 #include "models/model/correction.h"
 #include "models/model/rbf/kernels.h"
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_simd.h"
+#include "models/model/vector_loops.h"
 
 namespace palpate {
 
