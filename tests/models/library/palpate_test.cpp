@@ -5,8 +5,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <functional>
 #include <memory>
 #include <sstream>
 #include <utility>
