@@ -186,7 +186,7 @@ static real trust_in(const real *u) {
 void write_correction(CText& out, const CorrectionPtr& correction) {
   if (const RbfFunction* function = rbf_of(correction)) return write_rbf(out, *function);
   if (const VoxelGrid* grid = grid_of(correction)) return write_grid(out, *grid);
-  if (!correction->is_none()) std::abort();  // a kind without C text: a mistake of the program
+  if (correction) std::abort();  // a kind without C text: a mistake of the program
   out.add(
       "\n/* no correction: the model is its trend */\n\nstatic real correction_of(const real *u) {\n"
       "  (void)u;\n  return R(0.0);\n}\n");
@@ -268,7 +268,7 @@ real palpate_force(real time_s, real position_m) {
 
 void write_constants(CText& out, const ModelData& data) {
   out.add("\n/* ---- the force ---- */\n\n");
-  out.define("CORRECTED_SHARE", data.corrects_trend || data.correction->is_none() ? 0.0 : 1.0);
+  out.define("CORRECTED_SHARE", data.corrects_trend || !data.correction ? 0.0 : 1.0);
   out.define("CORRECTION_LIMIT_N", data.correction_limit_N);
   out.define("LARGEST_FORCE_N", kForceMargin * data.largest_force_N);
   out.define("LOWEST_FORCE_N", data.lowest_force_N);

@@ -86,7 +86,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   data.correction = std::move(fitted->correction);
   if (prepared.left_out) {
     std::vector<CorrectionPtr> of_folds;
-    const int folds = data.correction->is_none() ? 0 : prepared.left_out->folds();
+    const int folds = data.correction ? prepared.left_out->folds() : 0;
     for (int fold = 0; fold < folds; ++fold) {
       auto of_fold = fit_without(prepared, fold, request, control);
       if (!of_fold) return of_fold.error();

@@ -9,9 +9,7 @@ const Method kTrendMethod{
     .label = "trend",
     .colour = 0xCC79A7,
     .expected_seconds = 0.01,
-    .fit = [](const MethodTask&, const FitControl&) -> Result<FittedCorrection> {
-      return FittedCorrection{std::make_shared<const NoCorrection>(), {}, ""};
-    },
+    .fit = [](const MethodTask&, const FitControl&) -> Result<FittedCorrection> { return FittedCorrection{}; },
 };
 
 }  // namespace palpate

@@ -56,7 +56,7 @@ nlohmann::ordered_json fit_json(const RecordingsFit& fitted, const FitOptions& o
   nlohmann::ordered_json features = nlohmann::ordered_json::array();
   for (const FeatureSpec& spec : data.features) features.push_back(feature_name(spec));
   return {{"method", data.method},
-          {"centres", data.correction->size()},
+          {"centres", data.centre_count()},
           {"kernel", options.kernel},
           {"weighting", options.weighting},
           {"samples", data.provenance.samples},

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "engine/base/result.h"

@@ -1,5 +1,5 @@
-// The correction h(u) of the trend, a function of the normalised features. Its kinds (radial basis functions, a grid,
-// none) are classes with one interface; only the model file and the exported C distinguish them.
+// The correction h(u) of the trend, a function of the normalised features. Its kinds (radial basis functions, a grid)
+// are classes with one interface; only the model file and the exported C distinguish them.
 //
 // Thread guarantee: a Correction is immutable and may be shared by any threads; its functions are as in ForceModel.
 #pragma once
@@ -14,20 +14,11 @@ class Correction {
 
   // h(u) in newtons. `u`: one normalised value per feature. Haptics thread, wait-free, no allocation.
   virtual double evaluate(const double* u) const noexcept = 0;
-  // The number of centres, or of nodes of a grid; 0 for neither.
+  // The number of centres, or of nodes of a grid.
   virtual int size() const noexcept = 0;
-  // True if the model is its trend alone; `evaluate` is then not called.
-  virtual bool is_none() const noexcept { return false; }
 };
 
-// The correction of a model that is its trend alone.
-class NoCorrection final : public Correction {
- public:
-  double evaluate(const double*) const noexcept override { return 0.0; }
-  int size() const noexcept override { return 0; }
-  bool is_none() const noexcept override { return true; }
-};
-
+// Null: the model is its trend alone.
 using CorrectionPtr = std::shared_ptr<const Correction>;
 
 }  // namespace palpate

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 #include "engine/tick/features.h"
@@ -41,19 +40,6 @@ std::vector<Eigen::Index> thinned(const Eigen::MatrixXd& sites, double radius) {
 
 // The share of a part by which its halves overlap.
 constexpr double kOverlap = 0.1;
-// The rounding of a distance relative to the norms of query and points.
-constexpr double kDistanceRounding = 3e-7;
-
-std::size_t whole_vectors(std::size_t count) {
-  return (count + simd::kSimdPadFloat - 1) / simd::kSimdPadFloat * simd::kSimdPadFloat;
-}
-
-// The points `order`, one column for each coordinate; the last point is repeated up to `stride`.
-Eigen::MatrixXf padded(const Eigen::MatrixXd& points, std::vector<Eigen::Index> order, std::size_t stride) {
-  order.resize(stride, order.back());
-  return points(Eigen::all, order).transpose().unaryExpr(&simd::nearest_float);
-}
-
 std::vector<Eigen::Index> all_of(const Eigen::MatrixXd& points) {
   std::vector<Eigen::Index> all(static_cast<std::size_t>(points.cols()));
   std::iota(all.begin(), all.end(), Eigen::Index{0});
@@ -82,8 +68,11 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
 }
 
 NearestDistance::NearestDistance(const Eigen::MatrixXd& points)
-    : rows_(padded(points, all_of(points), whole_vectors(static_cast<std::size_t>(points.cols())))),
-      nearest_(simd::nearest_loops(static_cast<int>(points.rows())).nearest) {}
+    : loops_(simd::nearest_loops(static_cast<int>(points.rows()))) {
+  std::vector<Eigen::Index> order = all_of(points);
+  order.resize(simd::whole_vectors(order.size(), simd::kSimdPadFloat), order.back());
+  rows_ = points(Eigen::all, order).transpose().unaryExpr(&simd::nearest_float);
+}
 
 double NearestDistance::nearest_squared(const double* x) const noexcept {
   std::array<float, kMaxFeatures> query;
@@ -91,48 +80,21 @@ double NearestDistance::nearest_squared(const double* x) const noexcept {
     if (!simd::in_nearest_range(x[k])) return std::numeric_limits<double>::infinity();
     query[static_cast<std::size_t>(k)] = simd::nearest_float(x[k]);
   }
-  const float squared = nearest_(rows_.data(), static_cast<std::size_t>(rows_.rows()), query.data());
-  return squared < std::numeric_limits<float>::max() ? static_cast<double>(squared)
-                                                     : std::numeric_limits<double>::infinity();
+  return static_cast<double>(loops_.nearest(rows_.data(), static_cast<std::size_t>(rows_.rows()), query.data()));
 }
 
-NearPoints::NearPoints(const Eigen::MatrixXd& points, double radius)
-    : loops_(simd::nearest_loops(static_cast<int>(points.rows()))) {
-  const Eigen::VectorXd centre = 0.5 * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
-  const Eigen::MatrixXd about = points.colwise() - centre;
-  std::copy(centre.begin(), centre.end(), tree_.centre.begin());
-  tree_.split_at.fill(std::numeric_limits<float>::infinity());
-  std::vector<std::vector<Eigen::Index>> leaves(simd::kNearLeaves);
-  split(about, all_of(about), 0, leaves);
-  for (const auto& leaf : leaves) tree_.leaf_size = std::max(tree_.leaf_size, whole_vectors(leaf.size()));
-
-  Eigen::MatrixXd rows(points.rows() + 1, points.cols());
-  rows << about, -0.5 * about.colwise().squaredNorm();
-  const auto floats = static_cast<Eigen::Index>(tree_.leaf_size) * rows.rows();
-  Eigen::MatrixXf memory(floats, static_cast<Eigen::Index>(leaves.size()));
-  for (std::size_t i = 0; i < leaves.size(); ++i)
-    memory.col(static_cast<Eigen::Index>(i)) = padded(rows, leaves[i], tree_.leaf_size).reshaped();
-  leaves_ = std::make_shared<const Eigen::MatrixXf>(std::move(memory));
-  tree_.leaves = leaves_->data();
-  set_limit(radius, points.colwise().norm().maxCoeff(), about.colwise().squaredNorm().maxCoeff());
+DomainGuard::DomainGuard(const DomainCover& cover)
+    : inner_radius_(cover.inner_radius),
+      outer_radius_(cover.outer_radius),
+      near_squared_(std::nextafter(static_cast<float>(cover.inner_radius * cover.inner_radius), 0.0F)),
+      all_(cover.points),
+      leaf_(simd::nearest_loops(static_cast<int>(cover.points.rows())).leaf) {
+  split(cover.points, all_of(cover.points), 0);
 }
 
-// With u = 2^-24, P the largest |p| and Q = |q|, the rounding of q, of p, of a product and a sum for each of up to 8
-// coordinates and of the limit is less than 18 u (P^2 + Q^2) = 1.1e-6 (P^2 + Q^2), and 1e-10 for values set to 0.
-void NearPoints::set_limit(double radius, double largest, double about_squared) {
-  constexpr double kRounding = 2e-6;
-  const double certain = radius - kDistanceRounding * (2.0 * largest + radius) - 1e-9;
-  const double half_squared = 0.5 * certain * certain - kRounding * about_squared - 1e-10;
-  tree_.half = static_cast<float>(0.5 + kRounding);
-  tree_.half_squared = certain > 0.0 && half_squared < std::numeric_limits<float>::max()
-                           ? static_cast<float>(half_squared)
-                           : -std::numeric_limits<float>::infinity();
-}
-
-void NearPoints::split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> part, std::size_t node,
-                       std::vector<std::vector<Eigen::Index>>& leaves) {
-  if (node + 1 >= simd::kNearLeaves) {
-    leaves[node + 1 - simd::kNearLeaves] = std::move(part);
+void DomainGuard::split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> part, std::size_t node) {
+  if (node + 1 >= simd::kLeaves) {
+    leaves_.emplace_back(points(Eigen::all, part));
     return;
   }
   const Eigen::Index k = widest_dimension(points, part);
@@ -141,18 +103,12 @@ void NearPoints::split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> 
   });
   const std::size_t middle = part.size() / 2;
   const auto overlap = static_cast<std::size_t>(kOverlap * static_cast<double>(part.size()));
-  tree_.split_coordinate[node] = static_cast<std::int32_t>(k);
-  tree_.split_at[node] = simd::nearest_float(points(k, part[middle]));
+  splits_.coordinate[node] = static_cast<std::int32_t>(k);
+  splits_.at[node] = simd::nearest_float(points(k, part[middle]));
   const auto place = [&](std::size_t i) { return part.begin() + static_cast<std::ptrdiff_t>(i); };
-  split(points, {part.begin(), place(std::max<std::size_t>(1, middle + overlap))}, 2 * node + 1, leaves);
-  split(points, {place(middle - overlap), part.end()}, 2 * node + 2, leaves);
+  split(points, {part.begin(), place(std::max<std::size_t>(1, middle + overlap))}, 2 * node + 1);
+  split(points, {place(middle - overlap), part.end()}, 2 * node + 2);
 }
-
-DomainGuard::DomainGuard(const DomainCover& cover)
-    : inner_radius_(cover.inner_radius),
-      outer_radius_(cover.outer_radius),
-      near_(cover.points, cover.inner_radius),
-      nearest_(cover.points) {}
 
 double DomainGuard::trust_at(double squared) const noexcept {
   if (squared <= inner_radius_ * inner_radius_) return 1.0;

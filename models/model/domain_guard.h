@@ -17,11 +17,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
-#include "models/model/nearest_simd.h"
+#include "engine/tick/features.h"
+#include "models/model/vector_loops.h"
 
 namespace palpate {
 
@@ -47,36 +48,20 @@ class NearestDistance {
 
   // min_i |x - point_i|^2, O(N); infinite when x is not finite or has a coordinate beyond 1e19.
   double nearest_squared(const double* x) const noexcept;
+  // Whether a point is within the distance whose square is `squared`. `rounded`: nearest_float of the coordinates.
+  bool within(const float* rounded, float squared) const noexcept {
+    return loops_.within(rows_.data(), static_cast<std::size_t>(rows_.rows()), rounded, squared);
+  }
 
  private:
-  Eigen::MatrixXf rows_;  // padded
-  simd::NearestFunction nearest_ = nullptr;
-};
-
-// A faster test whether a query is within a fixed radius of a point; positive only if the exact distance is. It is a
-// tree of five median splits whose halves overlap by some points. A query examines the points of one leaf only: of a
-// thousand queries on recordings that are near a point, 1 to 6 are not found (14 with six features); without the
-// overlap it would be 28 to 200. The descent has no branches.
-class NearPoints {
- public:
-  // `points` as above.
-  NearPoints(const Eigen::MatrixXd& points, double radius);
-
-  // The leaf of x, for `found`.
-  const float* leaf(const double* x) const noexcept { return loops_.leaf(tree_, x); }
-  // True: a point is within the radius. False: the distance must be computed.
-  bool found(const double* x, const float* leaf_of_x) const noexcept { return loops_.near(tree_, leaf_of_x, x); }
-
- private:
-  void split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> part, std::size_t node,
-             std::vector<std::vector<Eigen::Index>>& leaves);
-  void set_limit(double radius, double largest, double about_squared);
-
-  std::shared_ptr<const Eigen::MatrixXf> leaves_;  // one a column; shared by copies, because tree_ points to it
-  simd::NearTree tree_;
+  Eigen::MatrixXf rows_;  // one column for each coordinate, padded
   simd::NearestLoops loops_;
 };
 
+// Nearly all queries of a tick are within the inner radius of the cover, where one near point is enough. The points are
+// therefore also stored in a tree of five median splits whose halves overlap by some points, and a query examines the
+// points of one leaf first: of a thousand queries on recordings that are near a point, 1 to 6 are not found there (14
+// with six features); without the overlap it would be 28 to 200. The descent has no branches.
 class DomainGuard {
  public:
   explicit DomainGuard(const DomainCover& cover);
@@ -86,17 +71,30 @@ class DomainGuard {
 
   // The squared distance to the cover; infinite when x is not finite. Within the inner radius, where the trust is 1
   // and the error bound does not grow, it may be 0 instead. In two steps, so that the tick can interleave other work.
-  const float* leaf(const double* x) const noexcept { return near_.leaf(x); }
-  double squared_distance(const double* x, const float* leaf_of_x) const noexcept {
-    return near_.found(x, leaf_of_x) ? 0.0 : nearest_.nearest_squared(x);
+  struct Leaf {
+    std::array<float, kMaxFeatures> rounded;  // x
+    const NearestDistance* points;
+  };
+  Leaf leaf(const double* x) const noexcept {
+    Leaf leaf;
+    leaf.points = &leaves_[leaf_(splits_, x, leaf.rounded.data())];
+    return leaf;
+  }
+  double squared_distance(const double* x, const Leaf& leaf_of_x) const noexcept {
+    return leaf_of_x.points->within(leaf_of_x.rounded.data(), near_squared_) ? 0.0 : all_.nearest_squared(x);
   }
   double trust_at(double squared_distance) const noexcept;
 
  private:
+  void split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> part, std::size_t node);
+
   double inner_radius_ = 0.0;
   double outer_radius_ = 0.0;
-  NearPoints near_;
-  NearestDistance nearest_;
+  float near_squared_ = 0.0F;  // at most the square of the inner radius
+  NearestDistance all_;
+  simd::Splits splits_;
+  std::vector<NearestDistance> leaves_;
+  simd::LeafFunction leaf_ = nullptr;
 };
 
 }  // namespace palpate

@@ -1,7 +1,6 @@
 #include "models/model/fitted_model.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -21,7 +20,6 @@ constexpr double kMostOfLimit = 100.0;
 }  // namespace
 
 Status check_forces(const ModelData& data) {
-  assert(data.correction != nullptr);
   const double limit_N = kMostOfLimit * (data.largest_force_N + data.correction_limit_N + data.jnd.offset_N);
   const TrendInputs inputs(data.features);
   std::array<double, kMaxFeatures> features{};
@@ -30,7 +28,7 @@ Status check_forces(const ModelData& data) {
     for (Eigen::Index i = 0; i < u.size(); ++i) {
       features[static_cast<std::size_t>(i)] = data.offset(i) + data.scale(i) * u(i);
     }
-    const double correction_N = data.correction->is_none() ? 0.0 : data.correction->evaluate(u.data());
+    const double correction_N = data.correction ? data.correction->evaluate(u.data()) : 0.0;
     for (const auto& [part_N, name] :
          {std::pair{data.trend.at(features.data(), inputs), "trend"}, std::pair{correction_N, "correction"}}) {
       if (std::abs(part_N) <= limit_N) continue;
@@ -61,15 +59,12 @@ double deepest_in_domain_m(const ModelData& data, std::size_t& feature) {
 
 FittedModel::FittedModel(ModelData data)
     : data_(std::move(data)), trend_inputs_(data_.features), guard_(data_.cover), dimension_(data_.features.size()) {
-  if (!data_.correction->is_none()) correction_ = data_.correction.get();
   for (std::size_t i = 0; i < dimension_; ++i) {
     offset_[i] = data_.offset(static_cast<Eigen::Index>(i));
     inverse_scale_[i] = 1.0 / data_.scale(static_cast<Eigen::Index>(i));
   }
   deepest_m_ = deepest_in_domain_m(data_, depth_);
 }
-
-int FittedModel::centre_count() const noexcept { return data_.correction->size(); }
 
 ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   std::array<double, kMaxFeatures> u{};
@@ -78,12 +73,12 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   // with the correction, and the distances in the leaf with the last square roots of the correction. No other order is
   // faster, some are slower by up to 26 ns (Zen 4).
   const double trend_N = data_.trend.at(features, trend_inputs_);
-  const float* leaf = guard_.leaf(u.data());
-  double correction_N = correction_ != nullptr ? correction_->evaluate(u.data()) : 0.0;
+  const DomainGuard::Leaf leaf = guard_.leaf(u.data());
+  double correction_N = data_.correction ? data_.correction->evaluate(u.data()) : 0.0;
   const double squared_distance = guard_.squared_distance(u.data(), leaf);
   const double trust = guard_.trust_at(squared_distance);
   double force_N = trend_N;
-  if (trust > 0.0 && correction_ != nullptr) {
+  if (trust > 0.0 && data_.correction) {
     if (!data_.corrects_trend) correction_N -= trend_N;
     force_N += trust * std::clamp(correction_N, -data_.correction_limit_N, data_.correction_limit_N);
   }

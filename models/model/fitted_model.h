@@ -100,8 +100,11 @@ struct ModelData {
   // files; no effect on the force of a feature vector. None in earlier files.
   std::optional<SensorSpec> sensor;
   JndLine jnd;
-  CorrectionPtr correction;  // h; shared by copies
+  CorrectionPtr correction;  // h; shared by copies; null: none
   Provenance provenance;
+
+  // Of the correction: its centres, or the nodes of its grid.
+  int centre_count() const noexcept { return correction ? correction->size() : 0; }
 };
 
 inline constexpr double kForceMargin = 1.2;
@@ -127,7 +130,7 @@ class FittedModel final : public ForceModel {
   const std::vector<FeatureSpec>& features() const noexcept override { return data_.features; }
   const std::string& name() const noexcept override { return data_.name; }
   const std::string& method() const noexcept override { return data_.method; }
-  int centre_count() const noexcept override;
+  int centre_count() const noexcept override { return data_.centre_count(); }
 
   const ModelData& data() const noexcept { return data_; }
 
@@ -135,7 +138,6 @@ class FittedModel final : public ForceModel {
   ModelData data_;
   TrendInputs trend_inputs_;
   DomainGuard guard_;
-  const Correction* correction_ = nullptr;  // of data_; null for a trend alone
   std::size_t dimension_ = 0;
   std::size_t depth_ = 0;   // index of the depth feature
   double deepest_m_ = 0.0;  // deepest_in_domain_m

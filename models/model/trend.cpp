@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "models/model/polynomial.h"
-
 namespace palpate {
 namespace {
 

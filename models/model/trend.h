@@ -80,6 +80,14 @@ struct Trend {
   }
 };
 
+// Value of sum_k coefficients[k] u^k.
+template <std::size_t n>
+constexpr double polynomial(const std::array<double, n>& coefficients, double u) noexcept {
+  double value = 0.0;
+  for (std::size_t k = n; k-- > 0;) value = value * u + coefficients[k];
+  return value;
+}
+
 // v / (1 + |v| / v_0).
 inline double thinned_velocity(double velocity_m_per_s, double thinning_velocity_m_per_s) noexcept {
   return velocity_m_per_s / (1.0 + std::abs(velocity_m_per_s) / thinning_velocity_m_per_s);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
@@ -21,12 +20,9 @@ constexpr double kOuterRange = 0.01;  // of the largest force: sensors drift
 struct Member {
   std::vector<SurfaceRow> rows;  // thinned, without the force zero
   SurfaceEstimate own;
-  double low_m = 0.0;
-  double high_m = 0.0;
+  double range_m = 0.0;     // of the positions
   OffsetEstimate offset;    // as estimated
   RecordingSurface result;  // with the offset from the common surface
-
-  double range_m() const { return high_m - low_m; }
 };
 
 // The common lag; 0 if less than half of the recordings identify one, or if they disagree.
@@ -42,12 +38,6 @@ double common_lag_s(const std::vector<RecordingOffsets>& recordings) {
   return agree ? lag_s : 0.0;
 }
 
-double largest_force_N(const std::vector<SurfaceRow>& rows) {
-  double largest_N = 0.0;
-  for (const SurfaceRow& row : rows) largest_N = std::max(largest_N, std::abs(row.force_N));
-  return largest_N;
-}
-
 std::vector<ForceAtPosition> forces_of(const Member& member) {
   std::vector<ForceAtPosition> forces;
   for (const SurfaceRow& row : member.rows) forces.push_back({row.motion.position_m, row.force_N});
@@ -57,31 +47,28 @@ std::vector<ForceAtPosition> forces_of(const Member& member) {
 // Surfaces that differ by less count as equal.
 constexpr double kLeastSurface_m = 0.5 * kWidestSurface_m;
 
+OffsetEstimate identified(double at_m, double standard_error_m) {
+  OffsetEstimate offset;
+  offset.identified = true;
+  offset.at = at_m;
+  offset.standard_error = standard_error_m;
+  return offset;
+}
+
 // The offset of `member` to the reference: the difference of their surfaces, where both are identified, otherwise the
 // shift between their forces.
 OffsetEstimate offset_of(const Member& member, const Member& reference, const JndLine& jnd) {
-  OffsetEstimate offset;
-  if (&member == &reference) {
-    offset.identified = true;
-    offset.standard_error = 0.0;
-    return offset;
-  }
+  if (&member == &reference) return identified(0.0, 0.0);
   if (member.own.identified() && reference.own.identified()) {
-    offset.identified = true;
-    offset.at = member.own.raw_offset_m - reference.own.raw_offset_m;
-    offset.standard_error = std::hypot(member.own.standard_error_m, reference.own.standard_error_m);
-    return offset;
+    return identified(member.own.raw_offset_m - reference.own.raw_offset_m,
+                      std::hypot(member.own.standard_error_m, reference.own.standard_error_m));
   }
   const std::vector<ForceAtPosition> a = forces_of(reference);
   const std::vector<ForceAtPosition> b = forces_of(member);
   const double bin_m = common_bin_m(a, b);
-  if (!(bin_m > 0.0)) return offset;
-  if (const auto shift_m = find_shift_m(ForceCurve(a, bin_m), ForceCurve(b, bin_m), jnd)) {
-    offset.identified = true;
-    offset.at = *shift_m;
-    offset.standard_error = bin_m / 8.0;  // half a step of the search
-  }
-  return offset;
+  if (!(bin_m > 0.0)) return {};
+  const auto shift_m = find_shift_m(ForceCurve(a, bin_m), ForceCurve(b, bin_m), jnd);
+  return shift_m ? identified(*shift_m, bin_m / 8.0) : OffsetEstimate{};  // half a step of the search
 }
 
 bool unmoved(const Member& member, double shift_m) {
@@ -127,7 +114,9 @@ double common_surface_m(const std::vector<Member>& members) {
 // of `surface_m`; otherwise `surface_m`.
 double outermost_contact_m(const std::vector<Member>& members, double force_noise_N, double surface_m) {
   double largest_N = 0.0;
-  for (const Member& member : members) largest_N = std::max(largest_N, largest_force_N(member.rows));
+  for (const Member& member : members) {
+    for (const SurfaceRow& row : member.rows) largest_N = std::max(largest_N, std::abs(row.force_N));
+  }
   const double least_N = std::max(certain_force_N(force_noise_N), kOuterRange * largest_N);
   std::vector<double> positions_m;
   for (const Member& member : members) {
@@ -153,7 +142,7 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
   }
   RegisteredSurfaces result;
   const Member& reference = *std::ranges::max_element(
-      members, {}, [](const Member& one) { return std::pair(one.own.identified(), one.range_m()); });
+      members, {}, [](const Member& one) { return std::pair(one.own.identified(), one.range_m); });
   for (Member& member : members) member.offset = offset_of(member, reference, jnd);
   const double shift_m = common_shift_m(members);
   for (Member& member : members) {
@@ -194,7 +183,8 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const JndLine
     Member& member = members.emplace_back();
     member.own = same_lag ? offsets[r].surface : estimate_surface(rows, source.force_noise_N());
     member.rows = thinned_rows(rows, kSearchRows);
-    std::tie(member.low_m, member.high_m) = position_range_m(rows);
+    const auto [low_m, high_m] = position_range_m(rows);
+    member.range_m = high_m - low_m;
     member.result.name = source.recordings()[r].name;
     member.result.lag_s = lag_s;
     member.result.content_hash = source.recordings()[r].hash;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "models/model/polynomial.h"
 
 namespace palpate {
 namespace {

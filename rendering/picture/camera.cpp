@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
-#include <glm/trigonometric.hpp>
 #include <glm/vec4.hpp>
 
 namespace palpate {

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <glm/vec3.hpp>
 #include <string_view>
 

@@ -98,27 +98,24 @@ float ui_scale(const UiSize& size, float larger) noexcept {
 
 void UiStyle::update(const UiSize& size, float larger, Theme theme, float body_px) {
   const float wanted = ui_scale(size, larger);
-  if (wanted != scale_ || size.pixels_per_unit != pixels_per_unit_ || body_px != body_px_) {
-    scale_ = wanted;
-    body_px_ = body_px;
-    pixels_per_unit_ = size.pixels_per_unit;
-    build_fonts(pixels_per_unit_);
-    coloured_ = false;
-  }
-  if (theme != theme_ || !coloured_) {
-    theme_ = theme;
-    set_colours();
-  }
+  const bool resized = wanted != scale_ || size.pixels_per_unit != pixels_per_unit_ || body_px != body_px_;
+  if (!resized && theme == theme_) return;
+  scale_ = wanted;
+  pixels_per_unit_ = size.pixels_per_unit;
+  body_px_ = body_px;
+  theme_ = theme;
+  if (resized) build_fonts();
+  set_colours();
 }
 
 // Builds fonts in pixels of the framebuffer, so that they are sharp; they are drawn in units of the window.
-void UiStyle::build_fonts(float pixels_per_unit) {
+void UiStyle::build_fonts() {
   ImGuiIO& io = ImGui::GetIO();
   const std::string path = find_font();
   io.Fonts->Clear();
   const auto add = [&](float size_px) {
-    ImFont* font = add_font(path, std::round(size_px * scale_ * pixels_per_unit));
-    font->Scale = 1.0F / pixels_per_unit;
+    ImFont* font = add_font(path, std::round(size_px * scale_ * pixels_per_unit_));
+    font->Scale = 1.0F / pixels_per_unit_;
     return font;
   };
   fonts_.body = add(body_px_);
@@ -130,7 +127,6 @@ void UiStyle::build_fonts(float pixels_per_unit) {
 }
 
 void UiStyle::set_colours() {
-  coloured_ = true;
   ImGuiStyle& style = ImGui::GetStyle();
   style = ImGuiStyle();
   style.WindowRounding = style.ChildRounding = 0.0F;

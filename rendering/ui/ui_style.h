@@ -77,15 +77,14 @@ class UiStyle {
   const Palette& colours() const noexcept { return palette(theme_); }
 
  private:
-  void build_fonts(float pixels_per_unit);
+  void build_fonts();
   void set_colours();
 
   Fonts fonts_;
-  float scale_ = 0.0F;
+  float scale_ = 0.0F;  // 0: no fonts yet
   float pixels_per_unit_ = 1.0F;
   float body_px_ = kBody_px;
   Theme theme_ = Theme::light;
-  bool coloured_ = false;
 };
 
 }  // namespace palpate

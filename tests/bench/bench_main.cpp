@@ -30,7 +30,7 @@
 
 #include "engine/base/parallel.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/rbf_simd.h"
+#include "models/model/vector_loops.h"
 #include "tests/bench/bench_tables.h"
 
 namespace palpate::bench {

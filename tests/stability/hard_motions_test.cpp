@@ -94,7 +94,7 @@ TEST(HardCases, EveryMethodIsSafeInEveryMaterial) {
     for (HardCase& one : cases) {
       if (one.model == nullptr) continue;
       sweep(*one.model, one);
-      if (one.model->data().correction->is_none()) continue;
+      if (!one.model->data().correction) continue;
       corrected.insert(one.method);
       sweep(FittedModel(with_huge_weights(one.model->data())), one);
     }

@@ -131,7 +131,7 @@ HardCase evaluate_site_case(const SiteCase& one, const Method& method) {
     result.refusal = fitted.error().message;
     return result;
   }
-  if (fitted->correction->is_none()) return result;  // the trend alone, which is not fitted to sites
+  if (!fitted->correction) return result;  // the trend alone, which is not fitted to sites
   const bool zero = one.sites.target_N.isZero();
   const double low_N = one.sites.target_N.minCoeff();
   const double high_N = one.sites.target_N.maxCoeff();

@@ -141,9 +141,7 @@ ModelData example_model(const std::string& method, KernelKind kernel, std::vecto
   data.cover.outer_radius = 1.0 / 1.1;
   if (method == "voxel") {
     data.correction = std::make_shared<const GridCorrection>(random_grid(data.features.size(), seed));
-  } else if (method == "trend") {
-    data.correction = std::make_shared<const NoCorrection>();
-  } else {
+  } else if (method != "trend") {
     RbfFunction function = random_function(kernel, static_cast<int>(n), 40, seed);
     function.weights *= 0.02;
     function.tail *= 0.1;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <string>
 
 #include "engine/json/json_fields.h"
 #include "engine/recording/recording_rules.h"

@@ -147,7 +147,7 @@ class ModelReader {
     for (std::size_t i = 0; i < count; ++i) inside(JsonFields::entry(list, i), [&] { body(i); });
   }
 
-  // Reads the correction from the one member that identifies its kind; leaves it null after an error.
+  // Reads the correction from the one member that identifies its kind.
   void correction(CorrectionPtr& value, Eigen::Index dimension) {
     std::vector<std::string> present;
     for (const char* key : {"centres", "grid", "trend_alone"}) {
@@ -164,10 +164,8 @@ class ModelReader {
       VoxelGrid grid;
       if (read_grid(grid, static_cast<std::size_t>(dimension)))
         value = std::make_shared<const GridCorrection>(std::move(grid));
-    } else {
-      if (!fields_.boolean(at_, "trend_alone"))
-        fields_.complain("/trend_alone", "found false, expected true, or another correction");
-      value = std::make_shared<const NoCorrection>();
+    } else if (!fields_.boolean(at_, "trend_alone")) {
+      fields_.complain("/trend_alone", "found false, expected true, or another correction");
     }
   }
 
@@ -288,7 +286,7 @@ class ModelWriter {
     } else if (const VoxelGrid* grid = grid_of(value)) {
       add("grid", grid_text(*grid));
     } else {
-      if (!value->is_none()) std::abort();  // a kind without members: a mistake of the program
+      if (value) std::abort();  // a kind without members: a mistake of the program
       flag("trend_alone", true);
     }
   }

@@ -1,15 +1,10 @@
 // Model files: ModelData to JSON text and back.
 //
-// One object; "format": "palpate-model", "version": 1; then
-//   name, method, features [{kind and its constants}], normalisation {offset, scale}, trend, corrects_trend,
-//   correction_limit_N, largest_force_N, jnd, provenance, domain {lower, upper, inner_radius, outer_radius, points},
-//   lowest_force_N [0], sensor, error_bound,
-//   and the correction: kernel, tail, centres and weights, or grid {nodes, values_N}, or trend_alone.
-// Optional are lowest_force_N, sensor, error_bound, provenance.surfaces (and the standard_error_m and force_lag_s of
-// one), a feature's slowing and surface_position_m, and the knots of a curve. Unknown fields are errors (except
-// provenance.fit_seconds, which earlier files have). Centres, weights and cover points stand one to a line, so that
-// models can be compared by lines. Numbers are the shortest decimals that read back as the same double, so the forces
-// of a model that was read are bit-identical. The state of the features' filters is not stored.
+// One object; "format": "palpate-model", "version": 1; then the members of model_description.h, which has them in the
+// order of the file; assets/formats/model.schema.json is their schema. Unknown members are errors. Centres, weights and
+// cover points stand one to a line, so that models can be compared by lines. Numbers are the shortest decimals that
+// read back as the same double, so the forces of a model that was read are bit-identical. The state of the features'
+// filters is not stored.
 //
 // The same fit gives the same bytes: no time is stored.
 //

@@ -34,7 +34,7 @@ struct KernelFacts {
 };
 
 // One row for each kind, in the order of KernelKind. A new kernel is a kind, a row here, its vector form in
-// rbf_simd.cpp, and its name in assets/formats/model.schema.json.
+// vector_loops.cpp, and its name in assets/formats/model.schema.json.
 inline constexpr std::array<KernelFacts, kKernelKinds.size()> kKernels = {{
     {"cubic", 1, 1.0, "squared * SQRT(squared)"},
     {"linear", 0, -1.0, "SQRT(squared)"},

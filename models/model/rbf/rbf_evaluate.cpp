@@ -11,7 +11,7 @@ PointArrays::PointArrays(const Eigen::MatrixXd& points) : count_(points.cols()) 
   assert(points.rows() >= 1 && points.rows() <= static_cast<Eigen::Index>(kMaxFeatures));
   view_.dimension = static_cast<int>(points.rows());
   const auto count = static_cast<std::size_t>(points.cols());
-  view_.padded = (count + simd::kSimdPad - 1) / simd::kSimdPad * simd::kSimdPad;
+  view_.padded = simd::whole_vectors(count, simd::kSimdPad);
   // An odd number of cache lines between rows, so that the same index of
   // different rows does not fall into the same cache set.
   view_.stride = view_.padded + (view_.padded / simd::kSimdPad % 2 == 0 ? simd::kSimdPad : 0);

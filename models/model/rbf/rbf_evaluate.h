@@ -12,14 +12,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <memory>
 
 #include "engine/tick/features.h"
 #include "models/model/correction.h"
 #include "models/model/rbf/kernels.h"
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_simd.h"
+#include "models/model/vector_loops.h"
 
 namespace palpate {
 

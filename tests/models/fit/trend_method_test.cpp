@@ -32,7 +32,7 @@ TEST(TrendMethod, IsTheTrendEverywhereAndHasNoCentres) {
     const ModelData& data = fit->data;
     EXPECT_EQ(data.name, "trend");
     EXPECT_EQ(data.method, "trend");
-    EXPECT_EQ(data.correction->size(), 0);
+    EXPECT_EQ(data.correction, nullptr);
     const FittedModel model(data);
     EXPECT_EQ(model.centre_count(), 0);
     for (double depth_m = 0.0; depth_m < 0.01; depth_m += 1e-4) {
@@ -51,7 +51,7 @@ TEST(TrendMethod, ComesBackFromItsFile) {
   EXPECT_NE(text->find("\"trend_alone\": true"), std::string::npos);
   const auto back = read_model_text(*text, "m.json");
   ASSERT_TRUE(back.ok()) << back.error().message;
-  EXPECT_TRUE(back->correction->is_none());
+  EXPECT_EQ(back->correction, nullptr);
   EXPECT_EQ(*write_model_text(*back), *text);
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "engine/tick/features.h"
-#include "models/model/rbf/rbf_simd.h"
+#include "models/model/vector_loops.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -72,7 +72,12 @@ TEST(DomainGuard, IsTheSmoothstepBetweenTheRadii) {
 
 TEST(DomainGuard, IdenticalSitesMakeOnePoint) { EXPECT_EQ(make_cover(Eigen::MatrixXd::Ones(4, 300)).points.cols(), 1); }
 
-bool is_near(const NearPoints& points, const double* x) { return points.found(x, points.leaf(x)); }
+DomainGuard guard_of(const Eigen::MatrixXd& points, double radius) {
+  return DomainGuard({points, radius, 2.0 * radius});
+}
+
+// Whether a point in the leaf of x is within the inner radius.
+bool is_near(const DomainGuard& guard, const double* x) { return guard.squared_distance(x, guard.leaf(x)) == 0.0; }
 
 class NearestPointsOnTarget : public testing::TestWithParam<std::string> {
  protected:
@@ -107,8 +112,8 @@ TEST_P(NearestPointsOnTarget, OneFoundNearIsNoFurther) {
           const double* query = queries.col(i).data();
           const double exact = std::sqrt(nearest.nearest_squared(query));
           for (const double radius : {0.0, 0.5 * exact, 0.999999 * exact})
-            EXPECT_FALSE(is_near(NearPoints(points, radius), query)) << d << "-D, " << count << " points";
-          EXPECT_TRUE(is_near(NearPoints(points, 100.0), query)) << d << "-D, " << count << " points";
+            EXPECT_FALSE(is_near(guard_of(points, radius), query)) << d << "-D, " << count << " points";
+          EXPECT_TRUE(is_near(guard_of(points, 100.0), query)) << d << "-D, " << count << " points";
         }
       }
 }
@@ -118,7 +123,7 @@ TEST_P(NearestPointsOnTarget, HardlyOneThatIsNearIsMissed) {
   const double radius = 0.3;
   const Eigen::MatrixXd points = random_points(3, 768, 1);
   const NearestDistance nearest(points);
-  const NearPoints near(points, radius);
+  const DomainGuard near = guard_of(points, radius);
   const Eigen::MatrixXd queries = random_points(3, 5000, 9);
   int inside = 0;
   int found = 0;
@@ -134,7 +139,7 @@ TEST_P(NearestPointsOnTarget, HardlyOneThatIsNearIsMissed) {
 TEST_P(NearestPointsOnTarget, NothingIsNearFarAwayOrToWhatIsNoNumber) {
   const Eigen::MatrixXd points = random_points(2, 5, 1);
   const NearestDistance nearest(points);
-  const NearPoints near(points, 1e15);
+  const DomainGuard near = guard_of(points, 1e15);
   const double infinity = std::numeric_limits<double>::infinity();
   const double bad[][2] = {{1e30, 0}, {infinity, 0}, {0, std::numeric_limits<double>::quiet_NaN()}};
   for (const auto& x : bad) {

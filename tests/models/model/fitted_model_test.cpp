@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 #include "tests/support/example_model.h"
@@ -54,7 +53,7 @@ TEST(FittedModel, IsItsEquation) {
       const Eigen::VectorXd u = 1.3 * points.col(i);
       const Eigen::VectorXd x = data.offset + data.scale.cwiseProduct(u);
       const double trend_N = data.trend.at(x.data(), data.features);
-      const double h_N = data.correction->evaluate(u.data());
+      const double h_N = data.correction ? data.correction->evaluate(u.data()) : 0.0;
       const double correction_N =
           std::clamp(h_N - (data.corrects_trend ? 0.0 : trend_N), -data.correction_limit_N, data.correction_limit_N);
       const double expected_N =

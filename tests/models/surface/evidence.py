@@ -13,15 +13,18 @@ findings. The exit code is 1 if an identified value is wrong.
 import json
 import math
 import os
+import pathlib
 import random
 import subprocess
 import sys
 import tempfile
 
+import numpy as np
+
 ARGUMENTS = [argument for argument in sys.argv[1:] if argument != "--planted"]
 PALPATE = ARGUMENTS[0]
 FOLDERS = ARGUMENTS[1:]
-WORK = tempfile.mkdtemp()
+WORK = pathlib.Path(tempfile.mkdtemp())
 STIFF_MM, SOFT_MM, LAG_MS, ZERO_N = 0.1, 0.3, 2.0, 0.01
 counts = {}  # finding: how many right, wrong, silent
 COLUMN = {"right": 0, "rightly not identified": 0, "WRONG": 1, "not identified": 2}
@@ -37,19 +40,12 @@ def run(*arguments):
 
 def read(path):
     with open(path, encoding="utf-8") as file:
-        lines = [line.strip() for line in file if not line.startswith("#")]
-    names = lines[0].split(",")
-    rows = [dict(zip(names, map(float, line.split(",")))) for line in lines[1:] if line]
-    return rows
+        return np.genfromtxt([line for line in file if not line.startswith("#")], delimiter=",", names=True)
 
 
 def write(name, rows):
-    path = os.path.join(WORK, name + ".csv")
-    names = list(rows[0])
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(",".join(names) + "\n")
-        for row in rows:
-            file.write(",".join(repr(row[n]) for n in names) + "\n")
+    path = WORK / (name + ".csv")
+    np.savetxt(path, rows, fmt="%.17g", delimiter=",", header=",".join(rows.dtype.names), comments="")
     return path
 
 
@@ -68,10 +64,7 @@ def row(case, what, found, true, tolerance, unit):
 
 
 def checked(path):
-    found = run("check", path, "--json")
-    if "error" in found:
-        return None
-    one = found["recordings"][0]
+    one = run("check", path, "--json")["recordings"][0]
     codes = {finding["code"]: finding["value"] for finding in one["findings"]}
     return one, codes
 
@@ -86,16 +79,16 @@ def row_check(case, path, true_mm, tolerance_mm=SOFT_MM, zero_N=0.0, lag_ms=0.0)
     row(case, "lag", lag, lag_ms, LAG_MS, "ms")
 
 
-def row_pair(case, paths, names, true_mm, tolerance_mm):
+def row_pair(case, paths, true_mm, tolerance_mm):
     """The offset of the second recording relative to the first, by a fit of both."""
-    model = os.path.join(WORK, "m.json")
+    model = WORK / "m.json"
     found = run("fit", "--recording", *paths, "--method", "random", "--features", "scene", "--out", model, "--force",
                 "--json")
     if "error" in found:
         print(f"{case:44} {found['error'][:80]}")
         return
     by_name = {one["name"].rsplit(".csv", 1)[0].split("/")[-1]: one for one in found["recordings"]}
-    first, second = (by_name[name] for name in names)
+    first, second = (by_name[path.stem] for path in paths)
     identified = second.get("identified", True) and first.get("identified", True)
     shift = 1e3 * (second["surface_offset_m"] - first["surface_offset_m"])
     if not identified and abs(shift) > 1e-6:
@@ -104,30 +97,20 @@ def row_pair(case, paths, names, true_mm, tolerance_mm):
         row(case, "shift", shift if identified else None, true_mm, tolerance_mm, "mm")
 
 
-def changed(rows, **by):
-    rows = [dict(r) for r in rows]
-    for r in rows:
-        r["position_m"] += by.get("shift_mm", 0.0) * 1e-3
-        r["force_N"] += by.get("zero_N", 0.0) + by.get("mass_kg", 0.0) * r.get("acceleration_m_per_s2", 0.0)
-    if by.get("lag_ms"):
-        late_s = 1e-3 * by["lag_ms"]
-        times = [r["time_s"] for r in rows]
-        forces = [r["force_N"] for r in rows]
-        at = 0
-        for r in rows:
-            wanted = r["time_s"] - late_s
-            while at + 1 < len(times) - 1 and times[at + 1] <= wanted:
-                at += 1
-            while at > 0 and times[at] > wanted:
-                at -= 1
-            share = min(1.0, max(0.0, (wanted - times[at]) / (times[at + 1] - times[at])))
-            r["force_N"] = forces[at] + share * (forces[at + 1] - forces[at])
+def changed(rows, shift_mm=0.0, zero_N=0.0, mass_kg=0.0, lag_ms=0.0):
+    rows = rows.copy()
+    rows["position_m"] += 1e-3 * shift_mm
+    rows["force_N"] += zero_N
+    if mass_kg:
+        rows["force_N"] += mass_kg * rows["acceleration_m_per_s2"]
+    if lag_ms:
+        rows["force_N"] = np.interp(rows["time_s"] - 1e-3 * lag_ms, rows["time_s"], rows["force_N"])
     return rows
 
 
 def synth(material, seed, seconds=14):
-    path = os.path.join(WORK, f"{material}{seed}.csv")
-    if not os.path.exists(path):
+    path = WORK / f"{material}{seed}.csv"
+    if not path.exists():
         subprocess.run([PALPATE, "synth", "--material", material, "--seed", str(seed), "--seconds", str(seconds + seed),
                         "--out", path], check=True, capture_output=True)
     return read(path)
@@ -136,9 +119,8 @@ def synth(material, seed, seconds=14):
 def block(seed, low_mm, high_mm, adhesion_N=0.0, rate_Hz=500.0, seconds=20.0):
     """A nonlinear spring and two Maxwell branches, pressed between two depths."""
     rng = random.Random(seed)
-    rows, q, last = [], [0.0, 0.0], None
-    taus, stiffness = (0.15, 1.2), (120.0, 80.0)
-    phase, speed, touched = 0.0, 1.0, False
+    rows, held_m = [], [0.0, 0.0]
+    phase, touched = 0.0, False
     for i in range(int(rate_Hz * seconds)):
         if i % int(2 * rate_Hz) == 0:
             speed = rng.uniform(0.3, 1.5)
@@ -146,21 +128,16 @@ def block(seed, low_mm, high_mm, adhesion_N=0.0, rate_Hz=500.0, seconds=20.0):
         position = 1e-3 * (low_mm + (high_mm - low_mm) * 0.5 * (1 - math.cos(phase)))
         depth = max(0.0, position)
         force = 250.0 * depth + 4e4 * depth * depth
-        for k, tau in enumerate(taus):
-            step = depth - (last if last is not None else depth)
-            q[k] = q[k] * math.exp(-1.0 / (rate_Hz * tau)) + step
-            force += stiffness[k] * q[k]
-        last = depth
+        for k, (time_s, stiffness_N_per_m) in enumerate(((0.15, 120.0), (1.2, 80.0))):
+            held_m[k] = held_m[k] * math.exp(-1.0 / (rate_Hz * time_s)) + (depth - last_depth if rows else 0.0)
+            force += stiffness_N_per_m * held_m[k]
         force = max(0.0, force)
-        if position > 0:
-            touched = True
-        elif position < -1.5e-3:
-            touched = False
+        touched = position > 0 or (touched and position >= -1.5e-3)
         if touched and adhesion_N and position < last_position:
             force -= adhesion_N * min(1.0, max(0.0, (position + 1.5e-3) / 1.5e-3)) * math.exp(-depth / 1e-3)
-        last_position = position
-        rows.append({"time_s": i / rate_Hz, "position_m": position, "force_N": force + rng.gauss(0.0, 0.005)})
-    return rows
+        last_position, last_depth = position, depth
+        rows.append((i / rate_Hz, position, force + rng.gauss(0.0, 0.005)))
+    return np.array(rows, [(name, float) for name in ("time_s", "position_m", "force_N")])
 
 
 def virtual():
@@ -172,18 +149,16 @@ def virtual():
             row_check(f"{material} shifted {shift:+g} mm", write("shifted", changed(base, shift_mm=shift)), shift, near)
         for shift in (0.0, 0.2, -0.5, 2.0, -6.0, 15.0):
             second = write("second", changed(other, shift_mm=shift))
-            row_pair(f"{material} pair {shift:+g} mm", [first, second], ("first", "second"), shift, near)
+            row_pair(f"{material} pair {shift:+g} mm", [first, second], shift, near)
         for lag in (-10.0, 4.0, 8.0, 15.0, 30.0):
             row_check(f"{material} lag {lag:+g} ms", write("late", changed(base, lag_ms=lag)), 0.0, near, lag_ms=lag)
         row_check(f"{material} zero +0.3 N", write("zero", changed(base, zero_N=0.3)), 0.0, near, 0.3)
         row_check(f"{material} tool 60 g", write("heavy", changed(base, mass_kg=0.06)), 0.0, near)
     for seed, low, high in ((1, 3.0, 8.0), (2, 1.0, 4.0), (3, 2.0, 6.0)):
         row_check(f"no free air, {low:g} to {high:g} mm", write("pressed", block(seed, low, high)), None, 0.0, None)
-    row_pair("no free air, both to 3-8 mm", [write("a", block(4, 3, 8)), write("b", block(5, 3, 8, seconds=15.0))],
-             ("a", "b"), 0.0, 0.1)
-    row_pair("no free air, second moved 4 mm",
-             [write("a", block(4, 3, 8)), write("b", changed(block(5, 3, 8, seconds=15.0), shift_mm=4.0))], ("a", "b"),
-             4.0, SOFT_MM)
+    for case, shift, near in (("both to 3-8 mm", 0.0, 0.1), ("second moved 4 mm", 4.0, SOFT_MM)):
+        second = changed(block(5, 3, 8, seconds=15.0), shift_mm=shift)
+        row_pair("no free air, " + case, [write("a", block(4, 3, 8)), write("b", second)], shift, near)
     for adhesion in (0.25, 0.6):
         row_check(f"adhesion {adhesion:g} N", write("adhesive", block(6, -3, 6, adhesion)), 0.0, SOFT_MM)
 
@@ -194,8 +169,7 @@ def real():
             names = sorted(f for f in files if f.endswith(".csv"))
             for name in names:
                 path = os.path.join(root, name)
-                answer = checked(path)
-                _, codes = answer
+                _, codes = checked(path)
                 case = f"{os.path.basename(root)}/{name[:-4]}"
                 row(case, "lag", 1e3 * codes.get("lag", 0.0), None, 0.0, "ms")
                 for code in ("force_sign", "position_sign"):
@@ -206,8 +180,7 @@ def real():
             rows = read(os.path.join(root, names[-1]))
             for shift in (0.4, -2.0, 6.0):
                 paths = [write("first", rows), write("second", changed(rows[:-1], shift_mm=shift))]
-                row_pair(f"{os.path.basename(root)}/{names[-1][:-4]} twice {shift:+g}", paths, ("first", "second"),
-                         shift, SOFT_MM)
+                row_pair(f"{os.path.basename(root)}/{names[-1][:-4]} twice {shift:+g}", paths, shift, SOFT_MM)
 
 
 def present(case, what, found, planted):
@@ -228,18 +201,20 @@ def plant(case, rows):
     for column in ("position_m", "force_N"):
         for share in (0.005, 0.01, 0.03, 0.05):
             rng = random.Random(1)
-            dropped = [{**r, column: 0.0} if rng.random() < share else r for r in rows]
+            dropped = rows.copy()
+            dropped[column][[rng.random() < share for _ in rows]] = 0.0
             present(f"{case} {column[:5]} {100 * share:g} % at 0", "dropouts",
                     "dropouts" in codes_of(write("dropped", dropped)), True)
     for step in (2, 5, 19, 44, 100):
         if len(rows) < 50 * step:
             continue  # too few updates to see them
-        kept = [{**r, "position_m": rows[i - i % step]["position_m"]} for i, r in enumerate(rows)]
+        kept = rows.copy()
+        kept["position_m"] = np.repeat(rows["position_m"][::step], step)[:len(rows)]
         present(f"{case} positions of every {step} rows", "repeated_positions",
                 "repeated_positions" in codes_of(write("kept", kept)), True)
-    repeated = [r for i, r in enumerate(rows) for _ in range(2 if i % 50 == 7 else 1)]
-    done = run("import", write("stamps", repeated), "--units", "s,m,N", "--out", os.path.join(WORK, "imported.csv"),
-               "--force", "--json")
+    repeated = np.repeat(rows, np.where(np.arange(len(rows)) % 50 == 7, 2, 1))
+    done = run("import", write("stamps", repeated), "--units", "s,m,N", "--out", WORK / "imported.csv", "--force",
+               "--json")
     present(f"{case} repeated stamps", "stamps", done.get("rows") == len(rows), True)
 
 
@@ -267,7 +242,7 @@ def force_offsets():
     base = write("strokes", block(4, 3, 8))
     for offset in (0.1, 0.3, 1.0, 3.0):
         other = write("offset", changed(block(5, 3, 8), zero_N=offset))
-        model = os.path.join(WORK, "offset.json")
+        model = WORK / "offset.json"
         run("fit", "--recording", base, "--method", "trend", "--out", model, "--force", "--json")
         done = run("replay", "--recording", other, "--model", model, "--json")
         row(f"no free air, force +{offset:g} N", "offset as surface", 1e3 * done["surface_offset_m"], 0.0, SOFT_MM, "mm")

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"
 

@@ -136,8 +136,3 @@ def doubles(name, values):
     if array.ndim != 1:
         raise Error("%s: found shape %s, expected one dimension" % (name, array.shape))
     return np.ascontiguousarray(array, dtype=np.float64)
-
-
-def address(array):
-    """The address of an array for an argument of the library; NULL for None."""
-    return None if array is None else array.ctypes.data

@@ -6,7 +6,7 @@ from typing import Callable, Mapping, Optional, Sequence, Tuple, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import Error, Progress, RecordingStruct, Sensor, address, call, library, path_bytes
+from ._library import Error, Progress, RecordingStruct, Sensor, call, library, path_bytes
 from ._recordings import as_recording
 
 
@@ -89,7 +89,7 @@ class Model:
         features = np.empty((motion.size, library().palpate_model_feature_count(self._handle)))
         stream = call("palpate_stream_new_with_sensor", self._handle, sensor)
         try:
-            library().palpate_stream_replay(stream, motion, address(force_N), address(bound_N), address(features))
+            library().palpate_stream_replay(stream, motion, *(a.ctypes.data for a in (force_N, bound_N, features)))
         finally:
             library().palpate_stream_free(stream)
         return force_N, bound_N, features

@@ -5,7 +5,7 @@ from typing import Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, address, call, doubles, library, path_bytes
+from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, call, doubles, library, path_bytes
 
 # Hoever & Harders (2009).
 _JND_OFFSET_N, _JND_WEBER_FRACTION = 0.065, 0.0633
@@ -89,7 +89,7 @@ def in_contact(position_m: ArrayLike, force_N: ArrayLike) -> NDArray[np.bool_]:
     """
     recording = RecordingStruct.of({"position_m": position_m, "force_N": force_N})
     contact = np.empty(recording.size, np.bool_)
-    library().palpate_in_contact(recording, address(contact))
+    library().palpate_in_contact(recording, contact.ctypes.data)
     return contact
 
 
@@ -115,7 +115,7 @@ def within_jnd(force_N: ArrayLike, measured_N: ArrayLike, in_contact: Optional[A
     if in_contact is None:
         in_contact = (force_N != 0.0) | (np.abs(measured_N) > _JND_OFFSET_N)
     counts = np.asarray(in_contact)
-    if counts.dtype != np.bool_ or not counts.shape == force_N.shape == measured_N.shape:
+    if counts.dtype != np.bool_ or counts.shape != force_N.shape:
         raise Error("found %d forces, %d measured forces and in_contact of dtype %s and shape %s, expected equal sizes "
                     "and bool" % (len(force_N), len(measured_N), counts.dtype, counts.shape))
     within = np.abs(force_N - measured_N) <= jnd_N(measured_N)

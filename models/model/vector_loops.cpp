@@ -1,0 +1,264 @@
+#include "models/model/vector_loops.h"
+
+// The instruction sets for which Highway does not compile the loops. AVX3_DL adds nothing that these loops use;
+// processors with SSSE3 but without SSE4 are older than ten years. SVE vectors have no size at compile time and cannot
+// be stored in arrays; every arm64 machine has NEON.
+#define HWY_DISABLED_TARGETS (HWY_AVX3_DL | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "models/model/vector_loops.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "models/model/rbf/polynomial_tail.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace palpate::simd {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// A point with every coordinate in all lanes.
+template <int kDimension, typename D>
+struct Broadcast {
+  // Not defaulted: g++ compiles a defaulted constructor for the baseline instruction set only.
+  HWY_INLINE Broadcast() {}
+  hn::Vec<D> coordinate[kDimension];
+};
+
+template <int kDimension, typename D>
+HWY_INLINE Broadcast<kDimension, D> broadcast(D d, const hn::TFromD<D>* x) {
+  Broadcast<kDimension, D> point;
+  for (int k = 0; k < kDimension; ++k) point.coordinate[k] = hn::Set(d, x[k]);
+  return point;
+}
+
+// |x - point_i|^2 for the next points from `coordinates` on.
+template <int kDimension, typename D>
+HWY_INLINE hn::Vec<D> squared_distance(D d, const hn::TFromD<D>* coordinates, size_t stride,
+                                       const Broadcast<kDimension, D>& x) {
+  hn::Vec<D> difference = hn::Sub(x.coordinate[0], hn::LoadU(d, coordinates));
+  hn::Vec<D> sum = hn::Mul(difference, difference);
+  for (int k = 1; k < kDimension; ++k) {
+    difference = hn::Sub(x.coordinate[k], hn::LoadU(d, coordinates + static_cast<size_t>(k) * stride));
+    sum = hn::MulAdd(difference, difference, sum);
+  }
+  return sum;
+}
+
+using Doubles = hn::CappedTag<double, kSimdPad>;
+using Vector = hn::Vec<Doubles>;
+
+// The minimum of squared distances. It keeps 1/sqrt and log finite and all powers well above the denormal range. The
+// kernels change by up to 1e-18 (linear), 5e-35 (thin-plate), 1e-54 (cubic) and 1e-90 (quintic).
+constexpr double kSmallestSquared = 1e-36;
+
+// r from r^2. The square root unit is the bottleneck. AVX-512 also has an estimate y of 1/r to 14 bits; the loops
+// alternate between the unit and
+//   r = r^2 y (1 + e/2 + 3 e^2/8 + 5 e^3/16),  e = 1 - r^2 y^2, |e| <= 2^-13.
+template <bool kSeries>
+HWY_INLINE Vector root(Vector squared) {
+#if HWY_TARGET == HWY_AVX3
+  if constexpr (kSeries) {
+    const Doubles d;
+    const Vector y{_mm512_rsqrt14_pd(squared.raw)};
+    const Vector r = hn::Mul(squared, y);
+    const Vector e = hn::NegMulAdd(r, y, hn::Set(d, 1.0));
+    const Vector inner = hn::MulAdd(e, hn::Set(d, 0.3125), hn::Set(d, 0.375));
+    return hn::MulAdd(hn::Mul(r, e), hn::MulAdd(e, inner, hn::Set(d, 0.5)), r);
+  }
+#endif
+  return hn::Sqrt(squared);
+}
+
+template <KernelKind kKind, bool kSeries = false>
+HWY_INLINE Vector kernel_of_squared(Vector squared) {
+  const Doubles d;
+  if constexpr (kKind == KernelKind::thin_plate) {
+    // r^2 log r = r^2 log(r^2) / 2
+    return hn::Mul(hn::Mul(hn::Set(d, 0.5), squared), hn::Log(d, squared));
+  } else {
+    const Vector r = root<kSeries>(squared);
+    if constexpr (kKind == KernelKind::linear) return r;
+    if constexpr (kKind == KernelKind::cubic) return hn::Mul(squared, r);
+    if constexpr (kKind == KernelKind::quintic) return hn::Mul(hn::Mul(squared, squared), r);
+  }
+}
+
+template <KernelKind kKind, int kDimension, bool kSeries = false>
+HWY_INLINE Vector kernel_at(const Points& points, size_t i, const Broadcast<kDimension, Doubles>& x) {
+  const Doubles d;
+  const Vector squared = squared_distance<kDimension>(d, points.coordinates + i, points.stride, x);
+  return kernel_of_squared<kKind, kSeries>(hn::Max(squared, hn::Set(d, kSmallestSquared)));
+}
+
+template <KernelKind kKind, int kDimension>
+double evaluate(const Points& points, const double* weights, const double* tail, const double* query_point) noexcept {
+  const Doubles d;
+  const size_t lanes = hn::Lanes(d);
+  double x[kDimension];
+  for (int k = 0; k < kDimension; ++k) x[k] = without_denormals(query_point[k]);
+  const auto query = broadcast<kDimension>(d, x);
+  const double tail_part = tail_value(tail, tail_degree(kKind), kDimension, x);
+  Vector sum = hn::IfThenElseZero(hn::FirstN(d, 1), hn::Set(d, tail_part));
+  Vector more = hn::Zero(d);
+  size_t i = 0;
+  for (; i + 2 * lanes <= points.padded; i += 2 * lanes) {
+    sum = hn::MulAdd(hn::LoadU(d, weights + i), kernel_at<kKind, kDimension>(points, i, query), sum);
+    const Vector by_series = kernel_at<kKind, kDimension, true>(points, i + lanes, query);
+    more = hn::MulAdd(hn::LoadU(d, weights + i + lanes), by_series, more);
+  }
+  if (i < points.padded)
+    sum = hn::MulAdd(hn::LoadU(d, weights + i), kernel_at<kKind, kDimension>(points, i, query), sum);
+  return hn::GetLane(hn::SumOfLanes(d, hn::Add(sum, more)));
+}
+
+template <KernelKind kKind, int kDimension>
+void column(const Points& points, size_t count, const double* centre, double* out) noexcept {
+  const Doubles d;
+  const size_t lanes = hn::Lanes(d);
+  const auto query = broadcast<kDimension>(d, centre);
+  size_t i = 0;
+  for (; i + lanes <= count; i += lanes) hn::StoreU(kernel_at<kKind, kDimension>(points, i, query), d, out + i);
+  if (i == count) return;
+  HWY_ALIGN double last[kSimdPad];
+  hn::Store(kernel_at<kKind, kDimension>(points, i, query), d, last);
+  std::copy(last, last + (count - i), out + i);
+}
+
+using Floats = hn::CappedTag<float, kSimdPadFloat>;
+
+template <int kDimension>
+HWY_INLINE hn::Vec<Floats> smallest_squared(const float* coordinates, size_t count, const float* x) {
+  const Floats d;
+  const auto query = broadcast<kDimension>(d, x);
+  hn::Vec<Floats> smallest = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (size_t i = 0; i < count; i += kSimdPadFloat)
+    for (size_t k = i; k < i + kSimdPadFloat; k += hn::Lanes(d))
+      smallest = hn::Min(squared_distance<kDimension>(d, coordinates + k, count, query), smallest);
+  return smallest;
+}
+
+template <int kDimension>
+float nearest(const float* coordinates, size_t count, const float* x) noexcept {
+  return hn::GetLane(hn::MinOfLanes(Floats(), smallest_squared<kDimension>(coordinates, count, x)));
+}
+
+template <int kDimension>
+bool within(const float* coordinates, size_t count, const float* x, float squared) noexcept {
+  const Floats d;
+  return !hn::AllFalse(d, hn::Le(smallest_squared<kDimension>(coordinates, count, x), hn::Set(d, squared)));
+}
+
+#if HWY_MAX_BYTES >= 32
+using Four = hn::FixedTag<float, 4>;
+
+// kCount coordinates, rounded like nearest_float.
+template <int kCount>
+HWY_INLINE hn::Vec<Four> four_of(const double* x) {
+  const hn::FixedTag<double, 4> d;
+  const Four four;
+  // Sets the lanes one at a time: a vector load of values that were stored one by one would wait for the stores.
+  const auto at = [&](int k) HWY_ATTR { return k < kCount ? hn::Set(d, x[k]) : hn::Zero(d); };
+  const auto q = hn::DemoteTo(four, hn::ConcatUpperLower(d, hn::OddEven(at(3), at(2)), hn::OddEven(at(1), at(0))));
+  return hn::IfThenZeroElse(hn::Lt(hn::Abs(q), hn::Set(four, kSmallestFloat)), q);
+}
+
+// Compares all splits at once, then follows the bits: one comparison after the other would take three times as long.
+template <int kDimension>
+size_t leaf_of(const Splits& splits, const double* x, float* rounded) noexcept {
+  const hn::FixedTag<float, 8> eight;
+  const auto low = four_of<std::min(kDimension, 4)>(x);
+  auto all = hn::ZeroExtendVector(eight, low);
+  if constexpr (kDimension > 4) all = hn::Combine(eight, four_of<kDimension - 4>(x + 4), low);
+  hn::StoreU(all, eight, rounded);
+  uint32_t bits = 0;
+  for (size_t i = 0; i < kLeaves; i += 8) {
+    const auto its = hn::TableLookupLanes(all, hn::SetTableIndices(eight, splits.coordinate.data() + i));
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(eight, hn::Ge(its, hn::LoadU(eight, splits.at.data() + i)), bytes);
+    bits |= uint32_t{bytes[0]} << i;
+  }
+  uint32_t node = 0;
+  for (size_t level = 0; level < kSplitLevels; ++level) node = 2 * node + 1 + (bits >> node & 1U);
+  return node + 1 - kLeaves;
+}
+#else
+template <int kDimension>
+size_t leaf_of(const Splits& splits, const double* x, float* rounded) noexcept {
+  for (int k = 0; k < kDimension; ++k) rounded[k] = nearest_float(x[k]);
+  size_t node = 0;
+  for (size_t level = 0; level < kSplitLevels; ++level)
+    node = 2 * node + 1 + (rounded[splits.coordinate[node]] >= splits.at[node] ? 1 : 0);
+  return node + 1 - kLeaves;
+}
+#endif
+
+// The loops of kernel k and dimension d + 1 are at index 8 k + d.
+template <int... kIndex>
+KernelLoops pick_kernel(size_t place, std::integer_sequence<int, kIndex...>) {
+  static constexpr KernelLoops kTable[] = {{&evaluate<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>,
+                                            &column<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>}...};
+  return kTable[place];
+}
+
+KernelLoops get_kernel(KernelKind kind, int dimension) {
+  return pick_kernel(8 * static_cast<size_t>(kind) + static_cast<size_t>(dimension - 1),
+                     std::make_integer_sequence<int, 8 * static_cast<int>(kKernelKinds.size())>{});
+}
+
+template <int... kIndex>
+NearestLoops pick_nearest(int dimension, std::integer_sequence<int, kIndex...>) {
+  static constexpr NearestLoops kTable[] = {{&nearest<kIndex + 1>, &within<kIndex + 1>, &leaf_of<kIndex + 1>}...};
+  return kTable[dimension - 1];
+}
+
+NearestLoops get_nearest(int dimension) { return pick_nearest(dimension, std::make_integer_sequence<int, 8>{}); }
+
+int64_t get_target() { return HWY_TARGET; }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace palpate::simd
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace palpate::simd {
+
+HWY_EXPORT(get_kernel);
+HWY_EXPORT(get_nearest);
+HWY_EXPORT(get_target);
+
+KernelLoops kernel_loops(KernelKind kind, int dimension) { return HWY_DYNAMIC_DISPATCH(get_kernel)(kind, dimension); }
+NearestLoops nearest_loops(int dimension) { return HWY_DYNAMIC_DISPATCH(get_nearest)(dimension); }
+
+std::vector<std::string> target_names() {
+  std::vector<std::string> names;
+  const std::string chosen = target_name();
+  hwy::SetSupportedTargetsForTest(0);
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) names.emplace_back(hwy::TargetName(target));
+  choose_target(chosen);
+  return names;
+}
+
+std::string target_name() { return hwy::TargetName(HWY_DYNAMIC_DISPATCH(get_target)()); }
+
+bool choose_target(const std::string& name) {
+  hwy::SetSupportedTargetsForTest(0);
+  bool found = name.empty();
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    if (!found && name == hwy::TargetName(target)) {
+      hwy::SetSupportedTargetsForTest(target);
+      found = true;
+    }
+  }
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  return found;
+}
+
+}  // namespace palpate::simd
+#endif

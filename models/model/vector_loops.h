@@ -1,0 +1,100 @@
+// The vectorised loops of the tick and of the fits, one variant per instruction set (AVX-512, AVX2, SSE4, NEON or
+// plain), selected at run time. Only rbf_evaluate.h, domain_guard.h, tests and benchmarks include this header.
+//
+// Points are structures of arrays: coordinate k of point i is coordinates[k * stride + i]. Loads are fast because
+// CMakeLists.txt lets Eigen align to 64 bytes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "models/model/rbf/kernels.h"
+
+namespace palpate::simd {
+
+// The smallest multiple of `lanes` that is not below `count`.
+constexpr std::size_t whole_vectors(std::size_t count, std::size_t lanes) noexcept {
+  return (count + lanes - 1) / lanes * lanes;
+}
+
+// ---- radial basis functions (rbf_evaluate.h), in double precision ----
+
+// Doubles in the widest vector used; every narrower one divides it.
+inline constexpr std::size_t kSimdPad = 8;
+
+// Numbers below this count as 0: no product of two others is denormal.
+inline constexpr double kTiny = 1e-100;
+inline double without_denormals(double value) noexcept { return value < kTiny && value > -kTiny ? 0.0 : value; }
+
+struct Points {
+  const double* coordinates = nullptr;
+  std::size_t stride = 0;
+  std::size_t padded = 0;  // a multiple of kSimdPad, reached with points of weight 0
+  int dimension = 0;
+};
+
+// sum_j weights[j] phi(|x - point_j|) + sum_k tail[k] g_k(x), with the tail of the kernel's degree (polynomial_tail.h).
+// Coordinates of x below kTiny count as 0.
+using EvaluateFunction = double (*)(const Points& points, const double* weights, const double* tail,
+                                    const double* x) noexcept;
+// out[i] = phi(|point_i - centre|) for i < count.
+using ColumnFunction = void (*)(const Points& points, std::size_t count, const double* centre, double* out) noexcept;
+
+struct KernelLoops {
+  EvaluateFunction evaluate = nullptr;
+  ColumnFunction column = nullptr;
+};
+// The loops for this kernel and dimension (1 to 8) on the selected instruction set.
+KernelLoops kernel_loops(KernelKind kind, int dimension);
+
+// ---- the nearest of a set of points (domain_guard.h), in single precision ----
+
+// Floats in the widest vector used.
+inline constexpr std::size_t kSimdPadFloat = 16;
+
+// Values below 1e-11 count as 0. Two such floats that differ then differ by 1e-18 or more, so that their squared
+// distance is not denormal.
+inline constexpr float kSmallestFloat = 1e-11F;
+inline float nearest_float(double value) noexcept {
+  return value < kSmallestFloat && value > -kSmallestFloat ? 0.0F : static_cast<float>(value);
+}
+// Whether the square of a value fits a float; false for NaN.
+inline bool in_nearest_range(double value) noexcept { return value < 1e19 && value > -1e19; }
+
+// A binary tree. At split i a query with x[coordinate[i]] < at[i] continues at split 2 i + 1, else at 2 i + 2; the
+// splits of the last level lead to the leaves, which are numbered from left to right.
+inline constexpr std::size_t kSplitLevels = 5;
+inline constexpr std::size_t kLeaves = std::size_t{1} << kSplitLevels;
+struct Splits {
+  std::array<std::int32_t, kLeaves> coordinate{};  // the last element is unused
+  std::array<float, kLeaves> at{};
+};
+
+// min_i |x - point_i|^2 of `count` points, a multiple of kSimdPadFloat and their stride.
+using NearestFunction = float (*)(const float* coordinates, std::size_t count, const float* x) noexcept;
+// Whether one of these points is within the distance whose square is `squared`; false when x is not finite.
+using WithinFunction = bool (*)(const float* coordinates, std::size_t count, const float* x, float squared) noexcept;
+// The number of the leaf of x. `rounded`: receives the nearest_float of each coordinate; has room for 8.
+using LeafFunction = std::size_t (*)(const Splits& splits, const double* x, float* rounded) noexcept;
+
+struct NearestLoops {
+  NearestFunction nearest = nullptr;
+  WithinFunction within = nullptr;
+  LeafFunction leaf = nullptr;
+};
+// For dimensions 1 to 8.
+NearestLoops nearest_loops(int dimension);
+
+// ---- instruction sets ----
+
+// The names of the instruction sets of this processor, best first, and the one in use. choose_target selects one of
+// them, or the best for "", for objects built afterwards; false for an unknown name. For tests and benchmarks only,
+// and not while other threads build evaluators.
+std::vector<std::string> target_names();
+std::string target_name();
+bool choose_target(const std::string& name);
+
+}  // namespace palpate::simd
