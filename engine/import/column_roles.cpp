@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "engine/import/row_times.h"
 #include "engine/import/table_number.h"

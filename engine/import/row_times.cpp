@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/import/table_number.h"
 
 namespace palpate {

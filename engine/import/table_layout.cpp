@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/import/row_times.h"
 #include "engine/import/table_number.h"
 #include "engine/import/units.h"

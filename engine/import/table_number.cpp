@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {

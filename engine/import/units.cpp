@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {

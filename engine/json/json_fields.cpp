@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 
 namespace palpate {

@@ -34,6 +34,8 @@ inline constexpr double kMaximumRate_Hz = 20000.0;
 inline constexpr double kRateTolerance = 0.05;
 // Whether rows with this time step have a rate in that range.
 bool rate_in_range(double step_s);
+// Limit of the length of a line, bytes; it bounds the memory of the reader.
+inline constexpr std::size_t kMaximumLineBytes = 64 * 1024;
 // The rate is checked once, after this many rows, so that rows can be streamed.
 inline constexpr std::size_t kRateRows = 1000;
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "scenes/plot/layout.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/plot/inline_svg.h"
 

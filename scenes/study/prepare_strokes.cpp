@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/recording/recording.h"
 #include "engine/tick/replay.h"
 #include "scenes/evaluation/error_figures.h"
