@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "engine/import/row_times.h"
-#include "engine/import/table_number.h"
+#include "engine/import/table_cell.h"
 #include "engine/recording/recording_rules.h"
 
 namespace palpate {

@@ -2,7 +2,7 @@
 //
 //   foreign_text   bytes to text          table_layout   separator, decimal mark, header
 //   units          units in headers       column_roles   time, position, force
-//   table_number   one cell               row_times      clocks, units of time, midnight
+//   table_cell     numbers, times
 //   import_table   all rows, units, sign; descriptions of the result
 //
 // Nothing is repaired without a note: what cannot be determined is an error that shows the header and the option to

@@ -4,8 +4,7 @@
 #include <array>
 
 #include "engine/base/text.h"
-#include "engine/import/row_times.h"
-#include "engine/import/table_number.h"
+#include "engine/import/table_cell.h"
 #include "engine/import/units.h"
 
 namespace palpate {
