@@ -26,18 +26,15 @@ std::size_t rows_to_expect(const std::string& path) {
 
 }  // namespace
 
-void ContentHash::add(const RecordingRow& row) {
-  for (const double value :
-       {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2}) {
-    value_ = (value_ ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3ULL;
-    value_ ^= value_ >> 29;
-  }
-}
-
 std::uint64_t content_hash(const Recording& recording) {
-  ContentHash hash;
-  for (const RecordingRow& row : recording.rows) hash.add(row);
-  return hash.value();
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  for (const RecordingRow& row : recording.rows) {
+    for (const double value : column_values(row)) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3ULL;
+      hash ^= hash >> 29;
+    }
+  }
+  return hash;
 }
 
 Result<Recording> read_recording(const std::string& path, std::size_t most_rows) {
