@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/base/text.h"
+#include "models/recordings/surface_rows.h"
 
 namespace palpate {
 namespace {
 
+// Shares of the greatest depth. A force that grows with depth to the power 1.5 (Hertz) changes by 3 % in a hold and by
+// 7.5 % in the smallest stroke, on either side of the Weber fraction of force, 6.33 %. A small stroke turns before half
+// of the depth, so that it stays in the material.
 constexpr double kHoldShare = 0.02;
-constexpr double kSmallestStroke = 0.05, kLargestSmallStroke = 0.4;
+constexpr double kSmallestStroke = 0.05;
+constexpr double kLargestSmallStroke = 0.4;
 // A speed is the displacement over this time, so that encoder steps do not look like motion.
 constexpr double kSpeedWindow_s = 0.02;
 // A stroke is a motion inwards by this share of the greatest depth after one outwards by as much: independent of the
@@ -28,9 +35,7 @@ void measure_sampling(const std::vector<RecordingRow>& rows, RecordingMeasures& 
     measures.largest_step_s = step_s;
     measures.largest_step_at_s = rows[i - 1].time_s;
   }
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  measures.median_step_s = *middle;
+  measures.median_step_s = median_of(std::move(steps_s));
   measures.duration_s = rows.back().time_s - rows.front().time_s;
 }
 
@@ -59,17 +64,36 @@ void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures&
   }
 }
 
+// Divides a motion into strokes in and out. A stroke ends when the depth has come back from its extreme by more than
+// `least_m`.
+struct Strokes {
+  double least_m;
+  bool inwards;
+  double begin_m = 0.0;
+  double extreme_m = 0.0;
+
+  // The length of the stroke that ends with this depth.
+  std::optional<double> end_at(double depth_m) {
+    extreme_m = inwards ? std::max(extreme_m, depth_m) : std::min(extreme_m, depth_m);
+    if (!(std::abs(extreme_m - depth_m) > least_m)) return std::nullopt;
+    inwards = !inwards;
+    const double length_m = std::abs(extreme_m - std::exchange(begin_m, extreme_m));
+    extreme_m = depth_m;
+    return length_m;
+  }
+};
+
 class MotionMeasure {
  public:
   explicit MotionMeasure(RecordingMeasures& measures)
       : measures_(measures),
         surface_m_(measures.outermost_contact_m),
-        deepest_m_(measures.highest_position_m - measures.outermost_contact_m) {}
+        deepest_m_(std::max(0.0, measures.highest_position_m - surface_m_)) {}
 
   // A row and the first row of the window that ends with it.
   void add(const RecordingRow& before, const RecordingRow& row, double step_s) {
     const double depth_m = row.position_m - surface_m_;
-    count_stroke(std::max(0.0, depth_m));
+    if (strokes_.end_at(std::max(0.0, depth_m)) && strokes_.inwards) ++measures_.strokes;
     if (!(depth_m > 0.0)) return;
     ++measures_.contact_rows;
     const double window_s = row.time_s - before.time_s;
@@ -81,7 +105,10 @@ class MotionMeasure {
         std::upper_bound(kSpeedEdges_per_s.begin(), kSpeedEdges_per_s.end(), std::abs(speed_m_per_s) / deepest_m_) -
         kSpeedEdges_per_s.begin());
     measures_.seconds[std::min(quarter, kDepthQuarters - 1)][band] += std::min(step_s, 10.0 * measures_.median_step_s);
-    follow_turns(depth_m);
+    const double length_m = turns_.end_at(depth_m).value_or(0.0);
+    if (length_m > kSmallestStroke * deepest_m_ && length_m < kLargestSmallStroke * deepest_m_) {
+      ++measures_.small_strokes;
+    }
     if (std::abs(row.position_m - hold_m_) > kHoldShare * deepest_m_) {
       hold_m_ = row.position_m;
       hold_since_s_ = row.time_s;
@@ -90,37 +117,13 @@ class MotionMeasure {
   }
 
  private:
-  void count_stroke(double depth_m) {
-    turn_m_ = going_in_ ? std::max(turn_m_, depth_m) : std::min(turn_m_, depth_m);
-    const double back_m = going_in_ ? turn_m_ - depth_m : depth_m - turn_m_;
-    if (!(back_m > kStrokeShare * deepest_m_)) return;
-    going_in_ = !going_in_;
-    turn_m_ = depth_m;
-    if (going_in_) ++measures_.strokes;
-  }
-
-  // Finds turns: the tool has come back from its extreme by more than noise.
-  void follow_turns(double depth_m) {
-    const double travel_m = (depth_m - farthest_m_) * direction_;
-    if (travel_m >= 0.0) farthest_m_ = depth_m;
-    if (travel_m > -kSmallestStroke * deepest_m_) return;
-    const double stroke_m = std::abs(farthest_m_ - turned_m_);
-    if (stroke_m > kSmallestStroke * deepest_m_ && stroke_m < kLargestSmallStroke * deepest_m_) {
-      ++measures_.small_strokes;
-    }
-    turned_m_ = farthest_m_;
-    farthest_m_ = depth_m;
-    direction_ = -direction_;
-  }
-
   RecordingMeasures& measures_;
-  bool going_in_ = false;
-  double turn_m_ = 0.0;  // extreme depth of the current motion: outermost, or innermost if going in
   double surface_m_;
   double deepest_m_;
+  Strokes strokes_{kStrokeShare * deepest_m_, false};
+  Strokes turns_{kSmallestStroke * deepest_m_, true};  // in contact
   double hold_m_ = HUGE_VAL;
   double hold_since_s_ = 0.0;
-  double turned_m_ = 0.0, farthest_m_ = 0.0, direction_ = 1.0;
 };
 
 }  // namespace
