@@ -83,48 +83,39 @@ struct Strokes {
   }
 };
 
-class MotionMeasure {
- public:
-  explicit MotionMeasure(RecordingMeasures& measures)
-      : measures_(measures),
-        surface_m_(measures.outermost_contact_m),
-        deepest_m_(std::max(0.0, measures.highest_position_m - surface_m_)) {}
-
-  // A row and the first row of the window that ends with it.
-  void add(const RecordingRow& before, const RecordingRow& row, double step_s) {
-    const double depth_m = row.position_m - surface_m_;
-    if (strokes_.end_at(std::max(0.0, depth_m)) && strokes_.inwards) ++measures_.strokes;
-    if (!(depth_m > 0.0)) return;
-    ++measures_.contact_rows;
-    const double window_s = row.time_s - before.time_s;
-    const double travel_m = row.position_m - before.position_m;
-    const double speed_m_per_s = window_s > 0.0 ? travel_m / window_s : 0.0;
-    (speed_m_per_s > 0.0 ? measures_.inward_travel_m : measures_.outward_travel_m) += std::abs(speed_m_per_s) * step_s;
-    const auto quarter = static_cast<std::size_t>(depth_m / deepest_m_ * static_cast<double>(kDepthQuarters));
+void measure_motion(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
+  const double surface_m = measures.outermost_contact_m;
+  const double deepest_m = std::max(0.0, measures.highest_position_m - surface_m);
+  Strokes strokes{kStrokeShare * deepest_m, false};
+  Strokes small_strokes{kSmallestStroke * deepest_m, true};  // in contact
+  double hold_m = HUGE_VAL;
+  double hold_since_s = 0.0;
+  std::size_t before = 0;  // the first row of the window of the speed
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const RecordingRow& row = rows[i];
+    while (before + 1 < i && row.time_s - rows[before].time_s > kSpeedWindow_s) ++before;
+    const double depth_m = row.position_m - surface_m;
+    if (strokes.end_at(std::max(0.0, depth_m)) && strokes.inwards) ++measures.strokes;
+    if (!(depth_m > 0.0)) continue;
+    ++measures.contact_rows;
+    const double step_s = i > 0 ? row.time_s - rows[i - 1].time_s : 0.0;
+    const double window_s = row.time_s - rows[before].time_s;
+    const double speed_m_per_s = window_s > 0.0 ? (row.position_m - rows[before].position_m) / window_s : 0.0;
+    (speed_m_per_s > 0.0 ? measures.inward_travel_m : measures.outward_travel_m) += std::abs(speed_m_per_s) * step_s;
+    const auto quarter = static_cast<std::size_t>(depth_m / deepest_m * static_cast<double>(kDepthQuarters));
     const auto band = static_cast<std::size_t>(
-        std::upper_bound(kSpeedEdges_per_s.begin(), kSpeedEdges_per_s.end(), std::abs(speed_m_per_s) / deepest_m_) -
+        std::upper_bound(kSpeedEdges_per_s.begin(), kSpeedEdges_per_s.end(), std::abs(speed_m_per_s) / deepest_m) -
         kSpeedEdges_per_s.begin());
-    measures_.seconds[std::min(quarter, kDepthQuarters - 1)][band] += std::min(step_s, 10.0 * measures_.median_step_s);
-    const double length_m = turns_.end_at(depth_m).value_or(0.0);
-    if (length_m > kSmallestStroke * deepest_m_ && length_m < kLargestSmallStroke * deepest_m_) {
-      ++measures_.small_strokes;
+    measures.seconds[std::min(quarter, kDepthQuarters - 1)][band] += std::min(step_s, 10.0 * measures.median_step_s);
+    const double length_m = small_strokes.end_at(depth_m).value_or(0.0);
+    if (length_m > kSmallestStroke * deepest_m && length_m < kLargestSmallStroke * deepest_m) ++measures.small_strokes;
+    if (std::abs(row.position_m - hold_m) > kHoldShare * deepest_m) {
+      hold_m = row.position_m;
+      hold_since_s = row.time_s;
     }
-    if (std::abs(row.position_m - hold_m_) > kHoldShare * deepest_m_) {
-      hold_m_ = row.position_m;
-      hold_since_s_ = row.time_s;
-    }
-    measures_.longest_hold_s = std::max(measures_.longest_hold_s, row.time_s - hold_since_s_);
+    measures.longest_hold_s = std::max(measures.longest_hold_s, row.time_s - hold_since_s);
   }
-
- private:
-  RecordingMeasures& measures_;
-  double surface_m_;
-  double deepest_m_;
-  Strokes strokes_{kStrokeShare * deepest_m_, false};
-  Strokes turns_{kSmallestStroke * deepest_m_, true};  // in contact
-  double hold_m_ = HUGE_VAL;
-  double hold_since_s_ = 0.0;
-};
+}
 
 }  // namespace
 
@@ -135,12 +126,7 @@ RecordingMeasures measure_recording(const Recording& recording, double surface_m
   measure_ranges(rows, measures);
   measure_flat_tops(rows, measures);
   measures.outermost_contact_m = std::max(surface_m, measures.lowest_position_m);
-  MotionMeasure motion(measures);
-  std::size_t before = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    while (before + 1 < i && rows[i].time_s - rows[before].time_s > kSpeedWindow_s) ++before;
-    motion.add(rows[before], rows[i], i > 0 ? rows[i].time_s - rows[i - 1].time_s : 0.0);
-  }
+  measure_motion(rows, measures);
   return measures;
 }
 
