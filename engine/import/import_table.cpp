@@ -239,7 +239,6 @@ Status Importer::read_rows() {
   std::uint64_t footer_line = 0;   // the first of them
   std::string_view footer;
   std::optional<Error> footer_fault;
-  if (!request_.rate_Hz) table_.columns[0].number = index_[0] + 1;
   while (!rest.empty()) {
     const std::string_view line = next_line(rest);
     ++number;

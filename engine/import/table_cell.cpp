@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/import/units.h"
 
 namespace palpate {
 namespace {
@@ -165,11 +166,7 @@ bool parse_table_number(std::string_view text, char decimal, double& value) {
 }
 
 bool is_missing_value(std::string_view text) {
-  const std::string lower = lower_ascii(trimmed(text));
-  for (const char* const word : {"nan", "-nan", "inf", "-inf", "+inf", "1.#qnan", "n/a", "na", "null", "none", "-"}) {
-    if (lower == word) return true;
-  }
-  return false;
+  return is_word_of("nan -nan inf -inf +inf 1.#qnan n/a na null none -", lower_ascii(trimmed(text)));
 }
 
 bool is_of_a_clock(std::string_view field) { return has_date(field) || parse_clock_time(field); }

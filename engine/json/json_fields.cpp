@@ -1,7 +1,6 @@
 #include "engine/json/json_fields.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -169,14 +168,10 @@ std::string found(const Json& value) {
 }
 
 std::string NumberRange::words() const {
-  char text[80];
   if (low == -kLargestNumber && high == kLargestNumber) return "a number";
-  if (high == kLargestNumber) {
-    std::snprintf(text, sizeof text, open ? "a number above %g" : "a number, %g or more", low);
-  } else {
-    std::snprintf(text, sizeof text, "a number %s %g up to %g", open ? "above" : "from", low, high);
-  }
-  return text;
+  const std::string least = general(low, 6);
+  if (high == kLargestNumber) return open ? "a number above " + least : "a number, " + least + " or more";
+  return std::string("a number ") + (open ? "above " : "from ") + least + " up to " + general(high, 6);
 }
 
 std::optional<Error> JsonFields::error() const {
