@@ -171,14 +171,11 @@ std::optional<Error> JsonFields::error() const {
   return Error{all};
 }
 
-bool JsonFields::reported_already(const std::string& pointer) const {
-  return std::any_of(reported_.begin(), reported_.end(), [&](const std::string& reported) {
-    return pointer == reported || (!reported.empty() && pointer.starts_with(reported + "/"));
-  });
-}
-
 void JsonFields::complain(const std::string& pointer, const std::string& words, const std::string& advice) {
-  if (reported_already(pointer)) return;
+  const auto contains = [&](const std::string& reported) {
+    return pointer == reported || (!reported.empty() && pointer.starts_with(reported + "/"));
+  };
+  if (std::any_of(reported_.begin(), reported_.end(), contains)) return;
   ++error_count_;
   if (lines_.size() == kMostLines) return;
   reported_.push_back(pointer);
