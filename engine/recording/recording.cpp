@@ -13,16 +13,10 @@ namespace {
 
 // Rows that read_recording reads at a time, few enough for the cache.
 constexpr std::size_t kBatchRows = 4096;
-constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
+// The largest number of rows for which memory is reserved: untouched memory costs nothing, and a growing vector would
+// have its rows twice at times.
 constexpr std::size_t kMostExpected = 6000000;
-
-// The largest number of rows that a file may have, to reserve memory: untouched memory costs nothing, and a growing
-// vector would have its rows twice at times.
-std::size_t rows_to_expect(const std::string& path) {
-  std::error_code unknown;
-  const auto bytes = std::filesystem::file_size(path, unknown);
-  return unknown ? 0 : std::min<std::size_t>(bytes / kShortestRow, kMostExpected);
-}
+constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
 
 }  // namespace
 
@@ -41,7 +35,9 @@ Result<Recording> read_recording(const std::string& path, std::size_t most_rows)
   auto reader = RecordingReader::open(path);
   if (!reader) return reader.error();
   Recording recording{reader->name(), reader->columns(), {}};
-  recording.rows.reserve(rows_to_expect(path));
+  std::error_code unknown;  // then the size is the largest number
+  recording.rows.reserve(
+      std::min<std::size_t>(std::filesystem::file_size(path, unknown) / kShortestRow, kMostExpected));
   std::vector<RecordingRow> batch(kBatchRows);
   while (recording.rows.size() < most_rows) {
     const auto count = reader->read(batch.data(), std::min(batch.size(), most_rows - recording.rows.size()));
