@@ -4,12 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
-#include <cstring>
+#include <random>
 #include <system_error>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -22,15 +21,10 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-// The temporary file is in the folder of the final one, so that the rename cannot cross disks. The clock distinguishes
-// processes with the same pid in two containers that share the folder.
+// The temporary file is in the folder of the final one, so that the rename cannot cross disks.
 std::string temporary_name_in(const std::string& folder) {
-  static std::atomic<unsigned> counter{0};
-  const auto now = std::chrono::system_clock::now().time_since_epoch().count();
-  char name[96];
-  std::snprintf(name, sizeof name, "/.palpate-%ld-%llx-%u.tmp", static_cast<long>(getpid()),
-                static_cast<unsigned long long>(now), counter.fetch_add(1));
-  return folder + name;
+  std::random_device random;
+  return folder + "/.palpate-" + std::to_string(random()) + "-" + std::to_string(random()) + ".tmp";
 }
 
 std::string words_for(int error_number) { return std::generic_category().message(error_number); }
@@ -50,12 +44,6 @@ Status check_target(const std::string& path, bool overwrite) {
   }
   if (!overwrite) return already_exists(path);
   return {};
-}
-
-Error cannot_create(const std::string& path, const std::string& folder, int error_number) {
-  const bool missing = error_number == ENOENT;
-  return Error{"cannot write " + path + ": the folder " + folder +
-               (missing ? " does not exist; create it first" : " takes no new file: " + words_for(error_number))};
 }
 
 // Renames without replacing, atomically, so that a file that appears in the last moment survives. On file systems
@@ -95,8 +83,10 @@ Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
   file.close_descriptor();
   file.temporary_path_ = temporary_name_in(folder);
   file.descriptor_ = open(file.temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file.descriptor_ < 0) return cannot_create(path, folder, errno);
-  return file;
+  if (file.descriptor_ >= 0) return file;
+  const std::string why =
+      errno == ENOENT ? " does not exist; create it first" : " takes no new file: " + words_for(errno);
+  return Error{"cannot write " + path + ": the folder " + folder + why};
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept

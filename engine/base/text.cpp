@@ -8,6 +8,34 @@
 namespace palpate {
 namespace {
 
+// The length of the well-formed UTF-8 sequence at the start of `text`, or 0.
+std::size_t utf8_sequence_bytes(std::string_view text) {
+  constexpr unsigned kLeastCode[] = {0, 0x80, 0x800, 0x10000};  // a smaller one has a shorter sequence
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
+  const unsigned lead = byte(0);
+  const std::size_t bytes = lead < 0x80 ? 1 : lead < 0xC0 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF8 ? 4 : 0;
+  if (bytes == 0 || text.size() < bytes) return 0;
+  unsigned code = bytes == 1 ? lead : lead & (0x7Fu >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if (byte(i) >> 6 != 0b10) return 0;
+    code = code << 6 | (byte(i) & 0x3F);
+  }
+  const bool is_surrogate = code >= 0xD800 && code < 0xE000;
+  return code >= kLeastCode[bytes - 1] && code <= 0x10FFFF && !is_surrogate ? bytes : 0;
+}
+
+std::string escaped(unsigned char byte) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  return {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
+}
+
+// C0 controls and DEL, and the C1 controls (U+0080 to U+009F), which a terminal may execute, too.
+bool is_control(std::string_view sequence) {
+  const auto lead = static_cast<unsigned char>(sequence[0]);
+  if (sequence.size() == 1) return lead < 0x20 || lead == 0x7F;
+  return lead == 0xC2 && static_cast<unsigned char>(sequence[1]) < 0xA0;
+}
+
 // The largest double has 309 digits before the point.
 std::string formatted(double value, std::chars_format format, int decimals) {
   std::array<char, 440> text;
@@ -16,6 +44,68 @@ std::string formatted(double value, std::chars_format format, int decimals) {
 }
 
 }  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return text.substr(text.size());
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view between) {
+  std::string text;
+  for (const std::string& word : words) text.append(text.empty() ? "" : between).append(word);
+  return text;
+}
+
+std::string lower_ascii(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+std::size_t utf8_bytes(std::string_view text) {
+  std::string_view rest = text;
+  for (std::size_t bytes = 1; !rest.empty() && bytes > 0; rest.remove_prefix(bytes)) bytes = utf8_sequence_bytes(rest);
+  return text.size() - rest.size();
+}
+
+std::string printable(std::string_view text, std::size_t limit) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    if (out.size() >= limit) return out + "...";
+    const std::size_t bytes = utf8_sequence_bytes(text.substr(i));
+    const std::string_view sequence = text.substr(i, std::max<std::size_t>(bytes, 1));
+    if (bytes == 0 || is_control(sequence)) {
+      for (const char c : sequence) out += escaped(static_cast<unsigned char>(c));
+    } else {
+      out += sequence;
+    }
+    i += sequence.size();
+  }
+  return out;
+}
+
+std::string position_prefix(const std::string& path, std::string_view text, std::size_t offset) {
+  const std::string_view before = text.substr(0, offset);
+  const std::size_t line_start = before.rfind('\n') + 1;  // 0 in the first line
+  const auto lines = std::count(before.begin(), before.end(), '\n') + 1;
+  return path + ":" + std::to_string(lines) + ":" + std::to_string(before.size() - line_start + 1) + ": ";
+}
+
+const char* parse_number(const char* begin, const char* end, double& value) {
+  // from_chars does not accept '+'; "+-1" must remain an error.
+  if (begin != end && *begin == '+' && ++begin != end && *begin == '-') return nullptr;
+  const auto parsed = std::from_chars(begin, end, value);
+  return parsed.ec == std::errc() && std::isfinite(value) ? parsed.ptr : nullptr;
+}
+
+std::string shortest(double value) {
+  char text[32];  // the longest double takes 24
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  return std::string(text, end.ptr);
+}
 
 std::string fixed(double value, int decimals) { return formatted(value, std::chars_format::fixed, decimals); }
 

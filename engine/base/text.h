@@ -1,10 +1,38 @@
-// Numbers as text for people, with '.' as decimal point in every locale.
+// Text of files and messages: blanks, letters, UTF-8, and numbers with '.' as decimal point in every locale.
 // Thread guarantee: pure functions, slow side (allocate).
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace palpate {
+
+// `text` without blanks (space, tab) at both ends.
+std::string_view trimmed(std::string_view text);
+
+// "a, b, c"
+std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
+
+// `text` with A to Z replaced by a to z.
+std::string lower_ascii(std::string_view text);
+
+// The number of bytes at the start of `text` that are well-formed UTF-8. Source: RFC 3629, section 4.
+std::size_t utf8_bytes(std::string_view text);
+
+// `text` for a message: bytes that are not printable as \xHH, truncated with "..." after about `limit` bytes.
+std::string printable(std::string_view text, std::size_t limit = 40);
+
+// "path:line:column: ", the beginning of a message about the byte at `offset` of `text`; columns count bytes from 1.
+std::string position_prefix(const std::string& path, std::string_view text, std::size_t offset);
+
+// Parses one decimal number at `begin`, correctly rounded; a leading '+' is accepted. Returns its end, or nullptr if
+// there is no finite number.
+const char* parse_number(const char* begin, const char* end, double& value);
+
+// The shortest decimal form that reads back as the same double.
+std::string shortest(double value);
 
 // As printf's %.*f; `decimals` 0 to 100.
 std::string fixed(double value, int decimals);

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -207,21 +207,24 @@ std::string list_columns(const std::vector<ForeignColumn>& columns) {
   return joined(names);
 }
 
-Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
-                                  bool has_header, bool needs_time) {
-  RoleChoice choice;
+Result<RoleColumns> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
+                                   bool has_header, bool needs_time) {
+  RoleColumns chosen;
+  const auto choose = [&](std::size_t role, std::size_t index, bool guessed) {
+    chosen[role] = {index + 1, has_header ? columns[index].header : "", "", guessed};
+  };
   std::vector<std::array<int, kRoles>> claims;
   for (const ForeignColumn& column : columns)
     claims.push_back(has_header ? claims_of(column) : std::array<int, kRoles>{});
-  for (std::size_t role = 0; role < kRoles; ++role) {
-    if (request[role].empty() || (role == 0 && !needs_time)) continue;
+  for (std::size_t role = needs_time ? 0 : 1; role < kRoles; ++role) {
+    if (request[role].empty()) continue;
     const auto found = find_column(columns, role, request[role]);
     if (!found) return found.error();
-    choice.column[role] = *found;
+    choose(role, *found, false);
     claims[*found] = {};
   }
-  for (std::size_t role = 0; role < kRoles; ++role) {
-    if (choice.column[role] || (role == 0 && !needs_time)) continue;
+  for (std::size_t role = needs_time ? 0 : 1; role < kRoles; ++role) {
+    if (chosen[role].number > 0) continue;
     int strongest = 0;
     for (const auto& claim : claims) strongest = std::max(strongest, claim[role]);
     std::vector<std::size_t> best;
@@ -230,18 +233,17 @@ Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, con
     }
     if (best.empty()) return no_column(columns, role, has_header);
     if (best.size() > 1) return several_columns(columns, role, best);
-    choice.column[role] = best.front();
-    choice.guessed[role] = true;
+    choose(role, best.front(), true);
   }
   for (std::size_t a = 0; a < kRoles; ++a) {
     for (std::size_t b = 0; b < a; ++b) {
-      if (!choice.column[a] || choice.column[a] != choice.column[b]) continue;
-      return Error{"found column \"" + printable(columns[*choice.column[a]].header) + "\" for the " + kRoleNames[b] +
+      if (chosen[a].number == 0 || chosen[a].number != chosen[b].number) continue;
+      return Error{"found column \"" + printable(columns[chosen[a].number - 1].header) + "\" for the " + kRoleNames[b] +
                    " and the " + kRoleNames[a] + ", expected a column for each; the columns are " +
                    list_columns(columns)};
     }
   }
-  return choice;
+  return chosen;
 }
 
 std::optional<VelocityColumn> find_velocity(const std::vector<ForeignColumn>& columns) {

@@ -33,15 +33,19 @@ std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
 // The user's choice for each role: a name or a number from 1; empty: to be determined.
 using RoleRequest = std::array<std::string, kRoles>;
 
-struct RoleChoice {
-  std::array<std::optional<std::size_t>, kRoles> column;  // empty for the time if a rate is given
-  std::array<bool, kRoles> guessed{};
+// The column of a role.
+struct ImportedColumn {
+  std::size_t number = 0;  // from 1; 0: the time of a given rate
+  std::string header;
+  std::string unit;  // "mm"; "clock" for a time of day or a date
+  bool guessed = false;
 };
+using RoleColumns = std::array<ImportedColumn, kRoles>;
 
-// Errors (without the file's name), each with the header and the option to add: an unknown name; no column, or several,
-// that can be the time, the position or the force; one column for two roles.
-Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
-                                  bool has_header, bool needs_time);
+// The columns without their units. Errors (without the file's name), each with the header and the option to add: an
+// unknown name; no column, or several, that can be the time, the position or the force; one column for two roles.
+Result<RoleColumns> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
+                                   bool has_header, bool needs_time);
 
 // The only column that is a measured velocity by name and unit ("Speed (mm/s)"); none if there are several.
 struct VelocityColumn {

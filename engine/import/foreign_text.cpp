@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {

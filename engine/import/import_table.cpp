@@ -5,10 +5,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
-#include "engine/import/row_times.h"
-#include "engine/import/table_number.h"
+#include "engine/import/table_cell.h"
 #include "engine/recording/recording_rules.h"
 
 namespace palpate {
@@ -17,7 +15,6 @@ namespace {
 // The first rows determine which columns are constant, and the unit of time.
 constexpr std::size_t kFirstRows = 200;
 constexpr double kVelocitySlope = 0.2;
-constexpr auto kNoColumn = static_cast<std::size_t>(-1);
 
 std::string short_number(double value) { return general(value, 6); }
 
@@ -49,13 +46,15 @@ class Importer {
     to_si_[role] = unit.to_si;
     table_.columns[role].unit = unit.name;
   }
+  // The index of the column of a role; beyond every row if there is none.
+  std::size_t index_of(std::size_t role) const { return table_.columns[role].number - 1; }
   // The field of a column in the present row; empty if it is missing.
   std::string_view field(std::size_t index) const { return index < row_.size() ? row_[index] : std::string_view(); }
 
   Status find_columns();
   Status find_unit_of(std::size_t role);
   Status find_time_unit();
-  std::size_t parse_row(RecordingRow& row);
+  std::optional<std::size_t> parse_row(RecordingRow& row);
   Error unreadable(std::size_t column, std::uint64_t line) const;
   Status check_size(const RecordingRow& row, std::uint64_t line) const;
   Status check_time(const RecordingRow& row, std::uint64_t line);
@@ -69,7 +68,6 @@ class Importer {
   ImportedTable table_;
   std::vector<ForeignColumn> header_;
   std::vector<std::vector<std::string_view>> first_rows_;  // their fields
-  std::array<std::size_t, kRoles> index_{};                // of the column of each role
   std::array<double, kRoles> to_si_{1.0, 1.0, 1.0};
   std::vector<std::string_view> row_;  // the fields of the present row
   RowTimes times_{'.'};
@@ -100,19 +98,14 @@ Status Importer::find_columns() {
   if (request_.rate_Hz && !choice) choice = choose_columns(header_, request_.columns, has_header, false);
   if (!choice) return fail(choice.error().message);
   velocity_ = find_velocity(header_);
-  for (std::size_t role = 0; role < kRoles; ++role) {
-    index_[role] = choice->column[role].value_or(kNoColumn);
-    if (!choice->column[role] || (role == 0 && request_.rate_Hz)) continue;
-    table_.columns[role] = {index_[role] + 1, has_header ? header_[index_[role]].header : "", "",
-                            choice->guessed[role]};
-  }
+  table_.columns = std::move(*choice);
   return {};
 }
 
 // Finds the unit of position or force.
 Status Importer::find_unit_of(std::size_t role) {
   const Quantity quantity = static_cast<Quantity>(role);
-  const auto& column = header_[index_[role]];
+  const auto& column = header_[index_of(role)];
   const std::optional<Unit> unit = unit_of(quantity, request_, column);
   if (unit && unit->quantity != quantity) {
     return fail("found the unit " + std::string(unit->name) + " in the column \"" + printable(column.header) +
@@ -130,8 +123,8 @@ Status Importer::find_unit_of(std::size_t role) {
                 "\", expected a force; say how many newtons a volt is: --gain N_PER_V");
   }
   if (!unit) {
-    return fail("found no unit of the " + std::string(kRoleNames[role]) + quoted_name(index_[role]) + "; add --units " +
-                (role == 1 ? "mm (or m, cm, um, inch)" : "N (or mN, kN, g, kg, lbf)") +
+    return fail("found no unit of the " + std::string(kRoleNames[role]) + quoted_name(index_of(role)) +
+                "; add --units " + (role == 1 ? "mm (or m, cm, um, inch)" : "N (or mN, kN, g, kg, lbf)") +
                 ", with a comma between two units: --units mm,N");
   }
   use_unit(role, *unit);
@@ -140,7 +133,7 @@ Status Importer::find_unit_of(std::size_t role) {
 
 // The times are those of a clock, have a unit from the header or the user, or are in the only unit with a valid rate.
 Status Importer::find_time_unit() {
-  const std::size_t index = index_[0];
+  const std::size_t index = index_of(0);
   std::vector<std::string_view> fields;
   for (const auto& row : first_rows_) fields.push_back(index < row.size() ? row[index] : std::string_view());
   times_ = RowTimes(table_.layout.decimal);
@@ -169,25 +162,26 @@ Status Importer::find_time_unit() {
   return {};
 }
 
-// Parses the fields of a row. Returns the first column without a valid value, kNoColumn if there is none.
-std::size_t Importer::parse_row(RecordingRow& row) {
+// Parses the fields of a row. Returns the first column without a valid value.
+std::optional<std::size_t> Importer::parse_row(RecordingRow& row) {
   const auto is_bad = [&](std::size_t index, double to_si, double& value) {
     if (!parse_table_number(field(index), table_.layout.decimal, value)) return true;
     value *= to_si;
     return false;
   };
-  if (is_bad(index_[1], to_si_[1], row.position_m)) return index_[1];
-  if (is_bad(index_[2], to_si_[2], row.force_N)) return index_[2];
+  if (is_bad(index_of(1), to_si_[1], row.position_m)) return index_of(1);
+  if (is_bad(index_of(2), to_si_[2], row.force_N)) return index_of(2);
   if (velocity_ && is_bad(velocity_->column, velocity_->to_si, row.velocity_m_per_s)) return velocity_->column;
-  const auto time = own_time_ ? times_.since_first(field(index_[0])) : std::nullopt;
+  const auto time = own_time_ ? times_.since_first(field(index_of(0))) : std::nullopt;
   if (time) own_seconds_ = row.time_s = to_si_[0] * *time;
-  return time || request_.rate_Hz ? kNoColumn : index_[0];
+  return time || request_.rate_Hz ? std::nullopt : std::optional(index_of(0));
 }
 
 // The error of the present row, whose field of this column could not be read.
 Error Importer::unreadable(std::size_t column, std::uint64_t line) const {
   const std::string_view text = trimmed(field(column));
-  const auto role = static_cast<std::size_t>(std::find(index_.begin(), index_.end(), column) - index_.begin());
+  std::size_t role = 0;
+  while (role < kRoles && index_of(role) != column) ++role;
   return fail_at(line, "found " + (text.empty() ? "an empty field" : '"' + printable(text) + '"') + " in column " +
                            std::to_string(column + 1) + quoted_name(column) + ", expected the " +
                            (role < kRoles ? kRoleNames[role] : "velocity") +
@@ -201,8 +195,8 @@ Status Importer::check_size(const RecordingRow& row, std::uint64_t line) const {
   const std::size_t role = position_fits ? 2 : 1;
   return fail_at(line, std::string("found a ") + kRoleNames[role] + " of " +
                            (role == 2 ? short_number(row.force_N) + " N" : short_number(row.position_m) + " m") +
-                           " (column " + std::to_string(index_[role] + 1) + quoted_name(index_[role]) + " in " +
-                           table_.columns[role].unit + "), expected at most " +
+                           " (column " + std::to_string(table_.columns[role].number) + quoted_name(index_of(role)) +
+                           " in " + table_.columns[role].unit + "), expected at most " +
                            (role == 2 ? "1000000 N; check the unit and give it with --units mN"
                                       : "1 m; check the unit and give it with --units mm") +
                            ", or choose another column");
@@ -221,7 +215,7 @@ Status Importer::check_time(const RecordingRow& row, std::uint64_t line) {
   const std::string rate =
       rows.size() > 2 ? short_number(std::round(static_cast<double>(rows.size() - 1) / last_s)) : "HZ";
   return fail_at(line, "found a time " + short_number(last_s - row.time_s) + " s before that of the row above" +
-                           quoted_name(index_[0]) +
+                           quoted_name(index_of(0)) +
                            ", expected later times in every row; split the file there, or sort its rows; if the rows "
                            "are evenly spaced, add --rate " +
                            rate);
@@ -241,25 +235,24 @@ Status Importer::read_rows() {
   std::uint64_t footer_line = 0;   // the first of them
   std::string_view footer;
   std::optional<Error> footer_fault;
-  if (!request_.rate_Hz) table_.columns[0].number = index_[0] + 1;
   while (!rest.empty()) {
     const std::string_view line = next_line(rest);
     ++number;
     RecordingRow row;
     split_table_fields(line, table_.layout.delimiter, row_);
-    if (const std::size_t bad = parse_row(row); bad != kNoColumn) {
+    if (const auto bad = parse_row(row)) {
       const std::string_view bare = trimmed(line);
       if (bare.empty()) continue;
       if (bare.starts_with('#')) {
         ++comments;
-      } else if (field(index_[1]).find_first_of(kDigits) < line.size() &&
-                 field(index_[2]).find_first_of(kDigits) < line.size()) {
+      } else if (field(index_of(1)).find_first_of(kDigits) < line.size() &&
+                 field(index_of(2)).find_first_of(kDigits) < line.size()) {
         // The fields of its numbers contain digits: a damaged row.
-        if (++bad_rows > request_.skip_bad_rows) return unreadable(bad, number);
+        if (++bad_rows > request_.skip_bad_rows) return unreadable(*bad, number);
       } else if (++footer_lines == 1) {
         footer_line = number;
         footer = line;
-        footer_fault = unreadable(bad, number);
+        footer_fault = unreadable(*bad, number);
       }
       continue;
     }
@@ -337,15 +330,12 @@ Result<ImportedTable> Importer::run() {
     note("the rows are evenly spaced by the Delta_X above the table");
   }
   if (const Status status = find_columns(); !status) return status.error();
-  if (index_[0] != kNoColumn) {
+  if (table_.columns[0].number > 0) {
     const std::size_t notes = table_.notes.size();
     const Status status = find_time_unit();
     own_time_ = status.ok();
     if (!status && !request_.rate_Hz) return status.error();
-    if (request_.rate_Hz) {
-      table_.notes.resize(notes);
-      table_.columns[0] = {};
-    }
+    if (request_.rate_Hz) table_.notes.resize(notes);
   }
   for (const std::size_t role : {1u, 2u}) {
     if (const Status status = find_unit_of(role); !status) return status.error();
@@ -357,6 +347,7 @@ Result<ImportedTable> Importer::run() {
   }
   describe_time();
   check_velocity();
+  if (request_.rate_Hz) table_.columns[0] = {};
   table_.layout.names.clear();
   table_.layout.units.clear();
   table_.recording.name = std::filesystem::path(label_).stem().string();

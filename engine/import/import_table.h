@@ -2,7 +2,7 @@
 //
 //   foreign_text   bytes to text          table_layout   separator, decimal mark, header
 //   units          units in headers       column_roles   time, position, force
-//   table_number   one cell               row_times      clocks, units of time, midnight
+//   table_cell     numbers, times
 //   import_table   all rows, units, sign; descriptions of the result
 //
 // Nothing is repaired without a note: what cannot be determined is an error that shows the header and the option to
@@ -10,7 +10,6 @@
 // Thread guarantee: slow side only (does I/O).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -37,18 +36,11 @@ struct ImportRequest {
   std::uint64_t skip_bad_rows = 0;     // number of rows that may be unreadable
 };
 
-struct ImportedColumn {
-  std::size_t number = 0;  // from 1; 0: the time of a given rate
-  std::string header;
-  std::string unit;  // "mm"; "clock" for a time of day or a date
-  bool guessed = false;
-};
-
 struct ImportedTable {
   Recording recording;
   std::string_view encoding;
   TableLayout layout;  // without names and units, which refer to the text
-  std::array<ImportedColumn, kRoles> columns;
+  RoleColumns columns;
   std::vector<std::string> notes;  // sentences: guesses, omissions, advice
 };
 

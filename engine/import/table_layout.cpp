@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "engine/base/csv_scanner.h"
-#include "engine/import/row_times.h"
-#include "engine/import/table_number.h"
+#include "engine/base/text.h"
+#include "engine/import/table_cell.h"
 #include "engine/import/units.h"
 
 namespace palpate {
@@ -142,17 +141,16 @@ void split_at_wide_gaps(std::string_view line, std::vector<std::string_view>& fi
 // as the table has columns.
 bool split_header(std::string_view line, const TableLayout& layout, std::vector<std::string_view>& fields) {
   const std::string_view bare = without_comment_mark(line);
+  const bool blanks = layout.delimiter.is_blanks();
+  const auto fits = [&] { return blanks ? fields.size() == layout.columns : fields.size() >= layout.columns; };
   for (const std::string_view text : {line, bare}) {
     split_table_fields(text, layout.delimiter, fields);
-    if (!layout.delimiter.is_blanks()) {
-      if (fields.size() >= layout.columns) return true;
-      continue;
-    }
-    if (fields.size() == layout.columns) return true;
+    if (fits()) return true;
+    if (!blanks) continue;
     join_bracketed(fields);
-    if (fields.size() == layout.columns) return true;
+    if (fits()) return true;
     split_at_wide_gaps(text, fields);
-    if (fields.size() == layout.columns) return true;
+    if (fits()) return true;
   }
   for (const Delimiter& other : kDelimiters) {
     split_table_fields(bare, other, fields);

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -94,8 +94,8 @@ std::optional<Unit> find_unit(std::string_view text) {
 
 double volts_of(std::string_view text) {
   const std::string name = lower_ascii(without_brackets(text));
-  if (name == "mv" || name == "millivolt" || name == "millivolts") return 1e-3;
-  return name == "v" || name == "volt" || name == "volts" ? 1.0 : 0.0;
+  if (is_word_of("mv millivolt millivolts", name)) return 1e-3;
+  return is_word_of("v volt volts", name) ? 1.0 : 0.0;
 }
 
 NameAndUnit split_name_and_unit(std::string_view header) {

@@ -1,11 +1,10 @@
 #include "engine/json/json_fields.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -43,47 +42,37 @@ Token token_after(std::string_view text, const Token& token) {
   return token_at(text, token.begin + token.content.size());
 }
 
-// The last token of the value that begins with `token`.
-Token last_of_value(std::string_view text, Token token) {
-  std::size_t open = token.opens() ? 1 : 0;
-  while (open > 0 && token.kind != '\0') {
-    token = token_after(text, token);
-    if (token.opens()) ++open;
-    if (token.closes()) --open;
-  }
-  return token;
-}
-
-// The first token of the member or element `step` of the value that begins with `container`.
-std::optional<Token> enter(std::string_view text, const Token& container, std::string_view step) {
-  if (!container.opens()) return std::nullopt;
-  Token token = token_after(text, container);
-  for (std::size_t index = 0; token.kind != '\0' && !token.closes(); ++index) {
-    std::string name = std::to_string(index);
-    if (container.kind == '{') {
-      name = token.content.substr(1, token.content.size() - 2);  // without quotes
-      token = token_after(text, token_after(text, token));       // behind the colon
-    }
-    if (name == step) return token;
-    token = token_after(text, last_of_value(text, token));
-    if (token.kind == ',') token = token_after(text, token);
-  }
-  return std::nullopt;
+bool is_name(std::string_view text, const Token& token) {
+  return token.kind == '"' && token_after(text, token).kind == ':';
 }
 
 // The offset of the value at a JSON pointer such as "/features/2/kind" ("": the whole document) in valid JSON. A
-// missing value has the offset of the deepest existing value on its path. Keys with escapes, '/' or '~' are not found.
-std::size_t offset_of_value(std::string_view text, std::string_view pointer) {
-  Token token = token_at(text, 0);
-  while (!pointer.empty()) {
-    pointer.remove_prefix(1);
-    const std::size_t end = std::min(pointer.find('/'), pointer.size());
-    const std::optional<Token> member = enter(text, token, pointer.substr(0, end));
-    if (!member) break;
-    token = *member;
-    pointer.remove_prefix(end);
+// missing value has the offset of the deepest existing value on its path. Keys with escapes are not found.
+std::size_t offset_of_value(std::string_view text, const std::string& pointer) {
+  struct Level {
+    std::string prefix;  // the pointer of the object or list, and a slash
+    bool is_list;
+    std::string name;       // of the next member
+    std::size_t index = 0;  // of the next element
+  };
+  std::vector<Level> open;
+  std::size_t offset = 0;
+  for (Token token = token_at(text, 0); token.kind != '\0'; token = token_after(text, token)) {
+    if (token.closes()) {
+      open.pop_back();
+    } else if (is_name(text, token)) {
+      open.back().name = token.content.substr(1, token.content.size() - 2);  // without quotes
+    } else if (token.kind != ',' && token.kind != ':') {
+      std::string here;
+      if (!open.empty()) {
+        Level& level = open.back();
+        here = level.prefix + (level.is_list ? std::to_string(level.index++) : level.name);
+      }
+      if (here == pointer || pointer.starts_with(here + "/")) offset = token.begin;
+      if (token.opens()) open.push_back({here + "/", token.kind == '[', {}});
+    }
   }
-  return token.begin;
+  return offset;
 }
 
 // The first number beyond the range of a double, in text that is valid up to there.
@@ -135,8 +124,7 @@ Result<Json> parse_json(std::string_view text, const std::string& path, int nest
                    "found more than " + std::to_string(nesting) + " lists inside each other, expected fewer",
                    advice.damaged);
     }
-    const bool is_name = token.kind == '"' && token_after(text, token).kind == ':';
-    if (is_name && !open.empty() && !open.back().insert(token.content).second) {
+    if (is_name(text, token) && !open.empty() && !open.back().insert(token.content).second) {
       return wrong(token.begin, "found a name for the second time in one object, expected it once", advice.damaged);
     }
   }
@@ -169,14 +157,10 @@ std::string found(const Json& value) {
 }
 
 std::string NumberRange::words() const {
-  char text[80];
   if (low == -kLargestNumber && high == kLargestNumber) return "a number";
-  if (high == kLargestNumber) {
-    std::snprintf(text, sizeof text, open ? "a number above %g" : "a number, %g or more", low);
-  } else {
-    std::snprintf(text, sizeof text, "a number %s %g up to %g", open ? "above" : "from", low, high);
-  }
-  return text;
+  const std::string least = general(low, 6);
+  if (high == kLargestNumber) return open ? "a number above " + least : "a number, " + least + " or more";
+  return std::string("a number ") + (open ? "above " : "from ") + least + " up to " + general(high, 6);
 }
 
 std::optional<Error> JsonFields::error() const {
@@ -187,14 +171,11 @@ std::optional<Error> JsonFields::error() const {
   return Error{all};
 }
 
-bool JsonFields::reported_already(const std::string& pointer) const {
-  return std::any_of(reported_.begin(), reported_.end(), [&](const std::string& reported) {
-    return pointer == reported || (!reported.empty() && pointer.starts_with(reported + "/"));
-  });
-}
-
 void JsonFields::complain(const std::string& pointer, const std::string& words, const std::string& advice) {
-  if (reported_already(pointer)) return;
+  const auto contains = [&](const std::string& reported) {
+    return pointer == reported || (!reported.empty() && pointer.starts_with(reported + "/"));
+  };
+  if (std::any_of(reported_.begin(), reported_.end(), contains)) return;
   ++error_count_;
   if (lines_.size() == kMostLines) return;
   reported_.push_back(pointer);

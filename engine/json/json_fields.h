@@ -98,7 +98,7 @@ class JsonFields {
   template <typename Good>
   const nlohmann::json* value_where(const JsonNode& object, const char* key, const std::string& expected,
                                     const Good& good);
-  bool reported_already(const std::string& pointer) const;
+
   std::string_view text_;
   const std::string& path_;
   std::string advice_;

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 

@@ -45,16 +45,7 @@ struct Recording {
   std::vector<RecordingRow> rows;
 };
 
-// A hash of the numbers of a recording, independent of its name: FNV-1a with an additional shift. Row by row, for
-// recordings that are not in memory.
-class ContentHash {
- public:
-  void add(const RecordingRow& row);
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xCBF29CE484222325ULL;
-};
+// A hash of the numbers of a recording, independent of its name: FNV-1a with an additional shift.
 std::uint64_t content_hash(const Recording& recording);
 
 inline constexpr std::size_t kRecordingMinimumRows = 10;

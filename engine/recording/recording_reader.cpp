@@ -4,25 +4,24 @@
 #include <array>
 #include <cassert>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
+
+// Bytes beyond the longest line that are read: a byte order mark, a carriage return, one byte that shows that the line
+// is too long, and the terminator.
+constexpr std::size_t kBeyondLimit = 6;
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 const char* skip_blanks(const char* at, const char* end) {
   while (at != end && is_blank(*at)) ++at;
   return at;
-}
-
-const char* find_comma(const char* at, const char* end) {
-  const void* comma = at == end ? nullptr : std::memchr(at, ',', static_cast<std::size_t>(end - at));
-  return comma == nullptr ? end : static_cast<const char*>(comma);
 }
 
 // Parses one number with blanks around it. Returns its end (a comma or `end`), or nullptr if there is no finite number.
@@ -33,13 +32,13 @@ const char* parse_field(const char* begin, const char* end, double& value) {
   return at == end || *at == ',' ? at : nullptr;
 }
 
-// The rest of the file explains why a line was refused: slow, once a file.
+// The functions below explain why a line was refused: slow, once a file.
 
-std::vector<std::string_view> fields_of(std::string_view text) {
+std::vector<std::string_view> fields_of(std::string_view line) {
   std::vector<std::string_view> fields;
   for (std::size_t begin = 0;;) {
-    const std::size_t comma = text.find(',', begin);
-    fields.push_back(text.substr(begin, comma - begin));
+    const std::size_t comma = line.find(',', begin);
+    fields.push_back(line.substr(begin, comma - begin));
     if (comma == std::string_view::npos) return fields;
     begin = comma + 1;
   }
@@ -60,17 +59,10 @@ std::string_view bare(std::string_view text) {
   return text;
 }
 
-// The column (from 1) where field `index` of `text` starts; blanks before a value are skipped.
-std::size_t field_column(std::string_view text, std::size_t index) {
-  const char* const end = text.data() + text.size();
-  const char* at = text.data();
-  for (std::size_t i = 0; i < index && at != end; ++i) {
-    at = find_comma(at, end);
-    if (at != end) ++at;
-  }
-  const char* const value = skip_blanks(at, end);
-  const bool is_empty = value == end || *value == ',';
-  return static_cast<std::size_t>((is_empty ? at : value) - text.data()) + 1;
+// The column (from 1) where the value of a field of `line` begins; of a blank field: where the field begins.
+std::size_t column_of(std::string_view line, std::string_view field) {
+  const std::string_view value = trimmed(field);
+  return static_cast<std::size_t>((value.empty() ? field : value).data() - line.data()) + 1;
 }
 
 // Why a line was refused, and the column.
@@ -106,8 +98,8 @@ LineFault missing_columns(std::string_view text, const std::vector<std::string_v
   for (const std::string_view wanted : missing) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (lower_ascii(bare(names[i])) != lower_ascii(wanted)) continue;
-      return {field_column(text, i), "found column '" + printable(names[i]) + "', expected exactly " +
-                                         std::string(wanted) + "; rename the column"};
+      return {column_of(text, names[i]), "found column '" + printable(names[i]) + "', expected exactly " +
+                                             std::string(wanted) + "; rename the column"};
     }
     all_missing.append(all_missing.empty() ? "" : " and ").append(wanted);
   }
@@ -115,9 +107,11 @@ LineFault missing_columns(std::string_view text, const std::vector<std::string_v
                  "; add what is missing or rename what holds the values"};
 }
 
-// The fault of a row that has `found` fields under a header of `expected`.
-LineFault field_count_fault(const CsvLine& line, std::size_t found, std::size_t expected, bool header_ends_with_comma) {
-  const bool cut_off = found < expected && !line.terminated;
+// The fault of a row that does not have the `expected` number of fields. `has_end`: it ends with a newline.
+LineFault field_count_fault(std::string_view line, bool has_end, std::size_t expected, bool header_ends_with_comma) {
+  const auto fields = fields_of(line);
+  const std::size_t found = fields.size();
+  const bool cut_off = found < expected && !has_end;
   const char* advice = "write decimal points, not commas, and remove fields without a column";
   if (cut_off) {
     advice = "the file was cut off, remove its last line";
@@ -125,12 +119,12 @@ LineFault field_count_fault(const CsvLine& line, std::size_t found, std::size_t 
     advice = "remove the comma at the end of the header";
   } else if (found < expected) {
     advice = "add the missing values or remove the row";
-  } else if (found == expected + 1 && trimmed(line.text).ends_with(',')) {
+  } else if (found == expected + 1 && trimmed(line).ends_with(',')) {
     advice = "remove the comma at the end of the row";
-  } else if (line.text.find('"') != std::string_view::npos) {
+  } else if (line.find('"') != std::string_view::npos) {
     advice = "remove quotes and the commas inside them";
   }
-  return {found < expected ? line.text.size() + 1 : field_column(line.text, expected),
+  return {found < expected ? line.size() + 1 : column_of(line, fields[expected]),
           "found " + std::to_string(found) + (found == 1 ? " field" : " fields") +
               (cut_off ? " where the file ends" : "") + ", expected " + std::to_string(expected) +
               " as in the header; " + advice};
@@ -161,6 +155,40 @@ std::string number_fault(std::string_view field, std::string_view name) {
   return "found " + found + ", expected a finite number in " + std::string(name) + "; " + advice;
 }
 
+// The fault of a row that cannot be parsed under a header of these columns.
+LineFault row_fault(std::string_view line, bool has_end, const std::vector<ColumnRole>& roles,
+                    bool header_ends_with_comma) {
+  const auto fields = fields_of(line);
+  if (line.starts_with('#')) {
+    return {1, "found a comment after the header, expected a row; move it above the header or remove it"};
+  }
+  if (fields.size() < roles.size()) {
+    if (const auto separator = foreign_separator(line, roles.size())) return *separator;
+  }
+  if (fields.size() != roles.size()) return field_count_fault(line, has_end, roles.size(), header_ends_with_comma);
+  std::size_t bad = 0;
+  while (roles[bad] == ColumnRole::kIgnored || is_number(fields[bad])) ++bad;
+  return {column_of(line, fields[bad]), number_fault(fields[bad], kColumnNames[static_cast<std::size_t>(roles[bad])])};
+}
+
+// The fault of a line of bytes that are no text.
+std::optional<LineFault> bytes_fault(std::string_view line) {
+  if (const std::size_t nul = line.find('\0'); nul != std::string_view::npos) {
+    return LineFault{nul + 1,
+                     "found a NUL byte, expected UTF-8 text; this is a binary or UTF-16 file, save it as UTF-8 CSV"};
+  }
+  if (const std::size_t at = line.find('\r'); at < line.size() - 1) {
+    return LineFault{
+        at + 1, "found a carriage return inside a line, expected lines that end in LF or CRLF; convert the line ends"};
+  }
+  if (line.size() > kMaximumLineBytes) {
+    return LineFault{kMaximumLineBytes + 1,
+                     "found a line longer than " + std::to_string(kMaximumLineBytes) +
+                         " bytes, expected a row of a recording; check that this is a CSV file with line ends"};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<RecordingReader> RecordingReader::open(const std::string& path) {
@@ -170,54 +198,94 @@ Result<RecordingReader> RecordingReader::open(const std::string& path) {
 }
 
 Result<RecordingReader> RecordingReader::from(std::unique_ptr<std::istream> stream, std::string label) {
-  RecordingReader reader(LineScanner(std::move(stream), std::move(label)));
-  if (const Status header = reader.read_header(); !header) return header.error();
+  RecordingReader reader(std::move(stream), std::move(label));
+  if (!reader.read_header()) return *reader.error_;
   return reader;
 }
 
-RecordingReader::RecordingReader(LineScanner scanner)
-    : name_(std::filesystem::path(scanner.label()).stem().string()), scanner_(std::move(scanner)) {}
+RecordingReader::RecordingReader(std::unique_ptr<std::istream> stream, std::string label)
+    : stream_(std::move(stream)),
+      label_(std::move(label)),
+      name_(std::filesystem::path(label_).stem().string()),
+      buffer_(kMaximumLineBytes + kBeyondLimit) {}
 
-Status RecordingReader::read_header() {
-  CsvLine line;
-  while (scanner_.next(line)) {
-    if (!line.text.starts_with('#')) return parse_header(line);
-  }
-  if (scanner_.error()) return *scanner_.error();
-  const std::string found = scanner_.lines() == 0 ? "an empty file" : "the end of the file";
-  return scanner_.error_at(scanner_.lines() + 1, 1,
-                           "found " + found +
-                               ", expected a header row with time_s, position_m and force_N; "
-                               "check that the recording was saved");
+bool RecordingReader::fail(std::uint64_t line, std::size_t column, const std::string& text) {
+  error_ = Error{label_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + text};
+  return false;
 }
 
-Status RecordingReader::parse_header(const CsvLine& line) {
-  if (const std::size_t good = utf8_bytes(line.text); good < line.text.size()) {
-    return scanner_.error_at(line.number, good + 1,
-                             "found byte " + printable(line.text.substr(good, 1)) +
-                                 ", expected UTF-8 text in the header; save the file as UTF-8 CSV");
+bool RecordingReader::fail(const RowFault& fault) {
+  switch (fault.place) {
+    case RowFault::Place::kEnd:
+      return fail(line_number_ + 1, 1, fault.text);
+    case RowFault::Place::kFirstRow:
+      return fail(first_row_line_, first_row_time_column_, fault.text);
+    case RowFault::Place::kThisRow:
+      break;
   }
-  const auto names = fields_of(line.text);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto known = std::find(kColumnNames.begin(), kColumnNames.end(), names[i]);
+  return fail(line_number_, column_of(line_, fields_of(line_)[index_of(fault.role)]), fault.text);
+}
+
+// Lines end with LF or CRLF; a UTF-8 byte order mark is skipped.
+bool RecordingReader::next_line() {
+  stream_->getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  if (stream_->bad()) {
+    error_ = unreadable(label_);
+    return false;
+  }
+  // The count includes the line feed, which is not stored.
+  const auto count = static_cast<std::size_t>(stream_->gcount());
+  line_has_end_ = stream_->good();
+  if (count == 0) return false;
+  line_ = std::string_view(buffer_.data(), line_has_end_ ? count - 1 : count);
+  if (line_number_ == 0) {
+    if (line_.starts_with("\xFF\xFE") || line_.starts_with("\xFE\xFF")) {
+      return fail(1, 1, "found UTF-16 text, expected UTF-8; save the file as UTF-8 CSV");
+    }
+    if (line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
+    if (line_.empty() && !line_has_end_) return false;
+  }
+  ++line_number_;
+  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  const auto fault = bytes_fault(line_);
+  return !fault || fail(line_number_, fault->column, fault->text);
+}
+
+bool RecordingReader::read_header() {
+  while (next_line()) {
+    if (!line_.starts_with('#')) return parse_header();
+  }
+  if (error_) return false;
+  return fail(line_number_ + 1, 1,
+              std::string("found ") + (line_number_ == 0 ? "an empty file" : "the end of the file") +
+                  ", expected a header row with time_s, position_m and force_N; check that the recording was saved");
+}
+
+bool RecordingReader::parse_header() {
+  if (const std::size_t good = utf8_bytes(line_); good < line_.size()) {
+    return fail(line_number_, good + 1,
+                "found byte " + printable(line_.substr(good, 1)) +
+                    ", expected UTF-8 text in the header; save the file as UTF-8 CSV");
+  }
+  const auto names = fields_of(line_);
+  for (const std::string_view name : names) {
+    const auto known = std::find(kColumnNames.begin(), kColumnNames.end(), name);
     const auto role = static_cast<ColumnRole>(known - kColumnNames.begin());  // ignored if the name is unknown
     if (role != ColumnRole::kIgnored && has(role)) {
-      return scanner_.error_at(
-          line.number, field_column(line.text, i),
-          "found column " + std::string(names[i]) + " twice, expected it once; remove or rename one of the two");
+      return fail(line_number_, column_of(line_, name),
+                  "found column " + std::string(name) + " twice, expected it once; remove or rename one of the two");
     }
     roles_.push_back(role);
   }
+  header_ends_with_comma_ = names.back().empty();
   std::vector<std::string_view> missing;
   for (std::size_t i = 0; i < kRequiredColumns; ++i) {
     if (!has(static_cast<ColumnRole>(i))) missing.push_back(kColumnNames[i]);
   }
-  header_ends_with_comma_ = names.back().empty();
-  if (missing.empty()) return {};
+  if (missing.empty()) return true;
   // Usually the file is that of another program, so every message recommends the import.
-  const LineFault fault = missing_columns(line.text, names, missing);
-  return scanner_.error_at(line.number, fault.column,
-                           fault.text + ", or let palpate import " + scanner_.label() + " --out REC.csv do it");
+  const LineFault fault = missing_columns(line_, names, missing);
+  return fail(line_number_, fault.column, fault.text + ", or let palpate import " + label_ + " --out REC.csv do it");
 }
 
 std::size_t RecordingReader::index_of(ColumnRole role) const {
@@ -228,32 +296,15 @@ RecordingColumns RecordingReader::columns() const {
   return {has(ColumnRole::kVelocity), has(ColumnRole::kAcceleration)};
 }
 
-bool RecordingReader::fail(Error error) {
-  error_ = std::move(error);
-  return false;
-}
-
-bool RecordingReader::fail(const RowFault& fault, const CsvLine& line) {
-  switch (fault.place) {
-    case RowFault::Place::kEnd:
-      return fail(scanner_.error_at(scanner_.lines() + 1, 1, fault.text));
-    case RowFault::Place::kFirstRow:
-      return fail(scanner_.error_at(first_row_line_, first_row_time_column_, fault.text));
-    case RowFault::Place::kThisRow:
-      break;
-  }
-  return fail(scanner_.error_at(line.number, field_column(line.text, index_of(fault.role)), fault.text));
-}
-
-// Parses every field of one row. If false, `explain` gives the reason.
-bool RecordingReader::parse(std::string_view text, RecordingRow& row) const {
+// Parses every field of the present line. If false, row_fault gives the reason.
+bool RecordingReader::parse(RecordingRow& row) const {
   std::array<double, kKnownColumns> values{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
+  const char* at = line_.data();
+  const char* const end = at + line_.size();
   const std::size_t count = roles_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const ColumnRole role = roles_[i];
-    at = role == ColumnRole::kIgnored ? find_comma(at, end)
+    at = role == ColumnRole::kIgnored ? std::find(at, end, ',')
                                       : parse_field(at, end, values[static_cast<std::size_t>(role)]);
     if (at == nullptr) return false;
     const bool is_last = i + 1 == count;
@@ -264,55 +315,38 @@ bool RecordingReader::parse(std::string_view text, RecordingRow& row) const {
   return true;
 }
 
-Error RecordingReader::explain(const CsvLine& line) const {
-  LineFault fault{1, "found a row that cannot be read; remove it"};
-  const auto fields = fields_of(line.text);
-  if (line.text.starts_with('#')) {
-    fault.text = "found a comment after the header, expected a row; move it above the header or remove it";
-  } else if (fields.size() != roles_.size()) {
-    const auto separator = fields.size() < roles_.size() ? foreign_separator(line.text, roles_.size()) : std::nullopt;
-    fault = separator ? *separator : field_count_fault(line, fields.size(), roles_.size(), header_ends_with_comma_);
-  } else {
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (roles_[i] == ColumnRole::kIgnored || is_number(fields[i])) continue;
-      fault = {field_column(line.text, i), number_fault(fields[i], kColumnNames[static_cast<std::size_t>(roles_[i])])};
-      break;
-    }
-  }
-  return scanner_.error_at(line.number, fault.column, fault.text);
-}
-
 // Blank lines are allowed at the end of the file only.
-bool RecordingReader::skip_last_blank_lines(const CsvLine& blank) {
-  const std::uint64_t number = blank.number;
-  CsvLine line;
-  while (scanner_.next(line)) {
-    if (trimmed(line.text).empty()) continue;
-    return fail(scanner_.error_at(
-        number, 1,
-        "found a blank line, expected a row with " + std::to_string(roles_.size()) + " fields; remove the blank line"));
+bool RecordingReader::skip_last_blank_lines() {
+  const std::uint64_t first = line_number_;
+  while (next_line()) {
+    if (trimmed(line_).empty()) continue;
+    return fail(
+        first, 1,
+        "found a blank line, expected a row with " + std::to_string(roles_.size()) + " fields; remove the blank line");
   }
   return finish();
 }
 
 bool RecordingReader::finish() {
-  if (scanner_.error()) return fail(*scanner_.error());
+  if (error_) return false;
   ended_ = true;
-  if (const auto fault = rules_.finish()) return fail(*fault, CsvLine{});
-  return false;
+  const auto fault = rules_.finish();
+  return fault && fail(*fault);
 }
 
-// Reads the next row; false at the end and on an error.
 bool RecordingReader::next(RecordingRow& row) {
-  CsvLine line;
-  if (!scanner_.next(line)) return finish();
-  if (!parse(line.text, row)) return trimmed(line.text).empty() ? skip_last_blank_lines(line) : fail(explain(line));
-  if (first_row_line_ == 0) {
-    first_row_line_ = line.number;
-    first_row_time_column_ = field_column(line.text, index_of(ColumnRole::kTime));
+  if (!next_line()) return finish();
+  if (!parse(row)) {
+    if (trimmed(line_).empty()) return skip_last_blank_lines();
+    const LineFault fault = row_fault(line_, line_has_end_, roles_, header_ends_with_comma_);
+    return fail(line_number_, fault.column, fault.text);
   }
-  if (const auto fault = rules_.check(row)) return fail(*fault, line);
-  return true;
+  if (first_row_line_ == 0) {
+    first_row_line_ = line_number_;
+    first_row_time_column_ = column_of(line_, fields_of(line_)[index_of(ColumnRole::kTime)]);
+  }
+  const auto fault = rules_.check(row);
+  return !fault || fail(*fault);
 }
 
 Result<std::size_t> RecordingReader::read(RecordingRow* rows, std::size_t capacity) {

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/result.h"
 #include "engine/recording/recording.h"
 #include "engine/recording/recording_rules.h"
@@ -36,21 +35,28 @@ class RecordingReader {
   Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
 
  private:
-  explicit RecordingReader(LineScanner scanner);
-  Status read_header();
-  Status parse_header(const CsvLine& line);
+  RecordingReader(std::unique_ptr<std::istream> stream, std::string label);
+  // Each of these returns false at the end of the file and after an error.
+  bool next_line();
+  bool read_header();
+  bool parse_header();
+  bool next(RecordingRow& row);
+  bool skip_last_blank_lines();
+  bool finish();
+  // Sets the error and returns false.
+  bool fail(std::uint64_t line, std::size_t column, const std::string& text);
+  bool fail(const RowFault& fault);
+  bool parse(RecordingRow& row) const;
   std::size_t index_of(ColumnRole role) const;
   bool has(ColumnRole role) const { return index_of(role) < roles_.size(); }
-  bool next(RecordingRow& row);
-  bool parse(std::string_view text, RecordingRow& row) const;
-  Error explain(const CsvLine& line) const;
-  bool finish();
-  bool skip_last_blank_lines(const CsvLine& blank);
-  bool fail(Error error);
-  bool fail(const RowFault& fault, const CsvLine& line);
 
+  std::unique_ptr<std::istream> stream_;
+  std::string label_;
   std::string name_;
-  LineScanner scanner_;
+  std::vector<char> buffer_;  // holds the present line
+  std::string_view line_;     // without its line end
+  std::uint64_t line_number_ = 0;
+  bool line_has_end_ = false;      // false: the file ends here without a newline
   std::vector<ColumnRole> roles_;  // of the columns of the file, in its order
   bool header_ends_with_comma_ = false;
   RowRules rules_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 
 namespace palpate {
@@ -38,7 +37,7 @@ RowFault RowRules::explain(const RecordingRow& row) const {
     const std::string name(kColumnNames[static_cast<std::size_t>(role)]);
     return RowFault{RowFault::Place::kThisRow, role, "found " + name + " " + shortest(found) + words};
   };
-  const std::array values = {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
+  const auto values = column_values(row);
   const auto wrong = std::ranges::find_if_not(values, [](double value) { return std::isfinite(value); });
   if (wrong != values.end()) {
     return fault(static_cast<ColumnRole>(wrong - values.begin()), *wrong,

@@ -22,6 +22,9 @@ inline constexpr std::size_t kKnownColumns = 5;
 inline constexpr std::size_t kRequiredColumns = 3;
 inline constexpr std::array<std::string_view, kKnownColumns> kColumnNames = {
     "time_s", "position_m", "force_N", "velocity_m_per_s", "acceleration_m_per_s2"};
+inline std::array<double, kKnownColumns> column_values(const RecordingRow& row) {
+  return {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
+}
 
 // No haptic device has a workspace of a metre: a larger value is in a wrong unit, mostly millimetres.
 inline constexpr double kMaximumPosition_m = 1.0;
@@ -34,6 +37,8 @@ inline constexpr double kMaximumRate_Hz = 20000.0;
 inline constexpr double kRateTolerance = 0.05;
 // Whether rows with this time step have a rate in that range.
 bool rate_in_range(double step_s);
+// Limit of the length of a line, bytes; it bounds the memory of the reader.
+inline constexpr std::size_t kMaximumLineBytes = 64 * 1024;
 // The rate is checked once, after this many rows, so that rows can be streamed.
 inline constexpr std::size_t kRateRows = 1000;
 

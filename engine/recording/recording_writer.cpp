@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -56,7 +56,7 @@ Status RecordingWriter::add(const RecordingRow& row) {
   if (const auto fault = rules_.check(row)) {
     return Error{path_ + ": cannot write row " + std::to_string(rules_.rows() + 1) + ": " + fault->text};
   }
-  const std::array values = {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
+  const auto values = column_values(row);
   file_.write(line_of(columns_, [&](std::size_t i) { return shortest(values[i]); }));
   return {};
 }

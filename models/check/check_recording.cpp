@@ -13,22 +13,31 @@
 namespace palpate {
 namespace {
 
-// A range of positions below this is no motion.
+// A range of positions below this is no motion: some steps of an encoder.
 constexpr double kLeastTravel_m = 10e-6;
 // A flat punch of 20 mm on the hardest rubber: 2 E a / (1 - nu^2) with E = 10 MPa, a = 10 mm (Johnson 1985, section
 // 3.4). A stiffer material is not soft, or a unit is wrong; a testing machine may press as hard.
 constexpr double kHardRubber_N_per_m = 270e3;
 // The load cell of a bench testing machine.
 constexpr double kLargestForce_N = 10e3;
+// The height of a large specimen. Millimetres taken as metres exceed it from 0.05 mm on.
 constexpr double kStrangeDepth_m = 0.05;
+// A quick tap, four in a second: a longer gap may hide a stroke. In slow recordings, twenty missing rows.
 constexpr double kGap_s = 0.25;
 constexpr double kGapSteps = 20.0;
+// A force proportional to the depth changes by 1.5 % of its peak over this share of the travel, four steps of an 8-bit
+// converter.
 constexpr double kClippedTravelShare = 0.015;
 constexpr std::size_t kClippedRows = 5;
+// The share of the way in that the tool must move out to separate depth and memory.
 constexpr double kMonotonicShare = 0.1;
+// After three relaxation times 5 % of a relaxation are left, less than the Weber fraction of force.
 constexpr double kRelaxationsToSee = 3.0;
+// Ten rows in a period of the fastest motion of a hand, 10 Hz.
 constexpr double kSlowRate_Hz = 100.0;
+// At 650 N/m this changes the force by the JND at 0 N.
 constexpr double kSurfaceDrift_m = 0.1e-3;
+// One to the full depth in each of the three bands of speed, and two shallower ones.
 constexpr int kFewStrokes = 5;
 
 template <typename... Values>
@@ -375,11 +384,10 @@ CheckRequest check_request(const JndLine& jnd, const std::vector<FeatureSpec>& f
   return request;
 }
 
-Severity RecordingCheck::gravest() const { return findings.empty() ? Severity::note : findings.front().severity; }
-
 const char* RecordingCheck::verdict() const {
   constexpr const char* kVerdicts[] = {"usable", "care", "unusable"};
-  return kVerdicts[static_cast<std::size_t>(gravest())];
+  const Severity gravest = findings.empty() ? Severity::note : findings.front().severity;
+  return kVerdicts[static_cast<std::size_t>(gravest)];
 }
 
 RecordingCheck check_recording(const PreparedRecording& prepared, const CheckRequest& request,

@@ -50,7 +50,6 @@ struct RecordingCheck {
   double force_zero_N = 0.0;      // to be subtracted from force_N
   RecordingMeasures measures;
 
-  Severity gravest() const;
   // "usable", "care" (at least one warning) or "unusable" (at least one fatal finding).
   const char* verdict() const;
 };

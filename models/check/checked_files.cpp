@@ -14,11 +14,12 @@ namespace {
 // Above this ratio of speeds a material may have different loading forces.
 constexpr double kOtherSpeed = 3.0;
 
+// Inserts a finding before those of its severity.
 void add_finding(CheckedFile& file, Finding finding) {
   auto& findings = file.check.findings;
-  findings.insert(findings.begin(), std::move(finding));
-  std::stable_sort(findings.begin(), findings.end(),
-                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+  const auto place =
+      std::ranges::find_if(findings, [&](const Finding& one) { return one.severity <= finding.severity; });
+  findings.insert(place, std::move(finding));
 }
 
 void add_repetitions(std::vector<CheckedFile>& files) {

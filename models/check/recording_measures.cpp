@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/base/text.h"
+#include "models/recordings/surface_rows.h"
 
 namespace palpate {
 namespace {
 
+// Shares of the greatest depth. A force that grows with depth to the power 1.5 (Hertz) changes by 3 % in a hold and by
+// 7.5 % in the smallest stroke, on either side of the Weber fraction of force, 6.33 %. A small stroke turns before half
+// of the depth, so that it stays in the material.
 constexpr double kHoldShare = 0.02;
-constexpr double kSmallestStroke = 0.05, kLargestSmallStroke = 0.4;
+constexpr double kSmallestStroke = 0.05;
+constexpr double kLargestSmallStroke = 0.4;
 // A speed is the displacement over this time, so that encoder steps do not look like motion.
 constexpr double kSpeedWindow_s = 0.02;
 // A stroke is a motion inwards by this share of the greatest depth after one outwards by as much: independent of the
@@ -28,9 +35,7 @@ void measure_sampling(const std::vector<RecordingRow>& rows, RecordingMeasures& 
     measures.largest_step_s = step_s;
     measures.largest_step_at_s = rows[i - 1].time_s;
   }
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  measures.median_step_s = *middle;
+  measures.median_step_s = median_of(std::move(steps_s));
   measures.duration_s = rows.back().time_s - rows.front().time_s;
 }
 
@@ -59,69 +64,58 @@ void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures&
   }
 }
 
-class MotionMeasure {
- public:
-  explicit MotionMeasure(RecordingMeasures& measures)
-      : measures_(measures),
-        surface_m_(measures.outermost_contact_m),
-        deepest_m_(measures.highest_position_m - measures.outermost_contact_m) {}
+// Divides a motion into strokes in and out. A stroke ends when the depth has come back from its extreme by more than
+// `least_m`.
+struct Strokes {
+  double least_m;
+  bool inwards;
+  double begin_m = 0.0;
+  double extreme_m = 0.0;
 
-  // A row and the first row of the window that ends with it.
-  void add(const RecordingRow& before, const RecordingRow& row, double step_s) {
-    const double depth_m = row.position_m - surface_m_;
-    count_stroke(std::max(0.0, depth_m));
-    if (!(depth_m > 0.0)) return;
-    ++measures_.contact_rows;
-    const double window_s = row.time_s - before.time_s;
-    const double travel_m = row.position_m - before.position_m;
-    const double speed_m_per_s = window_s > 0.0 ? travel_m / window_s : 0.0;
-    (speed_m_per_s > 0.0 ? measures_.inward_travel_m : measures_.outward_travel_m) += std::abs(speed_m_per_s) * step_s;
-    const auto quarter = static_cast<std::size_t>(depth_m / deepest_m_ * static_cast<double>(kDepthQuarters));
-    const auto band = static_cast<std::size_t>(
-        std::upper_bound(kSpeedEdges_per_s.begin(), kSpeedEdges_per_s.end(), std::abs(speed_m_per_s) / deepest_m_) -
-        kSpeedEdges_per_s.begin());
-    measures_.seconds[std::min(quarter, kDepthQuarters - 1)][band] += std::min(step_s, 10.0 * measures_.median_step_s);
-    follow_turns(depth_m);
-    if (std::abs(row.position_m - hold_m_) > kHoldShare * deepest_m_) {
-      hold_m_ = row.position_m;
-      hold_since_s_ = row.time_s;
-    }
-    measures_.longest_hold_s = std::max(measures_.longest_hold_s, row.time_s - hold_since_s_);
+  // The length of the stroke that ends with this depth.
+  std::optional<double> end_at(double depth_m) {
+    extreme_m = inwards ? std::max(extreme_m, depth_m) : std::min(extreme_m, depth_m);
+    if (!(std::abs(extreme_m - depth_m) > least_m)) return std::nullopt;
+    inwards = !inwards;
+    const double length_m = std::abs(extreme_m - std::exchange(begin_m, extreme_m));
+    extreme_m = depth_m;
+    return length_m;
   }
-
- private:
-  void count_stroke(double depth_m) {
-    turn_m_ = going_in_ ? std::max(turn_m_, depth_m) : std::min(turn_m_, depth_m);
-    const double back_m = going_in_ ? turn_m_ - depth_m : depth_m - turn_m_;
-    if (!(back_m > kStrokeShare * deepest_m_)) return;
-    going_in_ = !going_in_;
-    turn_m_ = depth_m;
-    if (going_in_) ++measures_.strokes;
-  }
-
-  // Finds turns: the tool has come back from its extreme by more than noise.
-  void follow_turns(double depth_m) {
-    const double travel_m = (depth_m - farthest_m_) * direction_;
-    if (travel_m >= 0.0) farthest_m_ = depth_m;
-    if (travel_m > -kSmallestStroke * deepest_m_) return;
-    const double stroke_m = std::abs(farthest_m_ - turned_m_);
-    if (stroke_m > kSmallestStroke * deepest_m_ && stroke_m < kLargestSmallStroke * deepest_m_) {
-      ++measures_.small_strokes;
-    }
-    turned_m_ = farthest_m_;
-    farthest_m_ = depth_m;
-    direction_ = -direction_;
-  }
-
-  RecordingMeasures& measures_;
-  bool going_in_ = false;
-  double turn_m_ = 0.0;  // extreme depth of the current motion: outermost, or innermost if going in
-  double surface_m_;
-  double deepest_m_;
-  double hold_m_ = HUGE_VAL;
-  double hold_since_s_ = 0.0;
-  double turned_m_ = 0.0, farthest_m_ = 0.0, direction_ = 1.0;
 };
+
+void measure_motion(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
+  const double surface_m = measures.outermost_contact_m;
+  const double deepest_m = std::max(0.0, measures.highest_position_m - surface_m);
+  Strokes strokes{kStrokeShare * deepest_m, false};
+  Strokes small_strokes{kSmallestStroke * deepest_m, true};  // in contact
+  double hold_m = HUGE_VAL;
+  double hold_since_s = 0.0;
+  std::size_t before = 0;  // the first row of the window of the speed
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const RecordingRow& row = rows[i];
+    while (before + 1 < i && row.time_s - rows[before].time_s > kSpeedWindow_s) ++before;
+    const double depth_m = row.position_m - surface_m;
+    if (strokes.end_at(std::max(0.0, depth_m)) && strokes.inwards) ++measures.strokes;
+    if (!(depth_m > 0.0)) continue;
+    ++measures.contact_rows;
+    const double step_s = i > 0 ? row.time_s - rows[i - 1].time_s : 0.0;
+    const double window_s = row.time_s - rows[before].time_s;
+    const double speed_m_per_s = window_s > 0.0 ? (row.position_m - rows[before].position_m) / window_s : 0.0;
+    (speed_m_per_s > 0.0 ? measures.inward_travel_m : measures.outward_travel_m) += std::abs(speed_m_per_s) * step_s;
+    const auto quarter = static_cast<std::size_t>(depth_m / deepest_m * static_cast<double>(kDepthQuarters));
+    const auto band = static_cast<std::size_t>(
+        std::upper_bound(kSpeedEdges_per_s.begin(), kSpeedEdges_per_s.end(), std::abs(speed_m_per_s) / deepest_m) -
+        kSpeedEdges_per_s.begin());
+    measures.seconds[std::min(quarter, kDepthQuarters - 1)][band] += std::min(step_s, 10.0 * measures.median_step_s);
+    const double length_m = small_strokes.end_at(depth_m).value_or(0.0);
+    if (length_m > kSmallestStroke * deepest_m && length_m < kLargestSmallStroke * deepest_m) ++measures.small_strokes;
+    if (std::abs(row.position_m - hold_m) > kHoldShare * deepest_m) {
+      hold_m = row.position_m;
+      hold_since_s = row.time_s;
+    }
+    measures.longest_hold_s = std::max(measures.longest_hold_s, row.time_s - hold_since_s);
+  }
+}
 
 }  // namespace
 
@@ -132,12 +126,7 @@ RecordingMeasures measure_recording(const Recording& recording, double surface_m
   measure_ranges(rows, measures);
   measure_flat_tops(rows, measures);
   measures.outermost_contact_m = std::max(surface_m, measures.lowest_position_m);
-  MotionMeasure motion(measures);
-  std::size_t before = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    while (before + 1 < i && rows[i].time_s - rows[before].time_s > kSpeedWindow_s) ++before;
-    motion.add(rows[before], rows[i], i > 0 ? rows[i].time_s - rows[i - 1].time_s : 0.0);
-  }
+  measure_motion(rows, measures);
   return measures;
 }
 

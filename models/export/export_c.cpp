@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "models/export/feature_c.h"
 #include "models/export/motion_filter_c.h"
 #include "models/model/grid/voxel_grid.h"

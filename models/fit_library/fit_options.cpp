@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "models/model/rbf/kernels.h"
 
 namespace palpate {

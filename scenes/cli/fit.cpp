@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "engine/tick/replay.h"
 #include "models/fit_library/fit_recordings.h"

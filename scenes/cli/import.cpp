@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
 #include "models/recordings/surface_estimate.h"

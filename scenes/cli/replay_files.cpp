@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/recording/recording_reader.h"
 #include "engine/tick/haptics_tick.h"
 #include "models/model/file/model_io.h"

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {

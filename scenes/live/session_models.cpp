@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "models/model/file/model_io.h"
 
 namespace palpate {

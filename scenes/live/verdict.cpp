@@ -1,6 +1,5 @@
 #include "scenes/live/verdict.h"
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/live/session_models.h"

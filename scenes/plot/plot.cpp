@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "scenes/plot/layout.h"
 #include "scenes/scene/folders.h"

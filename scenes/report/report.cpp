@@ -9,7 +9,6 @@
 #include <map>
 #include <thread>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/plot/inline_svg.h"

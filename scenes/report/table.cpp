@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "scenes/plot/inline_svg.h"
 

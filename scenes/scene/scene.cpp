@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "engine/json/json_fields.h"

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/recording/recording.h"
 #include "engine/tick/replay.h"
 #include "scenes/evaluation/error_figures.h"
@@ -180,17 +180,16 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
   strokes->jnd = jnd;
   strokes->mean_over_jnd = rounded(errors.mean_error_over_jnd(), 1e4);
   strokes->max_over_jnd = rounded(errors.max_error_over_jnd(), 1e4);
-  ContentHash hash;
+  Recording hashed;  // the hash is of numbers, whatever their meaning
   for (std::size_t i = 0; i < kInterval_ticks; ++i) {
     const Trace& at = traces[from + i];
     strokes->reference_N.push_back(rounded(at.reference_N, 1e4));
     strokes->comparison_N.push_back(rounded(at.comparison_N, 1e4));
-    // The hash is of numbers, whatever their meaning.
-    hash.add({0.0, strokes->comparison_N.back(), strokes->reference_N.back()});
+    hashed.rows.push_back({.position_m = strokes->comparison_N.back(), .force_N = strokes->reference_N.back()});
   }
   strokes->reference_mean_N = mean_of(strokes->reference_N);
   strokes->comparison_mean_N = mean_of(strokes->comparison_N);
-  strokes->checksum = hash.value();
+  strokes->checksum = content_hash(hashed);
   return std::shared_ptr<const StrokePair>(std::move(strokes));
 }
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {

@@ -55,10 +55,7 @@ void check_message(const std::string& message) {
   require(std::none_of(message.begin(), message.end(), is_control), "message not printable");
 }
 
-bool same_row(const RecordingRow& a, const RecordingRow& b) {
-  return a.time_s == b.time_s && a.position_m == b.position_m && a.force_N == b.force_N &&
-         a.velocity_m_per_s == b.velocity_m_per_s && a.acceleration_m_per_s2 == b.acceleration_m_per_s2;
-}
+bool same_row(const RecordingRow& a, const RecordingRow& b) { return column_values(a) == column_values(b); }
 
 }  // namespace
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "engine/json/json_fields.h"
 #include "models/model/file/model_description.h"

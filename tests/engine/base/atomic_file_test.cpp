@@ -4,10 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
-
-#include <functional>
 
 #include "engine/base/signals.h"
 #include "tests/support/message_parts.h"
@@ -20,18 +17,6 @@ using test::read_text;
 using test::TemporaryFolder;
 
 const std::string kMegabyte(std::size_t{1} << 20, 'x');
-
-// Runs `body` in a child process and returns its wait status.
-int in_child(const std::function<void()>& body) {
-  const pid_t child = fork();
-  if (child == 0) {
-    body();
-    _exit(0);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  return status;
-}
 
 TEST(AtomicFile, HoldsWhatWasWritten) {
   const TemporaryFolder folder;
@@ -133,15 +118,14 @@ TEST(AtomicFile, NamesAFolderThatIsNotWritable) {
 TEST(AtomicFile, ReportsAFullDiskAndKeepsTheOldFile) {
   const TemporaryFolder folder;
   const std::string path = folder.with_file("out", "old");
-  const int status = in_child([&] {
+  const auto fill_disk = [&] {
     install_signal_handlers();
     const rlimit limit{1000, 1000};  // simulates a disk with 1000 free bytes
     setrlimit(RLIMIT_FSIZE, &limit);
     const Status written = write_file_atomically(path, kMegabyte, true);
-    const bool explained = !written.ok() && written.error().message == "cannot write " + path + ": File too large";
-    _exit(explained ? 0 : 4);
-  });
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    _exit(!written.ok() && written.error().message == "cannot write " + path + ": File too large" ? 0 : 4);
+  };
+  EXPECT_EXIT(fill_disk(), testing::ExitedWithCode(0), "");
   EXPECT_EQ(read_text(path), "old");
   EXPECT_EQ(folder.entries().size(), 1u);
 }
@@ -150,14 +134,14 @@ TEST(AtomicFile, KilledLeavesNothingAtAll) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
     const TemporaryFolder folder;
     folder.with_file("out", "old");
-    const int status = in_child([&] {
+    const auto write_until_killed = [&] {
       install_signal_handlers();
       auto file = AtomicFile::create(folder.file("out"), true);
       if (!file) _exit(3);
       file->write(kMegabyte);  // more than one buffer
       raise(number);
-    });
-    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == number) << status;
+    };
+    EXPECT_EXIT(write_until_killed(), testing::KilledBySignal(number), "");
     EXPECT_EQ(read_text(folder.file("out")), "old");
     const int nameless = open(folder.path().c_str(), O_WRONLY | O_TMPFILE, 0666);
     if (nameless < 0) GTEST_SKIP() << "this file system gives every file a name";

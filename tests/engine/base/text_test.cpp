@@ -8,6 +8,36 @@
 namespace palpate {
 namespace {
 
+TEST(PositionPrefix, CountsLinesAndBytes) {
+  EXPECT_EQ(position_prefix("f", "ab\nc", 1), "f:1:2: ");
+  EXPECT_EQ(position_prefix("f", "ab\nc", 3), "f:2:1: ");
+  EXPECT_EQ(position_prefix("f", "ab\nc", 100), "f:2:2: ");
+}
+
+TEST(Utf8, FollowsRfc3629) {
+  for (const std::string good : {"", "a", "\xC2\xB5", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "\xED\x9F\xBF"}) {
+    EXPECT_EQ(utf8_bytes(good), good.size()) << good;
+  }
+  // Invalid UTF-8: lone, overlong, surrogate, beyond U+10FFFF, truncated.
+  for (const char* bad : {"a\x80", "a\xC0\x80", "a\xE0\x80\x80", "a\xED\xA0\x80", "a\xF4\x90\x80\x80",
+                          "a\xF5\x80\x80\x80", "a\xE2\x82", "a\xF0\x9F\x98z"}) {
+    EXPECT_EQ(utf8_bytes(bad), 1u);
+  }
+}
+
+TEST(Printable, EscapesWhatATerminalWouldObey) {
+  EXPECT_EQ(printable("plain \xC2\xB5"), "plain \xC2\xB5");
+  EXPECT_EQ(printable("\x1B[2J\x7F\n"), "\\x1b[2J\\x7f\\x0a");
+  EXPECT_EQ(printable("\xC2\x9B\xFF"), "\\xc2\\x9b\\xff");
+  EXPECT_EQ(printable("abcdef", 3), "abc...");
+  EXPECT_EQ(printable("abc", 3), "abc");
+}
+
+TEST(Trimmed, TakesBlanksAndTabsFromBothEnds) {
+  EXPECT_EQ(trimmed(" \ta b\t "), "a b");
+  EXPECT_EQ(trimmed(" \t"), "");
+}
+
 TEST(Text, FixedRoundsAsPrintfDoes) {
   for (const double value : {0.0, -0.0, 0.125, 2.5, 1.005, -1234.5678, 1e308, 5e-324}) {
     for (const int decimals : {0, 1, 3, 17}) {

@@ -76,6 +76,12 @@ TEST(JsonFields, NamesThePlaceOfAValue) {
   }
 }
 
+TEST(JsonFields, NamesThePlaceBehindAByteOrderMark) {
+  JsonFields fields("\xEF\xBB\xBF{\"a\": 1}", kPath, "");
+  fields.complain("/a", "found this");
+  EXPECT_TRUE(test::has_parts(fields.error()->message, {"x.json:1:10: "}));
+}
+
 TEST(JsonFields, CollectsAllErrorsEachOnce) {
   const std::string text = "{\"a\": 1,\n \"b\": \"x\",\n \"c\": {\"d\": 1, \"f\": 2}, \"g\": 3}";
   const Result<Json> document = parse_json(text, kPath, 4, kAdvice);

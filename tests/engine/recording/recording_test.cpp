@@ -4,7 +4,8 @@
 
 #include <clocale>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
+#include "engine/recording/recording_reader.h"
 #include "tests/support/broken_recordings.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
@@ -65,6 +66,19 @@ TEST(Recording, AcceptsByteOrderMarkCrlfAndAMissingLastNewline) {
 TEST(Recording, AcceptsCommentsBeforeTheHeaderAndBlankLinesAtTheEnd) {
   expect_good_rows(accepted("# a rig\n#\n# time_s,position_m\n" + test::good_recording()));
   expect_good_rows(accepted(test::good_recording() + "\n \t\r\n\n"));
+}
+
+TEST(Recording, AcceptsALineOf64KiB) {
+  const std::string longest = "#" + std::string(kMaximumLineBytes - 1, ' ');
+  for (const std::string start : {"", "\xEF\xBB\xBF"})
+    expect_good_rows(accepted(start + longest + "\r\n" + test::good_recording()));
+}
+
+TEST(RecordingReader, ReportsAStreamThatFails) {
+  // A folder can be opened as a file, but not be read.
+  const auto reader = RecordingReader::from(std::make_unique<std::ifstream>("/"), "x.csv");
+  ASSERT_FALSE(reader.ok());
+  EXPECT_TRUE(test::has_parts(reader.error().message, {"x.csv: ", "Is a"}));
 }
 
 TEST(Recording, AcceptsColumnsInAnyOrderAndIgnoresFurtherOnes) {

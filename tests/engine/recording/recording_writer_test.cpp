@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <random>
 
@@ -30,20 +29,12 @@ Recording random_recording(std::size_t rows, RecordingColumns columns) {
   return recording;
 }
 
-bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
-
 void expect_same_bits(const Recording& a, const Recording& b) {
   ASSERT_EQ(a.rows.size(), b.rows.size());
   EXPECT_EQ(a.columns.velocity, b.columns.velocity);
   EXPECT_EQ(a.columns.acceleration, b.columns.acceleration);
-  for (std::size_t i = 0; i < a.rows.size(); ++i) {
-    const RecordingRow& x = a.rows[i];
-    const RecordingRow& y = b.rows[i];
-    ASSERT_TRUE(same_bits(x.time_s, y.time_s) && same_bits(x.position_m, y.position_m) &&
-                same_bits(x.force_N, y.force_N) && same_bits(x.velocity_m_per_s, y.velocity_m_per_s) &&
-                same_bits(x.acceleration_m_per_s2, y.acceleration_m_per_s2))
-        << "row " << i;
-  }
+  for (std::size_t i = 0; i < a.rows.size(); ++i)
+    ASSERT_EQ(std::memcmp(&a.rows[i], &b.rows[i], sizeof(RecordingRow)), 0) << "row " << i;
 }
 
 void expect_round_trip(const Recording& recording) {

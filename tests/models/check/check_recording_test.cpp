@@ -189,6 +189,17 @@ TEST(CheckRecording, WithoutFreeAirNothingIsToldOfSurfaceAndZero) {
   }
 }
 
+TEST(CheckRecording, CountsNoStrokesWithoutContact) {
+  Recording outside;
+  for (int i = 0; i < 8000; ++i) {
+    const double position_m = -0.05 - 2.5e-3 * std::cos(2e-3 * 3.0 * i);
+    outside.rows.push_back({2e-3 * i, position_m, 500.0 * (position_m + 0.055), 0.0, 0.0});
+  }
+  const RecordingCheck check = checked(outside, CheckRequest{});
+  ASSERT_NE(find(check, "no_contact"), nullptr) << all_of(check);
+  EXPECT_EQ(find(check, "strokes")->value, 0.0) << all_of(check);
+}
+
 // A material that softens with depth looks like a flipped sign, so this is only a warning.
 TEST(CheckRecording, OnlyWarnsOfSignsWhereAMaterialMayBeLikeThat) {
   Recording softening;

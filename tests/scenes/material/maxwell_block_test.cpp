@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "scenes/material/material.h"
 #include "tests/support/wandering.h"
 

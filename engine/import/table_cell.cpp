@@ -1,4 +1,4 @@
-#include "engine/import/row_times.h"
+#include "engine/import/table_cell.h"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,48 @@
 #include <string>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
-#include "engine/import/table_number.h"
+#include "engine/base/text.h"
+#include "engine/import/units.h"
 
 namespace palpate {
 namespace {
+
+// Longer cells are no numbers; doubles written out take at most 24 characters.
+constexpr std::size_t kLongestNumber = 64;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool is_thousands_mark(char c, char decimal) {
+  return c == '\'' || c == ' ' || (c == ',' && decimal == '.') || (c == '.' && decimal == ',');
+}
+
+// Writes a number with a decimal point and without thousands marks to `buffer`; returns the length, or 0 if the marks
+// are ambiguous.
+std::size_t with_decimal_point(std::string_view text, char decimal, char* buffer) {
+  std::size_t length = 0;
+  std::size_t marks = 0;
+  std::size_t digits = 0;  // since the last mark
+  char mark = '\0';
+  bool behind_decimal = false;
+  for (const char c : text) {
+    if (!behind_decimal && is_thousands_mark(c, decimal)) {
+      if ((mark != '\0' && c != mark) || digits == 0 || digits > 3 || (marks > 0 && digits != 3)) return 0;
+      mark = c;
+      ++marks;
+      digits = 0;
+      continue;
+    }
+    const bool ends_groups = c == decimal;
+    if (ends_groups && marks > 0 && digits != 3) return 0;
+    behind_decimal = behind_decimal || ends_groups;
+    if (!behind_decimal && is_digit(c)) ++digits;
+    buffer[length++] = ends_groups ? '.' : c;
+  }
+  if (marks == 0) return length;
+  if (!behind_decimal && digits != 3) return 0;
+  const bool unmistakable = marks >= 2 || behind_decimal || mark == '\'';
+  return unmistakable ? length : 0;
+}
 
 constexpr std::int64_t kDay_s = 86400;
 
@@ -40,10 +77,8 @@ bool parse_date(std::string_view& text, std::int64_t& days) {
   std::string_view rest = text;
   std::array<int, 3> parts{};
   if (!parse_digits(rest, 4, parts[0])) return false;
-  if (rest.empty() || (rest.front() != '-' && rest.front() != '/' && rest.front() != '.')) return false;
-  const char separator = rest.front();
-  const std::string_view mark(&separator, 1);
-  if (!skip_one_of(rest, mark) || !parse_digits(rest, 2, parts[1]) || !skip_one_of(rest, mark) ||
+  const std::string_view mark = rest.substr(0, 1);
+  if (!skip_one_of(rest, "-/.") || !parse_digits(rest, 2, parts[1]) || !skip_one_of(rest, mark) ||
       !parse_digits(rest, 4, parts[2])) {
     return false;
   }
@@ -71,7 +106,7 @@ std::optional<TableTime> parse_number_time(std::string_view text, char decimal) 
   if (whole.ec == std::errc() && rest.empty()) return time;
   if (whole.ec == std::errc() && time.whole > 0 && rest.front() == decimal &&
       rest.find_first_not_of("0123456789", 1) == std::string_view::npos) {
-    if (rest.size() > 1) parse_table_number(std::string("0").append(rest), decimal, time.fraction);
+    parse_table_number(std::string("0").append(rest), decimal, time.fraction);
     return time;
   }
   double value = 0.0;
@@ -98,7 +133,7 @@ std::optional<TableTime> parse_clock_time(std::string_view text) {
   if (text.starts_with('.') || text.starts_with(',')) {
     const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
     const std::string digits = std::string("0.").append(text.substr(1, end - 1));
-    if (end > 1) std::from_chars(digits.data(), digits.data() + digits.size(), time.fraction);
+    std::from_chars(digits.data(), digits.data() + digits.size(), time.fraction);
     text.remove_prefix(end);
   }
   const std::int64_t hours = has_hours ? first : 0;
@@ -116,6 +151,23 @@ std::optional<TableTime> parse_clock_time(std::string_view text) {
 }
 
 }  // namespace
+
+bool parse_table_number(std::string_view text, char decimal, double& value) {
+  text = trimmed(text);
+  if (text.empty() || text.size() > kLongestNumber) return false;
+  const bool negative = text.front() == '-';
+  if (negative || text.front() == '+') text.remove_prefix(1);
+  if (text.empty() || (!is_digit(text.front()) && text.front() != decimal)) return false;
+  std::array<char, kLongestNumber> buffer;
+  const char* const end = buffer.data() + with_decimal_point(text, decimal, buffer.data());
+  if (end == buffer.data() || parse_number(buffer.data(), end, value) != end) return false;
+  if (negative) value = -value;
+  return true;
+}
+
+bool is_missing_value(std::string_view text) {
+  return is_word_of("nan -nan inf -inf +inf 1.#qnan n/a na null none -", lower_ascii(trimmed(text)));
+}
 
 bool is_of_a_clock(std::string_view field) { return has_date(field) || parse_clock_time(field); }
 

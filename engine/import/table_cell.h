@@ -1,5 +1,6 @@
-// The times of the rows of a foreign table: those of a clock, or numbers with a unit.
-// Thread guarantee: value type, slow side.
+// The cells of a foreign table: numbers with a decimal point or comma, missing values, and times, which are those of a
+// clock or numbers.
+// Thread guarantee: pure functions and a value type, slow side.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,14 @@
 #include <vector>
 
 namespace palpate {
+
+// Whether `text` is a number, which is then in `value`: "0.5", "-1,25e-3", "+3"; also with unambiguous thousands marks:
+// the other mark, an apostrophe or a blank, in groups of three, followed by the decimal mark or repeated ("1,234.5",
+// "1.234.567"). NaN and infinity are not numbers.
+bool parse_table_number(std::string_view text, char decimal, double& value);
+
+// "nan", "NaN", "inf", "-", "n/a": a cell for a missing value.
+bool is_missing_value(std::string_view text);
 
 // Whether `field` is a date or the time of a clock:
 // "2024-03-05T14:03:22.123Z", "2024-03-05 14:03:22,5", "05.03.2024 14:03:22.1",
@@ -21,6 +30,7 @@ struct TableTime {
   double fraction = 0.0;
 };
 
+// The times of the rows.
 class RowTimes {
  public:
   explicit RowTimes(char decimal) : decimal_(decimal) {}

@@ -1,4 +1,4 @@
-#include "engine/import/row_times.h"
+#include "engine/import/table_cell.h"
 
 #include <gtest/gtest.h>
 
