@@ -95,7 +95,7 @@ bool ReplayDevice::read(double now_s, DeviceSample& sample) noexcept {
   sample = {};
   sample.tool = tool_sample(row);
   sample.tool.position_m -= moved_m_;
-  sample.measured_force_N = row.force_N;
+  sample.measured_N = row.force_N;
   sample.restart = restart_;
   restart_ = false;
   ++next_;
