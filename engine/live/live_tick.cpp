@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <utility>
 
@@ -30,15 +31,14 @@ constexpr double kProbedForce_N = 10.0;
 using CycleForces = std::array<double, kCycleSamples + 1>;
 
 Impedance impedance_of(const CycleForces& force_N) noexcept {
-  double in_phase_N = 0.0, out_of_phase_N = 0.0;
+  std::complex<double> harmonic_N;  // the imaginary part is in phase with the position
   for (std::size_t i = 0; i < kCycleSamples; ++i) {
     const double share = static_cast<double>(i) / kCycleSamples;
     const double rest_N = force_N[i] - force_N.front() - share * (force_N.back() - force_N.front());
-    in_phase_N += 2.0 / kCycleSamples * rest_N * std::sin(2.0 * std::numbers::pi * share);
-    out_of_phase_N += 2.0 / kCycleSamples * rest_N * std::cos(2.0 * std::numbers::pi * share);
+    harmonic_N += 2.0 / kCycleSamples * rest_N * std::polar(1.0, 2.0 * std::numbers::pi * share);
   }
   constexpr double kSpeed_m_per_s = 2.0 * std::numbers::pi / (kCycleSamples * kProbeStep_s) * kProbe_m;
-  return {in_phase_N / kProbe_m, out_of_phase_N / kSpeed_m_per_s};
+  return {harmonic_N.imag() / kProbe_m, harmonic_N.real() / kSpeed_m_per_s};
 }
 
 void measure_impedance(const ForceModels& models, LiveModels& set) {
