@@ -45,15 +45,10 @@ constexpr int kQueueBytes = 1024;
 // Time that a child program has to end before it is killed.
 constexpr int kEnd_ms = 500;
 
-using Opened = Result<std::pair<int, int>>;  // file descriptor, process id of the child (0: none)
+using Opened = Result<std::unique_ptr<ByteStream>>;
 
 Error failure(const std::string& what, int error_number, const std::string& advice) {
   return Error{what + ": " + std::strerror(error_number) + "; " + advice};
-}
-
-Error close_with(int descriptor, Error error) {
-  ::close(descriptor);
-  return error;
 }
 
 // `rest`, here and below: the target without its prefix in kLines.
@@ -78,17 +73,14 @@ Opened open_serial(const std::string& rest) {
                    denied ? "join the group that owns it (sudo adduser $USER dialout), then log in again"
                           : "check that the device is plugged in; ls /dev/tty* lists the ports");
   }
-  if (flock(line, LOCK_EX | LOCK_NB) != 0) {
-    return close_with(line, Error{path + ": in use by another program; close it"});
-  }
-  if (tcgetattr(line, &settings) != 0) return close_with(line, Error{path + ": is not a serial line; name a tty"});
+  auto stream = std::make_unique<ByteStream>(line);
+  if (flock(line, LOCK_EX | LOCK_NB) != 0) return Error{path + ": in use by another program; close it"};
+  if (tcgetattr(line, &settings) != 0) return Error{path + ": is not a serial line; name a tty"};
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | HUPCL);  // so that closing the line does not reset the board
   cfsetspeed(&settings, static_cast<speed_t>(baud));
-  if (tcsetattr(line, TCSANOW, &settings) != 0) {
-    return close_with(line, failure(path, errno, "choose another baud rate"));
-  }
+  if (tcsetattr(line, TCSANOW, &settings) != 0) return failure(path, errno, "choose another baud rate");
   // If the driver supports it, low latency: it passes bytes on at once instead of every 16 ms.
   serial_struct serial{};
   if (ioctl(line, TIOCGSERIAL, &serial) == 0) {
@@ -96,7 +88,7 @@ Opened open_serial(const std::string& rest) {
     ioctl(line, TIOCSSERIAL, &serial);
   }
   tcflush(line, TCIOFLUSH);
-  return std::pair(line, 0);
+  return Opened(std::move(stream));
 }
 
 Status connect_within(int socket, const sockaddr* address, socklen_t size) {
@@ -121,9 +113,10 @@ Opened open_unix(const std::string& path) {
   std::copy(path.begin(), path.end(), address.sun_path);
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return failure(path, errno, "close other programs");
+  auto stream = std::make_unique<ByteStream>(descriptor);
   const Status status = connect_within(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address);
-  if (status) return std::pair(descriptor, 0);
-  return close_with(descriptor, Error{path + ": " + status.error().message + "; start the device's program first"});
+  if (!status) return Error{path + ": " + status.error().message + "; start the device's program first"};
+  return Opened(std::move(stream));
 }
 
 bool is_loopback(const sockaddr* address) {
@@ -154,14 +147,14 @@ Opened open_tcp(const std::string& name, bool remote) {
     }
     const int descriptor = socket(one->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (descriptor < 0) continue;
+    auto stream = std::make_unique<ByteStream>(descriptor);
     const Status status = connect_within(descriptor, one->ai_addr, one->ai_addrlen);
     if (status) {
       const int on = 1;
       setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-      return std::pair(descriptor, 0);
+      return Opened(std::move(stream));
     }
     problem = status.error().message;
-    ::close(descriptor);
   }
   return Error{name + ": " + problem + "; start the device's program first"};
 }
@@ -194,9 +187,10 @@ Opened open_command(const std::string& command) {
   const pid_t child = fork();
   if (child == 0) run_child(ends[1], command.c_str(), parent);
   ::close(ends[1]);
-  if (child < 0) return close_with(ends[0], failure(command, errno, "close other programs"));
+  auto stream = std::make_unique<ByteStream>(ends[0], std::max(0, child));
+  if (child < 0) return failure(command, errno, "close other programs");
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  return std::pair(ends[0], static_cast<int>(child));
+  return Opened(std::move(stream));
 }
 
 // The kinds of lines, by the beginning of their targets.
@@ -224,10 +218,9 @@ Result<std::unique_ptr<ByteStream>> ByteStream::open(const std::string& target) 
   const auto line =
       std::find_if(kLines.begin(), kLines.end(), [&](const Line& one) { return target.starts_with(one.prefix); });
   if (line == kLines.end()) return wrong(target, "/dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT or exec:COMMAND");
-  const Opened opened = line->open(target.substr(line->prefix.size()));
-  if (!opened) return opened.error();
-  setsockopt(opened->first, SOL_SOCKET, SO_SNDBUF, &kQueueBytes, sizeof kQueueBytes);  // only of a socket
-  return std::unique_ptr<ByteStream>(new ByteStream(opened->first, opened->second));
+  Opened opened = line->open(target.substr(line->prefix.size()));
+  if (opened) setsockopt((*opened)->descriptor(), SOL_SOCKET, SO_SNDBUF, &kQueueBytes, sizeof kQueueBytes);
+  return opened;
 }
 
 ByteStream::~ByteStream() {

@@ -23,6 +23,8 @@ class ByteStream {
   // `target`: "/dev/TTY[,BAUD]", "unix:PATH", "[remote-]tcp:HOST:PORT", "exec:COMMAND". The default is 1 Mbaud. Errors:
   // another form; it cannot be opened, with the reason and what to do.
   static Result<std::unique_ptr<ByteStream>> open(const std::string& target);
+  // Owns the descriptor and the child process; `child`: its id, 0 for none.
+  explicit ByteStream(int descriptor, int child = 0) noexcept : descriptor_(descriptor), child_(child) {}
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
   // Ends a child program: SIGTERM, half a second later SIGKILL.
@@ -38,10 +40,8 @@ class ByteStream {
   std::string end_words() noexcept;
 
  private:
-  ByteStream(int descriptor, int child) noexcept : descriptor_(descriptor), child_(child) {}
-
   int descriptor_;
-  int child_;  // process; 0: none
+  int child_;
   int exit_status_ = -1;
   std::uint8_t rest_[64] = {};
   std::size_t rest_size_ = 0;

@@ -59,7 +59,7 @@ void DeviceEndpoint::publish_sample() noexcept {
   const double counts = static_cast<double>(state.counts) - state.zero_counts;
   sample.tool.position_m =
       calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
-  sample.measured_force_N = state.measured_N;
+  sample.measured_N = state.measured_N;
   sample.restart = state.streams != streams_published_;
   if (samples_.push(sample)) streams_published_ = state.streams;
 }

@@ -17,9 +17,7 @@ constexpr double kLongestReplayStep_s = 0.1;
 ReplayDevice::ReplayDevice(Recording recording)
     : name_("replay:" + recording.name),
       recording_(std::move(recording)),
-      sensor_(identify_sensor(recording_.rows.data(), recording_.rows.size(), recording_.columns)) {
-  duration_s_ = time_of(recording_.rows.size() - 1);
-}
+      sensor_(identify_sensor(recording_.rows.data(), recording_.rows.size(), recording_.columns)) {}
 
 void ReplayDevice::set_speed(double speed) noexcept {
   if (!std::isfinite(speed)) return;
@@ -28,7 +26,7 @@ void ReplayDevice::set_speed(double speed) noexcept {
 
 void ReplayDevice::seek(double at_s) noexcept {
   if (!std::isfinite(at_s)) return;
-  seek_s_.store(std::clamp(at_s, 0.0, duration_s_), std::memory_order_relaxed);
+  seek_s_.store(std::clamp(at_s, 0.0, duration_s()), std::memory_order_relaxed);
 }
 
 void ReplayDevice::step(int rows) noexcept {
@@ -69,7 +67,7 @@ void ReplayDevice::move_playhead(double now_s) noexcept {
   handed_over_ = 0;
   if (const double offset_m = surface_offset_m(); offset_m != moved_m_) {
     moved_m_ = offset_m;
-    go_to(std::min(playhead_s_, duration_s_));
+    go_to(std::min(playhead_s_, duration_s()));
   }
   const double seek_s = seek_s_.exchange(-1.0, std::memory_order_relaxed);
   const int rows = rows_.exchange(0, std::memory_order_relaxed);
@@ -81,7 +79,7 @@ void ReplayDevice::move_playhead(double now_s) noexcept {
     playhead_s_ += step_s * speed();
     if (next_ == recording_.rows.size()) go_to(0.0);
   }
-  shown_s_.store(std::min(playhead_s_, duration_s_), std::memory_order_relaxed);
+  shown_s_.store(std::min(playhead_s_, duration_s()), std::memory_order_relaxed);
 }
 
 bool ReplayDevice::read(double now_s, DeviceSample& sample) noexcept {
@@ -95,7 +93,7 @@ bool ReplayDevice::read(double now_s, DeviceSample& sample) noexcept {
   sample = {};
   sample.tool = tool_sample(row);
   sample.tool.position_m -= moved_m_;
-  sample.measured_force_N = row.force_N;
+  sample.measured_N = row.force_N;
   sample.restart = restart_;
   restart_ = false;
   ++next_;

@@ -47,7 +47,7 @@ class ReplayDevice final : public Device, public ReplayControl {
   bool paused() const noexcept override { return paused_.load(std::memory_order_relaxed); }
   double speed() const noexcept override { return speed_.load(std::memory_order_relaxed); }
   double playhead_s() const noexcept override { return shown_s_.load(std::memory_order_relaxed); }
-  double duration_s() const noexcept override { return duration_s_; }
+  double duration_s() const noexcept override { return time_of(recording_.rows.size() - 1); }
   // Any thread, wait-free; ignored when not finite.
   void move_surface(double offset_m) noexcept override;
   double surface_offset_m() const noexcept override { return surface_offset_m_.load(std::memory_order_relaxed); }
@@ -65,7 +65,6 @@ class ReplayDevice final : public Device, public ReplayControl {
   std::string name_;
   Recording recording_;
   SensorSpec sensor_;
-  double duration_s_ = 0.0;
   std::atomic<bool> paused_{false};
   std::atomic<double> speed_{1.0};
   std::atomic<double> seek_s_{-1.0};  // requested seek; below 0: none

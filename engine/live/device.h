@@ -54,11 +54,12 @@ inline std::string zeroing_words(const DeviceHealth& health) {
   return "zeroing: hold the tool still (" + std::to_string(std::lround(100.0F * health.zeroing_progress)) + " %)";
 }
 
+inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
+
 // One sample of a device.
 struct DeviceSample {
   ToolSample tool;
-  // The reading of a force sensor, N; NaN without one.
-  double measured_force_N = std::numeric_limits<double>::quiet_NaN();
+  double measured_N = kNoForce;  // the reading of a force sensor; NaN: none
   // A new stream begins (a recording starts again): its time may be earlier than that of the last sample, and the
   // filters are reset.
   bool restart = false;

@@ -20,7 +20,7 @@ double seconds(std::int64_t time_ns) noexcept { return kSPerNs * static_cast<dou
 HapticsLoop::HapticsLoop(Device& device, const LoopSettings& settings)
     : device_(device),
       settings_(settings),
-      live_(device, slot_, {settings.jnd, settings.source}),
+      live_(device, slot_, settings),
       ring_(std::make_unique<SpscRing<LoopSnapshot, kSnapshotRing>>()) {}
 
 Status HapticsLoop::start() {

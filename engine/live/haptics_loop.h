@@ -19,13 +19,11 @@
 
 namespace palpate {
 
-struct LoopSettings {
+struct LoopSettings : LiveTickSettings {
   // Time before a deadline at which the thread wakes up, rehearses the tick twice and spins: without it, the first
   // evaluations after a pause have cold caches, and a sleep ends late. 0: the thread sleeps until the deadline.
   std::int64_t rehearse_ns = 0;
   bool realtime = true;  // request real-time scheduling
-  JndLine jnd;
-  ForceSource* source = nullptr;  // outlives the loop; null: the models
 };
 
 struct LoopStatistics {

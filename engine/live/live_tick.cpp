@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <utility>
 
@@ -30,15 +31,14 @@ constexpr double kProbedForce_N = 10.0;
 using CycleForces = std::array<double, kCycleSamples + 1>;
 
 Impedance impedance_of(const CycleForces& force_N) noexcept {
-  double in_phase_N = 0.0, out_of_phase_N = 0.0;
+  std::complex<double> harmonic_N;  // the imaginary part is in phase with the position
   for (std::size_t i = 0; i < kCycleSamples; ++i) {
     const double share = static_cast<double>(i) / kCycleSamples;
     const double rest_N = force_N[i] - force_N.front() - share * (force_N.back() - force_N.front());
-    in_phase_N += 2.0 / kCycleSamples * rest_N * std::sin(2.0 * std::numbers::pi * share);
-    out_of_phase_N += 2.0 / kCycleSamples * rest_N * std::cos(2.0 * std::numbers::pi * share);
+    harmonic_N += 2.0 / kCycleSamples * rest_N * std::polar(1.0, 2.0 * std::numbers::pi * share);
   }
   constexpr double kSpeed_m_per_s = 2.0 * std::numbers::pi / (kCycleSamples * kProbeStep_s) * kProbe_m;
-  return {in_phase_N / kProbe_m, out_of_phase_N / kSpeed_m_per_s};
+  return {harmonic_N.imag() / kProbe_m, harmonic_N.real() / kSpeed_m_per_s};
 }
 
 void measure_impedance(const ForceModels& models, LiveModels& set) {
@@ -138,7 +138,7 @@ void LiveTick::process_samples(double now_s) noexcept {
 void LiveTick::process_sample(const DeviceSample& sample) noexcept {
   ++snapshot_.samples;
   snapshot_.restarted = snapshot_.restarted || sample.restart;
-  snapshot_.measured_N = sample.measured_force_N;
+  snapshot_.measured_N = sample.measured_N;
   for (LiveModels* set : {outgoing_.get(), models_.get()}) {
     if (set == nullptr) continue;
     if (sample.restart) set->tick.reset();
@@ -149,12 +149,12 @@ void LiveTick::process_sample(const DeviceSample& sample) noexcept {
   if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample) {
     snapshot_.reference_N = models_->reference->step(snapshot_.tick, sample.restart);
   }
-  if (recording_ != 0) record(sample);
+  if (controls_.recording != 0) record(sample);
 }
 
 void LiveTick::record(const DeviceSample& sample) noexcept {
-  RecordedSample recorded{
-      .tool = sample.tool, .measured_N = sample.measured_force_N, .recording = recording_, .restart = sample.restart};
+  RecordedSample recorded{sample};
+  recorded.recording = controls_.recording;
   const TickFault fault = snapshot_.tick.fault;
   recorded.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
   if (models_->reference != nullptr) recorded.reference_N = snapshot_.reference_N;
@@ -164,9 +164,9 @@ void LiveTick::record(const DeviceSample& sample) noexcept {
   recorded_->push(recorded);
 }
 
-double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
+double LiveTick::mix(double step_s) noexcept {
   const std::size_t count = models_->tick.model_count();
-  if (controls.models_id == models_->id && controls.selected < count) snapshot_.selected = controls.selected;
+  if (controls_.models_id == models_->id && controls_.selected < count) snapshot_.selected = controls_.selected;
   if (snapshot_.selected >= count) snapshot_.selected = 0;
   ForceMixer::Forces forces_N{};
   std::ranges::copy(snapshot_.tick.force_N, forces_N.begin());
@@ -177,7 +177,7 @@ double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
   snapshot_.fading = !mixer_.settled_on(snapshot_.selected);
   if (outgoing_ != nullptr && !snapshot_.fading) slot_.retire(std::move(outgoing_));
   if (count == 0 && outgoing_ == nullptr) return 0.0;  // without models no damping, either
-  return scale(force_N, controls.scale, step_s);
+  return scale(force_N, step_s);
 }
 
 // The impedance of the rendered force: a mixture of models during a fade.
@@ -190,21 +190,21 @@ Impedance LiveTick::impedance() const noexcept {
   return {mixer_.current(stiffness), mixer_.current(damping)};
 }
 
-double LiveTick::scale(double force_N, const ForceScale& wanted, double step_s) noexcept {
+double LiveTick::scale(double force_N, double step_s) noexcept {
   const double lag_s = snapshot_.device.lag_s;
   stability_.update(lag_s > kInTick_s ? lag_s : kInTick_s, step_s);
   const Impedance model = impedance();
-  const ForceScale unbounded = wanted.limited(StabilityLimit(), {});
-  const ForceScale limited = bounded_ ? wanted.limited(stability_, model) : unbounded;
+  const ForceScale unbounded = controls_.scale.limited(StabilityLimit(), {});
+  const ForceScale limited = bounded_ ? controls_.scale.limited(stability_, model) : unbounded;
   snapshot_.stiffness_share = static_cast<float>(limited.stiffness / unbounded.stiffness);
   snapshot_.lag_ms = static_cast<float>(1e3 * stability_.lag_s());
   const TickSnapshot& tick = snapshot_.tick;
   return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, limited, step_s);
 }
 
-bool LiveTick::dead_man_released(const LoopControls& controls) const noexcept {
-  if (controls.dead_man == DeadMan::grip) return !snapshot_.device.grip_held;
-  return controls.dead_man == DeadMan::key && !(now_s_ - controls.held_s < kDeadManHold_s);
+bool LiveTick::dead_man_released() const noexcept {
+  if (controls_.dead_man == DeadMan::grip) return !snapshot_.device.grip_held;
+  return controls_.dead_man == DeadMan::key && !(snapshot_.loop_time_s - controls_.held_s < kDeadManHold_s);
 }
 
 // Off in a study, which presents forces that do not depend on the position of the tool.
@@ -221,16 +221,14 @@ double LiveTick::passive(double commanded_N, double step_s) noexcept {
                           loop, snapshot_.rendered_N, step_s);
 }
 
-void LiveTick::render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept {
+void LiveTick::render(double step_s) noexcept {
   const DeviceHealth& device = snapshot_.device;
   if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
-  snapshot_.commanded_N = commanded_N;
-  snapshot_.passive_N = passive_N;
-  snapshot_.dead_man_released = dead_man_released;
+  snapshot_.dead_man_released = dead_man_released();
   // After an impossible sample there is no force until a possible one.
   const bool bad_sample = (snapshot_.faults & loop_fault::kBadSample) != 0;
-  snapshot_.rendered_N =
-      limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), dead_man_released, bad_sample});
+  snapshot_.rendered_N = limiter_.limit(
+      snapshot_.passive_N, step_s, {device.sample_age_s, !device.may_push(), snapshot_.dead_man_released, bad_sample});
   snapshot_.faults |= limiter_faults(limiter_.flags());
   snapshot_.limiter_flags = limiter_.flags();
   snapshot_.heat_share = static_cast<float>(limiter_.heat_share());
@@ -238,22 +236,22 @@ void LiveTick::render(double commanded_N, double passive_N, double step_s, bool 
 }
 
 const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) noexcept {
-  const double step_s = started_ ? now_s - now_s_ : 0.0;
+  const double step_s = started_ ? now_s - snapshot_.loop_time_s : 0.0;
   started_ = true;
-  now_s_ = now_s;
   snapshot_.loop_time_s = now_s;
   snapshot_.faults = 0;
-  recording_ = controls.recording;
-  if (std::exchange(acknowledged_, controls.acknowledged) != controls.acknowledged) {
+  if (controls.acknowledged != controls_.acknowledged) {
     snapshot_.faults_latched = 0;
     snapshot_.device_faults_latched = 0;
   }
+  controls_ = controls;
   update_models();
   process_samples(now_s);
   snapshot_.device = device_.health(now_s);
   if (std::isinf(snapshot_.device.sample_age_s)) snapshot_.device.sample_age_s = now_s - sampled_s_;
-  const double commanded_N = source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
-  render(commanded_N, passive(commanded_N, step_s), step_s, dead_man_released(controls));
+  snapshot_.commanded_N = source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(step_s);
+  snapshot_.passive_N = passive(snapshot_.commanded_N, step_s);
+  render(step_s);
   snapshot_.faults_latched |= snapshot_.faults;
   snapshot_.device_faults_latched |= snapshot_.device.faults;
   for (std::size_t i = 0; i < models_->tick.model_count(); ++i) {

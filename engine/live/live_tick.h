@@ -85,8 +85,6 @@ struct LoopControls {
   std::uint32_t acknowledged = 0;
 };
 
-inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
-
 // The results of a live tick. `tick.force_N[i]` are the models' forces, `rendered_N` is the device's.
 struct LoopSnapshot {
   TickSnapshot tick;
@@ -116,13 +114,10 @@ struct LoopSnapshot {
 static_assert(std::is_trivially_copyable_v<LoopSnapshot>);
 
 // One sample of the device, for a recorder: a tick may read several, of which a snapshot has only the last.
-struct RecordedSample {
-  ToolSample tool;
-  double measured_N = kNoForce;
+struct RecordedSample : DeviceSample {
   double reference_N = kNoForce;  // of the set's ReferenceForce at this sample
   double model_N = kNoForce;      // of the set's `written_model` at this sample
   std::uint32_t recording = 0;    // as in LoopControls
-  bool restart = false;           // a new stream begins
   bool usable = true;             // false: not finite, or not later than the one before
 };
 
@@ -159,12 +154,12 @@ class LiveTick {
   void process_samples(double now_s) noexcept;
   void process_sample(const DeviceSample& sample) noexcept;
   void record(const DeviceSample& sample) noexcept;
-  double mix(const LoopControls& controls, double step_s) noexcept;
-  bool dead_man_released(const LoopControls& controls) const noexcept;
+  double mix(double step_s) noexcept;
+  bool dead_man_released() const noexcept;
   Impedance impedance() const noexcept;
-  double scale(double force_N, const ForceScale& wanted, double step_s) noexcept;
+  double scale(double force_N, double step_s) noexcept;
   double passive(double commanded_N, double step_s) noexcept;
-  void render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept;
+  void render(double step_s) noexcept;
 
   Device& device_;
   ModelSlot<LiveModels>& slot_;
@@ -179,12 +174,10 @@ class LiveTick {
   std::unique_ptr<LiveModels> models_;    // before the first published set: one without models
   std::unique_ptr<LiveModels> outgoing_;  // previous set until its fade ends; then retired
   std::uint32_t outgoing_selected_ = 0;
+  LoopControls controls_;  // of this tick
   LoopSnapshot snapshot_;
   std::unique_ptr<RecordedRing> recorded_;  // 2.6 MB: too much for a stack
-  std::uint32_t recording_ = 0;
-  std::uint32_t acknowledged_ = 0;
   double ns_per_cycle_;
-  double now_s_ = 0.0;
   double sampled_s_ = -std::numeric_limits<double>::infinity();  // time of the tick that read the last sample
   bool started_ = false;
 };

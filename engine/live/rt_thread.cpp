@@ -1,11 +1,13 @@
 #include "engine/live/rt_thread.h"
 
+#include <linux/capability.h>
 #include <pthread.h>
 #include <pwd.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
@@ -14,23 +16,17 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t kStackBytes = 256 * 1024;
-constexpr int kCapIpcLock = 14;  // linux/capability.h
 
-bool has_capability(int number) {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    if (word != "CapEff:") continue;
-    unsigned long long bits = 0;
-    return (status >> std::hex >> bits) && (bits >> number & 1U) != 0;
-  }
-  return false;
+bool has_lock_capability() {
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct sets[_LINUX_CAPABILITY_U32S_3] = {};
+  return syscall(SYS_capget, &header, sets) == 0 && (sets[0].effective >> CAP_IPC_LOCK & 1U) != 0;
 }
 
 // Under a limit, locking future memory would make a later allocation fail anywhere in the program, which is worse than
@@ -38,7 +34,7 @@ bool has_capability(int number) {
 int lock_all_memory() {
   rlimit limit{};
   const bool unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
-  if (!unlimited && !has_capability(kCapIpcLock)) return EPERM;
+  if (!unlimited && !has_lock_capability()) return EPERM;
   return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 ? 0 : errno;
 }
 

@@ -13,18 +13,6 @@ namespace palpate {
 inline constexpr std::size_t kDriveCoefficients = 4;
 inline constexpr std::size_t kDriveKnots = 7;
 
-struct DriveCurve {
-  double reference_depth_m = 1.0;
-  std::array<double, kDriveCoefficients> coefficient_N{};
-  bool has_knots = false;
-  std::array<double, kDriveKnots> knot_N{};
-
-  double at(double depth_m) const noexcept;
-  // Beyond this depth g is linear.
-  double least_reference_m() const noexcept { return reference_depth_m; }
-  bool operator==(const DriveCurve&) const = default;
-};
-
 // Sets `value` to g. `curve`: a DriveCurve for one Number, or CurveLanes (feature_lanes.h) for four at once; the
 // results are bit-identical.
 template <typename Number, typename Curve>
@@ -53,10 +41,20 @@ template <typename Number, typename Curve>
   }
 }
 
-inline double DriveCurve::at(double depth_m) const noexcept {
-  double value = 0.0;
-  evaluate_curve(value, *this, depth_m);
-  return value;
-}
+struct DriveCurve {
+  double reference_depth_m = 1.0;
+  std::array<double, kDriveCoefficients> coefficient_N{};
+  bool has_knots = false;
+  std::array<double, kDriveKnots> knot_N{};
+
+  double at(double depth_m) const noexcept {
+    double value = 0.0;
+    evaluate_curve(value, *this, depth_m);
+    return value;
+  }
+  // Beyond this depth g is linear.
+  double least_reference_m() const noexcept { return reference_depth_m; }
+  bool operator==(const DriveCurve&) const = default;
+};
 
 }  // namespace palpate

@@ -31,7 +31,7 @@ void MotionHistory::add(const TickSnapshot& snapshot, bool restarted) {
   if (restarted || (!past_.empty() && snapshot.time_s < past_.back().time_s)) past_.clear();
   if (snapshot.fault == TickFault::bad_sample || snapshot.fault == TickFault::time_not_later) return;
   if (!past_.empty() && snapshot.time_s - past_.back().time_s < kHistoryStep_s) return;
-  past_.push_back({snapshot.time_s, snapshot.position_m, snapshot.velocity_m_per_s});
+  past_.push_back({snapshot.time_s, snapshot.position_m, snapshot.velocity_m_per_s, 0.0});
   while (snapshot.time_s - past_.front().time_s > kRemembered_s) past_.pop_front();
 }
 
@@ -39,7 +39,7 @@ HapticsTick::HapticsTick(const SensorSpec& sensor, ForceModels models) : motion_
   assert(models_.size() <= kMaxModels);
   for (const auto& model : models_) {
     std::size_t index = 0;
-    while (index < filters_.size() && filters_[index].plan().specs() != model->features()) ++index;
+    while (index < filters_.size() && filters_[index].specs() != model->features()) ++index;
     if (index == filters_.size()) filters_.emplace_back(model->features());
     filter_of_.push_back(index);
   }
@@ -62,20 +62,17 @@ void HapticsTick::rehearse() noexcept {
   const MotionEstimate estimate = motion.update(next);
   double sum_N = 0.0;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    FeatureState state = filters_[i].state();
-    filters_[i].plan().update(state, next, estimate);
+    const FeatureVector vector = filters_[i].preview(next, estimate);
     for (std::size_t k = 0; k < models_.size(); ++k) {
-      if (filter_of_[k] == i) sum_N += models_[k]->evaluate(state.vector.values.data()).force_N;
+      if (filter_of_[k] == i) sum_N += models_[k]->evaluate(vector.values.data()).force_N;
     }
   }
   rehearsed_N_ = sum_N;
 }
 
 void HapticsTick::recall(const MotionHistory& history) noexcept {
-  for (const auto& [time_s, position_m, velocity_m_per_s] : history.past()) {
-    for (FeatureFilter& filter : filters_) {
-      filter.update({time_s, position_m, 0.0, 0.0}, {position_m, velocity_m_per_s});
-    }
+  for (const ToolSample& past : history.past()) {
+    for (FeatureFilter& filter : filters_) filter.update(past, {past.position_m, past.velocity_m_per_s});
   }
 }
 
@@ -96,7 +93,7 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
     // The features start at rest at the last sample, unless their past is known.
     const double since_s = sample_.time_s - filters_[i].time_s();
     if (!(since_s >= 0.0 && since_s < kLongestGap_s)) filters_[i].reset();
-    filters_[i].update({sample_.time_s, snapshot_.position_m, 0.0, 0.0}, motion_.estimate());
+    filters_[i].update(sample_, motion_.estimate());
     for (const FeatureFilter& old : before.filters_) filters_[i].adopt(old);
   }
   evaluate_models();

@@ -53,16 +53,13 @@ static_assert(std::is_trivially_copyable_v<TickSnapshot>);
 // Thread guarantee: slow side (allocates); one thread.
 class MotionHistory {
  public:
-  struct Moment {
-    double time_s, position_m, velocity_m_per_s;
-  };
   // Takes the snapshot of every tick in order. `restarted`: it begins a new stream; the earlier motion is deleted.
   void add(const TickSnapshot& snapshot, bool restarted);
-  // Oldest first.
-  const std::deque<Moment>& past() const noexcept { return past_; }
+  // Oldest first; the velocities are the estimated ones.
+  const std::deque<ToolSample>& past() const noexcept { return past_; }
 
  private:
-  std::deque<Moment> past_;
+  std::deque<ToolSample> past_;
 };
 
 class HapticsTick {

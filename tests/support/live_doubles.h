@@ -65,7 +65,7 @@ class CountingModel final : public NamedModel {
   mutable std::atomic<std::uint64_t> evaluations_ = 0;
 };
 
-// Returns one sample per tick, at the position `path(time)`.
+// Returns one sample per tick, at the position `path(time)`. A test may set its health and silence it.
 class PathDevice final : public Device {
  public:
   using Path = double (*)(double time_s);
@@ -76,13 +76,14 @@ class PathDevice final : public Device {
   Holder holder() const noexcept override { return Holder::person; }
   ForceLimits limits() const noexcept override { return limits_; }
   bool read(double now_s, DeviceSample& sample) noexcept override {
-    if (now_s == now_s_) return false;
+    if (silent || now_s == now_s_) return false;
     now_s_ = now_s;
     sample = {};
     sample.tool.time_s = now_s;
     sample.tool.position_m = path_(now_s);
     return true;
   }
+  DeviceHealth health(double) noexcept override { return state; }
   void write(double force_N) noexcept override {
     force_N_ = force_N;
     ++writes_;
@@ -90,6 +91,8 @@ class PathDevice final : public Device {
 
   double force_N() const { return force_N_; }
   int writes() const { return writes_; }
+  DeviceHealth state;
+  bool silent = false;
 
  private:
   Path path_;

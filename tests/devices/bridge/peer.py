@@ -64,7 +64,7 @@ def main():
             if MODE == "die":
                 os._exit(3)
         tremor_m = 1e-4 * math.sin(2 * math.pi * 9 * now_s)
-        position_nm = round((0.003 + (0.0 if event and MODE == "stuck" else tremor_m)) * 1e9)
+        position_nm = round((0.003 + tremor_m) * 1e9)
         if event and MODE == "jump":
             position_nm += 20_000_000 if sequence % 2 else 0
         if event and MODE == "nan":

@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/simulated_device.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -80,119 +82,171 @@ TEST(DeviceEndpoint, DirectionTurnsPositionAndForce) {
   EXPECT_EQ(wire::read32(out.bytes[1].data() + 9), 6667u);
 }
 
-// A disturbance of the stream, and the fault that detects it.
+// A disturbance of the stream, and the faults that detect it; 0: not on this device.
 struct Injection {
   const char* name;
   void (*inject)(SimulatedDevice&);
-  std::uint32_t fault;
-  double found_after_s;  // the earliest time of detection
+  std::uint32_t board, bridge;
+  double found_after_s = 0.0;  // the earliest time of detection; kStuck: the time of the calibration
 };
+
+// Every second report comes after its successor.
+auto out_of_order() {
+  return [last = Report()](const Report& report) mutable {
+    if (!last.empty()) return test::Reports{report, std::exchange(last, {})};
+    last = report;
+    return test::Reports{};
+  };
+}
+
+// Thirty reports at once.
+auto burst() {
+  return [held = test::Reports()](const Report& report) mutable {
+    held.push_back(report);
+    return held.size() < 30 ? test::Reports() : std::exchange(held, {});
+  };
+}
 
 const std::vector<Injection>& injections() {
   using namespace device_fault;
   static const std::vector<Injection> all = {
-      {"unplugged", [](SimulatedDevice& s) { s.unplug(); }, kUnplugged, 0.0},
-      {"silent", [](SimulatedDevice& s) { s.on_the_way_in = test::lost; }, kLate, 0.0},
-      {"stuck at one value", [](SimulatedDevice& s) { s.encoder_frozen = true; }, kStuck, 0.5},
-      {"the same report again and again", [](SimulatedDevice& s) { s.on_the_way_in = test::first_again(); }, kStuck,
-       0.5},
-      {"late by 20 ms", [](SimulatedDevice& s) { s.on_the_way_in = test::late_by(20); }, kLate, 0.0},
-      {"corrupted",
+      {"the port or the program is gone", [](SimulatedDevice& s) { s.unplug(); }, kUnplugged, kUnplugged},
+      {"frames fail to come", [](SimulatedDevice& s) { s.on_the_way_in = test::lost; }, kLate, kLate},
+      {"the position stands still although the motor pushes (`stuck_after_s`)",
+       [](SimulatedDevice& s) { s.encoder_frozen = true; }, kStuck, kStuck},
+      {"the same frame comes again and again", [](SimulatedDevice& s) { s.on_the_way_in = test::first_again(); },
+       kStuck, kLate},
+      {"frames come 30 ms late", [](SimulatedDevice& s) { s.on_the_way_in = test::late_by(30); }, kLate, kLate},
+      {"frames come in bursts", [](SimulatedDevice& s) { s.on_the_way_in = burst(); }, kBurst, 0},
+      {"frames come out of order", [](SimulatedDevice& s) { s.on_the_way_in = out_of_order(); }, 0, kOutOfOrder},
+      {"a wrong checksum",
        [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report[13] ^= 0x5A; }); },
-       kCorrupt, 0.0},
-      {"cut short",
+       kCorrupt, kCorrupt},
+      {"frames are cut short",
        [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report.resize(12); }); }, kCorrupt,
-       0.0},
-      {"a burst of old ones",
-       [](SimulatedDevice& s) {
-         s.on_the_way_in = [held = test::Reports()](const Report& report) mutable {
-           held.push_back(report);
-           return held.size() < 30 ? test::Reports() : std::exchange(held, {});
-         };
-       },
-       kBurst, 0.0},
-      {"encoder jump", [](SimulatedDevice& s) { s.counts_offset = 5000; }, kJump, 0.0},
-      {"firmware reset",
+       0},
+      {"another version",
+       [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report[2] = 9; }); }, 0,
+       kWrongFirmware},
+      {"the board reports an error",
+       [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report[1] = 15; }); }, kOwn, 0},
+      {"the device reports a motor fault", [](SimulatedDevice& s) { s.board().conditions = bridge::kMotorFault; }, 0,
+       kOwn},
+      {"the position jumps by 50 mm",
+       [](SimulatedDevice& s) { s.counts_offset = static_cast<int>(0.05 * s.calibration.counts_per_metre); }, kJump,
+       kJump},
+      {"the board starts again, at position 0",
        [](SimulatedDevice& s) {
          s.model->restart();
          s.counts_offset = -s.counts();
        },
-       kJump, 0.0},
-      {"an error of its own",
-       [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report[1] = 15; }); }, kOwn, 0.0},
-      {"commands do not get through", [](SimulatedDevice& s) { s.writer_hangs = true; }, kWriteStalled | kLate, 0.05},
+       kJump, 0},
+      {"the device starts again", [](SimulatedDevice& s) { s.model->restart(); }, 0, kReset | kOutOfOrder},
+      {"commands cannot be written", [](SimulatedDevice& s) { s.writer_hangs = true; }, kWriteStalled | kLate,
+       kWriteStalled, 0.05},
+      {"the device confirms no command", [](SimulatedDevice& s) { s.on_the_way_out = [](Report&) { return false; }; },
+       0, kWriteStalled, 0.05},
+      {"its clock is set back by 10 ms", [](SimulatedDevice& s) { s.board().clock_offset_us -= 10'000; }, 0, kReset},
   };
   return all;
 }
 
-struct Outcome {
-  double to_zero_s = -1.0;  // until the host commands zero force
-  std::uint32_t faults = 0;
-  std::uint32_t first_faults = 0;
-};
-
-Outcome run(const Injection& injection, SimulatedDevice& simulated) {
-  Outcome outcome;
-  simulated.press();
-  EXPECT_GT(simulated.snapshot.rendered_N, 3.5);
-  const double from_s = simulated.now_s;
-  injection.inject(simulated);
-  for (int i = 0; i < 800; ++i) {
-    simulated.tick();
-    outcome.faults |= simulated.snapshot.device.faults;
-    if (outcome.first_faults == 0) outcome.first_faults = outcome.faults;
-    if (simulated.snapshot.rendered_N == 0.0 && outcome.to_zero_s < 0.0) outcome.to_zero_s = simulated.now_s - from_s;
+// The number of ticks (ms) until the force is above 0 (`pushes`) or 0. `most` if that does not happen.
+int ticks_until(SimulatedDevice& simulated, bool pushes, int most, std::uint32_t& faults) {
+  for (int ticks = 1; ticks < most; ++ticks) {
+    faults |= simulated.tick().device.faults;
+    if ((simulated.snapshot.rendered_N > 0.0) == pushes) return ticks;
   }
-  return outcome;
+  return most;
+}
+
+// Injects during a press. Returns the ticks until the force is 0.
+int expect_no_force(const Injection& injection, std::uint32_t expected, SimulatedDevice& simulated) {
+  injection.inject(simulated);
+  std::uint32_t faults = 0;
+  const int to_zero = ticks_until(simulated, false, 6000, faults);
+  for (int i = 0; i < 50; ++i) faults |= simulated.tick().device.faults;
+  EXPECT_NE(faults & expected, 0u);
+  const bool stuck = (expected & device_fault::kStuck) != 0;
+  EXPECT_LE(1e-3 * to_zero, 0.0205 + (stuck ? simulated.calibration.stuck_after_s : injection.found_after_s));
+  EXPECT_NE(simulated.snapshot.faults_latched & loop_fault::kDeviceFault, 0u);
+  EXPECT_NE(simulated.snapshot.device_faults_latched & expected, 0u);
+  return to_zero;
 }
 
 // The disturbance has ended. A fault that loses the position lasts until the device is zeroed.
-void expect_return_after_zeroing(const Injection& injection, SimulatedDevice& simulated) {
+void expect_return_after_zeroing(std::uint32_t expected, SimulatedDevice& simulated) {
   simulated.run_s(1.0);
   EXPECT_EQ(simulated.snapshot.rendered_N, 0.0);
-  EXPECT_NE(simulated.snapshot.device.faults & injection.fault, 0u) << "until it is zeroed";
+  EXPECT_NE(simulated.snapshot.device.faults & expected, 0u) << "until it is zeroed";
   EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::needed);
   EXPECT_EQ(simulated.snapshot.samples, 0u);
   simulated.press();
   EXPECT_EQ(simulated.snapshot.device.faults, 0u);
 }
 
-void expect_return_by_itself(SimulatedDevice& simulated) {
+// Returns the ticks until there is a force again.
+int expect_return_by_itself(SimulatedDevice& simulated) {
   // Regular delay is not detectable in reports without a time stamp.
   const bool stopped = simulated.snapshot.rendered_N == 0.0;
-  simulated.tick();
-  EXPECT_TRUE(!stopped || simulated.snapshot.rendered_N < 0.2) << "not at once";
-  simulated.run_s(1.0);
+  std::uint32_t faults = 0;
+  const int back = ticks_until(simulated, true, 1000, faults);
+  EXPECT_LE(back, 300);
+  EXPECT_TRUE(!stopped || simulated.snapshot.rendered_N < 0.2) << "with a ramp";
+  simulated.run_s(1.2);
+  EXPECT_EQ(simulated.snapshot.device.faults, 0u);
   EXPECT_NE(simulated.snapshot.device_faults_latched, 0u);
   simulated.controls.acknowledged = 1;
   simulated.run_s(0.01);
   EXPECT_EQ(simulated.snapshot.device_faults_latched, 0u);
   EXPECT_EQ(simulated.snapshot.faults_latched & loop_fault::kStops, 0u);
+  return back;
 }
 
 TEST(DeviceEndpoint, EveryFaultTakesTheForceAwayUntilItEnds) {
-  std::printf("%-32s %9s  %s\n", "fault", "to 0 [ms]", "message");
   for (const Injection& injection : injections()) {
+    if (injection.board == 0) continue;
     SCOPED_TRACE(injection.name);
     SimulatedDevice simulated(kProtocol);
-    const Outcome outcome = run(injection, simulated);
-    const auto words = device_fault_words(outcome.first_faults);
-    std::printf("%-32s %9.1f  %s\n", injection.name, 1e3 * outcome.to_zero_s,
-                words.empty() ? "" : words.front().c_str());
-    EXPECT_NE(outcome.faults & injection.fault, 0u);
-    EXPECT_GT(outcome.to_zero_s, 0.0);
-    EXPECT_LE(outcome.to_zero_s, 0.0205 + injection.found_after_s);
-    EXPECT_NE(simulated.snapshot.faults_latched & loop_fault::kDeviceFault, 0u);
-    EXPECT_NE(simulated.snapshot.device_faults_latched & injection.fault, 0u);
-
+    simulated.press();
+    EXPECT_GT(simulated.snapshot.rendered_N, 3.5);
+    const int to_zero = expect_no_force(injection, injection.board, simulated);
+    std::printf("%-70s %4d ms\n", injection.name, to_zero);
     simulated.mend();
-    if ((injection.fault & device_fault::kLosesPosition) != 0) {
-      expect_return_after_zeroing(injection, simulated);
+    if ((injection.board & device_fault::kLosesPosition) != 0) {
+      expect_return_after_zeroing(injection.board, simulated);
     } else {
       expect_return_by_itself(simulated);
     }
     EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), kResolution_N);
   }
+}
+
+// Uses the shipped calibration. devices/README.md contains the table that this test prints.
+TEST(BridgeEndpoint, EveryFaultRemovesTheForceUntilTheTimeInTheReadme) {
+  const std::string source = PALPATE_SOURCE_DIR;
+  const auto calibration = read_calibration(source + "/assets/devices", kBridgeProtocol);
+  ASSERT_TRUE(calibration.ok());
+  std::string table = "| what happens | force 0 after [ms] | comes back after its end [ms] |\n|---|---:|---:|\n";
+  for (const Injection& injection : injections()) {
+    if (injection.bridge == 0) continue;
+    SCOPED_TRACE(injection.name);
+    SimulatedDevice simulated(*calibration);
+    simulated.run_s(0.2);
+    simulated.rest = false;
+    simulated.run_s(1.0);
+    EXPECT_GT(simulated.snapshot.rendered_N, 2.0) << "near the continuous force";
+    const int to_zero = expect_no_force(injection, injection.bridge, simulated);
+    simulated.mend();
+    simulated.counts_offset = 0;
+    simulated.board().conditions = 0;
+    const int back = expect_return_by_itself(simulated);
+    table +=
+        std::string("| ") + injection.name + " | " + std::to_string(to_zero) + " | " + std::to_string(back) + " |\n";
+  }
+  std::printf("%s", table.c_str());
+  EXPECT_TRUE(test::has_parts(test::read_text(source + "/devices/README.md"), {table}))
+      << "put the table above into devices/README.md";
 }
 
 TEST(DeviceEndpoint, AHapticsThreadThatHangsPushesNoLonger) {

@@ -49,7 +49,7 @@ TEST(ReplayDevice, HandsOverEveryRowOnceAndUnchanged) {
     for (std::size_t i = 0; i < std::min<std::size_t>(samples.size(), 2000); ++i) {
       ASSERT_EQ(samples[i].tool.time_s, recording.rows[i].time_s);
       ASSERT_EQ(samples[i].tool.position_m, recording.rows[i].position_m);
-      ASSERT_EQ(samples[i].measured_force_N, recording.rows[i].force_N);
+      ASSERT_EQ(samples[i].measured_N, recording.rows[i].force_N);
       ASSERT_EQ(samples[i].restart, i == 0);
     }
   }
@@ -70,7 +70,7 @@ TEST(ReplayDevice, MovesTheSurfaceAndRestarts) {
   for (const DeviceSample& sample : samples) {
     const auto row = static_cast<std::size_t>(std::lround((sample.tool.time_s - 7.0) * 1000.0));
     EXPECT_EQ(sample.tool.position_m, recording.rows[row].position_m - 0.25e-3);
-    EXPECT_EQ(sample.measured_force_N, recording.rows[row].force_N);
+    EXPECT_EQ(sample.measured_N, recording.rows[row].force_N);
   }
   EXPECT_EQ(device.surface_offset_m(), 0.25e-3);
 }
@@ -81,7 +81,7 @@ TEST(ReplayDevice, BeginsAgainAtTheEnd) {
   const std::vector<DeviceSample> samples = player.play(350);
   ASSERT_GT(samples.size(), 300u);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    ASSERT_EQ(samples[i].measured_force_N, 1e-3 * static_cast<double>(i % 100)) << i;
+    ASSERT_EQ(samples[i].measured_N, 1e-3 * static_cast<double>(i % 100)) << i;
     ASSERT_EQ(samples[i].restart, i % 100 == 0) << i;
   }
 }
@@ -95,7 +95,7 @@ TEST(ReplayDevice, PausesAndGoesOn) {
   device.pause(false);
   const std::vector<DeviceSample> after = player.play(50);
   ASSERT_NEAR(static_cast<double>(after.size()), 50.0, 1.0) << "a row on the tick's edge";
-  EXPECT_EQ(after.front().measured_force_N, 1e-3 * static_cast<double>(before)) << "none lost";
+  EXPECT_EQ(after.front().measured_N, 1e-3 * static_cast<double>(before)) << "none lost";
 }
 
 TEST(ReplayDevice, PlaysFasterAndSlower) {
@@ -121,7 +121,7 @@ TEST(ReplayDevice, WaitsForTheLoopWhenItIsTooFast) {
   EXPECT_LE(samples.size(), 100u * kMaxSamplesPerTick);
   EXPECT_GT(samples.size(), 90u * kMaxSamplesPerTick);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    ASSERT_EQ(samples[i].measured_force_N, 1e-3 * static_cast<double>(i));
+    ASSERT_EQ(samples[i].measured_N, 1e-3 * static_cast<double>(i));
   }
   EXPECT_LT(device.playhead_s(), 0.2);
 }
@@ -134,24 +134,24 @@ TEST(ReplayDevice, SeeksAlsoWhilePaused) {
   device.seek(0.5);
   std::vector<DeviceSample> samples = player.play(5);
   ASSERT_EQ(samples.size(), 1u) << "what is there now";
-  EXPECT_NEAR(samples[0].measured_force_N, 0.5, 1.1e-3) << "the row at that time or the next";
+  EXPECT_NEAR(samples[0].measured_N, 0.5, 1.1e-3) << "the row at that time or the next";
   EXPECT_TRUE(samples[0].restart);
   device.seek(99.0);
   samples = player.play(5);
   ASSERT_EQ(samples.size(), 1u);
-  EXPECT_EQ(samples[0].measured_force_N, 0.999) << "the last one";
+  EXPECT_EQ(samples[0].measured_N, 0.999) << "the last one";
   EXPECT_NEAR(device.playhead_s(), device.duration_s(), 1e-12);
 }
 
 TEST(ReplayDevice, GoesByOneSampleAndPauses) {
   ReplayDevice device(ramp(1000, 1000.0));
   Player player{device};
-  const double seen_N = player.play(10).back().measured_force_N;
+  const double seen_N = player.play(10).back().measured_N;
   device.step(1);
   EXPECT_TRUE(device.paused());
   std::vector<DeviceSample> samples = player.play(5);
   ASSERT_EQ(samples.size(), 1u);
-  EXPECT_NEAR(samples[0].measured_force_N, seen_N + 1e-3, 1e-12);
+  EXPECT_NEAR(samples[0].measured_N, seen_N + 1e-3, 1e-12);
   EXPECT_FALSE(samples[0].restart) << "the filters go on";
   device.step(3);
   samples = player.play(5);
@@ -159,14 +159,14 @@ TEST(ReplayDevice, GoesByOneSampleAndPauses) {
   device.step(-1);
   samples = player.play(5);
   ASSERT_EQ(samples.size(), 1u);
-  EXPECT_NEAR(samples[0].measured_force_N, seen_N + 3e-3, 1e-12);
+  EXPECT_NEAR(samples[0].measured_N, seen_N + 3e-3, 1e-12);
   EXPECT_TRUE(samples[0].restart) << "time does not run backwards in a filter";
   device.step(-100000);
-  EXPECT_EQ(player.play(5).back().measured_force_N, 0.0) << "the first one";
+  EXPECT_EQ(player.play(5).back().measured_N, 0.0) << "the first one";
   device.seek(0.998);
   player.play(5);
   device.step(100000);
-  EXPECT_EQ(player.play(5).back().measured_force_N, 0.999) << "the last one";
+  EXPECT_EQ(player.play(5).back().measured_N, 0.999) << "the last one";
 }
 
 }  // namespace

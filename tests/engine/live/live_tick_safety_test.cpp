@@ -16,32 +16,6 @@ using test::LiveRig;
 using test::PathDevice;
 using test::spring;
 
-// A device whose health, and whether it gives samples, a test sets.
-class FrailDevice final : public Device {
- public:
-  const std::string& name() const noexcept override { return name_; }
-  SensorSpec sensor() const noexcept override { return {0.0, 1e-6}; }
-  Holder holder() const noexcept override { return Holder::person; }
-  ForceLimits limits() const noexcept override { return {10.0, 1000.0, 0.05}; }
-  bool read(double now_s, DeviceSample& sample) noexcept override {
-    if (!speaks || now_s == now_s_) return false;
-    now_s_ = now_s;
-    sample = {};
-    sample.tool.time_s = now_s;
-    sample.tool.position_m = 5e-3;
-    return true;
-  }
-  void write(double force_N) noexcept override { written_N = force_N; }
-  DeviceHealth health(double) noexcept override { return state; }
-  bool speaks = true;
-  DeviceHealth state;
-  double written_N = 0.0;
-
- private:
-  std::string name_ = "frail";
-  double now_s_ = -1.0;
-};
-
 TEST(LiveTickSafety, NobodyAtTheDeadManKeyIsNoForce) {
   PathDevice device(test::held_5mm);
   LiveRig rig(device);
@@ -119,7 +93,7 @@ TEST(LiveTickSafety, AScaledForceIsKeptAsPassiveAsThatOfAStifferModel) {
 }
 
 TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
-  FrailDevice device;
+  PathDevice device(test::held_5mm, {10.0, 1000.0, 0.05});
   LiveRig rig(device);
   rig.publish(1, {spring(1000.0)});
   LoopControls controls;
@@ -132,15 +106,15 @@ TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
        {std::pair{faulty, loop_fault::kDeviceFault}, {old, loop_fault::kStaleSample}, {not_zeroed, 0u}}) {
     device.state = well;
     rig.run(500, controls);
-    EXPECT_NEAR(device.written_N, 5.0, 0.01);
+    EXPECT_NEAR(device.force_N(), 5.0, 0.01);
     controls.acknowledged += 1;
     EXPECT_EQ(rig.run(1, controls).faults_latched & loop_fault::kStops, 0u);
     device.state = trouble;
     EXPECT_EQ(rig.run(12, controls).faults & loop_fault::kStops, bit);
-    EXPECT_EQ(device.written_N, 0.0);
+    EXPECT_EQ(device.force_N(), 0.0);
     device.state = well;
     const LoopSnapshot& snapshot = rig.run(5, controls);
-    EXPECT_LT(device.written_N, 0.6) << "ramps up again";
+    EXPECT_LT(device.force_N(), 0.6) << "ramps up again";
     EXPECT_EQ(snapshot.faults_latched & loop_fault::kStops, bit) << "until it is acknowledged";
     EXPECT_EQ(snapshot.device_faults_latched, trouble.faults);
   }
@@ -148,23 +122,23 @@ TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
 
 // The warm-up evaluates models in contact. Its forces must not reach a device.
 TEST(LiveTickSafety, ADeviceThatHasGivenNothingIsNotDriven) {
-  FrailDevice device;
-  device.speaks = false;
+  PathDevice device(test::held_5mm, {10.0, 1000.0, 0.05});
+  device.silent = true;
   LiveRig rig(device);
   rig.publish(1, {spring(1000.0)});
   rig.live().warm_up();
   for (int i = 0; i < 100; ++i) {
     const LoopSnapshot& snapshot = rig.run();
     ASSERT_EQ(snapshot.commanded_N, 0.0);
-    ASSERT_EQ(device.written_N, 0.0);
+    ASSERT_EQ(device.force_N(), 0.0);
     ASSERT_NE(snapshot.faults & loop_fault::kStaleSample, 0u);
   }
-  device.speaks = true;
+  device.silent = false;
   rig.run(150);
-  EXPECT_NEAR(device.written_N, 5.0, 1e-9);
-  device.speaks = false;
+  EXPECT_NEAR(device.force_N(), 5.0, 1e-9);
+  device.silent = true;
   rig.run(25);
-  EXPECT_EQ(device.written_N, 0.0) << "its last sample is too old";
+  EXPECT_EQ(device.force_N(), 0.0) << "its last sample is too old";
 }
 
 }  // namespace
