@@ -79,7 +79,7 @@ std::string feature_name(const FeatureSpec& spec) {
   return name.append(facts_of(spec.kind).unit);
 }
 
-FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)
+FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs)
     : specs_(specs), surface_position_m_(palpate::surface_position_m(specs)) {
   assert(!specs.empty() && specs.size() <= kMaxFeatures);
   for (std::size_t i = 0; i < specs_.size(); ++i) {
@@ -99,7 +99,7 @@ FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)
   }
 }
 
-void FeatureFilter::advance(State& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept {
+void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept {
   const double depth_m = std::max(0.0, motion.position_m - surface_position_m_);
   if (!state.started) state = {};
   state.vector.in_contact = sample.position_m > surface_position_m_;
@@ -145,7 +145,7 @@ void FeatureFilter::advance(State& state, const ToolSample& sample, const Motion
 }
 
 // Returns the surface.
-double FeatureFilter::advance_branches(State& state, double depth_m, double step_s) const noexcept {
+double FeaturePlan::advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept {
   BranchLanes::Step step[kMaxLaneGroups];
   branches_.prepare(step_s, surface_halfway(state.surface_m, state.depth_m, depth_m), step);
   if (lag_ == kMaxFeatures || !(step_s > 0.0)) {
@@ -162,20 +162,20 @@ double FeatureFilter::advance_branches(State& state, double depth_m, double step
   return surface_m;
 }
 
-void FeatureFilter::adopt(const FeatureFilter& before) noexcept {
-  if (before.surface_position_m_ != surface_position_m_) return;
+void FeaturePlan::adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept {
+  if (plan.surface_position_m_ != surface_position_m_) return;
   for (std::size_t i = 0; i < specs_.size(); ++i) {
-    for (std::size_t k = 0; k < before.specs_.size(); ++k) {
-      if (specs_[i] != before.specs_[k]) continue;
-      state_.vector.values[i] = before.state_.vector.values[k];
-      if (i == lag_) state_.surface_m = before.state_.surface_m;
+    for (std::size_t k = 0; k < plan.specs_.size(); ++k) {
+      if (specs_[i] != plan.specs_[k]) continue;
+      state.vector.values[i] = before.vector.values[k];
+      if (i == lag_) state.surface_m = before.surface_m;
       for (std::size_t p = 0; p < specs_[i].part_count; ++p) {
-        const std::size_t lane = first_lane_[i] + p, old = before.first_lane_[k] + p;
+        const std::size_t lane = first_lane_[i] + p, old = plan.first_lane_[k] + p;
         const auto copy = [&](V4* to, const V4* from) {
           to[lane / kLanes][lane % kLanes] = from[old / kLanes][old % kLanes];
         };
-        copy(state_.memory.value, before.state_.memory.value);
-        copy(state_.memory.drive_N, before.state_.memory.drive_N);
+        copy(state.memory.value, before.memory.value);
+        copy(state.memory.drive_N, before.memory.drive_N);
       }
     }
   }

@@ -57,6 +57,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "engine/tick/feature_lanes.h"
@@ -136,51 +137,35 @@ struct FeatureVector {
   bool in_contact = false;  // by the raw position
 };
 
-// The filters of one list of features, for one stream of samples.
-// Thread guarantee: constructing allocates, all else is wait-free; one thread at a time.
-class FeatureFilter {
+// The state of the filters of one list of features. Trivially copyable.
+struct alignas(sizeof(V4)) FeatureState {
+  FeatureVector vector;
+  double depth_m = 0.0;    // at the last sample
+  double surface_m = 0.0;  // s >= depth_m; equal without a surface_lag
+  double time_s = 0.0;
+  bool started = false;
+  PartMemory memory{};
+};
+static_assert(std::is_trivially_copyable_v<FeatureState>);
+
+// The immutable part of a filter: the features, their parts in lanes, and the surface.
+// Thread guarantee: immutable; constructing allocates, all else is wait-free.
+class FeaturePlan {
  public:
   // `specs`: 1 to 8 features; relaxation times > 0.
-  explicit FeatureFilter(const std::vector<FeatureSpec>& specs);
+  explicit FeaturePlan(const std::vector<FeatureSpec>& specs);
 
   const std::vector<FeatureSpec>& specs() const noexcept { return specs_; }
 
-  // The next sample starts a new stream.
-  void reset() noexcept { state_.started = false; }
-  // Takes a sample and its motion estimate; times increase. Contact is determined from the raw position.
-  const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept {
-    advance(state_, sample, motion);
-    return state_.vector;
-  }
-  // The result that `update` would have; the state does not change.
-  FeatureVector preview(const ToolSample& sample, const MotionEstimate& motion) const noexcept {
-    State next = state_;
-    advance(next, sample, motion);
-    return next.vector;
-  }
-  // To be called after an `update`: copies the state that `before`, fed with the same motion, has of equal features, so
-  // that a change of models keeps the memory of the material. The surface positions must be equal, otherwise nothing is
-  // copied. Other features keep the state of the recalled motion (HapticsTick::recall).
-  void adopt(const FeatureFilter& before) noexcept;
-
-  // The result of the last `update`.
-  const FeatureVector& vector() const noexcept { return state_.vector; }
-  double surface_m() const noexcept { return state_.surface_m; }
-  // The time of the last sample; minus infinity before the first.
-  double time_s() const noexcept { return state_.started ? state_.time_s : -std::numeric_limits<double>::infinity(); }
+  // Advances `state` by a sample and its motion estimate; times increase. Contact is determined from the raw position.
+  void update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
+  // To be called after an `update`: copies the state that `before`, fed with the same motion, has of equal features of
+  // `plan`, so that a change of models keeps the memory of the material. The surface positions must be equal, otherwise
+  // nothing is copied. Other features keep the state of the recalled motion (HapticsTick::recall).
+  void adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept;
 
  private:
-  struct alignas(sizeof(V4)) State {
-    FeatureVector vector;
-    double depth_m = 0.0;    // at the last sample
-    double surface_m = 0.0;  // s >= depth_m; equal without a surface_lag
-    double time_s = 0.0;
-    bool started = false;
-    PartMemory memory{};
-  };
-
-  void advance(State& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
-  double advance_branches(State& state, double depth_m, double step_s) const noexcept;
+  double advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept;
 
   std::vector<FeatureSpec> specs_;
   std::array<std::size_t, kMaxFeatures> first_lane_{};  // of each feature in PartMemory
@@ -188,7 +173,30 @@ class FeatureFilter {
   BristleLanes bristles_;
   std::size_t lag_ = kMaxFeatures;  // index of the surface_lag; kMaxFeatures: none
   double surface_position_m_ = 0.0;
-  State state_;
+};
+
+// A plan and a state, for one stream of samples.
+class FeatureFilter {
+ public:
+  explicit FeatureFilter(const std::vector<FeatureSpec>& specs) : plan_(specs) {}
+
+  const FeaturePlan& plan() const noexcept { return plan_; }
+  const FeatureState& state() const noexcept { return state_; }
+  void reset() noexcept { state_.started = false; }
+  // The time of the last sample; minus infinity before the first.
+  double time_s() const noexcept { return state_.started ? state_.time_s : -std::numeric_limits<double>::infinity(); }
+  const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept {
+    plan_.update(state_, sample, motion);
+    return state_.vector;
+  }
+  void adopt(const FeatureFilter& before) noexcept { plan_.adopt(state_, before.plan_, before.state_); }
+  // The result of the last `update`.
+  const FeatureVector& vector() const noexcept { return state_.vector; }
+  double surface_m() const noexcept { return state_.surface_m; }
+
+ private:
+  FeaturePlan plan_;
+  FeatureState state_;
 };
 
 }  // namespace palpate

@@ -39,7 +39,7 @@ HapticsTick::HapticsTick(const SensorSpec& sensor, ForceModels models) : motion_
   assert(models_.size() <= kMaxModels);
   for (const auto& model : models_) {
     std::size_t index = 0;
-    while (index < filters_.size() && filters_[index].specs() != model->features()) ++index;
+    while (index < filters_.size() && filters_[index].plan().specs() != model->features()) ++index;
     if (index == filters_.size()) filters_.emplace_back(model->features());
     filter_of_.push_back(index);
   }
@@ -62,9 +62,10 @@ void HapticsTick::rehearse() noexcept {
   const MotionEstimate estimate = motion.update(next);
   double sum_N = 0.0;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    const FeatureVector vector = filters_[i].preview(next, estimate);
+    FeatureState state = filters_[i].state();
+    filters_[i].plan().update(state, next, estimate);
     for (std::size_t k = 0; k < models_.size(); ++k) {
-      if (filter_of_[k] == i) sum_N += models_[k]->evaluate(vector.values.data()).force_N;
+      if (filter_of_[k] == i) sum_N += models_[k]->evaluate(state.vector.values.data()).force_N;
     }
   }
   rehearsed_N_ = sum_N;
