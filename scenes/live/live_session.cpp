@@ -144,7 +144,10 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
   comparison_.use_reference(*std::find_if(kReferenceKinds.begin(), kReferenceKinds.end() - 1,
                                           [&](ReferenceKind kind) { return has_reference(kind); }));
   if (replay() != nullptr) comparison_.begins_at(replay()->recording().rows.front().time_s);
-  const LoopSettings settings{kRehearse_ns, request_.realtime, scene_.jnd};
+  LoopSettings settings;
+  settings.jnd = scene_.jnd;
+  settings.rehearse_ns = kRehearse_ns;
+  settings.realtime = request_.realtime;
   loop_ = std::make_unique<HapticsLoop>(*device_, settings);
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
   if (std::string note = device_->note(); !note.empty()) notices_.push_back({std::move(note), false});

@@ -170,7 +170,9 @@ Status LiveStudy::begin(const std::string& code) {
   auto file = StudyFile::open((strokes() != nullptr ? "discriminate-" : "study-") + code + ".csv", header_);
   if (!file) return file.error();
   session_ = std::make_unique<StudySession>(std::move(*file));
-  const LoopSettings settings{0, realtime_, {}, session_.get()};
+  LoopSettings settings;
+  settings.source = session_.get();
+  settings.realtime = realtime_;
   auto loop = std::make_unique<HapticsLoop>(*device_, settings);
   if (const Status started = loop->start(); !started) return started;
   loop_ = std::move(loop);
