@@ -83,11 +83,6 @@ static real correction_of(const real *u) {
   real sum = *term++;
   int i, k;
   for (k = 0; TAIL_DEGREE >= 1 && k < FEATURES; ++k) sum += *term++ * u[k];
-  for (i = 0; TAIL_DEGREE >= 2 && i < FEATURES; ++i) {
-    real row = R(0.0);
-    for (k = i; k < FEATURES; ++k) row += *term++ * u[k];
-    sum += row * u[i];
-  }
   for (i = 0; i < CENTRES; ++i) {
     real squared = R(0.0);
     for (k = 0; k < FEATURES; ++k) {

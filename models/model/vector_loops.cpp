@@ -55,7 +55,7 @@ using Doubles = hn::CappedTag<double, kSimdPad>;
 using Vector = hn::Vec<Doubles>;
 
 // The minimum of squared distances. It keeps 1/sqrt and log finite and all powers well above the denormal range. The
-// kernels change by up to 1e-18 (linear), 5e-35 (thin-plate), 1e-54 (cubic) and 1e-90 (quintic).
+// kernels change by up to 1e-18 (linear), 5e-35 (thin-plate) and 1e-54 (cubic).
 constexpr double kSmallestSquared = 1e-36;
 
 // r from r^2. The square root unit is the bottleneck. AVX-512 also has an estimate y of 1/r to 14 bits; the loops
@@ -86,7 +86,6 @@ HWY_INLINE Vector kernel_of_squared(Vector squared) {
     const Vector r = root<kSeries>(squared);
     if constexpr (kKind == KernelKind::linear) return r;
     if constexpr (kKind == KernelKind::cubic) return hn::Mul(squared, r);
-    if constexpr (kKind == KernelKind::quintic) return hn::Mul(hn::Mul(squared, squared), r);
   }
 }
 

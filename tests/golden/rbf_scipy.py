@@ -5,8 +5,8 @@
 scipy solves eq. 4 of Hoever & Harders (2009) by LU, with the smoothing on the
 diagonal and the tail's variables shifted and scaled to [-1, 1]; `tail` here is
 converted to coefficients of 1, x_1 ... x_d. Its kernels have the sign that makes
-them conditionally positive definite (linear -r, quintic -r^5), and its weights
-have it too. The points are short decimals, so that the file stores them exactly.
+them conditionally positive definite (linear -r), and its weights have it too. The
+points are short decimals, so that the file stores them exactly.
 """
 
 import json
@@ -16,13 +16,11 @@ import scipy
 from scipy.interpolate import RBFInterpolator
 
 KERNELS = {"cubic": ("cubic", 1, 1.0), "linear": ("linear", 0, -1.0),
-           "thin-plate": ("thin_plate_spline", 1, 1.0), "quintic": ("quintic", 2, -1.0)}
+           "thin-plate": ("thin_plate_spline", 1, 1.0)}
 
 
 def plain_tail(fit, degree, dimension):
-    """Coefficients of 1, x for the degrees 0 and 1; none for degree 2."""
-    if degree == 2:
-        return []
+    """Coefficients of 1 for degree 0, of 1, x_1 ... x_d for degree 1."""
     powers = [tuple(row) for row in fit.powers]
     scaled = {power: value for power, value in zip(powers, fit._coeffs[-len(powers):, 0])}
     tail = [scaled[(0,) * dimension]]

@@ -157,7 +157,7 @@ std::vector<ModelData> example_models() {
       example_model("voxel", KernelKind::cubic, paper_features(), 2),
       example_model("random", KernelKind::linear, paper_features(), 3),
       example_model("kdtree", KernelKind::thin_plate, maxwell_features(), 4),
-      example_model("greedy", KernelKind::quintic, maxwell_features(), 5),
+      example_model("greedy", KernelKind::linear, maxwell_features(), 5),
       example_model("greedy", KernelKind::cubic, position_features(), 6),
       example_model("voxel", KernelKind::cubic, position_features(), 7),
       example_model("trend", KernelKind::cubic, maxwell_features(), 9),

@@ -17,8 +17,6 @@ inline double kernel_value(KernelKind kind, double r) {
       return r;
     case KernelKind::thin_plate:
       return r > 0.0 ? r * r * std::log(r) : 0.0;
-    case KernelKind::quintic:
-      return r * r * r * r * r;
   }
   return std::nan("");
 }

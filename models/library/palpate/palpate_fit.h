@@ -16,7 +16,7 @@ extern "C" {
  *   method      trend, direct, voxel, random, kdtree, greedy [greedy]
  *   centres     of random, kdtree and greedy: 1 to 2000 [100]
  *   candidates  of greedy: candidate sites per step, or all [100]
- *   kernel      cubic, linear, thin-plate, quintic [cubic]
+ *   kernel      cubic, linear, thin-plate [cubic]
  *   weighting   weight of an error: jnd, relative, none [jnd]
  *   reduction   samples that become sites: coverage, force, none [coverage]
  *   recipe      paper-2009: that of Hoever and Harders (2009) [none]

@@ -4,7 +4,6 @@
 //   linear      r          polynomial tail of degree 0
 //   thin-plate  r^2 log r  1
 //   cubic       r^3        1
-//   quintic     r^5        2
 //
 // With a tail of at least that degree the kernel times its sign is positive
 // definite on every weight vector orthogonal to the tail (Micchelli 1986).
@@ -20,10 +19,10 @@
 
 namespace palpate {
 
-enum class KernelKind { cubic, linear, thin_plate, quintic };
+enum class KernelKind { cubic, linear, thin_plate };
 
-inline constexpr std::array<KernelKind, 4> kKernelKinds = {KernelKind::cubic, KernelKind::linear,
-                                                           KernelKind::thin_plate, KernelKind::quintic};
+inline constexpr std::array<KernelKind, 3> kKernelKinds = {KernelKind::cubic, KernelKind::linear,
+                                                           KernelKind::thin_plate};
 
 struct KernelFacts {
   const char* name;
@@ -39,7 +38,6 @@ inline constexpr std::array<KernelFacts, kKernelKinds.size()> kKernels = {{
     {"cubic", 1, 1.0, "squared * SQRT(squared)"},
     {"linear", 0, -1.0, "SQRT(squared)"},
     {"thin-plate", 1, 1.0, "R(0.5) * squared * LOG(squared)"},
-    {"quintic", 2, -1.0, "squared * squared * SQRT(squared)"},
 }};
 
 constexpr const KernelFacts& kernel_facts(KernelKind kind) noexcept { return kKernels[static_cast<std::size_t>(kind)]; }

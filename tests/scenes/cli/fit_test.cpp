@@ -110,7 +110,6 @@ TEST_F(FitVerb, RefusesAnOptionThatTheMethodHasNoUseFor) {
 TEST_F(FitVerb, EveryOptionHasAUse) {
   const Arguments options[] = {{"--kernel", "linear"},
                                {"--kernel", "thin-plate"},
-                               {"--kernel", "quintic"},
                                {"--weighting", "relative"},
                                {"--weighting", "none"},
                                {"--reduction", "force"},
@@ -160,7 +159,7 @@ TEST_F(FitVerb, WarnsOfTheSameRecordingTwice) {
 
 TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
   expect_refused(fit({}, "guess"), 2, {"direct,voxel,random,kdtree,greedy"});
-  expect_refused(fit({"--kernel", "gauss"}), 2, {"cubic,linear,thin-plate,quintic"});
+  expect_refused(fit({"--kernel", "gauss"}), 2, {"cubic,linear,thin-plate"});
   expect_refused(fit({"--weighting", "x"}), 2, {"jnd,relative,none"});
   expect_refused(fit({"--reduction", "x"}), 2, {"coverage,force,none"});
   expect_refused(fit({"--centres", "0"}), 2, {"2000"});

@@ -122,7 +122,7 @@ def fit(recordings: object, method: str = "greedy", centres: int = 100, *,
     candidates : int or "all", optional
         Of greedy: sites tried per step [100].
     kernel : str, optional
-        ``cubic``, ``linear``, ``thin-plate`` or ``quintic`` [cubic].
+        ``cubic``, ``linear`` or ``thin-plate`` [cubic].
     weighting : str, optional
         Weight of an error: ``jnd``, ``relative`` or ``none`` [jnd].
     reduction : str, optional

@@ -28,7 +28,6 @@ long double reference(const RbfFunction& f, const double* x, long double* size) 
     const long double r = std::sqrt(squared);
     long double phi = r;
     if (f.kernel == KernelKind::cubic) phi = r * r * r;
-    if (f.kernel == KernelKind::quintic) phi = r * r * r * r * r;
     if (f.kernel == KernelKind::thin_plate) phi = r > 0 ? squared * std::log(r) : 0;
     sum += f.weights[j] * phi;
     *size += std::abs(f.weights[j]) * (f.kernel == KernelKind::thin_plate ? std::abs(phi) + squared : std::abs(phi));
@@ -76,7 +75,7 @@ TEST_P(RbfCorrectionOnTarget, KernelsKeepTheirRelativeAccuracyFromTinyToHugeDist
 }
 
 TEST_P(RbfCorrectionOnTarget, DenormalInputsCountAsZero) {
-  RbfFunction f = random_function(KernelKind::quintic, 2, 9, 3);
+  RbfFunction f = random_function(KernelKind::cubic, 2, 9, 3);
   RbfFunction zeroed = f;
   f.centres.col(0).setConstant(1e-310);
   zeroed.centres.col(0).setZero();
