@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
-#include <random>
 #include <system_error>
 #include <utility>
 
@@ -23,8 +23,9 @@ std::string folder_of(const std::string& path) {
 
 // The temporary file is in the folder of the final one, so that the rename cannot cross disks.
 std::string temporary_name_in(const std::string& folder) {
-  std::random_device random;
-  return folder + "/.palpate-" + std::to_string(random()) + "-" + std::to_string(random()) + ".tmp";
+  std::uint64_t random = 0;
+  static_cast<void>(getentropy(&random, sizeof random));  // so few bytes are always there
+  return folder + "/.palpate-" + std::to_string(random) + ".tmp";
 }
 
 std::string words_for(int error_number) { return std::generic_category().message(error_number); }

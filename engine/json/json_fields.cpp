@@ -68,7 +68,8 @@ std::size_t offset_of_value(std::string_view text, const std::string& pointer) {
         Level& level = open.back();
         here = level.prefix + (level.is_list ? std::to_string(level.index++) : level.name);
       }
-      if (here == pointer || pointer.starts_with(here + "/")) offset = token.begin;
+      if (here == pointer) return token.begin;
+      if (pointer.starts_with(here + "/")) offset = token.begin;
       if (token.opens()) open.push_back({here + "/", token.kind == '[', {}});
     }
   }

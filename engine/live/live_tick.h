@@ -176,7 +176,7 @@ class LiveTick {
   std::uint32_t outgoing_selected_ = 0;
   LoopControls controls_;  // of this tick
   LoopSnapshot snapshot_;
-  std::unique_ptr<RecordedRing> recorded_;  // 2.6 MB: too much for a stack
+  std::unique_ptr<RecordedRing> recorded_;  // 2.4 MB: too much for a stack
   double ns_per_cycle_;
   double sampled_s_ = -std::numeric_limits<double>::infinity();  // time of the tick that read the last sample
   bool started_ = false;

@@ -167,7 +167,7 @@ LineFault row_fault(std::string_view line, bool has_end, const std::vector<Colum
   }
   if (fields.size() != roles.size()) return field_count_fault(line, has_end, roles.size(), header_ends_with_comma);
   std::size_t bad = 0;
-  while (roles[bad] == ColumnRole::kIgnored || is_number(fields[bad])) ++bad;
+  while (bad + 1 < fields.size() && (roles[bad] == ColumnRole::kIgnored || is_number(fields[bad]))) ++bad;
   return {column_of(line, fields[bad]), number_fault(fields[bad], kColumnNames[static_cast<std::size_t>(roles[bad])])};
 }
 

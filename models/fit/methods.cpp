@@ -46,8 +46,11 @@ Result<FittedCorrection> fit_correction(const MethodTask& task, const FitControl
   return method.fit({task.sites, task.jnd_N, task.request, base->correction}, control);
 }
 
-FittedCorrection fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres, const std::string& shortage) {
+Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres,
+                                     const std::string& shortage) {
   RbfFunction function = solve_weights(task.sites, task.request.kernel, centres);
+  if (!function.weights.allFinite() || !function.tail.allFinite())
+    return Error{"the weights of the centres could not be computed; check the recording for extreme values"};
   FittedCorrection fitted{
       std::make_shared<const RbfCorrection>(std::move(function)), {}, std::to_string(task.request.centres)};
   if (centres.cols() < task.request.centres) {

@@ -88,7 +88,8 @@ double expected_seconds(const Method& method);
 Result<FittedCorrection> fit_correction(const MethodTask& task, const FitControl& control = {});
 
 // For methods that select centres (d x n): their weights (models/solve/solve_weights.h). `shortage`: why there are
-// fewer than requested.
-FittedCorrection fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres, const std::string& shortage);
+// fewer than requested. Errors: the weights could not be computed.
+Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres,
+                                     const std::string& shortage);
 
 }  // namespace palpate

@@ -50,7 +50,7 @@ void qr_in_place(MatrixRef a);
 bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values);
 
 // Minimises |a x - b| and returns the x of least norm. Singular values up to `smallest` times the largest count as 0.
-// Returns NaN if the iteration did not converge, which fit_method reports as an error (check_forces).
+// Returns NaN if the iteration did not converge, which fit_centres reports as an error.
 Eigen::VectorXd least_squares(Eigen::MatrixXd a, Eigen::VectorXd b, double smallest);
 
 // Cholesky factor in the lower triangle of `a`. False if `a` is not positive definite.

@@ -3,8 +3,8 @@
 //   within the JND = mean over the samples of P(|e| <= JND(f))
 //   99 % error: the q with mean P(|e| <= q JND(f)) = 0.99
 // s is that of each prepared recording: second differences of the force over the quietest fifth of its first 30,000
-// rows (engine/tick/sensor_identification.h). It contains white noise, but neither drift nor hysteresis. Thread
-// guarantee: pure function, slow side.
+// rows (engine/tick/sensor_identification.h). It contains white noise, but neither drift nor hysteresis.
+// Thread guarantee: pure function, slow side.
 #pragma once
 
 #include <vector>

@@ -69,6 +69,7 @@ Table broken_bytes() {
           {"CR behind a comment", all_lines("# c\n" + whole, "\n", "\r"), "1:4", {"carriage return", "LF or CRLF"}},
           {"CR-only rows", good_header() + all_lines(good_rows(12), "\n", "\r"), "2:16", {"carriage return", "LF"}},
           {"gigantic header", std::string(70000, 'x'), "1:65537", {"65536 bytes", "row"}},
+          {"long behind a mark", "\xEF\xBB\xBF#" + std::string(65536, ' ') + "\n" + whole, "1:65537", {"65536 bytes"}},
           {"gigantic comment", "#" + std::string(3000000, ' ') + "\n" + whole, "1:65537", {"65536 bytes", "row"}},
           {"gigantic number", with_row("0.003,0.001," + std::string(65536, '1')), "5:65537", {"65536 bytes", "row"}},
           {"gigantic last line", whole + std::string(65537, '0'), "14:65537", {"65536 bytes", "row"}}};

@@ -237,6 +237,7 @@ TEST(BridgeEndpoint, EveryFaultRemovesTheForceUntilTheTimeInTheReadme) {
     simulated.run_s(1.0);
     EXPECT_GT(simulated.snapshot.rendered_N, 2.0) << "near the continuous force";
     const int to_zero = expect_no_force(injection, injection.bridge, simulated);
+    EXPECT_EQ(simulated.snapshot.rendered_N, 0.0);
     simulated.mend();
     simulated.counts_offset = 0;
     simulated.board().conditions = 0;

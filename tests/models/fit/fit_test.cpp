@@ -167,7 +167,7 @@ TEST(Fit, EveryKernelWeightingAndReduction) {
       request.reduction = reduction;
       auto prepared = prepare({recording}, request);
       ASSERT_TRUE(prepared.ok());
-      prepared->correction.reset();  // a correction regardless of cross-validation
+      prepared->correction->used = true;  // a correction regardless of cross-validation
       for (const KernelKind kernel : kKernelKinds) {
         MethodRequest asked;
         asked.kernel = kernel;
@@ -191,7 +191,7 @@ TEST(Fit, EachRefusalSaysWhy) {
                               {"\"test\"", "relaxation features", "--relaxation", "palpate scenes"}));
   auto prepared = prepare({recording}, request_for(test::paper_features()));
   ASSERT_TRUE(prepared.ok());
-  prepared->correction.reset();
+  prepared->correction->used = true;
   MethodRequest voxel;
   voxel.method = &kVoxelMethod;
   voxel.grid = {5, 5};

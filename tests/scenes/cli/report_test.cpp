@@ -7,6 +7,7 @@
 #include <regex>
 #include <set>
 
+#include "engine/recording/recording.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -157,6 +158,21 @@ TEST_F(ReportVerb, TheSameRecordingsGiveTheSameFiguresButForTimes) {
   const std::string name = "/figures/error_by_force.svg";
   EXPECT_TRUE(test::read_text(out() + name) == test::read_text(other + name));
   fs::remove_all(other);
+}
+
+TEST_F(ReportVerb, ListsTheRecordings) {
+  const Json recordings = json_of(out())["tables"]["recordings"];
+  ASSERT_EQ(recordings.size(), 2U);
+  for (const std::size_t i : {0U, 1U}) {
+    const auto read = read_recording(recording(static_cast<int>(i) + 1));
+    ASSERT_TRUE(read.ok());
+    const auto samples = static_cast<double>(read->rows.size());
+    EXPECT_EQ(recordings[i]["role"], i == 0 ? "train" : "test");
+    EXPECT_EQ(recordings[i]["samples"], samples);
+    EXPECT_NEAR(recordings[i]["rate_Hz"].get<double>() * recordings[i]["seconds"].get<double>(), samples - 1.0, 1e-6);
+    EXPECT_GT(recordings[i]["deepest_m"].get<double>(), 0.0);
+    EXPECT_GT(recordings[i]["largest_force_N"].get<double>(), 0.0);
+  }
 }
 
 TEST_F(ReportVerb, CrossValidatesWithoutATest) {
