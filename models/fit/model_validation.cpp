@@ -249,7 +249,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPredi
   Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
   for (const CrossValidationPrediction& one : predictions) {
     const double scale = 1.0 / jnd.at(one.predicted_N);
-    const Eigen::Vector3d row = scale * Eigen::Vector3d(1.0, one.predicted_N, one.beyond);
+    const Eigen::Vector3d row = scale * Eigen::Vector3d(1.0, std::abs(one.predicted_N), one.beyond);
     gram += row * row.transpose();
     right += row * scale * one.error_N;
   }

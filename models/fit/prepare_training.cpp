@@ -76,7 +76,7 @@ Status apply(CorrectedRecordings& corrected, MotionSource& source, const Trainin
              const FitControl& control) {
   const auto measure = [&]() -> Status {
     source.correct(corrected.surfaces, corrected.surface_m);
-    const auto extent = measure_extent(source, control);
+    const auto extent = measure_extent(source, request.jnd, control);
     if (!extent) return extent.error();
     corrected.extent = *extent;
     return {};

@@ -88,7 +88,7 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   ForceEstimate estimate{std::min(force_N, largest_N), trust < 0.5 || features[depth_] > deepest_m_};
   if (data_.error_bound) {
     const double beyond = std::sqrt(squared_distance) - data_.cover.inner_radius;
-    estimate.predicted_error_N = data_.error_bound->at(std::abs(estimate.force_N), beyond);
+    estimate.predicted_error_N = data_.error_bound->at(estimate.force_N, beyond);
   }
   return estimate;
 }

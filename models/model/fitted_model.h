@@ -15,6 +15,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -75,9 +76,9 @@ struct ErrorBound {
   double per_force = 0.0;
   double per_distance_N = 0.0;
 
-  // `force_N`: absolute; `beyond`: distance - inner radius. An infinite distance gives an infinite bound.
+  // `beyond`: distance - inner radius. An infinite distance gives an infinite bound.
   double at(double force_N, double beyond) const noexcept {
-    return floor_N + per_force * force_N + per_distance_N * std::max(0.0, beyond);
+    return floor_N + per_force * std::abs(force_N) + per_distance_N * std::max(0.0, beyond);
   }
 };
 

@@ -96,7 +96,7 @@ FoldAssignment TrainingExtent::folds(std::size_t recordings) const {
   return {recordings, contact_samples, has_unloading};
 }
 
-Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control) {
+Result<TrainingExtent> measure_extent(MotionSource& source, const JndLine& jnd, const FitControl& control) {
   TrainingExtent extent;
   double squares = 0.0;
   MotionRow last;
@@ -117,7 +117,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
         if (!(row.sample.position_m > 0.0)) return;
         extent.depth_m = std::max({extent.depth_m, row.motion.position_m, 1e-9});
         extent.force_N = std::max(extent.force_N, row.force_N);
-        if (row.force_N < -JndLine{}.at(0.0)) ++pulls;
+        if (row.force_N < -jnd.at(0.0)) ++pulls;
         lowest_N = std::min(lowest_N, row.force_N);
         squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
         ++extent.contact_samples;

@@ -108,7 +108,7 @@ struct TrainingExtent {
 };
 
 // Errors: those of the source; interrupted.
-Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control);
+Result<TrainingExtent> measure_extent(MotionSource& source, const JndLine& jnd, const FitControl& control);
 
 // The surface position in m, <= 0, of recordings whose depth counts from a preload; 0 where there is none or it cannot
 // be identified. A straight line is fitted to the samples whose depth is below a hundredth of the greatest; the

@@ -100,5 +100,21 @@ TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
   EXPECT_FALSE(calibrate_bound({}, JndLine{}, 5.0).has_value());
 }
 
+// The bound depends on the absolute force, so that a material that pulls has the same one.
+TEST(CalibrateBound, IsTheSameForPullingForces) {
+  test::Numbers numbers(5);
+  std::vector<CrossValidationPrediction> pushing;
+  for (int i = 0; i < 1000; ++i) {
+    const double force_N = between(numbers, 0.0, 5.0);
+    pushing.push_back({0.05 * force_N * between(numbers, 0.0, 1.0), force_N, 0.0});
+  }
+  std::vector<CrossValidationPrediction> pulling = pushing;
+  for (CrossValidationPrediction& one : pulling) one.predicted_N = -one.predicted_N;
+  const auto of_pushing = calibrate_bound(pushing, JndLine{}, 5.0);
+  const auto of_pulling = calibrate_bound(pulling, JndLine{}, 5.0);
+  ASSERT_TRUE(of_pushing && of_pulling);
+  for (const double force_N : {0.0, 1.0, 5.0}) EXPECT_EQ(of_pulling->at(-force_N, 0.0), of_pushing->at(force_N, 0.0));
+}
+
 }  // namespace
 }  // namespace palpate

@@ -146,7 +146,7 @@ Recording presses(int rows) {
 
 TEST(TrainingExtent, MeasuresDepthStrokesAndWays) {
   MotionSource source({prepare_recording(presses(10000))});
-  const auto extent = measure_extent(source, {});
+  const auto extent = measure_extent(source, {}, {});
   ASSERT_TRUE(extent.ok());
   EXPECT_NEAR(extent->depth_m, 2e-3, 1e-4);  // the error of the motion estimate at a turn
   EXPECT_NEAR(extent->force_N, 1.0, 1e-3);
@@ -165,7 +165,7 @@ double beginning_of(double preload_N, double noise_N, double stiffness_N_per_m) 
     row.force_N = preload_N + (i % 2 == 0 ? noise_N : -noise_N) + stiffness_N_per_m * row.position_m;
   }
   MotionSource source({prepare_recording(recording)});
-  const auto extent = measure_extent(source, {});
+  const auto extent = measure_extent(source, {}, {});
   const auto beginning_m = find_preload_surface(source, *extent, {}, {});
   return beginning_m.ok() ? *beginning_m : 1.0;
 }
