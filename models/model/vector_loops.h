@@ -22,10 +22,10 @@ constexpr std::size_t whole_vectors(std::size_t count, std::size_t lanes) noexce
 
 // ---- radial basis functions (rbf_evaluate.h), in double precision ----
 
-// Doubles in the widest vector used; every narrower one divides it.
+// The number of doubles in the widest vector; the number in every narrower one divides it.
 inline constexpr std::size_t kSimdPad = 8;
 
-// Numbers below this count as 0: no product of two others is denormal.
+// Numbers below this count as 0, so that the product of two others is not denormal.
 inline constexpr double kTiny = 1e-100;
 inline double without_denormals(double value) noexcept { return value < kTiny && value > -kTiny ? 0.0 : value; }
 
