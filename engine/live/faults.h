@@ -124,7 +124,7 @@ inline std::vector<std::string> alarm_words(FaultSource source, std::uint32_t bi
   }
   return words;
 }
-// Of a device: what happened and what to do, a sentence for each alarm among the bits.
+// The sentences of a device's alarms among `faults`: what happened and what to do.
 inline std::vector<std::string> device_fault_words(std::uint32_t faults) {
   return alarm_words(FaultSource::device, faults);
 }

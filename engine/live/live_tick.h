@@ -76,7 +76,7 @@ inline constexpr double kDeadManHold_s = 0.2;
 struct LoopControls {
   std::uint32_t models_id = 0;  // the set that `selected` refers to
   std::uint32_t selected = 0;   // the active model
-  std::uint32_t recording = 0;  // > 0: every sample goes into the ring with this number
+  std::uint32_t recording = 0;  // > 0: all samples are recorded with this number
   DeadMan dead_man = DeadMan::off;
   // The last time when the dead-man key was held, steady clock; to be updated in every frame.
   double held_s = -std::numeric_limits<double>::infinity();
@@ -103,7 +103,7 @@ struct LoopSnapshot {
   DeviceHealth device;               // at this tick
   std::uint32_t device_faults_latched = 0;
   std::uint32_t limiter_flags = 0;  // force_limit
-  float heat_share = 0.0F;          // of the motor's thermal limit
+  float heat_share = 0.0F;          // ForceLimiter::heat_share
   float stiffness_share = 1.0F;     // rendered part of the wanted one; < 1: StabilityLimit
   float lag_ms = 0.0F;              // lag of the force behind the motion
   bool dead_man_released = false;   // the dead-man switch is released: no force
