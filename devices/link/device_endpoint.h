@@ -1,4 +1,4 @@
-// A device that renders force (HID or bridge): DeviceEndpoint without threads and I/O, LinkedDevice with them. The
+// A device that renders force (HID or bridge). DeviceEndpoint has neither threads nor I/O; LinkedDevice adds them. The
 // reader thread gives it reports, the writer thread fetches commands, the haptics thread reads samples and writes
 // forces. The threads exchange data by a TripleBuffer each way and an SpscRing of samples.
 //
