@@ -58,7 +58,7 @@ struct RecordingCheck {
 RecordingCheck check_recording(const PreparedRecording& prepared, const CheckRequest& request,
                                const RecordingFaults& faults = {});
 
-// Of longer recordings only the first rows are checked and fitted: 100 minutes at 1 kHz.
+// Only the first rows of a longer recording are checked and fitted: 100 minutes at 1 kHz.
 inline constexpr std::size_t kMostCheckedRows = 6000000;
 
 struct CheckedFile {

@@ -7,10 +7,10 @@
 //   minimise sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,
 // where r is the residual of a trend fitted to the same rows. The rows of the fold are then predicted by
 //   f = max(lowest, T(x) + g(x) clamp(h(x), -limit, limit))
-// with g the trust around the rows of the other folds. The common rule selects smoothing and inner radius of the trust.
-// No correction is its simplest candidate, followed by the smallest radius with the most smoothing. The smoothing is
-// the ratio of noise variance to prior variance and does not depend on the number of centres, so one value serves every
-// method, and with more centres each approaches the smoothing spline through all sites.
+// with g the trust around the rows of the other folds. The selection rule chooses smoothing and inner radius of the
+// trust. Its simplest candidate is no correction, followed by the smallest radius with the most smoothing. The
+// smoothing is the ratio of noise variance to prior variance and does not depend on the number of centres. One value
+// thus serves every method, and with more centres each approaches the smoothing spline through all sites.
 // Sources: Wahba (1990) (smoothing splines; regression splines as subsets of the basis); Craven & Wahba (1979); Hastie,
 // Tibshirani & Friedman (2009), 7.10.
 // Thread guarantee: slow side, pure.

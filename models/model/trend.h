@@ -4,10 +4,10 @@
 //   T(x) = E(d) + eta(d) v + mu(d) v / (1 + |v| / v_0) + sum_b z_b + sum_k y_k
 //
 // d: depth, v: velocity, z_b: force of Maxwell branch b or of a spectrum of them, y_k: force of stops and creeping
-// bristles (engine/tick/features.h); all are features. v_0: RMS velocity of the recordings, so that the two viscous
-// terms together describe a viscosity that falls with speed. E increases with depth, and eta, mu and the stiffnesses
-// of branches and bristles are non-negative (the fit enforces it), so that the trend is passive. A model without
-// velocity or branches has only the terms of its features; position alone leaves E(d).
+// bristles (engine/tick/features.h); all are features. v_0: RMS velocity of the recordings. The two viscous terms
+// together describe a viscosity that falls with speed. E increases with depth, and eta, mu and the stiffnesses of
+// branches and bristles are non-negative (the fit enforces it), so that the trend is passive. A model has only the
+// terms of its features; position alone leaves E(d).
 //
 // Beyond the data: E continues along its tangent beyond the greatest recorded depth, and v is clamped to
 // velocity_limit, so that the value is bounded; the model clamps the rest.

@@ -1,5 +1,5 @@
 // The vectorised loops of the tick and of the fits, one variant per instruction set (AVX-512, AVX2, SSE4, NEON or
-// plain), selected at run time. Only rbf_evaluate.h, domain_guard.h, tests and benchmarks include this header.
+// plain), selected at run time; pure and wait-free. Only rbf_evaluate.h, domain_guard.h, tests and benchmarks use them.
 //
 // Points are structures of arrays: coordinate k of point i is coordinates[k * stride + i]. Loads are fast because
 // CMakeLists.txt lets Eigen align to 64 bytes.

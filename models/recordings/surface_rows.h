@@ -41,7 +41,7 @@ class GrowingStride {
   std::vector<SurfaceRow> rows_;
 };
 
-// Every n-th row, with the smallest n that leaves at most `most`.
+// Every n-th row, n = rows / most + 1 (integer division), so that at most `most` are left.
 std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::size_t most);
 // The same of a recording, with the motion estimates.
 std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
@@ -64,7 +64,7 @@ std::pair<double, double> position_range_m(const std::vector<SurfaceRow>& rows);
 // The median (the upper one of an even number); 0 for no values.
 double median_of(std::vector<double> values);
 
-// The block of each row, of kBlocks blocks of equal path length of the tool.
+// The index of the block of each row: kBlocks blocks of equal path length of the tool.
 inline constexpr std::size_t kBlocks = 10;
 std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows);
 

@@ -1,5 +1,5 @@
-// Cross-validation: the folds of the training recordings, the errors of candidates, and the one rule that selects among
-// them. Every candidate predicts the samples of each fold from the other folds.
+// Cross-validation: the folds of the training recordings, the errors of candidates, and the selection rule that chooses
+// among them. Every candidate predicts the samples of each fold from the other folds.
 //
 // Folds: neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples. Three
 // recordings or more form up to six folds of whole recordings; fewer form five folds of whole strokes (contacts). A
@@ -8,10 +8,10 @@
 //
 // The score of a fold is
 //   l_k = ln(mean_i (e_i / JND_i)^2 + kUnnoticed_jnd^2).
-// The logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below
-// the JND irrelevant. The rule takes the simplest candidate whose mean score exceeds the best by at most two standard
-// errors of the paired difference, which is then not significant at the 95 % level. (With one standard error the
-// share within the JND falls by up to 1.4 points: tests/bench/README.md.)
+// The logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below the
+// JND irrelevant. The selection rule takes the simplest candidate whose mean score exceeds the best by at most two
+// standard errors of the paired difference, which is then not significant at the 95 % level. (With one standard error
+// the share within the JND falls by up to 1.4 points: tests/bench/README.md.)
 // Source: Breiman, Friedman, Olshen & Stone (1984), section 3.4.3; Hastie, Tibshirani & Friedman
 // (2009), section 7.10.
 // Thread guarantee: value types and pure functions, slow side.

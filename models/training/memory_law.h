@@ -1,4 +1,4 @@
-// Selects, by cross-validation and the common rule (cross_validation.h), the parameters of the memory that a linear
+// Selects, by cross-validation and the selection rule (cross_validation.h), the parameters of the memory that a linear
 // regression cannot identify: whether the material's surface lags behind a retreating tool (`surface_lag`,
 // engine/tick/features.h), and how the relaxation times change with depth (`slowing`). For models with few features
 // (`--relaxation auto`, and the recipe of 2009, whose authors fitted theirs to the transients of the recording) it
@@ -31,7 +31,7 @@ Result<FoldErrors> simple_law_error(const TrendData& data, const FeatureList& li
 
 // Selects relaxation times from `candidates_s` (both ascending, in s). Each candidate is a feature of one regression.
 // Times are added one by one, by the lowest cross-validated error; after each addition, times move to neighbouring
-// candidates while the error falls. `count`: 1 to 3, or 0: a further time is kept if the common rule prefers it.
+// candidates while the error falls. `count`: 1 to 3, or 0: a further time is kept if the selection rule prefers it.
 // `velocity`: whether the trend has viscosity. Errors: no candidates (recordings too short); interrupted.
 Result<std::vector<double>> identify_relaxation(const TrendData& data, const std::vector<double>& candidates_s,
                                                 bool velocity, std::size_t count);

@@ -11,9 +11,9 @@
 // viscosity, branch and friction dissipate.
 //
 // The elastic response is a P-spline, whose penalty approximates the integral of its squared second derivative (Eilers
-// & Marx 1996; models/model/trend.h). lambda is selected by cross-validation and the common rule (cross_validation.h).
-// alpha is the relative error of all other columns, of which repeated measurements agree to about a tenth; the penalty
-// is the expected square of such errors (errors in variables; Golub & Van Loan 1980). Columns that the recording cannot
+// & Marx 1996; models/model/trend.h). lambda is selected by cross-validation (cross_validation.h). alpha is the
+// relative error of all other columns, of which repeated measurements agree to about a tenth; the penalty is the
+// expected square of such errors (errors in variables; Golub & Van Loan 1980). Columns that the recording cannot
 // separate then share their effect.
 //
 // Source of the solver: Lawson & Hanson (1974), chapter 23, on the normal equations with columns scaled to unit norm.
