@@ -14,10 +14,10 @@
 
 namespace palpate {
 
-// A count is 1 nm, a unit 1 uN towards increasing positions. Decodes reports of BridgeReports.
+// A count is 1 nm. A unit of force is 1 uN and positive towards increasing positions. Decodes reports of BridgeReports.
 extern const DeviceProtocol kBridgeProtocol;
 
-// Divides the byte stream into reports: a frame with a valid checksum; a report of one byte where bytes between frames
+// Divides the byte stream into reports: a frame with a valid checksum; one byte for a gap, which is a run of bytes that
 // belong to no frame; the first four bytes of a frame of another version. One thread; wait-free, never throws.
 class BridgeReports {
  public:

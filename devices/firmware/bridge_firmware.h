@@ -1,8 +1,8 @@
 // The hardware-independent firmware of a board for the bridge protocol (devices/README.md#bridge). hapkit.cpp uses it
 // on an ATmega328P, paddle.ino on a Teensy, the tests on a simulated board.
-// A frame is obeyed when its drive flag is 0, so that stopping works and a host may restart, or when its sequence is
-// newer than the last one. The motor is off after kTimeout_us without such a frame or without a new heartbeat, until
-// both return, and while motor or sensor has a fault.
+// A frame without drive flag is always obeyed, so that a host can stop or restart; a frame with it is obeyed if its
+// sequence is newer than the last one, or after a stop. The motor is off after kTimeout_us without such a frame or
+// without a new heartbeat, until both return, and while motor or sensor has a fault.
 // Thread guarantee: one thread.
 #pragma once
 

@@ -19,7 +19,7 @@ constexpr int32_t kNoForce = -2147483647 - 1;  // the device has no force sensor
 
 // Status of the device, bits.
 constexpr uint8_t kDriving = 1;
-constexpr uint8_t kStopped = 2;  // its watchdog has stopped the motor; until the next valid frame
+constexpr uint8_t kStopped = 2;  // its watchdog has stopped the motor; until a frame with a new heartbeat
 constexpr uint8_t kMotorFault = 4;
 constexpr uint8_t kSensorFault = 8;
 constexpr uint8_t kGrip = 16;

@@ -1,6 +1,6 @@
 // The USB HID bus of this machine: libhidapi over hidraw.
 // Each device is opened twice. hidapi reads from it. The writing thread uses a file of its own, because a handle of
-// hidapi stores its last error without a lock; this file also has the lock against a second program, and takes the stop
+// hidapi stores its last error without a lock. This file is also locked against a second program, and receives the stop
 // report when a signal ends the program.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace palpate {
 
 class HidapiBus final : public DeviceBus {
  public:
-  // `wait_ms`: longest wait of a read; -1: unlimited, which emulated nodes of umockdev need.
+  // `wait_ms`: longest wait of a read, ms; -1: unlimited, which emulated nodes of umockdev need.
   explicit HidapiBus(int wait_ms = 50) noexcept : wait_ms_(wait_ms) {}
 
   std::vector<DeviceNode> list() override;

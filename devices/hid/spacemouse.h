@@ -1,7 +1,6 @@
 // A 3Dconnexion SpaceMouse: pushing its cap down moves the target of a MouseDevice into the block. It renders no force
-// to the hand; the force acts on the simulated mass of the MouseDevice.
-// It reports at 60 to 125 Hz, and not at all at rest. The low-pass filter of the MouseDevice turns the steps of the
-// target into a motion at every tick.
+// to the hand; the force acts on the simulated mass of the MouseDevice. It sends 60 to 125 reports a second, none at
+// rest. The low-pass filter of the MouseDevice turns the steps of the target into a motion at every tick.
 #pragma once
 
 #include <atomic>

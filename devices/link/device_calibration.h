@@ -14,12 +14,12 @@ struct DeviceCalibration {
   const DeviceProtocol* protocol = nullptr;  // not null once the file is read
   double counts_per_metre = 0.0;             // > 0
   double encoder_step_m = 0.0;               // 0: one count
-  // 1: counts increase into the block, -1: out of it. A positive command always drives the counts up, so a force out
-  // of the block is a command of the sign -direction.
+  // 1: counts increase into the block, -1: out of it. A positive command always drives the counts up, so a force out of
+  // the block is a command with the sign of -direction.
   double direction = 1.0;
-  // Position of the tool while it is zeroed, or of the 0 of an absolute device; negative: outside of the block.
+  // Position of the tool while it is zeroed, or of count 0 of an absolute device; negative: outside of the block.
   double rest_position_m = 0.0;
-  // The following are of devices that render force.
+  // The following apply only to devices that render force.
   double fastest_m_per_s = 0.0;   // a faster motion is a fault of the encoder (a jump)
   double force_N_per_unit = 0.0;  // see DeviceCommand::units
   double stuck_after_s = 0.0;     // the encoder is stuck when no count changes for this time under force

@@ -1,12 +1,12 @@
-// Converts the device's time of a sample to the host's clock. The device's clock is linear in the host's clock, and
-// every report arrives with a delay of the transport:
+// Converts the device's time of a sample to the host's clock. The device's clock is assumed linear in the host's clock,
+// and every report arrives with a delay of the transport:
 //
 //   arrival - device time = a + b (device time) + delay,  delay >= 0
 //
-// The line is the highest one below all points of the last half second (the linear programme of Moon, Skelly &
-// Towsley, "Estimation and removal of clock skew from network delay measurements", INFOCOM 1999). This removes jitter
-// and follows drift at every rate of reports. A longer constant delay becomes part of the line after half a second.
-// Only the lowest point of each 50 ms is used.
+// The line is the highest one below all points of the last half second (the linear programme of Moon, Skelly & Towsley,
+// "Estimation and removal of clock skew from network delay measurements", INFOCOM 1999), of which only the lowest one
+// in each 50 ms is used. This removes jitter and follows drift at every rate of reports. A delay that stays longer for
+// more than half a second becomes part of the line.
 // Thread guarantee: one thread; wait-free, never throws.
 #pragma once
 
@@ -57,7 +57,7 @@ class DeviceClock {
     return point.lag_s - level_s_ - drift_ * (point.device_s - middle_s_);
   }
 
-  // Chooses among the slopes between two points that whose line is highest at the mean time.
+  // Among the slopes between two points, chooses the one whose line is highest at the mean time.
   void fit() noexcept {
     const std::size_t count = std::min(count_, kSegments);
     middle_s_ = 0.0;

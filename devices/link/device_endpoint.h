@@ -1,11 +1,11 @@
-// A device that renders force (HID or bridge): DeviceEndpoint without threads and I/O, LinkedDevice with them. The
+// A device that renders force (HID or bridge). DeviceEndpoint has neither threads nor I/O; LinkedDevice adds them. The
 // reader thread gives it reports, the writer thread fetches commands, the haptics thread reads samples and writes
 // forces. The threads exchange data by a TripleBuffer each way and an SpscRing of samples.
 //
 // A device with an incremental encoder gives neither samples nor force until it is zeroed: bring the tool to its marked
-// rest position (rest_position_m of the calibration), call `start_zeroing` and hold it still. `health` has the
-// progress, zeroing_words the next step. Zeroing is necessary again after the device was unplugged or restarted, or its
-// encoder jumped or was stuck.
+// rest position (rest_position_m of the calibration), call `start_zeroing` and hold the tool still. `health` has the
+// progress; zeroing_words describes the next step. Zeroing is necessary again after the device was unplugged or
+// restarted, or its encoder jumped or was stuck.
 //
 // The writer is a watchdog: when the haptics thread has not written for kHapticsSilent_s, the writer sends force 0. The
 // heartbeat in the frames of the bridge then stops, so that the board's watchdog acts as well.
@@ -29,13 +29,13 @@ namespace palpate {
 class DeviceEndpoint : public Device, public LinkListener {
  public:
   static constexpr double kHapticsSilent_s = 0.02;
-  // A fault is reported when no command was written, or confirmed, for this time.
+  // kWriteStalled is reported when no command was written, or none confirmed, for this time.
   static constexpr double kWriteStalled_s = 0.05;
   // An unchanged command is repeated after this time.
   static constexpr double kRepeat_s = 0.005;
-  // Mean waiting time: half a tick until a sample is used, half a period of the writer until the force is sent.
+  // Part of the lag: half a tick until a sample is used and half a period of the writer until the force is sent.
   static constexpr double kWaits_s = 0.75e-3;
-  // A timed device gets one command per sample, but at least one in this time.
+  // A device with timed reports gets one command per sample, but at least one in this time.
   static constexpr double kSlowestSample_s = 0.01;
 
   // `name`: as in --device.

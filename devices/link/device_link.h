@@ -1,8 +1,8 @@
 // A DeviceBus lists devices and opens them. It is USB HID (devices/hid), a byte stream (devices/bridge), or a test
 // double.
-// A DeviceLink has the threads between an open device and its listener: one reads all reports, so that none queue up;
-// the other writes the newest command and skips older ones. Only they do blocking I/O. A device that was unplugged is
-// searched for and opened again until the link ends.
+// A DeviceLink runs two threads between an open device and its listener. The reader takes all reports, so that none
+// queue up; the writer sends the newest command and skips older ones. Only they do blocking I/O. A device that was
+// unplugged is searched for and opened again until the link ends.
 #pragma once
 
 #include <atomic>
@@ -61,9 +61,9 @@ struct OpenedDevice {
   bool measures_force = false;
 };
 
-// Opens the first device of one of `protocols`; without a connection if none is plugged in. Where one is plugged in but
-// cannot be opened, it tries for half a second, because udev may still be setting the permissions.
-// Slow side. Errors: none of the devices that are plugged in can be opened, with the reason for each.
+// Opens the first device of one of `protocols`; returns no connection if none is plugged in. If one is plugged in but
+// cannot be opened, it tries for half a second, because udev may still be setting the permissions. Slow side. Errors:
+// none of the devices that are plugged in can be opened, with the reason for each.
 Result<OpenedDevice> open_first(DeviceBus& bus, const std::vector<const DeviceProtocol*>& protocols);
 
 class DeviceLink {

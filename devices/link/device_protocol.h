@@ -32,7 +32,7 @@ enum class ReportVerdict : std::uint8_t {
 
 struct DeviceReading {
   std::int32_t counts = 0;
-  // Of a timed protocol.
+  // `sequence` and `time_us`: of a `timed` protocol; `confirmed`: of one that `confirms`.
   std::uint32_t sequence = 0;
   std::uint32_t time_us = 0;
   std::uint32_t confirmed = 0;  // sequence of the last command that the device obeyed
@@ -46,9 +46,9 @@ struct DeviceReading {
 
 struct DeviceCommand {
   std::uint32_t sequence = 0;
-  std::uint16_t heartbeat = 0;
-  bool drive = false;
-  double units = 0.0;  // force in the units of the protocol
+  std::uint16_t heartbeat = 0;  // changes with each tick of the haptics thread
+  bool drive = false;           // false: no force
+  double units = 0.0;           // force, see DeviceCalibration::force_N_per_unit
 };
 
 // Reports to write one after the other. Those of HID begin with the report id, 0 for none.
@@ -75,7 +75,7 @@ struct DeviceProtocol {
   ReportVerdict (*decode)(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept;
   // The reports to send once after opening.
   OutReports (*encode_start)() noexcept;
-  // A command. It also requests the position where the device does not send it unasked.
+  // A command. It also requests the position if the device does not send it unasked.
   OutReports (*encode_command)(const DeviceCommand& command) noexcept;
   // Removes the force.
   OutReports (*encode_stop)() noexcept;

@@ -10,16 +10,15 @@
 
 namespace palpate {
 
-// Any thread but the haptics thread; installs the handlers of signals.h. `reports` are written to `descriptor`, which
-// stays open until `unregister_device_stop`, when one of the signals of signals.h ends the program: new writes of
-// forces are refused, running ones finish within 20 ms, and the registered reports are the last. Returns the slot; -1
-// when all eight are in use.
+// Any thread but the haptics thread; installs the handlers of signals.h. When one of its signals ends the program, new
+// writes of forces are refused, running ones get 20 ms to finish, and then `reports` are written to `descriptor`, which
+// must stay open until `unregister_device_stop`. Returns the slot; -1 when all eight are in use.
 int register_device_stop(int descriptor, const OutReports& reports) noexcept;
 // Any thread but the haptics thread. -1 is ignored.
 void unregister_device_stop(int slot) noexcept;
 
-// Call them around every write of a report that may have a force. Any thread, wait-free. False: a signal is ending the
-// program; do not write, and report the write as failed. Else call `end_force_write` afterwards.
+// To be called around every write of a report that may have a force. Any thread, wait-free. False: a signal is ending
+// the program; do not write, and report the write as failed. True: call `end_force_write` after the write.
 bool begin_force_write() noexcept;
 void end_force_write() noexcept;
 

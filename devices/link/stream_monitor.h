@@ -1,5 +1,5 @@
 // Monitors the readings of one device, for all transports: position, zeroing and faults. It has no clock and no thread,
-// and does not decode.
+// and does not decode. A fault on the right has the cause on the left:
 //
 //   the decoder refuses a report                                          kCorrupt, kWrongFirmware
 //   a sequence number decreases                                           kOutOfOrder
@@ -33,10 +33,10 @@ struct MonitorState {
   double transient_until_s = 0.0;
   double confirmed_at_s = 0.0;  // time of the last change of `confirmed`
   std::uint32_t confirmed = 0;  // sequence of the last confirmed command
-  std::uint32_t transient = 0;  // device_fault, until transient_until_s
-  std::uint32_t lost = 0;       // device_fault, until the device is zeroed
+  std::uint32_t transient = 0;  // bits of device_fault that end at transient_until_s
+  std::uint32_t lost = 0;       // bits of device_fault that end when the device is zeroed
   std::uint32_t streams = 0;    // number of streams; one begins when the position becomes known or jumps
-  double late_after_s = 0.0;    // largest age of a sample, see kLateIntervals
+  double late_after_s = 0.0;    // largest permitted age of a sample, see kLateIntervals
   double measured_N = std::numeric_limits<double>::quiet_NaN();
   DeviceHealth health;  // zeroing, grip and interval, which is averaged over about ten samples
 };
@@ -52,7 +52,7 @@ class StreamMonitor {
   // For zeroing the tool has to rest within kRest_m for this time.
   static constexpr double kZeroing_s = 0.2;
   static constexpr double kRest_m = 0.5e-3;
-  // The device was restarted when so many successive readings are in order but before the last accepted sequence.
+  // The device has restarted when so many successive readings are in order but older than the last accepted one.
   static constexpr int kStartedAgain = 8;
   // A sample of a timed stream is late when it is older than kLateIntervals intervals, clamped to stale_after_s ..
   // kLongestSilence_s. After a late sample the limit is half of that.

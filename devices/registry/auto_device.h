@@ -1,5 +1,5 @@
-// The simulated hand, until the user moves the mouse or a SpaceMouse, and again once both have been idle for
-// MouseDevice::kIdleTime_s. The tool continues from its last position.
+// This device is the simulated hand until the user moves the mouse or a SpaceMouse, and again once both have been idle
+// for MouseDevice::kIdleTime_s. The tool continues from its last position.
 // Thread guarantee: as Device and ToolInput.
 #pragma once
 

@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-// Force limits of simulated tools.
+// Force limits of simulated tools: 40 N, 5000 N/s, a ramp of 0.3 s.
 inline constexpr ForceLimits kSimulatedLimits{40.0, 5000.0, 0.3};
 
 // A simulated tool. Every read advances it by the time since the last one, at most by 20 ms.
@@ -57,7 +57,7 @@ class HandDevice final : public SimulatedDevice, private HandMotion {
   double held_depth_m(double force_N) const noexcept override;
   bool is_pushed_back() const noexcept override { return has_felt_; }
 
-  bool has_felt_ = false;             // a force, which begins with the first model of a session
+  bool has_felt_ = false;             // a force acted in the block; there is none before the first model
   double stiffness_N_per_m_ = 800.0;  // secant, low-pass filtered; the initial value is a guess
 };
 

@@ -4,7 +4,7 @@
 //   aim(u) = a + (b - a) (10 u^3 - 15 u^4 + 6 u^5),  u in 0..1,
 // plus a tremor of 8 to 12 Hz. The hand is a mass that a spring and a damper couple to the target:
 //   m a = k (aim - x) + c (d aim/dt - v) - F
-// so that it yields to the force F, and position, velocity and acceleration are consistent. For a press of F newtons
+// The hand thus yields to the force F, and position, velocity and acceleration are consistent. For a press of F newtons
 // the target is the depth at which the block holds F, plus F / k. A derived class knows that depth from the material or
 // estimates it from the force.
 // Deterministic: the same seed and forces give the same motion.
@@ -36,8 +36,8 @@ class HandMotion {
   HandMotion(const HandSettings& settings, std::uint64_t seed);
   virtual ~HandMotion() = default;
 
-  // Integrate one step of `dt_s`, at most 50 us for accuracy: first `move` for the new position, then `feel` with the
-  // force there.
+  // One step of `dt_s`, at most 50 us for accuracy: `move` computes the new position, then `feel` takes the force
+  // there.
   void move(double dt_s) noexcept;
   void feel(double force_N, double dt_s) noexcept;
 
@@ -51,7 +51,7 @@ class HandMotion {
  protected:
   // The depth at which the block holds `force_N` after a short press.
   virtual double held_depth_m(double force_N) const noexcept = 0;
-  // Whether anything pushes back. If not, the target of a press is the depth alone, which the hand then reaches.
+  // Whether a force pushes back. If not, the target of a press is the depth alone, which the hand then reaches.
   virtual bool is_pushed_back() const noexcept { return true; }
 
   const HandSettings& settings() const noexcept { return settings_; }
@@ -68,7 +68,7 @@ class HandMotion {
   };
   // A tremor component as a rotating vector, which needs no cosine per step.
   struct Tremor {
-    std::complex<double> vector_m, turn;  // the real part is the displacement; the turn of one step
+    std::complex<double> vector_m, turn;  // real part: displacement; `turn`: rotation in one step
     double rate_rad_per_s = 0.0;
   };
   static constexpr std::size_t kMostSegments = 32;

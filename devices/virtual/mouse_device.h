@@ -1,9 +1,9 @@
 // A tool that is moved by mouse or keyboard. They set a target y0. The tool is a mass with the impedance of a hand,
 // coupled to the low-pass filtered target by a spring and a damper:
 //   m a = k (y - x) + c (dy/dt - v) - F,   dy/dt = (y0 - y) / tau
-// The rendered force F therefore pushes the tool back, and a jump of the mouse is no jump of the tool.
-// While a key is held, every tick moves the target at the velocity of `drive`, so that the motion does not depend on
-// the frames of the window.
+// The rendered force F therefore pushes the tool back, and a jump of the mouse is no jump of the tool. While a key is
+// held, every tick moves the target at the velocity of `drive`, so that the motion does not depend on the frame rate of
+// the window.
 #pragma once
 
 #include <atomic>
@@ -32,7 +32,7 @@ class MouseDevice : public SimulatedDevice, public ToolInput {
   bool hand_is_exploring() const noexcept override { return false; }
   // Any thread, wait-free.
   double target_m() const noexcept { return target_m_.load(std::memory_order_relaxed); }
-  // Any thread, wait-free. Whether no target was set for kIdleTime_s, or since `release`. False while it is driven.
+  // Any thread, wait-free. Whether no target was set for kIdleTime_s, or none since `release`; false during `drive`.
   bool idle(double now_s) const noexcept;
 
   // Haptics thread: continues from this position and velocity of the tool.

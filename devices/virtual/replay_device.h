@@ -1,7 +1,7 @@
-// A recording as a device, which repeats its samples at their own pace. The rendered force has no effect on it; its
+// A device that repeats the samples of a recording at their own pace. The rendered force has no effect on it; the
 // measured force is the reference for the models.
 // Every row is delivered exactly once and unchanged except for the surface offset, so that the loop gives the same bits
-// as engine/tick/replay.h. After the end, a seek and a change of the offset the stream restarts: the filters are reset.
+// as engine/tick/replay.h. After its end, a seek or a new offset the stream restarts: the filters are reset.
 #pragma once
 
 #include <atomic>

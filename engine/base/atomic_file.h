@@ -9,9 +9,9 @@
 
 namespace palpate {
 
-// Collects output in a file without a name; `commit` flushes it to disk and names it. If the object is destroyed before
-// that, or the program is killed, nothing exists under the final name, and no other file if the file system supports
-// files without a name (O_TMPFILE). Otherwise a program that is killed leaves a hidden file in the folder of `path`.
+// Collects output in a file without a name; `commit` flushes it to disk and names it. If the object is destroyed or the
+// program is killed before that, no file is left but a published one. On a file system without unnamed files
+// (O_TMPFILE), a program that is killed leaves a hidden file in the folder of `path`.
 class AtomicFile {
  public:
   // Errors: `path` exists and `overwrite` is false, is a folder or a device; the folder is missing or not writable.
@@ -22,12 +22,11 @@ class AtomicFile {
 
   // Appends; buffered. Errors are stored and returned by `commit`.
   void write(std::string_view text);
-  // Whether an input/output error has occurred; `commit` returns it.
+  // Whether an input/output error has occurred, which `commit` will return.
   bool failed() const noexcept { return error_number_ != 0; }
 
-  // Gives the file its final name with all that was written. Every further call appends the text since the last one,
-  // all of it or nothing, even if the program is killed.
-  // Errors: as `commit`.
+  // Gives the file its final name with all that was written. Each further call appends the text since the last one: all
+  // of it or nothing, even if the program is killed. Errors: as `commit`.
   Status publish();
 
   // Errors: any input/output error since `create`, e.g. no space left; another file was created under the name in the

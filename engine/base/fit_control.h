@@ -1,4 +1,4 @@
-// Progress and cancellation of a fit.
+// Progress and cancellation of a fit. Thread guarantee: slow side.
 #pragma once
 
 #include <functional>

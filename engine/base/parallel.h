@@ -5,7 +5,7 @@
 
 namespace palpate {
 
-// The number of threads of the fits: that of the machine's processors.
+// The number of threads of a fit: one for each processor of the machine.
 int thread_count();
 
 // Calls work(0) ... work(count - 1) once each on up to thread_count() threads, and returns when all calls have ended.

@@ -1,10 +1,10 @@
 // Handles all signals of the process.
 //
-// SIGINT, SIGTERM and SIGHUP end the program, as do SIGQUIT, SIGPIPE and the signals of a crash (SIGSEGV, SIGBUS,
-// SIGFPE, SIGILL, SIGABRT); before that, forces are set to zero. While a StopListener exists, the first SIGINT, SIGTERM
-// or SIGHUP only sets a flag, so that the program can end regularly and remove its temporary files; the second of any
-// of these ends it at once. An ignored signal stays ignored, and an earlier handler is called after the forces are
-// zero. No code runs on SIGKILL or a power cut; devices/link/device_stop.h describes the force of each device then.
+// SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE and the signals of a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT) end
+// the program after the forces were set to zero. While a StopListener exists, the first SIGINT, SIGTERM or SIGHUP only
+// sets a flag, so that the program can end regularly and remove its temporary files; a second one ends it at once. An
+// ignored signal stays ignored, and an earlier handler is called after the forces are zero. No code runs on SIGKILL or
+// a power cut; devices/link/device_stop.h describes the force of each device then.
 #pragma once
 
 namespace palpate {
@@ -13,12 +13,12 @@ namespace palpate {
 using StopForces = void (*)() noexcept;
 
 // Installs the handlers. Slow side, any number of times: in main before the first thread, and when a device is opened.
-// Ignores SIGXFSZ, so that a write beyond the limit of file sizes is an error. What the system refuses stays as it was.
+// Ignores SIGXFSZ, so that a write beyond the limit of file sizes is an error. A refused handler is skipped.
 void install_signal_handlers() noexcept;
 // Makes a write to a closed pipe an error instead of the end of the program.
 void ignore_broken_pipes() noexcept;
 
-// Slow side: sets the function that runs before a signal ends the program; one at a time. Does not install handlers.
+// Slow side: sets the function that runs before a signal ends the program, in place of the last one; null: none.
 void stop_forces_by(StopForces function) noexcept;
 
 // Slow side; one at a time. Installs the handlers and resets `stop_requested`.

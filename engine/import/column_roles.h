@@ -42,8 +42,8 @@ struct ImportedColumn {
 };
 using RoleColumns = std::array<ImportedColumn, kRoles>;
 
-// The columns without their units. Errors (without the file's name), each with the header and the option to add: an
-// unknown name; no column, or several, that can be the time, the position or the force; one column for two roles.
+// Chooses a column for each role; units stay empty. `needs_time`: false with a given rate. Errors (without the file's
+// name), with the header and the option to add: an unknown name; no column or several for a role; one for two roles.
 Result<RoleColumns> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
                                    bool has_header, bool needs_time);
 

@@ -47,8 +47,8 @@ struct ImportedTable {
 // Reads `path`. Errors: "path: ..." or "path:line: ...".
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request);
 
-// Descriptions for the terminal, the window and the comments of the recording.
-// The source of a role's values: column 2 "Weg [mm]" in mm (guessed).
+// The functions below describe the result for the terminal, the window and the comments of the recording.
+// The source of a role's values, e.g. column 2 "Weg [mm]" in mm (guessed).
 std::string column_words(const ImportedColumn& column);
 // The roles whose sign was changed.
 std::vector<std::string> flipped_roles(const ImportRequest& request);

@@ -18,13 +18,13 @@ bool parse_table_number(std::string_view text, char decimal, double& value);
 // "nan", "NaN", "inf", "-", "n/a": a cell for a missing value.
 bool is_missing_value(std::string_view text);
 
-// Whether `field` is a date or the time of a clock:
+// Whether `field` is a date or a time of day:
 // "2024-03-05T14:03:22.123Z", "2024-03-05 14:03:22,5", "05.03.2024 14:03:22.1",
 // "3/5/2024 2:03:22.5 PM", "14:03:22.123", "03:22.123".
 bool is_of_a_clock(std::string_view field);
 
-// A time as whole units and a fraction, so that nanoseconds since 1970 keep their digits. Of a clock: seconds since
-// 1970, or since midnight.
+// A time as whole units and a fraction, so that nanoseconds since 1970 keep their digits. The time of a clock is in
+// seconds since 1970 or, without a date, since midnight.
 struct TableTime {
   std::int64_t whole = 0;
   double fraction = 0.0;

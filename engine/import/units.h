@@ -20,8 +20,8 @@ struct Unit {
 // Whether `list`, words separated by blanks, contains this word.
 bool is_word_of(std::string_view list, std::string_view word);
 
-// The unit named `text`: first with exact case ("mN" is not "MN"), then with any case if it is unambiguous ("MM",
-// "Sec"). Grams are the force of their weight.
+// The unit with the name `text`: with exact case ("mN" is not "MN"), else in any case if it is unambiguous ("MM",
+// "Sec"). A gram is the force of its weight.
 std::optional<Unit> find_unit(std::string_view text);
 
 struct NameAndUnit {

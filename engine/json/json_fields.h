@@ -34,7 +34,7 @@ std::string found(const nlohmann::json& value);
 
 inline constexpr double kLargestNumber = std::numeric_limits<double>::max();
 
-// The range of a number, both ends included; if `open`, without `low`.
+// The range of a number, both ends included; without the lower end if `open`.
 struct NumberRange {
   double low = -kLargestNumber;
   double high = kLargestNumber;
@@ -53,11 +53,11 @@ struct JsonNode {
   std::string pointer;
 };
 
-// Every method reports an error if it does not find what it expects, and then returns a valid default. `error` returns
-// all errors, one a line.
+// Every reading method reports an error if it does not find what it expects, and then returns a default (a number: one
+// of the range). `error` returns all errors, one a line.
 class JsonFields {
  public:
-  // `text`: the text of the document. `text` and `path` must outlive this.
+  // `text`: the document. `advice`: end of each message, as JsonAdvice::field. `text` and `path` must outlive this.
   JsonFields(std::string_view text, const std::string& path, std::string advice)
       : text_(text), path_(path), advice_(std::move(advice)) {}
 
@@ -65,7 +65,7 @@ class JsonFields {
   std::optional<Error> error() const;
   std::size_t error_count() const noexcept { return error_count_; }
 
-  // Reports an error of the value at `pointer`, unless one of it or of a value that contains it was reported.
+  // Reports an error of the value at `pointer`, unless this value or one that contains it has an error already.
   void complain(const std::string& pointer, const std::string& words, const std::string& advice);
   void complain(const std::string& pointer, const std::string& words) { complain(pointer, words, advice_); }
 
@@ -83,10 +83,10 @@ class JsonFields {
   bool boolean(const JsonNode& object, const char* key);
   std::uint64_t count(const JsonNode& object, const char* key);
   double number(const JsonNode& object, const char* key, const NumberRange& range = {});
-  // The index in `names` of the text; otherwise reports an error with all names and returns none.
+  // The index of the text in `names`; none, after an error that lists the names, if it is not among them.
   std::optional<std::size_t> choice(const JsonNode& node, const std::vector<std::string>& names);
 
-  // Reads exactly `expected_count` numbers of the range, which messages call `words`, into `values`.
+  // Reads exactly `expected_count` numbers within `range` into `values`. `words`: what messages call them.
   bool fill(const JsonNode& node, std::size_t expected_count, const std::string& words, double* values,
             const NumberRange& range = {});
 

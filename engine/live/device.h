@@ -127,9 +127,9 @@ class Device {
   virtual Status open() { return {}; }
   virtual void close() noexcept {}
 
-  // The next sample up to `now_s` (steady clock, increasing); false: none since the last call. The loop calls it again,
-  // up to kMaxSamplesPerTick times a tick, because there may be several. The device must neither lose samples beyond
-  // that nor accumulate them.
+  // The next sample up to `now_s` (steady clock, increasing); false: none since the last call. The loop calls it up to
+  // kMaxSamplesPerTick times a tick. If there are more, a live device must skip the oldest and a recording must wait,
+  // so that samples do not accumulate.
   virtual bool read(double now_s, DeviceSample& sample) noexcept = 0;
   // The force to render from now on, limited and finite.
   virtual void write(double force_N) noexcept = 0;

@@ -80,7 +80,7 @@ inline constexpr std::array<Fault, 23> kFaults = {{
      "the device gave a sample that is not a number: the force was set to 0"},
     {FaultSource::loop, loop_fault::kTimeNotLater,
      "the device gave a sample that is not later than the previous one: it was skipped", false},
-    // Of one model, selected or not.
+    // Set for any model of the set, selected or not.
     {FaultSource::loop, loop_fault::kModelNotFinite, "a model gave a force that is not a number: 0 N was used instead"},
     {FaultSource::loop, loop_fault::kForceNotFinite, "the force was not a number: 0 N was used instead"},
     {FaultSource::loop, loop_fault::kForceClamped, "the force was above the limit of the device: it was limited",
@@ -124,7 +124,7 @@ inline std::vector<std::string> alarm_words(FaultSource source, std::uint32_t bi
   }
   return words;
 }
-// Of a device: what happened and what to do, a sentence for each alarm among the bits.
+// The sentences of a device's alarms among `faults`: what happened and what to do.
 inline std::vector<std::string> device_fault_words(std::uint32_t faults) {
   return alarm_words(FaultSource::device, faults);
 }

@@ -4,13 +4,13 @@
 //            released; a force that is not finite is a fault, too
 //   ramp     a factor that grows from 0 to 1 over `ramp_s` from the start, and again after each stop
 //   clamp    |force| <= largest_N, and less as the motor warms up (below)
-//   slew     |change| <= fastest_N_per_s x the time since the last force, so that neither a fault nor a jump is felt as
-//            a kick; only a stop may be faster, so that it takes at most `stop_s`
+//   slew     |change| <= fastest_N_per_s x the time since the last force, so that neither a fault nor a jump is a
+//            kick; only a stop may be faster, so that it takes at most `stop_s`
 //
-// Thermal model. The motor's winding warms with the square of the force and cools by itself: tau dH/dt = F^2 - H, with
-// H in N^2 and c = continuous_N the force that it can hold permanently. From H = kFoldback c^2 on the clamp decreases,
+// Thermal model. The motor's winding warms with the square of the force and cools by itself: tau dH/dt = F^2 - H. H is
+// the heat in N^2, c = continuous_N the force that it can hold permanently. Above kFoldback c^2 the clamp falls,
 //   F^2 <= c^2 + (largest^2 - c^2) (1 - H / c^2) / (1 - kFoldback),
-// down to c at H = c^2: H never exceeds it.
+// down to c at H = c^2, so that H never exceeds c^2.
 //
 // Thread guarantee: one thread at a time; wait-free, never throws.
 #pragma once
@@ -27,7 +27,7 @@ struct ForceLimits {
   // Force that the motor can hold permanently, > 0; infinite: no thermal limit.
   double continuous_N = std::numeric_limits<double>::infinity();
   double thermal_time_s = 10.0;  // tau, > 0
-  double stale_after_s = 0.01;   // maximum age of a sample
+  double stale_after_s = 0.01;   // maximum age of a sample, > 0
   double stop_s = 0.01;          // time to reduce any force to 0; >= 0
 };
 
@@ -65,7 +65,7 @@ class ForceLimiter {
 
   std::uint32_t flags() const noexcept { return flags_; }
   double force_N() const noexcept { return force_N_; }
-  // H / c^2; 0 without a thermal limit.
+  // H / c^2, dimensionless; 0 without a thermal limit.
   double heat_share() const noexcept;
 
  private:

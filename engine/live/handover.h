@@ -1,4 +1,4 @@
-// Passing values between two threads, of which neither waits for the other.
+// Passes values between two threads; neither waits for the other.
 //
 //   TripleBuffer  the newest value only: settings in, snapshots out. Values that are not read in time are lost.
 //   SpscRing      every value, in order: samples for plots and a recorder. When full, it drops and counts.

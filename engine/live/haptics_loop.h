@@ -1,8 +1,8 @@
 // The haptics thread: a LiveTick every millisecond, by absolute deadlines.
 //
-// Deadline k is start + k x 1 ms, independent of the duration of ticks. Deadlines that have passed are counted as
-// missed and skipped, not made up for in a burst. The loop shares with other threads only a TripleBuffer each way, an
-// SpscRing of snapshots and one of samples, the ModelSlot and counters.
+// Deadline k is start + k x 1 ms, independent of the duration of ticks. A deadline that has passed is counted as missed
+// and skipped; its tick is not made up for. The loop shares with other threads only a TripleBuffer each way, an
+// SpscRing of snapshots, one of samples, the ModelSlot and counters.
 #pragma once
 
 #include <atomic>

@@ -4,8 +4,8 @@
 //
 //   take a new set of models -> read the device -> HapticsTick for each sample
 //   -> mix (the active model) -> scale -> passivity -> limit -> write the device -> snapshot
-// Thread guarantee: constructed on the slow side; `run` and `rehearse` belong to the haptics thread, are wait-free,
-// allocate nothing, lock nothing and never throw.
+// Thread guarantee: constructed on the slow side. `warm_up` (before the first `run`), `run` and `rehearse` belong to
+// the haptics thread; they are wait-free, allocate nothing, lock nothing and never throw.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ class ReferenceForce {
   virtual double step(const TickSnapshot& snapshot, bool restart) noexcept = 0;
 };
 
-// A force in place of the models', e.g. the stimulus of a study.
+// A force that replaces those of the models, e.g. the stimulus of a study.
 class ForceSource {
  public:
   virtual ~ForceSource() = default;
@@ -53,12 +53,12 @@ struct LiveModels {
   std::uint32_t id;
   HapticsTick tick;
   std::shared_ptr<ReferenceForce> reference;
-  // The impedance of each model for cycles of 0.1 mm at 25 Hz: the largest over depths up to 10 mm and forces up to
-  // 10 N.
+  // The impedance of each model for a cycle of 0.1 mm at 25 Hz: the largest over depths up to 10 mm where the force is
+  // at most 10 N.
   ForceMixer::Forces stiffness_N_per_m{}, damping_Ns_per_m{};
   std::uint32_t selected = 0;  // until the controls refer to this set
-  // The model whose force goes into RecordedSample, for recordings with neither a sensor nor a ReferenceForce; default:
-  // none.
+  // The model whose force is RecordedSample::model_N, for recordings with neither a force sensor nor a ReferenceForce;
+  // default: none.
   std::uint32_t written_model = kMaxModels;
 };
 
@@ -76,7 +76,7 @@ inline constexpr double kDeadManHold_s = 0.2;
 struct LoopControls {
   std::uint32_t models_id = 0;  // the set that `selected` refers to
   std::uint32_t selected = 0;   // the active model
-  std::uint32_t recording = 0;  // > 0: every sample goes into the ring with this number
+  std::uint32_t recording = 0;  // > 0: all samples are recorded with this number
   DeadMan dead_man = DeadMan::off;
   // The last time when the dead-man key was held, steady clock; to be updated in every frame.
   double held_s = -std::numeric_limits<double>::infinity();
@@ -89,7 +89,7 @@ struct LoopControls {
 struct LoopSnapshot {
   TickSnapshot tick;
   double loop_time_s = 0.0;  // steady clock; does not restart with `tick.time_s`
-  double commanded_N = 0.0;  // force of the models, scaled
+  double commanded_N = 0.0;  // force of the models, scaled; or of the ForceSource
   double passive_N = 0.0;    // after the passivity controller, before the limiter
   double rendered_N = 0.0;
   double measured_N = kNoForce;   // of the device's force sensor; NaN: none
@@ -103,8 +103,8 @@ struct LoopSnapshot {
   DeviceHealth device;               // at this tick
   std::uint32_t device_faults_latched = 0;
   std::uint32_t limiter_flags = 0;  // force_limit
-  float heat_share = 0.0F;          // of the motor's thermal limit
-  float stiffness_share = 1.0F;     // of the wanted stiffness: the rest is not stable (StabilityLimit)
+  float heat_share = 0.0F;          // ForceLimiter::heat_share
+  float stiffness_share = 1.0F;     // rendered part of the wanted one; < 1: StabilityLimit
   float lag_ms = 0.0F;              // lag of the force behind the motion
   bool dead_man_released = false;   // the dead-man switch is released: no force
   bool fading = false;              // between two models
@@ -128,7 +128,7 @@ using RecordedRing = SpscRing<RecordedSample, kRecordedRing>;
 struct LiveTickSettings {
   JndLine jnd;
   ForceSource* source = nullptr;  // outlives the tick; null: the models. With a source, publish no sets.
-  bool passivity = true;          // false: for tests without the controller
+  bool passivity = true;          // false: no controller, for tests; none with a source
 };
 
 class LiveTick {

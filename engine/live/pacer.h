@@ -8,7 +8,7 @@ namespace palpate {
 // The result of waiting for a deadline.
 struct Wake {
   std::int64_t lateness_ns = 0;  // after the deadline, >= 0
-  std::uint64_t missed = 0;      // later deadlines that have passed, too: skipped
+  std::uint64_t missed = 0;      // number of later deadlines that have passed, which are skipped
 };
 
 // Absolute deadlines, one period apart. Value type, no clock; wait-free.

@@ -2,18 +2,17 @@
 // a transport t_d acts as negative damping -K (T / 2 + t_d) in addition to its stiffness K (Colgate & Schenkel 1997);
 // without enough damping in material and hand the tool gains energy.
 //
-// Observer: the energy that the tool has put in since contact, E += F dx. F is the force that acted during dx: the one
-// written t_d + T before, or the mean of these if samples come less often than ticks (Ryu et al. 2004: the observer
-// includes the delay).
-// A material that only stores and relaxes energy returns at most what it received: during unloading, E at each depth is
-// at least the E at which that depth was last passed during loading. The difference to it is the debt. (The usual
-// condition, E >= 0, detects a leak only when all stored energy has leaked.) An encoder that flickers between two steps
-// is no motion: the observer follows the depth with a play (dead zone) of one step, so that at each turn an energy of F
-// times the step is not observed.
+// Observer: the energy that the tool has put in since contact, E += F dx. F is the force that acted during dx, which
+// was written t_d + T before; if samples come less often than ticks it is the mean of these (Ryu et al. 2004: the
+// observer includes the delay). A material that only stores and relaxes energy returns at most what it received: during
+// unloading, E at each depth is at least the E at which that depth was last passed during loading. A deficit is called
+// the debt. (The usual condition, E >= 0, detects a gain of energy only when all stored energy was returned.) Noise of
+// one encoder step is no motion: the observer follows the depth with a play (dead zone) of one step, so that at each
+// turn an energy of F times the step is not observed.
 //
-// Controller: during unloading, v < 0, the force is reduced by min(b, debt / (v^2 T)) |v| until the debt is 0; b is the
-// damping that StabilityLimit leaves. Without a debt the force is unchanged. When the active model changes, the
-// observer is reset, because E of another material is not comparable and a fade is no leak.
+// Controller: during unloading, v < 0, the force is reduced by min(b, debt / (v^2 T)) |v| until the debt is 0. Here b
+// is the damping limit of StabilityLimit minus the user's damping. Without a debt the force is unchanged. When the
+// active model changes, the observer is reset, because E of another material is not comparable.
 // Sources: Hannaford & Ryu (2002), IEEE Trans. Robotics & Automation 18(1); Ryu et al. (2004) for a reference that
 // follows the depth.
 // Thread guarantee: one thread at a time; wait-free, allocates nothing, never throws.
@@ -44,8 +43,8 @@ class PassivityController {
     double hold_s = 1e-3;            // T, for which a force is held: one tick, or until the next sample
   };
 
-  // Once a tick, before the limiter. `written_N`: the device's force in the last tick; `step_s`: since then, > 0.
-  // Returns at most `commanded_N`, and 0 or more if that is positive; not finite where `commanded_N` is not.
+  // Once a tick, before the limiter. `written_N`: the device's force in the last tick; `step_s`: since then, 0 in the
+  // first tick. Returns at most `commanded_N`, never less than 0 if that is positive; not finite if it is not finite.
   double apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N, double step_s) noexcept;
 
   double debt_J() const noexcept { return debt_J_; }

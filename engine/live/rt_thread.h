@@ -12,10 +12,10 @@ struct RtStatus {
   std::string fix;         // advice; empty if nothing was refused
 };
 
-// The advice for refused requests, by their errno values, 0 where one was granted; empty if both were.
+// The advice for refused requests, empty without one. The errors are errno values, 0 if granted.
 std::string realtime_advice(int priority_error, int memory_error, bool is_root);
 
-// Makes the wake-ups of the calling thread exact; needs no privilege.
+// Sets the timer slack of the calling thread to 1 ns (default: 50 us), so that sleeps end on time. Needs no privilege.
 void set_timer_slack_1ns() noexcept;
 
 // For the calling thread before its first tick: sets timer slack 1 ns and SCHED_FIFO with `priority`, 1 to 99 (the

@@ -8,7 +8,7 @@
 //   c  share of B that the passivity controller provides. It is below a quarter, because the controller damps only
 //      during unloading, and m x''(t) + B x'(t - T) + K x(t - T) = 0 is unstable for K > 0.55 m / T^2 with any B. It
 //      decreases with the encoder step, because the controller does not act within a play of one step.
-// B limits the sum of the damping of the model, of the user and of the controller. Verified by
+// B limits the sum of the damping of model and user, and that of user and controller. Verified by
 // tests/accuracy/closed_loop_late_test.cpp.
 //
 // Thread guarantee: one thread at a time; wait-free.
@@ -36,8 +36,8 @@ class StabilityLimit {
   explicit StabilityLimit(double encoder_step_m = 0.0) noexcept
       : share_(kShareOfDamping * std::max(0.0, 1.0 - encoder_step_m / kCoarse_m)) {}
 
-  // Follows the current lag `lag_s` with a time constant of 0.1 s where it grows and 1 s where it falls: an increase
-  // of stiffness during a press adds energy.
+  // Follows the current lag `lag_s` with a time constant of 0.1 s where it grows and 1 s where it falls, because an
+  // increase of stiffness during a press adds energy. The first call takes it at once; before it nothing is limited.
   void update(double lag_s, double step_s) noexcept {
     const double time_s = lag_s > lag_s_ ? kRise_s : kFall_s;
     lag_s_ = lag_s_ > 0.0 ? lag_s_ + std::clamp(step_s / time_s, 0.0, 1.0) * (lag_s - lag_s_) : lag_s;
@@ -60,8 +60,8 @@ class StabilityLimit {
   double lag_s_ = 0.0;
 };
 
-// The scale that the user wants for the stiffness of the active model, and additional damping:
-//   F' = k F + b v     in contact; k: stiffness, b: damping_Ns_per_m, v: velocity inward; b v never changes the sign
+// The scale that the user wants for the force of the active model, and additional damping:
+//   F' = k F + d v     in contact; k: stiffness, d: damping_Ns_per_m, v: velocity inward; d v never changes the sign
 //                      of a positive force
 // Passivity controller and limiter come after it and apply to the scaled force.
 struct ForceScale {
@@ -74,18 +74,18 @@ struct ForceScale {
   // Clamped to the bounds above and, for a model of this impedance, to the stability limit.
   ForceScale limited(const StabilityLimit& limit, const Impedance& model) const noexcept {
     const double scale = std::min(std::clamp(stiffness, kLeast, kMost), limit.largest_scale(model));
-    // Half of the rest, because the estimated velocity lags more than the position; the passivity controller uses the
-    // other half.
+    // Half of the rest, because the estimated velocity lags more than the position; the passivity controller may use
+    // what the user does not.
     const double left_Ns_per_m = 0.5 * (limit.damping_Ns_per_m() - scale * model.damping_Ns_per_m);
     return {scale, std::min(std::clamp(damping_Ns_per_m, 0.0, kMostDamping_Ns_per_m), left_Ns_per_m)};
   }
 };
 
-// The force scaled by what is wanted, without a kick.
+// Scales the force without a step.
 class ScaledForce {
  public:
-  // Moves towards `wanted`, which is not clamped, with a time constant of 50 ms, so that the force has no step, and
-  // returns the scaled force. With the default scale the force stays bit-identical.
+  // Moves the scale towards `wanted`, which is not clamped, with a time constant of 50 ms, and returns the scaled force
+  // in newtons. With the default scale the force stays bit-identical.
   double apply(double force_N, double velocity_m_per_s, bool in_contact, const ForceScale& wanted,
                double step_s) noexcept {
     const double share = std::clamp(step_s / kEasing_s, 0.0, 1.0);

@@ -2,10 +2,10 @@
 // depth and is (nearly) zero at the other end.
 //
 // The mean force is computed for sixteenths of the range of positions. The shallow end is the one where the force is
-// (nearly) zero or, if an offset of the force hides that, the one where it changes less. The sign of the position is
-// right if the shallow end is the low one, that of the force if the force is larger at the deep end. The result is
-// certain only with free air: a force at the shallow end that is flat, and small relative to the deep end. Without it,
-// a material that softens, drags or yields looks like a flipped sign.
+// nearly zero; if an offset of the force hides that, it is the end where the force changes less. The sign of the
+// position is right if the shallow end has the lower positions, that of the force if the force is larger at the deep
+// end. The result is certain only with free air: a flat force at the shallow end, small relative to the deep end.
+// Without free air, a material that softens, drags or yields can look like a flipped sign.
 // Thread guarantee: pure function, slow side.
 #pragma once
 

@@ -25,11 +25,11 @@ class RecordingWriter {
   Status add(const RecordingRow& row);
 
   std::uint64_t rows() const { return rules_.rows(); }
-  // Whether an input/output error has occurred; `commit` returns it.
+  // Whether an input/output error has occurred, which `commit` will return.
   bool failed() const noexcept { return file_.failed(); }
 
   // Makes the rows written so far available under the file's name, in whole rows even if the program is killed
-  // (AtomicFile::publish); does nothing while the file is too short for the reader. Errors: as `commit`.
+  // (AtomicFile::publish). Does nothing before row 1,000, at which the rate is checked. Errors: as `commit`.
   Status publish();
 
   // The number of rows that `publish` has made available.

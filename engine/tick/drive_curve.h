@@ -1,7 +1,6 @@
-// Drive curves g: the force at a depth d of an elastic material, or of a branch before it relaxes.
+// A drive curve g(d) is a force at depth d, N: the elastic response, or a Maxwell branch before it relaxes.
 //   g(d) = sum_k coefficient_N[k] u^(k+1) + sum_k knot_N[k] max(0, u - (k + 1) / (knots + 1))^3
-// with u = d / reference_depth_m, for u <= 1; beyond, g continues along its tangent at u = 1. With knots it is a cubic
-// spline.
+// with u = d / reference_depth_m <= 1. Beyond u = 1, g continues along its tangent. With knots it is a cubic spline.
 // Thread guarantee: pure, wait-free.
 #pragma once
 

@@ -65,7 +65,7 @@ struct BranchStep {
   double gain = 0.0;
 };
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
-// Groups that suffice for all branches and bristles of a filter: 8 features of 8 parts in fours.
+// The largest number of groups of four for the branches or bristles of a filter: 8 features of 8 parts.
 inline constexpr std::size_t kMaxLaneGroups = 16;
 
 // The state of the parts of a filter: the groups of branches, then those of bristles.

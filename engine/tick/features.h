@@ -9,43 +9,43 @@
 //   creep             y = sum_p g_p(d) q_p / r_p, q_p a creeping bristle    [N]
 //   surface_lag       s - d, s the depth of the material's surface          [m]
 //
-// The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is the same filter after a spring whose
-// stiffness g'(d) depends on depth; g is identified from the recording (models/training/trend_regression.h), and with
-// g = d / tau it is the low-pass. Both are driven by the depth: in free air the material relaxes and is not loaded.
+// The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is this filter with a spring of stiffness
+// g'(d) in front; g = d / tau gives the low-pass. g is identified from recordings (models/training/trend_regression.h).
+// The input of both is the depth: in free air the material relaxes.
 //
-// The tool is in contact beyond the surface, which is at the depth feature's `surface_position_m`: 0, or, for a model
-// of recordings with another surface, on either side of 0.
+// The tool is in contact when its position is greater than the depth feature's `surface_position_m`. That is 0, or
+// another position, on either side of 0, if the training recordings had their surface there.
 //
-// With a surface_lag among the features, the branches follow the surface and not the tool: s = d while the sum of
-// elastic response E and all branches pushes the tool out, and otherwise the s >= d at which it is zero,
-// E(s) + sum z = 0. A tool that retreats faster than the material recovers thus loses contact, and regains it where the
-// material then is (Johnson 1985, section 6.5: unloading of viscoelastic contacts). With a `slowing` b, tau becomes
-// tau exp(b s / reference depth): a fluid that is squeezed through closing pores has one time scale for all its times,
-// which grows with the strain (Lai & Mow 1980: permeability and strain).
+// With a surface_lag among the features, the branches follow the material's surface and not the tool: s = d while the
+// sum of elastic response E and all branches pushes the tool out; otherwise s >= d is the depth at which this sum, E(s)
+// + sum z, is zero. A tool that retreats faster than the material recovers thus loses contact, and regains it where the
+// surface then is (Johnson 1985, section 6.5: unloading of viscoelastic contacts). With a `slowing` b, every tau is
+// multiplied by exp(b s / reference depth): where a fluid is squeezed through closing pores, all relaxation times grow
+// with the strain by one factor (Lai & Mow 1980: permeability and strain).
 //
-// A branch is dissipative: with q = g(d) - z, dq/dt = z / tau. Of the power z dd/dt it dissipates
-// (d - g^-1(q)) (g(d) - q) / tau, which is >= 0 if g increases, for any current tau > 0; the rest changes the stored
-// energy integral_0^d g ds - q d + integral_0^q g^-1 ds.
+// A branch is dissipative. With q = g(d) - z, dq/dt = z / tau, it dissipates the power (d - g^-1(q)) (g(d) - q) / tau,
+// which is >= 0 if g increases, for any current tau > 0. The rest of its power z dd/dt changes the stored energy
+// integral_0^d g ds - q d + integral_0^q g^-1 ds.
 //
 // A stop operator of threshold r is the deflection of a bristle that follows the depth, bends by at most r and then
 // slips: s' = clamp(s + d' - d, -r, r), and 0 out of contact. A weighted sum of stops is a Prandtl-Ishlinskii operator:
 // dry friction with presliding. With every g_p >= 0 a closed cycle of depth dissipates the energy
 //   sum_p closed integral G_p(d) dp_p / r_p >= 0,  G_p' = g_p, p_p = d - s_p,
-// because p_p increases only at d = p_p + r and decreases only at d = p_p - r; for a creeping bristle, it increases
+// because p_p increases only at d = p_p + r and decreases only at d = p_p - r. For a creeping bristle p_p increases
 // only at d > p_p and decreases only at d < p_p, which suffices.
 //
 // A creeping bristle slips at every deflection, by a power law,
 //   dq/dt = dd/dt - (q / tau) (q / r)^2.
-// A stop operator has the power infinity and a Maxwell branch 1. During a hold of duration t its force falls as t^-1/2,
-// as in networks of rubber (Bergstrom & Boyce 1998), and in steady motion it rises with the cube root of the speed. It
-// continues to creep in free air.
+// Its creep rate grows with q^3, that of a Maxwell branch with q; a stop operator is the limit of an infinite power.
+// During a hold of duration t its force falls as t^-1/2, as in networks of rubber (Bergstrom & Boyce 1998); in steady
+// motion it rises with the cube root of the speed. In free air it continues to creep.
 //
 // Discretisation is exact for a depth that is linear between samples, with the measured time step h and
 // e = exp(-h / tau):
 //   y' = e y + (1 - e) (d' - d) / h
 //   z' = e z + tau (1 - e) (g(d') - g(d)) / h
 // so recordings of one motion at different rates give the same features. A creeping bristle creeps for half of the
-// step, exactly, q / sqrt(1 + (h / tau) (q / r)^2), before it follows the depth and for half of it after (Strang 1968).
+// step, exactly, q / sqrt(1 + (h / tau) (q / r)^2), follows the depth, and creeps for the other half (Strang 1968).
 // Sources: Visintin (1994), "Differential models of hysteresis" (stop and play operators); Dahl (1968) (friction with
 // presliding); Bergstrom & Boyce (1998), "Constitutive modeling of the large strain time-dependent behavior of
 // elastomers".
@@ -159,9 +159,9 @@ class FeaturePlan {
 
   // Advances `state` by a sample and its motion estimate; times increase. Contact is determined from the raw position.
   void update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
-  // To be called after an `update`: copies the state that `before`, fed with the same motion, has of equal features of
-  // `plan`, so that a change of models keeps the memory of the material. The surface positions must be equal, otherwise
-  // nothing is copied. Other features keep the state of the recalled motion (HapticsTick::recall).
+  // To be called after an `update`. For each feature that `plan` has, too, copies value and memory from `before`, the
+  // state of `plan` after the same motion, so that a change of models keeps the memory of the material. Other features
+  // keep the state of the recalled motion (HapticsTick::recall). With unequal surface positions nothing is copied.
   void adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept;
 
  private:

@@ -43,7 +43,7 @@ struct TickSnapshot {
   std::uint32_t model_count = 0;
   std::uint32_t out_of_domain_mask = 0;  // bit i: model i
   std::array<double, kMaxModels> force_N{};
-  // 95 % bounds on the errors of the forces; NaN if a model has none, 0 out of contact.
+  // 95 % bounds on the errors of the forces; NaN if a model has none, 0 while `in_contact` is false.
   std::array<double, kMaxModels> predicted_error_N{};
 };
 static_assert(std::is_trivially_copyable_v<TickSnapshot>);
@@ -72,11 +72,11 @@ class HapticsTick {
 
   const TickSnapshot& step(const ToolSample& sample) noexcept;
 
-  // Computes a step 1 ms after the last sample, evaluates the models also out of contact, and discards the result, so
+  // Computes a step 1 ms after the last sample, evaluates the models even out of contact, and discards the result, so
   // that code and data of the next step are in the caches. Wait-free; the state does not change.
   void rehearse() noexcept;
 
-  // Slow side, before `continue_from`: advances the filters by this motion.
+  // Slow side, before `continue_from`: advances the filters of the features by this motion.
   void recall(const MotionHistory& history) noexcept;
 
   // Continues from the state of `before`: takes over the motion estimate and the memory of equal features, so that a

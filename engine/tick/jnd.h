@@ -1,4 +1,4 @@
-// The just noticeable difference (JND) of a force: the smallest error that a hand can perceive.
+// The just noticeable difference (JND) of a force: the smallest error that a hand can perceive. Pure.
 //   JND(F) = offset + weber_fraction |F|
 // Source: Hoever & Harders (2009), section 4.1, the conservative line below all measured points: 0.065 N + 6.33 %.
 #pragma once

@@ -43,9 +43,9 @@ class MotionEstimator {
   // Resets the state; the next sample is the first one.
   void reset() noexcept { state_ = {}; }
 
-  // Takes the next sample and returns the estimate. A sample that is not later than the last one is ignored, and so is
-  // one sample that is further away than a hand can move (0.1 m and 10 m/s). The position is within half an encoder
-  // step and three standard deviations of the noise of the reading.
+  // Takes the next sample and returns the estimate. A sample that is not later than the last one is ignored. So is the
+  // first reading beyond the reach of a hand (0.1 m and 10 m/s); if the next one is as far, the filters restart there.
+  // The estimated position is within half an encoder step plus three standard deviations of the noise of the reading.
   MotionEstimate update(const ToolSample& sample) noexcept;
   // The last estimate.
   MotionEstimate estimate() const noexcept { return {state_.estimate_m, state_.velocity_m_per_s}; }

@@ -4,9 +4,9 @@
 // The sensor is identified from the first kSensorIdentificationRows rows, so a recording in memory and the same one
 // read in chunks give the same forces.
 //
-// For the visitor, a sample is in contact beyond the surface, or if the measured force exceeds both the JND at 0 N and
-// five times its noise, because an adhesive material also pulls outside. The surface is the outermost one of the models
-// whose surface is not at 0, else 0.
+// For the visitor, a sample is in contact if it is beyond the surface or if the measured force exceeds both the JND at
+// 0 N and five times its noise, because an adhesive material also pulls outside. The surface is the outermost of those
+// surfaces of the models that are not at 0; without any it is at 0.
 // Thread guarantee: slow side; one thread at a time.
 #pragma once
 
@@ -31,8 +31,8 @@ struct ReplaySummary {
   std::uint64_t contact_samples = 0;
 };
 
-// The measured force beyond which a sample is in contact, N. The noise is that of the first rows of a recording: the
-// white noise or, if larger, the standard deviation before the first contact.
+// The measured force above which a sample is in contact, N (certain_force_N). The noise is that of the first rows of a
+// recording: the white noise or, if larger, the standard deviation before the first contact.
 double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m);
 
 // `models`: up to kMaxModels. `surface_offset_m` is subtracted from every position before the tick; the visitor

@@ -1,5 +1,5 @@
-// Checks whether a recording is suitable for a fit. Each finding has a number, the reason why it matters and advice;
-// palpate check, fit, replay and report use the same ones.
+// Checks whether a recording is suitable for a fit. Each finding has a number, the reason why it matters, and advice.
+// palpate check, fit, replay and report use the same findings.
 //
 // Fatal findings make a fit meaningless: a flipped sign, no force, no motion, no contact. Warnings do not prevent a
 // fit, but the user should know them. Notes are measured values.
@@ -42,7 +42,7 @@ CheckRequest check_request(const JndLine& jnd, const std::vector<FeatureSpec>& f
 
 struct RecordingCheck {
   std::vector<Finding> findings;  // in order of severity, fatal first
-  // The share of contact samples that a perfect model would have within the JND at this force noise: the mean of
+  // The share of contact samples within the JND that a perfect model would have with this force noise: the mean of
   // P(|noise| <= JND(f)).
   double noise_floor_within_jnd = 1.0;
   bool surface_identified = false;
@@ -58,7 +58,7 @@ struct RecordingCheck {
 RecordingCheck check_recording(const PreparedRecording& prepared, const CheckRequest& request,
                                const RecordingFaults& faults = {});
 
-// Of longer recordings only the first rows are checked and fitted: 100 minutes at 1 kHz.
+// Only the first rows of a longer recording are checked and fitted: 100 minutes at 1 kHz.
 inline constexpr std::size_t kMostCheckedRows = 6000000;
 
 struct CheckedFile {

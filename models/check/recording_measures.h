@@ -27,17 +27,17 @@ struct RecordingMeasures {
   double highest_position_m = 0.0;
   double lowest_force_N = 0.0;
   double highest_force_N = 0.0;
-  // Clipping: the rows at exactly the greatest force, in runs of at least three, and the largest range of positions in
-  // one run.
+  // Clipping: the number of rows at exactly the greatest force, in runs of at least three, and the largest range of
+  // positions in one run.
   std::size_t flat_rows = 0;
   double flat_travel_m = 0.0;
-  // Contact: beyond the given surface, or beyond the lowest position where that is deeper.
+  // Contact begins at the given surface, or at the lowest position if that is deeper.
   double outermost_contact_m = 0.0;
   std::size_t contact_rows = 0;
   int strokes = 0;
   double inward_travel_m = 0.0;
   double outward_travel_m = 0.0;
-  int small_strokes = 0;        // turns in contact with a distance of 5 to 40 % of the greatest depth
+  int small_strokes = 0;        // in contact, with a length of 5 to 40 % of the greatest depth
   double longest_hold_s = 0.0;  // in contact, moving by less than 2 % of the depth
   std::array<std::array<double, kSpeedBands>, kDepthQuarters> seconds{};  // depth x speed
 };

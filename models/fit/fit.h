@@ -51,12 +51,12 @@ struct TrainingRequest {
   Surface surface = Surface::automatic;
 };
 
-// The request of a scene with the recipe of Hoever & Harders (2009), for comparison: 50 mN reduction; rows scaled by
-// 1/f; depth, velocity and low-pass velocities as features, with two relaxation times identified from these recordings,
-// as the paper identifies its two from the transients of its own (none for a scene without low-pass velocities); the
-// force itself as target; weights by truncated singular values (solve_weights.h); positions as recorded, no trust, an
-// even grid. Forces are limited as in every model, to 1.2 times the largest measured one and to 0, or to the lowest one
-// of a material that pulls. Pure.
+// The request of a scene with the recipe of Hoever & Harders (2009), for comparison: reduction by 50 mN; rows scaled by
+// 1/f; depth, velocity and low-pass velocities as features; the force itself as target; weights by truncated singular
+// values (solve_weights.h); positions as recorded, no trust, an even grid. Two relaxation times are identified from
+// these recordings, as the paper identifies its two from the transients of its own (none for a scene without low-pass
+// velocities). Forces are limited as in every model, to 1.2 times the largest measured one and to 0, or to the lowest
+// one of a material that pulls. Pure.
 TrainingRequest recipe_2009_request(TrainingRequest request);
 
 struct PreparedTraining {

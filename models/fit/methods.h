@@ -29,7 +29,7 @@ struct MethodRequest {
   int centres = 100;
   int candidates = 100;  // per greedy step; 0: every site
   KernelKind kernel = KernelKind::cubic;
-  std::vector<int> grid{};  // nodes per feature; empty: 25 for depth, 11 for the others, fewer beyond four features
+  std::vector<int> grid{};  // nodes per feature; empty: 25 for depth (200 if alone), 11 for others, fewer beyond four
   std::uint64_t seed = 1;
 };
 
@@ -45,7 +45,7 @@ struct MethodTask {
 struct FittedCorrection {
   CorrectionPtr correction;
   std::vector<std::string> notes;  // sentences for the user
-  std::string size;                // follows the method in the name of the model: "100"; or empty
+  std::string size;                // end of the model's name, after the method: "100"; or empty
 };
 
 enum MethodOption : unsigned {
@@ -56,7 +56,7 @@ enum MethodOption : unsigned {
   kTakesSeed = 1U << 4,
 };
 
-// The colour of items without a hue of their own: black on white and white on black.
+// The colour of items without a hue of their own: drawn black on white and white on black.
 inline constexpr std::uint32_t kNeutralColour = 0x000000;
 
 struct Method {

@@ -7,10 +7,10 @@
 //   minimise sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,
 // where r is the residual of a trend fitted to the same rows. The rows of the fold are then predicted by
 //   f = max(lowest, T(x) + g(x) clamp(h(x), -limit, limit))
-// with g the trust around the rows of the other folds. The common rule selects smoothing and inner radius of the trust.
-// No correction is its simplest candidate, followed by the smallest radius with the most smoothing. The smoothing is
-// the ratio of noise variance to prior variance and does not depend on the number of centres, so one value serves every
-// method, and with more centres each approaches the smoothing spline through all sites.
+// with g the trust around the rows of the other folds. The selection rule chooses smoothing and inner radius of the
+// trust. Its simplest candidate is no correction, followed by the smallest radius with the most smoothing. The
+// smoothing is the ratio of noise variance to prior variance and does not depend on the number of centres. One value
+// thus serves every method, and with more centres each approaches the smoothing spline through all sites.
 // Sources: Wahba (1990) (smoothing splines; regression splines as subsets of the basis); Craven & Wahba (1979); Hastie,
 // Tibshirani & Friedman (2009), 7.10.
 // Thread guarantee: slow side, pure.
@@ -44,8 +44,8 @@ struct CrossValidationRows {
   std::vector<Eigen::Index> outside(int without) const;
   // The residual of the trend without that fold. Where no force is measured, a trend below 0 needs no correction.
   Eigen::VectorXd residual_N(int without) const;
-  // The force at row `i` without its fold, as FittedModel computes it, with the inner radius of the trust. `h`: the
-  // correction, N.
+  // The force at row `i` from the other folds, as FittedModel computes it but without the upper limit, with this inner
+  // radius of the trust. `h`: the correction, N.
   double predicted_N(const ModelData& common, std::size_t i, double inner_radius, double h) const;
 };
 
@@ -64,11 +64,11 @@ struct CorrectionChoice {
   double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::rms_at_mean_score), without the correction
   double error_over_jnd = 0.0;        // the same, with the correction
 };
-// `common`: with the JND, the limits of correction and force, and a cover whose inner radius is the smallest candidate,
-// with every site inside.
+// `common`: needs the JND, the limits of correction and force, and a cover with every site inside, whose inner radius
+// is the smallest candidate.
 CorrectionChoice choose_correction(const CrossValidationRows& rows, const ModelData& common);
 
-// The sites of a correction without a fold, at most 1500. The targets are the residuals of the trend without that fold.
+// The sites of a fit without a fold, at most 1500. The targets are the residuals of the trend without that fold.
 Sites sites_without(const CrossValidationRows& rows, int fold, double smoothing);
 
 // The prediction of one row by a model fitted without its fold.

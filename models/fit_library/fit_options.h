@@ -20,8 +20,8 @@ namespace palpate {
 inline constexpr const char* kFeatureListExample =
     "depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.1mm,creep:0.1+1";
 
-// The time to select centres grows with the square of their number, to half a minute at the limit. The method direct,
-// with every site as a centre, has hardly more.
+// The time to select centres grows with the square of their number, to half a minute at this limit. The method
+// `direct`, with every site as a centre, hardly has more centres.
 inline constexpr int kMostFittedCentres = 2000;
 
 inline constexpr const char* kRecipe2009 = "paper-2009";

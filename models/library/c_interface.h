@@ -54,8 +54,8 @@ inline void write_text(char* text, std::size_t size, std::string_view message) n
   text[count] = '\0';
 }
 
-// For functions that return a handle: the value of the Result that `work` returns. If it has an error or `work` throws,
-// null, and the text of the error in `error`, which is otherwise empty.
+// For functions that return a handle: returns the value of the Result that `work` returns. If it has an error or `work`
+// throws, returns null and writes the error to `error`, which is otherwise empty.
 template <typename T, typename Work>
 T* made(char* error, std::size_t error_size, Work&& work) noexcept {
   write_text(error, error_size, "");

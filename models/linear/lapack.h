@@ -10,9 +10,9 @@ namespace palpate {
 using MatrixRef = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 using ConstMatrixRef = Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
-// Sets the number of threads of BLAS during its lifetime (OpenBLAS only): one where work is split by parallel_for or is
-// too small to split, all for a large factorisation. The setting is global, so concurrent fits wait for each other;
-// one thread may nest them.
+// Sets the number of threads of BLAS during its lifetime (OpenBLAS only). One suits work that is split by parallel_for
+// or too small to split, all suit a large factorisation. The setting is global, so concurrent fits wait for each other;
+// one thread may nest these objects.
 class BlasThreads {
  public:
   explicit BlasThreads(int count);
@@ -32,7 +32,7 @@ class BlasThreads {
 // 30 ms. From then on products use one thread, except within BlasThreads.
 void prepare_blas();
 
-// Rows of a matrix at a time where several products use them: the block stays in the second-level cache.
+// The number of rows in a block that several products use, so that it stays in the second-level cache.
 inline constexpr Eigen::Index kBlockRows = 512;
 
 // c = alpha op(a) op(b) + beta c, where op is the transpose or nothing.
@@ -42,7 +42,7 @@ void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b
 // The lower triangle of c = a^T a; the rest of c stays as it is.
 void gram(const ConstMatrixRef& a, MatrixRef c);
 
-// Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation; the rest has no meaning then.
+// Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation; the rest becomes meaningless.
 void qr_in_place(MatrixRef a);
 
 // Eigenvalues in ascending order in `values`, eigenvectors in the columns of `a`, of which only the lower triangle is
@@ -55,11 +55,11 @@ Eigen::VectorXd least_squares(Eigen::MatrixXd a, Eigen::VectorXd b, double small
 
 // Cholesky factor in the lower triangle of `a`. False if `a` is not positive definite.
 bool cholesky_in_place(MatrixRef a);
-// Solves a x = b in place, `factor` from cholesky_in_place.
+// Replaces b by the solution of a x = b; `factor`: from cholesky_in_place.
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
-// Solves a x = b for a positive semidefinite `a`, given by its lower triangle: its rows and columns are scaled to a
-// diagonal of ones, and `ridge`, multiplied by 100 until a Cholesky factor exists, is added to the diagonal. Unknowns
-// whose diagonal is 0 are 0.
+// Solves a x = b for a positive semidefinite `a`, given by its lower triangle. Rows and columns are scaled to a
+// diagonal of ones, to which `ridge` is added; it is multiplied by 100 until a Cholesky factor exists. Unknowns whose
+// diagonal is 0 are 0, and all are 0 if no ridge below 1 suffices.
 Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double ridge);
 
 }  // namespace palpate

@@ -2,7 +2,7 @@
 //
 // The domain is the neighbourhood of the recorded samples in the normalised feature space, not their bounding box: the
 // box of a few strokes is mostly empty, and errors of radial basis functions in it reached twice the largest force.
-// The guard stores a thinned set of the sites, the cover, with every site well within inner_radius of it, and gives
+// The guard stores the cover, a thinned set of the sites that has every site well within inner_radius, and gives
 //
 //   trust g(x) = 1                 for distance <= inner_radius
 //              = smoothstep        between
@@ -48,7 +48,7 @@ class NearestDistance {
 
   // min_i |x - point_i|^2, O(N); infinite when x is not finite or has a coordinate beyond 1e19.
   double nearest_squared(const double* x) const noexcept;
-  // Whether a point is within the distance whose square is `squared`. `rounded`: nearest_float of the coordinates.
+  // Whether a point is within the distance whose square is `squared`. `rounded`: x by nearest_float (vector_loops.h).
   bool within(const float* rounded, float squared) const noexcept {
     return loops_.within(rows_.data(), static_cast<std::size_t>(rows_.rows()), rounded, squared);
   }
@@ -59,9 +59,9 @@ class NearestDistance {
 };
 
 // Nearly all queries of a tick are within the inner radius of the cover, where one near point is enough. The points are
-// therefore also stored in a tree of five median splits whose halves overlap by some points, and a query examines the
-// points of one leaf first: of a thousand queries on recordings that are near a point, 1 to 6 are not found there (14
-// with six features); without the overlap it would be 28 to 200. The descent has no branches.
+// therefore also stored in a tree of five median splits, and a query examines the points of one leaf first. The halves
+// of a split overlap by some points: of a thousand queries with a near point, 1 to 6 then miss it in their leaf (14
+// with six features), instead of 28 to 200. A query that misses examines all points. The descent has no branches.
 class DomainGuard {
  public:
   explicit DomainGuard(const DomainCover& cover);
@@ -69,8 +69,8 @@ class DomainGuard {
   // `x`: d normalised values. Returns g in [0, 1]; 0 when x is not finite.
   double trust(const double* x) const noexcept { return trust_at(squared_distance(x, leaf(x))); }
 
-  // The squared distance to the cover; infinite when x is not finite. Within the inner radius, where the trust is 1
-  // and the error bound does not grow, it may be 0 instead. In two steps, so that the tick can interleave other work.
+  // The squared distance to the cover; infinite when x is not finite. Within the inner radius, where the trust is 1 and
+  // the error bound does not grow, it may be 0. There are two steps, so that the tick can do other work in between.
   struct Leaf {
     std::array<float, kMaxFeatures> rounded;  // x
     const NearestDistance* points;

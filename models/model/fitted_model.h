@@ -3,20 +3,20 @@
 //   f(x) = clamp( T(x) + g(u) clamp(h(u) - b(x), -limit, limit), lowest, largest )
 //   u = (x - offset) / scale                                    normalised features
 //
-// T: the trend (models/model/trend.h). h: the correction (models/model/correction.h): eq. 2 of Hoever & Harders
-// (2009), a grid of it, or none. g: the trust, 1 near the data, 0 out of the domain (models/model/domain_guard.h). b: 0
+// T: the trend (models/model/trend.h). h: the correction (models/model/correction.h): eq. 2 of Hoever & Harders (2009),
+// a grid of its values, or none. g: the trust, 1 near the data, 0 out of the domain (models/model/domain_guard.h). b: 0
 // if h was fitted to the residual of the trend (default), T(x) if it was fitted to the force (the paper's recipe).
-// limit: 1.1 x the largest correction in the training data. largest: 1.2 x the largest training force. lowest: the
-// lowest training force of a material that adheres to the tool, else 0. Out of its domain every model is thus the
-// trend: continuous, bounded, and attracting the tool at most as much as the material did.
+// limit: 1.1 x the largest residual of the trend in the training data. largest: 1.2 x the largest training force.
+// lowest: the lowest training force of a material that adheres to the tool, else 0. Out of its domain every model is
+// thus the trend: continuous, bounded, and attracting the tool at most as much as the material did.
 //
 // Thread guarantee: FittedModel is immutable; `evaluate` as in ForceModel.
 #pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -65,7 +65,7 @@ struct Provenance {
 };
 
 // The bound on the error of a model's force where no force is measured, at 95 %:
-//   b(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
+//   bound(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
 // distance: to the nearest training data in the normalised feature space (domain_guard.h). The coefficients are fitted
 // to cross-validated errors and scaled by split-conformal prediction, with the quantile of the normalised errors
 // (models/fit/model_validation.h).
@@ -118,8 +118,8 @@ Status check_forces(const ModelData& data);
 // known), else one with this step and no noise.
 SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m);
 
-// Greater depths are out of the domain at any distance from the data; infinite without a depth feature. `feature`: the
-// index of the depth feature, or 0.
+// The greatest depth in the domain, m; a greater one is out of it at any distance from the data. Infinite without a
+// depth feature. `feature`: receives the index of the depth feature, or 0.
 double deepest_in_domain_m(const ModelData& data, std::size_t& feature);
 
 class FittedModel final : public ForceModel {

@@ -4,10 +4,10 @@
 //   T(x) = E(d) + eta(d) v + mu(d) v / (1 + |v| / v_0) + sum_b z_b + sum_k y_k
 //
 // d: depth, v: velocity, z_b: force of Maxwell branch b or of a spectrum of them, y_k: force of stops and creeping
-// bristles (engine/tick/features.h); all are features. v_0: RMS velocity of the recordings, so that the two viscous
-// terms together describe a viscosity that falls with speed. E increases with depth, and eta, mu and the stiffnesses
-// of branches and bristles are non-negative (the fit enforces it), so that the trend is passive. A model without
-// velocity or branches has only the terms of its features; position alone leaves E(d).
+// bristles (engine/tick/features.h); all are features. v_0: RMS velocity of the recordings. The two viscous terms
+// together describe a viscosity that falls with speed. E increases with depth, and eta, mu and the stiffnesses of
+// branches and bristles are non-negative (the fit enforces it), so that the trend is passive. A model has only the
+// terms of its features; position alone leaves E(d).
 //
 // Beyond the data: E continues along its tangent beyond the greatest recorded depth, and v is clamped to
 // velocity_limit, so that the value is bounded; the model clamps the rest.
@@ -25,7 +25,7 @@
 
 namespace palpate {
 
-// Enough for a force that grows thirty-fold over the last tenth of the depth; the penalty determines the smoothness.
+// Enough for a force that grows thirty-fold in the last tenth of the depth. The penalty determines the smoothness.
 inline constexpr std::size_t kElasticPieces = 32;
 inline constexpr std::size_t kElasticCoefficients = 4;  // of a piece
 
@@ -41,8 +41,8 @@ struct ElasticSpline {
   bool operator==(const ElasticSpline&) const = default;
 };
 
-// The kElasticTerms basis splines: the integrals from 0 to u of the quadratic B-splines on the pieces, so that E
-// increases if all weights, in newtons, are non-negative. With a penalty on the differences of neighbouring weights E
+// The kElasticTerms basis splines are the integrals from 0 to u of the quadratic B-splines on the pieces. E therefore
+// increases if all weights, in newtons, are non-negative. With a penalty on the differences of neighbouring weights it
 // is a P-spline (Eilers & Marx 1996).
 inline constexpr std::size_t kElasticTerms = kElasticPieces + 2;
 std::vector<ElasticSpline> spline_basis();
@@ -73,7 +73,7 @@ struct Trend {
   double thinning_velocity_m_per_s = 1.0;                           // v_0
   double velocity_limit_m_per_s = 0.0;
 
-  // T(x) in newtons, of any sign. `inputs`, or `specs`: those of `features`.
+  // T(x) in newtons, of any sign. `inputs`, or `specs`: of the list of features.
   double at(const double* features, const TrendInputs& inputs) const noexcept;
   double at(const double* features, const std::vector<FeatureSpec>& specs) const noexcept {
     return at(features, TrendInputs(specs));

@@ -1,5 +1,5 @@
 // The vectorised loops of the tick and of the fits, one variant per instruction set (AVX-512, AVX2, SSE4, NEON or
-// plain), selected at run time. Only rbf_evaluate.h, domain_guard.h, tests and benchmarks include this header.
+// plain), selected at run time; pure and wait-free. Only rbf_evaluate.h, domain_guard.h, tests and benchmarks use them.
 //
 // Points are structures of arrays: coordinate k of point i is coordinates[k * stride + i]. Loads are fast because
 // CMakeLists.txt lets Eigen align to 64 bytes.
@@ -22,10 +22,10 @@ constexpr std::size_t whole_vectors(std::size_t count, std::size_t lanes) noexce
 
 // ---- radial basis functions (rbf_evaluate.h), in double precision ----
 
-// Doubles in the widest vector used; every narrower one divides it.
+// The number of doubles in the widest vector; the number in every narrower one divides it.
 inline constexpr std::size_t kSimdPad = 8;
 
-// Numbers below this count as 0: no product of two others is denormal.
+// Numbers below this count as 0, so that the product of two others is not denormal.
 inline constexpr double kTiny = 1e-100;
 inline double without_denormals(double value) noexcept { return value < kTiny && value > -kTiny ? 0.0 : value; }
 

@@ -1,14 +1,14 @@
 // The force of a recording over the position, and the shift between the curves of two recordings.
 //
-// A curve has the median force of every bin of positions, of loading and of unloading apart: a higher speed raises one
-// and lowers the other, and no shift does both. Curves are compared at the bins of the second, by linear interpolation
-// between those of the first: e = (F2(p + shift) - F1(p)) / JND. They are comparable if they overlap by 30 %.
+// A curve has the median force of every bin of positions, separately for loading and unloading: a higher speed raises
+// the first and lowers the second, which no shift does. Curves are compared at the bins of the second, by linear
+// interpolation between those of the first: e = (F2(p + shift) - F1(p)) / JND. They are comparable with 30 % overlap.
 //
 // Shift registration (Ramsay & Silverman, "Functional data analysis", 2005, section 7.2): the shift minimises the mean
-// Huber loss of e beyond 1. If the median of |e|, where one of the forces is above the JND at 0 N, is at most 1 as
-// recorded, the shift is 0, because such a difference is below the JND. No shift is identified if the median is still
-// above 1 with it, if it is at an end of the comparable ones, if less than 30 % of the forces in contact overlap, or if
-// an offset of the force explains the difference as well.
+// Huber loss of e beyond 1. The shift is 0 if, as recorded, the median of |e| over bins with a force above the JND at 0
+// N is at most 1, because such a difference is below the JND. No shift is identified if this median is above 1 at the
+// minimum, if the next shift on either side is not comparable, if less than 30 % of the forces in contact overlap, or
+// if an offset of the force explains the difference as well.
 // Thread guarantee: slow side, value type and pure functions.
 #pragma once
 
@@ -52,9 +52,9 @@ double common_bin_m(const std::vector<ForceAtPosition>& first, const std::vector
 struct CurveDifference {
   double loss = 0.0;           // mean Huber loss
   double contact_cells = 0.0;  // the number of compared medians where one of the forces is above the JND at 0 N
-  double median_jnds = 0.0;    // of |e| of these
-  double median_N = 0.0;       // of F2 - F1
-  double apart_share = 0.0;    // of the bins whose central 90 % do not overlap
+  double median_jnds = 0.0;    // median of |e| over these
+  double median_N = 0.0;       // median of F2 - F1
+  double apart_share = 0.0;    // share of the bins whose central 90 % do not overlap
 };
 // None if the curves are not comparable at this shift. Both have the same width of bins. `force_offset_N`: subtracted
 // from the forces of `second`.

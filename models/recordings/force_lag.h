@@ -4,11 +4,11 @@
 //
 //   F(t) ~ c + E(p) + sum_t b_t + eta(p) v,   p, v: position and velocity at t - lag, c: force zero,
 //
-// therefore has a larger residual where the force is late. Where it is early, it looks like viscosity until force
-// begins before contact. E and the spring of each Maxwell branch b_t are rising splines over the positions, and eta is
-// not negative. All are 0 in air, so the position of the surface is not needed. Residuals are divided by the noise plus
-// 3 % of the force, with a Huber loss beyond 3; a row without force counts only where the fit is positive. Lags of
-// -50 to 50 ms are searched; a lag that does not improve the fit significantly is 0 (profile_search.h).
+// therefore has a larger residual where the force is late. A force that is early looks like viscosity, unless it begins
+// before contact. E and the spring of each Maxwell branch b_t are rising splines over the positions, and eta is not
+// negative. All are 0 in air, so the position of the surface is not needed. Residuals are divided by the noise plus 3 %
+// of the force, with a Huber loss beyond 3; a row without force counts only where the fit is positive. Lags of -50 to
+// 50 ms are searched; a lag that does not improve the fit significantly is 0 (profile_search.h).
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -17,12 +17,12 @@
 
 namespace palpate {
 
-// The required accuracy of a lag, s: a lag with a larger error (two standard errors) is not identified; lags that
-// differ by at most this agree. Rows more than ten times as far apart identify no lag.
+// The required accuracy of a lag, s: a lag with two standard errors above it is not identified; lags that differ by at
+// most this agree. Rows that are more than ten times this apart identify no lag.
 inline constexpr double kLagAccuracy_s = 0.002;
 
-// `rows`: of a recording, in time order. `at` > 0 s: the force is late. Not identified with fewer than 100 rows or
-// three strokes, or with rows too far apart.
+// `rows`: of a recording, in time order; uses the first 4000 that are at least 5 ms apart. `at` > 0 s: the force is
+// late. Not identified with fewer than 100 rows or three strokes, or with rows too far apart.
 OffsetEstimate find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N);
 
 // The rows with the force shifted by `lag_s` to earlier times; rows for which no force was recorded are dropped.

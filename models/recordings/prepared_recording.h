@@ -15,8 +15,8 @@
 
 namespace palpate {
 
-// The maximum number of rows from which a surface is estimated, and their largest interval: with a larger one an
-// approach has too few rows to identify the onset. Of a recording of hours at 1 kHz the first seven minutes are used.
+// The maximum number of rows from which a surface is estimated, and their largest interval: an approach with fewer rows
+// does not identify the onset. A longer recording at 1 kHz contributes its first seven minutes.
 inline constexpr std::size_t kOnsetRows = 400000;
 inline constexpr double kCoarsestOnset_s = 1.5e-3;
 

@@ -1,4 +1,4 @@
-// The search for an offset (of a surface, a force lag, ...) that minimises a cost, with its standard error and a test
+// Searches the offset (of a surface, a force lag, ...) with the lowest cost, gives its standard error, and tests
 // whether the data identify it.
 //
 // The cost is a sum over blocks, pieces of the recordings with independent errors. A scan of the range and golden
@@ -13,8 +13,8 @@
 //
 // An effect of the material that looks like an offset (viscosity looks like a lag) is the same in all blocks, so that
 // the jackknife does not show it. With such an effect of known size (`systematic_effect`) the offset is identified only
-// if the costs at 0 and at this distance on either side are significantly worse, and it must exceed this distance plus
-// two standard errors to differ from 0.
+// if the costs at 0 and at this distance on either side are significantly worse. It must exceed the effect plus two
+// standard errors to differ from 0.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -50,12 +50,12 @@ using CostFunction = std::function<BlockCosts(double)>;
 
 struct OffsetEstimate {
   double at = 0.0;                        // the offset; 0 if not identified or not significantly different from 0
-  bool not_zero = false;                  // the minimum differs from 0, identified or not
+  bool not_zero = false;                  // the minimum differs from 0 significantly
   double standard_error = kUnknownError;  // infinite if not identified
   bool identified = false;
-  double minimum_at = 0.0;  // the minimum, identified or not, and its blocks
+  double minimum_at = 0.0;  // the minimum, identified or not, and its costs
   BlockCosts minimum{};
-  // A force offset that explains the data as well, so that `at` is not identified: N; 0: none.
+  // N: a force offset that explains the data as well, so that `at` is not identified; 0: there is none.
   double force_offset_N = 0.0;
 };
 
@@ -65,7 +65,7 @@ struct SearchRange {
   double coarse_step = 0.0;
   double fine_step = 0.0;
   double widest = 0.0;             // limit of two standard errors
-  double systematic_effect = 0.0;  // of the material, one that looks like an offset; 0: there is none
+  double systematic_effect = 0.0;  // of the material, in units of the offset; 0: none
 };
 
 // The minimum of `cost` in `range`, which contains 0. Not identified where the range is empty.

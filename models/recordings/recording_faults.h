@@ -7,8 +7,8 @@
 // otherwise, and for a force below 100 Hz, three dropouts must have exactly the same value. Fewer than three dropouts,
 // or more than a tenth of all rows, are not removed.
 //
-// Repeated positions: a position channel that is slower than the rows. It changes at equal intervals of two rows or
-// more at any speed, whereas an encoder changes faster in faster motion, by one step. Only the rows with an update are
+// Repeated positions: the position channel is slower than the rows. It changes at equal intervals of two rows or more
+// at any speed, whereas an encoder changes more often in faster motion, by one step. Only the rows with an update are
 // kept; at rest, rows at the same intervals.
 // Thread guarantee: slow side, pure but for read_usable_recording (does I/O).
 #pragma once

@@ -1,14 +1,14 @@
 // Estimates the surface and the force zero of one recording from it alone.
 //
-// Free air is a range at the outer end of the positions where, during loading, the force does not depend on the
-// position: the medians of slices of it stay within the noise, where the recording's mean stiffness would have changed
-// the force by twenty times as much. A force there that is proportional to the acceleration is the inertia of the mass
-// carried by the force sensor; it is subtracted below. Without free air, the tool may never have left the material,
-// and neither force zero nor surface is identified.
+// Free air is a range at the outer end of the positions where the force during loading does not depend on the position:
+// the medians of its slices stay within the noise, although a force with the mean stiffness of the recording would
+// change by twenty times as much there. A force there that is proportional to the acceleration is the inertia of the
+// mass carried by the force sensor; it is subtracted. Without free air, the tool may never have left the material, and
+// neither force zero nor surface is identified.
 //
-// Force zero: the median force in free air. Surface: the onset of touches of a surface at rest that begin in free air:
-// the first of the recording and those after kRestBeforeTouch_s of air. (A surface that still recovers from the last
-// touch meets the tool late, by up to a millimetre.) During loading,
+// Force zero: the mean force in free air, without outliers. Surface: the onset of force in touches of a surface at rest
+// that begin in free air: the first of the recording and those after kRestBeforeTouch_s of air. (A surface that still
+// recovers from the last touch meets the tool late, by up to a millimetre.) During loading,
 //   J(d0) = sum_i (f_i - zero - x_i^n (a (1 - k x_i) + b k x_i))^2,
 //           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5,  k = n / ((n + 1) 3 mm)
 // is minimised over d0 (surface_onset.h): a force law that is convex or concave and rises up to 3 mm. Offsets within
@@ -28,11 +28,11 @@ inline constexpr double kRestBeforeTouch_s = 5.0;
 
 struct SurfaceEstimate {
   FreeAir air;  // if not found, all below is unknown
-  // To be subtracted from position_m so that 0 is the surface. `raw_offset_m`: the minimum before the test against 0.
+  // To be subtracted from position_m so that 0 is the surface. `raw_offset_m`: the onset, before the test against 0.
   double offset_m = 0.0;
   double raw_offset_m = 0.0;
   double standard_error_m = kUnknownError;  // infinite if the surface is not identified
-  double force_zero_N = 0.0;                // to be subtracted from force_N; 0 where that of the air is not significant
+  double force_zero_N = 0.0;                // to be subtracted from force_N; 0 if not significant
   // The surface at the last touch at rest minus that at the first; the error is infinite with fewer than two.
   double offset_drift_m = 0.0;
   double offset_drift_error_m = kUnknownError;

@@ -23,8 +23,8 @@ struct SurfaceRow {
   double force_N = 0.0;
 };
 
-// Keeps rows in bounded memory: all, and whenever there are `most`, every other one of them. If these would be further
-// apart than `coarsest_s`, the later rows are dropped instead.
+// Keeps rows in bounded memory. Whenever there are `most`, it drops every other one and keeps later rows at half the
+// rate. If the kept rows would be further apart than `coarsest_s`, it drops all later rows instead.
 class GrowingStride {
  public:
   explicit GrowingStride(std::size_t most, double coarsest_s = std::numeric_limits<double>::infinity())
@@ -41,13 +41,13 @@ class GrowingStride {
   std::vector<SurfaceRow> rows_;
 };
 
-// Every n-th row, with the smallest n that leaves at most `most`.
+// Every n-th row, n = rows / most + 1 (integer division), so that at most `most` are left.
 std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::size_t most);
 // The same of a recording, with the motion estimates.
 std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
 
 // The force at `time_s`, interpolated between two of the rows; none before the first and after the last. `rows`: in
-// time order, SurfaceRow or derived from it. `at`: the index of the first of the two; it moves on from call to call.
+// time order, SurfaceRow or derived. `at`: index of the first of the two, 0 at first; increases from call to call.
 template <typename Row>
 std::optional<double> force_at(const std::vector<Row>& rows, double time_s, std::size_t& at) {
   while (at + 2 < rows.size() && rows[at + 1].sample.time_s < time_s) ++at;
@@ -64,7 +64,7 @@ std::pair<double, double> position_range_m(const std::vector<SurfaceRow>& rows);
 // The median (the upper one of an even number); 0 for no values.
 double median_of(std::vector<double> values);
 
-// The block of each row, of kBlocks blocks of equal path length of the tool.
+// The index of the block of each row: kBlocks blocks of equal path length of the tool.
 inline constexpr std::size_t kBlocks = 10;
 std::vector<std::size_t> blocks_by_path(const std::vector<SurfaceRow>& rows);
 

@@ -1,13 +1,13 @@
 // The gain of each site as the next centre: the decrease (c . r)^2 / |c'|^2 of the squared error, given the basis
 // selected so far. c is the site's scaled kernel column, c' its part orthogonal to the basis and r the residual.
 //
-// c . r and |c'|^2 are stored: the basis only grows, so an update subtracts only the components along the directions
-// that are new to the site.
+// c . r and |c'|^2 are stored. The basis only grows, so an update of a site subtracts only the components along the
+// directions that were added since its last one.
 //
 // |c'|^2 = |c|^2 - |Q^T c|^2, with the basis Q, suffers from cancellation when c is almost in the span of the basis.
 // Sums of N products are accurate to some 1e-14. Where the error of |c'|^2 may exceed 1 %, c' itself is computed, and a
 // site with |c'| <= 1e-10 |c| has gain 0.
-// Thread guarantee: one object, one thread; it starts others itself.
+// Thread guarantee: one thread per object; `update` starts others itself.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +27,8 @@ class CandidateGains {
   // The scaled kernel columns of centres at some sites, N x count.
   Eigen::MatrixXd columns(std::span<const Eigen::Index> sites) const;
 
-  // Updates these distinct sites to the current basis, which must be that of the last call or grown from it. O(N new
-  // directions) for each. The result does not depend on the number of cores.
+  // Updates these distinct sites to the current basis, which must be that of the last call or grown from it. O(N x new
+  // directions) for each site. The result does not depend on the number of cores.
   void update(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis);
 
   double gain(Eigen::Index site) const {

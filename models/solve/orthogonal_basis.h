@@ -12,7 +12,7 @@ namespace palpate {
 
 class OrthogonalBasis {
  public:
-  // Starts with the scaled tail columns G of the kernel, and row_scale * target as data. `more`: maximum number of
+  // Starts with the scaled tail columns G of the kernel; the data are row_scale * target. `more`: the maximum number of
   // columns to be added.
   OrthogonalBasis(const Sites& sites, KernelKind kernel, Eigen::Index more);
 

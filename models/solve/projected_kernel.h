@@ -1,13 +1,13 @@
 // The kernel matrix between points, with the polynomial tail projected out.
 //
-// With S = diag(scale), K = sign S Phi S, q an orthonormal basis of the columns of S G and P = I - q q^T, the weights
-// w = sign S u of a u = P u satisfy the side condition G^T w = 0, and w^T (sign Phi) w = u^T P K P u is their
-// roughness, which is never negative (the saddle matrix of eq. 4 is indefinite). Two fits use the matrix:
+// With S = diag(scale), K = sign S Phi S, q an orthonormal basis of the columns of S G and P = I - q q^T: if u = P u,
+// the weights w = sign S u satisfy the side condition G^T w = 0, and their roughness w^T (sign Phi) w = u^T P K P u is
+// never negative (the saddle matrix of eq. 4 is indefinite). Two fits use the matrix:
 // - All sites are centres (fit_direct.h). The smoothing spline, which minimises
 //     sum_i scale_i^2 (f_i - h(x_i))^2 + smoothing w^T (sign Phi) w,
 //   solves (P K P + smoothing I) u = P S f.
 // - Some points are centres (solve_weights.h). The matrix of the centres, with S = I, is the penalty.
-// Source: Hoever & Harders (2009), eqs. 2-8; Wahba (1990) for the form.
+// Source: Hoever & Harders (2009), eqs. 2-8; Wahba (1990) for the form. Thread guarantee: slow side.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +27,8 @@ class ProjectedKernel {
 
   // The lower triangle of P K P + fill q q^T + smoothing I, N x N; the upper one is not set. Uses all cores.
   Eigen::MatrixXd matrix(double fill, double smoothing) const;
-  // The Cholesky factor of that matrix with the mean eigenvalue as fill. A smoothing that is too small because of
-  // rounding is multiplied by ten until the factor exists; none: it never does.
+  // The Cholesky factor of that matrix with the mean eigenvalue as fill. If rounding prevents it, the smoothing is
+  // multiplied by ten until the factor exists; none after eight attempts.
   std::optional<Eigen::MatrixXd> cholesky(double smoothing) const;
 
   // P v.
@@ -42,7 +42,7 @@ class ProjectedKernel {
 
   // Mean eigenvalue of P K P; at least 1 if that is zero to rounding (all points are the same).
   double mean_eigenvalue() const { return mean_eigenvalue_; }
-  // A smaller smoothing is below the rounding errors of the matrix.
+  // The smallest smoothing above the rounding errors of the matrix.
   double smallest_smoothing() const { return smallest_smoothing_; }
   Eigen::Index tail_rank() const { return q_.cols(); }
 
@@ -59,7 +59,7 @@ class ProjectedKernel {
   double smallest_smoothing_ = 0.0;
 };
 
-// The smoothing of a fit: that of the sites, otherwise the most likely one.
+// Returns the smoothing of the sites; if they have none, the most likely one.
 //
 // One eigendecomposition of P K P for an evenly spaced subset of up to 500 sites gives the likelihood of every
 // smoothing, for normal noise and a normal prior whose scale is profiled out,

@@ -2,19 +2,19 @@
 //   minimise sum_i row_scale_i^2 (f_i - h(x_i))^2 + smoothing w^T (sign Phi) w
 //   subject to G^T w = 0,
 // Phi and G are the kernel and the tail at the centres. If every site is a centre, this is the smoothing spline of
-// fit_direct.h, otherwise the regression spline on a subset of its basis, which approaches it with more centres.
+// fit_direct.h; otherwise it is the regression spline on a subset of its basis, which approaches it with more centres.
 //
-// The smoothing is that of the sites, or otherwise the most likely one (projected_kernel.h): plain least squares is
-// ill-posed where the sites (clusters, noise) do not determine the unknowns, and the values between the sites then
-// have no bound. With ten sites to an unknown and no selected smoothing there is neither penalty nor side condition; a
-// ridge of 1e-6 of the columns' length separates duplicate centres.
+// The smoothing is that of the sites or, if they have none, the most likely one (projected_kernel.h). Plain least
+// squares is ill-posed where the sites (clusters, noise) do not determine the unknowns, and the values between the
+// sites then have no bound. With ten sites or more per unknown and no selected smoothing there is neither penalty nor
+// side condition; a ridge of 1e-6 of the columns' length separates duplicate centres.
 //
 // With Sites::as_2009 the weights are those of the paper: eq. 8 and the rows of the side condition (eq. 3), by a
 // pseudo-inverse. Singular values below max(rows, columns) x epsilon x the largest are set to 0 (the numerical rank;
 // the paper gives no threshold).
 //
-// A QR factorisation reduces the N rows block by block to a small triangle, to which the penalty is added: the accuracy
-// of a QR factorisation of the whole matrix, with memory O(columns^2 + block) for any N.
+// A QR factorisation reduces the N rows block by block to a small triangle, to which the penalty is added. It has the
+// accuracy of a QR factorisation of the whole matrix, with memory O(columns^2 + block) for any N.
 // Sources: Hoever & Harders (2009), eq. 8 and section 4.2.1; Wahba (1990), sections 1.3 and 7.2; Golub & Van Loan,
 // Matrix Computations, 5.5.8.
 // Thread guarantee: slow side, pure. The sites must pass validate_sites.

@@ -1,17 +1,17 @@
 // Estimates the offsets of the training recordings to each other, and their common surface.
 //
-// The reference is the recording with the largest range of positions, of those whose surface is identified if there are
-// any. The offset of every other one is the difference of their surfaces where both are identified
+// The reference is the recording with the largest range of positions, among those with an identified surface if there
+// are any. The offset of every other recording to it is the difference of their surfaces if both are identified
 // (models/recordings/surface_estimate.h), otherwise the shift between their forces (models/recordings/force_curve.h).
-// Surfaces that differ by less than 0.25 mm count as equal. The common offset belongs to the rig, so the recording with
-// the medoid of the offsets keeps its positions (of two, the later one). A recording whose offset is not identified
-// stays as recorded.
+// An offset that all have in common belongs to the rig and is kept: the medoid of the offsets (of two, that of the
+// later recording) counts as 0. Offsets within 0.25 mm or two standard errors of it count as equal to it. A recording
+// whose offset is not identified stays as recorded.
 //
-// The surface of the model is the weighted mean of the onsets of force in these positions, on either side of 0; it is 0
-// without free air or if it does not differ from 0 significantly and by 0.25 mm. If measured forces reach further out
+// The surface of the model is the weighted mean of the onsets of force in these positions, on either side of 0. It is 0
+// without free air, or if it is within 0.25 mm or two standard errors of 0. If measured forces reach further out
 // (adhesion, a press that never leaves the material), the surface is there, so that the model includes them. Force
-// zeros are subtracted if every recording has free air, otherwise in none. A lag of the force (force_lag.h) is used if
-// at least half of the recordings identify one and these agree.
+// zeros are subtracted from all recordings if every one has free air, otherwise from none. A lag of the force
+// (force_lag.h) is used if at least half of the recordings identify one and these agree.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -26,7 +26,7 @@
 namespace palpate {
 
 struct RegisteredSurfaces {
-  std::vector<RecordingSurface> recordings;  // in the order of `source.recordings()`; the lag is one for all
+  std::vector<RecordingSurface> recordings;  // in the order of `source.recordings()`; all have the same lag
   double surface_position_m = 0.0;           // in positions corrected by the offsets
   double unmoved_surface_position_m = 0.0;   // the same without the offsets
 };

@@ -1,7 +1,7 @@
-// Estimates the surface of a test recording for a given model: the shift of the positions that minimises the error of
-// the model's forces, over all overlaps of recording and model (profile_search.h). Errors are in JND with a Huber loss
-// beyond 1, and outside the surface the model's force is 0, as in the tick. A shift within two standard errors of 0 is
-// 0, and so is one for which a force offset is as good an explanation.
+// Estimates the surface of a test recording for a given model: the shift of the positions, over all overlaps of
+// recording and model, that minimises the error of the model's forces (profile_search.h). Errors are in JND with a
+// Huber loss beyond 1; outside the surface the model's force is 0, as in the tick. A shift counts as 0 within two
+// standard errors of 0, and is not identified if a force offset explains the data as well.
 // Thread guarantee: slow side, pure.
 #pragma once
 

@@ -1,17 +1,17 @@
-// Cross-validation: the folds of the training recordings, the errors of candidates, and the one rule that selects among
-// them. Every candidate predicts the samples of each fold from the other folds.
+// Cross-validation: the folds of the training recordings, the errors of candidates, and the selection rule that chooses
+// among them. Every candidate predicts the samples of each fold from the other folds.
 //
-// Folds: neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples. With
-// three recordings or more a fold is made of whole recordings, otherwise of whole strokes (contacts). A stroke with
-// more than a tenth of the samples in contact is cut into pieces in time. A recording without unloading visits each
-// depth once and is cut into pieces of a fiftieth.
+// Folds: neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples. Three
+// recordings or more form up to six folds of whole recordings; fewer form five folds of whole strokes (contacts). A
+// stroke with more than a tenth of the samples in contact is cut into pieces in time. A recording without unloading
+// visits each depth once and is cut into pieces of a fiftieth.
 //
 // The score of a fold is
 //   l_k = ln(mean_i (e_i / JND_i)^2 + kUnnoticed_jnd^2).
-// The logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below
-// the JND irrelevant. The rule takes the simplest candidate whose mean score exceeds the best by at most two standard
-// errors of the paired difference, which is then not significant at the 95 % level. (With one standard error the
-// share within the JND falls by up to 1.4 points: tests/bench/README.md.)
+// The logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below the
+// JND irrelevant. The selection rule takes the simplest candidate whose mean score exceeds the best by at most two
+// standard errors of the paired difference, which is then not significant at the 95 % level. (With one standard error
+// the share within the JND falls by up to 1.4 points: tests/bench/README.md.)
 // Source: Breiman, Friedman, Olshen & Stone (1984), section 3.4.3; Hastie, Tibshirani & Friedman
 // (2009), section 7.10.
 // Thread guarantee: value types and pure functions, slow side.
@@ -42,11 +42,11 @@ class FoldAssignment {
   int piece_ = -1;
 };
 
-// The greatest depth outside each fold: deeper samples of the fold would be extrapolated, so they do not count.
-// `fold`, `depth_m`: of each sample.
+// By fold, the greatest depth in the other folds. Deeper samples of the fold would be extrapolated, so they do not
+// count. `fold`, `depth_m`: of each sample.
 std::vector<double> deepest_elsewhere_m(std::span<const int> fold, std::span<const double> depth_m, int folds);
 
-// With normal errors of a quarter of a JND (RMS) one sample in 16,000 exceeds the JND.
+// With this RMS, in JND, one of 16,000 normally distributed errors exceeds the JND.
 inline constexpr double kUnnoticed_jnd = 0.25;
 
 struct FoldErrors {
@@ -77,8 +77,8 @@ std::vector<FoldErrors> errors_of(const std::vector<Candidate>& candidates) {
 // Index of the candidate with the lowest mean score.
 std::size_t best_score(std::span<const FoldErrors> candidates);
 
-// Index of the selected candidate. `candidates`: at least one, from the simplest to the most complex, with as many
-// folds each. A fold without samples in one of them counts for none.
+// Index of the selected candidate. `candidates`: at least one, from the simplest to the most complex, with the same
+// folds. A fold in which one of them has no samples is ignored.
 std::size_t simplest_adequate(std::span<const FoldErrors> candidates);
 
 }  // namespace palpate

@@ -1,8 +1,8 @@
-// Selects the properties of the memory in which the trend is not linear in its weights, by cross-validation and the
-// common rule (cross_validation.h): whether the material's surface lags behind a retreating tool (`surface_lag`,
-// engine/tick/features.h), how the relaxation times change with depth (`slowing`), and, for models with few features
-// (`--relaxation auto`, and the recipe of 2009, whose authors fitted theirs to the transients of the recording), one to
-// three relaxation times.
+// Selects, by cross-validation and the selection rule (cross_validation.h), the parameters of the memory that a linear
+// regression cannot identify: whether the material's surface lags behind a retreating tool (`surface_lag`,
+// engine/tick/features.h), and how the relaxation times change with depth (`slowing`). For models with few features
+// (`--relaxation auto`, and the recipe of 2009, whose authors fitted theirs to the transients of the recording) it
+// selects one to three relaxation times.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -25,14 +25,14 @@ struct PartGain {
 // Returns `list` with the selected surface and slowing, and appends their gains to `gains`. Errors: interrupted.
 Result<FeatureList> select_memory_law(const TrendData& data, const FeatureList& list, std::vector<PartGain>& gains);
 
-// The cross-validated error of the trend without surface lag and slowing, by which two ways to correct the recordings
-// are compared. Errors: interrupted.
+// The cross-validated error of the trend without surface lag and slowing, to compare ways of correcting the recordings.
+// Errors: interrupted.
 Result<FoldErrors> simple_law_error(const TrendData& data, const FeatureList& list);
 
-// Returns relaxation times in seconds, ascending, of the ascending `candidates_s`. Each candidate is a feature of one
-// regression. Times are added one by one, by the lowest cross-validated error, after which each may move to the next
-// candidate. `count`: 1 to 3, or 0: a further time is kept if the common rule prefers it. `velocity`: whether the trend
-// has viscosity. Errors: no candidates, because the recordings are too short; interrupted.
+// Selects relaxation times from `candidates_s` (both ascending, in s). Each candidate is a feature of one regression.
+// Times are added one by one, by the lowest cross-validated error; after each addition, times move to neighbouring
+// candidates while the error falls. `count`: 1 to 3, or 0: a further time is kept if the selection rule prefers it.
+// `velocity`: whether the trend has viscosity. Errors: no candidates (recordings too short); interrupted.
 Result<std::vector<double>> identify_relaxation(const TrendData& data, const std::vector<double>& candidates_s,
                                                 bool velocity, std::size_t count);
 

@@ -49,11 +49,10 @@ class MotionSource {
   // rows. Errors: interrupted.
   Status for_each(const std::function<void(const MotionRow&)>& visit, const FitControl& control = {});
 
-  // Sets the corrections of all later passes: `surface_m` and the recording's own offset are subtracted from its
-  // positions and its force zero from its forces, and the force at t becomes the one recorded at t + lag_s,
-  // interpolated. Velocity and acceleration stay as they are, and rows for which no force was recorded then are
-  // dropped. Contact and strokes are determined from the corrected position. `surfaces`: one for each of `recordings`,
-  // or none.
+  // Sets the corrections of all later passes. `surface_m` and the recording's own offset are subtracted from its
+  // positions, its force zero from its forces; the force at t becomes the one recorded at t + lag_s, interpolated.
+  // Velocity and acceleration stay as they are, and rows for which no force was recorded are dropped. Contact and
+  // strokes are determined from the corrected position. `surfaces`: one for each of `recordings`, or none.
   void correct(std::vector<RecordingSurface> surfaces, double surface_m = 0.0) {
     surfaces_ = std::move(surfaces);
     surface_m_ = surface_m;
@@ -73,8 +72,7 @@ class MotionSource {
   const std::vector<OneRecording>& recordings() const { return recordings_; }
   // The number of recorded rows.
   std::size_t rows() const { return rows_; }
-  // The largest force noise and encoder step of the recordings, with the position noise of the recording with that
-  // step.
+  // The largest force noise; the largest encoder step, with the position noise of the recording that has this step.
   double force_noise_N() const { return force_noise_N_; }
   const SensorSpec& sensor() const { return sensor_; }
 
@@ -110,10 +108,10 @@ struct TrainingExtent {
 // Errors: those of the source; interrupted.
 Result<TrainingExtent> measure_extent(MotionSource& source, const JndLine& jnd, const FitControl& control);
 
-// The surface position in m, <= 0, of recordings whose depth counts from a preload; 0 where there is none or it cannot
-// be identified. A straight line is fitted to the samples whose depth is below a hundredth of the greatest; the
-// surface is where it has no force. The line is used if its force at position 0 exceeds the JND and two standard
-// errors, its slope exceeds two standard errors, and the surface is nearer than the greatest depth.
+// The surface position in m, <= 0, of recordings that begin under a preload at position 0; 0 if there is none or it
+// cannot be identified. A straight line is fitted to the samples whose depth is below a hundredth of the greatest; the
+// surface is where its force is 0. The line is used if its force at position 0 exceeds the JND and two standard errors,
+// its slope exceeds two standard errors, and the surface is nearer than the greatest depth.
 // Errors: those of the source; interrupted.
 Result<double> find_preload_surface(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
                                     const FitControl& control);

@@ -1,5 +1,5 @@
-// The data of a fit: normalised feature vectors with the force measured at each (the pairs {u_i; f_i} of Hoever &
-// Harders 2009, section 3), and the factors of their residuals.
+// The data of a fit. A site is a normalised feature vector with its measured force (the pairs {u_i; f_i} of Hoever &
+// Harders 2009, section 3) and the factor of its residual.
 // Thread guarantee: value types and pure functions.
 #pragma once
 
@@ -28,7 +28,7 @@ enum class Weighting {
 // Names in commands and model files, in the order of the values.
 inline constexpr std::array<const char*, 3> kWeightingNames{"jnd", "relative", "none"};
 
-// The step of the paper's reduction (training_set.h). It separates no smaller forces, so its 1 / |f| is constant below.
+// The step of the paper's reduction (training_set.h), below which it separates no forces: 1 / |f| is constant there.
 inline constexpr double kReductionForce_N = 0.05;
 
 inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N) noexcept {
@@ -36,8 +36,8 @@ inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N)
   return 1.0 / (weighting == Weighting::jnd ? jnd.at(force_N) : std::max(std::abs(force_N), kReductionForce_N));
 }
 
-// Square root of the weight of a Cauchy likelihood (Holland & Welsch 1977): 1 for small errors, less for errors well
-// above the JND, which would otherwise bend the fit elsewhere.
+// The factor robust_scale is the square root of the weight of a Cauchy likelihood (Holland & Welsch 1977): 1 for small
+// errors, less for errors well above the JND, which would otherwise bend the fit elsewhere.
 inline constexpr double kRobustError_jnd = 2.0;
 
 inline double robust_scale(double error_over_jnd) noexcept {
@@ -69,8 +69,8 @@ Sites even_subset(const Sites& sites, Eigen::Index most);
 // Indices, ascending, of the sites without duplicates: of sites at exactly the same point the first is kept.
 std::vector<Eigen::Index> distinct_sites(const Sites& sites);
 
-// Draws up to `most` of the indices without replacement and brings them to the front (Fisher & Yates). Returns how many
-// were drawn.
+// Draws up to `most` of the indices without replacement and moves them to the front (Fisher & Yates). Returns the
+// number of drawn ones.
 std::size_t draw_first(std::vector<Eigen::Index>& indices, Eigen::Index most, SplitMix64& random);
 
 }  // namespace palpate

@@ -1,8 +1,8 @@
 // From recordings to sites: features, normalisation and reduction.
 //
-// Normalisation: u = (x - mean) / sqrt(range x 4 sigma) for each feature, over the samples in contact. With the range
-// alone, one fast poke compresses all slow motion; with sigma alone the poke is stretched. Their geometric mean had
-// the lowest errors on recordings that were not used for training.
+// Normalisation: u = (x - mean) / sqrt(range x 4 sigma) for each feature, over the samples in contact. The range alone
+// would compress all slow motion after one fast poke; sigma alone would stretch the poke. Their geometric mean had the
+// lowest errors on recordings that were not used for training.
 //
 // Reduction, one of
 //   coverage  the feature space is divided into cubes of side `step`; all samples of a cube become one site with their
@@ -12,8 +12,8 @@
 //             one. The 50 mN grow by a quarter while there are more than kMaximumSites.
 //   none      every sample in contact
 //
-// In `coverage`, a site has samples of one fold only (cross_validation.h), and samples without measured force (contact
-// is one-sided) form sites of their own, which are marked.
+// In `coverage`, a site has samples of one fold only (cross_validation.h). Samples without measured force form sites of
+// their own, which are marked, because contact is one-sided.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -50,7 +50,7 @@ struct TrainingSite {
   double count = 1.0;  // number of samples merged into it
   int recording = 0;
   int fold = 0;
-  bool no_force = false;  // force at or below the noise floor: one-sided, known only not to be positive
+  bool no_force = false;  // force at or below the noise floor, which shows only that it is not positive
 };
 
 struct TrainingSet {

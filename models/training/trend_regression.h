@@ -11,10 +11,10 @@
 // viscosity, branch and friction dissipate.
 //
 // The elastic response is a P-spline, whose penalty approximates the integral of its squared second derivative (Eilers
-// & Marx 1996; models/model/trend.h). lambda is selected by cross-validation and the common rule (cross_validation.h).
-// alpha is the relative error of all other columns: repeated measurements of each agree to about a tenth, and the
-// expected square of such errors is the penalty (errors in variables; Golub & Van Loan 1980). Columns that the
-// recording cannot separate then share their effect.
+// & Marx 1996; models/model/trend.h). lambda is selected by cross-validation (cross_validation.h). alpha is the
+// relative error of all other columns, of which repeated measurements agree to about a tenth; the penalty is the
+// expected square of such errors (errors in variables; Golub & Van Loan 1980). Columns that the recording cannot
+// separate then share their effect.
 //
 // Source of the solver: Lawson & Hanson (1974), chapter 23, on the normal equations with columns scaled to unit norm.
 // Thread guarantee: slow side, pure.
@@ -28,8 +28,8 @@
 
 namespace palpate {
 
-// alpha; the second without creep, in models with few features: there, 0.1 leaves the trend too little damping to come
-// to rest (tests/accuracy/closed_loop_test.cpp).
+// alpha. The second value is for models without creep, which have few features: 0.1 leaves their trend too little
+// damping to come to rest (tests/accuracy/closed_loop_test.cpp).
 inline constexpr double kPartError = 0.1;
 inline constexpr double kPartErrorOfFew = 0.03;
 

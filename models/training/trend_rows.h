@@ -26,7 +26,7 @@
 
 namespace palpate {
 
-// The basis functions of depth of each branch, stop and creeping bristle.
+// The number of basis functions of depth for each branch, stop and creeping bristle.
 inline constexpr std::size_t kCurveTerms = 3;
 
 bool has_kind(const std::vector<FeatureSpec>& features, FeatureKind kind);
@@ -42,7 +42,7 @@ struct FeatureList {
   // A surface_lag feature and the branches that determine the surface; empty: the surface does not lag.
   std::vector<FeatureSpec> surface{};
 
-  // Adds a feature in its place. `constants`: as constants_of; none for velocity. Without parts nothing is added.
+  // Adds a feature in the order of kinds. `constants`: as constants_of; none for velocity. Without parts adds nothing.
   void add(FeatureKind kind, const std::vector<double>& constants = {});
 };
 
@@ -58,7 +58,7 @@ struct FeatureList {
 FeatureList dictionary(const TrainingExtent& extent, double encoder_step_m);
 // Its relaxation times in s, ascending.
 std::vector<double> dictionary_times_s(const TrainingExtent& extent);
-// A list with a feature of its own for each relaxation time.
+// A list with one feature for each relaxation time.
 FeatureList single_times(bool velocity, const std::vector<double>& times_s);
 // The name of a candidate feature in reports, with the range of its constants.
 std::string term_name(const FeatureSpec& spec);
@@ -78,12 +78,12 @@ struct TrendProblem {
   int folds = 1;
 };
 
-// A row besides its basis functions.
+// The values of a row other than its basis functions.
 struct TrendRow {
   double force_N = 0.0;
   double velocity_m_per_s = 0.0;
   double depth_m = 0.0;
-  double lag_m = 0.0;  // of the surface
+  double lag_m = 0.0;  // of the material's surface: s - d
   int fold = 0;        // cross_validation.h
 };
 
@@ -91,7 +91,7 @@ using ColumnList = std::vector<Eigen::Index>;
 
 class TrendRows {
  public:
-  // Of the samples in contact, every `stride`-th makes a row.
+  // Every `stride`-th of the samples in contact makes a row.
   TrendRows(FeatureList list, const TrendProblem& problem, std::size_t stride = 1);
 
   // Adds the next sample, in contact or not.
@@ -99,7 +99,7 @@ class TrendRows {
 
   std::size_t count() const { return rows_.size(); }
   const TrendRow& operator[](std::size_t index) const { return rows_[index]; }
-  // The basis functions, one row for each row.
+  // The basis functions: one matrix row for each row, one column for each function.
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::Map<const Matrix> terms() const {
     return {values_.data(), static_cast<Eigen::Index>(count()), static_cast<Eigen::Index>(columns())};
@@ -134,8 +134,8 @@ class TrendRows {
   std::vector<ElasticSpline> elastic_basis_;
   std::vector<FeatureFilter> surface_;   // size 0 or 1
   std::vector<FeatureFilter> bristles_;  // kCurveTerms values each
-  // The branches for all relaxation times and curves, discretised as in the features. Each curve is evaluated once a
-  // sample, and each decay once a relaxation time.
+  // The branches for all relaxation times and curves, discretised as in the features. Each curve is evaluated once per
+  // sample, each decay once per relaxation time.
   std::vector<double> times_s_;
   std::vector<DriveCurve> drives_;
   double slowing_ = 0.0;
@@ -154,12 +154,12 @@ struct TrendData {
   FitControl control;
 };
 
-// The rows with the list's terms. While there are more than `most_rows`, every other one is dropped. Samples that
-// follow the last used one by less than `least_step_s` are skipped. Errors: interrupted.
+// The rows with the list's terms. If there are more than `most_rows`, only every n-th is kept, n a power of two.
+// Samples that follow the last used one by less than `least_step_s` are skipped. Errors: interrupted.
 Result<TrendRows> gather_rows(const TrendData& data, const FeatureList& list, std::size_t most_rows,
                               double least_step_s = 0.0);
 
-// The surface_lag feature of an elastic response, with only the kDriveKnots knots of a DriveCurve: a cubic spline
+// The surface_lag feature of an elastic response: a cubic spline with only the kDriveKnots knots of a DriveCurve,
 // through the response at the knot averages (Schoenberg's variation diminishing approximation; de Boor, "A practical
 // guide to splines", chapter 11). It rises where the response rises.
 FeatureSpec surface_lag_of(const ElasticSpline& elastic, double reference_depth_m);

@@ -5,8 +5,8 @@
  *   palpate_stream *stream = palpate_stream_new(model, 30e-6, error, sizeof error);
  *   for (;;) force_N = palpate_stream_force(stream, time_s, position_m);
  *
- * Units are SI. position_m runs along the inward surface normal: 0 at the undisturbed surface, positive inside. A model
- * of recordings whose surface was at another position has its surface there. Forces act along the outward normal,
+ * Units are SI. position_m runs along the inward surface normal: 0 at the undisturbed surface, positive inside. If the
+ * training recordings had their surface at another position, so has the model. Forces act along the outward normal,
  * positive when the material pushes the tool out.
  *
  * A stream runs the code of `palpate replay`: the same samples, with the same sensor (palpate_sensor_of), give the same
@@ -77,9 +77,9 @@ typedef struct palpate_recording {
 PALPATE_API palpate_recording* palpate_recording_load(const char* path, char* error, size_t error_size);
 /* Frees a recording of palpate_recording_load with its columns. */
 PALPATE_API void palpate_recording_free(palpate_recording*);
-/* Selects the samples that error figures are computed over, as in replay: a position above 0, or a measured force
- * beyond both the JND at 0 N and five times its noise. in_contact: receives 1 or 0 for each sample. Returns 0, or -1
- * for NULL. */
+/* Marks the samples in contact, over which replay computes its errors: a position above 0, or a measured force beyond
+ * both the JND at 0 N and five times its noise. in_contact: receives 1 or 0 for each sample. Returns 0, or -1 if a
+ * pointer or a column that is needed is NULL. */
 PALPATE_API int palpate_in_contact(const palpate_recording*, unsigned char* in_contact);
 
 /* ---- streams ---- */
@@ -122,7 +122,7 @@ PALPATE_API double palpate_stream_force_with_motion(palpate_stream*, double time
 PALPATE_API int palpate_stream_forces(palpate_stream*, size_t n, const double* time_s, const double* position_m,
                                       double* force_N, double* bound_N);
 /* The same for the motion of a recording. A channel that the stream's sensor measures needs its column. features:
- * receives the feature vectors, one after the other. Each of the results may be NULL. */
+ * receives size x feature_count values, one feature vector after the other. Each of the results may be NULL. */
 PALPATE_API int palpate_stream_replay(palpate_stream*, const palpate_recording*, double* force_N, double* bound_N,
                                       double* features);
 

@@ -23,7 +23,7 @@ extern "C" {
  *   features    auto, scene (those of 2009), or a list such as depth,velocity,maxwell:0.17 [auto]
  *   relaxation  of the scene's features: scene, auto, or times in s such as 0.17,1.27 [none]
  *   surface     of each recording: auto (estimated), recorded (0) [auto]
- *   grid        of voxel: nodes per feature such as 25x11x11x11 [by itself]
+ *   grid        of voxel: nodes per feature such as 25x11x11x11 [automatic]
  *   seed        of random and greedy [1]
  * progress: called from time to time with the finished fraction and `context`; returns 0 to interrupt; may be NULL.
  *

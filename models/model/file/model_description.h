@@ -1,5 +1,5 @@
-// The description of a model file, which names every member once, in the order of the file. `file` is a reader or a
-// writer (model_io.cpp), which reads the values from the file or writes them to it.
+// Describes a model file: names every member once, in the order of the file. `file` is a reader or a writer
+// (model_io.cpp), which reads the values from the file or writes them to it.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -14,13 +14,13 @@
 
 namespace palpate::model_file {
 
-// The curve of a branch with a short relaxation time may be large, but it is a force.
+// The curve of a branch with a short relaxation time may have values far above the forces of the material.
 inline constexpr NumberRange kDriveForce_N{-1e9, 1e9};
-// Relaxation times that grow by more than exp(20), or 5e8, with the depth indicate a damaged file.
+// Relaxation times that change by more than a factor of exp(20), or 5e8, with the depth indicate a damaged file.
 inline constexpr NumberRange kSlowing{-20.0, 20.0};
 inline constexpr const char* kOnePerFeature = "numbers, one per feature";
 
-// Whether members, or items, are written on a line each or all on one.
+// Whether members, or items, have a line each or are all on one line.
 enum class Layout { lines, one_line };
 
 void describe_each(auto& file, const char* key, auto& items, std::size_t most, Layout layout, const auto& body) {
