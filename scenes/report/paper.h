@@ -80,11 +80,11 @@ struct Claim {
   };
   std::string claim;
   std::string there;           // the result in the paper
-  std::string why{};           // remark on a difference
-  std::vector<Result> here{};  // of each run
+  std::string why{};           // a reason for a difference
+  std::vector<Result> here{};  // the result of each run
 };
 std::vector<Claim> paper_claims(const PaperData& data);
-// "silicone", "silicone, fitted times".
+// The name of a run: "silicone", "silicone, fitted times".
 std::string run_name(const PaperRun& run);
 
 // Writes index.html, report.json, tables and figures 2 to 8 into `out`, which appears only when it is complete.
