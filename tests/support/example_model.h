@@ -13,13 +13,13 @@
 
 namespace palpate::test {
 
-// A model of a soft block, about 2 N at 6 mm, with a random correction. `method`
-// "voxel" gives a grid, "trend" nothing, every other one radial basis functions.
+// A model of a soft block, about 2 N at 6 mm, with a random correction: a grid for
+// the `method` "voxel", none for "trend", else radial basis functions.
 // The same arguments give the same model.
 ModelData example_model(const std::string& method, KernelKind kernel, std::vector<FeatureSpec> features,
                         std::uint64_t seed);
 
-// Replaces the correction, which must be of that kind, by a changed copy.
+// Replaces the correction by a changed copy. It must be of the kind of the function.
 void change_rbf(ModelData& data, const std::function<void(RbfFunction&)>& change);
 void change_grid(ModelData& data, const std::function<void(VoxelGrid&)>& change);
 
