@@ -34,7 +34,7 @@ struct ModelsView {
   bool compared = true;                         // there is a reference
   std::size_t reference = kReferenceBlock;      // its slot, if it is a model
   std::string reference_name = "the material";  // the reference in few words
-  std::string counted;                          // the samples that the errors are over, in words
+  std::string counted;                          // the samples that the errors cover, in words
   bool replays_training = false;                // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
