@@ -1,8 +1,8 @@
 // Compares the models of a session with a reference force. It has, for every slot, the errors in total and by stroke,
 // the sustained error and the dent that is drawn.
 // A sample counts if it is in contact and valid, the reference is known, no compared model is outside its training
-// domain, and the feature filters have settled. They have settled once a sample of the stream was out of contact, if
-// the stream began with the recording, or after 5 times the longest relaxation time of the models.
+// domain, and the feature filters have settled: a sample of the stream was out of contact, the stream began with the
+// recording, or it has run for 5 times the longest relaxation time of the models.
 // Thread guarantee: one thread.
 #pragma once
 
@@ -65,7 +65,7 @@ class Comparison {
 
   ModelFigures figures(std::size_t slot) const;
   // The errors by stroke, for a ranking. They are updated every 2 s, because there may be hundreds of strokes and the
-  // ranking shall not flicker. They have no samples until kLeastContact_s of contact count.
+  // ranking shall not flicker. Before kLeastContact_s of counted contact they have no samples.
   const UnitErrors& unit_errors(std::size_t slot) const noexcept { return slots_[slot].unit_errors; }
 
   // The duration of counted contact that a ranking needs.

@@ -30,7 +30,7 @@ struct PaperBin {
 
 struct PaperModel {
   std::string name;
-  std::uint32_t colour = 0;
+  std::uint32_t colour = 0;  // 0xRRGGBB
   double fit_seconds = 0.0;
   ModelTiming time;
   double rms_N = 0.0;
@@ -57,8 +57,8 @@ struct FitTimes {
 // Time of the interpolant by the dimension of the domain; figure 2.
 struct DimensionTimes {
   std::size_t dimensions = 0;
-  double solve_s = 0.0;
-  double grid_s = 0.0;  // evaluation on 10 nodes per dimension
+  double solve_s = 0.0;  // fit of the weights of all sites
+  double grid_s = 0.0;   // evaluation on 10 nodes per dimension
 };
 
 struct PaperData {

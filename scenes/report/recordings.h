@@ -40,7 +40,7 @@ struct RecordingSet {
   bool is_tested(std::size_t i) const { return i >= trained || trained == all.size(); }
 };
 
-// A common stretch of this number of rows with at least kLeakValues (recordings.cpp) different forces is a leak.
+// Equal forces in this number of successive rows, kLeakValues (recordings.cpp) different ones or more, are a leak.
 inline constexpr std::size_t kLeakRows = 50;
 
 struct SharedStretch {
