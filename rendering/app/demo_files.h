@@ -46,7 +46,7 @@ class DemoFiles {
 
   // Call it once a frame: processes finished background work and recordings.
   void update(const LiveSession& session);
-  // Loads a model (.json), or calls `open_recording` for any other file.
+  // Calls `open_recording` for a file with an extension other than .json; loads any other file as a model.
   void open(const std::string& path, LiveSession& session);
   // Reads a recording or another program's table in the background, then asks whether to train or to test on it.
   void open_recording(const std::string& path);

@@ -8,9 +8,9 @@
 //   score     the visitor's score and a summary
 //
 // A key presses the button that shows it; the 1 and 2 of the keypad count as 1 and 2, its Enter and Space as Enter. If
-// there is no button 2, 1 and Enter both press the only button. L changes the language. Only in the screens attract and
-// press can the tool touch the block. After `stay_s` without a movement the exhibit starts again; a countdown shows the
-// last `warn_s`. Ctrl+Shift+T shows the tally of the day and the health of the loop to the host.
+// there is no button 2, 1 and Enter both press the only button. L changes the language. The tool can touch the block
+// only in the screens attract and press. After `stay_s` without a movement the exhibit starts again; a countdown shows
+// the last `warn_s`. Ctrl+Shift+T shows the tally of the day and the health of the loop to the host.
 //
 // Thread guarantee: the window's thread.
 #pragma once

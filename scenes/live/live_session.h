@@ -37,7 +37,7 @@ struct SessionRequest {
   // Additional models, of an earlier session (SessionModels::plans). `refits` false: the session has only these.
   std::vector<SlotPlan> kept;
   bool refits = true;
-  std::uint64_t seed = 1;      // of the simulated hand, the training recording and the fits
+  std::uint64_t seed = 1;      // of the training recording and the fits; the simulated hand has seed + 1
   bool position_only = false;  // adds a model with the depth as its only feature
   bool realtime = true;        // asks for real-time scheduling
   std::string data_folder;     // for fault files; empty: the working directory

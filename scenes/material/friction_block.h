@@ -7,7 +7,7 @@
 // On the way in new bristles are unbent and do not change F_c(s) z; on the way out bristles
 // leave with their share of the force. Friction that holds the probe back does not exceed the
 // force that pushes it out, so that the block does not grip it. A free surface has no friction.
-// F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm, 12 kPa; K is a box spectrum from 50 ms to 2 s.
+// F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm radius, 12 kPa; K is a box spectrum from 50 ms to 2 s.
 // Passive: at most V = F_c(s) x_p z^2 / 2 is stored, and F_c z ds - dV >= z^2 F_c |ds| on the
 // way in, more on the way out.
 // Source: Dahl (1968); Canudas de Wit, Olsson, Astrom & Lischinsky (1995)
