@@ -14,7 +14,7 @@ struct KeyPress {
   bool again = false;  // repeated by the keyboard
 };
 
-// What the keys apply to in this frame.
+// The state that decides which keys have an effect in this frame.
 struct KeyContext {
   bool replays = false;  // a recording is replayed, see WindowCommand::replay
   bool in_list = false;  // a list or menu is open, which takes the keys that move through it

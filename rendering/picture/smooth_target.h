@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-// In pixels of a framebuffer; the origin is the lower left corner.
+// A rectangle in pixels of a framebuffer; the origin is the lower left corner.
 struct Viewport {
   int x = 0, y = 0, width = 0, height = 0;
 };

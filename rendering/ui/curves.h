@@ -36,7 +36,7 @@ struct CurveColumn {
   // no difference is shown that did not occur.
   HistoryPoint tick = no_forces();
   float jnd_N = std::numeric_limits<float>::quiet_NaN();  // at that tick; NaN: no reference
-  // Of each model; NaN: no force, or no comparison. Extremes of (model - reference) / JND, signed; 0 out of contact.
+  // By slot: extremes of (model - reference) / JND, signed; 0 out of contact, NaN without a force or a comparison.
   std::array<float, kMaxModels> low_over_jnd = no_values();
   std::array<float, kMaxModels> high_over_jnd = no_values();
   std::array<float, kMaxModels> sustained_over_jnd =

@@ -23,7 +23,7 @@ namespace palpate {
 
 // The state and the errors of one slot's model, for display.
 struct ModelFigures {
-  // In the newest tick; 0 until the model is ready.
+  // The values of the newest tick; 0 until the model is ready.
   double force_N = 0.0;
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();  // of the force, 95 %; NaN: unknown
   bool out_of_domain = false;

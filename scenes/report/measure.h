@@ -48,7 +48,7 @@ struct ModelResult {
   ModelTiming time;                          // of the last fold's model, on all test recordings
   std::shared_ptr<const FittedModel> model;  // of the last fold; null: no force
   std::vector<ModelPointer> fits;            // of each fold; empty: no force
-  // Of every sample, while measuring; `errors` and `moved` are computed from them.
+  // The errors of every sample during `measure`, which computes `errors` and `moved` from them; empty in its result.
   ModelErrors recorded_samples{JndLine{}};
   ModelErrors moved_samples{JndLine{}};
   std::vector<std::string> same;  // names of further planned models with the same forces

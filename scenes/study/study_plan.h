@@ -70,7 +70,7 @@ double percent_of(double reference_N, double percent) noexcept;
 // form.
 Status check_subject_code(const std::string& code);
 
-// In these functions `strokes` null: constant stimuli.
+// The following functions are for constant stimuli if `strokes` is null.
 // The trials of a subject, first the training: easy trials, to learn the task. With `strokes` the forces of a trial are
 // the means of the strokes, and the training compares the reference with half of it.
 std::vector<StudyTrial> plan_study(const std::string& code, const StrokePair* strokes);

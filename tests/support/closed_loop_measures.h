@@ -1,4 +1,4 @@
-// What the tests of the closed loop measure: the residual motion of a hand that holds still, and
+// Measures for the tests of the closed loop: the residual motion of a hand that holds still, and
 // the energy that a tool exchanges with the rendered force in cycles and strokes.
 #pragma once
 

@@ -23,8 +23,8 @@ ModelData example_model(const std::string& method, KernelKind kernel, std::vecto
 void change_rbf(ModelData& data, const std::function<void(RbfFunction&)>& change);
 void change_grid(ModelData& data, const std::function<void(VoxelGrid&)>& change);
 
-// In order: depth; the paper's four features; depth, velocity and two Maxwell branches;
-// depth, velocity, a spectrum, stops and creep.
+// These lists have, in order: depth; the paper's four features; depth, velocity and two
+// Maxwell branches; depth, velocity, a spectrum, stops and creep.
 std::vector<FeatureSpec> position_features();
 std::vector<FeatureSpec> paper_features();
 std::vector<FeatureSpec> maxwell_features();

@@ -70,7 +70,7 @@ class OpenFfBoardModel final : public DeviceModel {
     wire::write32(answer.data() + 13, counts_ < 0 ? 0xFFFFFFFFu : 0u);
     outbox.push_back(answer);
   }
-  // As if the host requested the position.
+  // Receives a request of the host for the position.
   void be_asked() {
     const OutReports asking = kOpenFfBoardProtocol.encode_command({});
     hear(Report(asking.bytes[0].begin(), asking.bytes[0].begin() + static_cast<std::ptrdiff_t>(asking.sizes[0])));
