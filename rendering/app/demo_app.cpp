@@ -43,7 +43,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   // Reports a missing display before anything else starts.
   if (Status status = Window::find_display(); !status) return status;
   request_ = request.session;
-  if (request.exhibit) {  // models whose differences are obvious to unnoticeable
+  if (request.exhibit) {  // models with differences from obvious to unnoticeable
     request_.position_only = true;
     if (request_.models.empty()) request_.models = {"greedy", "paper:greedy-10"};
   }

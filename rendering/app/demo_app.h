@@ -26,10 +26,10 @@ namespace palpate {
 struct DemoRequest {
   SessionRequest session;
   WindowRequest window;
-  bool exhibit = false;  // shows a game for visitors instead of the panel
+  bool exhibit = false;  // --kiosk: a game for visitors instead of the panel
   ExhibitTimes exhibit_times;
   std::string settings_file;            // empty: settings are neither read nor saved
-  std::vector<std::string> recordings;  // the window asks whether to train or to test on them
+  std::vector<std::string> recordings;  // files; the window asks whether to train or to test models on them
 };
 
 class DemoApp {
@@ -46,7 +46,7 @@ class DemoApp {
   void close();
   // An error when the program closes by itself because no session could be opened.
   const Status& outcome() const noexcept { return outcome_; }
-  // Draws the present state again and saves it.
+  // Draws the present state in full resolution and saves it. Errors: those of Window::save_frame.
   Status screenshot(const std::string& path, bool overwrite);
 
   LiveSession& session() noexcept { return *session_; }
@@ -94,7 +94,7 @@ class DemoApp {
   void next_reference();
   void next_dead_man();
 
-  // Declared first, because the members that draw into it have to be destroyed before it.
+  // The first member, because those that draw into it have to be destroyed before it.
   std::unique_ptr<Window> window_;
   std::unique_ptr<LiveSession> session_;
   std::unique_ptr<BlockView> blocks_;

@@ -23,16 +23,16 @@ namespace palpate {
 Result<Settings> read_settings(const std::string& path);
 Status write_settings(const std::string& path, const Settings& settings);
 
-// The JSON text of --stats: figures of the loop, the graphics and the models. The keys are haptics, graphics, models,
+// The JSON text of --stats: figures of the loop, the graphics and the models, under the keys haptics, graphics, models,
 // verdict, faults, scene, device and reference.
 std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
 
-// `notify` reports the results.
+// Does this work and shows its results as notices.
 class DemoFiles {
  public:
   using Notify = std::function<void(std::string text, bool problem)>;
   using Read = std::function<Result<ConvertedRecording>(const std::string& path, const std::string& folder)>;
-  // `view` outlives this. `read` is called in a background thread and may block.
+  // `view` outlives this. `notify` shows a notice. `read` is called in a background thread and may block.
   DemoFiles(ViewState& view, Notify notify, Read read = convert_recording)
       : view_(view), notify_(std::move(notify)), read_(std::move(read)) {}
   DemoFiles(const DemoFiles&) = delete;
@@ -46,7 +46,7 @@ class DemoFiles {
 
   // Call it once a frame: processes finished background work and recordings.
   void update(const LiveSession& session);
-  // Loads a model (.json), or calls `open_recording` for any other file.
+  // Calls `open_recording` for a file with an extension other than .json; loads any other file as a model.
   void open(const std::string& path, LiveSession& session);
   // Reads a recording or another program's table in the background, then asks whether to train or to test on it.
   void open_recording(const std::string& path);
@@ -58,7 +58,7 @@ class DemoFiles {
   static void write_to_log(const std::string& text);
 
  private:
-  // What is done in `update` after some work in the background.
+  // The second part of a task: `update` calls it when the work in the background is done.
   using Finish = std::function<void()>;
   struct Task {
     std::function<Finish()> work;

@@ -51,7 +51,7 @@ void nudge_tool(const LiveSession& session, double by_m) {
     tool->nudge(by_m, steady_now_s());
 }
 
-// Index in WindowView::blocks of the block nearest to `point`. `aimed`: empty unless the point is on or near it.
+// Index in WindowView::blocks of the block nearest to `point`. With `aimed`: empty unless the point is on or near it.
 std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& blocks, const SceneArea& area,
                                     const ImVec2& point, bool aimed) {
   const std::size_t count = std::max<std::size_t>(shown.blocks.size(), 1);

@@ -14,13 +14,13 @@ struct KeyPress {
   bool again = false;  // repeated by the keyboard
 };
 
-// What the keys apply to in this frame.
+// The state that decides which keys have an effect in this frame.
 struct KeyContext {
   bool replays = false;  // a recording is replayed, see WindowCommand::replay
   bool in_list = false;  // a list or menu is open, which takes the keys that move through it
 };
 
-// Position just above the surface, at which the key that lifts the tool stops.
+// Position in the air near the surface at which the key that moves the tool outwards stops it.
 inline constexpr double kHover_m = -0.002;
 
 class DemoInput {
@@ -29,7 +29,7 @@ class DemoInput {
   void add_key(int key, int action, int modifiers);
   // Returns and clears the keys that were pressed since the last call.
   std::vector<KeyPress> take_keys();
-  // Forgets all keys.
+  // Forgets all keys, also those that are held.
   void let_go();
   // The keys that were pressed and released since the last call of take_keys.
   std::vector<int> tapped() const;
@@ -39,8 +39,8 @@ class DemoInput {
                 const KeyContext& context) const;
   static void run(const KeyPress& press, const std::vector<WindowCommand>& commands, const KeyContext& context);
 
-  // Call it once a frame with the velocity of the held keys, positive inwards; 0: none is held. The loop moves the
-  // tool, at most to 8 % beyond the trained depth and out to kHover_m.
+  // Call it once a frame with the velocity of the held keys, positive inwards; 0: none is held. The loop then moves the
+  // tool, inwards up to 8 % beyond the trained depth, outwards up to kHover_m.
   void drive_tool(const LiveSession& session, double velocity_m_per_s);
 
   // Call it within a frame, because ImGui clears the motion of the wheel at its end. Returns whether the mouse has just

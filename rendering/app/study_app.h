@@ -48,7 +48,7 @@ class StudyApp {
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
   std::vector<int> pressed_;  // since the last frame
-  // A text field of Dear ImGui sometimes loses the Enter after the code when frames are slow.
+  // The code so far. With slow frames a text field of Dear ImGui sometimes loses the Enter after the code.
   std::string code_;
   std::string problem_;
 };

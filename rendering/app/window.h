@@ -34,7 +34,7 @@ class Window {
   UiSize size() const noexcept;
   // Fills the frame with one colour.
   void clear(const Rgb& colour) const;
-  // Shows the frame and waits for the next one: for the display where the driver does so, else at 60 Hz.
+  // Shows the frame and waits for the next one: until the display is ready if the driver waits for it, else 1/60 s.
   void show_frame();
   // Saves the frame as a PNG file and shows it. Errors: the file exists and `overwrite` is false; it cannot be written.
   Status save_frame(const std::string& path, bool overwrite);

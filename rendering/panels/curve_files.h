@@ -21,7 +21,7 @@ struct CurveSource {
   std::string title;      // scene and device
   std::string reference;  // in words
   JndLine jnd;
-  double zero_s = 0.0;  // loop time of the axis' 0
+  double zero_s = 0.0;  // loop time at 0 of the time axis
   double from_s = 0.0, to_s = 0.0;
   std::vector<CurveModel> models;
 };

@@ -13,11 +13,11 @@
 
 namespace palpate {
 
-// What the choices of the dialogs do.
+// The functions that the dialogs call.
 struct OverlayActions {
   const std::vector<WindowCommand>* commands = nullptr;  // for the buttons and the list of keys
   std::function<void(const std::string&)> use_scene, open, use_device, use_line_up;
-  std::function<void()> use_recording_roles;  // trains and tests by Dialogs::recording_roles
+  std::function<void()> use_recording_roles;  // trains and tests as Dialogs::recording_roles says
 };
 
 void draw_dialogs(LiveSession& session, ViewState& view, const UiStyle& style, const OverlayActions& actions);

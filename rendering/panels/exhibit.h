@@ -7,11 +7,10 @@
 //   reveal    the press with the largest difference in slow motion (exhibit_reveal.h), then the result
 //   score     the visitor's score and a summary
 //
-// A key presses the button that shows it; the keypad's 1 and 2 are 1 and 2, its Enter and Space are Enter. Where there
-// is no button 2, nothing is to choose: 1 and Enter both press the only button. L changes the language. The tool is
-// kept out of the block in all other screens than attract and press. After `stay_s` without a movement, the last
-// `warn_s` of which are counted down, the exhibit starts again. Ctrl+Shift+T shows the day's tally and the loop's
-// health to the host.
+// A key presses the button that shows it; the 1 and 2 of the keypad count as 1 and 2, its Enter and Space as Enter. If
+// there is no button 2, 1 and Enter both press the only button. L changes the language. The tool can touch the block
+// only in the screens attract and press. After `stay_s` without a movement the exhibit starts again; a countdown shows
+// the last `warn_s`. Ctrl+Shift+T shows the tally of the day and the health of the loop to the host.
 //
 // Thread guarantee: the window's thread.
 #pragma once
@@ -42,13 +41,13 @@ struct ExhibitTimes {
   double slowness = 4.0;  // of the reveal
 };
 
-// The colour of a model in the exhibit. It differs between the rounds: the model of the paper's recipe has the colour
-// of a method that is in no round.
+// The colour of a model in the exhibit: that of its method, but a model of the paper's recipe has the colour of voxel,
+// so that the rounds differ in colour.
 Rgb exhibit_colour(const std::string& method, bool paper, Theme theme);
 
 class Exhibit {
  public:
-  // `languages`: at least one. `tally_folder`: it gets a tally file per day; empty: no tally is stored.
+  // `languages`: at least one. `tally_folder`: folder of the tally files, one per day; empty: no tally is stored.
   void set_up(std::vector<ExhibitWords> languages, const std::string& tally_folder, const ExhibitTimes& times);
 
   // Call it once a frame. Returns whether the visitor has just left, so that the exhibit started again.
@@ -88,11 +87,11 @@ class Exhibit {
   std::string tally_path() const;  // today's file; empty: no tally is stored
   void begin(const LiveSession& session);
   void press_button(const std::string& key);  // no effect without such a button
-  // The pair on the screen; null: too few models are ready.
+  // The two forces on the screen; null: too few models are ready.
   const ExhibitRound* pair() const noexcept;
   // The colour of the first or the second of the pair.
   Rgb colour_of(bool first, Theme theme) const;
-  // Whether the first of the pair has the left block. A reference is the right one.
+  // Whether the first of the pair is the left block. A reference is the right block.
   bool first_is_left() const { return pair()->first.has_value(); }
   const ExhibitWords& words() const { return languages_[language_]; }
 

@@ -17,16 +17,16 @@ namespace palpate {
 
 class ExhibitReveal {
  public:
-  // The second force is that of the signed difference `over_jnd`, which the verdict of the round counts: see second_N.
+  // The second force is computed from `over_jnd`, the mean over 50 ms that decides the round, and not from its ticks.
   using Moment = ExhibitTrace::Column;
 
-  // `slowness`: duration of the reveal / duration of the press. `now_s`: any clock, also below.
+  // `slowness`: duration of the reveal / duration of the press. `now_s`, here and below: time of one steady clock, s.
   void start(const ExhibitTrace& trace, const JndLine& jnd, double slowness, double now_s);
   bool done(double now_s) const noexcept;
   Moment at(double now_s) const noexcept;
   // The largest magnitude of Moment::over_jnd up to now.
   double largest_over_jnd(double now_s) const noexcept;
-  // JND(first_N) * over_jnd more than the first force.
+  // The second force, N: first_N + over_jnd JND(first_N).
   double second_N(const Moment& moment) const noexcept;
 
   // Draws both arrows, the first at the left if `first_is_left`, and the band into `area`. All moments of the press

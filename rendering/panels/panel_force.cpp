@@ -18,9 +18,9 @@ constexpr float kColumn_px = 2.6F;
 // Range of the difference view on both sides of 0: three times the height of the band.
 constexpr double kDifference_jnd = 3.0;
 constexpr float kPredictedAlpha = 0.28F;
-// Share of the width for the curves over time; the loops have the rest.
+// Share of the width for the curves over time; the curves over depth have the rest.
 constexpr float kTimeShare = 0.6F;
-// The most points of the loops: every few ticks of ten seconds.
+// Largest number of points of a curve over depth: one for every few ticks in ten seconds.
 constexpr std::size_t kLoopPoints = 1500;
 
 // Moves the scale of an axis towards a round number above `wanted`. It decreases only if it is more than twice as

@@ -18,7 +18,7 @@ struct HealthWords {
 };
 // `recent_fps`: frames per second, the mean of the last 120 frames (ImGuiIO::Framerate); 0: unknown.
 HealthWords health_words(const HealthView& health, double recent_fps);
-// Age of the sample, rate, round trip, stiffness limit and heat of a real device; else empty.
+// Age of the sample, rate, round trip, stiffness limit and heat of a real device, or of one with a fault; else empty.
 std::string device_line(const HealthView& health);
 
 // Estimated height of draw_health.

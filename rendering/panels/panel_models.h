@@ -15,8 +15,8 @@ namespace palpate {
 // compare a model of another material.
 void draw_model_table(LiveSession& session, const ModelsView& models, ViewState& view, const UiStyle& style,
                       float height);
-// The columns of that table that fit into `room`. They are dropped in this order: error in mN, centres, time, force,
-// 99 % error. Name and share within the JND always stay.
+// The columns of that table that fit into `room`; `width` gives the width of a column. They are dropped in this order:
+// error in mN, centres, time, force, 99 % error. Name and share within the JND always stay.
 std::vector<int> shown_columns(float room, float (*width)(int column));
 
 }  // namespace palpate

@@ -33,7 +33,7 @@ Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme);
 // Draws the mark of a model: a disc, hollow for the recipe of the paper (2009).
 void draw_mark(ImDrawList& list, const ImVec2& middle, float radius, bool paper, ImU32 colour, const UiStyle& style);
 
-// The size of `text`, and drawing it on the picture, wrapped to the width `wrap`; 0: not wrapped.
+// text_size returns the size of `text`, text_at draws it on the picture. `wrap`: width of a line; 0: not wrapped.
 ImVec2 text_size(ImFont* font, const std::string& text, float wrap = 0.0F);
 void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::string& text, float wrap = 0.0F);
 

@@ -20,7 +20,7 @@ struct Reading {
   Rgb colour{0.0F};
 };
 
-// x is loop time - CurveTime::zero_s.
+// The x axis has loop time - CurveTime::zero_s, s.
 class TimePlot : public LivePlot {
  public:
   // `end_s`: loop time at the right edge. All references outlive the plot.

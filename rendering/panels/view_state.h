@@ -24,7 +24,7 @@ inline constexpr float kLargestText = 1.6F;
 
 // The part of the time that the curves show.
 struct CurveTime {
-  double zero_s = 0.0;  // loop time of the axes' 0
+  double zero_s = 0.0;  // loop time at 0 of the time axes
   double shown_s = kShown_s;
   // Paused curves end at paused_at_s (loop time) - scrolled_back_s.
   bool paused = false;
@@ -67,7 +67,7 @@ struct RecordingRoles {
   std::vector<OpenedRecording> recordings;
   std::string problem;  // why a file could not be read
   bool any() const noexcept { return !recordings.empty() || !problem.empty(); }
-  // Adds a recording. Of several the last one becomes the test.
+  // Adds a recording. If there are several, the last one becomes the test.
   void add(OpenedRecording recording);
   std::vector<std::string> training() const;
   std::string test() const;           // empty: none

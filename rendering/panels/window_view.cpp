@@ -30,7 +30,7 @@ std::vector<std::size_t> slots_of_blocks(const ModelsView& models, bool referenc
   return slots;
 }
 
-// The samples that the errors are over, since when, and what is excluded.
+// The samples that the errors cover, since when, and which are excluded.
 std::string counted_words(const LiveSession& session) {
   const Comparison& comparison = session.comparison();
   const std::size_t active = session.models().selected();

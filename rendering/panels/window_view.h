@@ -1,5 +1,5 @@
-// The contents of a frame as plain data. It is made once a frame from the session, so that blocks, overlay, panels and
-// exhibit are consistent, and the texts can be tested without a session.
+// The contents of a frame as plain data. They are read from the session once a frame, so that blocks, overlay, panels
+// and exhibit are consistent, and the texts can be tested without a session.
 // Thread guarantee: values of the window's thread.
 #pragma once
 
@@ -34,7 +34,7 @@ struct ModelsView {
   bool compared = true;                         // there is a reference
   std::size_t reference = kReferenceBlock;      // its slot, if it is a model
   std::string reference_name = "the material";  // the reference in few words
-  std::string counted;                          // the samples that the errors are over, in words
+  std::string counted;                          // the samples that the errors cover, in words
   bool replays_training = false;                // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
@@ -66,12 +66,12 @@ struct WindowView {
   std::uint64_t number = 0;  // number of the view, from 1
   ModelsView models;
   HealthView health;
-  // The slots of the blocks, ascending: the active model, then that of the verdict, then others, as far as there is
-  // room. With several blocks the last one is kReferenceBlock where the reference is no model.
+  // The slots that have a block, in ascending order. If there is too little room, the active model and that of the
+  // verdict come first. With several blocks the last one is kReferenceBlock if the reference is no model.
   std::vector<std::size_t> blocks;
   std::string reference_block;  // name of the block of the reference
   std::string reference_words;
-  double usual_force_N = 0.0;  // the axes always include these two
+  double usual_force_N = 0.0;  // the axes extend at least to this force and this depth
   double usual_depth_m = 0.0;
   const ForceHistory* history = nullptr;  // of the session; not null in a result of window_view
 };

@@ -214,7 +214,7 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   smooth_.end();
 }
 
-// Of each block the top and the tool with its arrow, which are drawn in each frame.
+// The parts of the picture that are drawn in each frame: the top of each block, and each tool with its arrow.
 std::vector<Viewport> BlockView::moving_parts(const std::vector<BlockPose>& blocks) const {
   const auto half_x = 0.5F * static_cast<float>(geometry_.width_m),
              half_z = 0.5F * static_cast<float>(geometry_.length_m);
@@ -302,7 +302,7 @@ void BlockView::draw_table(std::size_t count, Theme theme) const {
   square_.draw();
 }
 
-// Sets what the top and the sides of a block have in common.
+// Sets the common values of the shader for the top and the sides of a block.
 void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
   const Material& material = kMaterials[static_cast<std::size_t>(finish_)];
   begin(block_shader_);

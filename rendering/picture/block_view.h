@@ -23,19 +23,19 @@ namespace palpate {
 // The state of one block and its probe.
 struct BlockPose {
   float tool_m = 0.0F;  // position of the tip, positive inside
-  float dent_m = 0.0F;
+  float dent_m = 0.0F;  // depth of the dent
   float error_over_jnd = 0.0F;
-  float force_N = 0.0F;
-  Rgb arrow{0.0F};
+  float force_N = 0.0F;     // length of the arrow
+  Rgb arrow{0.0F};          // its colour
   bool chosen = false;      // the active model, marked by a frame on the block
   bool shows_error = true;  // the dent has the colour of the error
 };
-// Factor by which depths are exaggerated; the window's title says so.
+// Factor by which depths are exaggerated; the title over the picture says so unless the force is scaled.
 inline constexpr float kDeeperDents = 2.0F;
 
 class BlockView {
  public:
-  // `smoothing`: empty: chosen for the renderer of the OpenGL context. Errors: a shader is missing or does not compile.
+  // `smoothing` empty: as suits the renderer of the OpenGL context. Errors: a shader is missing or does not compile.
   static Result<std::unique_ptr<BlockView>> create(const Scene& scene, std::optional<Smoothing> smoothing = {});
 
   // Draws 1 to 4 blocks into the viewport. `scale`: see SmoothTarget::begin.
@@ -43,7 +43,7 @@ class BlockView {
   bool filters_edges() const noexcept { return smooth_.filters(); }
 
   Camera& camera() noexcept { return camera_; }
-  // Frames `count` blocks, with a transition unless `at_once`.
+  // Turns the camera to `count` blocks, with a transition unless `at_once`.
   void show(std::size_t count, bool at_once);
 
   // Middle of the top of block `index` of `count`, at y = 0.
@@ -60,7 +60,7 @@ class BlockView {
     Bodies(const BlockGeometry& block, float dome_m, const Detail& detail);
     GpuMesh top, sides, ball, sensor, handle, shaft, tip;
   };
-  // All that the picture of the static parts depends on.
+  // The picture of the static parts is drawn again when one of these changes.
   struct Still {
     glm::mat4 view_projection{0.0F};
     int width = 0, height = 0;

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-// The user's rotation and zoom relative to the framed view. It is kept when another view is framed.
+// The user's rotation and zoom relative to the basic view. They are kept when the basic view changes.
 struct CameraTurn {
   float yaw_rad = 0.0F;
   float pitch_rad = 0.0F;
@@ -20,13 +20,13 @@ class Camera {
  public:
   static constexpr float kFieldOfView_rad = 0.55F;  // of the smaller side of the picture
 
-  // Frames blocks within `radius_m` of the middle, seen from `yaw_rad` to the right of the front. `at_once`: without
-  // a transition.
+  // Sets the basic view: the blocks within `radius_m` of the middle fill the picture, seen from `yaw_rad` to the right
+  // of the front. `at_once`: without a transition.
   void frame(float radius_m, float yaw_rad, bool at_once);
   void orbit(float yaw_rad, float pitch_rad);
   // Multiplies the distance by `factor`.
   void zoom(float factor);
-  // Back to the framed view.
+  // Returns to the basic view.
   void go_home() { turn({}); }
   CameraTurn turned() const noexcept { return turn_; }
   void turn(const CameraTurn& turn);

@@ -15,7 +15,7 @@ constexpr int kSamples = 4;
 // Steps of the search along an edge in both directions; the flattest edge that it finds rises by one pixel in 26.
 constexpr int kSteps = 8;
 
-// Of Resolution.
+// The constants of Resolution.
 constexpr float kScales[] = {1.0F, 0.82F, Resolution::kLeast};  // each has two thirds of the pixels of the one before
 constexpr double kFrame_s = 1.0 / 60.0;
 constexpr int kFrames = 60;                  // frames of a mean

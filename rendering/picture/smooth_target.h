@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-// In pixels of a framebuffer; the origin is the lower left corner.
+// A rectangle in pixels of a framebuffer; the origin is the lower left corner.
 struct Viewport {
   int x = 0, y = 0, width = 0, height = 0;
 };
@@ -46,7 +46,7 @@ class Pixels {
 };
 
 enum class Smoothing { samples, filter };
-// For the renderer's name of OpenGL: the filter for a software renderer, else multisampling.
+// The filter for a software renderer, else multisampling. `renderer`: its name as OpenGL reports it.
 Smoothing smoothing_for(std::string_view renderer) noexcept;
 
 struct EdgeFilter {
@@ -68,12 +68,12 @@ class SmoothTarget {
   int width() const noexcept { return pixels_.width(); }
   int height() const noexcept { return pixels_.height(); }
   // Begins the picture for a part of the window. With the filter it has `scale` (0..1) times the pixels per side, and a
-  // static picture is kept. Without it, draw all parts in each frame.
+  // static picture is kept. With multisampling, draw all parts in each frame.
   void begin(const Viewport& viewport, float scale);
-  // Between the two calls the static picture is drawn. It is kept until the size changes.
+  // Draw the static picture between these two calls. It is kept until the size changes.
   void begin_still();
   void end_still();
-  // Begins a frame from the static picture. All that is then drawn must be inside `parts`, in pixels of the picture.
+  // Begins a frame with the static picture. Draw only inside `parts` (in pixels of the picture) afterwards.
   void use_still(std::vector<Viewport> parts);
   // Copies the picture to the window and makes the window the target again.
   void end();
@@ -93,7 +93,7 @@ class SmoothTarget {
   unsigned no_vertices_ = 0;     // vertex array without buffers, for a triangle
 };
 
-// The resolution of the 3-D view for a software renderer: it is reduced while frames are late.
+// Selects the resolution of the 3-D view for a software renderer: it is lower while frames are late.
 class Resolution {
  public:
   static constexpr float kLeast = 0.67F;  // smallest `scale`

@@ -1,5 +1,5 @@
-// Gathers ticks into the columns of a plot. Columns have the extremes of the differences, so that no peak of them is
-// lost; the forces and the predicted error are those of one tick.
+// Gathers ticks into the columns of a plot. A column has the extremes of the differences, so that no peak is lost; its
+// forces and its predicted error are those of one tick.
 // Thread guarantee: value type; `gather` reuses its memory.
 #pragma once
 
@@ -36,7 +36,7 @@ struct CurveColumn {
   // no difference is shown that did not occur.
   HistoryPoint tick = no_forces();
   float jnd_N = std::numeric_limits<float>::quiet_NaN();  // at that tick; NaN: no reference
-  // Of each model; NaN: no force, or no comparison. Extremes of (model - reference) / JND, signed; 0 out of contact.
+  // By slot: extremes of (model - reference) / JND, signed; 0 out of contact, NaN without a force or a comparison.
   std::array<float, kMaxModels> low_over_jnd = no_values();
   std::array<float, kMaxModels> high_over_jnd = no_values();
   std::array<float, kMaxModels> sustained_over_jnd =
@@ -49,9 +49,9 @@ double predicted_error_N(const HistoryPoint& tick) noexcept;
 
 class CurveColumns {
  public:
-  // Gathers the ticks from `from_s` to `to_s` (loop time) into `count` columns. Borders of columns are multiples of
-  // their width, so that curves do not flicker while they scroll. As long as the width stays the same, a call processes
-  // only new ticks.
+  // Gathers the ticks from `from_s` to `to_s` (loop time) into columns of a width of (to_s - from_s) / count. Borders
+  // are multiples of the width, so that curves do not flicker while they scroll: there are count + 2 columns. As long
+  // as the width stays the same, a call processes only new ticks.
   void gather(const ForceHistory& history, const JndLine& jnd, std::size_t slots, double from_s, double to_s,
               std::size_t count);
 

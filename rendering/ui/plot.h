@@ -24,7 +24,7 @@ struct PlotAxes {
   Range x, y;
   const char* x_unit = "";  // appended to the last label
   const char* y_unit = "";
-  bool decades = false;  // values are decimal logarithms; labels are not
+  bool decades = false;  // coordinates are decimal logarithms of the labelled values
 };
 
 class LivePlot {
@@ -50,7 +50,7 @@ class LivePlot {
   void line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const;
   // Fills the area between two curves with the same x values.
   void band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const;
-  // Fills a range that a hand cannot feel, over the whole width.
+  // Fills a range of y over the whole width: the differences below one JND.
   void jnd_band(double from, double to) const;
   void level(double y, ImU32 colour, float thickness) const;
   // Secondary text at the left edge of the frame.

@@ -30,8 +30,8 @@ struct UiSize {
   int width_px = 0, height_px = 0;  // of the framebuffer; 0: the window is minimised
 };
 
-// Window units per pixel of the design, which has 1080 lines, times the factor `larger`. Text has the same physical
-// size on displays of different resolution.
+// Units of the window per pixel of the design, which has 1080 lines, times the factor `larger`. Text has the same
+// physical size on displays of different resolution.
 float ui_scale(const UiSize& size, float larger) noexcept;
 // Factor `larger` for exhibits and studies, which are read from a distance.
 inline constexpr float kExhibitText = 1.5F;
@@ -50,7 +50,7 @@ std::string find_font();
 // The context of Dear ImGui for a window.
 class UiContext {
  public:
-  // Set callbacks of the window before: ImGui calls them after its own.
+  // Set the callbacks of the window before: ImGui installs its own, which first call those.
   explicit UiContext(GLFWwindow* window);
   UiContext(const UiContext&) = delete;
   UiContext& operator=(const UiContext&) = delete;

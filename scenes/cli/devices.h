@@ -1,4 +1,4 @@
-// The text of palpate devices about what is plugged in.
+// The text of `palpate devices` about the connected devices. Thread guarantee: slow side (opens devices).
 #pragma once
 
 #include <string>

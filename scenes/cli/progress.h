@@ -18,7 +18,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine();  // clears the line
 
-  // `fraction` done, 0..1. Returns false after an interrupt: stop, and leave no file.
+  // `fraction`: the share done, 0..1. Returns false after an interrupt: then end the job without a file.
   bool update(double fraction);
 
  private:

@@ -10,11 +10,11 @@
 
 namespace palpate::cli {
 
-// The next press: slow presses first, then fast ones, a hold, small strokes. Empty: nothing is missing.
-// `longest_relaxation_s`: of the scene; 0: none.
+// Advice on the next press: slow presses first, then fast ones, a hold, small strokes. Empty: nothing is missing.
+// `longest_relaxation_s`: the longest relaxation time of the scene, s; 0: none.
 std::string guide_advice(const RecordingMeasures& measures, double longest_relaxation_s);
 
-// The table of cells as lines of text, with the seconds in each.
+// The table of cells of depth and speed as lines of text, with the seconds in each. `surface_m`: position of depth 0.
 std::vector<std::string> guide_cells(const RecordingMeasures& measures, double surface_m);
 
 class RecordGuide {

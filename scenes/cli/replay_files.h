@@ -1,4 +1,4 @@
-// Input and output of palpate replay: models with unique names, FORCES.csv, a figure.
+// Input and output of `palpate replay`: models with unique names, FORCES.csv, a figure.
 // Thread guarantee: slow side (does I/O, starts gnuplot); one thread per object.
 #pragma once
 
@@ -20,8 +20,8 @@ struct LoadedModel {
   std::shared_ptr<const FittedModel> model;
 };
 
-// `names`: one for each file, or empty: the models' names, or the file names of models with equal names. Equal names
-// get the suffixes -2, -3 ... Errors: too many models; another number of names; a file that is no model.
+// `names`: one for each file. Empty: the names in the files, or the file names where those are equal. Equal names get
+// the suffixes -2, -3 ... Errors: more than kMaxModels models; another number of names; a file that is no model.
 Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
                                              const std::vector<std::string>& names = {});
 

@@ -1,4 +1,4 @@
-// What several verbs have in common: checks of their files, and output.
+// Common functions of several verbs: checks of their files, and output.
 // Thread guarantee: slow side (does I/O).
 #pragma once
 
@@ -18,7 +18,7 @@ CheckRequest check_request(const Scene& scene);
 // Reads and checks `paths` and prints a line on stderr for each warning. Errors: a file cannot be read or is unusable.
 Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request);
 
-// The output of palpate check for one recording.
+// The output of `palpate check` for one recording.
 std::string check_text(const CheckedFile& file);
 
 // Errors: `out` is one of the files that are read. `option`: the option that named it, for the message.

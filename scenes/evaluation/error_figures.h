@@ -21,13 +21,13 @@ inline constexpr double kBinWidth_jnd = 2.0;
 // Bounds the memory where the JND line is flat. The last bin holds all larger forces.
 inline constexpr std::size_t kMaximumForceBins = 2000;
 
-// The bin of a force; forces below 0 (sensor noise) are in the first.
+// The index of the bin of a force, N; forces below 0 (sensor noise) are in bin 0.
 std::size_t force_bin(double force_N, const JndLine& jnd) noexcept;
-// Where bin `index` begins, N.
+// The smallest force in bin `index`, N.
 double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept;
 
-// Mean, population standard deviation and largest value of non-negative values, updated without cancellation. All are 0
-// without values.
+// Mean, population standard deviation and maximum of non-negative values, updated without cancellation. Without values
+// all are 0.
 // Source: Welford (1962); Chan, Golub & LeVeque (1983) for merging two of them.
 class Moments {
  public:

@@ -27,20 +27,20 @@ struct EvaluatedModel {
   JndLine jnd;
 };
 
-// A recording that can be replayed several times: steps a tick with up to kMaxModels models through all rows and
-// subtracts `surface_offset_m` from every position.
+// A recording that can be replayed several times. A call steps a tick with up to kMaxModels models through all rows;
+// `surface_offset_m` is subtracted from every position before.
 using RowSource = std::function<Result<ReplaySummary>(const ForceModels& models, const ReplayVisitor& visitor,
                                                       double surface_offset_m)>;
 RowSource rows_of(const Recording& recording);    // `recording` outlives the result
 RowSource rows_of_file(const std::string& path);  // reads the file in each replay, in bounded memory
 
 struct EvaluationRequest {
-  // Called for every row as recorded, with the first kMaxModels models; may be empty.
+  // Called for every row, with positions as recorded and the first kMaxModels models; may be empty.
   ReplayVisitor also;
-  // Errors are counted from this time on. Earlier rows are replayed because the features have memory.
+  // Errors count from this time of the recording on. Earlier rows are replayed because the features have memory.
   double counted_from_s = -std::numeric_limits<double>::infinity();
-  bool move_surface = true;
-  // The models from which one common surface offset is estimated. Empty: one offset is estimated for each model.
+  bool move_surface = true;  // false: `surface_moved` equals `as_recorded`
+  // The models from which one common surface offset is estimated. Empty: each model has its own estimate.
   std::vector<ModelPointer> surface_models;
   FitControl control;
 };

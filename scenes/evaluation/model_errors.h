@@ -8,9 +8,9 @@
 // Neighbouring samples are correlated, so intervals come from independent units: whole recordings where there are
 // several, else strokes (from touch to release). A mean over n units has the standard error s / sqrt(n) and Student's t
 // with n - 1 degrees of freedom; with fewer than kLeastUnits units there is no interval. The share has the standard
-// error of a ratio; the 99 % error has the standard error of the mean of
-// the units' 99 % errors. Where no unit has a sample beyond one JND, the exact binomial bound applies: at 95 %, at
-// most 1 - 0.05^(1/n) of all units have one. Two models are compared by paired differences of the same units.
+// error of a ratio of means. The 99 % error has the standard error of the mean of the units' 99 % errors. If no unit
+// has an error above one JND, the exact binomial bound applies: at the 95 % level at most 1 - 0.05^(1/n) of all units
+// have one. Two models are compared by paired differences of the same units.
 // Source: Cochran (1977), Sampling Techniques, 2.7 and 6.4; Clopper & Pearson (1934).
 // Thread guarantee: slow side; one thread per object.
 #pragma once
@@ -37,13 +37,13 @@ inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // With two units t is 12.7, and the interval would be useless.
 inline constexpr std::size_t kLeastUnits = 3;
 
-// A shorter loss of contact does not end a stroke: noise at the surface causes it.
+// A loss of contact of at most this time does not end a stroke: noise at the surface causes it.
 inline constexpr double kStrokePause_s = 0.05;
 
 // The figures of merit over all samples and of each unit.
 struct UnitErrors : ErrorSummary {
   bool units_are_recordings = false;  // false: units are strokes
-  std::uint64_t units_above_jnd = 0;  // number of units with a sample beyond one JND
+  std::uint64_t units_above_jnd = 0;  // number of units with an error above one JND
   std::vector<double> unit_samples;
   std::vector<double> unit_within;  // samples within the JND
   std::vector<double> unit_p99;     // 99 % error over the JND
@@ -53,7 +53,7 @@ struct UnitErrors : ErrorSummary {
   // The following are NaN with fewer than kLeastUnits units.
   Interval p99_interval() const;  // 95 %, two-sided
   double p99_at_most() const;     // 95 %, one-sided
-  // 95 % lower bound of the share of samples within the JND; of the share of units where units_above_jnd is 0.
+  // 95 % lower bound of the share of samples within the JND; if units_above_jnd is 0, of the share of such units.
   double within_at_least() const;
 };
 
@@ -76,7 +76,7 @@ class StrokeCounter {
   bool in_air_ = true;  // since the last row in contact
 };
 
-// Collects errors. Needs 4 bytes per sample, for an exact percentile.
+// Collects the errors of one model. It stores 4 bytes per sample, so that the 99 % error is exact.
 class ModelErrors {
  public:
   explicit ModelErrors(const JndLine& jnd) : jnd_(jnd) {}
@@ -96,7 +96,7 @@ class ModelErrors {
   JndLine jnd_;
   ErrorFigures figures_;
   std::vector<float> ratios_;
-  // Index in `ratios_` of the first sample of each.
+  // For each stroke and recording: the index in `ratios_` of its first sample.
   std::vector<std::size_t> strokes_;
   std::vector<std::size_t> recordings_;
 };

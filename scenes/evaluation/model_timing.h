@@ -18,7 +18,7 @@ namespace palpate {
 
 inline constexpr int kTimingRounds = 6;
 
-// A round times blocks of 64 steps; it has a median and a 99th percentile of the mean times of its blocks.
+// A round takes the mean time of a step in each block of 64 steps, and of these means median and 99th percentile.
 struct Timing {
   double median_ns = 0.0;  // median of the rounds' medians
   double low_ns = 0.0;     // the least of these medians
@@ -32,7 +32,7 @@ struct ModelTiming {
   bool measured = false;  // false: there were no samples
 };
 
-// Most samples of one recording that are timed. All are in contact: out of contact no model is evaluated.
+// Largest number of samples of one recording that are timed. All are in contact; in air no model is evaluated.
 inline constexpr std::size_t kTimedSamples = 4096;
 
 // Samples of one recording, with its sensor.
@@ -41,7 +41,7 @@ struct TimedSamples {
   std::vector<ToolSample> samples;
 };
 
-// Returns one result per model. An evaluation depends on the force of the one before, so that they do not overlap.
+// Returns one result per model. Each evaluation depends on the last force, so that the processor cannot overlap them.
 std::vector<ModelTiming> time_models(const std::vector<std::shared_ptr<const ForceModel>>& models,
                                      const std::vector<TimedSamples>& stretches);
 

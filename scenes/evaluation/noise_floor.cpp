@@ -32,7 +32,7 @@ NoiseFloor noise_floor(const std::vector<PreparedRecordingPointer>& recordings, 
     return inside / count;
   };
   floor.within_jnd = share(1.0);
-  // Bisection. Its upper end: 99 % of a normal distribution are within 2.576 standard deviations.
+  // Bisection. Its upper end suffices: 99 % of a normal distribution are within 2.576 standard deviations.
   double low = 0.0;
   double high = 2.6 * *std::max_element(noise_over_jnd.begin(), noise_over_jnd.end());
   while (high - low > 1e-3 * high) {

@@ -2,9 +2,9 @@
 // standard deviation s of the sensor:
 //   within the JND = mean over the samples of P(|e| <= JND(f))
 //   99 % error: the q with mean P(|e| <= q JND(f)) = 0.99
-// s is that of each prepared recording: second differences of the force over the quietest fifth of its first 30,000
-// rows (engine/tick/sensor_identification.h). It contains white noise, but neither drift nor hysteresis.
-// Thread guarantee: pure function, slow side.
+// s is identified for each recording, from second differences of the force in the first 30,000 rows, at the 20 %
+// quantile of windows of 50 rows (engine/tick/sensor_identification.h). It contains white noise, but neither drift nor
+// hysteresis. Thread guarantee: pure function, slow side.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@
 namespace palpate {
 
 struct NoiseFloor {
-  double force_noise_N = 0.0;  // standard deviation, RMS over the samples in contact
+  double force_noise_N = 0.0;  // RMS of s over the samples in contact
   double within_jnd = 1.0;
   double p99_error_over_jnd = 0.0;
 };

@@ -1,7 +1,7 @@
 // Recommends one of several models that were evaluated on the same samples: non-inferiority test, then time.
 //   best         the model with the smallest 99 % error
 //   qualified    non-inferior to the best: the one-sided 95 % bound of the difference of the errors, paired by unit,
-//                is at most kMargin_jnd. With too few units for a bound, the difference itself is compared.
+//                is at most kMargin_jnd. With too few units for a bound, the difference itself is at most that.
 //   recommended  the fastest qualified model. Where the interval of a time overlaps that of the fastest, the
 //                smaller error decides. A model that dominates the result (smaller error, less time) replaces it.
 // The report, the window and the front page use this rule.

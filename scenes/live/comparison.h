@@ -1,8 +1,8 @@
-// Compares the models of a session with a reference force. Holds, for every slot, the errors in total and by stroke,
+// Compares the models of a session with a reference force. It has, for every slot, the errors in total and by stroke,
 // the sustained error and the dent that is drawn.
-// A sample counts when it is in contact, the reference is available, no compared model is outside its training
-// domain, and the feature filters have settled: since the stream began they have seen a sample out of contact or the
-// beginning of the recording, or they have run for 5 times their longest relaxation time.
+// A sample counts if it is in contact and valid, the reference is known, no compared model is outside its training
+// domain, and the feature filters have settled: a sample of the stream was out of contact, the stream began with the
+// recording, or it has run for 5 times the longest relaxation time of the models.
 // Thread guarantee: one thread.
 #pragma once
 
@@ -23,13 +23,13 @@ namespace palpate {
 
 // The state and the errors of one slot's model, for display.
 struct ModelFigures {
-  // In the newest tick; 0 until the model is ready.
+  // The values of the newest tick; 0 until the model is ready.
   double force_N = 0.0;
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();  // of the force, 95 %; NaN: unknown
   bool out_of_domain = false;
   // Over the same samples for all compared models. The 99 % error has a resolution of 1.1 % (stream_errors.h).
   ErrorSummary errors;
-  // For drawing (dent.h): the dent's depth, and the largest recent sustained error.
+  // For drawing (dent.h): depth of the dent, and the largest recent magnitude of the sustained error.
   double dent_m = 0.0;
   double recent_error_over_jnd = 0.0;
 };
@@ -44,7 +44,7 @@ class Comparison {
   double reference_N() const noexcept { return reference_N_; }  // in the newest tick; NaN: none
   const ForceHistory& history() const noexcept { return history_; }
 
-  // Device time of the first sample of a recording. Filters that start there have settled.
+  // `time_s`: device time of the first sample of the replayed recording. Filters that start there have settled.
   void begins_at(double time_s) noexcept { begins_at_s_ = time_s; }
   void begin_slot(std::size_t slot);   // its model became ready
   void forget_slot(std::size_t slot);  // its model was removed
@@ -52,23 +52,23 @@ class Comparison {
   void add(const LoopSnapshot& snapshot, TickFaultLevel fault_level);
   // Call it once a frame, after `add`: sets the figures of the newest tick and updates the errors by stroke.
   void show(const LoopSnapshot& newest);
-  // Clears the errors so far; the history stays. `why`: the reason in words, e.g. "voxel joined".
+  // Clears the errors, but not the history. `why`: the reason in words, e.g. "voxel joined".
   void forget_errors(std::string why);
   // The reason of the last clearing, "the start" before the first.
   const std::string& counted_since() const noexcept { return since_; }
-  // Since then: duration of contact, and the part of it that counts.
+  // Since the last clearing: duration of contact with a reference, and the part of it that counts.
   double contact_s() const noexcept { return contact_s_; }
   double counted_s() const noexcept { return counted_s_; }
-  // The part of it in which a model was outside its training domain, and the slot for which that lasted longest.
+  // The part of the contact in which any model was outside its training domain; the slot that was outside longest.
   double outside_s() const noexcept { return outside_s_; }
   std::size_t mostly_outside() const noexcept;
 
   ModelFigures figures(std::size_t slot) const;
-  // The errors by stroke, for a ranking. They are recomputed only every 2 s, because they grow to hundreds of strokes
-  // and the ranking shall not flicker; without samples before kLeastContact_s.
+  // The errors by stroke, for a ranking. They are updated every 2 s, because there may be hundreds of strokes and the
+  // ranking shall not flicker. Before kLeastContact_s of counted contact they have no samples.
   const UnitErrors& unit_errors(std::size_t slot) const noexcept { return slots_[slot].unit_errors; }
 
-  // Contact that a ranking needs at least.
+  // The duration of counted contact that a ranking needs.
   static constexpr double kLeastContact_s = 1.0;
 
  private:

@@ -1,5 +1,5 @@
 // Opens a file that the user drops on the window or names: a recording, or a table of another program, which is
-// converted to a recording (engine/import).
+// converted to a recording file (engine/import).
 // Thread guarantee: slow side (does I/O); any thread.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace palpate {
 
 struct ConvertedRecording {
   std::string path;                // of the recording
-  std::vector<std::string> words;  // columns and guesses of the import; empty: the file was a recording already
+  std::vector<std::string> words;  // the columns that were found and the guesses; empty: the file was a recording
 };
 
 // Whether a file may be a recording: it has an extension other than .json (models).

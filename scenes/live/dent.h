@@ -1,9 +1,9 @@
 // The depth and the error colour of the dent that is drawn for one model. The dent follows the tool inwards at once
-// and recovers with the relaxation times tau_b of the model's features: for each a low-pass m_b of the depth d,
+// and recovers with the relaxation times tau_b of the model's features: each has a low-pass m_b of depth d,
 //   m_b <- d + (m_b - d) exp(-h / tau_b)      [= d - tau_b x (low-passed velocity)]
 //   dent = max(d, 0.35 mean_b m_b)
-// Without relaxation times dent = d. The colour is that of the largest recent error, which decays with a time
-// constant of 0.3 s. No force depends on the dent.
+// A model without relaxation times has the dent d. The colour is that of the largest recent error, which decays with
+// a time constant of 0.3 s. No force depends on the dent.
 // Thread guarantee: one thread; allocates in the constructor only.
 #pragma once
 
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/tick/features.h"
+#include "models/training/trend_rows.h"
 
 namespace palpate {
 
@@ -19,14 +20,12 @@ class Dent {
  public:
   Dent() = default;
   explicit Dent(const std::vector<FeatureSpec>& features) {
-    for (const FeatureSpec& feature : features) {
-      if (feature.relaxation_time_s > 0.0) branches_.push_back({feature.relaxation_time_s, 0.0});
-    }
+    for (const double time_s : relaxation_times_s(features)) branches_.push_back({time_s, 0.0});
   }
 
-  // `step_s`: time since the last call.
+  // `error_over_jnd`: >= 0. `step_s`: time since the last call, s.
   void step(double depth_m, double error_over_jnd, double step_s) {
-    constexpr double kShown = 0.35;  // share of the low-passed depth that is drawn without contact
+    constexpr double kShown = 0.35;  // share of the mean low-passed depth that is drawn at least
     constexpr double kFading_s = 0.3;
     double sum_m = 0.0;
     for (Branch& branch : branches_) {

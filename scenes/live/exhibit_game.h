@@ -2,8 +2,8 @@
 // Without a force device the difficulty rises. The visitor guesses whether a hand would notice a difference, then
 // presses two blocks with one stroke for 15 s: one renders the reference, the other a model. Then the result is shown:
 //   attract -> guess -> press -> reveal -> guess ... -> score
-// With a force device (`has_force`) a round is a blind comparison of two models under the keys 1 and 2: are they the
-// same or different? One round is a catch trial with the same model twice; the order is random:
+// With a force device (`has_force`) a round is a blind comparison of two models, which the keys 1 and 2 select: are
+// they the same or different? One round is a catch trial with the same model twice; the order is random:
 //   attract -> press -> reveal -> press ... -> score
 // A difference is noticeable when the magnitude of the mean over 50 ms of difference / JND (HistoryPoint) exceeded 1
 // anywhere in the visitor's own strokes within the models' training domain. From 0.8 to 1.25 either answer is correct.
@@ -33,7 +33,7 @@ struct ExhibitTick {
   double position_m = 0.0;
 };
 
-// Both forces during the first minute after the first contact, averaged over columns of 25 ms.
+// Both forces in the first minute from the first contact on, averaged over intervals of 25 ms (columns).
 class ExhibitTrace {
  public:
   static constexpr double kColumn_s = 0.025;
@@ -71,7 +71,7 @@ struct ExhibitRound {
   std::optional<ExhibitModel> first;  // empty: the reference
   ExhibitModel second;
   bool answered = false;
-  bool said_noticed = false;
+  bool said_noticed = false;      // the answer: the difference is noticeable, or the models differ
   double largest_over_jnd = 0.0;  // set at the end of the round
 
   bool is_catch() const noexcept { return first && first->slot == second.slot; }
@@ -116,7 +116,7 @@ class ExhibitGame {
   void answer(bool different);                    // ends the round
   // Call it in every tick. Without a force device the round ends after `press_s`.
   void add(const ExhibitTick& tick);
-  // Leaves a reveal for the next round or the score.
+  // Leaves `reveal` for the next round, or for `score` after the last one.
   void go_on();
 
   std::size_t correct_answers() const noexcept;  // number of correct answers

@@ -1,5 +1,5 @@
-// Log of the faults of the loop in words, newest last. A fault that follows one of the same kind within a second
-// increments its count. The limiter's action while the force ramps up is not a fault.
+// Log of the faults of loop, device and window in words, newest last. A fault that follows one of the same kind within
+// a second increments the count of that one. The action of the limiter while the force ramps up is not a fault.
 // Thread guarantee: one thread.
 #pragma once
 
@@ -29,7 +29,7 @@ enum class TickFaultLevel : std::uint8_t {
 class FaultLog {
  public:
   static constexpr std::size_t kMost = 200;
-  // The loop has stalled when its last tick is older.
+  // The loop has stalled if the last tick is older than this.
   static constexpr double kStall_s = 0.05;
 
   // Call it for every snapshot in order. Returns the worst fault of the snapshot.

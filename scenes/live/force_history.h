@@ -1,4 +1,4 @@
-// The forces of the last kHistory_s at 1 kHz, one point per tick, for curves.
+// The forces of the last kHistory_s at 1 kHz, for curves: one point per tick that read a sample.
 // Thread guarantee: one thread.
 #pragma once
 
@@ -38,7 +38,7 @@ struct HistoryPoint {
   float predicted_error_N = 0.0F;  // 95 %, of the active model; NaN: none
   std::uint8_t reference = 0;      // a ReferenceKind
   bool in_contact = false;
-  bool counts = true;          // in contact, with a valid sample, and the feature filters have settled
+  bool counts = true;          // in contact, valid sample, filters settled; see comparison.h for the rest
   bool out_of_domain = false;  // of the active model
   std::uint8_t active = 0;     // its slot
   TickFaultLevel fault_level = TickFaultLevel::none;
@@ -61,7 +61,7 @@ class ForceHistory {
   std::size_t size() const noexcept { return points_.size(); }
   // 0 is the oldest.
   const HistoryPoint& operator[](std::size_t index) const noexcept { return points_[index]; }
-  // Index of the first point at `loop_time_s` or later; size() when there is none. O(log).
+  // Index of the first point at `loop_time_s` or later; size() if there is none. O(log size).
   std::size_t first_at(double loop_time_s) const noexcept {
     const auto first = std::ranges::lower_bound(points_, loop_time_s, {}, &HistoryPoint::loop_time_s);
     return static_cast<std::size_t>(first - points_.begin());

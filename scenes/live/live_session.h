@@ -34,18 +34,18 @@ struct SessionRequest {
   std::string device = "auto";
   std::vector<std::string> models;  // methods or model files; empty: those of `line_up`
   std::string line_up;              // a name of line_ups() (slot_plan.h); empty or unknown: the scene's default models
-  // Models of an earlier session (SessionModels::plans), in addition. `refits` false: there are no others.
+  // Additional models, of an earlier session (SessionModels::plans). `refits` false: the session has only these.
   std::vector<SlotPlan> kept;
   bool refits = true;
-  std::uint64_t seed = 1;      // of the simulated hand, the training recording and the fits
+  std::uint64_t seed = 1;      // of the training recording and the fits; the simulated hand has seed + 1
   bool position_only = false;  // adds a model with the depth as its only feature
   bool realtime = true;        // asks for real-time scheduling
   std::string data_folder;     // for fault files; empty: the working directory
   DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
 };
 
-// The devices that need no argument after their name, for code that may not include devices/. Slow: opens and closes
-// each connected device.
+// The devices that need no argument after their name, for code that may not include devices/. Blocks: opens and
+// closes each connected device.
 std::vector<DeviceDescription> device_choices();
 
 class LiveSession {
@@ -75,7 +75,7 @@ class LiveSession {
   void rename(std::size_t slot, const std::string& name) { models_.rename(slot, name); }
   void refit(std::size_t slot, int centres) { models_.refit(slot, centres); }
   void remove(std::size_t slot);  // the last model stays, with a notice
-  // The line-up that is shown; empty: the models were requested one by one.
+  // The line-up that is shown; empty: the default models of the scene, or models that were named one by one.
   const std::string& line_up() const noexcept { return request_.line_up; }
   void use_line_up(const std::string& name);  // ignored when unknown or without a material to fit to
 
@@ -85,7 +85,7 @@ class LiveSession {
   ModelFigures figures(std::size_t slot) const;
   // Whether a recording is replayed, its force is the reference, and ReplayTest has a result.
   bool tests_recording() const noexcept;
-  // With tests_recording() the errors as recorded rank the models, as in a report. The words use those of `figures`.
+  // With tests_recording() the errors as recorded rank the models, as in a report. The text has those of `figures`.
   Verdict verdict() const;
   // Whether the recording that is replayed belongs to the training set.
   bool replays_training() const noexcept;
@@ -101,7 +101,7 @@ class LiveSession {
 
   // The device. Its state is `newest().device`.
   const std::string& device_name() const noexcept { return device_->name(); }
-  std::string device_words() const;  // what the user has to do before it renders force; may be empty
+  std::string device_words() const;  // what the user has to do so that it renders force; may be empty
   bool renders_force() const noexcept { return device_->holder() == Holder::person; }
   void start_zeroing() { device_->start_zeroing(); }  // call it while the tool is at its rest position
   // Null where the device has none.
@@ -110,7 +110,7 @@ class LiveSession {
   // The estimated surface offset of the replayed recording. Every change of the offset clears the errors.
   const ReplayTest& replay_test() const noexcept { return test_; }
   void move_surface(bool moved);
-  // The dead-man switch that enables the force. Call `hold` in every frame in which its key is held.
+  // The switch that must be held for a force. Call `hold` in every frame in which its key is held.
   DeadMan dead_man() const noexcept { return controls_.dead_man; }
   void use_dead_man(DeadMan what);
   void hold();

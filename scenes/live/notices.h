@@ -1,4 +1,4 @@
-// Messages of a session to the user, oldest first.
+// Messages of a session to the user, oldest first. Thread guarantee: values.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace palpate {
 
 struct Notice {
   std::string text;
-  bool problem = false;
+  bool problem = false;  // an error or a warning, not information
 };
 using Notices = std::vector<Notice>;
 

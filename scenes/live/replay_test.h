@@ -1,7 +1,7 @@
 // Tests the ready models of a session on the whole recording that is replayed, as `palpate replay` does
-// (scenes/evaluation/evaluate.h, with a surface offset for each model), independently of the playhead. It also
-// estimates one surface offset for all models together and applies it to the replay. Both run on a separate thread,
-// once a model is ready and again when all are.
+// (scenes/evaluation/evaluate.h, with a surface offset for each model), wherever the replay is. It also estimates one
+// surface offset for all models together and applies it to the replay. Both run on a separate thread: once the first
+// model is ready, and after all fits have ended whenever the ready models have changed.
 // Thread guarantee: one thread; only the destructor waits, some tenths of a second.
 #pragma once
 

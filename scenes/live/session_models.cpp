@@ -6,6 +6,7 @@
 
 #include "engine/base/text.h"
 #include "models/model/file/model_io.h"
+#include "models/training/trend_rows.h"
 
 namespace palpate {
 SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices)
@@ -20,8 +21,8 @@ Status SessionModels::start(const std::vector<SlotPlan>& plans, bool claimed) {
   return worker_.start();
 }
 
-// The slot of a removed model; without one a new slot; if all kMaxModels slots exist, that of a hidden model. The
-// reference keeps its slot.
+// The slot for a new model: that of a removed model, else a new one, else that of a hidden model; empty: there is none.
+// The reference keeps its slot.
 std::optional<std::size_t> SessionModels::room() const noexcept {
   for (const bool removed : {true, false}) {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
@@ -78,8 +79,8 @@ std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noe
   return std::nullopt;
 }
 
-// A model file of another material is not wrong where it differs from the true force of this one. Recordings that the
-// user named count as the material of all models.
+// A model file of another material is not compared with the true force of this one. If the user named recordings, there
+// is no true force, and no model counts as one of another material.
 bool SessionModels::is_of_other_material(const Slot& slot) const {
   const bool claimed = slot.claimed || slot.plan.of_this_material;
   if (!scene_.material || claimed || slot.plan.origin != ModelOrigin::file) return false;
@@ -224,11 +225,8 @@ double SessionModels::trained_depth_m() const noexcept {
 double SessionModels::longest_memory_s() const noexcept {
   double memory_s = 0.0;
   for (const std::size_t slot : ready_slots()) {
-    for (const FeatureSpec& feature : slots_[slot].model->features()) {
-      memory_s = std::max(memory_s, feature.relaxation_time_s);
-      for (std::size_t p = 0; is_branch(feature.kind) && p < feature.part_count; ++p)
-        memory_s = std::max(memory_s, feature.parts[p].relaxation_time_s);
-    }
+    for (const double time_s : relaxation_times_s(slots_[slot].model->features()))
+      memory_s = std::max(memory_s, time_s);
   }
   return memory_s;
 }

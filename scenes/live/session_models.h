@@ -64,8 +64,8 @@ class SessionModels {
   SessionModels(const SessionModels&) = delete;
   SessionModels& operator=(const SessionModels&) = delete;
 
-  // Makes a slot for each plan. `claimed`: model files are of this material, whatever their provenance. Errors:
-  // a thread cannot be started.
+  // Makes a slot for each plan. `claimed`: model files count as models of this material, whatever their provenance.
+  // Errors: a thread cannot be started.
   Status start(const std::vector<SlotPlan>& plans, bool claimed);
   // Interrupts fits; does not wait.
   void cancel() noexcept { worker_.cancel(); }
@@ -94,8 +94,8 @@ class SessionModels {
   // The slot of the active model. The rendered force may still fade to it.
   std::size_t selected() const noexcept { return selected_; }
   bool select(std::size_t slot);  // returns false and changes nothing unless the model is ready
-  // The model that serves as the reference where no true force is known: the first direct interpolant, or where all
-  // models are from files the first of at least two.
+  // The model that is the reference where no true force is known: the first direct interpolant without the paper's
+  // recipe, or if all models are from files the first of at least two. Empty: there is none.
   std::optional<std::size_t> reference() const noexcept;
   // Whether any model is fitted in this session, not read from a file.
   bool fits() const noexcept;
@@ -120,7 +120,7 @@ class SessionModels {
   Status save(std::size_t slot, const std::string& path) const;
   // The depth up to which all shown models were trained, m; infinite without models.
   double trained_depth_m() const noexcept;
-  // The longest relaxation time of all shown models, s.
+  // The longest relaxation time of all shown models, s, without those of creep; 0: none.
   double longest_memory_s() const noexcept;
 
   // Reads a model file into a new slot. Blocks for some milliseconds, some tens for a direct fit. Returns false,
@@ -137,7 +137,7 @@ class SessionModels {
     int asked_centres = 0;                     // of the plan, before the user changed the number
     std::shared_ptr<const FittedModel> model;  // null until ready
     bool removed = false;
-    bool claimed = false;  // the user said that this model file is of this material
+    bool claimed = false;  // see `start`
 
     bool hidden() const { return info.state == SlotState::hidden; }
     bool takes_part() const { return model != nullptr && !hidden(); }

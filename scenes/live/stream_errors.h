@@ -41,8 +41,8 @@ class ErrorQuantile {
   std::uint64_t samples_ = 0;
 };
 
-// The errors of one model in total and by stroke. ModelErrors has them exactly, but keeps every sample.
-// After kMostStrokes strokes the last one goes on, so that a session of days needs no more memory or time. All models
+// The errors of one model in total and by stroke. (ModelErrors is exact, but stores every sample.)
+// Stroke number kMostStrokes never ends, so that a session of days needs no more memory or time. All models
 // of a comparison begin their strokes together, so their units stay paired.
 class StreamErrors {
  public:

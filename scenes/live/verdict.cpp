@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kTick_ns = 1e6;
 
-// A model without centres is the trend alone, by whatever method it was fitted. A name that somebody gave stays.
+// Whether a model is the trend alone: it has no centres, and the user has not renamed it. Any method can fit it.
 bool is_trend(const ModelInfo& info) {
   return info.centres == 0 && info.method != "position" && info.name.rfind(info.method, 0) == 0;
 }

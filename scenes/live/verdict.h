@@ -17,8 +17,8 @@ class SessionModels;
 // The errors of one model; those of all are over the same samples.
 struct EvaluatedSlot {
   std::size_t slot = 0;
-  const UnitErrors* unit_errors = nullptr;  // decide which model is recommended; not null
-  // The 99 % error that the list of models shows, too: what the verdict says about the models.
+  const UnitErrors* unit_errors = nullptr;  // for the ranking; not null
+  // The 99 % error in the list of models, which the text of the verdict uses.
   double p99_error_over_jnd = 0.0;
 };
 
@@ -34,7 +34,7 @@ struct Verdict {
 Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
               const std::string& reference_name);
 
-// The share of the tick's period of 1 ms, as "0.04 %".
+// The share of the period of 1 ms that a tick takes, as "0.04 %".
 std::string tick_share(double tick_ns);
 
 }  // namespace palpate

@@ -1,9 +1,9 @@
 // A block of virtual material with memory, pressed along one direction. A derived class is a material law: it
-// computes the force at the end of a short sub-step in which the surface moved to depth s at constant speed, and
-// keeps the state. This class handles contact. The surface never pulls: when the tool retracts faster than the
-// material follows, they separate, and the free surface recovers without force until it meets the tool or is flat;
-// the state of the law is integrated meanwhile. Sub-steps are at most 0.1 ms for every step of the caller, so that
-// the force is independent of the sampling rate.
+// computes the force at the end of a sub-step in which the surface moves to the depth s at constant speed, and keeps
+// the state of the material. This class handles contact. The surface never pulls: when the tool retracts faster than
+// the material recovers, they separate. The free surface then recovers without force on the tool until it meets the
+// tool or is flat. A sub-step takes at most 0.1 ms, whatever the step of the caller, so that the force does not depend
+// on the sampling rate.
 // Every law is passive: from the undeformed state on, the work done on the block is never negative. Each header
 // has the proof. Force is positive when it pushes the tool out.
 // Thread guarantee: one thread at a time; `step` is wait-free, allocates nothing and fits the haptic tick.
@@ -36,16 +36,16 @@ class Block {
   // changes nothing and returns the last force.
   double step(double position_m, double velocity_m_per_s, double dt_s) noexcept;
 
-  // Puts the tool at rest at `position_m` with the material fully relaxed there. The force is 0 until the next step.
+  // Places the tool at rest at `position_m`, and relaxes the material fully there. The force is 0 until the next step.
   void reset(double position_m = 0.0) noexcept;
 
   double force_N() const noexcept { return force_N_; }
-  // The depth of the surface at the end of the last sub-step: that of the tool in contact, larger while a free surface
-  // recovers.
+  // The depth of the surface, m, >= 0, at the end of the last sub-step: in contact the depth of the tool, larger while
+  // a free surface recovers.
   double surface_depth_m() const noexcept { return surface_m_; }
 
-  // The force of a short press to `depth_m`, when the material is about half relaxed; rises with the depth. The
-  // simulated hand chooses its depth by it.
+  // The approximate force of a short press to `depth_m` >= 0, N, with the material half relaxed; it rises with the
+  // depth. The simulated hand inverts it to find the depth of a press.
   virtual double half_relaxed_force_N(double depth_m) const noexcept = 0;
 
  protected:
@@ -65,7 +65,7 @@ class Block {
   virtual void begin_substep() noexcept {}
   // The force on the tool if the surface moves with it to `surface_m`.
   virtual double contact_force_N(double surface_m, double rate_m_per_s) const noexcept = 0;
-  // The restoring force of a free surface if it moves to `surface_m`.
+  // The restoring force of a free surface if it moves to `surface_m`. The surface moves to the depth at which it is 0.
   virtual double free_force_N(double surface_m, double rate_m_per_s) const noexcept {
     return contact_force_N(surface_m, rate_m_per_s);
   }

@@ -33,8 +33,8 @@ class ButtonBlock final : public Block {
   static constexpr double kFloor_m = 0.005;               // s_b
   static constexpr double kFloor_N_per_m1_5 = 30000.0;    // k_b
 
-  // The static force up to the first peak; beyond it, where the force does not determine the depth, a rise of 1 N/m, or
-  // the force above the floor if it is larger.
+  // The static force up to the first peak. Beyond the peak a force has several depths, so the result rises by 1 N/m;
+  // deeper than h it is at least the static force.
   double half_relaxed_force_N(double depth_m) const noexcept override {
     const auto at_rest_N = [](double s) {
       return dome_N(s, (kLeg_N_per_m + 0.5 * kLegBranch_N_per_m) * shortened_m(s), 0.0);

@@ -4,10 +4,10 @@
 //   F = E(s) + integral K(t - u) dE(s)/du du + F_c(s) z     never below 0
 //   dz/ds = (1 - z sgn(ds)) / x_p                            presliding, then slip
 //   F_c(s) = F_c min(1, s / d_c)
-// On the way in new bristles are unbent and do not change F_c z; on the way out bristles
-// leave with their share of the force. Friction does not exceed the restoring force, so that
-// it cannot hold the probe down, and a free surface has none.
-// F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm, 12 kPa; K is a box spectrum from 50 ms to 2 s.
+// On the way in new bristles are unbent and do not change F_c(s) z; on the way out bristles
+// leave with their share of the force. Friction that holds the probe back does not exceed the
+// force that pushes it out, so that the block does not grip it. A free surface has no friction.
+// F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm radius, 12 kPa; K is a box spectrum from 50 ms to 2 s.
 // Passive: at most V = F_c(s) x_p z^2 / 2 is stored, and F_c z ds - dV >= z^2 F_c |ds| on the
 // way in, more on the way out.
 // Source: Dahl (1968); Canudas de Wit, Olsson, Astrom & Lischinsky (1995)

@@ -38,7 +38,7 @@ class HereditaryBlock : public Block {
     }
   }
 
-  // `share` x E + M after a move of the surface to `surface_m`.
+  // share x E + M after a move of the surface to `surface_m`, newtons.
   double hereditary_force_N(double surface_m, double share = 1.0) const noexcept {
     const double elastic_N = elastic_force_N(surface_m);
     return share * elastic_N + relaxed_N_ + gain_ * (elastic_N - elastic_N_);

@@ -1,5 +1,5 @@
-// The virtual materials by name. Each material law has its own header and is integrated in time; it shares no code
-// with the models that are fitted to it.
+// The virtual materials by name. Each material law has its own header and shares no code with the models that are
+// fitted to it. Thread guarantee: pure functions; `make_block` allocates.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ struct Material {
   std::string_view name;
   std::string_view summary;           // one line
   std::string_view relaxation_times;  // the true ones, in words
-  // Makes an undeformed block.
+  // Returns an undeformed block with the parameters of this material.
   std::unique_ptr<Block> (*make_block)() = nullptr;
   double recording_seconds = 41.499;  // default length of a recording
   double force_range_N = 10.0;        // default range of the force sensor

@@ -1,7 +1,7 @@
 // The virtual recording rig of `palpate synth`: a simulated hand presses a block of virtual material, and simulated
-// sensors record it. Every row comes with the true motion and force. Hand and material run at 20 kHz for every rate
-// of the recording, and each sensor has its own random stream, so that the same seed gives the same motion and the
-// same true force at every rate.
+// sensors record it. Every row comes with the true motion and force. Hand and material are simulated at 20 kHz,
+// whatever the rate of the recording, and each sensor has its own random numbers, so that the same seed gives the same
+// motion and the same true force at every rate.
 // Sensors: the encoder rounds the position to its step; the force sensor adds white noise and has 12 bits over its
 // range; the accelerometer (like the paper's ADXL330: 280 ug/sqrt(Hz) over 0.5 kHz) adds white noise and a bias that
 // drifts slowly (Ornstein-Uhlenbeck process), and has 12 bits over its range.
@@ -82,7 +82,7 @@ class Rig {
 
   std::size_t row_count() const noexcept { return row_count_; }
 
-  // Gives the next row and its truth. Returns false after the last row.
+  // Sets `row` to the next row and `truth` to its true values. Returns false after the last row.
   bool next(RecordingRow& row, RigTruth& truth) noexcept;
 
  private:

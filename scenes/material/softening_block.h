@@ -1,4 +1,4 @@
-// A foam that is softer at depths smaller than that of its deepest recent press, and heals:
+// A foam that a press softens for later presses that are less deep, and that heals:
 // the Mullins effect as pseudo-elasticity, with a deepest depth m that decays,
 //   F = eta(s, m) E(s) + integral K(t - u) dE(s)/du du,
 //   eta = 1 - r erf((W(m) - W(s)) / (w0 + beta W(m))),

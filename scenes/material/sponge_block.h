@@ -7,7 +7,7 @@
 //   k(e) = k0 exp(-b e)                                 permeability decreases with strain
 // The drainage has a series of relaxation times a^2 / (k M j_n^2) with the zeros j_n of J0 (2.405, 5.52, ...), which
 // are twelve times longer at a strain of 0.5. The pressure is integrated by finite volumes in 12 rings with implicit
-// Euler; k is that of the beginning of a sub-step.
+// Euler, with k(e) of the beginning of the sub-step.
 // L = 30 mm, a = 12 mm; E = 9 kPa, e_d = 0.8; M = 160 kPa; longest time 0.2 s when uncompressed; b = 5.
 // Passive: A L (integral of sigma de + mean p^2 / (2 M)) is stored, drainage dissipates, and so does implicit Euler.
 // Source: Biot (1941); Mow, Kuei, Lai & Armstrong (1980) (biphasic theory); Armstrong, Lai & Mow (1984) (radial

@@ -1,12 +1,12 @@
 // Soft tissue under a sphere: an elastic response that stiffens exponentially, and relaxation by a power law of time,
 // which has no characteristic time,
 //   F = integral G(t - u) dE(s)/du du,  G(t) = (1 - p) + p (t / 1 s)^-alpha,
-// where E is the Fung contact of sphere_contact.h, 1 s after a step. The power law is a spring-pot (a fractional
-// derivative) and is integrated as the spectrum
+// where E is the force 1 s after a step, the Fung contact of sphere_contact.h. The power law is a spring-pot (a
+// fractional derivative) and is integrated as the spectrum
 //   t^-alpha = 1 / Gamma(alpha) integral tau^-alpha exp(-t / tau) dln tau
 // for tau from 0.1 ms to 1,000 s. Slower parts do not relax within a recording and are treated as elastic; faster
 // parts relax within a tick and are omitted.
-// Sphere of 8 mm; 25 kPa and b = 3; alpha = 0.15, in the range of liver and kidney (0.1 to 0.2).
+// Sphere of 8 mm radius; 25 kPa and b = 3; alpha = 0.15, in the range of liver and kidney (0.1 to 0.2).
 // Passive: see hereditary_block.h.
 // Source: Kiss, Varghese & Hall (2004) (liver as a fractional solid); Nicolle,
 // Vezin & Palierne (2010) (kidney's power law); Lin et al. (2009) (contact).

@@ -35,7 +35,7 @@ std::vector<double> even_tics(const AxisRange& range, std::size_t most) {
   return tics;
 }
 
-// Further right a name would leave the panel. Fraction of the panel.
+// A name that begins further right would leave the panel. Fraction of the panel.
 constexpr double kRightmostName = 0.7;
 
 // The position of `value` on the axis: 0 at its low end, 1 at its high end.

@@ -18,8 +18,8 @@ struct AxisRange {
 // of the data and levels with a margin.
 AxisRange range_of(const Panel& panel, bool vertical);
 
-// Labelled values inside `range`, at least two and at most about `most`. On a logarithmic axis these are decades,
-// with steps such as 2 and 5 where there are few decades; else multiples of 1, 2 or 5 times a power of ten.
+// The labelled values (tics) inside `range`, at least two and at most about `most`. On a logarithmic axis these are
+// decades, with steps such as 2 and 5 between few decades; else multiples of 1, 2 or 5 times a power of ten.
 std::vector<double> tics_of(const Axis& axis, const AxisRange& range, std::size_t most);
 
 // A name beside a point; x and y are fractions of the panel.
@@ -29,7 +29,7 @@ struct NameTag {
   double x = 1.0;
   double y = 0.0;
   bool beside_panel = false;
-  bool begins_here = true;  // false: the text ends at x
+  bool begins_here = true;  // the text begins at x; false: it ends there
 };
 
 // The names of horizontal levels and, with `names_at_ends`, of the series: of a series of one point beside the point
@@ -37,7 +37,7 @@ struct NameTag {
 // of a line of text, `character`: width of a letter, both as fractions of the panel.
 std::vector<NameTag> name_tags(const Panel& panel, double line, double character);
 
-// Marks at the edge, one for each stretch of a line that exceeds the given limits of the y axis.
+// Marks at the edge of the panel, one for each part of a line that is beyond a given limit of the y axis.
 std::vector<Series> cut_marks(const Panel& panel);
 
 }  // namespace palpate

@@ -55,7 +55,7 @@ class Measurement {
     merge_equal();
     data_.choice = choose(models_);
     find_worst();
-    // Hundreds of MB for long recordings; the figures are computed.
+    // Frees the samples, hundreds of MB for long recordings: the figures are computed.
     for (ModelResult& one : models_) one.recorded_samples = one.moved_samples = ModelErrors(data_.scene.jnd);
     return progress_.next(0.0).may_continue(1.0) ? Status{} : Status{interrupted()};
   }

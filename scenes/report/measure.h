@@ -27,18 +27,18 @@ struct StretchRow {
 
 struct WorstStretch {
   std::string recording;
-  double score = -1.0;  // mean of (error / JND)^2 of the first model
+  double score = -1.0;  // mean of (error / JND)^2 of the first model; below 0: none was found
   std::vector<StretchRow> rows;
   std::vector<std::size_t> models;  // indices of ReportData::models; set by `measure`
 };
 
 // The stretch of kStretchSeconds in which the first of `models` has the largest mean of (error / JND)^2 over the
-// samples in contact, or the whole of a shorter recording. With few samples in contact the sum is divided by a quarter
-// of all samples. Up to kMaxModels models. Samples before `from_s` are replayed, but do not count.
+// samples in contact; a shorter recording is one stretch. The divisor of the mean is at least a quarter of all samples
+// of the stretch. `models`: up to kMaxModels. Samples before `from_s` are replayed, but do not count.
 WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
                            double from_s = -1e300);
 
-// A planned model over all folds. The errors of all models are over the same samples.
+// The results of a planned model over all folds. The errors of all models are over the same samples.
 struct ModelResult {
   PlannedModel plan;
   int size = 0;                              // centres, or nodes of the grid; the largest of all folds
@@ -48,7 +48,7 @@ struct ModelResult {
   ModelTiming time;                          // of the last fold's model, on all test recordings
   std::shared_ptr<const FittedModel> model;  // of the last fold; null: no force
   std::vector<ModelPointer> fits;            // of each fold; empty: no force
-  // Of every sample, while measuring; `errors` and `moved` are computed from them.
+  // The errors of every sample during `measure`, which computes `errors` and `moved` from them; empty in its result.
   ModelErrors recorded_samples{JndLine{}};
   ModelErrors moved_samples{JndLine{}};
   std::vector<std::string> same;  // names of further planned models with the same forces
@@ -80,20 +80,20 @@ struct ReportData {
   std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces
   Choice choice;
   WorstStretch worst;                      // of the recommended model
-  std::vector<RecordingSurface> surfaces;  // of the training recordings
+  std::vector<RecordingSurface> surfaces;  // of the training recordings; this and the following: of the first fold
   std::vector<double> times_2009_s;        // relaxation times fitted for the 2009 recipe
   std::optional<bool> corrects;            // whether cross-validation selected the correction
-  std::vector<PartGain> gains;
+  std::vector<PartGain> gains;             // of each part of the trend
 };
 
-// Fits every planned model once per fold and pools its errors over the folds. The result is deterministic except for
-// times. Errors: those of the recordings and the fits, with the recordings' names; interrupted.
+// Fits every planned model once per fold and pools its errors over the folds. All results but times are
+// deterministic. Errors: those of the recordings and the fits, with the recordings' names; interrupted.
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control);
 
 // The candidates are the main models of the plan; rank() recommends one of them by the test errors and times.
 Choice choose(const std::vector<ModelResult>& models);
-// The models of the page's first table: no force and the candidates. Of the recipe of 2009 only greedy, which the
-// paper recommends, and the recommended model are among them.
+// The models of the page's first table: no force and the candidates, without those of the recipe of 2009 that are
+// neither recommended nor greedy, which the paper recommends.
 std::vector<std::size_t> headline_models(const ReportData& data);
 
 }  // namespace palpate

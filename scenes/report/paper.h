@@ -30,7 +30,7 @@ struct PaperBin {
 
 struct PaperModel {
   std::string name;
-  std::uint32_t colour = 0;
+  std::uint32_t colour = 0;  // 0xRRGGBB
   double fit_seconds = 0.0;
   ModelTiming time;
   double rms_N = 0.0;
@@ -57,8 +57,8 @@ struct FitTimes {
 // Time of the interpolant by the dimension of the domain; figure 2.
 struct DimensionTimes {
   std::size_t dimensions = 0;
-  double solve_s = 0.0;
-  double grid_s = 0.0;  // evaluation on 10 nodes per dimension
+  double solve_s = 0.0;  // fit of the weights of all sites
+  double grid_s = 0.0;   // evaluation on 10 nodes per dimension
 };
 
 struct PaperData {
@@ -80,11 +80,11 @@ struct Claim {
   };
   std::string claim;
   std::string there;           // the result in the paper
-  std::string why{};           // remark on a difference
-  std::vector<Result> here{};  // of each run
+  std::string why{};           // a reason for a difference
+  std::vector<Result> here{};  // the result of each run
 };
 std::vector<Claim> paper_claims(const PaperData& data);
-// "silicone", "silicone, fitted times".
+// The name of a run: "silicone", "silicone, fitted times".
 std::string run_name(const PaperRun& run);
 
 // Writes index.html, report.json, tables and figures 2 to 8 into `out`, which appears only when it is complete.

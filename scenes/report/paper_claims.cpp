@@ -65,7 +65,7 @@ class Claims {
     claim.here.front().text = text;
     claims_.push_back(std::move(claim));
   }
-  // Gives the claims that are not reproduced and have no remark this one.
+  // Sets this remark on all claims that are not reproduced and have no remark yet.
   void remark(const char* why) {
     for (Claim& claim : claims_) {
       const bool all = std::ranges::all_of(claim.here, &Claim::Result::reproduced);

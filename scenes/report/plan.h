@@ -20,13 +20,13 @@ struct PlannedModel {
   std::string name;  // "greedy-100", "2009-greedy-100"
   Recipe recipe = Recipe::palpate;
   MethodRequest request;
-  bool main = false;  // the default size of its recipe and method: a candidate, drawn in the figure of error by force
+  bool main = false;  // has the default size of its recipe and method, so that it is a candidate of the ranking
 
   // Whether this is greedy by the recipe of 2009, the method that the paper recommends.
   bool is_greedy_2009() const { return recipe == Recipe::paper && request.method == &kGreedyMethod; }
 };
 
-// The name of a model with that many centres; methods without centres have no number.
+// "greedy-100": the name of a model with that number of centres; methods without centres have no number.
 std::string model_name(Recipe recipe, const Method& method, int centres);
 
 // No force first, then the main models, then other sizes. A method that starts from another method's fit (its base)

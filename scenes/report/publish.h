@@ -16,8 +16,8 @@
 
 namespace palpate {
 
-// A folder that appears under its final name only when it is complete. Files are written into a hidden folder beside
-// `path`, which `commit` renames. The destructor removes a folder that was not committed.
+// A folder that gets its final name only when it is complete. Files are written into a hidden folder beside `path`,
+// which `commit` renames. The destructor removes the hidden folder if it was not committed.
 class ReportFolder {
  public:
   // Errors: `path` exists and `overwrite` is false, or it is not a folder, or it has files but no report.json and so

@@ -1,5 +1,5 @@
-// Divides the recordings of a report into training and test data, and refuses test data that was trained on. Measured
-// forces are compared bit by bit, because sensor noise makes them unique to a recording.
+// Divides the recordings of a report into training and test data, and refuses test data that is also training data.
+// Measured forces are compared bit by bit, because sensor noise makes them unique to a recording.
 // Thread guarantee: slow side (allocates).
 #pragma once
 
@@ -29,19 +29,18 @@ struct Split {
   std::vector<PreparedRecordingPointer> train;
   std::vector<PreparedRecordingPointer> tested;
   double counted_from_s = -1e300;  // earlier samples are replayed because the features have memory, but do not count
-  std::string words;               // description of the test data where it was split off the training data
+  std::string words;               // describes test data that are a part of the training recordings; else empty
 };
 
 struct RecordingSet {
-  std::vector<Split> folds;                   // several for a cross-validation
-  std::vector<PreparedRecordingPointer> all;  // those to train on come first
-  std::size_t trained = 0;                    // their number; all.size(): each of them is tested as well
+  std::vector<Split> folds;                   // one, or several for a cross-validation
+  std::vector<PreparedRecordingPointer> all;  // the training recordings come first
+  std::size_t trained = 0;                    // number of training recordings; all.size(): each is also a test
 
   bool is_tested(std::size_t i) const { return i >= trained || trained == all.size(); }
 };
 
-// Equal forces in this number of successive rows, with enough different values among them (kLeakValues in the source),
-// are a leak.
+// Equal forces in this number of successive rows, kLeakValues (recordings.cpp) different ones or more, are a leak.
 inline constexpr std::size_t kLeakRows = 50;
 
 struct SharedStretch {
@@ -50,13 +49,13 @@ struct SharedStretch {
   std::size_t rows = 0;         // 0: there is none
 };
 
-// The first stretch that is found of `tested` whose forces occur in `trained`. Stretches of at least 2 kLeakRows rows
-// are found where every kLeakRows of their rows have that many different values.
+// The first stretch of `tested` that is found with the forces of a stretch of `trained`. A common stretch of at least
+// 2 kLeakRows rows is always found if each kLeakRows successive rows of it have that many different forces.
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 
-// Without a training recording the virtual silicone is used: seed 1 for training, seed 2 for the test. Without a test
-// recording the training recordings are divided into up to kMostFolds folds for cross-validation, and of a single one a
-// block at its end is the test. Recordings are sorted by name and content.
+// Without a training recording, virtual silicone is used: seed 1 for training, seed 2 for the test. Without a test
+// recording, the training recordings are divided into up to kMostFolds folds for cross-validation; a single recording
+// is divided into training data and a block at its end as the test. Recordings are sorted by name and content.
 // Errors: a test recording shares a stretch with a training recording; a test recording without contact; a single
 // recording that is too short.
 inline constexpr std::size_t kMostFolds = 5;

@@ -23,7 +23,7 @@ struct ReportRequest {
 };
 
 // Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into `request.out`, which appears only when
-// it is complete. Returns the answer as plain text. Errors: gnuplot is missing; those of ReportFolder::create,
+// it is complete. Returns the recommendation as plain text. Errors: gnuplot is missing; those of ReportFolder::create,
 // split_recordings and measure; interrupted.
 Result<std::string> make_report(const ReportRequest& request, const FitControl& control = {});
 

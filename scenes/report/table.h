@@ -18,7 +18,7 @@ struct TableColumn {
   std::string title;   // header on the page with the displayed unit: "RMS [mN]"; empty: not on the page
   double scale = 1.0;  // displayed value / stored value
   int decimals = kThreeDigits;
-  int under = 0;  // number of next columns that are displayed under this one: 1, or 2 as an interval
+  int under = 0;  // the next column (1), or the next two as an interval (2), are displayed below this value
 
   static constexpr int kThreeDigits = -1;  // three significant digits
 };

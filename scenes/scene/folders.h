@@ -1,7 +1,7 @@
-// The folders of the program: the assets (scenes, models, shaders, fonts), and the user's settings and data.
-// If the environment variable PALPATE_ASSETS is set, only that folder is tried for the assets. Else, in this order,
-// relative to the executable's folder: `../share/palpate` (an installed program), `../assets` (a build folder); then
-// the source tree.
+// The folders of the program: the assets (scenes, calibrations, shaders, templates), and the user's settings and data.
+// If the environment variable PALPATE_ASSETS is set, only that folder is tried for the assets. Otherwise these are
+// tried in this order: `../share/palpate` (an installed program) and `../assets` (a build folder), relative to the
+// folder of the executable; the source tree.
 // Source of the user's folders: XDG Base Directory Specification 0.8.
 // Thread guarantee: slow side only (does I/O); reads the environment.
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-// Errors: no folder has a subfolder scenes; lists the folders that were tried.
+// Errors: none of these folders has a subfolder `scenes`; the message lists the folders.
 Result<std::string> find_assets();
 
 // The folder of the devices' calibrations; empty where there are no assets.
@@ -22,10 +22,10 @@ std::string calibrations_folder();
 // the folder cannot be created.
 Result<std::string> config_folder();
 
-// $XDG_DATA_HOME/palpate, else ~/.local/share/palpate, for recordings, figures and fault files. As config_folder.
+// $XDG_DATA_HOME/palpate, else ~/.local/share/palpate: recordings, figures, fault files. Creates it. Errors: the same.
 Result<std::string> data_folder();
 
-// The local time now for a file name, formatted by strftime with `format`; empty beyond 63 bytes.
+// The local time for a file name, formatted by strftime with `format`; empty if it is longer than 63 bytes.
 std::string local_time_text(const char* format);
 
 }  // namespace palpate

@@ -33,32 +33,32 @@ struct Scene {
   std::string description;
   std::optional<std::string> material;  // name of the virtual material; empty: models need recordings
   std::vector<std::string> recordings;  // files that a session uses instead of the virtual material
-  std::vector<FeatureSpec> features;    // 1 to 8: the depth, velocity and low-pass velocities
+  std::vector<FeatureSpec> features;    // 1 to 8: always the depth; velocity, low-pass velocities
   JndLine jnd;
   BlockGeometry block;
   std::uint32_t block_colour = 0;  // 0xRRGGBB
   std::uint32_t tool_colour = 0;
   Finish finish = Finish::silicone;
   std::vector<std::string> default_models;  // names of methods (models/fit/methods.h)
-  // Upper limit of the target force of the simulated hand.
+  // Largest target force of the simulated hand that moves the tool.
   double strongest_press_N = 5.0;
 
-  // Whether there is training data for models.
+  // Whether models can be fitted: there is a virtual material, or there are recordings.
   bool has_material() const { return material.has_value() || !recordings.empty(); }
 };
 
-// The features in words: "depth, velocity, relaxation 0.17 s".
+// The features in words: "depth, velocity, relaxation 0.17 s"; the time is that of a low-pass velocity.
 std::string describe_features(const Scene& scene);
 
-// Parses the text of a scene file. "name" must equal the file name in `path`. Instead of "jnd", "jnd_file" names a
-// JND file relative to the scene's folder, which is read. Errors: all that are found, one
-// per line, each as "path:line:column: found ..., expected ...".
+// Parses the text of a scene file. "name" must equal the file name in `path`. Instead of "jnd", "jnd_file" can name a
+// JND file relative to the scene's folder, which is then read. Errors: all errors of the file, one per line, each as
+// "path:line:column: found ..., expected ...".
 Result<Scene> parse_scene(std::string_view text, const std::string& path);
 
 // Reads the JND line from the result file of a JND study (scenes/study/study_analysis.h).
 // JSON: "format": "palpate-jnd", "version": 1, "offset_N" (above 0, up to 100) and "weber_fraction" (0 to 1) of the
 // conservative line. "criterion", "subjects", "fitted" and "points" are allowed and ignored.
-// Errors: as parse_scene; another format or version; the file is not readable.
+// Errors: as parse_scene; another format or version. read_jnd_file: also a file that is not readable.
 Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path);
 Result<JndLine> read_jnd_file(const std::string& path);
 
@@ -68,8 +68,8 @@ Result<std::vector<std::string>> scene_names();
 // Errors: unknown scene (lists the known ones); those of parse_scene; the file is not readable.
 Result<Scene> load_scene(const std::string& name);
 
-// The request to fit a model (models/fit/fit.h) with the scene's features and JND line. Everything else is the default
-// of `palpate fit`.
+// The request of `palpate fit` with default options (models/fit/fit.h), with the scene's JND line. The fit selects its
+// features by itself; those of the scene are for `--features scene` and for the recipe of 2009.
 TrainingRequest training_request(const Scene& scene);
 
 // The colour 0xRRGGBB of a method (models/fit/methods.h), or of "position", the model of depth alone. 0, the ink

@@ -20,8 +20,8 @@ constexpr double kLeastProbability = 1e-12;
 
 using Cells = std::vector<AnswerCell>;
 
-// Where `function`, with one maximum between `low` and `high`, is largest; golden-section search (Kiefer 1953), to
-// 1e-7.
+// The argument at which `function`, with one maximum between `low` and `high`, is largest, to 1e-7: golden-section
+// search (Kiefer 1953).
 template <typename Function>
 double maximum_between(double low, double high, const Function& function) {
   double best = high - (high - low) / std::numbers::phi, at_best = function(best);

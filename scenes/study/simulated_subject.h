@@ -3,7 +3,7 @@
 // subject answers with the larger perceived force. s(F) = JND(F) / (0.6745 sqrt(2)), so that the JND at the criterion
 // 0.75 is JND(F) = offset + weber_fraction F. In a share of the trials the subject guesses.
 // Two strokes are compared at the tick at which they differ most in multiples of the JND. The subject perceives both
-// forces there, as above, and knows from the reminder which is the larger. It is correct with the probability
+// forces there, as above, and knows from the reminder which stroke has the larger. It is correct with the probability
 //   Phi(|F1 - F2| / sqrt(s(F1)^2 + s(F2)^2)),
 // 75 % for one JND, the optimum for an observer with this noise who attends to one tick.
 // Deterministic: the same seed gives the same answers.

@@ -10,8 +10,8 @@
 // the JND when the 95 % interval of the share correct (E. B. Wilson 1927, Journal of the American Statistical
 // Association 22, 209-212) is below 75 %, by more when it is above. The prediction is "below" when the error nowhere
 // exceeds one JND, "above" when its mean does, else none. Excluded are training, rehearsals, and trials in which the
-// rendered force deviated at any tick from the stroke by more than half the JND at 0 N. Thread guarantee: pure
-// functions; slow side.
+// rendered force deviated from the stroke by more than half the JND at 0 N at any tick.
+// Thread guarantee: pure functions; slow side.
 #pragma once
 
 #include <array>
@@ -49,10 +49,10 @@ inline const JndPoint kPangTanDurlach{2.5, 0.09 * 2.5, 0.0, "Pang, Tan & Durlach
 struct ReferenceJnd {
   double reference_N = 0.0;  // as planned
   double rendered_N = 0.0;   // mean over the trials; 0 without usable answers
-  std::size_t count = 0;     // trials; of a mean, subjects whose JND is determined
+  std::size_t count = 0;     // trials; of a mean, subjects with a determined JND
   double jnd_N = 0.0;
   double standard_error_N = 0.0;  // of a mean
-  bool determined = false;        // see PsychometricFunction; of a mean, whether it is of any subject
+  bool determined = false;        // see PsychometricFunction; of a mean, whether any subject's JND is determined
 };
 
 struct SubjectJnd {
@@ -69,15 +69,15 @@ struct StudyAnalysis {
   Result<JndLines> lines = Error{"not analysed"};
 };
 
-// `files`: of constant stimuli, see check_study_files. `with_published`: adds kPangTanDurlach. Errors: a subject
-// without usable answers.
+// `files`: answers to constant stimuli that check_study_files accepts. `with_published`: adds kPangTanDurlach. Errors:
+// a subject without usable answers.
 Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, bool with_published);
 
 // One row per subject and reference force, then the means: CSV with a header row.
 std::string analysis_table(const StudyAnalysis& analysis);
 
-// The text of the file that scenes/scene/scene.h reads: the conservative line of `analysis`, which has one, and, for
-// information, criterion, subjects, the fitted line, and the points with their sources. Numbers are in full precision.
+// The text of jnd.json (scenes/scene/scene.h): the conservative line of `analysis`, which must have one, and for
+// information criterion, subjects, fitted line, and points with sources. Numbers are in full precision.
 std::string jnd_file_text(const StudyAnalysis& analysis);
 
 struct Discrimination {

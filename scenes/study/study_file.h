@@ -12,8 +12,8 @@
 // Its rows have two more columns before the device, reminder_rendered_N and worst_N; their forces are the means of the
 // strokes. The first five columns are those of the subject's plan.
 //
-// No file exists before the consent. Each answer replaces the file atomically, and counts when the file is on the disk.
-// A last row without its line end is ignored.
+// No file exists before the consent. With each answer the file is replaced atomically; the answer counts once the file
+// is on the disk. A last row without its line end is ignored.
 // Thread guarantee: one thread; slow side (does I/O).
 #pragma once
 
@@ -45,7 +45,7 @@ struct StudyRecord {
   bool answered_second = false;      // "the second was larger", or "the second was like the reminder"
   std::uint32_t response_ms = 0;     // from the end of the second force
   double reminder_rendered_N = 0.0;  // this and worst_N: with strokes only
-  double worst_N = 0.0;              // largest deviation of the rendered force at any tick
+  double worst_N = 0.0;              // largest |rendered - commanded force| at any tick
   std::string device = "unknown";
   bool rendered = true;  // false: a rehearsal on a device without force
 
@@ -68,7 +68,7 @@ struct StudyData {
 Result<StudyData> parse_study(const std::string& text, const std::string& path);
 // Errors: the file is not readable; those of parse_study.
 Result<StudyData> read_study(const std::string& path);
-// The lines above the rows; one row with its line end.
+// The lines above the rows. One row with its line end; `strokes`: with the two columns of that procedure.
 std::string study_header_text(const StudyHeader& header, const std::string& consent);
 std::string study_row(const StudyRecord& record, bool strokes);
 
@@ -91,7 +91,7 @@ class StudyFile {
   // Creates the file. `when`: any text without a line break. Errors: it could not be written; another session has
   // changed it.
   Status consent(const std::string& when);
-  // Stores an answer durably, with the device of the header. Errors: as above; the call may be repeated.
+  // Stores an answer on the disk, with the device of the header. Errors: as consent; the call may be repeated.
   Status append(StudyRecord record);
 
  private:

@@ -38,7 +38,7 @@ using Trials = std::vector<StudyTrial>;
 
 void append(Trials& trials, const Trials& more) { trials.insert(trials.end(), more.begin(), more.end()); }
 
-// Each reference against 60 % and 140 %, then the study.
+// The training, with each reference against 60 % and 140 % of it, then the study.
 Trials constant_trials(const std::string& code) {
   RandomStream random = subject_random(code, 2);
   Trials all = balanced({0.0, 0.0, false, true}, 2 * kReferenceForces_N.size(), random);

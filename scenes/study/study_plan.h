@@ -2,7 +2,7 @@
 //
 // Constant stimuli: two-alternative forced choice (2AFC) without movement; which of two forces was larger? As in Hoever
 // & Harders (2009), section 4.1: reference forces 0.3, 0.5, 1.0 and 2.5 N; comparison forces from 60 % to 140 % of the
-// reference in eight steps without 100 %; each pair ten times: 320 trials. Each pair comes once in every 32 trials,
+// reference, eight values without 100 %; each pair ten times: 320 trials. Each pair comes once in every 32 trials,
 // five times with the comparison first and five times second.
 //
 // Two strokes: 2AFC with a reminder (M. J. Hautus, N. A. Macmillan & C. D. Creelman 2022, Detection Theory: A User's
@@ -63,14 +63,14 @@ struct StudyTrial {
   bool operator==(const StudyTrial&) const = default;
 };
 
-// A comparison force, rounded to 0.1 mN as in the study file.
+// `percent` % of a reference force, N, rounded to 0.1 mN as in the study file.
 double percent_of(double reference_N, double percent) noexcept;
 
 // Subjects are anonymous: a code has one to three capital letters and one to four digits, such as S01. Errors: another
 // form.
 Status check_subject_code(const std::string& code);
 
-// In these functions `strokes` null: constant stimuli.
+// The following functions are for constant stimuli if `strokes` is null.
 // The trials of a subject, first the training: easy trials, to learn the task. With `strokes` the forces of a trial are
 // the means of the strokes, and the training compares the reference with half of it.
 std::vector<StudyTrial> plan_study(const std::string& code, const StrokePair* strokes);

@@ -1,8 +1,8 @@
 // Presents two forces one after the other with the accuracy of a tick, optionally after a third one as a reminder:
 //   lead-in [-> reminder -> pause] -> first -> pause -> second
 // Time is counted in ticks of 1 ms. Within an interval the force, constant or a stroke, is multiplied by a cosine ramp
-// at its beginning and end. Outside of the intervals it is zero, so that no force lasts longer than its interval,
-// whatever the slow side does. A ForceLimiter limits the result to 4 N and 100 N/s; it also ramps the force down within
+// at its beginning and end. Outside of the intervals it is zero, so that no force lasts longer than its interval, even
+// if the slow side hangs. A ForceLimiter limits the result to 4 N and 100 N/s; it also ramps the force down within
 // 40 ms when a presentation is stopped. Positive forces push towards the hand.
 // Thread guarantee: `tick` on the haptics thread, `stop` on any, both wait-free and without allocation; the rest on one
 // slow thread.
@@ -46,7 +46,7 @@ using Stimuli = std::array<Stimulus, 3>;  // the reminder, the first and the sec
 inline bool has_reminder(const Stimuli& stimuli) noexcept { return stimuli[0].stroke_N != nullptr; }
 
 struct PresentationState {
-  std::uint64_t presentation = 0;      // number of the presentation; 0: none yet
+  std::uint64_t presentation = 0;      // number of the presentation, from 1; 0: none yet
   std::uint64_t tick = 0;              // since the presenter was made
   std::uint64_t finished_at = 0;       // tick after the end of the second interval; 0: not finished
   int interval = -1;                   // that is presented now, an index of Stimuli; -1 none

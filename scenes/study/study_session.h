@@ -86,8 +86,8 @@ class LiveStudy {
   // Ramps the force to zero.
   ~LiveStudy();
 
-  // Creates or resumes study-CODE.csv, or with strokes discriminate-CODE.csv, in the working directory. Once; again
-  // after an error. Errors: those of StudyFile::open; no thread.
+  // Creates or resumes study-CODE.csv, or with strokes discriminate-CODE.csv, in the working directory. Call it once,
+  // or again after an error. Errors: those of StudyFile::open; a thread cannot be started.
   Status begin(const std::string& code);
   // Call it once a frame.
   void update();
@@ -97,7 +97,7 @@ class LiveStudy {
   const StrokePair* strokes() const noexcept { return header_.strokes.get(); }
   // Whether the device renders force to a person; else this is a rehearsal.
   bool device_pushes() const noexcept { return header_.rendered; }
-  // A fault of the device, else the next step of its zeroing, else its note; may be empty.
+  // In words: a fault of the device, else the next step of its zeroing, else its note; may be empty.
   std::string device_words() const;
   bool needs_zeroing() const noexcept { return newest_.device.zeroing == Zeroing::needed; }
   void start_zeroing() { device_->start_zeroing(); }

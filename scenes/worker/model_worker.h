@@ -51,8 +51,8 @@ class ModelWorker {
 
   // Errors: the thread cannot be started.
   Status start();
-  // Adds a job in the order of expected times. A job of the same id that has not begun is replaced. `at_once`: before
-  // all others.
+  // Adds a job to the queue, which is in the order of expected times. A job of the same id that has not begun is
+  // replaced. `at_once`: before all others.
   void add_job(std::size_t job_id, const SlotPlan& plan, bool at_once = false);
   // Returns and clears the models that were finished since the last call.
   std::vector<FinishedModel> read_finished();
@@ -72,7 +72,7 @@ class ModelWorker {
     std::size_t job_id = 0;
     SlotPlan plan;
   };
-  // What the fits by one recipe share.
+  // The common data of all fits by one recipe.
   struct Recipe {
     std::optional<PreparedTraining> prepared;
     std::map<const Method*, MethodFit> bases;  // finished fits, from which other methods start

@@ -30,7 +30,7 @@ struct SlotPlan {
   std::shared_ptr<const FittedModel> loaded = nullptr;  // the model, if it exists already; plan_slots reads files
   int centres = 0;                                      // of a method with that option; 0: the method's default
   bool paper = false;                                   // the paper's recipe: samples every 50 mN, rows weighted 1/f
-  bool of_this_material = false;                        // the user said so of a file with other recordings
+  bool of_this_material = false;                        // a file counts as this material, whatever its recordings
 };
 
 // A named set of models to compare.

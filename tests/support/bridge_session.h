@@ -20,7 +20,7 @@
 
 namespace palpate::test {
 
-// A child process; killed at the end.
+// A child process; the destructor kills it.
 class ChildProcess {
  public:
   explicit ChildProcess(const std::vector<std::string>& command)
@@ -41,7 +41,7 @@ class ChildProcess {
   void stop() {
     if (pid_ > 0) end(SIGKILL);
   }
-  // Sends `signal`; returns the exit code, or 128 + n if signal n ended the process.
+  // Sends `signal` and waits. Returns the exit code, or 128 + n if signal n ended the process.
   int end(int signal) {
     int status = 0;
     kill(pid_, signal);

@@ -10,7 +10,7 @@ struct BrokenRecording {
   const char* name;                // for the test's output
   std::string text;                // the file
   std::string place;               // line:column
-  std::vector<std::string> parts;  // of the message, in this order: what was found, what was expected, advice
+  std::vector<std::string> parts;  // parts of the message, in this order: found, expected, advice
 };
 
 const std::vector<BrokenRecording>& broken_recordings();
@@ -18,7 +18,7 @@ const std::vector<BrokenRecording>& broken_recordings();
 // `count` good rows at 1 kHz from row number `first`, ended by `line_end`.
 std::string good_rows(int count, int first = 0, const std::string& line_end = "\n");
 
-// The header that goes with them, and a whole good file.
+// The header row for these rows, and a whole good file.
 std::string good_header();
 std::string good_recording();
 

@@ -1,9 +1,9 @@
-// Simulates a tool in a hand, in closed loop with the live tick. Uses no wall
-// clock; the same settings give bit-identical results.
+// Simulates a tool in a hand, in closed loop with the live tick. Time is simulated;
+// the same settings give bit-identical results.
 //
 //   m a = k (aim - x) + c (d aim/dt - v) + push - F
-// at 20 kHz. Each tick reads x in whole encoder steps and calls LiveTick::run. F is
-// the force that it wrote, applied `delay_s` later and held until the next one.
+// at 20 kHz. In each tick LiveTick::run reads x in whole encoder steps and writes a force.
+// F is that force, applied `delay_s` later and held until the next one.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ struct Grip {
   double damping_Ns_per_m = 14.0;
 };
 
-// From a finger that lets the tool rest on it to a clenched fist: stiffness and
-// damping rise together with the grip (Hajian & Howe 1997; Hasser & Cutkosky
-// 2002), the damping 0.5 to 0.7 of critical. `braced` is devices/virtual/hand_motion.h.
+// From a light contact of a finger to a clenched fist: stiffness and damping rise
+// together with the grip (Hajian & Howe 1997; Hasser & Cutkosky 2002), the damping is
+// 0.5 to 0.7 of critical. `braced` is the hand of devices/virtual/hand_motion.h.
 // The last is a free mass without stiffness and damping.
 const std::array<Grip, 4>& grips();
 inline const Grip& mass_alone() { return grips().back(); }
@@ -48,12 +48,12 @@ struct LoopSettings {
   Ticking ticking = Ticking::even;
   ForceLimits limits{10.0, 5000.0, 0.0};  // of a typical force-feedback device
   bool passivity = true;                  // false: without the passivity controller
-  double sample_s = 0.0;                  // between samples; 0: one a tick
+  double sample_s = 0.0;                  // interval of the samples; 0: one sample in each tick
   ForceScale scale{};
 };
 
-// Energy exchanged between the tool and the rendered force in joules: `put_in_J` while
-// the force resists the motion, `got_out_J` while it drives the motion.
+// Energy between the tool and the rendered force, J: `put_in_J` by the tool while the
+// force resists the motion, `got_out_J` by the force while it drives the motion.
 struct LoopEnergy {
   double put_in_J = 0.0;
   double got_out_J = 0.0;

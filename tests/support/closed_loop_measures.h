@@ -1,4 +1,4 @@
-// What the tests of the closed loop measure: the residual motion of a hand that holds still, and
+// Measures for the tests of the closed loop: the residual motion of a hand that holds still, and
 // the energy that a tool exchanges with the rendered force in cycles and strokes.
 #pragma once
 
@@ -43,13 +43,13 @@ double held_and_late_Ns_per_m(double stiffness_N_per_m);
 
 // Motion when the hand holds still, peak to peak. Drift, a straight line, is subtracted except in `span_m`.
 struct Rest {
-  double span_m = 0.0;
+  double span_m = 0.0;  // of the position, with the drift
   double position_m = 0.0;
   double position_steps = 0.0;  // in encoder steps
-  double force_jnd = 0.0;
-  double given_J = 0.0;    // energy from the rendered force in that time
-  double largest_N = 0.0;  // over the whole run
-  double share = 1.0;      // rendered share of the stiffness, at the end
+  double force_jnd = 0.0;       // of the rendered force, in JND at the force of the press
+  double given_J = 0.0;         // energy from the rendered force in that time
+  double largest_N = 0.0;       // over the whole run
+  double share = 1.0;           // rendered share of the stiffness, at the end
 
   void keep_worse(const Rest& other);
 };
@@ -83,7 +83,7 @@ struct Strokes {
 // Four strokes from the air and back into it, in 0.1 to 0.8 s.
 Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const HandPress& press);
 
-// One line of the log.
+// Prints "who: " and both numbers by the printf `format` as one line.
 void say(const std::string& who, const char* format, double first, double second);
 
 }  // namespace palpate::test

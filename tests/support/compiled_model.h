@@ -12,7 +12,7 @@
 
 namespace palpate::test {
 
-// A compiled file; Real as in the export.
+// A compiled file. Real: float or double, the type of the numbers in the export.
 template <typename Real>
 class CompiledModel {
  public:

@@ -22,7 +22,7 @@
 
 namespace palpate::test {
 
-// A timeout for a heavily loaded machine.
+// A timeout that suits a heavily loaded machine.
 inline constexpr double kPatience_s = 60.0;
 
 class DemoWindowTest : public ::testing::Test {
@@ -69,7 +69,7 @@ class DemoWindowTest : public ::testing::Test {
     ASSERT_TRUE(until([&] { return app_->session().models().all_settled(); }));
   }
 
-  // Draws frames until `done`. False if that takes longer than kPatience_s.
+  // Draws frames until `done` returns true. Returns false after kPatience_s.
   template <typename Done>
   bool until(Done done) {
     const auto start = std::chrono::steady_clock::now();

@@ -13,18 +13,18 @@
 
 namespace palpate::test {
 
-// A model of a soft block, about 2 N at 6 mm, with a random correction. `method`
-// "voxel" gives a grid, "trend" nothing, every other one radial basis functions.
+// A model of a soft block, about 2 N at 6 mm, with a random correction: a grid for
+// the `method` "voxel", none for "trend", else radial basis functions.
 // The same arguments give the same model.
 ModelData example_model(const std::string& method, KernelKind kernel, std::vector<FeatureSpec> features,
                         std::uint64_t seed);
 
-// Replaces the correction, which must be of that kind, by a changed copy.
+// Replaces the correction by a changed copy. It must be of the kind of the function.
 void change_rbf(ModelData& data, const std::function<void(RbfFunction&)>& change);
 void change_grid(ModelData& data, const std::function<void(VoxelGrid&)>& change);
 
-// In order: depth; the paper's four features; depth, velocity and two Maxwell branches;
-// depth, velocity, a spectrum, stops and creep.
+// These lists have, in order: depth; the paper's four features; depth, velocity and two
+// Maxwell branches; depth, velocity, a spectrum, stops and creep.
 std::vector<FeatureSpec> position_features();
 std::vector<FeatureSpec> paper_features();
 std::vector<FeatureSpec> maxwell_features();

@@ -21,28 +21,28 @@ namespace palpate::test {
 using RecordingPtr = std::shared_ptr<const Recording>;
 using ModelPtr = std::shared_ptr<const FittedModel>;
 
-// The common training recording (seed 1, 41.499 s) and test recording (45.272 s
-// of another seed).
+// The usual training recording (seed 1, 41.499 s) and test recording (45.272 s,
+// another seed) of a material.
 RigSettings train_settings(const std::string& material);
 RigSettings test_settings(const std::string& material);
 
 RecordingPtr rig_recording(const RigSettings& settings);
-// The recordings of these settings, made once.
+// The recordings by these settings, made once per process.
 RecordingPtr train_recording(const std::string& material);
 RecordingPtr test_recording(const std::string& material);
 // Removes the acceleration column, so that only the encoder is left.
 RecordingPtr encoder_only(const RecordingPtr& recording);
 
-// Real recordings, from a folder beside the sources.
+// Real recordings, from ../shared/data beside the sources.
 std::filesystem::path real_data();
 RecordingPtr real_recording(const std::string& file);
 // `kind`: "train" or "test".
 std::vector<RecordingPtr> skin_recordings(const std::string& kind, const std::vector<std::string>& forces_mN);
 
-// The requests of `palpate fit --scene scene`, and of that with `--features scene`.
+// The requests of `palpate fit --scene SCENE`, without and with `--features scene`.
 TrainingRequest default_request(const std::string& scene);
 TrainingRequest scene_request(const std::string& scene);
-// A request for a model of position alone.
+// A request for a model with the depth as its only feature.
 TrainingRequest position_request();
 
 PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request);

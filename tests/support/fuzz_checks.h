@@ -16,10 +16,10 @@ inline void require(bool holds, const char* what) {
 }
 
 // `data`: bytes of a bridge device's stream. The bytes 0x00 0xF5 P stand for a whole frame with the
-// next sequence number and a position given by P. Feeds the stream to the finders of both ends
-// and the frames to a DeviceEndpoint. Aborts if a found frame has a wrong checksum, a whole
-// frame is not found, bytes are counted wrongly, or the endpoint hands over or sends a value as
-// for check_hid_reports. Returns the number of frames found.
+// next sequence number and a position given by P. Both ends search the stream for frames; a
+// DeviceEndpoint gets the frames. Aborts if a found frame has a wrong checksum, a whole frame
+// other than the last is not found, bytes are counted wrongly, or the endpoint accepts or sends
+// a value that check_hid_reports forbids. Returns the number of frames found.
 std::size_t check_bridge_stream(const std::uint8_t* data, std::size_t size);
 
 // `data`: the kind of device, then reports, each preceded by its length and the

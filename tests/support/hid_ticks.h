@@ -10,8 +10,8 @@
 
 namespace palpate::test {
 
-// Reads and writes `force_N` about every millisecond until `done`. False after
-// 10,000 ticks.
+// Reads a sample and writes `force_N` about every millisecond until `done` returns true.
+// Returns false after 10,000 ticks.
 inline bool tick_until(Device& device, double force_N, const std::function<bool(const DeviceHealth&)>& done) {
   for (int i = 0; i < 10'000; ++i) {
     DeviceSample sample;

@@ -65,7 +65,7 @@ class CountingModel final : public NamedModel {
   mutable std::atomic<std::uint64_t> evaluations_ = 0;
 };
 
-// Returns one sample per tick, at the position `path(time)`. A test may set its health and silence it.
+// Returns one sample per tick, at the position `path(time)`. `state` is its health; a `silent` device has no samples.
 class PathDevice final : public Device {
  public:
   using Path = double (*)(double time_s);
@@ -103,7 +103,7 @@ class PathDevice final : public Device {
   int writes_ = 0;
 };
 
-// A live tick of a device, called every millisecond.
+// A live tick of a device, called every simulated millisecond.
 class LiveRig {
  public:
   explicit LiveRig(Device& device, const LiveTickSettings& settings = {})

@@ -1,4 +1,4 @@
-// Values and error messages of results. Of a message only the position, values and advice are compared, so that its
+// Values and error messages of results. Tests compare only position, values and advice of a message, so that its
 // wording may change.
 #pragma once
 
@@ -26,7 +26,7 @@ std::string message_of(const Result<T>& result) {
   return result ? "accepted" : result.error().message;
 }
 
-// Returns `text` with the first `from` (which must occur) replaced by `to`.
+// Returns `text` with the first `from` replaced by `to`. Without a `from` the test fails.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t place = text.find(from);
   EXPECT_NE(place, std::string::npos) << from;

@@ -38,7 +38,7 @@ inline double rbf_value(const RbfFunction& function, const double* x) {
 
 namespace test {
 
-// The largest difference of two functions at points, one a column.
+// The largest difference of two functions, N, over `points` (d x N, one point a column).
 inline double largest_difference(const RbfFunction& a, const RbfFunction& b, const Eigen::MatrixXd& points) {
   double largest = 0.0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {

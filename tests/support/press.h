@@ -1,5 +1,5 @@
-// Presses of a tool into a virtual material along a given path, for motions that the rig's simulated hand does not
-// make.
+// Presses of a tool into a virtual material along a given path, for motions that the simulated hand of the rig does
+// not make.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace palpate::test {
 
-// Position at a time, in metres and seconds.
+// The position of the tool, m, as a function of time, s.
 using Path = std::function<double(double time_s)>;
 
 // A minimum-jerk move to `target_m` in `duration_s`.
@@ -22,7 +22,7 @@ struct Stretch {
 
 inline constexpr double kInAir_m = -2e-3;
 
-// Makes these moves one after the other, from kInAir_m.
+// The path of these moves one after the other, from kInAir_m; then at rest.
 Path along(std::vector<Stretch> stretches);
 // A press to `depth_m`, a hold of `hold_s`, and a return to kInAir_m, with the peak speed `speed_m_per_s`.
 std::vector<Stretch> press_and_hold(double depth_m, double speed_m_per_s, double hold_s);

@@ -42,7 +42,7 @@ inline RbfFunction random_function(KernelKind kernel, int dimension, int centres
   return function;
 }
 
-// A smooth force of the coordinates, with noise of the given size.
+// Random sites with a smooth force of the coordinates, uniform noise of +-`noise_N`, and the scale 1 / JND.
 inline Sites smooth_sites(int dimension, int count, double noise_N, std::uint64_t seed) {
   Sites sites;
   sites.points = random_points(dimension, count, seed);

@@ -20,7 +20,7 @@ struct RtOffences {
   int total() const { return allocations + deallocations + locks + sleeps + writes; }
 };
 
-// Counts on this thread, from construction until `stop` or destruction. Must not
+// Counts on this thread, from construction until `stop` or destruction. Guards cannot
 // be nested.
 class RtGuard {
  public:

@@ -1,6 +1,6 @@
 // Host and device in simulated time, without threads. The host is a LiveTick with a
-// DeviceEndpoint; the device is the reference firmware or a model of another one. A
-// test may delay, change or drop the reports between them.
+// DeviceEndpoint; the device runs the reference firmware or is a model of an OpenFFBoard.
+// A test may delay, change or drop the reports between them.
 #pragma once
 
 #include <algorithm>
@@ -70,7 +70,7 @@ class OpenFfBoardModel final : public DeviceModel {
     wire::write32(answer.data() + 13, counts_ < 0 ? 0xFFFFFFFFu : 0u);
     outbox.push_back(answer);
   }
-  // As if the host requested the position.
+  // Receives a request of the host for the position.
   void be_asked() {
     const OutReports asking = kOpenFfBoardProtocol.encode_command({});
     hear(Report(asking.bytes[0].begin(), asking.bytes[0].begin() + static_cast<std::ptrdiff_t>(asking.sizes[0])));
@@ -160,14 +160,14 @@ inline std::unique_ptr<DeviceModel> device_model(const DeviceProtocol* protocol)
 // Disturbances of the line, for SimulatedDevice::on_the_way_in.
 using Reports = std::vector<Report>;
 inline Reports lost(const Report&) { return {}; }
-// The first report again and again.
+// Repeats the first report instead of each later one.
 inline auto first_again() {
   return [first = Report()](const Report& report) mutable {
     if (first.empty()) first = report;
     return Reports{first};
   };
 }
-// Each report comes `count` reports late.
+// Delivers each report only after `count` further ones.
 inline auto late_by(std::size_t count) {
   return [count, queue = std::deque<Report>()](const Report& report) mutable {
     queue.push_back(report);
@@ -263,14 +263,14 @@ class SimulatedDevice {
   LoopSnapshot snapshot;
   double now_s = kStart_s;
   std::int64_t now_us = 0;
-  int step_us = 250;  // time step of the device; divides a millisecond
+  int step_us = 250;  // time step of the device; 1000 is a multiple of it
   bool rest = true;
   bool encoder_frozen = false;
   bool writer_hangs = false;
   bool unplugged = false;
   std::int32_t counts_offset = 0;
-  // May change, drop or delay reports from the device. The returned reports are
-  // delivered.
+  // May change, drop or delay reports from the device: the host gets the returned ones.
+  // Empty: no disturbance.
   std::function<Reports(const Report&)> on_the_way_in;
   std::function<bool(Report&)> on_the_way_out;  // false: the report is lost
 

@@ -69,7 +69,7 @@ inline std::size_t answer_trials(StudySession& session, std::size_t trials,
   return answered;
 }
 
-// The correct answer to which of two strokes equals the reference.
+// The correct answers, true for the second: which stroke equals the reference; which force is larger.
 inline bool truly_like(const StudyTrial& trial) { return trial.comparison_first; }
 
 inline bool truly_larger(const StudyTrial& trial) { return trial.second_N() > trial.first_N(); }

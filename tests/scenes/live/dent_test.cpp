@@ -33,6 +33,21 @@ TEST(Dent, IsTheDepthLessTheLowPassedVelocity) {
   EXPECT_GT(dent.depth_m(), 1e-6) << "still on its way back";
 }
 
+// The branches of a spectrum, as in models of the standard fit, have the same times.
+TEST(Dent, RecoversWithTheTimesOfASpectrum) {
+  FeatureSpec spectrum{FeatureKind::maxwell_spectrum};
+  spectrum.part_count = 1;
+  spectrum.parts[0].relaxation_time_s = kTau_s;
+  Dent dent({FeatureSpec{}, spectrum});
+  Dent low_pass(with_memory());
+  for (int i = 0; i < 2000; ++i) {
+    const double depth_m = i < 1000 ? 4e-3 : 0.0;
+    for (Dent* one : {&dent, &low_pass}) one->step(depth_m, 0.0, kStep_s);
+    ASSERT_EQ(dent.depth_m(), low_pass.depth_m()) << i;
+  }
+  EXPECT_GT(dent.depth_m(), 1e-5);
+}
+
 TEST(Dent, ColourFadesWithinAThirdOfASecond) {
   Dent dent;
   dent.step(1e-3, 2.0, kStep_s);
