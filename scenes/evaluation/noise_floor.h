@@ -3,8 +3,8 @@
 //   within the JND = mean over the samples of P(|e| <= JND(f))
 //   99 % error: the q with mean P(|e| <= q JND(f)) = 0.99
 // s is identified for each recording, from second differences of the force in the first 30,000 rows, at the 20 %
-// quantile of windows of 50 rows (engine/tick/sensor_identification.h). It contains white noise, but neither drift nor
-// hysteresis. Thread guarantee: pure function, slow side.
+// quantile of windows of 50 rows (engine/tick/sensor_identification.h). It has white noise, no drift and no hysteresis.
+// Thread guarantee: pure function, slow side.
 #pragma once
 
 #include <vector>
