@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 
 #include "scenes/evaluation/model_errors.h"
 
@@ -102,27 +101,32 @@ class SustainedError {
 
   // `difference_over_jnd`: signed, finite. The window restarts where `time_s` decreases or has a gap longer than
   // the span. Returns the mean, signed.
-  double add(double time_s, double difference_over_jnd) {
-    if (!samples_.empty() && (time_s < samples_.back().time_s || time_s - samples_.back().time_s > kSpan_s))
-      samples_.clear();
-    if (samples_.empty()) sum_ = 0.0;  // discards accumulated rounding errors
-    while (!samples_.empty() && (samples_.size() == kMost || samples_.front().time_s <= time_s - kSpan_s)) {
-      sum_ -= samples_.front().difference;
-      samples_.pop_front();
+  double add(double time_s, double difference_over_jnd) noexcept {
+    if (count_ > 0) {
+      const Sample& last = samples_[(first_ + count_ - 1) % samples_.size()];
+      if (time_s < last.time_s || time_s - last.time_s > kSpan_s) count_ = 0;
     }
-    samples_.push_back({time_s, difference_over_jnd});
+    if (count_ == 0) sum_ = 0.0;  // discards accumulated rounding errors
+    while (count_ > 0 && (count_ == samples_.size() || samples_[first_].time_s <= time_s - kSpan_s)) {
+      sum_ -= samples_[first_].difference;
+      first_ = (first_ + 1) % samples_.size();
+      --count_;
+    }
+    samples_[(first_ + count_) % samples_.size()] = {time_s, difference_over_jnd};
+    ++count_;
     sum_ += difference_over_jnd;
-    return sum_ / static_cast<double>(samples_.size());
+    return sum_ / static_cast<double>(count_);
   }
 
  private:
-  // Holds the span at 1 kHz; at a higher rate the newest samples.
-  static constexpr std::size_t kMost = 64;
   struct Sample {
     double time_s = 0.0;
     double difference = 0.0;
   };
-  std::deque<Sample> samples_;
+  // Holds the span at 1 kHz; at a higher rate the newest 64 samples.
+  std::array<Sample, 64> samples_{};
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
   double sum_ = 0.0;
 };
 
