@@ -88,10 +88,10 @@ std::string printable(std::string_view text, std::size_t limit) {
 }
 
 std::string position_prefix(const std::string& path, std::string_view text, std::size_t offset) {
-  const std::string_view before = text.substr(0, offset);
-  const std::size_t line_start = before.rfind('\n') + 1;  // 0 in the first line
-  const auto lines = std::count(before.begin(), before.end(), '\n') + 1;
-  return path + ":" + std::to_string(lines) + ":" + std::to_string(before.size() - line_start + 1) + ": ";
+  const std::string_view preceding = text.substr(0, offset);
+  const std::size_t line_start = preceding.rfind('\n') + 1;  // 0 in the first line
+  const auto lines = std::count(preceding.begin(), preceding.end(), '\n') + 1;
+  return path + ":" + std::to_string(lines) + ":" + std::to_string(preceding.size() - line_start + 1) + ": ";
 }
 
 const char* parse_number(const char* begin, const char* end, double& value) {
