@@ -7,7 +7,8 @@
 //     sum_i scale_i^2 (f_i - h(x_i))^2 + smoothing w^T (sign Phi) w,
 //   solves (P K P + smoothing I) u = P S f.
 // - Some points are centres (solve_weights.h). The matrix of the centres, with S = I, is the penalty.
-// Source: Hoever & Harders (2009), eqs. 2-8; Wahba (1990) for the form. Thread guarantee: slow side.
+// Source: Hoever & Harders (2009), eqs. 2-8; Wahba (1990) for the form.
+// Thread guarantee: slow side.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
-// The polynomial tail of eq. 2: the basis 1 of the polynomials of degree 0 in d variables, or 1, x_1 ... x_d of
-// degree 1. Thread guarantee: pure functions; tail_value is wait-free, allocates nothing. Source: Hoever & Harders
-// (2009), eq. 2.
+// The polynomial tail of eq. 2 in d variables. Its basis is 1 for degree 0, and 1, x_1 ... x_d for degree 1.
+// Source: Hoever & Harders (2009), eq. 2.
+// Thread guarantee: pure functions; tail_value is wait-free and allocates nothing.
 #pragma once
 
 #include <Eigen/Core>
