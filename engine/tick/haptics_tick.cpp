@@ -14,6 +14,8 @@ namespace {
 // slot). In a longer gap the motion is unknown.
 constexpr double kLongestGap_s = 5.0;
 constexpr double kRehearsedStep_s = 1e-3;
+// The duration of an instantaneous press: a thousandth of the shortest relaxation time of a fit.
+constexpr double kInstant_s = 1e-6;
 
 bool finite(const ToolSample& sample) noexcept {
   return std::isfinite(sample.time_s) && std::isfinite(sample.position_m) && std::isfinite(sample.velocity_m_per_s) &&
@@ -35,6 +37,23 @@ void MotionHistory::add(const TickSnapshot& snapshot, bool restarted) {
   while (snapshot.time_s - past_.front().time_s > kRemembered_s) past_.pop_front();
 }
 
+void ExtremeStates::begin(const FeaturePlan& plan, const ToolSample& sample) noexcept {
+  double greatest_m = 0.0;
+  for (const FeatureSpec& spec : plan.specs()) {
+    for (std::size_t p = 0; p < spec.part_count; ++p)
+      greatest_m = std::max(greatest_m, spec.parts[p].drive.reference_depth_m);
+  }
+  unknown = greatest_m > 0.0;
+  const double surface_m = surface_position_m(plan.specs());
+  states = {};
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    ToolSample before = sample;
+    before.time_s -= kInstant_s;
+    before.position_m = surface_m + (k == 0 ? 0.0 : greatest_m);
+    plan.update(states[k], before, {before.position_m});
+  }
+}
+
 HapticsTick::HapticsTick(const SensorSpec& sensor, ForceModels models) : motion_(sensor), models_(std::move(models)) {
   assert(models_.size() <= kMaxModels);
   for (const auto& model : models_) {
@@ -43,12 +62,14 @@ HapticsTick::HapticsTick(const SensorSpec& sensor, ForceModels models) : motion_
     if (index == filters_.size()) filters_.emplace_back(model->features());
     filter_of_.push_back(index);
   }
+  extremes_.resize(filters_.size());
   snapshot_.model_count = static_cast<std::uint32_t>(models_.size());
 }
 
 void HapticsTick::reset() noexcept {
   motion_.reset();
   for (FeatureFilter& filter : filters_) filter.reset();
+  for (ExtremeStates& extremes : extremes_) extremes.unknown = false;
   started_ = false;
   // Forces of the previous stream are removed.
   snapshot_ = {.tick = snapshot_.tick, .model_count = snapshot_.model_count};
@@ -95,7 +116,10 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
     const double since_s = sample_.time_s - filters_[i].time_s();
     if (!(since_s >= 0.0 && since_s < kLongestGap_s)) filters_[i].reset();
     filters_[i].update(sample_, motion_.estimate());
-    for (const FeatureFilter& old : before.filters_) filters_[i].adopt(old);
+    for (std::size_t k = 0; k < before.filters_.size(); ++k) {
+      filters_[i].adopt(before.filters_[k]);
+      if (filters_[i].plan().specs() == before.filters_[k].plan().specs()) extremes_[i] = before.extremes_[k];
+    }
   }
   evaluate_models();
 }
@@ -110,10 +134,10 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
     snapshot_.fault = TickFault::time_not_later;
     return snapshot_;
   }
-  started_ = true;
   sample_ = sample;
   const MotionEstimate motion = motion_.update(sample);
-  for (FeatureFilter& filter : filters_) filter.update(sample, motion);
+  update_features(motion);
+  started_ = true;
 
   snapshot_.fault = TickFault::none;
   snapshot_.time_s = sample.time_s;
@@ -125,6 +149,18 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
   snapshot_.velocity_m_per_s = motion.velocity_m_per_s;
   evaluate_models();
   return snapshot_;
+}
+
+void HapticsTick::update_features(const MotionEstimate& motion) noexcept {
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    const FeaturePlan& plan = filters_[i].plan();
+    ExtremeStates& extremes = extremes_[i];
+    const bool in_contact = filters_[i].update(sample_, motion).in_contact;
+    if (!started_ && in_contact) extremes.begin(plan, sample_);
+    if (!in_contact) extremes.unknown = false;
+    if (!extremes.unknown) continue;
+    for (FeatureState& state : extremes.states) plan.update(state, sample_, motion);
+  }
 }
 
 void HapticsTick::evaluate_models() noexcept {
@@ -143,7 +179,14 @@ void HapticsTick::evaluate_models() noexcept {
       if (timed_) cycles_[i] = cycle_count() - before;
       // The surface of the model may be deeper than position 0.
       force_N = vector.in_contact ? estimate.force_N : 0.0;
-      predicted_error_N = estimate.predicted_error_N;
+      double unknown_N = 0.0;  // by the unknown memory of the material
+      if (const ExtremeStates& extremes = extremes_[filter_of_[i]]; extremes.unknown) {
+        for (const FeatureState& state : extremes.states) {
+          const double other_N = models_[i]->evaluate(state.vector.values.data()).force_N;
+          unknown_N = std::max(unknown_N, std::abs(other_N - estimate.force_N));
+        }
+      }
+      predicted_error_N = estimate.predicted_error_N + unknown_N;
       if (vector.in_contact && estimate.out_of_domain) snapshot_.out_of_domain_mask |= 1U << i;
       if (!std::isfinite(force_N)) {
         force_N = 0.0;

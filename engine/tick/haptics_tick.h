@@ -3,6 +3,12 @@
 //
 // The order is: motion estimate (once), features (once per distinct feature list among the models), forces (every
 // model). Out of contact every force is 0.
+//
+// A stream that begins in contact begins with an unknown memory of the material. The forces then assume a material at
+// rest. Two other states are advanced with it until the tool leaves the material: the state after an instantaneous
+// press from rest in air, and the state after a rest at the greatest depth of the training and an instantaneous
+// retreat. Branches and bristles after any other history lie between the two. The larger difference of their forces
+// from the rendered one is added to the predicted error.
 // Thread guarantee: construction allocates (slow side); `step` is wait-free, allocates nothing, locks nothing, does no
 // I/O and never throws; one thread at a time.
 #pragma once
@@ -62,6 +68,15 @@ class MotionHistory {
   std::deque<ToolSample> past_;
 };
 
+// The extreme states of a filter while the memory of the material is unknown.
+struct ExtremeStates {
+  bool unknown = false;
+  std::array<FeatureState, 2> states;
+
+  // To be called with the first sample of a stream in contact.
+  void begin(const FeaturePlan& plan, const ToolSample& sample) noexcept;
+};
+
 class HapticsTick {
  public:
   // `models`: up to kMaxModels.
@@ -102,12 +117,14 @@ class HapticsTick {
   const FeatureVector& features_of(std::size_t index) const noexcept { return filters_[filter_of_[index]].vector(); }
 
  private:
+  void update_features(const MotionEstimate& motion) noexcept;
   void evaluate_models() noexcept;
 
   MotionEstimator motion_;
   ForceModels models_;
   std::vector<FeatureFilter> filters_;
-  std::vector<std::size_t> filter_of_;  // for each model
+  std::vector<ExtremeStates> extremes_;  // for each filter
+  std::vector<std::size_t> filter_of_;   // for each model
   std::array<std::uint64_t, kMaxModels> cycles_{};
   ToolSample sample_;         // last sample
   double rehearsed_N_ = 0.0;  // result of `rehearse`, so that the compiler keeps it

@@ -112,6 +112,40 @@ TEST(HapticsTick, OneModelsForceDoesNotDependOnItsNeighbours) {
   }
 }
 
+// The bound of a stream that begins in mid-press covers what its past may have been, until the tool leaves the
+// material.
+TEST(HapticsTick, AStreamThatBeginsInContactHasAWiderBound) {
+  constexpr std::size_t kStart = 1900;
+  constexpr double kFloor_N = 0.01;
+  for (const auto& features : {test::maxwell_features(), test::memory_features()}) {
+    ModelData data = test::example_model("trend", KernelKind::cubic, features, 3);
+    data.error_bound = ErrorBound{kFloor_N, 0.0, 0.0};
+    HapticsTick whole({}, {fitted(data)});
+    HapticsTick cut({}, {fitted(data)});
+    const Recording recording = test::example_recording(6000, 1000.0);
+    double widest_N = 0.0;
+    bool left = false;
+    for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+      const ToolSample sample = tool_sample(recording.rows[i]);
+      const TickSnapshot expected = whole.step(sample);
+      if (i < kStart) continue;
+      const TickSnapshot& found = cut.step(sample);
+      ASSERT_TRUE(i > kStart || found.in_contact);
+      left = left || !found.in_contact;
+      if (!found.in_contact) continue;
+      EXPECT_EQ(expected.predicted_error_N[0], kFloor_N);
+      if (left) {
+        EXPECT_EQ(found.predicted_error_N[0], kFloor_N) << i;
+      } else {
+        EXPECT_LE(std::abs(found.force_N[0] - expected.force_N[0]), found.predicted_error_N[0]) << i;
+        widest_N = std::max(widest_N, found.predicted_error_N[0]);
+      }
+    }
+    EXPECT_TRUE(left);
+    EXPECT_GT(widest_N, 0.1);
+  }
+}
+
 constexpr std::size_t kJoin = 1900;   // in mid-press
 constexpr std::size_t kNotSeen = 40;  // ticks before kJoin that the slow side has not read yet
 
