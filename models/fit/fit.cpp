@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
+#include "models/fit/bound_estimator.h"
 
 namespace palpate {
 namespace {
@@ -30,7 +31,7 @@ double share_within_jnd(const PreparedTraining& prepared, const ModelData& data)
 // The correction without a fold; none if no other fold has rows.
 Result<CorrectionPtr> fit_without(const PreparedTraining& prepared, int fold, const MethodRequest& request,
                                   const FitControl& control) {
-  const Sites sites = sites_without(*prepared.left_out, fold, prepared.correction->smoothing);
+  const Sites sites = prepared.left_out->sites_without(fold, prepared.correction->smoothing);
   if (sites.count() == 0) return CorrectionPtr{};
   const Eigen::VectorXd jnd_N = sites.row_scale.cwiseInverse();
   auto fitted = fit_correction({sites, jnd_N, request}, control);
@@ -92,7 +93,9 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
       if (!of_fold) return of_fold.error();
       of_folds.push_back(std::move(*of_fold));
     }
-    data.error_bound = bound_of(*prepared.left_out, data, of_folds);
+    BoundEstimator bound(data.jnd, data.largest_force_N, prepared.left_out->strokes);
+    bound.add(*prepared.left_out, data, of_folds);
+    data.error_bound = bound.fit();
   }
   if (const Status valid = check_forces(data); !valid) {
     return Error{"the " + data.name + " fit did not give a usable model (" + valid.error().message +

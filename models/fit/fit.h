@@ -18,8 +18,8 @@
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
+#include "models/fit/correction_choice.h"
 #include "models/fit/methods.h"
-#include "models/fit/model_validation.h"
 #include "models/model/fitted_model.h"
 #include "models/training/memory_law.h"
 #include "models/training/sites.h"
@@ -41,6 +41,7 @@ struct TrainingRequest {
   std::string scene;
   std::vector<FeatureSpec> features;  // of the scene: depth, velocity, lowpass_velocity
   JndLine jnd;
+  KernelKind kernel = KernelKind::cubic;
   Weighting weighting = Weighting::jnd;
   Reduction reduction = Reduction::coverage;
   FeatureChoice choice = FeatureChoice::scene;

@@ -13,11 +13,11 @@ namespace palpate {
 namespace {
 
 // The solution of eq. 4 by the paper's truncated singular values, here eigenvalues.
-Result<RbfFunction> truncated_interpolant(const Sites& sites, KernelKind kernel, const FitControl& control) {
+Result<RbfFunction> truncated_interpolant(const Sites& sites, const FitControl& control) {
   const Eigen::Index n = sites.count();
-  const Eigen::MatrixXd g = tail_matrix(tail_degree(kernel), sites.points);
+  const Eigen::MatrixXd g = tail_matrix(tail_degree(sites.kernel), sites.points);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + g.cols(), n + g.cols());
-  kernel_matrix(kernel, PointArrays(sites.points), sites.points, matrix.topLeftCorner(n, n));
+  kernel_matrix(sites.kernel, PointArrays(sites.points), sites.points, matrix.topLeftCorner(n, n));
   matrix.bottomLeftCorner(g.cols(), n) = g.transpose();
   Eigen::VectorXd values;
   if (!symmetric_eigen(matrix, values))
@@ -28,23 +28,21 @@ Result<RbfFunction> truncated_interpolant(const Sites& sites, KernelKind kernel,
   const Eigen::ArrayXd shares = (matrix.topRows(n).transpose() * sites.target_N).array();
   const Eigen::ArrayXd inverted = (sizes > rounding * sizes.maxCoeff()).select(shares / values.array(), 0.0);
   const Eigen::VectorXd unknowns = matrix * inverted.matrix();
-  return RbfFunction{kernel, sites.points, unknowns.head(n), unknowns.tail(g.cols())};
+  return RbfFunction{sites.kernel, sites.points, unknowns.head(n), unknowns.tail(g.cols())};
 }
 
 }  // namespace
 
-Result<RbfFunction> fit_direct(const Sites& sites, KernelKind kind, const FitControl& control) {
+Result<RbfFunction> fit_direct(const Sites& sites, const FitControl& control) {
   if (sites.count() > kMostDirectSites)
     return Error{"a direct fit of " + std::to_string(sites.count()) + " sites is too large, at most " +
                  std::to_string(kMostDirectSites) + "; reduce the recording further or use greedy"};
   if (!control.may_continue(0.0)) return interrupted();
   const BlasThreads threads(thread_count());
-  if (sites.as_2009) return truncated_interpolant(sites, kind, control);
-  const ProjectedKernel kernel(kind, sites.points, sites.row_scale);
+  if (sites.as_2009) return truncated_interpolant(sites, control);
+  const ProjectedKernel kernel(sites.kernel, sites.points, sites.row_scale);
   if (!control.may_continue(0.1)) return interrupted();
-  const double smoothing = choose_smoothing(sites, kind);
-  if (!control.may_continue(0.2)) return interrupted();
-  const auto factor = kernel.cholesky(smoothing);
+  const auto factor = kernel.cholesky(sites.smoothing);
   if (!factor) return Error{"the kernel matrix could not be factorised; check the recording for extreme values"};
   if (!control.may_continue(0.95)) return interrupted();
   const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
@@ -53,7 +51,8 @@ Result<RbfFunction> fit_direct(const Sites& sites, KernelKind kind, const FitCon
   u = kernel.project(u);
   // S G d = S f - K u - smoothing u, whose last term is orthogonal to the columns of S G.
   const Eigen::VectorXd tail = kernel.tail_of(data - kernel.multiply_kernel(u));
-  return RbfFunction{kind, sites.points, definiteness_sign(kind) * u.cwiseProduct(sites.row_scale), tail};
+  return RbfFunction{sites.kernel, sites.points, definiteness_sign(sites.kernel) * u.cwiseProduct(sites.row_scale),
+                     tail};
 }
 
 const Method kDirectMethod{
@@ -63,7 +62,7 @@ const Method kDirectMethod{
     .takes = kTakesKernel,
     .expected_seconds = 3.0,
     .fit = [](const MethodTask& task, const FitControl& control) -> Result<FittedCorrection> {
-      auto function = fit_direct(task.sites, task.request.kernel, control);
+      auto function = fit_direct(task.sites, control);
       if (!function) return function.error();
       return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(*function)), {}, ""};
     },

@@ -7,16 +7,16 @@
 #pragma once
 
 #include "models/fit/methods.h"
+#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
 
 // The limit of the number of sites; more would take over 4 GiB and minutes.
 inline constexpr Eigen::Index kMostDirectSites = 20000;
 
-// The smoothing is that of choose_smoothing. With 0 the function interpolates as closely as the smallest smoothing
-// allows at which the matrix can be factorised. Errors: too many sites; no factorisation; interrupted, checked before
-// each step. Deterministic on one machine. Slow side; O(N^3), N^2 doubles.
-Result<RbfFunction> fit_direct(const Sites& sites, KernelKind kernel = KernelKind::cubic,
-                               const FitControl& control = {});
+// With smoothing 0 the function interpolates as closely as the smallest smoothing allows at which the matrix can be
+// factorised. Errors: too many sites; no factorisation; interrupted, checked before each step. Deterministic on one
+// machine. Slow side; O(N^3), N^2 doubles.
+Result<RbfFunction> fit_direct(const Sites& sites, const FitControl& control = {});
 
 }  // namespace palpate

@@ -26,8 +26,8 @@ Result<FittedCorrection> fit_greedy(const MethodTask& task, const FitControl& co
   const auto most = std::clamp(request.centres, 0, static_cast<int>(left.size()));
   const bool all = request.candidates <= 0 || static_cast<std::size_t>(request.candidates) >= left.size();
   SplitMix64 random(request.seed);
-  CandidateGains gains(sites, request.kernel);
-  OrthogonalBasis basis(sites, request.kernel, most);
+  CandidateGains gains(sites);
+  OrthogonalBasis basis(sites, most);
   const auto less = [&](Eigen::Index a, Eigen::Index b) { return gains.gain(a) < gains.gain(b); };
   std::vector<Eigen::Index> selected;
   int without_gain = 0;

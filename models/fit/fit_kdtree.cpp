@@ -60,8 +60,7 @@ Leaf split(const Eigen::MatrixXd& points, Leaf& leaf) {
 // projected out, and their Gram matrix.
 class GrowingFit {
  public:
-  GrowingFit(const Sites& sites, KernelKind kernel, Eigen::Index most)
-      : sites_(sites), kernel_(kernel), points_(sites.points), tail_(sites, kernel, 0) {
+  GrowingFit(const Sites& sites, Eigen::Index most) : sites_(sites), points_(sites.points), tail_(sites, 0) {
     columns_.resize(sites.count(), most);
     gram_.resize(most, most);
     right_.resize(most);
@@ -71,7 +70,7 @@ class GrowingFit {
   void set(const Eigen::MatrixXd& centres, const std::vector<Eigen::Index>& at) {
     size_ = std::max(size_, at.back() + 1);
     Eigen::MatrixXd fresh(sites_.count(), centres.cols());
-    kernel_matrix(kernel_, points_, centres, fresh);
+    kernel_matrix(sites_.kernel, points_, centres, fresh);
     fresh.array().colwise() *= sites_.row_scale.array();
     tail_.project_out(fresh);
     columns_(Eigen::all, at) = fresh;
@@ -113,7 +112,6 @@ class GrowingFit {
   Eigen::Index first_row(int part) const { return sites_.count() * part / kParts; }
 
   const Sites& sites_;
-  KernelKind kernel_;
   PointArrays points_;
   OrthogonalBasis tail_;
   Eigen::MatrixXd columns_;
@@ -130,7 +128,7 @@ Result<FittedCorrection> fit_kdtree(const MethodTask& task, const FitControl& co
   std::vector<Leaf> leaves;
   std::vector<std::size_t> leaf_of(static_cast<std::size_t>(sites.count()), 0);
   Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(most));
-  GrowingFit fit(sites, request.kernel, centres.cols());
+  GrowingFit fit(sites, centres.cols());
   const auto set = [&](const std::vector<std::size_t>& changed) {
     std::vector<Eigen::Index> at;
     for (const std::size_t leaf : changed) {

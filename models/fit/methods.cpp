@@ -33,11 +33,6 @@ Result<FittedCorrection> fit_correction(const MethodTask& task, const FitControl
   if (const Status status = validate_sites(task.sites); !status) return status.error();
   if (!control.may_continue(0.0)) return interrupted();
   const Method& method = *task.request.method;
-  if (task.sites.smoothing && task.request.kernel != KernelKind::cubic) {
-    Sites sites = task.sites;
-    sites.smoothing.reset();  // it was selected for the cubic kernel
-    return fit_correction({sites, task.jnd_N, task.request, task.base}, control);
-  }
   if (method.base == nullptr || task.base != nullptr) return method.fit(task, control);
   MethodRequest of_base = task.request;
   of_base.method = method.base;
@@ -48,7 +43,7 @@ Result<FittedCorrection> fit_correction(const MethodTask& task, const FitControl
 
 Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres,
                                      const std::string& shortage) {
-  RbfFunction function = solve_weights(task.sites, task.request.kernel, centres);
+  RbfFunction function = solve_weights(task.sites, centres);
   if (!function.weights.allFinite() || !function.tail.allFinite())
     return Error{"the weights of the centres could not be computed; check the recording for extreme values"};
   FittedCorrection fitted{

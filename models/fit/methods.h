@@ -15,7 +15,6 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "models/model/correction.h"
-#include "models/model/rbf/rbf_evaluate.h"
 #include "models/training/sites.h"
 
 namespace palpate {
@@ -27,8 +26,7 @@ extern const Method kTrendMethod, kDirectMethod, kVoxelMethod, kRandomMethod, kK
 struct MethodRequest {
   const Method* method = &kGreedyMethod;
   int centres = 100;
-  int candidates = 100;  // per greedy step; 0: every site
-  KernelKind kernel = KernelKind::cubic;
+  int candidates = 100;     // per greedy step; 0: every site
   std::vector<int> grid{};  // nodes per feature; empty: 25 for depth (200 if alone), 11 for others, fewer beyond four
   std::uint64_t seed = 1;
 };

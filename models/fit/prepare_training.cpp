@@ -37,7 +37,7 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   const auto n = static_cast<Eigen::Index>(prepared.set.sites.size());
   const auto d = static_cast<Eigen::Index>(common.features.size());
   Sites& sites = prepared.sites;
-  sites = {Eigen::MatrixXd(d, n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  sites = {Eigen::MatrixXd(d, n), Eigen::VectorXd(n), Eigen::VectorXd(n), request.kernel};
   double largest_N = 0.0;
   for (Eigen::Index k = 0; k < n; ++k) {
     const TrainingSite& site = prepared.set.sites[static_cast<std::size_t>(k)];
@@ -188,14 +188,14 @@ Result<FeatureList> scene_list(const TrendData& data, const TrainingExtent& exte
 }
 
 // The gain of each part of the list: the cross-validated error with it and without it.
-void add_gains(std::vector<PartGain>& gains, const TrendRows& rows, const TrendRegression& regression,
+void add_gains(std::vector<PartGain>& gains, const TrendRows& rows, const TrendEstimator& estimator,
                const CrossValidated& with_all, const Eigen::VectorXd& x) {
   const auto& features = rows.list().features;
   for (std::size_t f = 1; f < features.size(); ++f) {  // after the depth
     const auto others = rows.columns_of([f](std::size_t other) { return other != f; });
     const bool taken = (x(rows.feature_columns()[f]).array() > 0.0).any();
     gains.push_back({term_name(features[f]), taken, with_all.errors.rms_at_mean_score(),
-                     regression.cross_validate(others).errors.rms_at_mean_score()});
+                     estimator.cross_validate(others).errors.rms_at_mean_score()});
   }
   std::stable_partition(gains.begin(), gains.end(), [](const PartGain& one) { return one.taken; });
 }
@@ -208,10 +208,10 @@ Status prepare_list(PreparedTraining& prepared, const TrendData& data, const Fea
   common.corrects_trend = !papers;
   const auto rows = gather_rows(data, papers ? FeatureList{} : list, kTrendRows);
   if (!rows) return rows.error();
-  const TrendRegression regression(*rows);
-  const CrossValidated left_out = regression.cross_validate(regression.all_columns());
-  const Eigen::VectorXd x = regression.solve(regression.all_columns());
-  if (is_automatic(request)) add_gains(prepared.gains, *rows, regression, left_out, x);
+  const TrendEstimator estimator(*rows);
+  const CrossValidated left_out = estimator.cross_validate(estimator.all_columns());
+  const Eigen::VectorXd x = estimator.fit(estimator.all_columns());
+  if (is_automatic(request)) add_gains(prepared.gains, *rows, estimator, left_out, x);
   const FittedTrend fitted = fitted_trend(*rows, x, !is_automatic(request));
   common.trend = fitted.trend;
   common.features = papers ? with_filters(request.features, relaxation_times_s(list.features)) : fitted.features;
@@ -231,6 +231,7 @@ Status prepare_list(PreparedTraining& prepared, const TrendData& data, const Fea
   if (!data.control.may_continue()) return interrupted();
   prepared.left_out = cross_validation_rows(common, *rows, fitted.row_features, left_out.solutions);
   prepared.left_out->strokes = extent.strokes;
+  prepared.left_out->kernel = request.kernel;
   const CorrectionChoice choice = choose_correction(*prepared.left_out, common);
   prepared.correction = choice;
   prepared.sites.smoothing = choice.smoothing;

@@ -202,6 +202,7 @@ TrainingRequest training_request(const FitOptions& options, TrainingRequest scen
   request.reduction = static_cast<Reduction>(index_of(kReductionNames, options.reduction));
   request.surface = options.surface == "recorded" ? Surface::recorded : Surface::automatic;
   // The paper's recipe is requested by its name or by its two options.
+  request.kernel = *kernel_from_name(options.kernel);
   const bool papers = options.recipe == kRecipe2009 ||
                       (request.reduction == Reduction::force && request.weighting == Weighting::relative);
   if (papers) request = recipe_2009_request(std::move(request));
@@ -230,7 +231,6 @@ MethodRequest method_request(const FitOptions& options) {
   request.method = find_method(options.method);
   request.centres = std::stoi(options.centres);
   request.candidates = options.candidates == "all" ? 0 : std::stoi(options.candidates);
-  request.kernel = *kernel_from_name(options.kernel);
   request.grid = parse_grid(options.grid);
   request.seed = std::stoull(options.seed);
   return request;

@@ -68,7 +68,7 @@ struct Provenance {
 //   bound(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
 // distance: to the nearest training data in the normalised feature space (domain_guard.h). The coefficients are fitted
 // to cross-validated errors and scaled by split-conformal prediction, with the quantile of the normalised errors
-// (models/fit/model_validation.h).
+// (models/fit/bound_estimator.h).
 // Sources: Vovk, Gammerman & Shafer (2005), "Algorithmic learning in a random world";
 // Lei, G'Sell, Rinaldo, Tibshirani & Wasserman (2018), section 5.2 (locally weighted).
 struct ErrorBound {

@@ -8,12 +8,12 @@
 
 namespace palpate {
 
-CandidateGains::CandidateGains(const Sites& sites, KernelKind kernel)
-    : sites_(sites), kernel_(kernel), points_(sites.points), candidates_(static_cast<std::size_t>(sites.count())) {}
+CandidateGains::CandidateGains(const Sites& sites)
+    : sites_(sites), points_(sites.points), candidates_(static_cast<std::size_t>(sites.count())) {}
 
 Eigen::MatrixXd CandidateGains::columns(std::span<const Eigen::Index> sites) const {
   Eigen::MatrixXd values(sites_.count(), static_cast<Eigen::Index>(sites.size()));
-  kernel_matrix(kernel_, points_, sites_.points(Eigen::all, sites), values);
+  kernel_matrix(sites_.kernel, points_, sites_.points(Eigen::all, sites), values);
   values.array().colwise() *= sites_.row_scale.array();
   return values;
 }
@@ -53,7 +53,7 @@ void CandidateGains::update_group(std::span<const Eigen::Index> sites, const Eig
   for (Eigen::Index row = 0; row < sites_.count(); row += kBlockRows) {
     const Eigen::Index rows = std::min(kBlockRows, sites_.count() - row);
     auto block = memory.topRows(rows);
-    kernel_matrix(kernel_, points_, centres, block, row);
+    kernel_matrix(sites_.kernel, points_, centres, block, row);
     multiply(block, true, fresh.middleRows(row, rows), false, 1.0, 1.0, shares);
     if (known > 0) continue;
     lengths += (sites_.row_scale.segment(row, rows).asDiagonal() * block).colwise().squaredNorm().transpose();

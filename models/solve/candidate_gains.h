@@ -22,7 +22,7 @@ namespace palpate {
 class CandidateGains {
  public:
   // `sites` must outlive this.
-  CandidateGains(const Sites& sites, KernelKind kernel);
+  explicit CandidateGains(const Sites& sites);
 
   // The scaled kernel columns of centres at some sites, N x count.
   Eigen::MatrixXd columns(std::span<const Eigen::Index> sites) const;
@@ -52,7 +52,6 @@ class CandidateGains {
   void recompute_cancelled(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis);
 
   const Sites& sites_;
-  KernelKind kernel_;
   PointArrays points_;
   std::vector<Candidate> candidates_;  // one for each site
 };

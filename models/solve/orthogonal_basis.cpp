@@ -5,8 +5,8 @@
 
 namespace palpate {
 
-OrthogonalBasis::OrthogonalBasis(const Sites& sites, KernelKind kernel, Eigen::Index more) {
-  const Eigen::MatrixXd tail = sites.row_scale.asDiagonal() * tail_matrix(tail_degree(kernel), sites.points);
+OrthogonalBasis::OrthogonalBasis(const Sites& sites, Eigen::Index more) {
+  const Eigen::MatrixXd tail = sites.row_scale.asDiagonal() * tail_matrix(tail_degree(sites.kernel), sites.points);
   memory_.resize(sites.count(), tail.cols() + more + 1);
   shares_.resize(tail.cols() + more);
   residual_ = memory_.col(0) = sites.target_N.cwiseProduct(sites.row_scale);

@@ -5,16 +5,15 @@
 
 #include <Eigen/Core>
 
-#include "models/model/rbf/kernels.h"
 #include "models/training/sites.h"
 
 namespace palpate {
 
 class OrthogonalBasis {
  public:
-  // Starts with the scaled tail columns G of the kernel; the data are row_scale * target. `more`: the maximum number of
-  // columns to be added.
-  OrthogonalBasis(const Sites& sites, KernelKind kernel, Eigen::Index more);
+  // Starts with the scaled tail columns G of the sites' kernel; the data are row_scale * target. `more`: the maximum
+  // number of columns to be added.
+  OrthogonalBasis(const Sites& sites, Eigen::Index more);
 
   // Replaces each column (N rows) by its part orthogonal to the basis, by two passes of Gram-Schmidt (orthogonal to
   // rounding).

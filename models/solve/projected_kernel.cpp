@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "engine/base/parallel.h"
 #include "models/model/rbf/polynomial_tail.h"
@@ -74,47 +73,6 @@ std::optional<Eigen::MatrixXd> ProjectedKernel::cholesky(double smoothing) const
     if (cholesky_in_place(factor)) return factor;
   }
   return std::nullopt;
-}
-
-double choose_smoothing(const Sites& sites, KernelKind kernel) {
-  // The largest subset: its eigendecomposition takes some 40 ms.
-  constexpr Eigen::Index kSubset = 500;
-  // The range of the search relative to the mean eigenvalue, in quarters of a decade.
-  constexpr int kLowestQuarter = -48;
-  constexpr int kHighestQuarter = 8;
-  if (sites.smoothing) return *sites.smoothing;
-  const Sites subset = even_subset(sites, kSubset);
-  const ProjectedKernel projected(kernel, subset.points, subset.row_scale);
-  const double unit = projected.mean_eigenvalue();
-  const Eigen::Index rank = subset.count() - projected.tail_rank();
-  if (rank == 0) return projected.smallest_smoothing();
-  // The directions of the tail get an eigenvalue above all others, so that they come last.
-  Eigen::MatrixXd vectors = projected.matrix(10.0 * unit * static_cast<double>(subset.count()), 0.0);
-  Eigen::VectorXd values;
-  const BlasThreads one_thread(1);
-  if (!symmetric_eigen(vectors, values)) return unit;
-  const Eigen::ArrayXd eigenvalues = values.head(rank).cwiseMax(0.0).array();
-  const Eigen::VectorXd data = projected.project(subset.target_N.cwiseProduct(subset.row_scale));
-  const Eigen::ArrayXd z_squared = (vectors.leftCols(rank).transpose() * data).array().square();
-  // exp(2 L / rank), where L is the negative log likelihood.
-  const auto likelihood = [&](double smoothing) {
-    const Eigen::ArrayXd variances = eigenvalues + smoothing;
-    return (z_squared / variances).mean() * std::exp(variances.log().mean());
-  };
-  std::vector<double> tried{projected.smallest_smoothing()};
-  for (int quarter = kLowestQuarter; quarter <= kHighestQuarter; ++quarter) {
-    const double smoothing = unit * std::pow(10.0, 0.25 * quarter);
-    if (smoothing > tried.front()) tried.push_back(smoothing);
-  }
-  std::vector<double> likelihoods;
-  std::transform(tried.begin(), tried.end(), std::back_inserter(likelihoods), likelihood);
-  const double limit =
-      (1.0 + 4.0 / static_cast<double>(rank)) * *std::min_element(likelihoods.begin(), likelihoods.end());
-  double chosen = tried.front();
-  for (std::size_t i = 0; i < tried.size(); ++i) {
-    if (likelihoods[i] <= limit) chosen = tried[i];
-  }
-  return chosen;
 }
 
 }  // namespace palpate

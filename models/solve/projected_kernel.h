@@ -45,7 +45,6 @@ class ProjectedKernel {
   double mean_eigenvalue() const { return mean_eigenvalue_; }
   // The smallest smoothing above the rounding errors of the matrix.
   double smallest_smoothing() const { return smallest_smoothing_; }
-  Eigen::Index tail_rank() const { return q_.cols(); }
 
  private:
   KernelKind kernel_;
@@ -59,16 +58,5 @@ class ProjectedKernel {
   double mean_eigenvalue_ = 1.0;
   double smallest_smoothing_ = 0.0;
 };
-
-// Returns the smoothing of the sites; if they have none, the most likely one.
-//
-// One eigendecomposition of P K P for an evenly spaced subset of up to 500 sites gives the likelihood of every
-// smoothing, for normal noise and a normal prior whose scale is profiled out,
-//   minimise N ln(sum_i z_i^2 / (e_i + smoothing)) + sum_i ln(e_i + smoothing),
-// with the eigenvalues e and the components z of the data. The largest smoothing within two units of the maximum log
-// likelihood is taken, because it gives the best conditioned system. The smoothing is the ratio of noise variance to
-// prior variance and does not depend on N, so that of the subset is valid for all sites.
-// Source: Wahba (1985). Deterministic. Slow side.
-double choose_smoothing(const Sites& sites, KernelKind kernel);
 
 }  // namespace palpate

@@ -14,13 +14,6 @@
 namespace palpate {
 namespace {
 
-// With this many sites for each unknown and no selected smoothing, plain least squares is used. On virtual silicone the
-// most likely smoothing, that of a function through all sites, triples the error of 100 centres; with few sites it
-// reduces it by two points.
-constexpr Eigen::Index kSitesEach = 10;
-// Relative to the norm of a column. Its square is a thousandth of the value at which 100 centres begin to lose
-// accuracy.
-constexpr double kRidge = 1e-6;
 // Singular values below this share of the largest are rounding.
 constexpr double kNothing = 1e-13;
 // The rows are reduced in two halves, one thread each. The number is fixed, so that the result does not depend on the
@@ -36,9 +29,9 @@ Eigen::MatrixXd triangle_of(const Eigen::MatrixXd& above, const Eigen::MatrixXd&
 }
 
 // The R factor of row_scale * (G Phi f), tail + n + 1 columns: the tail, the kernel at the n centres and the data.
-Eigen::MatrixXd reduced_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
+Eigen::MatrixXd reduced_rows(const Sites& sites, const Eigen::MatrixXd& centres) {
   const PointArrays points(sites.points);
-  const Eigen::Index tail = tail_size(tail_degree(kernel), sites.dimension());
+  const Eigen::Index tail = tail_size(tail_degree(sites.kernel), sites.dimension());
   const Eigen::Index columns = tail + centres.cols();
   const Eigen::Index block_rows = std::max<Eigen::Index>(1024, (2 * columns + 9) / 8 * 8);
   const Eigen::Index blocks = (sites.count() + block_rows - 1) / block_rows;
@@ -50,8 +43,8 @@ Eigen::MatrixXd reduced_rows(const Sites& sites, KernelKind kernel, const Eigen:
       const Eigen::Index first = block * block_rows;
       const Eigen::Index rows = std::min(block_rows, sites.count() - first);
       Eigen::MatrixXd rows_of_block(rows, columns + 1);
-      rows_of_block.leftCols(tail) = tail_matrix(tail_degree(kernel), sites.points.middleCols(first, rows));
-      kernel_matrix(kernel, points, centres, rows_of_block.middleCols(tail, centres.cols()), first);
+      rows_of_block.leftCols(tail) = tail_matrix(tail_degree(sites.kernel), sites.points.middleCols(first, rows));
+      kernel_matrix(sites.kernel, points, centres, rows_of_block.middleCols(tail, centres.cols()), first);
       rows_of_block.col(columns) = sites.target_N.segment(first, rows);
       rows_of_block.array().colwise() *= sites.row_scale.segment(first, rows).array();
       triangle = triangle_of(triangle, rows_of_block);
@@ -62,9 +55,9 @@ Eigen::MatrixXd reduced_rows(const Sites& sites, KernelKind kernel, const Eigen:
 
 }  // namespace
 
-RbfFunction solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
+RbfFunction solve_weights(const Sites& sites, const Eigen::MatrixXd& centres) {
   const BlasThreads one_thread(1);
-  const Eigen::MatrixXd triangle = reduced_rows(sites, kernel, centres);
+  const Eigen::MatrixXd triangle = reduced_rows(sites, centres);
   const Eigen::Index n = centres.cols();
   const Eigen::Index tail = triangle.cols() - 1 - n;
   // [G Phi] of the sites, above the rows of the penalty or of the side condition.
@@ -77,15 +70,13 @@ RbfFunction solve_weights(const Sites& sites, KernelKind kernel, const Eigen::Ma
   data.head(triangle.rows()) = triangle.rightCols(1);
   std::optional<ProjectedKernel> projected;
   if (n > 0 && sites.as_2009) {
-    added = tail_matrix(tail_degree(kernel), centres).transpose();
-  } else if (n > 0 && !sites.smoothing && kSitesEach * (tail + n) <= (sites.row_scale.array() > 0.0).count()) {
-    added.diagonal() = kRidge * of_sites.colwise().norm().transpose();
+    added = tail_matrix(tail_degree(sites.kernel), centres).transpose();
   } else if (n > 0) {
-    projected.emplace(kernel, centres, Eigen::VectorXd::Ones(n));
+    projected.emplace(sites.kernel, centres, Eigen::VectorXd::Ones(n));
     projected->project_rows(of_sites);
     const auto root = projected->cholesky(0.0);
     if (root) added = root->transpose().triangularView<Eigen::Upper>();
-    added *= std::sqrt(choose_smoothing(sites, kernel));
+    added *= std::sqrt(sites.smoothing);
   }
   Eigen::VectorXd unit = Eigen::VectorXd::Ones(stack.cols());
   double smallest = static_cast<double>(stack.rows()) * std::numeric_limits<double>::epsilon();
@@ -97,7 +88,7 @@ RbfFunction solve_weights(const Sites& sites, KernelKind kernel, const Eigen::Ma
   }
   const Eigen::VectorXd unknowns = least_squares(stack * unit.asDiagonal(), data, smallest).cwiseProduct(unit);
   const Eigen::VectorXd weights = unknowns.tail(n);
-  return {kernel, centres, projected ? projected->project(weights) : weights, unknowns.head(tail)};
+  return {sites.kernel, centres, projected ? projected->project(weights) : weights, unknowns.head(tail)};
 }
 
 }  // namespace palpate

@@ -4,11 +4,6 @@
 // Phi and G are the kernel and the tail at the centres. If every site is a centre, this is the smoothing spline of
 // fit_direct.h; otherwise it is the regression spline on a subset of its basis, which approaches it with more centres.
 //
-// The smoothing is that of the sites or, if they have none, the most likely one (projected_kernel.h). Plain least
-// squares is ill-posed where the sites (clusters, noise) do not determine the unknowns, and the values between the
-// sites then have no bound. With ten sites or more per unknown and no selected smoothing there is neither penalty nor
-// side condition; a ridge of 1e-6 of the columns' length separates duplicate centres.
-//
 // With Sites::as_2009 the weights are those of the paper: eq. 8 and the rows of the side condition (eq. 3), by a
 // pseudo-inverse. Singular values below max(rows, columns) x epsilon x the largest are set to 0 (the numerical rank;
 // the paper gives no threshold).
@@ -28,6 +23,6 @@
 namespace palpate {
 
 // `centres`: d x n, any points, n may be 0. Deterministic; uses two threads.
-RbfFunction solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres);
+RbfFunction solve_weights(const Sites& sites, const Eigen::MatrixXd& centres);
 
 }  // namespace palpate

@@ -56,9 +56,9 @@ double error_of(const Law& law) { return law.errors.rms_at_mean_score(); }
 // The surface_lag and the branches of the trend that is fitted to the rows. Friction and creep do not make the surface
 // lag.
 std::vector<FeatureSpec> surface_of(const TrendRows& rows) {
-  const TrendRegression regression(rows, TrendRegression::Smoothness::fixed);
+  const TrendEstimator estimator(rows, TrendEstimator::Smoothness::fixed);
   const auto columns = rows.columns_of([&](std::size_t f) { return !is_bristle(rows.list().features[f].kind); });
-  const FittedTrend fitted = fitted_trend(rows, regression.solve(columns), true);
+  const FittedTrend fitted = fitted_trend(rows, estimator.fit(columns), true);
   std::vector<FeatureSpec> surface{surface_lag_of(fitted.trend.elastic, rows.problem().reference_depth_m)};
   std::ranges::copy_if(fitted.features, std::back_inserter(surface), &is_branch, &FeatureSpec::kind);
   return surface;
@@ -70,8 +70,8 @@ Result<Law> scored(const TrendData& data, FeatureList list, bool lags) {
     const auto rows = gather_rows(data, list, kSearchRows, kSearchStep_s);
     if (!rows) return rows.error();
     if (!lags || pass == kSurfacePasses) {
-      const TrendRegression regression(*rows, TrendRegression::Smoothness::fixed);
-      return Law{std::move(list), regression.cross_validate(regression.all_columns()).errors};
+      const TrendEstimator estimator(*rows, TrendEstimator::Smoothness::fixed);
+      return Law{std::move(list), estimator.cross_validate(estimator.all_columns()).errors};
     }
     list.surface = surface_of(*rows);
   }
@@ -83,7 +83,7 @@ struct Choice {
 };
 
 // Adds the time with the lowest RMS error, then moves single times to the next candidate while the error falls.
-Choice with_one_more(const TrendRegression& regression, const TrendRows& rows, const Choice& last) {
+Choice with_one_more(const TrendEstimator& estimator, const TrendRows& rows, const Choice& last) {
   Choice best;
   const auto candidates = static_cast<int>(relaxation_times_s(rows.list().features).size());
   const int first = static_cast<int>(rows.list().features.size()) - candidates;
@@ -95,7 +95,7 @@ Choice with_one_more(const TrendRegression& regression, const TrendRows& rows, c
       const int time = static_cast<int>(f) - first;
       return time < 0 || std::ranges::binary_search(times, time);
     });
-    const FoldErrors errors = regression.cross_validate(columns).errors;
+    const FoldErrors errors = estimator.cross_validate(columns).errors;
     if (best.times.empty() || errors.rms() < best.errors.rms()) best = {std::move(times), errors};
   };
   for (int added = 0; added < candidates; ++added) {
@@ -160,11 +160,11 @@ Result<std::vector<double>> identify_relaxation(const TrendData& data, const std
   }
   const auto rows = gather_rows(data, single_times(velocity, candidates_s), kSearchRows);
   if (!rows) return rows.error();
-  const TrendRegression regression(*rows, TrendRegression::Smoothness::fixed);
-  Choice best = with_one_more(regression, *rows, {});
+  const TrendEstimator estimator(*rows, TrendEstimator::Smoothness::fixed);
+  Choice best = with_one_more(estimator, *rows, {});
   while (best.times.size() < std::min(count > 0 ? count : kMostTimes, candidates_s.size())) {
     if (!data.control.may_continue()) return interrupted();
-    Choice more = with_one_more(regression, *rows, best);
+    Choice more = with_one_more(estimator, *rows, best);
     if (count == 0 && simplest_adequate(std::vector{best.errors, more.errors}) == 0) break;
     best = std::move(more);
   }

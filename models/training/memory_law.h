@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "models/training/trend_regression.h"
+#include "models/training/trend_estimator.h"
 
 namespace palpate {
 

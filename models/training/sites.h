@@ -8,13 +8,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "engine/base/random_stream.h"
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
+#include "models/model/rbf/kernels.h"
 
 namespace palpate {
 
@@ -50,9 +50,10 @@ struct Sites {
   Eigen::VectorXd target_N;  // N forces
   // N factors >= 0 that multiply the residuals, e.g. 1 / JND(force). With factor 0 a site has no influence.
   Eigen::VectorXd row_scale;
-  // Roughness penalty of the cubic kernel, selected by cross-validation (models/fit/model_validation.h); empty: the
-  // method selects it.
-  std::optional<double> smoothing{};
+  KernelKind kernel = KernelKind::cubic;
+  // Factor of the roughness penalty: the ratio of noise variance to prior variance, which does not depend on the number
+  // of centres. A fit selects it by cross-validation (models/fit/correction_choice.h).
+  double smoothing = 0.0;
   // Solve as Hoever & Harders (2009): truncated singular values, even grids.
   bool as_2009 = false;
 

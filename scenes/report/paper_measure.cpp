@@ -40,7 +40,7 @@ void add_to_bin(std::vector<PaperBin>& bins, double force_N, double error_N, con
 MethodRequest request_of(std::size_t which) {
   const Method* methods[kPaperMethods] = {&kVoxelMethod, &kRandomMethod, &kKdTreeMethod, &kGreedyMethod,
                                           &kGreedyMethod};
-  return {methods[which], kCentres, which == kGreedy20 ? 20 : 100, KernelKind::cubic, kGrid};
+  return {methods[which], kCentres, which == kGreedy20 ? 20 : 100, kGrid};
 }
 
 const char* const kNames[kPaperMethods] = {"grid", "random", "kD-tree", "greedy-20", "greedy-100"};

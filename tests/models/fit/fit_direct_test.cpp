@@ -25,8 +25,9 @@ double rms_error(const RbfFunction& function, const Sites& truth) {
 }
 
 Result<RbfFunction> smoothed_fit(Sites sites, KernelKind kernel, double smoothing) {
+  sites.kernel = kernel;
   sites.smoothing = smoothing;
-  return fit_direct(sites, kernel);
+  return fit_direct(sites);
 }
 
 // The system of eq. 4 with the smoothing on its diagonal, by dense LU with
@@ -76,47 +77,14 @@ TEST(FitDirect, InterpolatesWithoutSmoothing) {
   }
 }
 
-TEST(FitDirect, ChosenSmoothingRemovesNoise) {
-  Sites sites = smooth_sites(3, 600, 0.1, 1);
-  const Sites truth = smooth_sites(3, 500, 0.0, 99);
-  const double without = rms_error(*smoothed_fit(sites, KernelKind::cubic, 0.0), truth);
-  const auto fitted = fit_direct(sites);
-  ASSERT_TRUE(fitted.ok());
-  const double chosen = rms_error(*fitted, truth);
-  EXPECT_LT(chosen, 0.6 * without);
-  // Close to the best smoothing of a grid, evaluated on the noise-free truth.
-  double best = without;
-  for (double smoothing = 1e-6; smoothing < 1e6; smoothing *= 10.0)
-    best = std::min(best, rms_error(*smoothed_fit(sites, KernelKind::cubic, smoothing), truth));
-  EXPECT_LT(chosen, 1.2 * best);
-}
-
-// Forty clusters of four sites each, 1e-5 apart, as from strokes that repeat the same
-// points. Cross-validation by strokes does not determine the force between clusters and
-// chose almost no smoothing: errors of 57 N with forces of 2 N.
-TEST(ChooseSmoothing, IsNeverFarBelowTheMostLikely) {
-  const Sites base = smooth_sites(3, 40, 0.0, 1);
-  const Sites truth = smooth_sites(3, 200, 0.0, 99);
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    Sites sites = smooth_sites(3, 160, 0.0, seed);
-    const Eigen::MatrixXd noise = random_points(1, 160, seed + 50);
-    for (Eigen::Index i = 0; i < 160; ++i) {
-      sites.points.col(i) = base.points.col(i % 40) + 1e-5 * sites.points.col(i);
-      sites.target_N[i] = base.target_N[i % 40] + 0.01 * noise(0, i);
-    }
-    const auto fitted = fit_direct(sites);
-    ASSERT_TRUE(fitted.ok());
-    EXPECT_LT(rms_error(*fitted, truth), 0.3) << seed;
-  }
-}
-
 // The stability tests have more cases, with the cubic kernel.
 TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
   std::vector<Sites> all = test::degenerate_sites();
   for (const int count : {1, 2, 5, 6}) all.push_back(smooth_sites(4, count, 0.0, 1));
   for (const KernelKind kernel : kKernelKinds) {
-    for (const Sites& sites : all) {
-      const auto fitted = fit_direct(sites, kernel);
+    for (Sites sites : all) {
+      sites.kernel = kernel;
+      const auto fitted = fit_direct(sites);
       ASSERT_TRUE(fitted.ok());
       EXPECT_TRUE(fitted->weights.allFinite());
       // At the sites the force is at most twice the largest target.
@@ -125,8 +93,9 @@ TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
       RbfCorrection(*fitted).evaluate_many(sites.points, values);
       EXPECT_LE(values.cwiseAbs().maxCoeff(), 2.0 * range + 1e-9) << kernel_name(kernel);
     }
-    const Sites one = smooth_sites(4, 1, 0.0, 1);
-    EXPECT_NEAR(rbf_value(*fit_direct(one, kernel), one.points.data()), one.target_N[0], 1e-12);
+    Sites one = smooth_sites(4, 1, 0.0, 1);
+    one.kernel = kernel;
+    EXPECT_NEAR(rbf_value(*fit_direct(one), one.points.data()), one.target_N[0], 1e-12);
   }
 }
 
@@ -146,11 +115,11 @@ TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
   EXPECT_TRUE(test::has_parts(fit_direct(large).error().message, {"20001", "too large", "20000", "; "}));
   const Sites sites = smooth_sites(2, 300, 0, 1);
   std::vector<double> asked;
-  ASSERT_TRUE(fit_direct(sites, KernelKind::cubic, {[&](double f) { return asked.push_back(f), true; }}).ok());
+  ASSERT_TRUE(fit_direct(sites, {[&](double f) { return asked.push_back(f), true; }}).ok());
   EXPECT_TRUE(std::is_sorted(asked.begin(), asked.end()));
-  EXPECT_EQ(asked.size(), 4u);
+  EXPECT_EQ(asked.size(), 3u);
   for (const double fraction : asked) {
-    const auto stopped = fit_direct(sites, KernelKind::cubic, {[&](double f) { return f < fraction; }});
+    const auto stopped = fit_direct(sites, {[&](double f) { return f < fraction; }});
     ASSERT_FALSE(stopped.ok());
     EXPECT_EQ(stopped.error().message, "interrupted") << fraction;
   }

@@ -165,14 +165,12 @@ TEST(Fit, EveryKernelWeightingAndReduction) {
       TrainingRequest request = request_for(test::paper_features());
       request.weighting = weighting;
       request.reduction = reduction;
-      auto prepared = prepare({recording}, request);
-      ASSERT_TRUE(prepared.ok());
-      prepared->correction->used = true;  // a correction regardless of cross-validation
       for (const KernelKind kernel : kKernelKinds) {
-        MethodRequest asked;
-        asked.kernel = kernel;
-        asked.centres = 30;
-        const auto fit = fit_method(*prepared, asked);
+        request.kernel = kernel;
+        auto prepared = prepare({recording}, request);
+        ASSERT_TRUE(prepared.ok());
+        prepared->correction->used = true;  // a correction regardless of cross-validation
+        const auto fit = fit_method(*prepared, {.centres = 30});
         ASSERT_TRUE(fit.ok()) << fit.error().message;
         EXPECT_EQ(rbf_of(fit->data.correction)->kernel, kernel);
         expect_safe(fit->data);

@@ -12,12 +12,10 @@
 namespace palpate {
 namespace {
 
-constexpr KernelKind kKernel = KernelKind::cubic;
-
 // (c . r)^2 / |c'|^2 from a QR factorisation of all columns chosen so far.
 double gain_from_scratch(const Sites& sites, const CandidateGains& gains, const std::vector<Eigen::Index>& chosen,
                          Eigen::Index site) {
-  const Eigen::MatrixXd tail = tail_matrix(tail_degree(kKernel), sites.points);
+  const Eigen::MatrixXd tail = tail_matrix(tail_degree(KernelKind::cubic), sites.points);
   Eigen::MatrixXd columns(sites.count(), tail.cols() + static_cast<Eigen::Index>(chosen.size()));
   columns.leftCols(tail.cols()) = sites.row_scale.asDiagonal() * tail;
   for (std::size_t k = 0; k < chosen.size(); ++k)
@@ -37,8 +35,8 @@ double gain_from_scratch(const Sites& sites, const CandidateGains& gains, const 
 // cached gains must equal those computed from scratch.
 TEST(CandidateGains, AreThoseOfAFreshLookHoweverLongAgoTheLastWas) {
   const Sites sites = test::smooth_sites(4, 400, 0.005, 3);
-  CandidateGains gains(sites, kKernel);
-  OrthogonalBasis basis(sites, kKernel, 60);
+  CandidateGains gains(sites);
+  OrthogonalBasis basis(sites, 60);
   std::vector<Eigen::Index> chosen;
   for (Eigen::Index step = 0; step < 60; ++step) {
     std::vector<Eigen::Index> looked_at{399};
@@ -71,8 +69,8 @@ TEST(CandidateGains, KnowsAColumnAllButInsideTheBasis) {
   Sites sites = test::smooth_sites(4, 300, 0.005, 5);
   sites.points.col(1) = sites.points.col(0).array() + 1e-5;
   sites.points.col(2) = sites.points.col(0);
-  CandidateGains gains(sites, kKernel);
-  OrthogonalBasis basis(sites, kKernel, 1);
+  CandidateGains gains(sites);
+  OrthogonalBasis basis(sites, 1);
   const Eigen::Index chosen = 0;
   basis.add(gains.columns({&chosen, 1}));
   const std::vector<Eigen::Index> looked_at{1, 2};

@@ -1,4 +1,4 @@
-#include "models/fit/model_validation.h"
+#include "models/fit/correction_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ CrossValidationRows make_rows(double shared, double own, double first = 0.0) {
         2.0 + shared * std::sin(3.0 * rows.points(0, i)) + own * std::cos(2.0 * fold) + between(numbers, -0.005, 0.005);
     rows.fold.push_back(fold);
   }
-  find_distances(rows);
+  rows.find_distances();
   return rows;
 }
 
@@ -78,43 +78,6 @@ TEST(CorrectionChoice, NeverWorseThanNoneOnWhatIsLeftOut) {
 }
 
 TEST(CorrectionChoice, NothingToLeaveOutMeansNone) { EXPECT_FALSE(choose({}).used); }
-
-TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
-  test::Numbers numbers(5);
-  std::vector<CrossValidationPrediction> past;
-  std::vector<CrossValidationPrediction> future;
-  for (int i = 0; i < 8000; ++i) {
-    const double force_N = between(numbers, 0.0, 5.0);
-    // A triangular error that grows with the force.
-    const double error_N =
-        (0.01 + 0.02 * force_N) * std::abs(between(numbers, -1.0, 1.0) + between(numbers, -1.0, 1.0));
-    (i % 2 == 0 ? past : future).push_back({error_N, force_N, 0.0});
-  }
-  const auto bound = calibrate_bound(past, JndLine{}, 5.0);
-  ASSERT_TRUE(bound.has_value());
-  int held = 0;
-  for (const CrossValidationPrediction& one : future) held += one.error_N <= bound->at(one.predicted_N, 0.0) ? 1 : 0;
-  // The expected coverage is 97 % of 4000. The tolerance is three standard deviations of each half.
-  EXPECT_NEAR(held / 4000.0, 0.97, 0.012);
-  EXPECT_GE(bound->at(1.0, 1.0), bound->at(1.0, 0.0) + 1.25) << "a quarter of the largest force";
-  EXPECT_FALSE(calibrate_bound({}, JndLine{}, 5.0).has_value());
-}
-
-// The bound depends on the absolute force, so that a material that pulls has the same one.
-TEST(CalibrateBound, IsTheSameForPullingForces) {
-  test::Numbers numbers(5);
-  std::vector<CrossValidationPrediction> pushing;
-  for (int i = 0; i < 1000; ++i) {
-    const double force_N = between(numbers, 0.0, 5.0);
-    pushing.push_back({0.05 * force_N * between(numbers, 0.0, 1.0), force_N, 0.0});
-  }
-  std::vector<CrossValidationPrediction> pulling = pushing;
-  for (CrossValidationPrediction& one : pulling) one.predicted_N = -one.predicted_N;
-  const auto of_pushing = calibrate_bound(pushing, JndLine{}, 5.0);
-  const auto of_pulling = calibrate_bound(pulling, JndLine{}, 5.0);
-  ASSERT_TRUE(of_pushing && of_pulling);
-  for (const double force_N : {0.0, 1.0, 5.0}) EXPECT_EQ(of_pulling->at(-force_N, 0.0), of_pushing->at(force_N, 0.0));
-}
 
 }  // namespace
 }  // namespace palpate

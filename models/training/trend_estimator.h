@@ -38,18 +38,18 @@ struct CrossValidated {
   Eigen::MatrixXd solutions;  // columns x folds: the weights from the other folds; 0 outside `columns`
 };
 
-class TrendRegression {
+class TrendEstimator {
  public:
   enum class Smoothness { selected, fixed };
 
   // `fixed`: lambda is 1e-8, for comparisons of many regressions.
-  explicit TrendRegression(const TrendRows& rows, Smoothness smoothness = Smoothness::selected);
+  explicit TrendEstimator(const TrendRows& rows, Smoothness smoothness = Smoothness::selected);
 
   // Errors of the trend with these columns (ascending). Rows deeper than all rows of the other folds do not count:
   // they would be extrapolated.
   CrossValidated cross_validate(const ColumnList& columns) const { return cross_validate(columns, smoothness_); }
   // The weights fitted to all rows, one for each column of the rows; 0 outside `columns`.
-  Eigen::VectorXd solve(const ColumnList& columns) const { return weights(equations_.back(), columns, smoothness_); }
+  Eigen::VectorXd fit(const ColumnList& columns) const { return weights(equations_.back(), columns, smoothness_); }
   ColumnList all_columns() const {
     return rows_.columns_of([](std::size_t) { return true; });
   }

@@ -1,4 +1,4 @@
-#include "models/training/trend_regression.h"
+#include "models/training/trend_estimator.h"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ double rms_of(const TrendRows& rows, const Eigen::VectorXd& x) {
   return std::sqrt(sum / static_cast<double>(rows.count()));
 }
 
-TEST(TrendRegression, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
+TEST(TrendEstimator, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
   FeatureFilter branch({test::spectrum({0.1}, {kDepth_m, {1.5, 0.5, 0.0, 0.0}})});
   FeatureList list;
   list.add(FeatureKind::velocity);
@@ -55,37 +55,37 @@ TEST(TrendRegression, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
                                    const double u = std::max(0.0, motion.position_m) / kDepth_m;
                                    return 2.0 * u + u * u + branch.update(sample, motion).values[0];
                                  });
-  const TrendRegression regression(rows);
-  const Eigen::VectorXd x = regression.solve(regression.all_columns());
+  const TrendEstimator estimator(rows);
+  const Eigen::VectorXd x = estimator.fit(estimator.all_columns());
   EXPECT_GE(x.minCoeff(), 0.0);
   // With forces of up to 4.5 N. The error is a bias of the penalty.
   EXPECT_LT(rms_of(rows, x), 0.02);
-  EXPECT_LT(regression.cross_validate(regression.all_columns()).errors.rms(), 0.2);
+  EXPECT_LT(estimator.cross_validate(estimator.all_columns()).errors.rms(), 0.2);
 }
 
 // The force is 3 N at the greatest depth. On the way out one sample in four has no force,
 // because the tool has left the material.
-TEST(TrendRegression, AForceThatWasNotMeasuredIsNoForceToFollow) {
+TEST(TrendEstimator, AForceThatWasNotMeasuredIsNoForceToFollow) {
   int sample_number = 0;
   const TrendRows rows = rows_of(FeatureList{}, 0.01, [&](const ToolSample&, const MotionEstimate& motion) {
     const bool left = motion.velocity_m_per_s < 0.0 && ++sample_number % 4 == 0;
     return left ? 0.0 : 3.0 * std::max(0.0, motion.position_m) / kDepth_m;
   });
-  const TrendRegression regression(rows);
-  const Trend trend = fitted_trend(rows, regression.solve(regression.all_columns()), true).trend;
+  const TrendEstimator estimator(rows);
+  const Trend trend = fitted_trend(rows, estimator.fit(estimator.all_columns()), true).trend;
   const double at[] = {kDepth_m};
   // Within a JND: samples that no feature explains get a small weight (sites.h).
   EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), 3.0, 0.25);
 }
 
 // A soft layer on a hard plate: the force grows thirty-fold in the last tenth of the depth.
-TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
+TEST(TrendEstimator, FollowsASharpBendOfTheElasticResponse) {
   const auto layer = [](double u) { return 0.3 * u + 9.0 * std::pow(std::max(0.0, u - 0.9) / 0.1, 2); };
   const TrendRows rows = rows_of(FeatureList{}, 1e-3, [&](const ToolSample&, const MotionEstimate& motion) {
     return layer(std::max(0.0, motion.position_m) / kDepth_m);
   });
-  const TrendRegression regression(rows);
-  const Trend trend = fitted_trend(rows, regression.solve(regression.all_columns()), true).trend;
+  const TrendEstimator estimator(rows);
+  const Trend trend = fitted_trend(rows, estimator.fit(estimator.all_columns()), true).trend;
   // The strokes end at 0.975.
   for (const double u : {0.2, 0.5, 0.85, 0.92, 0.95}) {
     const double at[] = {u * kDepth_m};
@@ -95,7 +95,7 @@ TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
 }
 
 // A left-out fold does not influence the solution that predicts it, nor the robust row weights.
-TEST(TrendRegression, AFoldThatIsLeftOutHasNoInfluence) {
+TEST(TrendEstimator, AFoldThatIsLeftOutHasNoInfluence) {
   const FeatureList depth_alone;
   const auto rows_with = [&](double other_N) {
     return rows_of(depth_alone, 1e-3, [&](const ToolSample& sample, const MotionEstimate& motion) {
@@ -105,8 +105,8 @@ TEST(TrendRegression, AFoldThatIsLeftOutHasNoInfluence) {
   };
   const TrendRows one = rows_with(3.0);
   const TrendRows other = rows_with(30.0);
-  const TrendRegression first(one, TrendRegression::Smoothness::fixed);
-  const TrendRegression second(other, TrendRegression::Smoothness::fixed);
+  const TrendEstimator first(one, TrendEstimator::Smoothness::fixed);
+  const TrendEstimator second(other, TrendEstimator::Smoothness::fixed);
   const CrossValidated a = first.cross_validate(first.all_columns());
   const CrossValidated b = second.cross_validate(second.all_columns());
   EXPECT_TRUE(a.solutions.col(0).isApprox(b.solutions.col(0), 1e-9));

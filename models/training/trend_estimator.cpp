@@ -1,4 +1,4 @@
-#include "models/training/trend_regression.h"
+#include "models/training/trend_estimator.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ constexpr double kFirstSmoothness = 1e-8;
 
 }  // namespace
 
-TrendRegression::TrendRegression(const TrendRows& rows, Smoothness smoothness)
+TrendEstimator::TrendEstimator(const TrendRows& rows, Smoothness smoothness)
     : rows_(rows),
       part_error_(has_kind(rows.list().features, FeatureKind::creep) ? kPartError : kPartErrorOfFew),
       smoothness_(kFirstSmoothness),
@@ -44,7 +44,7 @@ TrendRegression::TrendRegression(const TrendRows& rows, Smoothness smoothness)
 }
 
 // Iterates weights and active set on the rows outside the fold `left_out`.
-TrendRegression::Equations TrendRegression::gather(int left_out) const {
+TrendEstimator::Equations TrendEstimator::gather(int left_out) const {
   const TrendProblem& problem = rows_.problem();
   std::vector<double> plain(rows_.count());
   for (std::size_t i = 0; i < plain.size(); ++i) {
@@ -72,7 +72,7 @@ TrendRegression::Equations TrendRegression::gather(int left_out) const {
   return equations;
 }
 
-TrendRegression::Equations TrendRegression::sum(const std::vector<double>& scale) const {
+TrendEstimator::Equations TrendEstimator::sum(const std::vector<double>& scale) const {
   const auto n = static_cast<Eigen::Index>(rows_.columns());
   Equations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0, Eigen::VectorXd::Zero(n)};
   Eigen::MatrixXd block(kBlockRows, n);
@@ -98,8 +98,8 @@ TrendRegression::Equations TrendRegression::sum(const std::vector<double>& scale
 }
 
 // The penalised solution on these columns, 0 in all others. The columns of the elastic response come first.
-Eigen::VectorXd TrendRegression::weights(const Equations& equations, const ColumnList& columns,
-                                         double smoothness) const {
+Eigen::VectorXd TrendEstimator::weights(const Equations& equations, const ColumnList& columns,
+                                        double smoothness) const {
   constexpr auto kElastic = static_cast<Eigen::Index>(kElasticTerms);
   Eigen::MatrixXd gram = equations.gram;
   const double smooth = smoothness * equations.scale_squares * static_cast<double>(kElasticPieces);
@@ -115,7 +115,7 @@ Eigen::VectorXd TrendRegression::weights(const Equations& equations, const Colum
   return x;
 }
 
-CrossValidated TrendRegression::cross_validate(const ColumnList& columns, double smoothness) const {
+CrossValidated TrendEstimator::cross_validate(const ColumnList& columns, double smoothness) const {
   const int folds = rows_.problem().folds;
   CrossValidated result{static_cast<std::size_t>(folds), Eigen::MatrixXd(rows_.terms().cols(), folds)};
   for (int k = 0; k < folds; ++k) {
