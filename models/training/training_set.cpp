@@ -109,7 +109,7 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
         if (row.first) filter.reset();
         const FeatureVector& vector = filter.update(row.sample, row.motion);
         if (!vector.in_contact) return;
-        const bool no_force = row.force_N <= force_noise_floor_N;
+        const bool no_force = std::abs(row.force_N) <= force_noise_floor_N;
         samples.push_back({vector.values, row.force_N, 1.0, row.recording, row.fold, no_force});
       },
       control);

@@ -50,7 +50,7 @@ struct TrainingSite {
   double count = 1.0;  // number of samples merged into it
   int recording = 0;
   int fold = 0;
-  bool no_force = false;  // force at or below the noise floor, which shows only that it is not positive
+  bool no_force = false;  // magnitude at or below the noise floor, which shows only that the force is not positive
 };
 
 struct TrainingSet {
@@ -63,7 +63,8 @@ struct TrainingSet {
   std::vector<double> evaluation_force_N;
 };
 
-// `force_noise_floor_N`: at or below it a sample has no measured force. Errors: no sample in contact; interrupted.
+// `force_noise_floor_N`: at or below this magnitude a sample has no measured force. Errors: no sample in contact;
+// interrupted.
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
                                       Reduction reduction, double force_noise_floor_N, const FitControl& control = {});
 
