@@ -9,46 +9,20 @@
 namespace palpate {
 namespace {
 
-// Fine enough that one step more or less does not change the ninth decimal of a force.
-constexpr double kSurfaceForce_N = 1e-11;
-constexpr int kSurfaceSteps = 40;
-// A smaller lag, less than an atom, counts as 0.
-constexpr double kNoLag_m = 1e-12;
-
-// The surface above the tool, where elastic response and branches hold no force, by regula falsi with halving (Dowell &
-// Jarratt 1971). At the last surface that force is 0 or pushes, because pulling forces in the branches decay. The last
-// call of `held_N` is for the surface that is returned.
-template <typename Held>
-double surface_above_m(const Held& held_N, double depth_m, double last_surface_m) noexcept {
-  double low_m = depth_m;
-  double high_m = last_surface_m;
-  double low_N = held_N(low_m);
-  if (low_N >= 0.0 || !(high_m - low_m > kNoLag_m)) return low_m;
-  double high_N = held_N(high_m);
-  if (!(high_N > 0.0)) return high_m;
-  double middle_m = high_m;
-  for (int step = 0; step < kSurfaceSteps; ++step) {
-    middle_m = low_m - low_N * (high_m - low_m) / (high_N - low_N);
-    const double middle_N = held_N(middle_m);
-    if (std::abs(middle_N) < kSurfaceForce_N) break;
-    if (middle_N > 0.0) {
-      high_m = middle_m;
-      high_N = middle_N;
-      low_N *= 0.5;
-    } else {
-      low_m = middle_m;
-      low_N = middle_N;
-      high_N *= 0.5;
-    }
-  }
-  return middle_m;
-}
+// The source text that exported models share with the library.
+namespace surface_search {
+using real = double;
+#define R(x) (x)
+#define HELD_N const auto&
+#include "engine/tick/surface.inc"
+#undef HELD_N
+#undef R
+}  // namespace surface_search
 
 }  // namespace
 
 double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept {
-  const bool apart = last_surface_m > last_depth_m && last_surface_m > depth_m;
-  return apart ? last_surface_m : 0.5 * (last_surface_m + depth_m);
+  return surface_search::halfway_m(last_surface_m, last_depth_m, depth_m);
 }
 
 double relaxation_time_factor(double slowing, double surface_m, double reference_depth_m) noexcept {
@@ -156,7 +130,7 @@ double FeaturePlan::advance_branches(FeatureState& state, double depth_m, double
   const auto held_N = [&](double surface_m) {
     return specs_[lag_].drive.at(surface_m) + branches_.advance(step, surface_m, state.memory, trial);
   };
-  const double surface_m = surface_above_m(held_N, depth_m, state.surface_m);
+  const double surface_m = surface_search::surface_above_m(held_N, depth_m, state.surface_m);
   std::copy_n(trial.value, branches_.groups(), state.memory.value);
   std::copy_n(trial.drive_N, branches_.groups(), state.memory.drive_N);
   return surface_m;

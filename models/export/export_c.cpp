@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "engine/base/text.h"
+#include "models/export/c_sources.h"
 #include "models/export/feature_c.h"
-#include "models/export/motion_filter_c.h"
 #include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"
 
@@ -20,82 +20,6 @@ std::string in_comment(std::string text) {
   return text;
 }
 
-constexpr const char* kHeadC = R"C( *
- * C99; needs sqrt and exp, and log for a thin-plate kernel. `real` is double or float.
- *
- * real palpate_force(real time_s, real position_m): the force in N, positive out of the
- *   material. position_m: as in the recordings, whose undisturbed surface is at
- *   SURFACE_POSITION_M, positive inside. If a value is not finite or the time is not later than
- *   the last one: 0 N, and the state is kept.
- * real palpate_force_after(real step_s, real position_m): the same, `step_s` after the last
- *   call; better in single precision, where a large time has coarse steps.
- * int palpate_out_of_domain(void): 1 if the last motion was outside the recorded domain.
- * void palpate_reset(void): the next sample begins a new contact.
- *
- * One tool, one thread: the state is static. For two models in one program compile one
- * with -Dpalpate_force=other_force and so on.
- * For another sensor than that of the next two macros define them when compiling: the step of
- * the positions (0 if there is none) and the standard deviation of the additional noise. A
- * recording of such positions, without measured velocity or acceleration, gives the forces of
- * palpate replay.
- */
-
-)C";
-
-constexpr const char* kDoubleC = R"C(typedef double real;
-extern double sqrt(double x);
-extern double exp(double x);
-extern double log(double x);
-#define SQRT sqrt
-#define EXP exp
-#define LOG log
-)C";
-
-constexpr const char* kFloatC = R"C(typedef float real;
-extern float sqrtf(float x);
-extern float expf(float x);
-extern float logf(float x);
-#define SQRT sqrtf
-#define EXP expf
-#define LOG logf
-)C";
-
-constexpr const char* kPrototypesC = R"C(#define R(x) ((real)(x))
-
-real palpate_force(real time_s, real position_m);
-real palpate_force_after(real step_s, real position_m);
-void palpate_reset(void);
-int palpate_out_of_domain(void);
-)C";
-
-constexpr const char* kMotionStateC = R"C(
-static MotionState motion;
-static real last_time_s;
-
-static real clamped(real x, real low, real high) { return x < low ? low : (high < x ? high : x); }
-static real absolute(real x) { return x < R(0.0) ? -x : x; }
-static int finite_number(real x) { return x - x == R(0.0); }
-)C";
-
-constexpr const char* kRbfC = R"C(
-static real correction_of(const real *u) {
-  const real *term = tail;
-  real sum = *term++;
-  int i, k;
-  for (k = 0; TAIL_DEGREE >= 1 && k < FEATURES; ++k) sum += *term++ * u[k];
-  for (i = 0; i < CENTRES; ++i) {
-    real squared = R(0.0);
-    for (k = 0; k < FEATURES; ++k) {
-      const real difference = u[k] - centres[i][k];
-      squared += difference * difference;
-    }
-    squared = larger(squared, R(1e-36));
-    sum += centres[i][FEATURES] * (KERNEL);
-  }
-  return sum;
-}
-)C";
-
 void write_rbf(CText& out, const RbfFunction& function) {
   Eigen::MatrixXd rows(function.dimension() + 1, function.centre_count());
   rows << function.centres, function.weights.transpose();
@@ -105,35 +29,8 @@ void write_rbf(CText& out, const RbfFunction& function) {
   out.define("KERNEL", kernel_facts(function.kernel).c_text);
   out.list("tail", function.tail);
   out.table("centres[][FEATURES + 1]", rows);
-  out.add(kRbfC);
+  out.add(c_source::rbf);
 }
-
-constexpr const char* kGridC = R"C(
-static real correction_of(const real *u) {
-  real corner[CORNERS];
-  real fraction[FEATURES];
-  int cell[FEATURES];
-  const real *axis = axes;
-  int k, c, half;
-  for (k = 0; k < FEATURES; ++k) {
-    const real at = clamped(u[k], axis[0], axis[axis_size[k] - 1]);
-    int i = 0;
-    while (i + 2 < axis_size[k] && axis[i + 1] <= at) ++i;
-    cell[k] = i;
-    fraction[k] = (at - axis[i]) / (axis[i + 1] - axis[i]);
-    axis += axis_size[k];
-  }
-  for (c = 0; c < CORNERS; ++c) {
-    int node = 0;
-    for (k = 0; k < FEATURES; ++k) node = node * axis_size[k] + cell[k] + ((c >> k) & 1);
-    corner[c] = grid_values[node];
-  }
-  for (k = FEATURES - 1, half = CORNERS / 2; k >= 0; --k, half /= 2) {
-    for (c = 0; c < half; ++c) corner[c] += fraction[k] * (corner[c + half] - corner[c]);
-  }
-  return corner[0];
-}
-)C";
 
 void write_grid(CText& out, const VoxelGrid& grid) {
   std::vector<double> nodes;
@@ -147,35 +44,8 @@ void write_grid(CText& out, const VoxelGrid& grid) {
   out.add("static const int axis_size[FEATURES] = {" + joined(sizes) + "};\n");
   out.list("axes", nodes);
   out.list("grid_values", grid.values_N);
-  out.add(kGridC);
+  out.add(c_source::grid);
 }
-
-constexpr const char* kTrustC = R"C(
-static real trust_in(const real *u) {
-  float query[FEATURES];
-  float smallest = 3.402823466e+38F;
-  double squared;
-  double t;
-  int i, k;
-  for (k = 0; k < FEATURES; ++k) {
-    if (!(absolute(u[k]) < R(1e19))) return R(0.0);
-    query[k] = absolute(u[k]) < R(1e-11) ? 0.0F : (float)u[k];
-  }
-  for (i = 0; i < COVER_POINTS; ++i) {
-    float sum = 0.0F;
-    for (k = 0; k < FEATURES; ++k) {
-      const float difference = query[k] - cover[i][k];
-      ADD_SQUARE(sum, difference);
-    }
-    if (sum < smallest) smallest = sum;
-  }
-  squared = (double)smallest;
-  if (!(squared < OUTER_RADIUS * OUTER_RADIUS)) return R(0.0);
-  if (squared <= INNER_RADIUS * INNER_RADIUS) return R(1.0);
-  t = (OUTER_RADIUS - (double)SQRT((real)squared)) / (OUTER_RADIUS - INNER_RADIUS);
-  return (real)(t * t * (3.0 - 2.0 * t));
-}
-)C";
 
 // "static real correction_of(const real *u)": newtons, from normalised features.
 void write_correction(CText& out, const CorrectionPtr& correction) {
@@ -200,66 +70,19 @@ void write_trust(CText& out, const DomainCover& cover) {
              out.single() ? "sum += (x) * (x)" : "sum = (float)((double)(x) * (double)(x) + (double)sum)");
   out.table("cover[][FEATURES]", cover.points.unaryExpr([](double x) { return std::abs(x) < 1e-11 ? 0.0 : x; }),
             "float");
-  out.add(kTrustC);
+  out.add(c_source::trust);
 }
 
-constexpr const char* kTickC = R"C(
-static int is_out_of_domain;
-
-static real model_force(void) {
-  real u[FEATURES];
-  real trust, force_N;
-  int k;
-  for (k = 0; k < FEATURES; ++k) u[k] = (value[k] - offset[k]) * inverse_scale[k];
-  force_N = trend_of();
-  trust = trust_in(u);
-  is_out_of_domain = trust < R(0.5) || value[DEPTH_FEATURE] > DEEPEST_M;
-  if (trust > R(0.0)) {
-    const real correction_N = correction_of(u) - CORRECTED_SHARE * force_N;
-    force_N += trust * clamped(correction_N, -CORRECTION_LIMIT_N, CORRECTION_LIMIT_N);
+// The type `real` and its functions.
+void write_precision(CText& out) {
+  const std::string type = out.single() ? "float" : "double";
+  out.add("typedef " + type + " real;\n");
+  for (const auto& [macro, name] : {std::pair{"SQRT", "sqrt"}, {"EXP", "exp"}, {"LOG", "log"}}) {
+    const std::string function = std::string(name).append(out.single() ? "f" : "");
+    out.add("extern " + type + " " + function + "(" + type + " x);\n");
+    out.define(macro, function);
   }
-  if (!(force_N > R(0.0))) force_N = force_N < R(0.0) ? larger(force_N, LOWEST_FORCE_N) : R(0.0);
-  return smaller(force_N, LARGEST_FORCE_N);
 }
-
-static real force_of(real step_s, real position_m) {
-  const int first = !motion.started;
-  const int repeated = !first && position_m == motion.position_m;
-  const real motion_step_s = advance_motion(&motion, MOTION_STATES, step_s, position_m);
-  if (motion_step_s > R(0.0)) {
-    measure_position(&motion, MOTION_STATES, motion_step_s, repeated, R(PALPATE_ENCODER_STEP_M),
-                     R(PALPATE_POSITION_NOISE_M));
-  }
-  update_features(step_s, first);
-  is_out_of_domain = 0;
-  return position_m > SURFACE_POSITION_M ? model_force() : R(0.0);
-}
-
-void palpate_reset(void) {
-  static MotionState nothing; /* zero */
-  motion = nothing;
-  is_out_of_domain = 0;
-}
-
-int palpate_out_of_domain(void) { return is_out_of_domain; }
-
-static int accepted(real step_s, real position_m) {
-  return finite_number(step_s) && finite_number(position_m) && (!motion.started || step_s > R(0.0));
-}
-
-real palpate_force_after(real step_s, real position_m) {
-  if (!accepted(step_s, position_m)) return R(0.0);
-  last_time_s += step_s;
-  return force_of(step_s, position_m);
-}
-
-real palpate_force(real time_s, real position_m) {
-  const real step_s = time_s - last_time_s;
-  if (!accepted(step_s, position_m)) return R(0.0);
-  last_time_s = time_s;
-  return force_of(step_s, position_m);
-}
-)C";
 
 void write_constants(CText& out, const ModelData& data) {
   out.add("\n/* ---- the force ---- */\n\n");
@@ -282,26 +105,25 @@ std::string export_c(const ModelData& data, const SensorSpec& sensor, bool singl
   CText out(single_precision);
   out.add("/* Force model " + in_comment(data.name) + ", written by palpate export.\n * Features:");
   for (const FeatureSpec& spec : data.features) out.add(std::string(" ").append(feature_name(spec)));
-  out.add("\n");
-  out.add(kHeadC);
-  out.add("#ifndef PALPATE_ENCODER_STEP_M\n");
+  out.add(" */\n");
+  out.add(c_source::head);
+  out.add("\n#ifndef PALPATE_ENCODER_STEP_M\n");
   out.define("PALPATE_ENCODER_STEP_M", sensor.encoder_step_m);
   out.add("#endif\n#ifndef PALPATE_POSITION_NOISE_M\n");
   out.define("PALPATE_POSITION_NOISE_M", sensor.position_noise_m);
   out.add("#endif\n\n");
-  out.add(single_precision ? kFloatC : kDoubleC);
+  write_precision(out);
   out.define("MOTION_STATES", std::size_t{3});
   out.define("FEATURES", data.features.size());
   out.define("SURFACE_POSITION_M", surface_position_m(data.features));
-  out.add(kPrototypesC);
-  out.add(kMotionFilterC);
-  out.add(kMotionStateC);
+  out.add(c_source::declarations);
+  out.add(c_source::motion_filter);
   write_features(out, data.features);
   write_trend(out, data.trend, data.features);
   write_correction(out, data.correction);
   write_trust(out, data.cover);
   write_constants(out, data);
-  out.add(kTickC);
+  out.add(c_source::tick);
   return out.text();
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/tick/motion_estimator.h"
+
 namespace palpate {
 namespace {
 
@@ -16,17 +18,22 @@ std::array<Quadratic, 3> b_splines(std::size_t piece) {
   return {{{first, -2.0 * first, first}, {1.0 - first, 2.0 * first, -first - last}, {0.0, 0.0, last}}};
 }
 
+// The source text that exported models share with the library.
+namespace trend_equation {
+using real = double;
+using motion_filter::larger;
+using motion_filter::smaller;
+static_assert(kViscosityCoefficients == 3 && kElasticCoefficients == 4);
+#define R(x) (x)
+#define ELASTIC_PIECES kElasticPieces
+#include "models/model/trend.inc"
+#undef ELASTIC_PIECES
+#undef R
+}  // namespace trend_equation
+
 }  // namespace
 
-double ElasticSpline::at(double u) const noexcept {
-  const double x = u * kPieces;
-  const std::size_t piece = x < kPieces ? static_cast<std::size_t>(std::max(0.0, x)) : kElasticPieces - 1;
-  const double* c = pieces_N.data() + piece * kElasticCoefficients;
-  const double beyond = x > kPieces ? x - kPieces : 0.0;
-  const double t = x - static_cast<double>(piece) - beyond;
-  const double value = c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-  return value + beyond * (c[1] + t * (2.0 * c[2] + t * 3.0 * c[3]));
-}
+double ElasticSpline::at(double u) const noexcept { return trend_equation::elastic_at(pieces_N.data(), u); }
 
 std::vector<ElasticSpline> spline_basis() {
   std::vector<ElasticSpline> basis(kElasticTerms);
@@ -94,13 +101,11 @@ TrendInputs::TrendInputs(const std::vector<FeatureSpec>& specs) noexcept {
 double Trend::at(const double* features, const TrendInputs& inputs) const noexcept {
   const double depth_m = inputs.depth != TrendInputs::kNone ? features[inputs.depth] : 0.0;
   const double velocity_m_per_s = inputs.velocity != TrendInputs::kNone ? features[inputs.velocity] : 0.0;
-  double branches_N = 0.0;
-  for (std::size_t b = 0; b < inputs.force_count; ++b) branches_N += features[inputs.force[b]];
-  const double u = depth_m / reference_depth_m;
-  const double speed = std::clamp(velocity_m_per_s, -velocity_limit_m_per_s, velocity_limit_m_per_s);
-  const double inside = std::min(u, 1.0);
-  return elastic.at(u) + polynomial(viscosity_Ns_per_m, inside) * speed +
-         polynomial(thinning_Ns_per_m, inside) * thinned_velocity(speed, thinning_velocity_m_per_s) + branches_N;
+  double memory_N = 0.0;
+  for (std::size_t b = 0; b < inputs.force_count; ++b) memory_N += features[inputs.force[b]];
+  return trend_equation::trend_at(elastic.pieces_N.data(), viscosity_Ns_per_m.data(), thinning_Ns_per_m.data(),
+                                  thinning_velocity_m_per_s, depth_m / reference_depth_m, velocity_m_per_s,
+                                  velocity_limit_m_per_s, memory_N);
 }
 
 }  // namespace palpate
