@@ -13,10 +13,10 @@
 // recordings had their surface elsewhere. In free air d = 0 and the material relaxes.
 //
 // Maxwell branch: a spring of stiffness g'(d) before the low-pass, eq. (1) of Hoever & Harders (2009); g = d / tau
-// gives the low-pass. With a `slowing` b, every tau is multiplied by exp(b s / reference depth): a fluid is squeezed
-// through closing pores (Lai & Mow 1980). With a surface_lag, the branches follow s instead of d: s = d while the sum
-// E(s) + sum z of elastic response and branches pushes the tool out; otherwise s >= d is the depth at which it is zero.
-// A tool that retreats faster than the material recovers thus loses contact (Johnson 1985, section 6.5).
+// gives the low-pass. With a `slowing` b, every tau is multiplied by exp(b min(s / reference depth, 1)): a fluid is
+// squeezed through closing pores (Lai & Mow 1980). With a surface_lag, the branches follow s instead of d: s = d while
+// the sum E(s) + sum z of elastic response and branches pushes the tool out; otherwise s >= d is the depth at which it
+// is zero. A tool that retreats faster than the material recovers thus loses contact (Johnson 1985, section 6.5).
 //
 // Stop operator of threshold r: the deflection of a bristle that bends by at most r and then slips,
 //   s' = clamp(s + d' - d, -r, r), and 0 out of contact.
@@ -109,9 +109,6 @@ struct FeatureSpec {
 // The material's surface halfway through a step: the mean of the last surface and the tool, or the last surface if the
 // tool has left it and not reached it again.
 double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept;
-// The factor exp(b s / reference depth) of the relaxation times with the surface at `surface_m`; s is clamped to the
-// reference depth.
-double relaxation_time_factor(double slowing, double surface_m, double reference_depth_m) noexcept;
 
 // The position of the surface: that of the depth feature; 0 without one.
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;
