@@ -109,14 +109,10 @@ void describe_provenance(auto& file, Provenance& from) {
     file.count("contact_samples", from.contact_samples);
     file.count("samples_after_reduction", from.samples_after_reduction);
     file.count("seed", from.seed);
-    file.has("fit_seconds", false);  // older files
+    for (const char* key : {"fit_seconds", "relaxation_times"}) file.has(key, false);  // of earlier files
     file.text("weighting", from.weighting);
     file.text("reduction", from.reduction);
     file.text("relaxation", from.relaxation);
-    describe_each(file, "relaxation_times", from.relaxation_times, 0, Layout::one_line, [&](RelaxationTime& time) {
-      file.number("time_s", time.time_s, kPositive);
-      file.number("standard_error_s", time.standard_error_s, kNotNegative);
-    });
     file.number("training_within_jnd", from.training_within_jnd, {0.0, 1.0});
   });
 }

@@ -88,8 +88,8 @@ TEST(ModelReader, RefusesWrongNamesAndFeatures) {
                   {"m.json", "features[2].parts[0].drive.coefficient_N[3]", "1e+300", "from -1e+09 up to 1e+09", "; "}},
                  {"{\"kind\": \"depth\"},",
                   "",
-                  {"m.json:12:15:", "offset", "m.json:13:14:", "scale", "m.json:41:14:", "lower",
-                   "m.json:42:14:", "upper", "m.json:46:5:", "points", "m.json:52:5:", "centres"}},
+                  {"m.json:12:15:", "offset", "m.json:13:14:", "scale", "m.json:40:14:", "lower",
+                   "m.json:41:14:", "upper", "m.json:45:5:", "points", "m.json:51:5:", "centres"}},
              });
 }
 
@@ -129,14 +129,11 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
            "\"seed\": -1",
            {"m.json:33:13:", "provenance.seed", "found -1", "0 or more", "; "}},
           {"\"press-2\"", "2", {"m.json:28:31:", "provenance.recordings[1]", "found 2", "; "}},
-          {"\"standard_error_s\": 0.01",
-           "\"standard_error\": 0.01",
-           {"m.json:37:26:", "provenance.relaxation_times[0].standard_error_s", "no such field", "0 or more", "; "}},
-          {"[0.25, 0.25, 0.25]", "", {"m.json:45:15:", "domain.points", "empty", "; "}},
-          {"\"linear\"", "\"gauss\"", {"m.json:49:13:", "kernel", "\"gauss\"", "cubic", "; "}},
-          {"\"tail\": [1.5]", "\"tail\": [1.5, 2]", {"m.json:50:11:", "tail", "list of 2", "expected 1", "; "}},
-          {"[0.5, 0.5, 0.5],", "[0.5, 0.5],", {"m.json:52:5:", "centres[0]", "list of 2", "expected 3", "; "}},
-          {"[0.5, 0.5, 0.5],", "", {"m.json:55:14:", "weights", "list of 2", "expected 1", "; "}},
+          {"[0.25, 0.25, 0.25]", "", {"m.json:44:15:", "domain.points", "empty", "; "}},
+          {"\"linear\"", "\"gauss\"", {"m.json:48:13:", "kernel", "\"gauss\"", "cubic", "; "}},
+          {"\"tail\": [1.5]", "\"tail\": [1.5, 2]", {"m.json:49:11:", "tail", "list of 2", "expected 1", "; "}},
+          {"[0.5, 0.5, 0.5],", "[0.5, 0.5],", {"m.json:51:5:", "centres[0]", "list of 2", "expected 3", "; "}},
+          {"[0.5, 0.5, 0.5],", "", {"m.json:54:14:", "weights", "list of 2", "expected 1", "; "}},
           {"\"centres\"", "\"centers\"", {"m.json:1:1:", "\"centres\"", "\"grid\"", "\"trend_alone\"", "; "}},
           {"\"centres\"", "\"grid\": {}, \"centres\"", {"m.json:1:1:", "\"centres\"", "\"grid\"", "; "}},
       });
@@ -183,7 +180,7 @@ TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
              {
                  {"\"tail\"",
                   "\"tails\": 3,\n\"tail\"",
-                  {"m.json:50:12:", "tails", "unknown field", "format", "corrects_trend", "correction_limit_N",
+                  {"m.json:49:12:", "tails", "unknown field", "format", "corrects_trend", "correction_limit_N",
                    "largest_force_N", "lowest_force_N", "error_bound", "; "}},
                  {"{\"kind\": \"depth\"}",
                   "{\"kind\": \"depth\", \"time\": 1}",
@@ -194,11 +191,11 @@ TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
 TEST(ModelReader, RefusesWrongGrids) {
   expect_all(small_grid_text(),
              {
-                 {"[[-1, 0, 1]]", "[[-1, 0, 0]]", {"m.json:48:23:", "grid.nodes[0][2]", "found 0", "at least 2", "; "}},
-                 {"[[-1, 0, 1]]", "[[-1]]", {"m.json:48:15:", "grid.nodes[0]", "list of 1", "at least 2", "; "}},
-                 {"[[-1, 0, 1]]", "[]", {"m.json:48:14:", "grid.nodes", "list of 0", "expected 1", "; "}},
-                 {"[[-1, 0, 1]]", "[[-1, 1]]", {"m.json:49:17:", "grid.values_N", "list of 3", "; "}},
-                 {"1.5, 2.5, 3.5", "1.5, 2.5, {}", {"m.json:50:15:", "grid.values_N[2]", "found an object", "; "}},
+                 {"[[-1, 0, 1]]", "[[-1, 0, 0]]", {"m.json:47:23:", "grid.nodes[0][2]", "found 0", "at least 2", "; "}},
+                 {"[[-1, 0, 1]]", "[[-1]]", {"m.json:47:15:", "grid.nodes[0]", "list of 1", "at least 2", "; "}},
+                 {"[[-1, 0, 1]]", "[]", {"m.json:47:14:", "grid.nodes", "list of 0", "expected 1", "; "}},
+                 {"[[-1, 0, 1]]", "[[-1, 1]]", {"m.json:48:17:", "grid.values_N", "list of 3", "; "}},
+                 {"1.5, 2.5, 3.5", "1.5, 2.5, {}", {"m.json:49:15:", "grid.values_N[2]", "found an object", "; "}},
              });
 }
 
