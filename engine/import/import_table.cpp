@@ -56,7 +56,7 @@ class Importer {
   Status find_time_unit();
   std::optional<std::size_t> parse_row(RecordingRow& row);
   Error unreadable(std::size_t column, std::uint64_t line) const;
-  Status check_size(const RecordingRow& row, std::uint64_t line) const;
+  Error broken(const RowFault& fault, std::uint64_t line) const;
   Status check_time(const RecordingRow& row, std::uint64_t line);
   Status read_rows();
   void describe_time();
@@ -75,6 +75,7 @@ class Importer {
   bool own_time_ = false;     // the file has times; with a given rate they are only compared with it
   double own_seconds_ = 0.0;  // the last of these times that could be read
   std::optional<VelocityColumn> velocity_;
+  RowRules rules_;
 };
 
 // The unit of `quantity`: that of the user, otherwise that of the header.
@@ -188,18 +189,13 @@ Error Importer::unreadable(std::size_t column, std::uint64_t line) const {
                            "; remove the row, repair the value, or leave up to N such rows out: --skip-bad-rows N");
 }
 
-// Refuses a position or a force beyond the limits of recordings.
-Status Importer::check_size(const RecordingRow& row, std::uint64_t line) const {
-  const bool position_fits = std::abs(row.position_m) <= kMaximumPosition_m;
-  if (position_fits && std::abs(row.force_N) <= kMaximumForce_N) return {};
-  const std::size_t role = position_fits ? 2 : 1;
-  return fail_at(line, std::string("found a ") + kRoleNames[role] + " of " +
-                           (role == 2 ? short_number(row.force_N) + " N" : short_number(row.position_m) + " m") +
-                           " (column " + std::to_string(table_.columns[role].number) + quoted_name(index_of(role)) +
-                           " in " + table_.columns[role].unit + "), expected at most " +
-                           (role == 2 ? "1000000 N; check the unit and give it with --units mN"
-                                      : "1 m; check the unit and give it with --units mm") +
-                           ", or choose another column");
+Error Importer::broken(const RowFault& fault, std::uint64_t line) const {
+  if (fault.place == RowFault::Place::kEnd) return fail(fault.text);
+  const auto role = static_cast<std::size_t>(fault.role);
+  const bool has_unit = role < kRoles && !(role == 0 && request_.rate_Hz);
+  return fail_at(
+      fault.place == RowFault::Place::kFirstRow ? table_.layout.data_line : line,
+      fault.text + (has_unit ? ", or give the unit of " + column_words(table_.columns[role]) + " with --units" : ""));
 }
 
 // Refuses a time before that of the last row.
@@ -265,7 +261,6 @@ Status Importer::read_rows() {
       row.velocity_m_per_s = -row.velocity_m_per_s;
     }
     if (request_.flip_force) row.force_N = -row.force_N;
-    if (const Status status = check_size(row, number); !status) return status;
     if (request_.rate_Hz) {
       row.time_s = static_cast<double>(rows.size()) / *request_.rate_Hz;
     } else if (const Status status = check_time(row, number); !status) {
@@ -274,6 +269,7 @@ Status Importer::read_rows() {
       ++repeated;
       continue;
     }
+    if (const auto fault = rules_.check(row)) return broken(*fault, number);
     rows.push_back(row);
   }
   if (comments > 0) note("left out " + count_of(comments, "comment line") + " between the rows");
@@ -341,10 +337,7 @@ Result<ImportedTable> Importer::run() {
     if (const Status status = find_unit_of(role); !status) return status.error();
   }
   if (const Status status = read_rows(); !status) return status.error();
-  if (table_.recording.rows.size() < kRecordingMinimumRows) {
-    return fail("found " + count_of(table_.recording.rows.size(), "row") + " of numbers, expected at least " +
-                std::to_string(kRecordingMinimumRows) + "; record for longer");
-  }
+  if (const auto fault = rules_.finish()) return broken(*fault, 0);
   describe_time();
   check_velocity();
   if (request_.rate_Hz) table_.columns[0] = {};

@@ -2,11 +2,9 @@
 //
 // Columns: time_s, position_m, force_N required; velocity_m_per_s and acceleration_m_per_s2 optional; names exact, any
 // order; further columns are ignored. Lines that begin with '#' before the header are comments. Time is strictly
-// increasing; the median time step of the first 1,000 rows (all rows of a shorter recording) is that of 10 Hz to 20
-// kHz, with 5 % tolerance; single steps may be of any length. Position is at most 1 m and force at most 1e6 N in
-// magnitude, because a larger value is in a wrong unit. CRLF, a UTF-8 byte order mark, a missing last newline, blank
-// lines at the end, blanks around numbers and a leading '+' are accepted. All other faults, and lines beyond 64 KiB,
-// are errors,
+// increasing; recording_rules.h limits position, force, the median time step and the length of a line. CRLF, a UTF-8
+// byte order mark, a missing last newline, blank lines at the end, blanks around numbers and a leading '+' are
+// accepted. All other faults are errors,
 //   file:line:column: found X, expected Y; what to do
 // for the first fault in the file, with columns counted in bytes from 1 (after a byte order mark). Numbers use '.' as
 // decimal point in every locale.

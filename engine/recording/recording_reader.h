@@ -30,8 +30,7 @@ class RecordingReader {
   RecordingColumns columns() const;
 
   // Reads up to `capacity` rows (at least 1) into `rows`; returns their number, which is smaller only at the end.
-  // Errors: a row that breaks a rule of recording.h; fewer than 10 rows in total; a rate outside the range, detected at
-  // row 1,000 or at the end, after earlier rows were returned. After an error each call returns it again.
+  // Errors: a row or recording that breaks a rule (recording_rules.h). After an error each call returns it again.
   Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
 
  private:

@@ -30,8 +30,8 @@ inline std::array<double, kKnownColumns> column_values(const RecordingRow& row) 
 inline constexpr double kMaximumPosition_m = 1.0;
 // The weight of a hundred tonnes: a larger value is in a wrong unit, or the sensor is broken.
 inline constexpr double kMaximumForce_N = 1e6;
-// The range of sampling rates. The median step is compared, with 5 % tolerance for slow clocks and for times rounded to
-// few digits.
+// The range of sampling rates. The median step is compared, with a tolerance for slow clocks and for times rounded to
+// few digits; single steps may be of any length.
 inline constexpr double kMinimumRate_Hz = 10.0;
 inline constexpr double kMaximumRate_Hz = 20000.0;
 inline constexpr double kRateTolerance = 0.05;

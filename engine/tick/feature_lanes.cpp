@@ -10,12 +10,6 @@ namespace {
 // Smaller values are set to 0: denormals would slow every later operation.
 constexpr double kNothing_N = 1e-30;
 
-PALPATE_INLINE void step_of(V4& keep, V4& gain, const V4& time_s, double step_s, double per_step) noexcept {
-  keep = -step_s / time_s;
-  to_exponential(keep);
-  gain = time_s * (1.0 - keep) * per_step;
-}
-
 PALPATE_INLINE void prepare_groups(const BranchLanes::Group* group, std::size_t count, double step_s, double surface_m,
                                    BranchLanes::Step* step) noexcept {
   const double per_step = 1.0 / step_s;
@@ -27,7 +21,10 @@ PALPATE_INLINE void prepare_groups(const BranchLanes::Group* group, std::size_t 
       to_exponential(clock);
       time_s *= clock;
     }
-    step_of(step[i].keep, step[i].gain, time_s, step_s, per_step);
+    V4& keep = step[i].keep;
+    keep = -step_s / time_s;
+    to_exponential(keep);
+    step[i].gain = time_s * (1.0 - keep) * per_step;
   }
 }
 
@@ -105,13 +102,6 @@ double sum_of_lanes(const V4* value, std::size_t first, std::size_t count) noexc
   double sum = 0.0;
   for (std::size_t i = first; i < first + count; ++i) sum += value[i / kLanes][i % kLanes];
   return sum;
-}
-
-BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
-  V4 keep;
-  V4 gain;
-  step_of(keep, gain, V4{relaxation_time_s, 1.0, 1.0, 1.0}, step_s, 1.0 / step_s);
-  return {keep[0], gain[0]};
 }
 
 void CurveLanes::set(std::size_t lane, const DriveCurve& drive) noexcept {

@@ -59,12 +59,6 @@ struct alignas(sizeof(V4)) CurveLanes {
   double least_reference_m() const noexcept { return least_m; }
 };
 
-// One step of a Maxwell branch: z' = keep z + gain (g(s') - g(s)).
-struct BranchStep {
-  double keep = 0.0;
-  double gain = 0.0;
-};
-BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
 // The largest number of groups of four for the branches or bristles of a filter: 8 features of 8 parts.
 inline constexpr std::size_t kMaxLaneGroups = 16;
 
@@ -86,6 +80,7 @@ class BranchLanes {
     V4 slowing_depth_m{1.0, 1.0, 1.0, 1.0};
     bool slows = false;  // whether one lane has a slowing
   };
+  // z' = keep z + gain (g(s') - g(s)).
   struct alignas(sizeof(V4)) Step {
     V4 keep;
     V4 gain;

@@ -25,13 +25,6 @@ double surface_halfway(double last_surface_m, double last_depth_m, double depth_
   return surface_search::halfway_m(last_surface_m, last_depth_m, depth_m);
 }
 
-double relaxation_time_factor(double slowing, double surface_m, double reference_depth_m) noexcept {
-  if (slowing == 0.0) return 1.0;
-  V4 factor{slowing * std::min(surface_m / reference_depth_m, 1.0)};
-  to_exponential(factor);  // as in the lanes, so that both have the same bits
-  return factor[0];
-}
-
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
   for (const FeatureSpec& spec : specs) {
     if (spec.kind == FeatureKind::depth) return spec.surface_position_m;

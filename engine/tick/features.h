@@ -122,9 +122,6 @@ struct FeatureSpec {
 // The material's surface halfway through a step: the mean of the last surface and the tool, or the last surface if the
 // tool has left it and not reached it again.
 double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept;
-// The factor exp(b s / reference depth) of the relaxation times with the surface at `surface_m`; s is clamped to the
-// reference depth.
-double relaxation_time_factor(double slowing, double surface_m, double reference_depth_m) noexcept;
 
 // The position of the surface: that of the depth feature; 0 without one.
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;

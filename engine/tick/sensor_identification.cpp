@@ -102,16 +102,14 @@ SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, Recordin
   sensor.encoder_step_m = rounded_step(quantisation_step(rows, count, &RecordingRow::position_m));
   const double position_noise_m = quiet_noise(rows, count, &RecordingRow::position_m);
   const double quantisation_m = sensor.encoder_step_m / std::sqrt(12.0);
-  // The quantisation is modelled as such; only noise above it counts. It is rounded to a preferred number, by a factor
-  // of at most 1.6, which exceeds the difference between recordings of one rig. The velocity changes less than by half
-  // a decade of the density of the jerk.
+  // Rounded by a factor of at most 1.6, which exceeds the difference between recordings of one rig and changes the
+  // velocity less than half a decade of the density of the jerk.
   sensor.position_noise_m =
       preferred_number(std::sqrt(std::max(0.0, position_noise_m * position_noise_m - quantisation_m * quantisation_m)));
   if (sensor.encoder_step_m < kLeastStepOverNoise * sensor.position_noise_m) sensor.encoder_step_m = 0.0;
   sensor.has_velocity = columns.velocity;
   sensor.has_acceleration = columns.acceleration;
-  // Floors: 0.1 mm/s and 10 mm/s^2, finer than any sensor of this kind; a column
-  // of exact values still leaves the estimator well conditioned.
+  // The floors are finer than any sensor, and a column of exact values leaves the estimator well conditioned.
   if (columns.velocity) {
     sensor.velocity_noise_m_per_s = std::max(1e-4, column_noise(rows, count, &RecordingRow::velocity_m_per_s));
   }

@@ -1,11 +1,10 @@
 // Identifies the sensor of a recording, which the motion estimator needs: encoder step, and noise of position, velocity
 // and acceleration.
 //
-// Encoder step: the smallest change of position above 1 nm, to nine digits, if 99 % of the changes are multiples of it,
-// at least 5 % differ from the one before, and it is at least half of the noise; else 0. Noise: the standard deviation
-// of second differences divided by sqrt(6), the factor for white noise, in the 20 % quantile of 50-sample windows,
-// where smooth motion nearly vanishes. The position noise excludes the quantisation and is rounded to the series 1, 2,
-// 5, 10, so that recordings of one rig have equal sensors. Errors: none. Least noise: 0.1 mm/s and 10 mm/s^2.
+// Encoder step: the smallest change of position, if nearly all changes are its multiples, they vary, and it exceeds the
+// noise; else 0. Noise: the standard deviation of second differences divided by sqrt(6), the factor for white noise, in
+// the quietest windows, where smooth motion nearly vanishes. The position noise excludes the quantisation and is
+// rounded so that recordings of one rig have equal sensors. The source gives the thresholds. Errors: none.
 // Thread guarantee: slow side (allocates).
 #pragma once
 

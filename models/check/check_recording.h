@@ -6,6 +6,7 @@
 // Thread guarantee: slow side, pure but for check_recording_file (does I/O).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,8 +74,15 @@ struct CheckedFile {
 // Errors: those of RecordingReader.
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request);
 
-// Checks several recordings of one set. Equal rows, and forces that contradict those of another recording
-// (contradiction.h), are findings of the later one. Errors: those of the first file that cannot be read.
+// The median difference of the forces of two recordings of one set, second minus first, N, if no single model can
+// render both; else none. The cause may be another specimen, a preload, or a force zero. They contradict each other if
+// the central 90 % of their forces do not overlap in four of five bins of their positions, if the median difference
+// exceeds two JND, and if no shift of one against the other explains this (models/recordings/force_curve.h). A shift is
+// another surface, which a fit corrects.
+std::optional<double> find_contradiction_N(const Recording& first, const Recording& second, const JndLine& jnd);
+
+// Checks several recordings of one set. Equal rows, and forces that contradict those of another recording, are findings
+// of the later one. Errors: those of the first file that cannot be read.
 Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths,
                                                        const CheckRequest& request);
 

@@ -6,13 +6,19 @@
 
 #include "engine/base/text.h"
 #include "models/check/check_recording.h"
-#include "models/check/contradiction.h"
+#include "models/recordings/force_curve.h"
 
 namespace palpate {
 namespace {
 
-// Above this ratio of speeds a material may have different loading forces.
-constexpr double kOtherSpeed = 3.0;
+constexpr double kApartShare = 0.8;
+constexpr double kLeastJnds = 2.0;
+
+std::vector<ForceAtPosition> forces_of(const Recording& recording) {
+  std::vector<ForceAtPosition> forces;
+  for (const RecordingRow& row : recording.rows) forces.push_back({row.position_m, row.force_N});
+  return forces;
+}
 
 // Inserts a finding before those of its severity.
 void add_finding(CheckedFile& file, Finding finding) {
@@ -39,21 +45,33 @@ void add_repetitions(std::vector<CheckedFile>& files) {
 void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
   for (std::size_t i = 1; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const auto found = find_contradiction(files[j].recording(), files[i].recording(), jnd);
-      if (!found) continue;
-      const bool speed = found->speed_ratio > kOtherSpeed;
-      add_finding(files[i], {"contradiction", Severity::warning, found->force_N,
-                             "its forces differ by " + general(std::abs(found->force_N), 2) + " N from those of " +
-                                 files[j].path + " at the same depth: the cause may be another specimen, a preload" +
-                                 (speed ? ", a force zero or a speed ratio of " + general(found->speed_ratio, 2)
-                                        : std::string(" or a force zero")),
-                             "one model cannot render both: fit them separately, or correct the difference first"});
+      const auto found_N = find_contradiction_N(files[j].recording(), files[i].recording(), jnd);
+      if (!found_N) continue;
+      add_finding(files[i],
+                  {"contradiction", Severity::warning, *found_N,
+                   "its forces differ by " + general(std::abs(*found_N), 2) + " N from those of " + files[j].path +
+                       " at the same depth: the cause may be another specimen, a preload, a force zero or "
+                       "another speed",
+                   "one model cannot render both: fit them separately, or correct the difference first"});
       return;
     }
   }
 }
 
 }  // namespace
+
+std::optional<double> find_contradiction_N(const Recording& first, const Recording& second, const JndLine& jnd) {
+  const std::vector<ForceAtPosition> a = forces_of(first);
+  const std::vector<ForceAtPosition> b = forces_of(second);
+  const double bin_m = common_bin_m(a, b);
+  if (!(bin_m > 0.0)) return std::nullopt;
+  const ForceCurve one(a, bin_m);
+  const ForceCurve other(b, bin_m);
+  const auto found = difference(one, other, 0.0, jnd);
+  if (!found || found->apart_share < kApartShare || !(found->median_jnds > kLeastJnds)) return std::nullopt;
+  if (find_shift_m(one, other, jnd)) return std::nullopt;
+  return found->median_N;
+}
 
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request) {
   RecordingFaults faults;

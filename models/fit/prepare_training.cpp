@@ -275,9 +275,6 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   prepared.common.sensor = source.sensor();
   Provenance& provenance = prepared.common.provenance;
   provenance.surfaces = std::move(corrected->surfaces);
-  for (const double time_s : relaxation_times_s(prepared.common.features)) {
-    provenance.relaxation_times.push_back({time_s, 0.0});
-  }
   for (const auto& recording : source.recordings()) provenance.recordings.push_back(recording.name);
   provenance.scene = request.scene;
   provenance.samples = source.rows();

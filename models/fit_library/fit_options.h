@@ -1,4 +1,4 @@
-// The options of a fit as text, for `palpate fit`, the C interface and Python.
+// The options of a fit as text, for `palpate fit`, the C interface and Python; palpate_fit.h describes them.
 //
 // A list of features:
 //   depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.05mm+0.1mm,creep:0.1+1
@@ -26,18 +26,19 @@ inline constexpr int kMostFittedCentres = 2000;
 
 inline constexpr const char* kRecipe2009 = "paper-2009";
 
+// Empty: none, or the default.
 struct FitOptions {
-  std::string method = "greedy";       // the names of methods()
-  std::string centres = "100";         // 1 to kMostFittedCentres
-  std::string candidates = "100";      // a number, or all
-  std::string kernel = "cubic";        // kernel_names()
-  std::string weighting = "jnd";       // kWeightingNames
-  std::string reduction = "coverage";  // kReductionNames
-  std::string recipe;                  // empty: none; kRecipe2009
-  std::string features = "auto";       // auto, scene, or a list
-  std::string relaxation;              // empty: default; scene, auto, or times such as 0.17,1.27
-  std::string surface = "auto";        // auto, recorded
-  std::string grid;                    // empty: default; nodes per feature such as 25x11x11x11
+  std::string method = "greedy";
+  std::string centres = "100";
+  std::string candidates = "100";
+  std::string kernel = "cubic";
+  std::string weighting = "jnd";
+  std::string reduction = "coverage";
+  std::string recipe;
+  std::string features = "auto";
+  std::string relaxation;
+  std::string surface = "auto";
+  std::string grid;
   std::string seed = "1";
 };
 

@@ -33,11 +33,6 @@
 
 namespace palpate {
 
-struct RelaxationTime {
-  double time_s = 0.0;
-  double standard_error_s = 0.0;  // 0: given by the user or the scene
-};
-
 // The corrections of a training recording: its offset from the others of its set, its force zero and force lag.
 struct RecordingSurface {
   std::string name;
@@ -60,7 +55,6 @@ struct Provenance {
   std::string weighting;   // jnd, relative, none
   std::string reduction;   // coverage, force, none
   std::string relaxation;  // scene, auto, given
-  std::vector<RelaxationTime> relaxation_times;
   double training_within_jnd = 0.0;
 };
 

@@ -1,14 +1,13 @@
 // Estimates the surface and the force zero of one recording from it alone.
 //
 // Free air is a range at the outer end of the positions where the force during loading does not depend on the position:
-// the medians of its slices stay within the noise, although a force with the mean stiffness of the recording would
-// change by twenty times as much there. A force there that is proportional to the acceleration is the inertia of the
-// mass carried by the force sensor; it is subtracted. Without free air, the tool may never have left the material, and
-// neither force zero nor surface is identified.
+// the medians of its slices stay within the noise, although a force with the mean stiffness of the recording would not.
+// A force there that is proportional to the acceleration is the inertia of the mass carried by the force sensor; it is
+// subtracted. Without free air, neither force zero nor surface is identified.
 //
 // Force zero: the mean force in free air, without outliers. Surface: the onset of force in touches of a surface at rest
-// that begin in free air: the first of the recording and those after kRestBeforeTouch_s of air. (A surface that still
-// recovers from the last touch meets the tool late, by up to a millimetre.) During loading,
+// that begin in free air: the first, and those after kRestBeforeTouch_s of air, because a surface that still recovers
+// meets the tool late, by up to a millimetre. During loading,
 //   J(d0) = sum_i (f_i - zero - x_i^n (a (1 - k x_i) + b k x_i))^2,
 //           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5,  k = n / ((n + 1) 3 mm)
 // is minimised over d0 (surface_onset.h): a force law that is convex or concave and rises up to 3 mm. Offsets within

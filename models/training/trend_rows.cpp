@@ -187,18 +187,18 @@ std::vector<DriveCurve> curve_basis(FeatureKind kind, double reference_depth_m) 
 }
 
 TrendRows::TrendRows(FeatureList list, const TrendProblem& problem, std::size_t stride)
-    : list_(std::move(list)),
-      problem_(problem),
-      stride_(stride),
-      elastic_basis_(spline_basis()),
-      times_s_(relaxation_times_s(list_.features)),
-      drives_(curve_basis(FeatureKind::maxwell_spectrum, problem.reference_depth_m)),
-      branches_N_(times_s_.size() * kCurveTerms, 0.0) {
+    : list_(std::move(list)), problem_(problem), stride_(stride), elastic_basis_(spline_basis()) {
   if (!list_.surface.empty()) surface_.emplace_back(list_.surface);
+  const double depth_m = problem_.reference_depth_m;
+  const std::vector<DriveCurve> drives = curve_basis(FeatureKind::maxwell_spectrum, depth_m);
   for (const FeatureSpec& spec : list_.features) {
-    if (is_branch(spec.kind)) slowing_ = spec.slowing;
-    for (std::size_t p = 0; is_bristle(spec.kind) && p < spec.part_count; ++p) {
-      bristles_.push_back(bristle(spec.kind, spec.parts[p], problem_.reference_depth_m));
+    for (std::size_t p = 0; p < spec.part_count; ++p) {
+      if (is_bristle(spec.kind)) bristles_.push_back(bristle(spec.kind, spec.parts[p], depth_m));
+      if (!is_branch(spec.kind)) continue;
+      ++branch_count_;
+      for (std::size_t k = 0; k < kCurveTerms; ++k) {
+        branches_[k].add(drives[k], spec.parts[p].relaxation_time_s, spec.slowing, depth_m);
+      }
     }
     const std::size_t count = spec.kind == FeatureKind::depth      ? kElasticTerms
                               : spec.kind == FeatureKind::velocity ? 2 * kViscosityCoefficients
@@ -209,31 +209,14 @@ TrendRows::TrendRows(FeatureList list, const TrendProblem& problem, std::size_t 
   }
 }
 
-// Advances the outputs z_tk of the Maxwell branches for all relaxation times tau_t and drive curves g_k,
-//   dz/dt = g_k'(s) ds/dt - z / tau_t
-// with s the depth of the material's surface (engine/tick/features.h). `depth_m`: that of the tool, at most s.
+// `depth_m`: that of the tool, at most that of the material's surface (engine/tick/features.h).
 void TrendRows::update_branches(double time_s, double depth_m, double surface_m) {
-  if (times_s_.empty()) return;
-  std::array<double, kCurveTerms> change{};
+  if (!started_) branch_memory_ = {};
+  BranchLanes::Step step[kMaxLaneGroups];
+  const double step_s = started_ ? time_s - last_time_s_ : 0.0;
+  branches_[0].prepare(step_s, surface_halfway(last_surface_m_, last_depth_m_, depth_m), step);
   for (std::size_t k = 0; k < kCurveTerms; ++k) {
-    const double drive = drives_[k].at(surface_m);
-    change[k] = drive - last_drive_[k];
-    last_drive_[k] = drive;
-  }
-  const double step_s = time_s - last_time_s_;
-  if (!started_) {
-    std::fill(branches_N_.begin(), branches_N_.end(), 0.0);
-  } else if (step_s > 0.0) {
-    const double halfway_m = surface_halfway(last_surface_m_, last_depth_m_, depth_m);
-    const double factor = relaxation_time_factor(slowing_, halfway_m, problem_.reference_depth_m);
-    double* value = branches_N_.data();
-    for (const double relaxation_time_s : times_s_) {
-      const BranchStep step = branch_step(factor * relaxation_time_s, step_s);
-      for (std::size_t k = 0; k < kCurveTerms; ++k, ++value) {
-        *value = step.keep * *value + step.gain * change[k];
-        if (std::abs(*value) < 1e-30) *value = 0.0;
-      }
-    }
+    branches_[k].advance(step, surface_m, branch_memory_[k], branch_memory_[k]);
   }
   started_ = true;
   last_time_s_ = time_s;
@@ -264,7 +247,9 @@ void TrendRows::add(const MotionRow& sample) {
       for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
     }
   }
-  to = std::copy(branches_N_.begin(), branches_N_.end(), to);
+  for (std::size_t i = 0; i < branch_count_; ++i) {
+    for (const PartMemory& memory : branch_memory_) *to++ = sum_of_lanes(memory.value, i, 1);
+  }
   for (const FeatureFilter& filter : bristles_) to = std::copy_n(filter.vector().values.begin(), kCurveTerms, to);
   rows_.push_back({sample.force_N, velocity_m_per_s, depth_m, surface_m - depth_m, sample.fold});
 }

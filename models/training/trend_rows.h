@@ -134,14 +134,11 @@ class TrendRows {
   std::vector<ElasticSpline> elastic_basis_;
   std::vector<FeatureFilter> surface_;   // size 0 or 1
   std::vector<FeatureFilter> bristles_;  // kCurveTerms values each
-  // The branches for all relaxation times and curves, discretised as in the features. Each curve is evaluated once per
-  // sample, each decay once per relaxation time.
-  std::vector<double> times_s_;
-  std::vector<DriveCurve> drives_;
-  double slowing_ = 0.0;
-  std::vector<double> branches_N_;                // kCurveTerms for each time
-  std::array<double, kCurveTerms> last_drive_{};  // at the last sample, as below
-  double last_time_s_ = 0.0;
+  // The Maxwell branches: those of each curve for all relaxation times.
+  std::array<BranchLanes, kCurveTerms> branches_;
+  std::array<PartMemory, kCurveTerms> branch_memory_{};
+  std::size_t branch_count_ = 0;
+  double last_time_s_ = 0.0;  // as the next two, at the last sample
   double last_depth_m_ = 0.0;
   double last_surface_m_ = 0.0;
   bool started_ = false;

@@ -88,12 +88,9 @@ std::string training_contradiction(const std::vector<std::string>& recordings, c
                   : "where the model is in contact; the other forces were measured outside of it");
 }
 
-std::string relaxation_text(const std::vector<RelaxationTime>& times) {
+std::string relaxation_text(const std::vector<FeatureSpec>& features) {
   std::vector<std::string> texts;
-  for (const RelaxationTime& time : times) {
-    texts.push_back(general(time.time_s, 3) + " s" +
-                    (time.standard_error_s > 0.0 ? " +- " + general(time.standard_error_s, 2) : ""));
-  }
+  for (const double time_s : relaxation_times_s(features)) texts.push_back(general(time_s, 3) + " s");
   return texts.empty() ? "none" : joined(texts);
 }
 
@@ -143,7 +140,7 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
   if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
     std::cout << "depth starts        at " << fixed(1e3 * begins_m, 3)
               << " mm, where the force of the recordings begins\n";
-  std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
+  std::cout << "relaxation times    " << relaxation_text(fit.data.features) << "\n"
             << "correction          "
             << (prepared.correction ? correction_text(*prepared.correction) : "the whole force, without a trend")
             << "\n"

@@ -139,8 +139,7 @@ class Measurement {
     data_.surfaces = provenance.surfaces;
     data_.gains = prepared.palpate.gains;
     if (prepared.palpate.correction) data_.corrects = prepared.palpate.correction->used;
-    for (const RelaxationTime& one : prepared.paper.common.provenance.relaxation_times)
-      data_.times_2009_s.push_back(one.time_s);
+    data_.times_2009_s = relaxation_times_s(prepared.paper.common.features);
   }
 
   Status evaluate_test(const PreparedRecordingPointer& tested, double counted_from_s) {

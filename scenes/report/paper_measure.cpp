@@ -95,12 +95,11 @@ class PaperMeasurement {
       if (!prepared) return prepared.error();
       PaperRun run{material,
                    fitted,
-                   {},
+                   relaxation_times_s(prepared->common.features),
                    recordings_[0]->recording.rows.size(),
                    recordings_[1]->recording.rows.size(),
                    static_cast<std::uint64_t>(prepared->sites.count()),
                    {}};
-      for (const RelaxationTime& one : prepared->common.provenance.relaxation_times) run.times_s.push_back(one.time_s);
       if (const Status status = measure_run(std::move(run), *prepared); !status) return status;
       if (data_.runs.size() > 1) continue;
       if (const Status status = time_sites(*prepared); !status) return status;

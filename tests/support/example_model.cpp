@@ -56,7 +56,6 @@ Provenance example_provenance() {
   from.weighting = "jnd";
   from.reduction = "coverage";
   from.relaxation = "auto";
-  from.relaxation_times = {{0.17, 0.01}, {1.27, 0.0}};
   from.training_within_jnd = 0.9991;
   return from;
 }

@@ -20,12 +20,9 @@ inline constexpr NumberRange kDriveForce_N{-1e9, 1e9};
 inline constexpr NumberRange kSlowing{-20.0, 20.0};
 inline constexpr const char* kOnePerFeature = "numbers, one per feature";
 
-// Whether members, or items, have a line each or are all on one line.
-enum class Layout { lines, one_line };
-
-void describe_each(auto& file, const char* key, auto& items, std::size_t most, Layout layout, const auto& body) {
+void describe_each(auto& file, const char* key, auto& items, std::size_t most, const auto& body) {
   std::size_t count = items.size();
-  file.each(key, count, most, layout, [&](std::size_t i) {
+  file.each(key, count, most, [&](std::size_t i) {
     if (i == items.size()) items.emplace_back();
     body(items[i]);
   });
@@ -37,7 +34,7 @@ void describe_unless_0(auto& file, const char* key, double& value, NumberRange r
 }
 
 void describe_drive(auto& file, DriveCurve& curve) {
-  file.object("drive", "an object with reference_depth_m and coefficient_N", Layout::one_line, [&] {
+  file.object("drive", "an object with reference_depth_m and coefficient_N", [&] {
     file.number("reference_depth_m", curve.reference_depth_m, kPositive);
     file.list("coefficient_N", curve.coefficient_N, kDriveForce_N);
     curve.has_knots = file.has("knot_N", curve.has_knots);
@@ -62,11 +59,11 @@ void describe_feature(auto& file, FeatureSpec& spec) {
     spec.part_count = 1;
     return describe_part(0);
   }
-  file.each("parts", spec.part_count, kMaxFeatureParts, Layout::one_line, describe_part);
+  file.each("parts", spec.part_count, kMaxFeatureParts, describe_part);
 }
 
 void describe_trend(auto& file, Trend& trend) {
-  file.object("trend", "an object", Layout::lines, [&] {
+  file.object("trend", "an object", [&] {
     file.number("reference_depth_m", trend.reference_depth_m, kPositive);
     if (file.has("elastic_N", false)) {  // of earlier files: powers of u, of which fits used three, and knots
       std::array<double, 6> power_N{};
@@ -97,11 +94,11 @@ void describe_surface(auto& file, RecordingSurface& surface) {
 }
 
 void describe_provenance(auto& file, Provenance& from) {
-  file.object("provenance", "an object", Layout::lines, [&] {
+  file.object("provenance", "an object", [&] {
     file.names("recordings", from.recordings);
     // Models fitted to positions as recorded have no such list.
     if (file.has("surfaces", !from.surfaces.empty())) {
-      describe_each(file, "surfaces", from.surfaces, 0, Layout::lines,
+      describe_each(file, "surfaces", from.surfaces, 0,
                     [&](RecordingSurface& surface) { describe_surface(file, surface); });
     }
     file.text("scene", from.scene);
@@ -109,14 +106,10 @@ void describe_provenance(auto& file, Provenance& from) {
     file.count("contact_samples", from.contact_samples);
     file.count("samples_after_reduction", from.samples_after_reduction);
     file.count("seed", from.seed);
-    file.has("fit_seconds", false);  // older files
+    for (const char* key : {"fit_seconds", "relaxation_times"}) file.has(key, false);  // of earlier files
     file.text("weighting", from.weighting);
     file.text("reduction", from.reduction);
     file.text("relaxation", from.relaxation);
-    describe_each(file, "relaxation_times", from.relaxation_times, 0, Layout::one_line, [&](RelaxationTime& time) {
-      file.number("time_s", time.time_s, kPositive);
-      file.number("standard_error_s", time.standard_error_s, kNotNegative);
-    });
     file.number("training_within_jnd", from.training_within_jnd, {0.0, 1.0});
   });
 }
@@ -127,14 +120,14 @@ void describe_names(auto& file, ModelData& data) {
 }
 
 void describe_features(auto& file, ModelData& data) {
-  describe_each(file, "features", data.features, kMaxFeatures, Layout::lines,
+  describe_each(file, "features", data.features, kMaxFeatures,
                 [&](FeatureSpec& spec) { describe_feature(file, spec); });
 }
 
 // All other members; the size of some depends on the features.
 void describe_rest(auto& file, ModelData& data) {
   const auto dimension = static_cast<Eigen::Index>(data.features.size());
-  file.object("normalisation", "an object with offset and scale", Layout::lines, [&] {
+  file.object("normalisation", "an object with offset and scale", [&] {
     file.numbers("offset", data.offset, dimension, kOnePerFeature);
     file.numbers("scale", data.scale, dimension, kOnePerFeature, kPositive);
   });
@@ -142,12 +135,12 @@ void describe_rest(auto& file, ModelData& data) {
   file.flag("corrects_trend", data.corrects_trend);
   file.number("correction_limit_N", data.correction_limit_N, {0.0, kMaximumForce_N});
   file.number("largest_force_N", data.largest_force_N, {0.0, kMaximumForce_N});
-  file.object("jnd", "an object with offset_N and weber_fraction", Layout::one_line, [&] {
+  file.object("jnd", "an object with offset_N and weber_fraction", [&] {
     file.number("offset_N", data.jnd.offset_N, kPositive);
     file.number("weber_fraction", data.jnd.weber_fraction, kNotNegative);
   });
   describe_provenance(file, data.provenance);
-  file.object("domain", "an object", Layout::lines, [&] {
+  file.object("domain", "an object", [&] {
     file.numbers("lower", data.lower, dimension, kOnePerFeature);
     file.numbers("upper", data.upper, dimension, kOnePerFeature);
     file.number("inner_radius", data.cover.inner_radius, kNotNegative);
@@ -157,14 +150,14 @@ void describe_rest(auto& file, ModelData& data) {
   describe_unless_0(file, "lowest_force_N", data.lowest_force_N, {-kMaximumForce_N, 0.0});
   if (file.has("sensor", data.sensor.has_value())) {
     SensorSpec& sensor = data.sensor ? *data.sensor : data.sensor.emplace();
-    file.object("sensor", "an object", Layout::one_line, [&] {
+    file.object("sensor", "an object", [&] {
       file.number("encoder_step_m", sensor.encoder_step_m, kNotNegative);
       file.number("position_noise_m", sensor.position_noise_m, kNotNegative);
     });
   }
   if (file.has("error_bound", data.error_bound.has_value())) {
     ErrorBound& bound = data.error_bound ? *data.error_bound : data.error_bound.emplace();
-    file.object("error_bound", "an object", Layout::one_line, [&] {
+    file.object("error_bound", "an object", [&] {
       file.number("floor_N", bound.floor_N, kNotNegative);
       file.number("per_force", bound.per_force, kNotNegative);
       file.number("per_distance_N", bound.per_distance_N, kNotNegative);
@@ -179,7 +172,7 @@ void describe_rbf(auto& file, RbfFunction& function, Eigen::Index dimension) {
   const int tail = tail_size(tail_degree(function.kernel), static_cast<int>(dimension));
   file.numbers("tail", function.tail, tail, "coefficients");
   file.points("centres", function.centres, dimension);
-  file.numbers("weights", function.weights, function.centre_count(), "numbers, one per centre", {}, Layout::lines);
+  file.numbers("weights", function.weights, function.centre_count(), "numbers, one per centre");
 }
 
 }  // namespace palpate::model_file

@@ -39,13 +39,6 @@ std::string name_fault(const std::string& name) {
   return plain ? "" : "a control character, comma or quote";
 }
 
-// `items` between brackets.
-std::string joined(const char* open, const std::vector<std::string>& items, const char* between, const char* close) {
-  std::string text = open;
-  for (std::size_t i = 0; i < items.size(); ++i) text.append(i == 0 ? "" : between).append(items[i]);
-  return text.append(close);
-}
-
 // Reads untrusted text: every value is checked.
 class ModelReader {
  public:
@@ -82,8 +75,7 @@ class ModelReader {
     fields_.fill(fields_.member(at_, key, "a list of numbers"), n, "coefficients", values.data(), range);
   }
   // Exactly `size` numbers, which error messages call `words`.
-  void numbers(const char* key, Eigen::VectorXd& values, Eigen::Index size, const char* words, NumberRange range = {},
-               Layout = {}) {
+  void numbers(const char* key, Eigen::VectorXd& values, Eigen::Index size, const char* words, NumberRange range = {}) {
     values = Eigen::VectorXd::Zero(size);
     fields_.fill(fields_.member(at_, key, "a list of numbers"), static_cast<std::size_t>(size), words, values.data(),
                  range);
@@ -131,12 +123,12 @@ class ModelReader {
     choice("kind", value, names);
   }
 
-  void object(const char* key, const char* expected, Layout, const auto& body) {
+  void object(const char* key, const char* expected, const auto& body) {
     inside(fields_.member(at_, key, expected), body);
   }
 
   // `most`: the largest number of items; 0: any number, or none.
-  void each(const char* key, std::size_t& count, std::size_t most, Layout, const auto& body) {
+  void each(const char* key, std::size_t& count, std::size_t most, const auto& body) {
     const std::string expected = most == 0 ? "a list" : "a list of 1 to " + std::to_string(most) + " " + key;
     const JsonNode list = fields_.list(at_, key, expected);
     count = list.value != nullptr ? list.value->size() : 0;
@@ -154,7 +146,7 @@ class ModelReader {
       if (at_.value->contains(key)) present.emplace_back(key);
     }
     if (present.size() != 1) {
-      const std::string given = present.empty() ? "none" : joined("\"", present, "\" and \"", "\"");
+      const std::string given = present.empty() ? "none" : '"' + joined(present, "\" and \"") + '"';
       fields_.complain("", "found " + given + R"(, expected one of "centres", "grid", "trend_alone")");
     } else if (present[0] == "centres") {
       RbfFunction function;
@@ -239,44 +231,44 @@ class ModelReader {
   JsonNode at_;
 };
 
-// Writes numbers as the shortest decimals that read back as the same double.
 class ModelWriter {
  public:
+  // One number a line, so that models can be compared by lines. Numbers read back as the same double.
+  std::string write(ModelData& data) {
+    text("format", "palpate-model");
+    count("version", kModelVersion);
+    describe_names(*this, data);
+    describe_features(*this, data);
+    describe_rest(*this, data);
+    return document_.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  }
+
   bool has(const char*, bool there) { return there; }
-  void text(const char* key, const std::string& value) { add(key, quoted(value)); }
-  void name(const char* key, const std::string& value) { text(key, value); }
-  void flag(const char* key, bool value) { add(key, value ? "true" : "false"); }
-  void count(const char* key, std::uint64_t value) { add(key, std::to_string(value)); }
-  void number(const char* key, double value, NumberRange = {}) { add(key, number_text(value)); }
-  void list(const char* key, const auto& values, NumberRange = {}) { add(key, list_text(values)); }
-  void numbers(const char* key, const Eigen::VectorXd& values, Eigen::Index, const char*, NumberRange = {},
-               Layout layout = Layout::one_line) {
-    add(key, layout == Layout::lines ? lines(number_texts(values)) : list_text(values));
+  void text(const char* key, const std::string& value) { member(key) = value; }
+  void name(const char* key, const std::string& value) { member(key) = value; }
+  void flag(const char* key, bool value) { member(key) = value; }
+  void count(const char* key, std::uint64_t value) { member(key) = value; }
+  void number(const char* key, double value, NumberRange = {}) { member(key) = value; }
+  void list(const char* key, const auto& values, NumberRange = {}) { member(key) = values; }
+  void numbers(const char* key, const Eigen::VectorXd& values, Eigen::Index, const char*, NumberRange = {}) {
+    member(key) = Document::array_t(values.begin(), values.end());
   }
   void points(const char* key, const Eigen::MatrixXd& values, Eigen::Index) {
-    std::vector<std::string> items;
-    for (const auto& point : values.colwise()) items.push_back(list_text(point));
-    add(key, lines(items));
+    Document& list = member(key) = Document::array();
+    for (const auto& point : values.colwise()) list.push_back(Document::array_t(point.begin(), point.end()));
   }
-  void names(const char* key, const std::vector<std::string>& values) {
-    std::vector<std::string> items;
-    for (const std::string& value : values) items.push_back(quoted(value));
-    add(key, joined("[", items, ", ", "]"));
-  }
+  void names(const char* key, const std::vector<std::string>& values) { member(key) = values; }
   template <typename Enum>
   bool choice(const char* key, Enum value, const std::vector<std::string>& names) {
-    text(key, names[static_cast<std::size_t>(value)]);
+    member(key) = names[static_cast<std::size_t>(value)];
     return true;
   }
-  void kind(FeatureKind value) { text("kind", std::string(facts_of(value).name)); }
+  void kind(FeatureKind value) { member("kind") = facts_of(value).name; }
 
-  void object(const char* key, const char*, Layout layout, const auto& body) {
-    add(key, layout == Layout::lines ? members("{\n    ", ",\n    ", "\n  }", body) : members("{", ", ", "}", body));
-  }
-  void each(const char* key, std::size_t count, std::size_t, Layout layout, const auto& body) {
-    std::vector<std::string> items;
-    for (std::size_t i = 0; i < count; ++i) items.push_back(members("{", ", ", "}", [&] { body(i); }));
-    add(key, layout == Layout::lines ? lines(items) : joined("[", items, ", ", "]"));
+  void object(const char* key, const char*, const auto& body) { inside(member(key), body); }
+  void each(const char* key, std::size_t count, std::size_t, const auto& body) {
+    Document& list = member(key) = Document::array();
+    for (std::size_t i = 0; i < count; ++i) inside(list.emplace_back(), [&] { body(i); });
   }
 
   void correction(const CorrectionPtr& value, Eigen::Index dimension) {
@@ -284,57 +276,28 @@ class ModelWriter {
       RbfFunction function = *rbf;
       describe_rbf(*this, function, dimension);
     } else if (const VoxelGrid* grid = grid_of(value)) {
-      add("grid", grid_text(*grid));
+      object("grid", "", [&] {
+        member("nodes") = grid->nodes;
+        member("values_N") = grid->values_N;
+      });
     } else {
       if (value) std::abort();  // a kind without members: a mistake of the program
       flag("trend_alone", true);
     }
   }
 
-  void add(const std::string& key, const std::string& value) {
-    members_.push_back(std::string("\"").append(key).append("\": ").append(value));
-  }
-  // The text of the object whose members `body` adds.
-  std::string members(const char* open, const char* between, const char* close, const auto& body) {
-    std::vector<std::string> outer = std::exchange(members_, {});
-    body();
-    std::swap(members_, outer);
-    return joined(open, outer, between, close);
-  }
-
  private:
-  static std::string quoted(const std::string& text) {
-    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  }
-  // "-0.0" for -0, because the JSON integer "-0" would lose the sign.
-  static std::string number_text(double value) {
-    std::string text = shortest(value);
-    return text == "-0" ? "-0.0" : text;
-  }
-  static std::vector<std::string> number_texts(const auto& values) {
-    std::vector<std::string> texts;
-    for (const double value : values) texts.push_back(number_text(value));
-    return texts;
-  }
-  static std::string list_text(const auto& values) { return joined("[", number_texts(values), ", ", "]"); }
-  // One item a line, so that models can be compared by lines.
-  static std::string lines(const std::vector<std::string>& items) {
-    return items.empty() ? "[]" : joined("[\n    ", items, ",\n    ", "\n  ]");
-  }
-  // The values have one line for each run along the last axis.
-  static std::string grid_text(const VoxelGrid& grid) {
-    std::vector<std::string> axes;
-    for (const std::vector<double>& axis : grid.nodes) axes.push_back(list_text(axis));
-    std::string values;
-    const std::size_t run = grid.nodes.back().size();
-    for (std::size_t i = 0; i < grid.values_N.size(); ++i) {
-      values += i == 0 ? "\n    " : (i % run == 0 ? ",\n    " : ", ");
-      values += number_text(grid.values_N[i]);
-    }
-    return "{\n    \"nodes\": " + joined("[", axes, ", ", "]") + ",\n    \"values_N\": [" + values + "\n  ]}";
+  using Document = nlohmann::ordered_json;
+
+  Document& member(const char* key) { return (*at_)[key]; }
+  void inside(Document& node, const auto& body) {
+    Document* outer = std::exchange(at_, &node);
+    body();
+    at_ = outer;
   }
 
-  std::vector<std::string> members_;  // of the object that is being written
+  Document document_;
+  Document* at_ = &document_;  // the object that is being written
 };
 
 // File name without its folders.
@@ -356,14 +319,7 @@ Result<std::string> write_model_text(const ModelData& data) {
   ModelData written = data;
   for (std::string& name : written.provenance.recordings) name = stem_of(name);
   for (RecordingSurface& surface : written.provenance.surfaces) surface.name = stem_of(surface.name);
-  ModelWriter file;
-  std::string text = file.members("{\n  ", ",\n  ", "\n}\n", [&] {
-    file.text("format", "palpate-model");
-    file.add("version", std::to_string(kModelVersion));
-    describe_names(file, written);
-    describe_features(file, written);
-    describe_rest(file, written);
-  });
+  std::string text = ModelWriter().write(written);
   // What cannot be read is not written.
   if (const auto back = read_model_text(text, "its text"); !back) return back.error();
   return text;

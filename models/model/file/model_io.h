@@ -1,9 +1,9 @@
 // Model files: ModelData to JSON text and back.
 //
 // One object: "format": "palpate-model", "version": 1, then the members of model_description.h in its order; their
-// schema is assets/formats/model.schema.json. Unknown members are errors. Centres, weights and cover points have a line
-// each, so that models can be compared by lines. Numbers are the shortest decimals that read back as the same double,
-// so the forces of a model that was read are bit-identical. The state of the features' filters is not stored.
+// schema is assets/formats/model.schema.json. Unknown members are errors. Every number has a line, so that models can
+// be compared by lines. Numbers read back as the same double, so the forces of a model that was read are bit-identical.
+// The state of the features' filters is not stored.
 //
 // The same fit gives the same bytes: no time is stored.
 //

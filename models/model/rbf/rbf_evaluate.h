@@ -1,14 +1,13 @@
-// Vectorised evaluation of radial basis functions for the tick, the grid and the fits. The instruction set (AVX-512,
-// AVX2, SSE4, NEON or plain) is selected when an object is built, not per call.
+// Vectorised evaluation of radial basis functions for the tick, the grid and the fits. The instruction set
+// (vector_loops.h) is selected when an object is built, not per call.
 //
-// Accuracy: each phi has a relative error of at most 4 ulp (thin-plate: 8 ulp of r^2 (1 + |log r|)); distances below
-// 1e-18 are set to 1e-18. Sums are taken in double, in an order that depends on the instruction set. The results of
-// two instruction sets, or of the defining sum, differ by at most 32 eps (sum_j |w_j phi_j| + sum_k |d_k g_k|), eps =
-// 2^-53.
+// Accuracy: each phi has a relative error of at most 4 ulp (thin-plate: 8 ulp of r^2 (1 + |log r|)). The order of sums
+// depends on the instruction set. The results of two instruction sets, or of the defining sum, differ by at most 32 eps
+// (sum_j |w_j phi_j| + sum_k |d_k g_k|), eps = 2^-53.
 //
-// Denormals: coordinates and weights below 1e-100 count as 0 and squared distances below 1e-36 are set to it, so no
-// intermediate value is denormal unless the result is. Results are finite while |x| and |centres| are below 1e60 and
-// the result is below 1e300; a non-finite x gives a non-finite result.
+// Coordinates and weights below kTiny count as 0 and distances below 1e-18 as 1e-18, so no intermediate value is
+// denormal unless the result is. Results are finite while |x| and |centres| are below 1e60 and the result is below
+// 1e300; a non-finite x gives a non-finite result.
 #pragma once
 
 #include <Eigen/Core>

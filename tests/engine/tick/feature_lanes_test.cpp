@@ -68,8 +68,9 @@ TEST_P(FeatureLanes, BranchesFollowTheirEquation) {
     lanes.prepare(step_s, depth_at(t), step);
     double held = 0.0;
     for (std::size_t i = 0; i < z.size(); ++i) {
-      const BranchStep one = branch_step(time_of(i % 13), step_s);
-      z[i] = one.keep * z[i] + one.gain * (drive_of(i).at(depth_at(t)) - drive_of(i).at(depth_at(t - 1)));
+      const double keep = by_lane(-step_s / time_of(i % 13), 0);
+      const double gain = time_of(i % 13) * (1.0 - keep) / step_s;
+      z[i] = keep * z[i] + gain * (drive_of(i).at(depth_at(t)) - drive_of(i).at(depth_at(t - 1)));
       held += z[i];
     }
     lanes.advance(step, 0.123e-3, memory, trial);  // a trial step must not change `memory`

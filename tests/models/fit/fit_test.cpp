@@ -208,7 +208,7 @@ TEST(Fit, GivenTimesReplaceTheScenes) {
   ASSERT_TRUE(prepared.ok());
   ASSERT_EQ(prepared->common.features.size(), 5u);
   EXPECT_EQ(prepared->common.features[4].parts[0].relaxation_time_s, 2.0);
-  EXPECT_EQ(prepared->common.provenance.relaxation_times.size(), 3u);
+  EXPECT_EQ(relaxation_times_s(prepared->common.features).size(), 3u);
 }
 
 // Returning false from any progress call interrupts the fit.
