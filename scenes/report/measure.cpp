@@ -133,7 +133,7 @@ class Measurement {
     }
     timing_.push_back(result->timing);
     data_.tested.push_back({tested->recording.name, result->models.front().surface.at});
-    tested_.push_back(tested);
+    tested_.push_back(tested.get());
     return {};
   }
 
@@ -189,7 +189,7 @@ class Measurement {
   ReportData& data_;
   std::vector<ModelResult>& models_;
   Progress progress_;
-  std::vector<PreparedRecordingPointer> tested_;
+  std::vector<const PreparedRecording*> tested_;
   std::vector<TimedSamples> timing_;  // one per test recording
 };
 
