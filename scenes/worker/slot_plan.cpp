@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+const std::vector<std::string> kDefaultModels{"greedy", "kdtree", "random", "voxel", "direct"};
+
 // Parses "greedy", "greedy-10" or "2009-greedy-10"; empty if it names no method.
 std::optional<SlotPlan> plan_method_of(std::string asked) {
   SlotPlan plan;
@@ -82,7 +84,7 @@ Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<s
   std::vector<SlotPlan> plans;
   // Without a material and without named models, the session waits for a file.
   if (models.empty() && !scene.has_material()) return plans;
-  for (const std::string& asked : models.empty() ? scene.default_models : models) {
+  for (const std::string& asked : models.empty() ? kDefaultModels : models) {
     Result<SlotPlan> plan = plan_one(scene, asked);
     if (!plan) return plan.error();
     plans.push_back(std::move(*plan));

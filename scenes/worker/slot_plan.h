@@ -44,7 +44,7 @@ std::string plan_name(const SlotPlan& plan);
 // The method's name, or "position"; empty for a file.
 std::string plan_method(const SlotPlan& plan);
 
-// Makes plans from `models`, names of methods or model files; empty: the scene's default models. A name may end in a
+// Makes plans from `models`, names of methods or model files; empty: all methods but the trend. A name may end in a
 // number of centres ("greedy-10") where the method has that option, and begin with "2009-" for the paper's recipe.
 // Model files are read. `position_only` adds a model with the depth as its only feature where the scene has a
 // material. The direct interpolant is always added as the reference, except where all models are files and the scene
