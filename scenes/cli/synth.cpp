@@ -1,12 +1,11 @@
 // palpate synth: writes a recording made by the virtual rig.
-#include <charconv>
-#include <cstdint>
 #include <iomanip>
 #include <iostream>
 #include <memory>
 #include <string>
 
 #include "engine/recording/recording.h"
+#include "models/fit_library/fit_options.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/material/rig.h"
@@ -20,20 +19,8 @@ struct SynthOptions {
   bool force = false;
 };
 
-// Checks for a whole number, because CLI11 reads -1 as 2^64 - 1.
-std::string whole_number(const std::string& text) {
-  std::uint64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  if (read.ec == std::errc() && read.ptr == end) return {};
-  return "found '" + text + "', expected a whole number from 0 to 18446744073709551615";
-}
-
 // Checks the command line before any work.
-void check_usage(const CLI::App& verb, const SynthOptions& options) {
-  if (verb.count("--seconds") > 0 && !(options.rig.seconds > 0.0)) {
-    throw CLI::ValidationError("--seconds", "must be a number above 0");
-  }
+void check_usage(const SynthOptions& options) {
   const Result<Rig> trial = Rig::create(options.rig);
   if (!trial) throw CLI::ValidationError("synth", trial.error().message);
 }
@@ -63,14 +50,15 @@ void add_synth(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("synth", "Make a recording in which a virtual hand presses a virtual material");
   verb->add_option("--material", options->rig.material, "Material to press; --list prints the names")->required();
   verb->add_option("--seed", options->rig.seed, "Seed of the hand motion and the sensor noise")
-      ->check(whole_number)
+      ->check(CLI::Validator(check_seed, ""))
       ->capture_default_str();
-  verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]");
+  verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]")
+      ->check(CLI::PositiveNumber);
   verb->add_option("--rate", options->rig.rate_Hz, "Rows per second (Hz), 10 to 20000")->capture_default_str();
   verb->add_option("--out", options->out, "Recording to write (CSV)")->required();
   verb->add_flag("--force", options->force, "Replace an existing file");
   verb->add_flag_callback("--list", list_materials, "Print the materials and their relaxation times");
-  verb->parse_complete_callback([verb, options] { check_usage(*verb, *options); });
+  verb->parse_complete_callback([options] { check_usage(*options); });
   verbs.emplace_back(verb, [options] { return run_synth(*options); });
 }
 
