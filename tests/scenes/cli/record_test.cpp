@@ -96,7 +96,7 @@ TEST(DevicesTest, RefusesADeviceThatDoesNotReportItsWatchdog) {
 TEST(RecordGuide, GivesTheAdviceOfCheckOnce) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("press.csv");
-  const CheckRequest request{.longest_relaxation_s = 1.27};
+  const CheckRequest request{{}, 1.27};
   cli::RecordGuide guide(path, request);
   EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"next: touch the block, then press it slowly"});
   EXPECT_TRUE(guide.update(1.0).empty()) << "no check within two seconds";
@@ -125,7 +125,7 @@ TEST(RecordGuide, SaysThatNothingIsMissing) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("press.csv");
   ASSERT_EQ(run_palpate({"synth", "--material", "silicone", "--seconds", "120", "--out", path}).exit_code, 0);
-  cli::RecordGuide guide(path, {.longest_relaxation_s = 1.27});
+  cli::RecordGuide guide(path, {{}, 1.27});
   EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"nothing is missing: Ctrl-C ends the recording"});
 }
 
