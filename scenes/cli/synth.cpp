@@ -20,7 +20,10 @@ struct SynthOptions {
 };
 
 // Checks the command line before any work.
-void check_usage(const SynthOptions& options) {
+void check_usage(const CLI::App& verb, const SynthOptions& options) {
+  if (verb.count("--seconds") > 0 && !(options.rig.seconds > 0.0)) {
+    throw CLI::ValidationError("--seconds", "must be a number above 0");
+  }
   const Result<Rig> trial = Rig::create(options.rig);
   if (!trial) throw CLI::ValidationError("synth", trial.error().message);
 }
@@ -52,13 +55,12 @@ void add_synth(CLI::App& app, Verbs& verbs) {
   verb->add_option("--seed", options->rig.seed, "Seed of the hand motion and the sensor noise")
       ->check(CLI::Validator(check_seed, ""))
       ->capture_default_str();
-  verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]")
-      ->check(CLI::PositiveNumber);
+  verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]");
   verb->add_option("--rate", options->rig.rate_Hz, "Rows per second (Hz), 10 to 20000")->capture_default_str();
   verb->add_option("--out", options->out, "Recording to write (CSV)")->required();
   verb->add_flag("--force", options->force, "Replace an existing file");
   verb->add_flag_callback("--list", list_materials, "Print the materials and their relaxation times");
-  verb->parse_complete_callback([options] { check_usage(*options); });
+  verb->parse_complete_callback([verb, options] { check_usage(*verb, *options); });
   verbs.emplace_back(verb, [options] { return run_synth(*options); });
 }
 
