@@ -25,7 +25,7 @@ Figure bins_figure(const PaperData& data, int number, const std::string& title, 
   Figure figure;
   figure.plot.name = "figure_" + std::to_string(number);
   figure.plot.columns = 2;
-  figure.caption = "Figure " + std::to_string(number) + ": " + title + " over the absolute value of the force.";
+  figure.caption = "Figure " + std::to_string(number) + ": " + title + " over the measured force.";
   for (const PaperRun& run : data.runs) {
     Panel panel;
     panel.title = run_name(run);
