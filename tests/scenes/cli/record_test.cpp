@@ -104,7 +104,7 @@ TEST(RecordGuide, GivesTheAdviceOfCheckOnce) {
   // Three slow presses without a hold.
   std::string text = "time_s,position_m,force_N\n";
   for (int i = 0; i < 15000; ++i) {
-    const double position_m = 4e-3 * std::sin(2.0 * std::numbers::pi * i / 5000.0);
+    const double position_m = 1.9e-3 + 2.1e-3 * std::sin(2.0 * std::numbers::pi * i / 5000.0);
     text += std::to_string(1e-3 * i) + "," + std::to_string(position_m) + "," +
             std::to_string(500.0 * std::max(0.0, position_m)) + "\n";
   }

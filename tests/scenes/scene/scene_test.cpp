@@ -110,9 +110,9 @@ TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
        {R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})", R"("jnd_file": 3)", {"x.json:9:15:", "jnd_file: found 3"}},
        {"  \"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0},\n", "", {"x.json:1:1:", "jnd", "offset_N", "jnd_file"}},
        {"#56B4E9", "red", {"x.json:11:24:", "colours.block", "\"red\"", "#56B4E9"}},
-       {"\"#56B4E9\"}", R"("#56B4E9"}, "finish": "wood")", {"x.json:11:45:", "finish", "wood", "silicone"}},
-       {R"("title")", R"("name": "x", "title")", {"x.json:2:11:", "\"name\""}},
-       {"#56B4E9\"", R"(#56B4E9", "tool": "#000000")", {"x.json:11:43:", "colours", "\"tool\""}}});
+       {"\"#56B4E9\"}", R"("#56B4E9"}, "finish": "wood")", {"x.json:11:46:", "finish", "wood", "silicone"}},
+       {R"("title")", R"("name": "x", "title")", {"x.json:2:11:", "name: found an unknown field", "title"}},
+       {"#56B4E9\"", R"(#56B4E9", "tool": "#000000")", {"x.json:11:43:", "colours.tool", "block"}}});
 }
 
 TEST(SceneReader, LimitsTheNumberOfFeatures) {
