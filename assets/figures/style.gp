@@ -9,7 +9,7 @@ paper = 0xfefefe
 # The commands that begin a drawing as SVG and as PNG of twice the size.
 svg = sprintf('set terminal svg size %d,%d noenhanced font "sans-serif,14" background "#fefefe" rounded', width, height)
 png = sprintf('set terminal pngcairo size %d,%d noenhanced font "DejaVu Sans,12" fontscale 1.7 linewidth 2 pointscale 2 background "#ffffff" rounded', 2 * width, 2 * height)
-set key off
+set key above left horizontal Left reverse samplen 1.5 textcolor rgb ink
 set samples 2
 set border 3 linecolor rgb ink linewidth 1
 set tics nomirror textcolor rgb ink scale 0.6,0.3

@@ -8,6 +8,7 @@
 #include "engine/recording/press_direction.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/sensor_identification.h"
+#include "models/check/noise_floor.h"
 #include "models/check/recording_measures.h"
 
 namespace palpate {
@@ -77,7 +78,7 @@ class Checker {
       check_clipping();
       check_sensors();
     }
-    find_noise_floor();
+    check_.noise_floor_within_jnd = noise_floor({&prepared_}, request_.jnd).within_jnd;
     std::stable_sort(check_.findings.begin(), check_.findings.end(),
                      [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
     return std::move(check_);
@@ -341,19 +342,6 @@ class Checker {
                 measures_.longest_hold_s, longest_s),
           words("hold still for %.2g s at two or three depths", 2.0 * longest_s));
     }
-  }
-
-  void find_noise_floor() {
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (const RecordingRow& row : recording_.rows) {
-      if (!(row.position_m > check_.surface_offset_m)) continue;
-      const double jnd_N = request_.jnd.at(row.force_N - check_.force_zero_N);
-      // Above six standard deviations the share is 1 to nine digits, and erf is slow.
-      sum += jnd_N > 6.0 * noise_N_ ? 1.0 : std::erf(jnd_N / (std::sqrt(2.0) * noise_N_));
-      ++count;
-    }
-    check_.noise_floor_within_jnd = count > 0 ? sum / static_cast<double>(count) : 1.0;
   }
 
   const PreparedRecording& prepared_;

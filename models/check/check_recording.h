@@ -43,8 +43,7 @@ CheckRequest check_request(const JndLine& jnd, const std::vector<FeatureSpec>& f
 
 struct RecordingCheck {
   std::vector<Finding> findings;  // in order of severity, fatal first
-  // The share of contact samples within the JND that a perfect model would have with this force noise: the mean of
-  // P(|noise| <= JND(f)).
+  // The share of contact samples within the JND that a perfect model would have with this force noise (noise_floor.h).
   double noise_floor_within_jnd = 1.0;
   bool surface_identified = false;
   double surface_offset_m = 0.0;  // to be subtracted from position_m; 0 if not identified

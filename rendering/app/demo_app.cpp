@@ -45,7 +45,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   request_ = request.session;
   if (request.exhibit) {  // models with differences from obvious to unnoticeable
     request_.position_only = true;
-    if (request_.models.empty()) request_.models = {"greedy", "paper:greedy-10"};
+    if (request_.models.empty()) request_.models = {"greedy", "2009-greedy-10"};
   }
   if (const auto folder = data_folder()) request_.data_folder = *folder;
   files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
@@ -212,7 +212,7 @@ void DemoApp::use_material(const std::string& scene, const std::vector<std::stri
   next_->models.clear();
   next_->kept = session_->models().plans();
   next_->refits = true;
-  std::erase_if(next_->kept, [](const SlotPlan& plan) { return plan.origin != ModelOrigin::file; });
+  std::erase_if(next_->kept, [](const SlotPlan& plan) { return !plan.is_file(); });
   for (SlotPlan& plan : next_->kept) plan.of_this_material = false;
   if (next_->line_up.empty()) next_->line_up = line_ups().front().name;
 }

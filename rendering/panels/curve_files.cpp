@@ -50,6 +50,7 @@ Plot curve_plot(const CurveColumns& columns, const CurveSource& source) {
   }
   Plot plot;
   plot.name = "curves";
+  plot.height = 1.2;  // with room for the legend of many models
   plot.panels = {std::move(force), std::move(difference)};
   return plot;
 }

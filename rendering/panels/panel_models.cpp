@@ -58,7 +58,7 @@ struct Column {
 };
 constexpr int kName = 0, kColumns = 7;
 constexpr Column kTable[kColumns] = {
-    {"model", "Click, or press its number, to make a model the active one.", "      greedy-10 '09", 0, nullptr,
+    {"model", "Click, or press its number, to make a model the active one.", "      2009-greedy-10", 0, nullptr,
      nullptr},
     {"N", "Force at the right edge of the curves, newtons", "12.34", 4, force_now_N, two_decimals},
     {"mN off", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},

@@ -115,7 +115,7 @@ BlockView::BlockView(const Scene& scene, std::vector<Shader> shaders)
       dome_m_(scene.finish == Finish::dome ? kDomeRise * static_cast<float>(scene.block.tool_radius_m) : 0.0F),
       finish_(scene.finish),
       block_colour_(hex(scene.block_colour)),
-      tool_colour_(hex(scene.tool_colour)),
+      tool_colour_(hex(0x9BA1A7)),
       size_m_(std::max(static_cast<float>(scene.block.width_m),
                        1.3F * kToolLength * static_cast<float>(scene.block.tool_radius_m))),
       arrow_m_per_N_(kStrongestArrow * size_m_ / static_cast<float>(scene.strongest_press_N)),

@@ -16,7 +16,6 @@
 #include "models/fit_library/fit_recordings.h"
 #include "models/model/file/model_io.h"
 #include "models/model/fitted_model.h"
-#include "models/recordings/recording_faults.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
@@ -65,13 +64,11 @@ void list_methods() {
 
 // Replays the training recordings as recorded, and reports where their share within the JND contradicts that of the
 // fit.
-std::string training_contradiction(const std::vector<std::string>& recordings, const ModelData& data) {
+std::string training_contradiction(const std::vector<CheckedFile>& files, const ModelData& data) {
   const auto model = std::make_shared<const FittedModel>(data);
   ErrorFigures errors;
-  for (const std::string& path : recordings) {
-    const auto recording = read_usable_recording(path, kMostCheckedRows);
-    if (!recording) return {};
-    replay(*recording, {model}, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+  for (const CheckedFile& file : files) {
+    replay(file.recording(), {model}, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
       if (snapshot.in_contact) errors.add(snapshot.force_N[0], row.force_N, false, data.jnd);
     });
   }
@@ -163,11 +160,11 @@ Status run_fit(const FitArguments& arguments) {
   // An accelerometer reduces the training error, and a device may have none.
   const bool accelerometer =
       std::ranges::any_of(*checked, [](const CheckedFile& one) { return one.recording().columns.acceleration; });
-  const auto fitted = fit_recordings(std::move(*checked), training_request(*scene), arguments.options, began,
+  const auto fitted = fit_recordings(*checked, training_request(*scene), arguments.options, began,
                                      [&](double fraction) { return line->update(fraction); });
   if (!fitted) return fitted.error();
   const ModelData& data = fitted->fit.data;
-  const std::string contradiction = training_contradiction(arguments.recordings, data);
+  const std::string contradiction = training_contradiction(*checked, data);
   if (Status status = save_model(arguments.out, data, arguments.force); !status) return status;
   line.reset();  // ends the progress line
   if (!contradiction.empty()) std::cerr << "note: " << contradiction << "\n";

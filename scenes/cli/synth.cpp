@@ -1,12 +1,11 @@
 // palpate synth: writes a recording made by the virtual rig.
-#include <charconv>
-#include <cstdint>
 #include <iomanip>
 #include <iostream>
 #include <memory>
 #include <string>
 
 #include "engine/recording/recording.h"
+#include "models/fit_library/fit_options.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/material/rig.h"
@@ -19,15 +18,6 @@ struct SynthOptions {
   std::string out;
   bool force = false;
 };
-
-// Checks for a whole number, because CLI11 reads -1 as 2^64 - 1.
-std::string whole_number(const std::string& text) {
-  std::uint64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  if (read.ec == std::errc() && read.ptr == end) return {};
-  return "found '" + text + "', expected a whole number from 0 to 18446744073709551615";
-}
 
 // Checks the command line before any work.
 void check_usage(const CLI::App& verb, const SynthOptions& options) {
@@ -63,7 +53,7 @@ void add_synth(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("synth", "Make a recording in which a virtual hand presses a virtual material");
   verb->add_option("--material", options->rig.material, "Material to press; --list prints the names")->required();
   verb->add_option("--seed", options->rig.seed, "Seed of the hand motion and the sensor noise")
-      ->check(whole_number)
+      ->check(CLI::Validator(check_seed, ""))
       ->capture_default_str();
   verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]");
   verb->add_option("--rate", options->rig.rate_Hz, "Rows per second (Hz), 10 to 20000")->capture_default_str();

@@ -57,6 +57,7 @@ void ErrorFigures::add(double model_N, double reference_N, bool out_of_domain, c
   bin.force_N.add(reference_N);
   bin.error_N.add(error_N);
   bin.over_jnd.add(ratio);
+  if (reference_N != 0.0) bin.relative.add(error_N / std::abs(reference_N));
 }
 
 void ErrorFigures::add(const ErrorFigures& other) {
@@ -73,6 +74,7 @@ void ErrorFigures::add(const ErrorFigures& other) {
     sum_.bins[i].force_N.add(bins[i].force_N);
     sum_.bins[i].error_N.add(bins[i].error_N);
     sum_.bins[i].over_jnd.add(bins[i].over_jnd);
+    sum_.bins[i].relative.add(bins[i].relative);
   }
 }
 

@@ -54,6 +54,7 @@ struct ForceBin {
   Moments force_N;     // measured
   Moments error_N;     // absolute value
   Moments over_jnd;    // error / JND, computed sample by sample
+  Moments relative;    // error / force, of the samples with a force other than 0
 };
 
 // The figures of merit. Without samples every figure is 0 and `bins` is empty; check `samples` first.

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
+#include "engine/json/json_fields.h"
 
 namespace palpate {
 namespace {
@@ -18,21 +19,12 @@ void replace(std::string& text, std::string_view sign, const std::string& by) {
 }  // namespace
 
 Result<ExhibitWords> ExhibitWords::parse(std::string_view text, const std::string& path) {
+  const auto document = parse_json(text, path, 1, {});
+  if (!document) return document.error();
+  JsonFields fields(text, path, "");
   ExhibitWords words;
-  std::size_t number = 0;
-  std::istringstream lines{std::string(text)};
-  for (std::string whole; std::getline(lines, whole);) {
-    std::erase(whole, '\r');
-    const std::string_view line = trimmed(whole);
-    ++number;
-    if (line.empty() || line.front() == '#') continue;
-    const std::size_t sign = line.find('=');
-    const std::string where = path + ":" + std::to_string(number) + ": ";
-    if (sign == std::string::npos) return Error{where + "found \"" + std::string(line) + "\", expected key = text"};
-    const std::string key(trimmed(line.substr(0, sign)));
-    if (!words.texts_.emplace(key, trimmed(line.substr(sign + 1))).second)
-      return Error{where + "found \"" + key + "\" a second time, expected each key once"};
-  }
+  for (const auto& [key, value] : document->items()) words.texts_[key] = fields.text({&*document, ""}, key.c_str());
+  if (const auto error = fields.error()) return *error;
   return words;
 }
 
@@ -55,14 +47,14 @@ Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder) 
   std::vector<ExhibitWords> languages;
   std::error_code missing;
   for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
-    if (entry.path().extension() != ".txt") continue;
+    if (entry.path().extension() != ".json") continue;
     const auto text = read_whole_file(entry.path().string());
     if (!text) return Error{"cannot read " + entry.path().string()};
     auto words = ExhibitWords::parse(*text, entry.path().string());
     if (!words) return words.error();
     languages.push_back(std::move(*words));
   }
-  if (languages.empty()) return Error{"found no language in " + folder + ", expected at least one .txt file"};
+  if (languages.empty()) return Error{"found no language in " + folder + ", expected at least one .json file"};
   std::ranges::sort(languages, {}, [](const ExhibitWords& words) { return words("order"); });
   return languages;
 }

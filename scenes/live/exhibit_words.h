@@ -1,5 +1,5 @@
-// The texts of the exhibit, one file in assets/exhibit per language with lines "key = text" ("#" begins a comment),
-// and the tally of the visitors' answers.
+// The texts of the exhibit, one JSON file in assets/exhibit per language with a text for each key, and the tally of the
+// visitors' answers.
 // Thread guarantee: slow side; values.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace palpate {
 
 class ExhibitWords {
  public:
-  // Errors: a line without "=", a key twice, as "path:line: ...".
+  // Errors: those of parse_json (a key twice); a member that is no text, as "path:line:column: ...".
   static Result<ExhibitWords> parse(std::string_view text, const std::string& path);
 
   // The text of a key, with %1 and %2 replaced by `one` and `two`; the key itself where it has no text.

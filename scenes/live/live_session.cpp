@@ -82,9 +82,8 @@ Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings
 // If no scene was named and all models are files, takes the scene from the first file's provenance, without its
 // virtual material: it is not the truth of those models.
 void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& scene) {
-  const auto is_file = [](const SlotPlan& plan) { return plan.origin == ModelOrigin::file; };
-  if (static_cast<std::size_t>(std::ranges::count_if(plans, is_file)) != files) return;
-  std::erase_if(plans, [&](const SlotPlan& plan) { return !is_file(plan); });
+  if (static_cast<std::size_t>(std::ranges::count_if(plans, &SlotPlan::is_file)) != files) return;
+  std::erase_if(plans, [](const SlotPlan& plan) { return !plan.is_file(); });
   const Provenance& from = plans.front().loaded->data().provenance;
   if (auto own = load_scene(from.scene)) scene = std::move(*own);
   scene.material.reset();

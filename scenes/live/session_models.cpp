@@ -44,9 +44,9 @@ std::size_t SessionModels::add_slot(const SlotPlan& plan) {
   slot.job = next_job_++;
   slot.info.name = distinct_name(plan_name(plan), &slot);
   slot.info.method = plan_method(plan);
-  slot.info.takes_centres =
-      plan.origin == ModelOrigin::method && plan.method->can_take(kTakesCentres) && scene_.has_material();
-  slot.info.paper = plan.paper;
+  slot.info.takes_centres = !plan.is_file() && plan.recipe != Recipe::position &&
+                            plan.method->can_take(kTakesCentres) && scene_.has_material();
+  slot.info.paper = plan.recipe == Recipe::paper;
   slot.plan = plan;
   slot.asked_centres = plan.centres;
   return index;
@@ -83,7 +83,7 @@ std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noe
 // is no true force, and no model counts as one of another material.
 bool SessionModels::is_of_other_material(const Slot& slot) const {
   const bool claimed = slot.claimed || slot.plan.of_this_material;
-  if (!scene_.material || claimed || slot.plan.origin != ModelOrigin::file) return false;
+  if (!scene_.material || claimed || !slot.plan.is_file()) return false;
   const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
   return std::ranges::any_of(recordings, [&](const std::string& name) {
     const std::string start = *scene_.material + "_";  // the rig names its recordings MATERIAL_SEED
@@ -97,7 +97,7 @@ Status SessionModels::save(std::size_t slot, const std::string& path) const {
 }
 
 bool SessionModels::fits() const noexcept {
-  return std::ranges::any_of(slots_, [](const Slot& slot) { return slot.plan.origin != ModelOrigin::file; });
+  return std::ranges::any_of(slots_, [](const Slot& slot) { return !slot.plan.is_file(); });
 }
 
 std::optional<std::size_t> SessionModels::reference() const noexcept {
@@ -137,20 +137,18 @@ bool SessionModels::join(std::size_t index, const FinishedModel& finished) {
   slot.info.centres = slot.model->centre_count();
   slot.info.tick = finished.tick;
   slot.info.other_material = is_of_other_material(slot);
-  if (slot.plan.origin != ModelOrigin::position) {
+  if (slot.plan.recipe != Recipe::position) {
     slot.info.method = slot.model->method();
-    std::string name = slot.model->name();
-    if (slot.plan.paper) name += kPaperMark;
-    slot.info.name = distinct_name(name, &slot);
+    slot.info.name = distinct_name((slot.info.paper ? kPaperPrefix : "") + slot.model->name(), &slot);
   }
-  if (!direct_ && slot.info.method == "direct" && !slot.plan.paper) direct_ = index;
+  if (!direct_ && slot.info.method == "direct" && !slot.info.paper) direct_ = index;
   if (!slot.hidden() && (first || (index == 0 && !user_chose_))) selected_ = index;
   return true;
 }
 
 void SessionModels::use_plans(const std::vector<SlotPlan>& plans) {
   for (Slot& slot : slots_) {
-    if (slot.plan.origin != ModelOrigin::file) slot.info.state = SlotState::hidden;
+    if (!slot.plan.is_file()) slot.info.state = SlotState::hidden;
   }
   std::optional<std::size_t> first;
   for (const SlotPlan& plan : plans) {
@@ -294,7 +292,7 @@ bool SessionModels::load_file(const std::string& path) {
     notices_.push_back({model.error().message, true});
     return false;
   }
-  const SlotPlan plan{ModelOrigin::file, &kGreedyMethod, path, std::move(*model)};
+  const SlotPlan plan{.path = path, .loaded = std::move(*model)};
   const std::size_t index = add_slot(plan);
   const Slot& slot = slots_[index];
   loaded_.push_back(index);

@@ -145,7 +145,7 @@ class SessionModels {
       info.state = model != nullptr ? SlotState::ready : info.problem.empty() ? SlotState::waiting : SlotState::failed;
     }
     bool is(const SlotPlan& other) const {  // `other` is not a file
-      return !removed && plan.origin == other.origin && plan.method == other.method && plan.paper == other.paper &&
+      return !removed && !plan.is_file() && plan.method == other.method && plan.recipe == other.recipe &&
              asked_centres == other.centres;
     }
   };

@@ -23,18 +23,6 @@ std::vector<double> decade_tics(const AxisRange& range, const std::vector<double
   return tics;
 }
 
-std::vector<double> even_tics(const AxisRange& range, std::size_t most) {
-  const double width = range.high - range.low;
-  const double least = width / static_cast<double>(most);
-  const double decade = std::pow(10.0, std::floor(std::log10(least)));
-  double step = 10.0 * decade;
-  for (const double factor : {5.0, 2.0, 1.0}) step = factor * decade >= least ? factor * decade : step;
-  std::vector<double> tics;
-  for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * width; ++k)
-    tics.push_back(std::abs(k) < 0.5 ? 0.0 : k * step);
-  return tics;
-}
-
 // A name that begins further right would leave the panel. Fraction of the panel.
 constexpr double kRightmostName = 0.7;
 
@@ -85,12 +73,11 @@ AxisRange range_of(const Panel& panel, bool vertical) {
   return range;
 }
 
-std::vector<double> tics_of(const Axis& axis, const AxisRange& range, std::size_t most) {
-  if (!axis.logarithmic) return even_tics(range, most);
+std::vector<double> log_tics(const AxisRange& range, std::size_t most) {
   std::vector<double> decades = decade_tics(range, kLogSteps.front(), 1);
   for (int every = 2; decades.size() > most; ++every) decades = decade_tics(range, kLogSteps.front(), every);
   if (decades.size() >= 3) return decades;
-  std::vector<double> two = decades.size() == 2 ? decades : even_tics(range, most);
+  std::vector<double> two = decades.size() == 2 ? decades : std::vector<double>{range.low, range.high};
   for (const std::vector<double>& steps : kLogSteps) {
     std::vector<double> tics = decade_tics(range, steps, 1);
     if (tics.size() >= 3 && tics.size() <= std::max<std::size_t>(most, 5)) return tics;

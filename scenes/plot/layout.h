@@ -18,9 +18,9 @@ struct AxisRange {
 // of the data and levels with a margin.
 AxisRange range_of(const Panel& panel, bool vertical);
 
-// The labelled values (tics) inside `range`, at least two and at most about `most`. On a logarithmic axis these are
-// decades, with steps such as 2 and 5 between few decades; else multiples of 1, 2 or 5 times a power of ten.
-std::vector<double> tics_of(const Axis& axis, const AxisRange& range, std::size_t most);
+// The labelled values (tics) of a logarithmic axis, at least two and at most about `most`: decades, with steps such as
+// 2 and 5 between few decades.
+std::vector<double> log_tics(const AxisRange& range, std::size_t most);
 
 // A name beside a point; x and y are fractions of the panel.
 struct NameTag {

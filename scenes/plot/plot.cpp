@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kPageWidth = 800;  // pixels
 constexpr int kRowHeight = 230;
-constexpr int kLegendLine = 20;
 constexpr double kCharacter = 9.8;  // pixels per character of an offset
 // Room for the label of a tic and for a name, pixels, and the approximate share of a row's height that the panel has.
 constexpr double kTicWidth = 90.0;
@@ -67,25 +66,24 @@ std::string axis_text(const char* name, const Axis& axis, const AxisRange& range
   // Large numbers get a prefix such as k, so that the labels do not overlap.
   const std::string plain = range.high < 1e4 ? "%g" : "%.0s%c";
   const std::string format = axis.logarithmic && !axis.unit.empty() ? "%.0s %c" + axis.unit : plain;
+  text += "set format " + letter + " \"" + format + "\"\nset " + letter + "tics ";
+  if (!axis.logarithmic) return text + "autofreq\n";
   std::string tics;
-  for (const double at : tics_of(axis, range, most_tics)) tics += (tics.empty() ? "" : ", ") + number(at);
-  return text + "set format " + letter + " \"" + format + "\"\nset " + letter + "tics (" + tics + ")\n";
+  for (const double at : log_tics(range, most_tics)) tics += (tics.empty() ? "" : ", ") + number(at);
+  return text + "(" + tics + ")\n";
 }
 
-// `style`: the variable of style.gp that draws the mark. `legend`: its symbol in the legend.
-struct MarkStyle {
-  const char* style;
-  const char* legend;
-};
-constexpr MarkStyle kMarks[] = {{"line", "— "},         {"dashed", "– – "}, {"curve", "● "},
-                                {"hollow_curve", "○ "}, {"bars", "● "},     {"hollow_bars", "○ "},
-                                {"up", "▲ "},           {"down", "▼ "},     {"area", "■ "}};
+// The variables of style.gp that draw the marks.
+constexpr const char* kStyles[] = {"line",        "dashed", "curve", "hollow_curve", "bars",
+                                   "hollow_bars", "up",     "down",  "area"};
 
-const MarkStyle& style_of(const Series& series) { return kMarks[static_cast<std::size_t>(series.mark)]; }
-
-std::string drawn_with(const Series& series) {
-  const std::string hue = series.mark == Mark::area ? "" : " linecolor rgb " + colour_of(series.colour);
-  return std::string(1, '@').append(style_of(series).style) + hue;
+// `named`: the names that are in the legend of this panel or an earlier one.
+std::string drawn_with(const Series& series, bool names_at_ends, std::set<std::string>& named) {
+  const bool area = series.mark == Mark::area;
+  const bool in_legend = !series.name.empty() && (area || !names_at_ends) && named.insert(series.name).second;
+  return std::string("@").append(kStyles[static_cast<std::size_t>(series.mark)]) +
+         (area ? "" : " linecolor rgb " + colour_of(series.colour)) +
+         (in_legend ? " title " + quoted(series.name) : " notitle");
 }
 
 // A line across the panel; a vertical one has its name at the upper end.
@@ -111,7 +109,7 @@ struct PanelSize {
   double height = 0.0;
 };
 
-std::string panel_text(const Panel& panel, std::size_t index, const PanelSize& size) {
+std::string panel_text(const Panel& panel, std::size_t index, const PanelSize& size, std::set<std::string>& named) {
   std::string text = "set title " + quoted(panel.title) + "\n";
   text += axis_text("x", panel.x, range_of(panel, false), static_cast<std::size_t>(size.width / kTicWidth)) +
           axis_text("y", panel.y, range_of(panel, true), static_cast<std::size_t>(size.height / kTicHeight));
@@ -126,40 +124,11 @@ std::string panel_text(const Panel& panel, std::size_t index, const PanelSize& s
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
       const Series& series = panel.series[i];
       if ((series.mark == Mark::area) != area || series.rows.empty()) continue;
-      curves += (curves.empty() ? "" : ", \\\n  ") + data_name(index, i) + " " + drawn_with(series);
+      curves += (curves.empty() ? "" : ", \\\n  ") + data_name(index, i) + " " +
+                drawn_with(series, panel.names_at_ends, named);
     }
   }
   return text + "plot " + (curves.empty() ? "NaN" : curves) + "\nunset arrow\nunset label\n";
-}
-
-struct Legend {
-  std::string text;  // gnuplot commands that draw it, for the first panel
-  int lines = 0;
-};
-
-// Each name once, from left to right, on as many lines as necessary.
-Legend legend_of(const Plot& plot) {
-  Legend legend;
-  std::set<std::string> seen;
-  const int most = static_cast<int>(plot.width * kPageWidth / kCharacter);
-  int column = 0;
-  for (const Panel& panel : plot.panels) {
-    for (const Series& series : panel.series) {
-      const bool at_end = panel.names_at_ends && series.mark != Mark::area;
-      if (series.name.empty() || at_end || !seen.insert(series.name).second) continue;
-      const int length = static_cast<int>(series.name.size()) + 4;
-      if (legend.lines == 0 || column + length > most) {
-        ++legend.lines;
-        column = 0;
-      }
-      legend.text += "set label " + quoted(style_of(series).legend + series.name) +
-                     " at screen 0, screen 1 left offset character " + std::to_string(column + 2) + "," +
-                     number(-0.9 * legend.lines) + " textcolor rgb " +
-                     (series.mark == Mark::area ? "muted" : colour_of(series.colour)) + "\n";
-      column += length;
-    }
-  }
-  return legend;
 }
 
 }  // namespace
@@ -173,9 +142,8 @@ Result<std::string> plot_script(Plot plot) {
   if (!assets) return assets.error();
   const auto style = read_plain_file(*assets + "/figures/style.gp", "the style of all figures");
   if (!style) return style.error();
-  const Legend legend = legend_of(plot);
   const int rows = (static_cast<int>(plot.panels.size()) + plot.columns - 1) / plot.columns;
-  const int height = static_cast<int>(rows * kRowHeight * plot.height) + kLegendLine * legend.lines;
+  const int height = static_cast<int>(rows * kRowHeight * plot.height);
   std::string text = "# gnuplot " + plot.name + ".gp draws " + plot.name + ".svg and " + plot.name + ".png here.\n";
   const PanelSize size{plot.width * kPageWidth / plot.columns - 100.0, kPanelShare * kRowHeight * plot.height};
   text += "width = " + std::to_string(static_cast<int>(plot.width * kPageWidth)) +
@@ -185,14 +153,11 @@ Result<std::string> plot_script(Plot plot) {
       text += data_block(plot.panels[p].series[s], data_name(p, s));
     }
   }
-  // An empty title reserves the height of the legend.
-  const std::vector<std::string> lines(static_cast<std::size_t>(legend.lines), " ");
-  const std::string room = lines.empty() ? "" : " title \"" + joined(lines, "\\n") + "\"";
   for (const char* medium : {"svg", "png"}) {
     text += "eval " + std::string(medium) + "\nset output '" + plot.name + "." + medium + "'\n";
-    text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(plot.columns) + room + "\n";
-    text += legend.text;
-    for (std::size_t p = 0; p < plot.panels.size(); ++p) text += panel_text(plot.panels[p], p, size);
+    text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(plot.columns) + "\n";
+    std::set<std::string> named;
+    for (std::size_t p = 0; p < plot.panels.size(); ++p) text += panel_text(plot.panels[p], p, size, named);
     text += "unset multiplot\nunset output\n";
   }
   return text;

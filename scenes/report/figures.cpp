@@ -49,8 +49,7 @@ Panel force_panel(const ReportData& data, const std::string& title, Recipe recip
   panel.levels.push_back({1.0, "1 JND"});
   for (const std::size_t i : data.choice.candidates) {
     const ModelResult& one = data.models[i];
-    const bool trend = one.plan.recipe == Recipe::trend && recipe == Recipe::palpate;
-    if (one.plan.recipe != recipe && !trend) continue;
+    if (one.plan.recipe != recipe) continue;
     Series series{one.plan.request.method->label,
                   model_colour(one.plan),
                   recipe == Recipe::paper ? Mark::hollow_curve : Mark::curve,

@@ -1,8 +1,6 @@
 #include "scenes/report/measure.h"
 
 #include <algorithm>
-#include <chrono>
-#include <map>
 #include <utility>
 
 #include "scenes/evaluation/ranking.h"
@@ -32,12 +30,6 @@ class Progress {
   double total_;
   double done_ = 0.0;
   double part_ = 0.0;
-};
-
-struct Preparations {
-  PreparedTraining paper;
-  PreparedTraining palpate;
-  const PreparedTraining& of(Recipe recipe) const { return recipe == Recipe::paper ? paper : palpate; }
 };
 
 class Measurement {
@@ -75,38 +67,15 @@ class Measurement {
     return static_cast<double>(data_.recordings.folds.size()) * total;
   }
 
-  Result<Preparations> prepare(const std::vector<PreparedRecordingPointer>& training) {
-    const TrainingRequest request = training_request(data_.scene);
-    std::vector<PreparedTraining> made;
-    for (const TrainingRequest& one : {recipe_2009_request(request), request}) {
-      MotionSource source(training);
-      auto prepared = prepare_training(source, one, progress_.next(kPrepareSeconds));
-      if (!prepared) return prepared.error();
-      made.push_back(std::move(*prepared));
-    }
-    return Preparations{std::move(made[0]), std::move(made[1])};
-  }
-
   // Fits all planned models of one fold.
-  Status fit(const Preparations& prepared) {
-    std::map<std::pair<Recipe, const Method*>, std::pair<MethodFit, double>> bases;
+  Status fit(RecipeFits& fits) {
     for (ModelResult& result : models_) {
       const PlannedModel& plan = result.plan;
       if (plan.recipe == Recipe::no_force) continue;
-      const auto base = bases.find({plan.recipe, plan.request.method->base});
-      const auto start = std::chrono::steady_clock::now();
-      const PreparedTraining& on = prepared.of(plan.recipe);
-      MethodRequest request = plan.request;
-      // The preparation may have selected other features than the scene has.
-      if (!request.grid.empty()) request.grid.resize(on.common.features.size(), request.grid.back());
-      auto one = fit_method(on, request, progress_.next(request.method->expected_seconds),
-                            base == bases.end() ? nullptr : &base->second.first);
+      auto one = fits.fit(plan.recipe, plan.request, progress_.next(plan.request.method->expected_seconds));
       if (!one && !progress_.next(0.0).may_continue(0.0)) return interrupted();
       if (!one) return Error{plan.name + ": " + one.error().message};
-      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-      const double seconds = elapsed.count() + (base == bases.end() ? 0.0 : base->second.second);
-      bases.try_emplace({plan.recipe, plan.request.method}, *one, seconds);
-      result.fit_seconds += seconds / static_cast<double>(data_.recordings.folds.size());
+      result.fit_seconds += one->seconds / static_cast<double>(data_.recordings.folds.size());
       result.model = std::make_shared<const FittedModel>(std::move(one->data));
       result.size = std::max(result.size, result.model->centre_count());
       result.fits.push_back(result.model);
@@ -115,10 +84,13 @@ class Measurement {
   }
 
   Status run_fold(const Split& fold) {
-    const auto prepared = prepare(fold.train);
-    if (!prepared) return prepared.error();
-    if (data_.gains.empty()) remember(*prepared);
-    if (const Status fitted = fit(*prepared); !fitted) return fitted;
+    RecipeFits fits(fold.train, data_.scene);
+    const auto paper = fits.prepare(Recipe::paper, progress_.next(kPrepareSeconds));
+    if (!paper) return paper.error();
+    const auto palpate = fits.prepare(Recipe::palpate, progress_.next(kPrepareSeconds));
+    if (!palpate) return palpate.error();
+    if (data_.gains.empty()) remember(**paper, **palpate);
+    if (const Status fitted = fit(fits); !fitted) return fitted;
     for (const PreparedRecordingPointer& recording : fold.tested) {
       if (const Status status = evaluate_test(recording, fold.counted_from_s); !status) return status;
     }
@@ -134,12 +106,11 @@ class Measurement {
       result.plan.name = model_name(result.plan.recipe, *request.method, result.size);
   }
 
-  void remember(const Preparations& prepared) {
-    const Provenance& provenance = prepared.palpate.common.provenance;
-    data_.surfaces = provenance.surfaces;
-    data_.gains = prepared.palpate.gains;
-    if (prepared.palpate.correction) data_.corrects = prepared.palpate.correction->used;
-    data_.times_2009_s = relaxation_times_s(prepared.paper.common.features);
+  void remember(const PreparedTraining& paper, const PreparedTraining& palpate) {
+    data_.surfaces = palpate.common.provenance.surfaces;
+    data_.gains = palpate.gains;
+    if (palpate.correction) data_.corrects = palpate.correction->used;
+    data_.times_2009_s = relaxation_times_s(paper.common.features);
   }
 
   Status evaluate_test(const PreparedRecordingPointer& tested, double counted_from_s) {
@@ -149,7 +120,7 @@ class Measurement {
     for (const ModelResult& one : models_) {
       if (!one.model) continue;
       models.push_back({one.model, data_.scene.jnd});
-      if (one.plan.main && one.plan.recipe == Recipe::palpate) request.surface_models.push_back(one.model);
+      if (one.plan.main && one.plan.is_corrected()) request.surface_models.push_back(one.model);
     }
     request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
     const auto result = evaluate(rows_of(tested->recording), models, request);
@@ -162,7 +133,7 @@ class Measurement {
     }
     timing_.push_back(result->timing);
     data_.tested.push_back({tested->recording.name, result->models.front().surface.at});
-    tested_.push_back(tested);
+    tested_.push_back(tested.get());
     return {};
   }
 
@@ -218,7 +189,7 @@ class Measurement {
   ReportData& data_;
   std::vector<ModelResult>& models_;
   Progress progress_;
-  std::vector<PreparedRecordingPointer> tested_;
+  std::vector<const PreparedRecording*> tested_;
   std::vector<TimedSamples> timing_;  // one per test recording
 };
 
@@ -274,7 +245,7 @@ Choice choose(const std::vector<ModelResult>& models) {
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const ModelResult& one = models[i];
-    corrected = corrected || (one.model && one.plan.recipe == Recipe::palpate);
+    corrected = corrected || (one.model && one.plan.is_corrected());
     if (!one.model || !one.plan.main) continue;
     choice.candidates.push_back(i);
     candidates.push_back({one.errors, one.time.tick});

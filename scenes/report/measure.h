@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "engine/base/fit_control.h"
+#include "models/check/noise_floor.h"
 #include "models/fit/fit.h"
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/evaluation/model_timing.h"
-#include "scenes/evaluation/noise_floor.h"
 #include "scenes/report/plan.h"
 #include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-using PaperBinFigure = double (*)(const PaperBin&);
+using BinFigure = double (*)(const ForceBin&);
 
 // The JND as a curve over the force. `relative`: divided by the force.
 Series jnd_curve(const JndLine& jnd, double from_N, double to_N, bool relative) {
@@ -21,11 +21,11 @@ Series jnd_curve(const JndLine& jnd, double from_N, double to_N, bool relative) 
   return curve;
 }
 
-Figure bins_figure(const PaperData& data, int number, const std::string& title, bool relative, PaperBinFigure value) {
+Figure bins_figure(const PaperData& data, int number, const std::string& title, bool relative, BinFigure value) {
   Figure figure;
   figure.plot.name = "figure_" + std::to_string(number);
   figure.plot.columns = 2;
-  figure.caption = "Figure " + std::to_string(number) + ": " + title + " over the absolute value of the force.";
+  figure.caption = "Figure " + std::to_string(number) + ": " + title + " over the measured force.";
   for (const PaperRun& run : data.runs) {
     Panel panel;
     panel.title = run_name(run);
@@ -36,7 +36,7 @@ Figure bins_figure(const PaperData& data, int number, const std::string& title, 
     double to_N = 0.0;
     for (const PaperModel& model : run.models) {
       Series series{model.name, model.colour, Mark::curve, {}};
-      for (const PaperBin& bin : model.bins) {
+      for (const ForceBin& bin : model.errors.bins) {
         series.rows.push_back({bin.force_N.mean(), value(bin)});
         from_N = std::min(from_N, bin.force_N.mean());
         to_N = std::max(to_N, bin.force_N.mean());
@@ -110,11 +110,11 @@ std::vector<Figure> paper_figures(const PaperData& data) {
       dimension_figure(data),
       jnd_figure(data),
       bins_figure(data, 4, "mean plus standard deviation of the absolute error", false,
-                  [](const PaperBin& bin) { return bin.error_N.mean() + bin.error_N.deviation(); }),
+                  [](const ForceBin& bin) { return bin.error_N.mean() + bin.error_N.deviation(); }),
       bins_figure(data, 5, "mean plus standard deviation of the relative error", true,
-                  [](const PaperBin& bin) { return bin.relative.mean() + bin.relative.deviation(); }),
-      bins_figure(data, 6, "maximum absolute error", false, [](const PaperBin& bin) { return bin.error_N.largest(); }),
-      bins_figure(data, 7, "maximum relative error", true, [](const PaperBin& bin) { return bin.relative.largest(); }),
+                  [](const ForceBin& bin) { return bin.relative.mean() + bin.relative.deviation(); }),
+      bins_figure(data, 6, "maximum absolute error", false, [](const ForceBin& bin) { return bin.error_N.largest(); }),
+      bins_figure(data, 7, "maximum relative error", true, [](const ForceBin& bin) { return bin.relative.largest(); }),
       sites_figure(data)};
 }
 
@@ -142,7 +142,7 @@ Table models_table(const PaperData& data) {
       table.begin_row();
       table.add({"run", "run"}, run_name(run));
       table.add({"model", "model"}, model.name);
-      table.add({"rms_error_N", "RMS [mN]", kInMilli}, model.rms_N);
+      table.add({"rms_error_N", "RMS [mN]", kInMilli}, model.errors.rms_error_N);
       table.add({"fit_seconds", "fit [s]"}, model.fit_seconds);
       table.add({"evaluation_ns", "evaluation [ns]", 1.0, 0}, model.time.evaluation.median_ns);
       table.add({"tick_ns", "tick [ns]", 1.0, 0}, model.time.tick.median_ns);
@@ -155,7 +155,7 @@ Table bins_table(const PaperData& data) {
   Table table{"bins"};
   for (const PaperRun& run : data.runs) {
     for (const PaperModel& model : run.models) {
-      for (const PaperBin& bin : model.bins) {
+      for (const ForceBin& bin : model.errors.bins) {
         table.begin_row();
         table.add({"run", ""}, run_name(run));
         table.add({"model", ""}, model.name);
@@ -212,21 +212,15 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
   if (!data) return data.error();
   const std::vector<Claim> claims = paper_claims(*data);
   const std::vector<Table> tables{claims_table(*data, claims), models_table(*data), bins_table(*data)};
-  std::vector<Figure> figures = paper_figures(*data);
-  if (const Status status = write_parts(*folder, tables, figures, control); !status) return status.error();
-  std::string drawings;
-  for (const Figure& figure : figures) drawings += figure_html(figure);
   const std::string answer = summary(*data, claims);
-  const auto page = fill_page("paper.html", {{"answer", escape_html(answer)},
-                                             {"claims", table_html(tables[0])},
-                                             {"models", table_html(tables[1])},
-                                             {"protocol", escape_html(protocol_words(*data))},
-                                             {"figures", drawings},
-                                             {"origin", escape_html(request.origin)}});
-  if (!page) return page.error();
   nlohmann::ordered_json report{{"format", "palpate-paper"}, {"version", 1}, {"answer", answer}};
   for (const Table& table : tables) report["tables"][table.name] = table_json(table);
-  if (const Status status = publish(*folder, *page, report, control); !status) return status.error();
+  const Status written = write_report(*folder, "paper.html", tables, paper_figures(*data),
+                                      {{"answer", escape_html(answer)},
+                                       {"protocol", escape_html(protocol_words(*data))},
+                                       {"origin", escape_html(request.origin)}},
+                                      report, control);
+  if (!written) return written.error();
   return answer;
 }
 

@@ -21,20 +21,12 @@
 
 namespace palpate {
 
-// The samples in a bin of the force (scenes/evaluation/error_figures.h).
-struct PaperBin {
-  Moments force_N;   // absolute value
-  Moments error_N;   // absolute value
-  Moments relative;  // absolute error / force
-};
-
 struct PaperModel {
   std::string name;
   std::uint32_t colour = 0;  // 0xRRGGBB
   double fit_seconds = 0.0;
   ModelTiming time;
-  double rms_N = 0.0;
-  std::vector<PaperBin> bins;
+  ErrorSummary errors;  // without the bins of few samples
 };
 
 // The results for one material and one pair of relaxation times.

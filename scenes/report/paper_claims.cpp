@@ -15,20 +15,20 @@ constexpr double kLargeForce_N = 2.5;  // the largest force of the paper's study
 constexpr double kSmallForce_N = 0.5;
 constexpr double kLinear = 1.3;  // the largest exponent that counts as linear
 
-double spread(const PaperBin& bin) { return bin.error_N.mean() + bin.error_N.deviation(); }
-double largest(const PaperBin& bin) { return bin.error_N.largest(); }
+double spread(const ForceBin& bin) { return bin.error_N.mean() + bin.error_N.deviation(); }
+double largest(const ForceBin& bin) { return bin.error_N.largest(); }
 
-std::size_t bins_above(const PaperData& data, const PaperModel& model, double (*figure)(const PaperBin&)) {
+std::size_t bins_above(const PaperData& data, const PaperModel& model, double (*figure)(const ForceBin&)) {
   return static_cast<std::size_t>(std::ranges::count_if(
-      model.bins, [&](const PaperBin& bin) { return figure(bin) > data.jnd.at(bin.force_N.mean()); }));
+      model.errors.bins, [&](const ForceBin& bin) { return figure(bin) > data.jnd.at(bin.force_N.mean()); }));
 }
 
 // The ratio of two methods' means of `figure` over the bins with forces between two values.
-double ratio(const PaperRun& run, PaperMethod one, PaperMethod other, double (*figure)(const PaperBin&),
+double ratio(const PaperRun& run, PaperMethod one, PaperMethod other, double (*figure)(const ForceBin&),
              double from_N = 0.0, double to_N = 1e300) {
   double sums[2] = {};
   for (const PaperMethod which : {one, other}) {
-    for (const PaperBin& bin : run.models[which].bins) {
+    for (const ForceBin& bin : run.models[which].errors.bins) {
       const double force_N = bin.force_N.mean();
       if (force_N > from_N && force_N < to_N) sums[which == one ? 0 : 1] += figure(bin);
     }
@@ -37,7 +37,7 @@ double ratio(const PaperRun& run, PaperMethod one, PaperMethod other, double (*f
 }
 
 std::string of_bins(std::size_t above, const PaperModel& model) {
-  return std::to_string(above) + " of " + std::to_string(model.bins.size()) + " bins above";
+  return std::to_string(above) + " of " + std::to_string(model.errors.bins.size()) + " bins above";
 }
 
 class Claims {
@@ -77,7 +77,7 @@ class Claims {
     add({"random: at every force some samples err above the JND", "every force"}, [&](const PaperRun& run) {
       const PaperModel& model = run.models[kRandomCentres];
       const std::size_t above = bins_above(data_, model, largest);
-      return Claim::Result{of_bins(above, model), above == model.bins.size()};
+      return Claim::Result{of_bins(above, model), above == model.errors.bins.size()};
     });
     for (const auto& [which, name] :
          {std::pair{kTreeCentres, "kD-tree"}, {kGreedy20, "greedy-20"}, {kGreedy100, "greedy-100"}}) {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/fit/fit.h"
 #include "scenes/evaluation/evaluate.h"
@@ -26,15 +25,6 @@ constexpr double kMoreTimes_s[] = {0.05, 4.0};
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-void add_to_bin(std::vector<PaperBin>& bins, double force_N, double error_N, const JndLine& jnd) {
-  if (force_N == 0.0) return;  // the relative error is undefined
-  const std::size_t index = force_bin(force_N, jnd);
-  if (bins.size() <= index) bins.resize(index + 1);
-  bins[index].force_N.add(force_N);
-  bins[index].error_N.add(error_N);
-  bins[index].relative.add(error_N / force_N);
 }
 
 MethodRequest request_of(std::size_t which) {
@@ -110,30 +100,25 @@ class PaperMeasurement {
 
   Status measure_run(PaperRun run, const PreparedTraining& prepared) {
     std::vector<ModelPointer> models;
+    std::vector<EvaluatedModel> evaluated;
     for (std::size_t which = 0; which < kPaperMethods; ++which) {
       const auto start = std::chrono::steady_clock::now();
       auto fit = fit_method(prepared, request_of(which), part());
       if (!fit) return Error{run.material + ", " + kNames[which] + ": " + fit.error().message};
-      run.models.push_back({kNames[which], colour_of(which), seconds_since(start), {}, 0.0, {}});
+      run.models.push_back({kNames[which], colour_of(which), seconds_since(start), {}, {}});
       models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
+      evaluated.push_back({models.back(), data_.jnd});
     }
-    std::vector<Moments> errors_N(models.size());
-    TimedSamples timing;
-    const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-      if (!snapshot.in_contact) return;
-      if (timing.samples.size() < kTimedSamples) timing.samples.push_back(tool_sample(row));
-      for (std::size_t i = 0; i < models.size(); ++i) {
-        const double error_N = std::abs(snapshot.force_N[i] - row.force_N);
-        errors_N[i].add(error_N);
-        add_to_bin(run.models[i].bins, std::abs(row.force_N), error_N, data_.jnd);
-      }
-    };
-    timing.sensor = replay(recordings_[1]->recording, models, visitor).sensor;
-    const std::vector<ModelTiming> times = time_models(models, {timing});
+    EvaluationRequest as_recorded;
+    as_recorded.move_surface = false;
+    const auto tested = evaluate(rows_of(recordings_[1]->recording), evaluated, as_recorded);
+    if (!tested) return tested.error();
+    const std::vector<ModelTiming> times = time_models(models, {tested->timing});
     for (std::size_t i = 0; i < models.size(); ++i) {
-      run.models[i].rms_N = std::hypot(errors_N[i].mean(), errors_N[i].deviation());
+      ErrorSummary& errors = run.models[i].errors;
+      errors = tested->models[i].as_recorded.summary();
+      std::erase_if(errors.bins, [](const ForceBin& bin) { return bin.force_N.count() < kReducedSamples; });
       run.models[i].time = times[i];
-      std::erase_if(run.models[i].bins, [](const PaperBin& bin) { return bin.force_N.count() < kReducedSamples; });
     }
     data_.runs.push_back(std::move(run));
     return {};

@@ -22,17 +22,9 @@ bool is_slow(const Method& method) { return &method == &kDirectMethod || method.
 
 }  // namespace
 
-std::string model_name(Recipe recipe, const Method& method, int centres) {
-  std::string name = recipe == Recipe::paper ? "2009-" : "";
-  name.append(method.name);
-  if (method.can_take(kTakesCentres)) name.append("-").append(std::to_string(centres));
-  return name;
-}
-
 std::vector<PlannedModel> make_plan(bool quick, std::size_t features) {
   std::vector<PlannedModel> plan{planned(Recipe::no_force, kTrendMethod, kMainCentres),
-                                 planned(Recipe::trend, kTrendMethod, kMainCentres)};
-  plan[0].name = "no force";
+                                 planned(Recipe::palpate, kTrendMethod, kMainCentres)};
   for (const Recipe of : {Recipe::paper, Recipe::palpate}) {
     for (const Method* method : methods()) {
       const bool grid_of_2009 = of == Recipe::paper && method->can_take(kTakesGrid);

@@ -42,6 +42,30 @@ Status check_target(const fs::path& path, bool overwrite) {
   return {};
 }
 
+std::string figure_html(const Figure& figure, const std::string& svg) {
+  // Text has the same size in narrow figures and in wide ones.
+  return "<figure style=\"max-width: " + general(kPageWidth_rem * figure.plot.width, 3) + "rem\">" +
+         inline_svg(svg, figure.plot.name, figure.caption) + "<figcaption>" + escape_html(figure.caption) +
+         " <a class=\"data\" href=\"figures/" + figure.plot.name + ".gp\">data and script</a></figcaption></figure>\n";
+}
+
+// Returns assets/report/NAME with every {{key}} replaced by its value.
+Result<std::string> fill_page(const std::string& name, const std::map<std::string, std::string>& values) {
+  const auto text = read_template(name);
+  if (!text) return text.error();
+  std::string page;
+  std::size_t at = 0;
+  for (std::size_t open; (open = text->find("{{", at)) != std::string::npos;) {
+    const std::size_t close = text->find("}}", open);
+    const auto value =
+        close == std::string::npos ? values.end() : values.find(text->substr(open + 2, close - open - 2));
+    if (value == values.end()) return Error{name + ": found {{ without the name of a part of the page after it"};
+    page.append(*text, at, open - at).append(value->second);
+    at = close + 2;
+  }
+  return page.append(*text, at);
+}
+
 // Removes the slash at the end of "a/b/".
 fs::path without_slash(const std::string& path) {
   fs::path clean = fs::path(path).lexically_normal();
@@ -98,10 +122,12 @@ Status ReportFolder::commit() {
   return {};
 }
 
-Status write_parts(const ReportFolder& folder, const std::vector<Table>& tables, std::vector<Figure>& figures,
-                   const FitControl& control) {
+Status write_report(ReportFolder& folder, const std::string& page_template, const std::vector<Table>& tables,
+                    const std::vector<Figure>& figures, std::map<std::string, std::string> parts,
+                    const nlohmann::ordered_json& report, const FitControl& control) {
   for (const Table& table : tables) {
     if (const Status status = folder.write("tables/" + table.name + ".csv", table_csv(table)); !status) return status;
+    parts[table.name] = table.rows.empty() ? "" : table_html(table);
   }
   const std::string place = folder.path_of("figures");
   std::error_code ignored;
@@ -112,46 +138,20 @@ Status write_parts(const ReportFolder& folder, const std::vector<Table>& tables,
   // Ctrl-C at a terminal ends gnuplot as well; the report is then interrupted, not wrong.
   if (!control.may_continue(0.99)) return interrupted();
   if (!drawn) return drawn;
-  for (Figure& figure : figures) {
-    auto svg = read_plain_file(place + "/" + figure.plot.name + ".svg", "a drawing of gnuplot");
+  for (const Figure& figure : figures) {
+    const auto svg = read_plain_file(place + "/" + figure.plot.name + ".svg", "a drawing of gnuplot");
     if (!svg) return svg.error();
-    figure.svg = std::move(*svg);
+    parts["figures"] += parts[figure.plot.name] = figure_html(figure, *svg);
   }
-  return {};
-}
-
-std::string figure_html(const Figure& figure) {
-  // Text has the same size in narrow figures and in wide ones.
-  return "<figure style=\"max-width: " + general(kPageWidth_rem * figure.plot.width, 3) + "rem\">" +
-         inline_svg(figure.svg, figure.plot.name, figure.caption) + "<figcaption>" + escape_html(figure.caption) +
-         " <a class=\"data\" href=\"figures/" + figure.plot.name + ".gp\">data and script</a></figcaption></figure>\n";
-}
-
-Result<std::string> fill_page(const std::string& name, std::map<std::string, std::string> values) {
-  const auto text = read_template(name);
-  if (!text) return text.error();
   const auto style = read_template("style.css");
   if (!style) return style.error();
-  values["style"] = *style;
-  std::string page;
-  std::size_t at = 0;
-  for (std::size_t open; (open = text->find("{{", at)) != std::string::npos;) {
-    const std::size_t close = text->find("}}", open);
-    const auto value =
-        close == std::string::npos ? values.end() : values.find(text->substr(open + 2, close - open - 2));
-    if (value == values.end()) return Error{name + ": found {{ without the name of a part of the page after it"};
-    page.append(*text, at, open - at).append(value->second);
-    at = close + 2;
-  }
-  return page.append(*text, at);
-}
-
-Status publish(ReportFolder& folder, const std::string& page, const nlohmann::ordered_json& report,
-               const FitControl& control) {
+  parts["style"] = *style;
+  const auto page = fill_page(page_template, parts);
+  if (!page) return page.error();
   // Names of recordings may be invalid UTF-8; such bytes are replaced.
   const std::string json = report.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   if (const Status status = folder.write("report.json", json); !status) return status;
-  if (const Status status = folder.write("index.html", page); !status) return status;
+  if (const Status status = folder.write("index.html", *page); !status) return status;
   if (!control.may_continue(1.0)) return interrupted();
   return folder.commit();
 }

@@ -40,23 +40,15 @@ class ReportFolder {
 struct Figure {
   Plot plot;
   std::string caption;  // plain text
-  std::string svg{};    // set by write_parts
 };
 
-// Writes tables/NAME.csv, draws the figures into the subfolder figures and sets their `svg`. Errors: those of
-// draw_plots; a file cannot be read or written; interrupted.
-Status write_parts(const ReportFolder& folder, const std::vector<Table>& tables, std::vector<Figure>& figures,
-                   const FitControl& control);
-
-std::string figure_html(const Figure& figure);
-
-// Returns assets/report/NAME with every {{key}} replaced by its value, and {{style}} by style.css. Errors: a template
-// is missing, or has an unknown key.
-Result<std::string> fill_page(const std::string& name, std::map<std::string, std::string> values);
-
-// Writes index.html and report.json, which marks the folder as a report that may be replaced, and commits the folder.
-// Errors: those of ReportFolder; interrupted.
-Status publish(ReportFolder& folder, const std::string& page, const nlohmann::ordered_json& report,
-               const FitControl& control);
+// Writes tables/NAME.csv, the figures into the subfolder figures, report.json, which marks the folder as a report that
+// may be replaced, and index.html, and commits the folder. index.html is assets/report/TEMPLATE with every {{key}}
+// replaced: by its value in `parts`, by the table or the figure of that name, {{figures}} by all figures, {{style}} by
+// style.css. Errors: those of ReportFolder and draw_plots; a template is missing or has an unknown key; a file cannot
+// be read or written; interrupted.
+Status write_report(ReportFolder& folder, const std::string& page_template, const std::vector<Table>& tables,
+                    const std::vector<Figure>& figures, std::map<std::string, std::string> parts,
+                    const nlohmann::ordered_json& report, const FitControl& control);
 
 }  // namespace palpate

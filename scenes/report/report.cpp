@@ -275,23 +275,19 @@ std::string learnt_html(const ReportData& data) {
   return html + "</table>\n";
 }
 
-// `origin`: command line, version and machine; `tables`: those of make_tables; `figures`: drawn already. Errors: those
-// of fill_page.
-Result<std::string> make_page(const ReportData& data, const Sentence& answer, const std::string& origin,
-                              const std::vector<Table>& tables, const std::vector<Figure>& figures) {
+// The parts of the page beside tables and figures. `origin`: command line, version and machine.
+std::map<std::string, std::string> page_parts(const ReportData& data, const Sentence& answer,
+                                              const std::string& origin) {
   std::vector<std::string> tests;
   for (std::size_t i = 0; i < data.recordings.all.size(); ++i) {
     if (data.recordings.is_tested(i)) tests.push_back(data.recordings.all[i]->recording.name);
   }
-  std::map<std::string, std::string> values{{"title", escape_html(joined(tests))},
-                                            {"answer", answer.html()},
-                                            {"headline", table_html(headline_table(data))},
-                                            {"notes", notes_html(data)},
-                                            {"learnt", learnt_html(data)},
-                                            {"origin", escape_html(origin)}};
-  for (const Table& one : tables) values[one.name] = one.rows.empty() ? "" : table_html(one);
-  for (const Figure& one : figures) values[one.plot.name] = figure_html(one);
-  return fill_page("page.html", std::move(values));
+  return {{"title", escape_html(joined(tests))},
+          {"answer", answer.html()},
+          {"headline", table_html(headline_table(data))},
+          {"notes", notes_html(data)},
+          {"learnt", learnt_html(data)},
+          {"origin", escape_html(origin)}};
 }
 
 }  // namespace
@@ -310,17 +306,16 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
   if (!data) return data.error();
   const Sentence words = answer(*data);
   const std::vector<Table> tables = make_tables(*data);
-  std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), force_figure(*data)};
-  if (const Status status = write_parts(*folder, tables, figures, control); !status) return status.error();
+  const std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), force_figure(*data)};
   const std::string machine =
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
                              " · " + three_digits(seconds) + " s";
-  const auto page = make_page(*data, words, origin, tables, figures);
-  if (!page) return page.error();
   const OrderedJson json = report_json(*data, request, words, tables, figures, machine, seconds);
-  if (const Status status = publish(*folder, *page, json, control); !status) return status.error();
+  const Status written =
+      write_report(*folder, "page.html", tables, figures, page_parts(*data, words, origin), json, control);
+  if (!written) return written.error();
   return words.plain_text();
 }
 

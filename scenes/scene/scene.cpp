@@ -38,7 +38,7 @@ class SceneReader : private JsonFields {
       : JsonFields(text, path, ""), path_(path), top_{&document, ""} {}
 
   Result<Scene> read() {
-    read_name();
+    scene_.name = fs::path(path_).stem().string();
     scene_.title = filled_text(top_, "title");
     scene_.description = filled_text(top_, "description");
     read_material();
@@ -46,7 +46,6 @@ class SceneReader : private JsonFields {
     read_jnd();
     read_block();
     read_colours();
-    read_default_models();
     if (optional_member(top_, "strongest_press_N").value != nullptr) {
       scene_.strongest_press_N = number(top_, "strongest_press_N", {0.0, kStrongestPress_N, true});
     }
@@ -66,14 +65,6 @@ class SceneReader : private JsonFields {
     if (code.size() != 7 || code[0] != '#' || std::from_chars(code.data() + 1, end, rgb, 16).ptr != end)
       complain(node.pointer, found(*node.value) + ", expected " + expected);
     return rgb;
-  }
-
-  void read_name() {
-    scene_.name = filled_text(top_, "name");
-    const std::string stem = fs::path(path_).stem().string();
-    if (scene_.name != stem) {
-      complain("/name", "found \"" + scene_.name + "\", expected \"" + stem + "\", the name of the file");
-    }
   }
 
   void read_material() {
@@ -147,25 +138,12 @@ class SceneReader : private JsonFields {
   }
 
   void read_colours() {
-    const JsonNode node = member(top_, "colours", "an object with block and tool");
+    const JsonNode node = member(top_, "colours", "an object with the colour of the block");
     scene_.block_colour = colour(node, "block");
-    scene_.tool_colour = colour(node, "tool");
     const JsonNode finish = optional_member(top_, "finish");
     if (finish.value == nullptr) return;
     static const std::vector<std::string> kFinishes = {"silicone", "foam", "gel", "rubber", "skin", "dome"};
     if (const auto index = choice(finish, kFinishes)) scene_.finish = static_cast<Finish>(*index);
-  }
-
-  void read_default_models() {
-    const std::string expected = "a list of methods out of " + method_names();
-    std::vector<std::string> names;
-    for (const Method* method : methods()) names.emplace_back(method->name);
-    const JsonNode node = list(top_, "default_models", expected);
-    if (node.value == nullptr) return;
-    if (node.value->empty()) complain(node.pointer, found(*node.value) + ", expected " + expected);
-    for (std::size_t i = 0; i < node.value->size(); ++i) {
-      if (const auto index = choice(entry(node, i), names)) scene_.default_models.push_back(names[*index]);
-    }
   }
 
   const std::string& path_;

@@ -28,7 +28,7 @@ struct BlockGeometry {
 enum class Finish { silicone, foam, gel, rubber, skin, dome };
 
 struct Scene {
-  std::string name;
+  std::string name;  // of its file
   std::string title;
   std::string description;
   std::optional<std::string> material;  // name of the virtual material; empty: models need recordings
@@ -37,9 +37,7 @@ struct Scene {
   JndLine jnd;
   BlockGeometry block;
   std::uint32_t block_colour = 0;  // 0xRRGGBB
-  std::uint32_t tool_colour = 0;
   Finish finish = Finish::silicone;
-  std::vector<std::string> default_models;  // names of methods (models/fit/methods.h)
   // Largest target force of the simulated hand that moves the tool.
   double strongest_press_N = 5.0;
 
@@ -50,9 +48,9 @@ struct Scene {
 // The features in words: "depth, velocity, relaxation 0.17 s"; the time is that of a low-pass velocity.
 std::string describe_features(const Scene& scene);
 
-// Parses the text of a scene file. "name" must equal the file name in `path`. Instead of "jnd", "jnd_file" can name a
-// JND file relative to the scene's folder, which is then read. Errors: all errors of the file, one per line, each as
-// "path:line:column: found ..., expected ...".
+// Parses the text of a scene file. Instead of "jnd", "jnd_file" can name a JND file relative to the scene's folder,
+// which is then read. Errors: all errors of the file, one per line, each as "path:line:column: found ..., expected
+// ...".
 Result<Scene> parse_scene(std::string_view text, const std::string& path);
 
 // Reads the JND line from the result file of a JND study (scenes/study/study_analysis.h).

@@ -20,7 +20,7 @@ namespace {
 
 // Niceness of fits, so that graphics and haptics have priority where there are few cores.
 constexpr int kNice = 10;
-// Progress of the first fit when the recording, and when the preparation is done.
+// Progress of a fit when the recording, and when the preparation is done; both are done once.
 constexpr double kRecorded = 0.3;
 constexpr double kPrepared = 0.7;
 
@@ -32,8 +32,8 @@ constexpr double kChoosesFeatures_s = 2.0;
 // Approximate time to make a model; only the order matters. It puts a method after its base, from which it starts.
 double expected_cost_s(const SlotPlan& plan) {
   if (plan.loaded != nullptr) return 0.0;
-  return expected_seconds(*plan.method) + (plan.paper ? 0.0 : kChoosesFeatures_s) +
-         (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
+  return expected_seconds(*plan.method) + (plan.recipe == Recipe::paper ? 0.0 : kChoosesFeatures_s) +
+         (plan.recipe == Recipe::position ? kOwnPreparation_s : 0.0);
 }
 
 }  // namespace
@@ -127,7 +127,7 @@ FitControl ModelWorker::control(double from, double to) {
 }
 
 Status ModelWorker::prepare_recordings() {
-  if (!recordings_.empty()) return {};
+  if (fits_) return {};
   if (!scene_.has_material())
     return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
   std::vector<PreparedRecordingPointer> recordings;
@@ -141,40 +141,20 @@ Status ModelWorker::prepare_recordings() {
     if (!recording) return recording.error();
     recordings.push_back(prepare_recording(std::move(*recording)));
   }
-  recordings_ = std::move(recordings);
-  return {};
-}
-
-Status ModelWorker::prepare(Recipe& recipe, const SlotPlan& plan) {
-  if (Status status = prepare_recordings(); !status) return status;
-  TrainingRequest request = training_request(scene_);
-  if (plan.paper) request = recipe_2009_request(request);
-  if (plan.origin == ModelOrigin::position) {
-    request.features = {FeatureSpec{}};
-    request.choice = FeatureChoice::scene;
-  }
-  MotionSource source(recordings_);
-  Result<PreparedTraining> made = prepare_training(source, request, control(kRecorded, kPrepared));
-  if (!made) return made.error();
-  recipe.prepared.emplace(std::move(*made));
+  fits_.emplace(std::move(recordings), scene_);
   return {};
 }
 
 Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
-  Recipe of_position;
-  const bool position = plan.origin == ModelOrigin::position;
-  Recipe& recipe = position ? of_position : plan.paper ? of_paper_ : own_;
-  const double prepared = recipe.prepared ? 0.0 : kPrepared;
-  if (!recipe.prepared) {
-    if (const Status status = prepare(recipe, plan); !status) return status.error();
-  }
+  if (const Status status = prepare_recordings(); !status) return status.error();
+  if (const auto prepared = fits_->prepare(plan.recipe, control(kRecorded, kPrepared)); !prepared)
+    return prepared.error();
   MethodRequest request{.method = plan.method, .seed = seed_};
   if (plan.centres > 0) request.centres = plan.centres;
-  const auto base = recipe.bases.find(plan.method->base);
-  Result<MethodFit> fitted = fit_method(*recipe.prepared, request, control(prepared, 1.0),
-                                        base == recipe.bases.end() ? nullptr : &base->second);
+  // The progress of the preparation, or 0 if it was done before.
+  const double done = share_.load(std::memory_order_relaxed);
+  auto fitted = fits_->fit(plan.recipe, request, control(done, 1.0));
   if (!fitted) return fitted.error();
-  if (plan.centres == 0) recipe.bases.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);
 }
 

@@ -16,10 +16,9 @@
 #include <thread>
 #include <vector>
 
-#include "models/fit/fit.h"
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/model_timing.h"
-#include "scenes/scene/scene.h"
+#include "scenes/scene/recipe_fits.h"
 #include "scenes/worker/slot_plan.h"
 
 namespace palpate {
@@ -72,22 +71,14 @@ class ModelWorker {
     std::size_t job_id = 0;
     SlotPlan plan;
   };
-  // The common data of all fits by one recipe.
-  struct Recipe {
-    std::optional<PreparedTraining> prepared;
-    std::map<const Method*, MethodFit> bases;  // finished fits, from which other methods start
-  };
   void work();  // until cancelled
   Result<ModelData> fit(const SlotPlan& plan);
   Status prepare_recordings();
-  Status prepare(Recipe& recipe, const SlotPlan& plan);
   FitControl control(double from, double to);
 
   Scene scene_;
   std::uint64_t seed_;
-  // Used by the worker's thread only.
-  std::vector<PreparedRecordingPointer> recordings_;
-  Recipe own_, of_paper_;
+  std::optional<RecipeFits> fits_;  // used by the worker's thread only; none before the first fit
 
   std::thread thread_;
   std::atomic<bool> cancelled_{false};

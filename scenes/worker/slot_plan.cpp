@@ -12,13 +12,14 @@
 namespace palpate {
 namespace {
 
-// Parses "greedy", "greedy-10" or "paper:greedy-10"; empty if it names no method.
+const std::vector<std::string> kDefaultModels{"greedy", "kdtree", "random", "voxel", "direct"};
+
+// Parses "greedy", "greedy-10" or "2009-greedy-10"; empty if it names no method.
 std::optional<SlotPlan> plan_method_of(std::string asked) {
   SlotPlan plan;
-  constexpr std::string_view kPaper = "paper:";
-  if (asked.rfind(kPaper, 0) == 0) {
-    plan.paper = true;
-    asked.erase(0, kPaper.size());
+  if (asked.rfind(kPaperPrefix, 0) == 0) {
+    plan.recipe = Recipe::paper;
+    asked.erase(0, std::string_view(kPaperPrefix).size());
   }
   plan.method = find_method(asked);
   if (plan.method != nullptr) return plan;
@@ -46,27 +47,24 @@ Result<SlotPlan> plan_one(const Scene& scene, const std::string& asked) {
   }
   auto model = load_model(asked);
   if (!model) return model.error();
-  return SlotPlan{ModelOrigin::file, &kGreedyMethod, asked, std::move(*model)};
+  return SlotPlan{.path = asked, .loaded = std::move(*model)};
 }
 
 }  // namespace
 
 std::string plan_name(const SlotPlan& plan) {
-  if (plan.origin == ModelOrigin::file) return std::filesystem::path(plan.path).stem().string();
-  if (plan.origin == ModelOrigin::position) return "position only";
-  std::string name = plan.method->name;
-  if (plan.centres > 0) name.append("-").append(std::to_string(plan.centres));
-  return plan.paper ? name + kPaperMark : name;
+  if (plan.is_file()) return std::filesystem::path(plan.path).stem().string();
+  return model_name(plan.recipe, *plan.method, plan.centres);
 }
 
 const std::vector<LineUp>& line_ups() {
   static const std::vector<LineUp> all = {
       {"Ladder",
        "the paper's recipe with 10 centres beside this program's fits",
-       {"greedy", "paper:random-10", "paper:greedy-10", "paper:kdtree-10", "voxel", "direct", "trend"}},
+       {"greedy", "2009-random-10", "2009-greedy-10", "2009-kdtree-10", "voxel", "direct", "trend"}},
       {"2009",
        "the paper's recipe with few centres, the grid and all sites",
-       {"paper:random-10", "paper:kdtree-10", "paper:greedy-10", "paper:voxel", "paper:direct"}},
+       {"2009-random-10", "2009-kdtree-10", "2009-greedy-10", "2009-voxel", "2009-direct"}},
       {"Palpate", "this program's fit of every method", {"greedy", "kdtree", "random", "voxel", "direct", "trend"}}};
   return all;
 }
@@ -77,8 +75,8 @@ const LineUp* find_line_up(const std::string& name) {
 }
 
 std::string plan_method(const SlotPlan& plan) {
-  if (plan.origin == ModelOrigin::file) return {};
-  return plan.origin == ModelOrigin::position ? "position" : plan.method->name;
+  if (plan.is_file()) return {};
+  return plan.recipe == Recipe::position ? "position" : plan.method->name;
 }
 
 Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<std::string>& models,
@@ -86,17 +84,17 @@ Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<s
   std::vector<SlotPlan> plans;
   // Without a material and without named models, the session waits for a file.
   if (models.empty() && !scene.has_material()) return plans;
-  for (const std::string& asked : models.empty() ? scene.default_models : models) {
+  for (const std::string& asked : models.empty() ? kDefaultModels : models) {
     Result<SlotPlan> plan = plan_one(scene, asked);
     if (!plan) return plan.error();
     plans.push_back(std::move(*plan));
   }
-  if (position_only && scene.has_material()) plans.push_back({ModelOrigin::position, &kGreedyMethod, "", nullptr});
+  if (position_only && scene.has_material()) plans.push_back({.recipe = Recipe::position});
   const bool has_direct = std::ranges::any_of(plans, [](const SlotPlan& plan) {
-    return plan.origin == ModelOrigin::method && plan.method == &kDirectMethod && !plan.paper;
+    return !plan.is_file() && plan.method == &kDirectMethod && plan.recipe == Recipe::palpate;
   });
-  const bool fits = std::ranges::any_of(plans, [](const SlotPlan& plan) { return plan.origin != ModelOrigin::file; });
-  if ((scene.material || fits) && !has_direct) plans.push_back({ModelOrigin::method, &kDirectMethod, "", nullptr});
+  const bool fits = !std::ranges::all_of(plans, &SlotPlan::is_file);
+  if ((scene.material || fits) && !has_direct) plans.push_back({.method = &kDirectMethod});
   if (plans.size() <= kMaxModels) return plans;
   return Error{"found " + std::to_string(plans.size()) + " models, the direct reference included, expected at most " +
                std::to_string(kMaxModels) + "; leave some out"};

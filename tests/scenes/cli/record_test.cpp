@@ -1,7 +1,10 @@
 // The program palpate record, and the advice of its guide.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 
 #include "engine/recording/recording.h"
@@ -90,47 +93,40 @@ TEST(DevicesTest, RefusesADeviceThatDoesNotReportItsWatchdog) {
       {"100 ms", "watchdog"}));
 }
 
-// A complete exploration.
-RecordingMeasures explored() {
-  RecordingMeasures measures;
-  measures.highest_position_m = 0.004;
-  for (auto& quarter : measures.seconds) quarter = {1.0, 1.0, 1.0};
-  measures.longest_hold_s = 3.0;
-  measures.small_strokes = 20;
-  return measures;
-}
-
-TEST(RecordGuide, AsksForTheSlowestMissingMotion) {
-  EXPECT_EQ(cli::guide_advice(explored(), 1.27), "");
-  RecordingMeasures measures = explored();
-  measures.small_strokes = 3;
-  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("make small strokes", 0), 0u);
-  measures.longest_hold_s = 0.5;
-  EXPECT_TRUE(test::has_parts(cli::guide_advice(measures, 1.27), {"hold", "2.5 s"}));
-  measures.seconds[3][2] = 0.0;
-  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("press fast", 0), 0u);
-  measures.seconds[2][0] = 0.01;
-  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("press slowly", 0), 0u);
-}
-
-TEST(RecordGuide, MarksTheCellsThatCheckCounts) {
-  RecordingMeasures measures = explored();
-  measures.seconds[0][1] = 0.5 * kLeastCell_s;
-  const auto lines = cli::guide_cells(measures, 0.0);
-  ASSERT_EQ(lines.size(), 1 + kDepthQuarters);
-  EXPECT_EQ(lines[1], "  0.00 to 1.00   1.0 s          -              1.0 s          ");
-  EXPECT_EQ(lines[4].rfind("  3.00 to 4.00   1.0 s", 0), 0u);
-}
-
-TEST(RecordGuide, GivesEachAdviceOnce) {
+TEST(RecordGuide, GivesTheAdviceOfCheckOnce) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("press.csv");
-  cli::RecordGuide guide(path, {});
+  const CheckRequest request{{}, 1.27};
+  cli::RecordGuide guide(path, request);
   EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"next: touch the block, then press it slowly"});
-  EXPECT_TRUE(guide.update(1.0).empty());
-  ASSERT_EQ(run_palpate({"synth", "--material", "silicone", "--seconds", "10", "--out", path}).exit_code, 0);
-  EXPECT_EQ(guide.update(1e6).size(), 2 + kDepthQuarters);
-  EXPECT_TRUE(guide.update(2e6).empty());
+  EXPECT_TRUE(guide.update(1.0).empty()) << "no check within two seconds";
+
+  // Three slow presses without a hold.
+  std::string text = "time_s,position_m,force_N\n";
+  for (int i = 0; i < 15000; ++i) {
+    const double position_m = 1.9e-3 + 2.1e-3 * std::sin(2.0 * std::numbers::pi * i / 5000.0);
+    text += std::to_string(1e-3 * i) + "," + std::to_string(position_m) + "," +
+            std::to_string(500.0 * std::max(0.0, position_m)) + "\n";
+  }
+  folder.with_file("press.csv", text);
+  const std::vector<std::string> lines = guide.update(1e6);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_TRUE(test::has_parts(lines[0], {"record next: ", "above", "mm/s at ", " mm"}));
+  EXPECT_TRUE(test::has_parts(lines[1], {"hold still for 2.5 s"}));
+  EXPECT_TRUE(test::has_parts(lines[2], {"small strokes"}));
+  const auto file = test::must(check_recording_file(path, request));
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(std::ranges::count(file.check.findings, lines[i], &Finding::advice), 1) << "the words of check";
+  }
+  EXPECT_TRUE(guide.update(2e6).empty()) << "nothing has changed";
+}
+
+TEST(RecordGuide, SaysThatNothingIsMissing) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("press.csv");
+  ASSERT_EQ(run_palpate({"synth", "--material", "silicone", "--seconds", "120", "--out", path}).exit_code, 0);
+  cli::RecordGuide guide(path, {{}, 1.27});
+  EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"nothing is missing: Ctrl-C ends the recording"});
 }
 
 }  // namespace

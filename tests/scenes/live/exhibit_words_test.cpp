@@ -18,11 +18,17 @@ TEST(ExhibitWords, AllLanguagesSayTheSameThings) {
 }
 
 TEST(ExhibitWords, FillInNumbersAndShowMissingKeys) {
-  const auto words = test::must(ExhibitWords::parse("# a comment\n\nwas = Block %1: %2\r\n", "x.txt"));
+  const auto words = test::must(ExhibitWords::parse("{\"was\": \"Block %1: %2\"}", "x.json"));
   EXPECT_EQ(words("was", "1", "soft"), "Block 1: soft");
   EXPECT_EQ(words("nothing"), "nothing");
-  EXPECT_TRUE(test::has_parts(ExhibitWords::parse("a = b\nno sign\n", "x.txt"), {"x.txt:2:", "\"no sign\""}));
-  EXPECT_TRUE(test::has_parts(ExhibitWords::parse("a = b\na = c", "x.txt"), {"x.txt:2:", "\"a\"", "second time"}));
+}
+
+TEST(ExhibitWords, RefusesWhatIsNoTextOfOneKey) {
+  EXPECT_TRUE(test::has_parts(ExhibitWords::parse("{\"a\": \"b\",\n \"c\": 3}", "x.json"), {"x.json:2:", "c", "3"}));
+  EXPECT_TRUE(
+      test::has_parts(ExhibitWords::parse("{\"a\": \"b\",\n \"a\": \"c\"}", "x.json"), {"x.json:2:2:", "second time"}));
+  for (const char* wrong : {"", "[\"a\"]", "\"a\"", "a = b", "{\"a\": {\"b\": \"c\"}}"})
+    EXPECT_FALSE(ExhibitWords::parse(wrong, "x.json").ok()) << wrong;
 }
 
 TEST(ExhibitTally, OutlivesARestart) {

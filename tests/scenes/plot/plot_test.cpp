@@ -74,15 +74,13 @@ TEST(Plot, TicsOfManyOrHardlyAnyDecadesAreReadable) {
   }
 }
 
-TEST(Layout, EveryAxisHasTwoLabelsAtLeastAndNotTooMany) {
-  for (const bool logarithmic : {true, false}) {
-    for (double low = 1e-3; low < 1e4; low *= 3.7) {
-      for (double ratio = 1.05; ratio < 1e9; ratio *= 1.9) {
-        const std::vector<double> tics = tics_of({"", "", logarithmic}, {low, low * ratio}, 5);
-        EXPECT_GE(tics.size(), 2u) << low << " to " << low * ratio;
-        EXPECT_LE(tics.size(), 6u) << low << " to " << low * ratio;
-        for (const double at : tics) EXPECT_TRUE(at > 0.998 * low && at < 1.002 * low * ratio);
-      }
+TEST(Layout, EveryLogarithmicAxisHasTwoLabelsAtLeastAndNotTooMany) {
+  for (double low = 1e-3; low < 1e4; low *= 3.7) {
+    for (double ratio = 1.05; ratio < 1e9; ratio *= 1.9) {
+      const std::vector<double> tics = log_tics({low, low * ratio}, 5);
+      EXPECT_GE(tics.size(), 2u) << low << " to " << low * ratio;
+      EXPECT_LE(tics.size(), 6u) << low << " to " << low * ratio;
+      for (const double at : tics) EXPECT_TRUE(at > 0.998 * low && at < 1.002 * low * ratio);
     }
   }
 }
@@ -124,12 +122,6 @@ TEST(Layout, MarksEachPeakBeyondTheAxisOnce) {
   EXPECT_EQ(marks[1].rows[0].y, -1.0);
   panel.y = {};
   EXPECT_TRUE(cut_marks(panel).empty());
-}
-
-TEST(Plot, ALegendOfSeveralLinesHasAsManyLinesOfRoom) {
-  Plot plot = errors_up_to(1.0);
-  for (int i = 0; i < 12; ++i) plot.panels[0].series.push_back({"a long name " + std::to_string(i), 0, Mark::line, {}});
-  EXPECT_NE(plot_script(plot)->find("title \" \\n \\n \\n \"\n"), std::string::npos) << *plot_script(plot);
 }
 
 TEST(Plot, NamesAreTextAndNoCommands) {

@@ -47,15 +47,21 @@ ModelResult result(const char* name, Recipe recipe, double p99, double tick_ns, 
   return one;
 }
 
+ModelResult trend(double p99, double tick_ns) {
+  ModelResult one = result("trend", Recipe::palpate, p99, tick_ns);
+  one.plan.request.method = &kTrendMethod;
+  return one;
+}
+
 TEST(Choose, TakesOneSizeOfEachMethodAndTheFastestThatQualifies) {
-  const Choice choice = choose(
-      {ModelResult{}, result("trend", Recipe::trend, 2.0, 100.0), result("greedy-100", Recipe::palpate, 0.5, 300.0),
-       result("greedy-200", Recipe::palpate, 0.1, 310.0, false), result("voxel", Recipe::palpate, 0.6, 200.0)});
+  const Choice choice =
+      choose({ModelResult{}, trend(2.0, 100.0), result("greedy-100", Recipe::palpate, 0.5, 300.0),
+              result("greedy-200", Recipe::palpate, 0.1, 310.0, false), result("voxel", Recipe::palpate, 0.6, 200.0)});
   EXPECT_EQ(choice.candidates, (std::vector<std::size_t>{1, 2, 4}));
   EXPECT_EQ(choice.recommended, 4u);
   EXPECT_EQ(choice.best, 2u);
   EXPECT_FALSE(choice.correction_off);
-  EXPECT_TRUE(choose({ModelResult{}, result("trend", Recipe::trend, 2.0, 100.0)}).correction_off);
+  EXPECT_TRUE(choose({ModelResult{}, trend(2.0, 100.0)}).correction_off);
 }
 
 TEST(Choose, NamesAnotherSizeThatIsFasterAndMoreAccurate) {

@@ -20,9 +20,9 @@ PaperData example() {
   const char* names[] = {"grid", "random", "kD-tree", "greedy-20", "greedy-100"};
   const double fit_s[] = {50.0, 1.0, 2.0, 3.0, 4.0};
   for (std::size_t i = 0; i < kPaperMethods; ++i) {
-    PaperModel model{names[i], 0, fit_s[i], {}, 0.01, {}};
+    PaperModel model{names[i], 0, fit_s[i], {}, {}};
     for (const double force_N : {0.2, 1.0, 4.0}) {
-      PaperBin& bin = model.bins.emplace_back();
+      ForceBin& bin = model.errors.bins.emplace_back();
       bin.force_N.add(force_N);
       bin.error_N = errors(data.jnd.at(force_N));
     }
@@ -60,7 +60,7 @@ TEST(PaperClaims, OtherClaimsHaveARemark) {
 
 TEST(PaperClaims, OneBinAboveTheJndIsEnoughToRefuteAlways) {
   PaperData data = example();
-  data.runs[0].models[kTreeCentres].bins[1].error_N.add(3.0 * data.jnd.at(1.0));
+  data.runs[0].models[kTreeCentres].errors.bins[1].error_N.add(3.0 * data.jnd.at(1.0));
   EXPECT_FALSE(reproduced(data, "kD-tree: mean plus deviation"));
   EXPECT_TRUE(reproduced(data, "greedy-100: mean"));
   data.by_sites[1].seconds[kGreedy100] = 4.0;

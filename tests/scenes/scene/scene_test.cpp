@@ -31,7 +31,6 @@ TEST(Scene, SiliconeHasThePapersFeatures) {
   const auto scene = test::must(load_scene("silicone_block"));
   EXPECT_EQ(describe_features(scene), "depth, velocity, relaxation 0.17 s, relaxation 1.27 s");
   EXPECT_EQ(scene.material, "silicone");
-  EXPECT_EQ(scene.default_models.size(), 5u);
 }
 
 TEST(Scene, UnknownNameListsTheKnownOnes) {
@@ -51,7 +50,6 @@ TEST(Scene, GivesAFitItsFeaturesAndJnd) {
 }
 
 const char* const kGood = R"({
-  "name": "x",
   "title": "X",
   "description": "An x.",
   "material": null,
@@ -61,14 +59,14 @@ const char* const kGood = R"({
   ],
   "jnd": {"offset_N": 0.1, "weber_fraction": 0},
   "block": {"width_m": 0.1, "length_m": 0.2, "height_m": 0.3, "tool_radius_m": 0.004},
-  "colours": {"block": "#56B4E9", "tool": "#000000"},
-  "default_models": ["greedy"]
+  "colours": {"block": "#56B4E9"}
 })";
 
 std::string complaint(const std::string& text) { return test::message_of(parse_scene(text, "x.json")); }
 
 TEST(SceneReader, ReadsEveryField) {
   const auto scene = test::must(parse_scene(kGood, "folder/x.json"));
+  EXPECT_EQ(scene.name, "x");
   EXPECT_EQ(scene.title, "X");
   EXPECT_FALSE(scene.material.has_value());
   ASSERT_EQ(scene.features.size(), 2u);
@@ -78,7 +76,6 @@ TEST(SceneReader, ReadsEveryField) {
   EXPECT_DOUBLE_EQ(scene.block.length_m, 0.2);
   EXPECT_DOUBLE_EQ(scene.block.tool_radius_m, 0.004);
   EXPECT_EQ(scene.block_colour, 0x56B4E9u);
-  EXPECT_EQ(scene.default_models, std::vector<std::string>{"greedy"});
   EXPECT_EQ(scene.strongest_press_N, 5.0) << "may be left out";
 }
 
@@ -96,28 +93,26 @@ TEST(SceneReader, TakesAStrongestPressAndTheJndFromAFile) {
 TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
   test::expect_messages(
       kGood, complaint,
-      {{R"("name": "x")", R"("name": "y")", {"x.json:2:11:", "name", "\"y\"", "\"x\""}},
-       {R"("title": "X")", R"("title": 3)", {"x.json:3:12:", "title: found 3"}},
+      {{R"("title": "X")", R"("title": 3)", {"x.json:2:12:", "title: found 3"}},
        {"  \"material\": null,\n", "", {"x.json:1:1:", "material"}},
-       {"null", R"("silicon")", {"x.json:5:15:", "material", "\"silicon\"", std::string(materials()[0].name)}},
-       {"null,", R"(null, "strongest_press_N": 0,)", {"x.json:5:42:", "strongest_press_N: found 0", "20"}},
-       {R"("depth")", R"("dept")", {"x.json:7:14:", "features[0].kind", "dept", "depth", "x.json:6:15:", "depth"}},
-       {"0.5", "-1", {"x.json:8:55:", "features[1].relaxation_time_s: found -1", "above 0", "100"}},
-       {R"(, "relaxation_time_s": 0.5)", "", {"x.json:8:5:", "features[1].relaxation_time_s", "above 0", "100"}},
-       {R"("depth"})", R"("depth", "relaxation_time_s": 1})", {"x.json:7:44:", "features[0]", "depth"}},
-       {R"({"kind": "depth"})", R"({"kind": "depth"}, {"kind": "depth"})", {"x.json:7:24:", "features[1]", "twice"}},
-       {"offset_N", "offset_mN", {"x.json:10:10:", "jnd.offset_N", "x.json:10:24:", "jnd.offset_mN", "offset_N"}},
+       {"null", R"("silicon")", {"x.json:4:15:", "material", "\"silicon\"", std::string(materials()[0].name)}},
+       {"null,", R"(null, "strongest_press_N": 0,)", {"x.json:4:42:", "strongest_press_N: found 0", "20"}},
+       {R"("depth")", R"("dept")", {"x.json:6:14:", "features[0].kind", "dept", "depth", "x.json:5:15:", "depth"}},
+       {"0.5", "-1", {"x.json:7:55:", "features[1].relaxation_time_s: found -1", "above 0", "100"}},
+       {R"(, "relaxation_time_s": 0.5)", "", {"x.json:7:5:", "features[1].relaxation_time_s", "above 0", "100"}},
+       {R"("depth"})", R"("depth", "relaxation_time_s": 1})", {"x.json:6:44:", "features[0]", "depth"}},
+       {R"({"kind": "depth"})", R"({"kind": "depth"}, {"kind": "depth"})", {"x.json:6:24:", "features[1]", "twice"}},
+       {"offset_N", "offset_mN", {"x.json:9:10:", "jnd.offset_N", "x.json:9:24:", "jnd.offset_mN", "offset_N"}},
        {R"("weber_fraction": 0)",
         R"("weber_fraction": 7)",
-        {"x.json:10:46:", "jnd.weber_fraction: found 7", "from 0", "1"}},
-       {R"("jnd":)", R"("jnd_file": "none.json", "jnd":)", {"x.json:10:35:", "jnd_file", "x.json:10:15:", "none.json"}},
-       {R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})", R"("jnd_file": 3)", {"x.json:10:15:", "jnd_file: found 3"}},
+        {"x.json:9:46:", "jnd.weber_fraction: found 7", "from 0", "1"}},
+       {R"("jnd":)", R"("jnd_file": "none.json", "jnd":)", {"x.json:9:35:", "jnd_file", "x.json:9:15:", "none.json"}},
+       {R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})", R"("jnd_file": 3)", {"x.json:9:15:", "jnd_file: found 3"}},
        {"  \"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0},\n", "", {"x.json:1:1:", "jnd", "offset_N", "jnd_file"}},
-       {"#56B4E9", "red", {"x.json:12:24:", "colours.block", "\"red\"", "#56B4E9"}},
-       {R"("default_models")",
-        R"("finish": "wood", "default_models")",
-        {"x.json:13:13:", "finish", "wood", "silicone"}},
-       {R"("greedy")", R"("best")", {"x.json:13:22:", "default_models[0]", "best", "trend"}}});
+       {"#56B4E9", "red", {"x.json:11:24:", "colours.block", "\"red\"", "#56B4E9"}},
+       {"\"#56B4E9\"}", R"("#56B4E9"}, "finish": "wood")", {"x.json:11:46:", "finish", "wood", "silicone"}},
+       {R"("title")", R"("name": "x", "title")", {"x.json:2:11:", "name: found an unknown field", "title"}},
+       {"#56B4E9\"", R"(#56B4E9", "tool": "#000000")", {"x.json:11:43:", "colours.tool", "block"}}});
 }
 
 TEST(SceneReader, LimitsTheNumberOfFeatures) {

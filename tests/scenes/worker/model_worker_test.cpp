@@ -25,9 +25,9 @@ std::vector<FinishedModel> wait_for(ModelWorker& worker, std::size_t count) {
 
 TEST(ModelWorker, EqualsPalpateFitAndFitsTheFastestFirst) {
   ModelWorker worker(test::must(load_scene("elastic_block")), 1);
-  worker.add_job(7, {ModelOrigin::position, &kGreedyMethod, ""});
-  worker.add_job(3, {ModelOrigin::method, &kKdTreeMethod, ""});
-  worker.add_job(5, {ModelOrigin::method, &kRandomMethod, ""});
+  worker.add_job(7, {.recipe = Recipe::position});
+  worker.add_job(3, {.method = &kKdTreeMethod});
+  worker.add_job(5, {.method = &kRandomMethod});
   ASSERT_TRUE(worker.start().ok());
   const std::vector<FinishedModel> made = wait_for(worker, 3);
   EXPECT_EQ(made[0].job_id, 5u);
@@ -72,13 +72,13 @@ TEST(ModelWorker, AnotherNumberOfCentresEqualsPalpateFit) {
 TEST(ModelWorker, ReportsErrors) {
   ModelWorker worker(test::must(load_scene("skin")), 1);
   ASSERT_TRUE(worker.start().ok());
-  worker.add_job(2, {ModelOrigin::method, &kGreedyMethod, ""});
+  worker.add_job(2, {.method = &kGreedyMethod});
   EXPECT_TRUE(test::has_parts(wait_for(worker, 1)[0].model, {"\"skin\""}));
 }
 
 TEST(ModelWorker, EndsInTheMiddleOfAFit) {
   ModelWorker worker(test::must(load_scene("silicone_block")), 1);
-  for (std::size_t i = 0; i < 8; ++i) worker.add_job(i, {ModelOrigin::method, &kGreedyMethod, ""});
+  for (std::size_t i = 0; i < 8; ++i) worker.add_job(i, {.method = &kGreedyMethod});
   ASSERT_TRUE(worker.start().ok());
   while (worker.progress().share <= 0.0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_TRUE(worker.progress().working);

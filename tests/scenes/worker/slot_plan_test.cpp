@@ -50,9 +50,9 @@ TEST(SlotPlan, RefusesUnknownModels) {
 }
 
 TEST(SlotPlan, CentresAndThePapersRecipeCanBeAskedFor) {
-  EXPECT_EQ(names(plan_slots(scene("silicone_block"), {"greedy-10", "paper:random-20", "paper:voxel"}, false)),
-            "greedy-10, random-20 '09, voxel '09, direct");
-  for (const char* wrong : {"voxel-10", "greedy-", "greedy-x", "paper:", "paper:lazy-3"})
+  EXPECT_EQ(names(plan_slots(scene("silicone_block"), {"greedy-10", "2009-random-20", "2009-voxel"}, false)),
+            "greedy-10, 2009-random-20, 2009-voxel, direct");
+  for (const char* wrong : {"voxel-10", "greedy-", "greedy-x", "2009-", "2009-lazy-3"})
     EXPECT_FALSE(plan_slots(scene("silicone_block"), {wrong}, false).ok()) << wrong;
 }
 

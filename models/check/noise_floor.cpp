@@ -1,4 +1,4 @@
-#include "scenes/evaluation/noise_floor.h"
+#include "models/check/noise_floor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,15 +10,16 @@ constexpr std::size_t kMostSamples = 10000;  // of a recording; of a longer one 
 
 }  // namespace
 
-NoiseFloor noise_floor(const std::vector<PreparedRecordingPointer>& recordings, const JndLine& jnd) {
+NoiseFloor noise_floor(const std::vector<const PreparedRecording*>& recordings, const JndLine& jnd) {
   std::vector<double> noise_over_jnd;
   double squares_N2 = 0.0;
-  for (const PreparedRecordingPointer& prepared : recordings) {
+  for (const PreparedRecording* prepared : recordings) {
     const std::vector<RecordingRow>& rows = prepared->recording.rows;
+    const SurfaceEstimate& surface = prepared->offsets.surface;
     const double noise_N = prepared->force_noise_N;
     for (std::size_t i = 0; i < rows.size(); i += rows.size() / kMostSamples + 1) {
-      if (rows[i].position_m <= 0.0) continue;
-      noise_over_jnd.push_back(noise_N / jnd.at(rows[i].force_N));
+      if (!(rows[i].position_m > surface.offset_m)) continue;
+      noise_over_jnd.push_back(noise_N / jnd.at(rows[i].force_N - surface.force_zero_N));
       squares_N2 += noise_N * noise_N;
     }
   }

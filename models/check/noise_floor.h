@@ -20,7 +20,8 @@ struct NoiseFloor {
   double p99_error_over_jnd = 0.0;
 };
 
-// Uses the samples in contact (position_m > 0) of all `recordings`, at most 10,000 rows of each, evenly spaced.
-NoiseFloor noise_floor(const std::vector<PreparedRecordingPointer>& recordings, const JndLine& jnd);
+// Uses the samples in contact of all `recordings`, at most 10,000 rows of each, evenly spaced. Contact begins at the
+// estimated surface, and forces count from the estimated force zero.
+NoiseFloor noise_floor(const std::vector<const PreparedRecording*>& recordings, const JndLine& jnd);
 
 }  // namespace palpate
