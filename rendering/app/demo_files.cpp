@@ -201,7 +201,7 @@ void DemoFiles::open(const std::string& path, LiveSession& session) {
     notify_("there is no file " + path, true);
   } else if (may_be_recording(path)) {
     open_recording(path);
-  } else if (session.load_file(path)) {
+  } else if (session.models().load_file(path)) {
     remember(path);
   }
 }
@@ -276,7 +276,7 @@ void DemoFiles::save_model(const LiveSession& session) {
   if (path.empty()) return;
   path += ".json";
   const std::size_t slot = session.models().selected();
-  const Status status = session.save_model(slot, path);
+  const Status status = session.models().save(slot, path);
   notify_(status ? "saved " + session.models().info(slot).name + " to " + path : status.error().message, !status);
 }
 
