@@ -66,8 +66,7 @@ void ExhibitReveal::draw_arrows(const UiStyle& style, const SceneArea& area, dou
                                 const Rgb& second, bool first_is_left) const {
   const Moment moment = at(now_s);
   double most_N = 0.1;
-  for (const Moment& one : moments_)
-    most_N = std::max({most_N, one.first_N + jnd_.at(one.first_N), second_N(one)});
+  for (const Moment& one : moments_) most_N = std::max({most_N, one.first_N + jnd_.at(one.first_N), second_N(one)});
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float px_per_N = area.size.y / static_cast<float>(most_N);
   const float ground = area.at.y + area.size.y;
