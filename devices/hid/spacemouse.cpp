@@ -21,8 +21,6 @@ constexpr std::uint16_t kDesktopPage = 1, kMultiAxis = 8;
 constexpr int kSpaceMouseMost = 1000;
 // Smaller deflections count as 0: the cap does not return to its exact centre.
 constexpr int kDeadCounts = 8;
-// An unreadable report is shown for this time, long enough to be read in a snapshot.
-constexpr double kCorrupt_s = 0.1;
 
 bool is_space_mouse(const DeviceNode& info) noexcept {
   if (info.usage_page != kDesktopPage || info.usage != kMultiAxis) return false;
@@ -60,24 +58,13 @@ Status SpaceMouse::start(MouseDevice& tool) {
   return link_.start();
 }
 
-std::uint32_t SpaceMouse::faults(double now_s) const noexcept {
-  const bool corrupt = now_s < corrupt_until_s_.load(std::memory_order_relaxed);
-  return (connected_.load(std::memory_order_relaxed) ? 0 : device_fault::kUnplugged) |
-         (corrupt ? device_fault::kCorrupt : 0);
-}
-
 void SpaceMouse::report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
   DeviceReading reading;
-  const ReportVerdict verdict = calibration_.protocol->decode(bytes, size, reading);
-  if (verdict == ReportVerdict::corrupt) corrupt_until_s_.store(now_s + kCorrupt_s, std::memory_order_relaxed);
-  if (verdict != ReportVerdict::position) return;
+  if (calibration_.protocol->decode(bytes, size, reading) != ReportVerdict::position) return;
   deflect(std::abs(reading.counts) < kDeadCounts ? 0 : reading.counts, now_s);
 }
 
-void SpaceMouse::unplugged() noexcept {
-  connected_.store(false, std::memory_order_relaxed);
-  deflect(0, steady_now_s());
-}
+void SpaceMouse::unplugged() noexcept { deflect(0, steady_now_s()); }
 
 void SpaceMouse::deflect(int counts, double now_s) noexcept {
   if (counts == counts_) return;

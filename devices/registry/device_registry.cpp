@@ -41,10 +41,9 @@ Result<std::unique_ptr<Made>> make_hid_device(const DeviceRequest& request, bool
 MadeDevice make_hid(const std::string&, const DeviceRequest& request) {
   MadeDevice haptic = make_hid_device<LinkedDevice, Device>(request, true);
   if (!haptic || *haptic != nullptr) return haptic;
-  auto mouse = make_hid_device<SpaceMouse>(request, false);
-  if (!mouse) return mouse.error();
-  if (*mouse != nullptr) return MadeDevice(std::make_unique<SpaceMouseDevice>(std::move(*mouse)));
-  return Error{"no haptic device is plugged in; plug one in or use --device auto (palpate devices explains)"};
+  return Error{
+      "no haptic device is plugged in; plug one in or use --device auto, which a SpaceMouse can move "
+      "(palpate devices explains)"};
 }
 
 MadeDevice make_auto(const std::string&, const DeviceRequest& request) {
@@ -95,7 +94,7 @@ const std::vector<DeviceEntry>& device_entries() {
        }},
       {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", Holder::simulated, ""},
        [](const std::string&, const DeviceRequest&) { return MadeDevice(std::make_unique<MouseDevice>()); }},
-      {{"hid", "a haptic device on a USB port, or a SpaceMouse without force", Holder::person, ""}, make_hid},
+      {{"hid", "a haptic device on a USB port", Holder::person, ""}, make_hid},
       {{"replay:FILE", "a recording, repeated at its own speed; its force is the reference", Holder::none, ""},
        make_replay},
       {{"bridge:TARGET", "a device with the bridge protocol: /dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT, exec:COMMAND",

@@ -270,24 +270,6 @@ void DemoApp::reopen(const SessionRequest& request) {
   look();
 }
 
-void DemoApp::next_line_up() {
-  if (!session_->scene().has_material()) {
-    notify("there is nothing to fit models to: O chooses a material, a recording is one too", false);
-    return;
-  }
-  const std::vector<LineUp>& all = line_ups();
-  const auto at =
-      std::find_if(all.begin(), all.end(), [&](const LineUp& one) { return one.name == session_->line_up(); });
-  use_line_up(at == all.end() || at + 1 == all.end() ? all.front() : *(at + 1));
-}
-
-void DemoApp::use_line_up(const LineUp& line_up) {
-  session_->use_line_up(line_up.name);
-  request_.line_up = line_up.name;
-  request_.models.clear();
-  notify(std::string(line_up.name) + ": " + line_up.help, false);
-}
-
 Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
   const auto assets = find_assets();
   if (!assets) return assets.error();

@@ -67,13 +67,15 @@ class DemoApp {
   DemoApp() = default;
   Status set_up(const DemoRequest& request);
   void listen();
+  std::vector<WindowChoice> choices();
   std::vector<WindowCommand> make_commands();
   void handle_keys();
   void run_commands(const std::vector<KeyPress>& keys);
   void handle_exhibit_key(const KeyPress& press);
   void close_windows();
   void select_listed(std::size_t number);
-  void next_block_count();
+  void use_block_count(std::size_t wanted);
+  void use_line_up(const LineUp& line_up);
   void read_notices(double now_s);
   void draw();
   void draw_blocks(const SceneArea& area);
@@ -88,11 +90,7 @@ class DemoApp {
   void use_material(const std::string& scene, const std::vector<std::string>& recordings, const std::string& device);
   void use_device(const std::string& device);  // keeps the models
   void use_recording_roles();
-  void use_line_up(const LineUp& line_up);
   void reopen(const SessionRequest& request);
-  void next_line_up();
-  void next_reference();
-  void next_dead_man();
 
   // The first member, because those that draw into it have to be destroyed before it.
   std::unique_ptr<Window> window_;

@@ -3,12 +3,14 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
 #include "rendering/panels/window_view.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -70,6 +72,46 @@ WindowCommand shown_as(const char* shown, WindowCommand command) {
 
 }  // namespace
 
+std::vector<WindowChoice> DemoApp::choices() {
+  constexpr auto kNone = static_cast<std::size_t>(-1);
+  Settings& settings = view_.settings;
+  std::vector<std::string> models, references;
+  std::size_t line_up = kNone, reference = kNone;
+  if (session_->scene().has_material())
+    for (const LineUp& one : line_ups()) models.push_back(one.name);
+  if (const LineUp* one = find_line_up(session_->line_up())) line_up = static_cast<std::size_t>(one - &line_ups()[0]);
+  std::vector<ReferenceKind> kinds;
+  for (const ReferenceKind kind : kReferenceKinds) {
+    if (!session_->has_reference(kind)) continue;
+    if (kind == session_->comparison().reference()) reference = kinds.size();
+    kinds.push_back(kind);
+    references.push_back(kind == ReferenceKind::measured ? "measured force"
+                         : kind == ReferenceKind::truth  ? "true force"
+                                                         : "a model: all sites");
+  }
+  const auto names = [](auto... all) { return std::vector<std::string>{all...}; };
+  const auto first_is = [](bool& value) { return [&value](std::size_t i) { value = i == 0; }; };
+  return {
+      {GLFW_KEY_B, "Blocks", "one, two or four blocks side by side", names("1", "2", "4"), settings.block_count / 2,
+       [this](std::size_t i) { use_block_count(std::size_t{1} << i); }},
+      {GLFW_KEY_N, "Models", "the next set of models: Ladder, 2009, Palpate", models, line_up,
+       [this](std::size_t i) { use_line_up(line_ups()[i]); },
+       "there is nothing to fit models to: O chooses a material, a recording is one too"},
+      {GLFW_KEY_F, "Compare with", "choose what the models are compared with", references, reference,
+       [this, kinds](std::size_t i) { session_->use_reference(kinds[i]); }},
+      {GLFW_KEY_V, "Curves", "the difference in its band, or its mean over 50 ms",
+       names("difference", "mean over 50 ms"), settings.difference ? 0U : 1U, first_is(settings.difference)},
+      {GLFW_KEY_E, "Plot", "the error against the time that a model takes, or against the force",
+       names("error against time", "error against force"), view_.verdict ? 0U : 1U, first_is(view_.verdict)},
+      {GLFW_KEY_T, "Theme", "light or dark", names("light", "dark"), static_cast<std::size_t>(settings.theme),
+       [&settings](std::size_t i) { settings.theme = static_cast<Theme>(i); }},
+      {GLFW_KEY_D, "Push only while", "the device pushes only while G is held, only while its grip is held, or always",
+       session_->renders_force() ? names("always", "G is held", "the grip is held") : names(),
+       static_cast<std::size_t>(session_->controls().dead_man),
+       [this](std::size_t i) { session_->controls().dead_man = static_cast<DeadMan>(i); },
+       "there is no device that pushes: nothing to hold a switch for"}};
+}
+
 std::vector<WindowCommand> DemoApp::make_commands() {
   Settings& settings = view_.settings;
   Dialogs& dialogs = view_.dialogs;
@@ -86,7 +128,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
   };
   WindowCommand help = toggle(GLFW_KEY_H, "Help", "what the picture shows, and all keys", dialogs.help);
   help.keys.push_back(GLFW_KEY_SLASH);
-  return {
+  std::vector<WindowCommand> all{
       hint("mouse", "moves the probe, over the block; down is deeper"),
       hint("wheel", "moves the probe step by step; with Ctrl: zooms the view"),
       hint("right button", "turns the view"),
@@ -115,18 +157,13 @@ std::vector<WindowCommand> DemoApp::make_commands() {
                   [this] { view_.time.paused ? view_.time.run() : view_.time.pause(steady_now_s()); }),
           [this] { return view_.time.paused; }, "Go on"),
       command(GLFW_KEY_C, "Clear", "clear the errors so far and the alarms", [this] { session_->reset_figures(); }),
-      command(GLFW_KEY_N, "", "the next set of models: Ladder, 2009, Palpate", [this] { next_line_up(); }),
       toggle(GLFW_KEY_X, "Arrows x 10", "arrows that show ten times the difference, and back", view_.exaggerated),
       with_state(command(GLFW_KEY_J, "Feel", "scale the stiffness and damping of the rendered force; back to the model",
                          [this] {
                            view_.scales_force = !view_.scales_force;
-                           session_->use_scale({});
+                           session_->controls().scale = {};
                          }),
                  [this] { return view_.scales_force; }),
-      command(GLFW_KEY_B, "", "one, two or four blocks side by side", [this] { next_block_count(); }),
-      toggle(GLFW_KEY_V, "", "the difference in its band, or its mean over 50 ms", settings.difference),
-      toggle(GLFW_KEY_E, "", "the error against the time that a model takes, or against the force", view_.verdict),
-      command(GLFW_KEY_F, "", "choose what the models are compared with", [this] { next_reference(); }),
       command(GLFW_KEY_S, "Save curves", "save what the curves show, as a figure and as data",
               [this] { files_.save_curves(*session_, shown_, curves_.columns()); }),
       command(GLFW_KEY_K, "Save model", "save the active model to a file", [this] { files_.save_model(*session_); }),
@@ -148,16 +185,13 @@ std::vector<WindowCommand> DemoApp::make_commands() {
                      [seek](std::size_t key) { seek(key == 0 ? -kSeekStep_s : kSeekStep_s); })),
       in_replay(keys({GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET}, "play a recording slower or faster",
                      [play_at](std::size_t key) { play_at(key == 0 ? 1.0 / kSpeedStep : kSpeedStep); })),
-      command(GLFW_KEY_T, "", "light or dark",
-              [&settings] { settings.theme = settings.theme == Theme::light ? Theme::dark : Theme::light; }),
       toggle(GLFW_KEY_L, "Loop", "all figures of the loop, and its faults", view_.details),
       command(GLFW_KEY_Z, "", "the device's tool is at its rest position: zero it there",
               [this] { session_->start_zeroing(); }),
-      command(GLFW_KEY_D, "", "the device pushes only while G is held, only while its grip is held, or always",
-              [this] { next_dead_man(); }),
       when(When::held, command(GLFW_KEY_G, "", "hold it to let the device push, if D requires it",
                                [this] {
-                                 if (session_->dead_man() == DeadMan::key) session_->hold();
+                                 if (session_->controls().dead_man == DeadMan::key)
+                                   session_->controls().held_s = steady_now_s();
                                })),
       command(GLFW_KEY_HOME, "", "the view as it was at the beginning", [this] { blocks_->camera().go_home(); }),
       shown_as("+",
@@ -167,16 +201,24 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       command(GLFW_KEY_ESCAPE, "", "closes lists, questions and this", [this] { close_windows(); }),
       hint("drop a file", "loads a model; recordings and other programs' tables: trains or tests on them"),
       {.keys = {GLFW_KEY_Q}, .help = "ends the program", .run = [this](std::size_t) { close(); }, .control = true}};
+  std::vector<WindowCommand> next;
+  for (const WindowChoice& choice : choices())
+    next.push_back(command(choice.key, "", choice.help, [this, index = next.size()] {
+      const WindowChoice now = choices()[index];
+      if (!now.names.empty()) return now.set((now.now + 1) % now.names.size());
+      if (now.why_none[0] != '\0') notify(now.why_none, false);
+    }));
+  all.insert(all.end() - 3, next.begin(), next.end());  // before those that end something
+  return all;
 }
 
 void DemoApp::select_listed(std::size_t number) {
   const std::vector<std::size_t> listed = shown_.models.listed();
-  if (number < listed.size()) session_->select(listed[number]);
+  if (number < listed.size()) session_->models().select(listed[number]);
 }
 
-void DemoApp::next_block_count() {
-  std::size_t& wanted = view_.settings.block_count;
-  wanted = wanted == 4 ? 1 : 2 * wanted;
+void DemoApp::use_block_count(std::size_t wanted) {
+  view_.settings.block_count = wanted;
   // Says why there are fewer blocks than the user selected.
   const bool reference = shown_.models.compared && shown_.models.reference == kReferenceBlock && wanted > 1;
   const std::size_t shown = shown_.models.drawn().size() + (reference ? 1 : 0);
@@ -189,24 +231,11 @@ void DemoApp::close_windows() {
   view_.details = false;
 }
 
-void DemoApp::next_dead_man() {
-  if (!session_->renders_force()) {
-    notify("there is no device that pushes: nothing to hold a switch for", false);
-    return;
-  }
-  constexpr DeadMan kNext[] = {DeadMan::key, DeadMan::grip, DeadMan::off};  // the successors of off, key, grip
-  session_->use_dead_man(kNext[static_cast<std::size_t>(session_->dead_man())]);
-}
-
-void DemoApp::next_reference() {
-  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->comparison().reference());
-  const auto index = static_cast<std::size_t>(at - kReferenceKinds.begin());
-  for (std::size_t i = 1; i < kReferenceKinds.size(); ++i) {
-    const ReferenceKind kind = kReferenceKinds[(index + i) % kReferenceKinds.size()];
-    if (!session_->has_reference(kind)) continue;
-    session_->use_reference(kind);
-    return;
-  }
+void DemoApp::use_line_up(const LineUp& line_up) {
+  session_->use_line_up(line_up.name);
+  request_.line_up = line_up.name;
+  request_.models.clear();
+  notify(std::string(line_up.name) + ": " + line_up.help, false);
 }
 
 }  // namespace palpate

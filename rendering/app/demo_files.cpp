@@ -151,16 +151,6 @@ DemoFiles::~DemoFiles() {
   }
 }
 
-void DemoFiles::start(Task task) {
-  waiting_.push_back(std::move(task));
-  if (!running_.valid()) start_next();
-}
-
-void DemoFiles::start_next() {
-  running_ = std::async(std::launch::async, std::move(waiting_.front().work));
-  waiting_.pop_front();
-}
-
 void DemoFiles::use_settings(const std::string& file) {
   settings_file_ = file;
   if (file.empty()) return;
@@ -182,7 +172,10 @@ void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& came
 
 void DemoFiles::update(const LiveSession& session) {
   if (running_.valid() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) running_.get()();
-  if (!running_.valid() && !waiting_.empty()) start_next();
+  if (!running_.valid() && !waiting_.empty()) {
+    running_ = std::async(std::launch::async, std::move(waiting_.front().work));
+    waiting_.pop_front();
+  }
   // When a recording is saved, asks for its role.
   const RecordingStatus status = session.recording();
   if (status.active || status.saving) {
@@ -201,7 +194,7 @@ void DemoFiles::open(const std::string& path, LiveSession& session) {
     notify_("there is no file " + path, true);
   } else if (may_be_recording(path)) {
     open_recording(path);
-  } else if (session.load_file(path)) {
+  } else if (session.models().load_file(path)) {
     remember(path);
   }
 }
@@ -218,7 +211,7 @@ void DemoFiles::open_recording(const std::string& path) {
   const auto into = data_folder();
   if (!into) return notify_(into.error().message, true);
   notify_("reading " + path, false);
-  start({[this, read = read_, path, into = *into]() -> Finish {
+  waiting_.push_back({[this, read = read_, path, into = *into]() -> Finish {
     return [this, path, offered = read(path, into)] {
       if (!offered) {
         view_.dialogs.recording_roles.problem = offered.error().message;
@@ -268,7 +261,7 @@ void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown,
               !drawn);
     };
   };
-  start({save, true});
+  waiting_.push_back({save, true});
 }
 
 void DemoFiles::save_model(const LiveSession& session) {
@@ -276,14 +269,14 @@ void DemoFiles::save_model(const LiveSession& session) {
   if (path.empty()) return;
   path += ".json";
   const std::size_t slot = session.models().selected();
-  const Status status = session.save_model(slot, path);
+  const Status status = session.models().save(slot, path);
   notify_(status ? "saved " + session.models().info(slot).name + " to " + path : status.error().message, !status);
 }
 
 void DemoFiles::look_for_devices() {
   view_.devices.clear();
   if (std::exchange(searching_, true)) return;
-  start({[this]() -> Finish {
+  waiting_.push_back({[this]() -> Finish {
     return [this, found = device_choices()] {
       view_.devices = found;
       searching_ = false;

@@ -64,8 +64,6 @@ class DemoFiles {
     std::function<Finish()> work;
     bool saves = false;  // it is completed even if the window closes
   };
-  void start(Task task);  // at once if no other task runs
-  void start_next();
   void remember(const std::string& path);  // adds it to the recent files
   // A path in the user's data folder, with a name made of the time and without extension; empty, after a notice, where
   // there is no folder. Names of the same second get a number.
@@ -77,7 +75,7 @@ class DemoFiles {
   std::string settings_file_;
   std::string timed_path_;    // newest path of `new_path` without its number
   int same_second_ = 0;       // number of paths of this name and second
-  std::deque<Task> waiting_;  // for the background, one after the other
+  std::deque<Task> waiting_;  // `update` starts one after the other in the background
   std::future<Finish> running_;
   bool searching_ = false;  // a search for devices waits or runs
   std::string recording_;   // the file that is being recorded; empty: none

@@ -41,13 +41,13 @@ void DemoApp::draw() {
   window_->clear(style_.colours().panel);
   draw_blocks(layout.scene);
   const OverlayActions actions{&commands_,
+                               [this] { return choices(); },
                                [this](const std::string& scene) { use_material(scene, {}, first_device_); },
                                [this](const std::string& path) { drop_files({path}); },
                                [this](const std::string& device) {
                                  first_device_ = device;
                                  use_device(device);
                                },
-                               [this](const std::string& name) { use_line_up(*find_line_up(name)); },
                                [this] { use_recording_roles(); }};
   draw_overlay(*session_, shown_, *blocks_, view_, style_, layout.scene, actions);
   if (exhibit) {

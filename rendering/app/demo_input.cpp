@@ -184,7 +184,7 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
   if (!view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {
     const auto block = block_at(shown, blocks, area, io.MousePos, true);
-    if (block && *block < shown.blocks.size()) session.select(shown.blocks[*block]);
+    if (block && *block < shown.blocks.size()) session.models().select(shown.blocks[*block]);
   }
   const bool touched = view.exhibit.on && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // even without a move
   if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || touched)

@@ -3,16 +3,12 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <iterator>
-#include <optional>
 #include <utility>
 
 #include "rendering/panels/panel_parts.h"
 #include "scenes/scene/folders.h"
 #include "scenes/scene/scene.h"
-#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -105,60 +101,18 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
   ImGui::End();
 }
 
-// Draws a choice of several. Returns the index that the user has just chosen.
-template <typename Names>
-std::optional<std::size_t> choose(const char* title, const Names& names, std::size_t now) {
-  std::optional<std::size_t> chosen;
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(title);
-  for (std::size_t i = 0; i < std::size(names); ++i) {
-    ImGui::SameLine(i == 0 ? 8.0F * ImGui::GetFontSize() : 0.0F);
-    ImGui::PushID(title);
-    if (ImGui::RadioButton(names[i], i == now)) chosen = i;
-    ImGui::PopID();
-  }
-  return chosen;
-}
-
-// Draws a choice of two.
-void choose(const char* title, const char* yes, const char* no, bool& value) {
-  if (const auto to = choose(title, std::array{yes, no}, value ? 0 : 1)) value = *to == 0;
-}
-
-void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions& actions) {
+void draw_view_list(ViewState& view, const OverlayActions& actions) {
   if (!begin_dialog("View", view.dialogs.view_list)) return;
-  const std::size_t blocks = view.settings.block_count;
-  if (const auto to = choose("Blocks (B)", std::array{"1", "2", "4"}, blocks == 4 ? 2 : blocks - 1))
-    view.settings.block_count = std::size_t{1} << *to;
-  std::vector<const char*> line_up_names;
-  std::size_t line_up = static_cast<std::size_t>(-1);
-  for (const LineUp& one : line_ups()) {
-    if (session.line_up() == one.name) line_up = line_up_names.size();
-    line_up_names.push_back(one.name);
-  }
-  if (session.scene().has_material()) {
-    if (const auto to = choose("Models (N)", line_up_names, line_up)) actions.use_line_up(line_ups()[*to].name);
-  }
-  std::vector<const char*> reference_names;
-  std::vector<ReferenceKind> kinds;
-  std::size_t reference = static_cast<std::size_t>(-1);
-  for (const ReferenceKind kind : kReferenceKinds) {
-    if (!session.has_reference(kind)) continue;
-    if (kind == session.comparison().reference()) reference = kinds.size();
-    kinds.push_back(kind);
-    reference_names.push_back(kind == ReferenceKind::measured ? "measured force"
-                              : kind == ReferenceKind::truth  ? "true force"
-                                                              : "a model: all sites");
-  }
-  if (const auto to = choose("Compare with (F)", reference_names, reference)) session.use_reference(kinds[*to]);
-  choose("Curves (V)", "difference", "mean over 50 ms", view.settings.difference);
-  choose("Plot (E)", "error against time", "error against force", view.verdict);
-  if (const auto to = choose("Theme (T)", std::array{"light", "dark"}, view.settings.theme == Theme::light ? 0 : 1))
-    view.settings.theme = *to == 0 ? Theme::light : Theme::dark;
-  if (session.renders_force()) {
-    const auto now = static_cast<std::size_t>(session.dead_man());
-    if (const auto to = choose("Push only while (D)", std::array{"always", "G is held", "the grip is held"}, now))
-      session.use_dead_man(static_cast<DeadMan>(*to));
+  for (const WindowChoice& choice : actions.choices()) {
+    if (choice.names.empty()) continue;
+    ImGui::PushID(choice.key);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted((choice.title + (" (" + key_name(choice.key) + ")")).c_str());
+    for (std::size_t i = 0; i < choice.names.size(); ++i) {
+      ImGui::SameLine(i == 0 ? 8.0F * ImGui::GetFontSize() : 0.0F);
+      if (ImGui::RadioButton(choice.names[i].c_str(), i == choice.now)) choice.set(i);
+    }
+    ImGui::PopID();
   }
   ImGui::Checkbox("Arrows show ten times the difference (X)", &view.exaggerated);
   ImGui::Checkbox("All figures of the loop, and its faults (L)", &view.details);
@@ -318,7 +272,7 @@ void draw_dialogs(LiveSession& session, ViewState& view, const UiStyle& style, c
   draw_file_picker(view, actions);
   draw_device_list(view, session.device_name(), actions);
   draw_scene_list(session, view, actions);
-  draw_view_list(session, view, actions);
+  draw_view_list(view, actions);
   draw_recording_roles(view, actions);
   draw_help(view, style, *actions.commands);
 }

@@ -16,7 +16,8 @@ namespace palpate {
 // The functions that the dialogs call.
 struct OverlayActions {
   const std::vector<WindowCommand>* commands = nullptr;  // for the buttons and the list of keys
-  std::function<void(const std::string&)> use_scene, open, use_device, use_line_up;
+  std::function<std::vector<WindowChoice>()> choices;    // of the dialog View
+  std::function<void(const std::string&)> use_scene, open, use_device;
   std::function<void()> use_recording_roles;  // trains and tests as Dialogs::recording_roles says
 };
 

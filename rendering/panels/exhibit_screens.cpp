@@ -1,7 +1,6 @@
 // Draws the screens of the exhibit.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -291,28 +290,6 @@ struct Exhibit::Screens {
     ImGui::PopFont();
   }
 
-  // Draws the largest difference so far over the blocks.
-  void draw_growing_number() {
-    const double largest = exhibit.reveal_.largest_over_jnd(now_s());
-    const Rgb& text = style.colours().text;
-    const SceneArea& scene = layout.scene;
-    ImFont* font = style.fonts().heading;
-    float y = scene.at.y + 0.8F * height_of(font);
-    const auto centred = [&](ImFont* with, float height, const std::string& words, const Rgb& colour) {
-      std::istringstream lines(words);
-      for (std::string one; std::getline(lines, one); y += height) {
-        const float wide = with->CalcTextSizeA(height, 1e6F, 0.0F, one.c_str()).x;
-        const ImVec2 at(scene.at.x + 0.5F * (scene.size.x - wide), y);
-        ImGui::GetBackgroundDrawList()->AddText(with, height, at, ink(colour), one.c_str());
-      }
-    };
-    centred(style.fonts().big, 1.4F * height_of(style.fonts().big), number(largest),
-            largest > 1.0 ? text_colour(kAboveJndColour, style.theme()) : text);
-    ImGui::PushFont(font);  // in_lines measures with it
-    centred(font, height_of(font), in_lines(words()("reveal_times"), 0.93F * scene.size.x), text);
-    ImGui::PopFont();
-  }
-
   std::string name_of(bool first) const {
     if (!first) return words()("name_computer");
     if (exhibit.pair()->first) return words()("name_other");
@@ -369,7 +346,6 @@ void Exhibit::draw(const LiveSession& session, const WindowView& shown, const Bl
   if (host_) screens.draw_host();
   ImGui::End();
   screens.draw_names();
-  if (game_.state() == State::reveal) screens.draw_growing_number();
   press_button(screens.pressed);
 }
 

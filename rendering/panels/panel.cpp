@@ -26,7 +26,7 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
     view.requested_centres = centres;
     for (const std::size_t slot : models.listed()) {
-      if (slot == models.selected || view.centres_together) session.refit(slot, centres);
+      if (slot == models.selected || view.centres_together) session.models().refit(slot, centres);
     }
   }
   tip("Fits the active model again with this number of centres; with \"all\", every model that has centres.\n"

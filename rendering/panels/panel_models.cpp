@@ -136,7 +136,7 @@ void draw_menu(LiveSession& session, const ModelsView& models, Slot slot, TableS
   }
   ImGui::TextUnformatted("Name, then Enter:");
   if (ImGui::InputText("##name", table.name.data(), table.name.size(), ImGuiInputTextFlags_EnterReturnsTrue)) {
-    session.rename(slot, table.name.data());
+    session.models().rename(slot, table.name.data());
     ImGui::CloseCurrentPopup();
   }
   if (models.slots[slot].other_material && ImGui::Selectable("It is a model of this material: compare it"))
@@ -157,7 +157,7 @@ void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewS
   const std::string label = "      " + name + "###slot" + std::to_string(index);
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
-  if (ImGui::Selectable(label.c_str(), index == models.selected, flags)) session.select(index);
+  if (ImGui::Selectable(label.c_str(), index == models.selected, flags)) session.models().select(index);
   if (ImGui::IsItemHovered()) view.pointed = index;
   draw_menu(session, models, index, view.table);
   tip((index == models.selected ? slot.name + " is the active model"

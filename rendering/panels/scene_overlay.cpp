@@ -50,8 +50,8 @@ struct Overlay {
   void draw_feel() const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.4F * height_of(fonts().heading)});
     ImGui::Begin("feel", nullptr, kFloating);
-    auto stiffness = static_cast<float>(session.scale().stiffness);
-    auto damping = static_cast<float>(session.scale().damping_Ns_per_m);
+    auto stiffness = static_cast<float>(session.controls().scale.stiffness);
+    auto damping = static_cast<float>(session.controls().scale.damping_Ns_per_m);
     ImGui::PushItemWidth(0.28F * area.size.x);
     bool moved = ImGui::SliderFloat("stiffness", &stiffness, static_cast<float>(ForceScale::kLeast),
                                     static_cast<float>(ForceScale::kMost), "x %.2f",
@@ -62,7 +62,7 @@ struct Overlay {
     ImGui::PopItemWidth();
     tip("Changes only the rendered force. Curves and figures show the unchanged models. J ends it.");
     ImGui::End();
-    if (moved) session.use_scale({static_cast<double>(stiffness), static_cast<double>(damping)});
+    if (moved) session.controls().scale = {static_cast<double>(stiffness), static_cast<double>(damping)};
   }
 
   // Draws the title of the scene, and any exaggeration of force or picture.
@@ -78,7 +78,7 @@ struct Overlay {
     if (view.scales_force || view.exaggerated) {
       ImGui::SameLine(0.0F, ImGui::GetFontSize());
       ImGui::TextColored(paint(text_colour(kAboveJndColour, style.theme())), "%s",
-                         view.scales_force ? scale_words(session.scale()).c_str() : "arrows: difference x 10");
+                         view.scales_force ? scale_words(session.controls().scale).c_str() : "arrows: difference x 10");
     }
     ImGui::End();
   }

@@ -30,6 +30,17 @@ struct WindowCommand {
   std::string label_on{};      // label while it is switched on; empty: `label`
 };
 
+// A choice of several, as it is now. Its key takes the next one, the dialog View shows all.
+struct WindowChoice {
+  int key;  // of GLFW
+  const char* title;
+  const char* help;
+  std::vector<std::string> names;        // those that are available
+  std::size_t now;                       // index into `names`; the largest number: none of them
+  std::function<void(std::size_t)> set;  // the argument is an index into `names`
+  const char* why_none = "";             // a notice for the key where `names` is empty
+};
+
 // The name of a key of GLFW: "Space", "H"; empty where it is neither printable nor in the list of names.
 std::string key_name(int key);
 // The keys in the list and in tooltips: "Ctrl+Q", "H, /".

@@ -36,7 +36,6 @@ void ExhibitTrace::add(const ExhibitTick& tick) {
   Column& column = columns_[at];
   const double share = 1.0 / ++column.ticks;
   column.first_N += share * (tick.first_N - column.first_N);
-  column.second_N += share * (tick.second_N - column.second_N);
   column.position_m += share * (tick.position_m - column.position_m);
   if (column.ticks == 1 || std::abs(tick.over_jnd) > std::abs(column.over_jnd)) column.over_jnd = tick.over_jnd;
   if (std::abs(tick.over_jnd) > largest_) {

@@ -39,7 +39,6 @@ class ExhibitTrace {
   static constexpr double kColumn_s = 0.025;
   struct Column {
     double first_N = 0.0;                                        // mean
-    double second_N = 0.0;                                       // mean
     double position_m = 0.0;                                     // mean
     double over_jnd = std::numeric_limits<double>::quiet_NaN();  // the value of largest magnitude, signed; NaN: a gap
     int ticks = 0;                                               // within the training domain

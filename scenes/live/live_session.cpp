@@ -172,10 +172,11 @@ void LiveSession::update() {
   comparison_.show(newest_);
   const LoopStatistics statistics = loop_->statistics();
   faults_.update_window(statistics.dropped_snapshots, statistics.age_s, steady_now_s());
-  if (std::optional<Notice> outcome = recorder_->read_outcome()) {
-    send_controls();  // a write error may have ended the recording
+  if (std::optional<Notice> outcome = recorder_->read_outcome())
     notices_.push_back({std::move(outcome->text), outcome->problem});
-  }
+  controls_.recording = recorder_->number();
+  models_.write_selection(controls_);
+  loop_->set_controls(controls_);
 }
 
 void LiveSession::update_models() {
@@ -193,7 +194,6 @@ void LiveSession::publish(std::string why) {
   auto set = models_.make_set(device_->sensor(), truth_);
   set->tick.recall(history_);
   loop_->publish_models(std::move(set));
-  send_controls();
 }
 
 void LiveSession::remove(std::size_t slot) {
@@ -236,16 +236,6 @@ void LiveSession::save_fault_ticks() {
                            local_time_text("fault-%Y%m%d-%H%M%S-") + std::to_string(fault_files_) + ".csv";
   const Status status = write_fault_file(path, fault_recorder_.ticks());
   notices_.push_back({status ? "the last second before the fault is in " + path : status.error().message, !status});
-}
-
-void LiveSession::send_controls() {
-  controls_.recording = recorder_->number();
-  models_.write_selection(controls_);
-  loop_->set_controls(controls_);
-}
-
-void LiveSession::select(std::size_t slot) {
-  if (models_.select(slot)) send_controls();
 }
 
 bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
@@ -325,7 +315,6 @@ void LiveSession::reset_figures() {
   comparison_.forget_errors("they were cleared");
   faults_.acknowledge();
   ++controls_.acknowledged;
-  send_controls();
 }
 
 std::string LiveSession::device_words() const {
@@ -336,28 +325,13 @@ std::string LiveSession::device_words() const {
   }
   std::string words = zeroing_words(device);
   if (words.empty() && newest_.dead_man_released) {
-    words = dead_man() == DeadMan::grip ? "no force: hold the switch on the handle" : "no force: hold G";
+    words = controls_.dead_man == DeadMan::grip ? "no force: hold the switch on the handle" : "no force: hold G";
   }
   return words;
 }
 
 void LiveSession::move_surface(bool moved) {
   if (test_.move(moved)) comparison_.forget_errors("the surface moved");
-}
-
-void LiveSession::use_dead_man(DeadMan what) {
-  controls_.dead_man = what;
-  send_controls();
-}
-
-void LiveSession::use_scale(const ForceScale& scale) {
-  controls_.scale = scale;
-  send_controls();
-}
-
-void LiveSession::hold() {
-  controls_.held_s = steady_now_s();
-  send_controls();
 }
 
 Status LiveSession::start_recording(const std::string& path) {
@@ -375,14 +349,7 @@ Status LiveSession::start_recording(const std::string& path) {
                       "position_m: " + (test_.offset_m() == 0.0 ? std::string("as the device gave it")
                                                                 : "moved to the models' surface by " +
                                                                       fixed(-1e3 * test_.offset_m(), 3) + " mm")};
-  if (Status status = recorder_->start(request); !status) return status;
-  send_controls();
-  return {};
-}
-
-void LiveSession::stop_recording() {
-  recorder_->stop();
-  send_controls();
+  return recorder_->start(request);
 }
 
 }  // namespace palpate

@@ -67,14 +67,11 @@ class LiveSession {
   const LoopSnapshot& newest() const noexcept { return newest_; }
   const HapticsLoop& loop() const noexcept { return *loop_; }
 
+  // The models. `treat_as_this_material` and `remove` of the session clear errors as well.
+  SessionModels& models() noexcept { return models_; }
   const SessionModels& models() const noexcept { return models_; }
-  void select(std::size_t slot);  // makes the slot's model the active one; ignored unless it is ready
-  bool load_file(const std::string& path) { return models_.load_file(path); }
-  Status save_model(std::size_t slot, const std::string& path) const { return models_.save(slot, path); }
   void treat_as_this_material(std::size_t slot);  // see SessionModels::treat_as_this_material
-  void rename(std::size_t slot, const std::string& name) { models_.rename(slot, name); }
-  void refit(std::size_t slot, int centres) { models_.refit(slot, centres); }
-  void remove(std::size_t slot);  // the last model stays, with a notice
+  void remove(std::size_t slot);                  // the last model stays, with a notice
   // The line-up that is shown; empty: the default models of the scene, or models that were named one by one.
   const std::string& line_up() const noexcept { return request_.line_up; }
   void use_line_up(const std::string& name);  // ignored when unknown or without a material to fit to
@@ -110,18 +107,15 @@ class LiveSession {
   // The estimated surface offset of the replayed recording. Every change of the offset clears the errors.
   const ReplayTest& replay_test() const noexcept { return test_; }
   void move_surface(bool moved);
-  // The switch that must be held for a force. Call `hold` in every frame in which its key is held.
-  DeadMan dead_man() const noexcept { return controls_.dead_man; }
-  void use_dead_man(DeadMan what);
-  void hold();
-  // Scales the rendered force of the active model; errors are computed before the scaling.
-  const ForceScale& scale() const noexcept { return controls_.scale; }
-  void use_scale(const ForceScale& scale);
+  // The user's settings of the loop, which the next `update` hands to it: the force scale, the dead-man switch, and the
+  // time when its key was last held. The session sets the other fields.
+  LoopControls& controls() noexcept { return controls_; }
+  const LoopControls& controls() const noexcept { return controls_; }
 
   // Records every sample from now on, with the selected reference as its force. A notice reports the outcome.
   // Errors: the file exists or cannot be written, a recording is running, there is no reference.
   Status start_recording(const std::string& path);
-  void stop_recording();
+  void stop_recording() { recorder_->stop(); }
   RecordingStatus recording() const noexcept { return recorder_->status(); }
 
   // Returns and clears the notices since the last call.
@@ -135,7 +129,6 @@ class LiveSession {
   void read_snapshots();
   void save_fault_ticks();
   std::string why_no_verdict() const;
-  void send_controls();
 
   SessionRequest request_;
   Scene scene_;

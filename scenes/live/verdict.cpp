@@ -1,5 +1,7 @@
 #include "scenes/live/verdict.h"
 
+#include <algorithm>
+
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/live/session_models.h"
@@ -14,21 +16,11 @@ bool is_trend(const ModelInfo& info) {
   return info.centres == 0 && info.method != "position" && info.name.rfind(info.method, 0) == 0;
 }
 
-// Whether both are the trend of the same recordings: their errors are equal.
-bool are_one_trend(const EvaluatedSlot& a, const EvaluatedSlot& b, const SessionModels& models) {
-  return is_trend(models.info(a.slot)) && is_trend(models.info(b.slot)) &&
-         a.unit_errors->p99_error_over_jnd == b.unit_errors->p99_error_over_jnd;
-}
-
-// The recommended model; of several that are one trend, the one with its name.
-std::size_t recommended(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
-                        std::size_t ranked_first) {
-  for (std::size_t i = 0; i < evaluated.size(); ++i) {
-    if (models.info(evaluated[i].slot).method == "trend" &&
-        are_one_trend(evaluated[i], evaluated[ranked_first], models))
-      return i;
-  }
-  return ranked_first;
+// Whether a model of another method is the trend in slot `trend`, of the same recordings: their errors are equal.
+bool copies(const EvaluatedSlot& one, const EvaluatedSlot& trend, const SessionModels& models) {
+  return models.info(trend.slot).method == "trend" && models.info(one.slot).method != "trend" &&
+         is_trend(models.info(one.slot)) &&
+         one.unit_errors->p99_error_over_jnd == trend.unit_errors->p99_error_over_jnd;
 }
 
 }  // namespace
@@ -38,20 +30,22 @@ std::string tick_share(double tick_ns) {
   return general(percent, percent < 1.0 ? 1 : 2) + " %";
 }
 
-Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
-              const std::string& reference_name) {
+Verdict judge(std::vector<EvaluatedSlot> evaluated, const SessionModels& models, const std::string& reference_name) {
+  // A correction without centres adds nothing: the trend stands for it.
+  std::erase_if(evaluated, [&, all = evaluated](const EvaluatedSlot& one) {
+    return std::ranges::any_of(all, [&](const EvaluatedSlot& other) { return copies(one, other, models); });
+  });
   std::vector<Candidate> candidates;
   for (const EvaluatedSlot& one : evaluated) candidates.push_back({*one.unit_errors, models.info(one.slot).tick});
   const Ranking ranking = rank(candidates);
   Verdict verdict;
-  const std::size_t best = recommended(evaluated, models, ranking.recommended);
-  const EvaluatedSlot& chosen = evaluated[best];
+  const EvaluatedSlot& chosen = evaluated[ranking.recommended];
   verdict.chosen = chosen.slot;
   verdict.noticeable = chosen.p99_error_over_jnd > 1.0;
   std::vector<std::string> as_good, noticed;  // names
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const EvaluatedSlot& one = evaluated[i];
-    if (i == best || are_one_trend(one, chosen, models)) continue;
+    if (i == ranking.recommended) continue;
     if (ranking.qualified[i]) {
       as_good.push_back(models.info(one.slot).name);
     } else if (one.p99_error_over_jnd > 1.0) {

@@ -31,8 +31,7 @@ struct Verdict {
 
 // `reference_name`: name of the reference model; empty: the true force is known.
 // `models`: for names and times. `evaluated`: at least one, each with samples.
-Verdict judge(const std::vector<EvaluatedSlot>& evaluated, const SessionModels& models,
-              const std::string& reference_name);
+Verdict judge(std::vector<EvaluatedSlot> evaluated, const SessionModels& models, const std::string& reference_name);
 
 // The share of the period of 1 ms that a tick takes, as "0.04 %".
 std::string tick_share(double tick_ns);

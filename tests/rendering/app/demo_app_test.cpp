@@ -65,9 +65,9 @@ TEST_F(DemoAppTest, ADroppedModelTakesPart) {
 TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
   open("hand");
   LiveSession& session = app_->session();
-  session.rename(1, "mine");
+  session.models().rename(1, "mine");
   EXPECT_EQ(session.models().info(1).name, "mine");
-  session.rename(0, "mine");
+  session.models().rename(0, "mine");
   EXPECT_EQ(session.models().info(0).name, "mine-2") << "names stay distinct";
   session.remove(0);
   EXPECT_EQ(session.models().info(0).state, SlotState::hidden);
@@ -186,7 +186,7 @@ TEST_F(DefaultStart, IsDrawnAtEverySizeInBothThemes) {
     }));
   }
   press(GLFW_KEY_J);
-  app_->session().use_scale({1.5, 4.0});
+  app_->session().controls().scale = {1.5, 4.0};
   for (const auto& [width, height] : {std::pair{1024, 600}, std::pair{1280, 720}, std::pair{1920, 1080}}) {
     if (height == 1080) press(GLFW_KEY_J);
     glfwSetWindowSize(app_->window().handle(), width, height);

@@ -223,15 +223,15 @@ TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
 
 TEST_F(DemoCommandsTest, TheForceInTheHandIsScaledUntilItIsSwitchedOff) {
   open("hand");
-  EXPECT_EQ(app_->session().scale(), ForceScale{});
+  EXPECT_EQ(app_->session().controls().scale, ForceScale{});
   press(GLFW_KEY_J);
   EXPECT_TRUE(app_->view().scales_force);
   EXPECT_NE(ImGui::FindWindowByName("feel"), nullptr);
-  app_->session().use_scale({2.0, 5.0});
-  EXPECT_EQ(scale_words(app_->session().scale()), "in the hand: stiffness x 2.00, damping + 5.0");
+  app_->session().controls().scale = {2.0, 5.0};
+  EXPECT_EQ(scale_words(app_->session().controls().scale), "in the hand: stiffness x 2.00, damping + 5.0");
   frames(2);
   press(GLFW_KEY_J);
-  EXPECT_EQ(app_->session().scale(), ForceScale{});
+  EXPECT_EQ(app_->session().controls().scale, ForceScale{});
 }
 
 TEST_F(DemoCommandsTest, SavesWhatTheCurvesShow) {
@@ -295,7 +295,7 @@ TEST_F(DemoCommandsTest, APressIsExplainedUntilItWasDone) {
 TEST_F(DemoCommandsTest, SaysWhatThereIsNotForAKey) {
   open("hand");
   for (int i = 0; i < 3; ++i) press(GLFW_KEY_D);
-  EXPECT_EQ(app_->session().dead_man(), DeadMan::off);
+  EXPECT_EQ(app_->session().controls().dead_man, DeadMan::off);
   EXPECT_TRUE(told("no device that pushes"));
   EXPECT_EQ(app_->view().toasts.size(), 1u) << "the same notice is there once";
   press(GLFW_KEY_B);

@@ -75,6 +75,7 @@ TEST(DemoFiles, SavesThatWereRequestedAreCompletedWhenTheWindowCloses) {
           return ConvertedRecording{path, {}};
         });
     files.open_recording("a.csv");
+    files.update(**session);
     for (int i = 0; i < 2; ++i) files.save_curves(**session, window_view(**session, view), CurveColumns());
     gate.set_value();
   }

@@ -61,7 +61,7 @@ TEST(WindowView, APausedReplayShowsANewModelAndANewReference) {
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().samples == 0; }));
   const ModelData direct = test::example_model("direct", KernelKind::cubic, test::maxwell_features(), 2);
   ASSERT_TRUE(save_model(folder.file("d.json"), direct, false).ok());
-  ASSERT_TRUE(session->load_file(folder.file("d.json")));
+  ASSERT_TRUE(session->models().load_file(folder.file("d.json")));
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().tick.model_count == 2; }));
   const TickSnapshot& tick = session->newest().tick;
   ASSERT_GT(tick.force_N[1], 0.0);

@@ -185,15 +185,15 @@ TEST_F(SessionOfFiles, LoadsAFileAndKeepsTheChoice) {
   SessionRequest request = of_files("hand");
   request.models = {folder.file("a.json")};
   const Session session = must(LiveSession::open(request));
-  session->select(0);
+  session->models().select(0);
   EXPECT_EQ(session->models().info(0).state, SlotState::waiting);
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_EQ(session->comparison().reference(), ReferenceKind::direct);
   EXPECT_EQ(session->reference_words(), "no truth to compare with");
   EXPECT_TRUE(std::isnan(session->comparison().reference_N()));
-  session->load_file(folder.file("b.json"));
-  session->load_file(folder.file("a.json"));
-  session->load_file(folder.with_file("bad.json", "{\"format\": 3}"));
+  session->models().load_file(folder.file("b.json"));
+  session->models().load_file(folder.file("a.json"));
+  session->models().load_file(folder.with_file("bad.json", "{\"format\": 3}"));
   ASSERT_EQ(session->models().size(), 3u);
   session->update();
   EXPECT_EQ(session->models().info(2).name, "first-2") << "names are distinct";
@@ -204,8 +204,8 @@ TEST_F(SessionOfFiles, LoadsAFileAndKeepsTheChoice) {
   EXPECT_TRUE(notices[2].problem);
   EXPECT_TRUE(test::has_parts(notices[2].text, {"bad.json"}));
   EXPECT_TRUE(session->read_notices().empty());
-  session->select(2);
-  session->select(9);
+  session->models().select(2);
+  session->models().select(9);
   EXPECT_EQ(session->models().selected(), 2u);
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().selected == 2 && !session->newest().fading; }));
   EXPECT_TRUE(test::has_parts(session->reference_words(), {"second"})) << "there is one now";
@@ -219,10 +219,10 @@ TEST_F(SessionOfFiles, ARemovedModelFreesItsSlotButTheLastOneStays) {
   request.models.assign(kMaxModels, folder.file("a.json"));
   const Session session = must(LiveSession::open(request));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
-  EXPECT_FALSE(session->load_file(folder.file("b.json"))) << "the loop takes no more";
+  EXPECT_FALSE(session->models().load_file(folder.file("b.json"))) << "the loop takes no more";
   EXPECT_TRUE(session->read_notices().back().problem);
   session->remove(5);
-  EXPECT_TRUE(session->load_file(folder.file("b.json"))) << "in its place";
+  EXPECT_TRUE(session->models().load_file(folder.file("b.json"))) << "in its place";
   frames(*session, 0.1);
   EXPECT_EQ(session->models().size(), kMaxModels);
   EXPECT_EQ(session->models().info(5).name, "second");
@@ -299,7 +299,7 @@ TEST_F(SessionOfFiles, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   request.models = {"trend"};
   const Session beside = must(LiveSession::open(request));
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().all_settled(); }));
-  beside->load_file(folder.file("a.json"));
+  beside->models().load_file(folder.file("a.json"));
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().all_settled(); }));
   const std::size_t loaded = beside->models().size() - 1;
   EXPECT_TRUE(beside->models().info(loaded).other_material);
@@ -310,8 +310,8 @@ TEST_F(SessionOfFiles, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(loaded).errors.samples > 100; }));
 
   // A model that this session fitted and saved is of this material.
-  ASSERT_TRUE(beside->save_model(0, folder.file("own.json")).ok());
-  beside->load_file(folder.file("own.json"));
+  ASSERT_TRUE(beside->models().save(0, folder.file("own.json")).ok());
+  beside->models().load_file(folder.file("own.json"));
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().all_settled(); }));
   EXPECT_FALSE(beside->models().info(beside->models().size() - 1).other_material);
 }

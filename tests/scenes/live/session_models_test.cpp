@@ -56,7 +56,7 @@ TEST(SessionModels, ModelsAreFittedAnewWithOtherCentres) {
   const Session session = must(LiveSession::open(request));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_EQ(session->models().info(0).centres, 10);
-  for (const int centres : {12, 14, 20}) session->refit(0, centres);
+  for (const int centres : {12, 14, 20}) session->models().refit(0, centres);
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().info(0).centres == 20; }));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_FALSE(session->models().info(0).refitting);
