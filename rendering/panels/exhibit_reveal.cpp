@@ -6,9 +6,12 @@
 namespace palpate {
 namespace {
 
-// In columns: the longest part of the press before the largest difference that is shown, and the approach before it.
+// In columns: the longest parts of the press before and after the largest difference that are shown, and the approach
+// before it.
 constexpr std::size_t kBefore = static_cast<std::size_t>(1.0 / ExhibitTrace::kColumn_s);
+constexpr std::size_t kAfter = static_cast<std::size_t>(0.6 / ExhibitTrace::kColumn_s);
 constexpr std::size_t kApproach = static_cast<std::size_t>(0.15 / ExhibitTrace::kColumn_s);
+constexpr double kBack = 0.25 / ExhibitTrace::kColumn_s;  // duration of the motion back to the largest difference
 
 bool is_pressed(const ExhibitTrace::Column& column) { return column.ticks > 0 && column.position_m > 0.0; }
 
@@ -26,25 +29,36 @@ void ExhibitReveal::start(const ExhibitTrace& trace, const JndLine& jnd, double 
   slowness_ = slowness;
   began_s_ = now_s;
   moments_.assign(1, {});
+  largest_at_ = 0;
   const std::vector<Moment>& columns = trace.columns();
   if (columns.empty()) return;
-  const std::size_t largest = trace.largest_at();
-  std::size_t first = largest;
+  std::size_t first = trace.largest_at();
+  std::size_t last = first;
+  const std::size_t largest = first;
   while (first > 0 && largest - first < kBefore && is_pressed(columns[first - 1])) --first;
+  while (last + 1 < columns.size() && last - largest < kAfter && is_pressed(columns[last + 1])) ++last;
   for (std::size_t i = 0; i < kApproach && first > 0 && columns[first - 1].ticks > 0; ++i) --first;
   moments_.assign(columns.begin() + static_cast<std::ptrdiff_t>(first),
-                  columns.begin() + static_cast<std::ptrdiff_t>(largest + 1));
+                  columns.begin() + static_cast<std::ptrdiff_t>(last + 1));
+  largest_at_ = largest - first;
 }
 
 double ExhibitReveal::columns_since_start(double now_s) const noexcept {
   return (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s;
 }
 
-double ExhibitReveal::playhead(double now_s) const noexcept {
-  return std::clamp(columns_since_start(now_s), 0.0, end());
+double ExhibitReveal::way_back(double now_s) const noexcept {
+  const double share = std::clamp((columns_since_start(now_s) - end()) / kBack, 0.0, 1.0);
+  return share * share * (3.0 - 2.0 * share);
 }
 
-bool ExhibitReveal::done(double now_s) const noexcept { return columns_since_start(now_s) >= end(); }
+double ExhibitReveal::playhead(double now_s) const noexcept {
+  const double pressed = columns_since_start(now_s);
+  if (pressed < end()) return std::max(0.0, pressed);
+  return std::lerp(end(), static_cast<double>(largest_at_), way_back(now_s));
+}
+
+bool ExhibitReveal::done(double now_s) const noexcept { return columns_since_start(now_s) >= end() + kBack; }
 
 ExhibitReveal::Moment ExhibitReveal::at(double now_s) const noexcept {
   const double at = playhead(now_s);
@@ -62,11 +76,18 @@ double ExhibitReveal::second_N(const Moment& moment) const noexcept {
   return moment.first_N + moment.over_jnd * jnd_.at(moment.first_N);
 }
 
+double ExhibitReveal::highest_N(const Moment& moment) const noexcept {
+  return std::max(moment.first_N + jnd_.at(moment.first_N), second_N(moment));
+}
+
 void ExhibitReveal::draw_arrows(const UiStyle& style, const SceneArea& area, double now_s, const Rgb& first,
                                 const Rgb& second, bool first_is_left) const {
   const Moment moment = at(now_s);
-  double most_N = 0.1;
-  for (const Moment& one : moments_) most_N = std::max({most_N, one.first_N + jnd_.at(one.first_N), second_N(one)});
+  double press_N = 0.1;
+  for (const Moment& one : moments_) press_N = std::max(press_N, highest_N(one));
+  const double still_N = std::max(0.1, highest_N(moments_[largest_at_]));
+  // During the motion back the present arrows may be higher than both.
+  const double most_N = std::max(std::lerp(press_N, still_N, way_back(now_s)), highest_N(moment));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float px_per_N = area.size.y / static_cast<float>(most_N);
   const float ground = area.at.y + area.size.y;

@@ -1,6 +1,6 @@
-// The reveal of a round of the exhibit: the visitor's press up to the largest difference, in slow motion. The blocks
+// The reveal of a round of the exhibit: the visitor's press with the largest difference, in slow motion. The blocks
 // show its motion and dents. Two arrows beside each other show the forces, in front of a band of one JND about the
-// first. The motion stands still at the largest difference.
+// first. Then the motion goes back to the moment of the largest difference and stands still there.
 // Thread guarantee: the window's thread.
 #pragma once
 
@@ -28,16 +28,20 @@ class ExhibitReveal {
   double second_N(const Moment& moment) const noexcept;
 
   // Draws both arrows, the first at the left if `first_is_left`, and the band into `area`. All moments of the press
-  // have the same scale.
+  // have the same scale. On the way back to the largest difference, the arrows grow until they fill the area.
   void draw_arrows(const UiStyle& style, const SceneArea& area, double now_s, const Rgb& first, const Rgb& second,
                    bool first_is_left) const;
 
  private:
   double end() const noexcept { return static_cast<double>(moments_.size() - 1); }  // the last index into moments_
   double columns_since_start(double now_s) const noexcept;
+  // Share of the way back from the end of the press to the largest difference, 0 to 1, with a smooth start and end.
+  double way_back(double now_s) const noexcept;
   double playhead(double now_s) const noexcept;  // index into moments_, with a fraction
+  double highest_N(const Moment& moment) const noexcept;
 
   std::vector<Moment> moments_{1};  // one for each column of the trace
+  std::size_t largest_at_ = 0;
   JndLine jnd_;
   double slowness_ = 1.0;
   double began_s_ = 0.0;

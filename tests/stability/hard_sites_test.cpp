@@ -6,6 +6,7 @@
 
 #include "engine/base/random_stream.h"
 #include "engine/base/text.h"
+#include "models/fit/correction_choice.h"
 #include "models/fit/methods.h"
 #include "tests/stability/hard_cases.h"
 
@@ -114,13 +115,35 @@ std::vector<SiteCase> site_cases() {
   return cases;
 }
 
+// The smoothing that the program selects: by cross-validation, with consecutive quarters of the sites as strokes.
+// Strokes over the same points, as in the clusters, determine the force between the points least.
+double selected_smoothing(const Sites& sites) {
+  constexpr Eigen::Index kStrokes = 4;
+  const Eigen::Index n = sites.count();
+  CrossValidationRows rows;
+  rows.points = sites.points;
+  rows.force_N = sites.target_N;
+  rows.depth_m = Eigen::VectorXd::Constant(n, 1e-3);
+  rows.row_scale = sites.row_scale;
+  rows.trend_N = Eigen::MatrixXd::Zero(n, kStrokes);
+  rows.no_force.assign(static_cast<std::size_t>(n), 0);
+  for (Eigen::Index i = 0; i < n; ++i) rows.fold.push_back(static_cast<int>(kStrokes * i / n));
+  rows.find_distances();
+  ModelData common;
+  common.correction_limit_N = 10.0;  // above every force of these cases
+  common.cover = {{}, 1e12, 2e12};  // every site within reach
+  return choose_correction(rows, common).smoothing;
+}
+
 Result<FittedCorrection> fit_site_case(const SiteCase& one, const Method& method) {
   const Eigen::VectorXd jnd_N = one.sites.row_scale.cwiseInverse();
   MethodRequest request;
   request.method = &method;
   request.centres = static_cast<int>(one.centres);
   request.grid.assign(kDimension, kGridNodes);
-  return fit_correction({one.sites, jnd_N, request});
+  Sites sites = one.sites;
+  sites.smoothing = selected_smoothing(sites);
+  return fit_correction({sites, jnd_N, request});
 }
 
 HardCase evaluate_site_case(const SiteCase& one, const Method& method) {
