@@ -131,7 +131,7 @@ double selected_smoothing(const Sites& sites) {
   rows.find_distances();
   ModelData common;
   common.correction_limit_N = 10.0;  // above every force of these cases
-  common.cover = {{}, 1e12, 2e12};  // every site within reach
+  common.cover = {{}, 1e12, 2e12};   // every site within reach
   return choose_correction(rows, common).smoothing;
 }
 
