@@ -96,7 +96,10 @@ void measure_motion(const std::vector<RecordingRow>& rows, RecordingMeasures& me
     while (before + 1 < i && row.time_s - rows[before].time_s > kSpeedWindow_s) ++before;
     const double depth_m = row.position_m - surface_m;
     if (strokes.end_at(std::max(0.0, depth_m)) && strokes.inwards) ++measures.strokes;
-    if (!(depth_m > 0.0)) continue;
+    if (!(depth_m > 0.0)) {
+      hold_m = HUGE_VAL;
+      continue;
+    }
     ++measures.contact_rows;
     const double step_s = i > 0 ? row.time_s - rows[i - 1].time_s : 0.0;
     const double window_s = row.time_s - rows[before].time_s;

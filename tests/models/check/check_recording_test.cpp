@@ -65,6 +65,23 @@ TEST(CheckRecording, WarnsOfNoForceThatAMachineReaches) {
   EXPECT_EQ(find(check, "force_unit"), nullptr) << all_of(check);
 }
 
+// Time in air between two presses is not a hold, although the tool comes back to where it left the surface.
+TEST(CheckRecording, AHoldIsInContact) {
+  Recording recording;
+  constexpr double kAir_m = -0.2e-3;
+  for (int i = 0; i < 4000; ++i) {
+    const double time_s = 0.005 * i;
+    const double in_round_s = std::fmod(time_s, 4.0);  // 2 s of press at 5 mm/s, then 2 s in air
+    const double position_m = std::max(kAir_m, 5e-3 * (1.0 - std::abs(in_round_s - 1.0)));
+    recording.rows.push_back(
+        {.time_s = time_s, .position_m = position_m, .force_N = 400.0 * std::max(0.0, position_m)});
+  }
+  const RecordingCheck check = checked(recording, kSilicone);
+  const Finding* found = find(check, "no_hold");
+  ASSERT_NE(found, nullptr) << all_of(check);
+  EXPECT_LT(found->value, 0.1);
+}
+
 // Each fault is found, and following its advice removes the finding or its advice.
 TEST(CheckRecording, FindsEachFaultWhichItsAdviceRemoves) {
   using Change = std::function<void(Recording&)>;
