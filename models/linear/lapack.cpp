@@ -38,8 +38,9 @@ std::recursive_mutex& blas_mutex() {
   return mutex;
 }
 
-// Restarts OpenBLAS with its variable for the core type set, if it did not recognise a newer core.
-void choose_blas_core() {
+// Restarts OpenBLAS with its variable for the core type set, if it did not recognise a newer core. Runs when the
+// program or library is loaded, because another thread may compute later.
+[[gnu::constructor]] void choose_blas_core() {
 #ifdef __x86_64__
   constexpr const char* kVariable = "OPENBLAS_CORETYPE";
   if (openblas_get_corename == nullptr || gotoblas_dynamic_quit == nullptr || gotoblas_dynamic_init == nullptr) return;
@@ -76,7 +77,6 @@ BlasThreads::~BlasThreads() {
 }
 
 void prepare_blas() {
-  choose_blas_core();
   if (openblas_set_num_threads == nullptr || blas_thread_shutdown_ == nullptr) return;
   openblas_set_num_threads(1);
   blas_thread_shutdown_();  // starts them again when more are asked for

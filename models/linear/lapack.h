@@ -1,5 +1,9 @@
 // The BLAS and LAPACK routines of the fits, by their Fortran names, and wrappers for Eigen matrices. These libraries
 // select the instruction set at run time; Eigen's own products in a portable build do not. Slow side only.
+//
+// OpenBLAS treats a processor that is newer than itself as a Prescott of 2004, which makes fits two to three times
+// slower (0.3.21 of Debian 12 on a Xeon of 2023). Loading this code selects the right type in OpenBLAS, in programs and
+// libraries alike, so that both write the same bytes. If OPENBLAS_CORETYPE is set, that type is used.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,10 +30,8 @@ class BlasThreads {
 };
 
 // For programs, at the beginning of main, before another thread computes; not for libraries, whose caller owns these
-// settings. OpenBLAS treats a processor that is newer than itself as a Prescott of 2004, which makes fits two to three
-// times slower (0.3.21 of Debian 12 on a Xeon of 2023); this function selects the right type unless OPENBLAS_CORETYPE
-// is set. It also ends the threads that OpenBLAS starts with the program, because they occupy the other cores for some
-// 30 ms. From then on products use one thread, except within BlasThreads.
+// settings. Ends the threads that OpenBLAS starts with the program, because they occupy the other cores for some 30 ms.
+// From then on products use one thread, except within BlasThreads.
 void prepare_blas();
 
 // The number of rows in a block that several products use, so that it stays in the second-level cache.
