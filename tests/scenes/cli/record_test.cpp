@@ -124,7 +124,15 @@ TEST(RecordGuide, GivesTheAdviceOfCheckOnce) {
 TEST(RecordGuide, SaysThatNothingIsMissing) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("press.csv");
-  ASSERT_EQ(run_palpate({"synth", "--material", "silicone", "--seconds", "120", "--out", path}).exit_code, 0);
+  test::must_run({"synth", "--material", "silicone", "--seconds", "120", "--out", path});
+  // A hold of 2.6 s at the greatest depth; those of the virtual hand are shorter than the relaxation.
+  Recording recording = test::must(read_recording(path));
+  const auto deepest = std::ranges::max_element(recording.rows, {}, &RecordingRow::position_m);
+  std::for_each(deepest, recording.rows.end(), [](RecordingRow& row) { row.time_s += 2.6; });
+  std::vector<RecordingRow> hold(2600, *deepest);
+  for (std::size_t i = 0; i < hold.size(); ++i) hold[i].time_s += -2.6 + 1e-3 * static_cast<double>(i);
+  recording.rows.insert(deepest, hold.begin(), hold.end());
+  ASSERT_TRUE(write_recording(path, recording, {}, true).ok());
   cli::RecordGuide guide(path, {{}, 1.27});
   EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"nothing is missing: Ctrl-C ends the recording"});
 }
