@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
@@ -71,26 +70,19 @@ OffsetEstimate offset_of(const Member& member, const Member& reference, const Jn
   return shift_m ? identified(*shift_m, bin_m / 8.0) : OffsetEstimate{};  // half a step of the search
 }
 
-bool unmoved(const Member& member, double shift_m) {
-  return std::abs(member.offset.at - shift_m) <=
-         std::max(kLeastSurface_m, kSignificantErrors * member.offset.standard_error);
+// The identified offsets in the middle of all: twice the same, if their number is odd.
+std::pair<double, double> middle_offsets_m(const std::vector<Member>& members) {
+  std::vector<double> offsets_m;
+  for (const Member& member : members) {
+    if (member.offset.identified) offsets_m.push_back(member.offset.at);
+  }
+  std::ranges::sort(offsets_m);
+  return {offsets_m[(offsets_m.size() - 1) / 2], offsets_m[offsets_m.size() / 2]};
 }
 
-// The identified offset with the smallest sum of distances to the others; of nearly equal ones that of the latest
-// recording, with whose state the next recording begins.
-double common_shift_m(const std::vector<Member>& members) {
-  double best_m = 0.0;
-  double least_m = std::numeric_limits<double>::infinity();
-  for (const Member& candidate : members) {
-    if (!candidate.offset.identified) continue;
-    double away_m = 0.0;
-    for (const Member& one : members)
-      away_m += one.offset.identified ? std::abs(one.offset.at - candidate.offset.at) : 0.0;
-    if (away_m > least_m + kLeastOffset_m) continue;
-    least_m = std::min(least_m, away_m);
-    best_m = candidate.offset.at;
-  }
-  return best_m;
+bool unmoved(const Member& member, const std::pair<double, double>& middle_m) {
+  return std::max(std::abs(member.offset.at - middle_m.first), std::abs(member.offset.at - middle_m.second)) <=
+         std::max(kLeastSurface_m, kSignificantErrors * member.offset.standard_error);
 }
 
 // The weighted mean of the onsets of the recordings after their offsets; 0 if no onset is identified, or if the mean
@@ -144,11 +136,12 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
   const Member& reference = *std::ranges::max_element(
       members, {}, [](const Member& one) { return std::pair(one.own.identified(), one.range_m); });
   for (Member& member : members) member.offset = offset_of(member, reference, jnd);
-  const double shift_m = common_shift_m(members);
+  const std::pair<double, double> middle_m = middle_offsets_m(members);
+  const double median_m = 0.5 * (middle_m.first + middle_m.second);
   for (Member& member : members) {
     member.result.force_zero_N = member.own.force_zero_N;
     member.result.standard_error_m = members.size() == 1 ? member.own.standard_error_m : member.offset.standard_error;
-    if (member.offset.identified && !unmoved(member, shift_m)) member.result.offset_m = member.offset.at - shift_m;
+    if (member.offset.identified && !unmoved(member, middle_m)) member.result.offset_m = member.offset.at - median_m;
     result.recordings.push_back(member.result);
   }
   result.surface_position_m = outermost_contact_m(members, force_noise_N, common_surface_m(members));

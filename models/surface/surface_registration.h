@@ -3,9 +3,9 @@
 // The reference is the recording with the largest range of positions, among those with an identified surface if there
 // are any. The offset of every other recording to it is the difference of their surfaces if both are identified
 // (models/recordings/surface_estimate.h), otherwise the shift between their forces (models/recordings/force_curve.h).
-// An offset that all have in common belongs to the rig and is kept: the medoid of the offsets (of two, that of the
-// later recording) counts as 0. Offsets within 0.25 mm or two standard errors of it count as equal to it. A recording
-// whose offset is not identified stays as recorded.
+// An offset that all have in common belongs to the rig and is kept: the median of the offsets counts as 0, because the
+// next recording is as likely on one side of it as on the other. Offsets within 0.25 mm or two standard errors of
+// those in the middle count as equal to it. A recording whose offset is not identified stays as recorded.
 //
 // The surface of the model is the weighted mean of the onsets of force in these positions, on either side of 0. It is 0
 // without free air, or if it is within 0.25 mm or two standard errors of 0. If measured forces reach further out

@@ -41,14 +41,20 @@ Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& str
   double force_N = 0.0;
   for (const TimedSamples& stretch : stretches) {
     if (stretch.samples.empty()) continue;
+    // A long time before, in air: a stream that begins in contact costs more (engine/tick/haptics_tick.h).
+    ToolSample before = stretch.samples.front();
+    before.time_s -= 1000.0;
+    before.position_m = -1.0;
     // The first pass computes the features, and warms up caches and the processor's clock.
     std::vector<std::array<double, kMaxFeatures>> features;
     HapticsTick first(stretch.sensor, {model});
+    first.step(before);
     for (const ToolSample& one : stretch.samples) {
       first.step(one);
       features.push_back(first.features_of(0).values);
     }
     HapticsTick tick(stretch.sensor, {model});
+    tick.step(before);
     add_blocks(features.size(), round.tick_ns,
                [&](std::size_t i) { force_N = tick.step(stretch.samples[i]).force_N[0]; });
     add_blocks(features.size(), round.evaluation_ns, [&](std::size_t i) {

@@ -233,6 +233,7 @@ TEST(SurfaceRegistration, SurfacesAreKnownByTheContentOfTheirRecordings) {
       if (surface.content_hash == content_hash(*recordings[i])) offsets_m[i] = surface.offset_m;
   }
   EXPECT_NEAR(offsets_m[0] - offsets_m[1], 0.5e-3, 0.1e-3);
+  EXPECT_NEAR(offsets_m[0] + offsets_m[1], 0.0, 1e-9) << "the median of two is in their middle";
 }
 
 // A model of recordings with a common offset has its surface at that offset.
