@@ -86,7 +86,6 @@ void write_precision(CText& out) {
 
 void write_constants(CText& out, const ModelData& data) {
   out.add("\n/* ---- the force ---- */\n\n");
-  out.define("CORRECTED_SHARE", data.corrects_trend || !data.correction ? 0.0 : 1.0);
   out.define("CORRECTION_LIMIT_N", data.correction_limit_N);
   out.define("LARGEST_FORCE_N", kForceMargin * data.largest_force_N);
   out.define("LOWEST_FORCE_N", data.lowest_force_N);

@@ -29,32 +29,30 @@ double share_within_jnd(const PreparedTraining& prepared, const ModelData& data)
 }
 
 // The correction without a fold; none if no other fold has rows.
-Result<CorrectionPtr> fit_without(const PreparedTraining& prepared, int fold, const MethodRequest& request,
+Result<CorrectionPtr> fit_without(const PreparedTraining& prepared, int fold, const ModelPlan& plan,
                                   const FitControl& control) {
   const Sites sites = prepared.left_out->sites_without(fold, prepared.correction->smoothing);
   if (sites.count() == 0) return CorrectionPtr{};
   const Eigen::VectorXd jnd_N = sites.row_scale.cwiseInverse();
-  auto fitted = fit_correction({sites, jnd_N, request}, control);
+  auto fitted = fit_correction({sites, jnd_N, plan}, control);
   if (!fitted) return fitted.error();
   return std::move(fitted->correction);
 }
 
-}  // namespace
-
-TrainingRequest recipe_2009_request(TrainingRequest request) {
-  request.recipe = FitRecipe::paper_2009;
-  request.surface = Surface::recorded;
-  request.reduction = Reduction::force;
-  request.weighting = Weighting::relative;
-  request.choice = FeatureChoice::scene;
-  const bool relaxes = std::any_of(request.features.begin(), request.features.end(),
-                                   [](const FeatureSpec& spec) { return spec.kind == FeatureKind::lowpass_velocity; });
-  if (relaxes) {
-    request.relaxation = Relaxation::automatic;
-    request.relaxation_count = 2;
-  }
-  return request;
+// The sites of the selected kernel, normalisation and regularisation.
+Sites chosen_sites(const OpenChoices& choices, const PreparedTraining& prepared, ModelData& data) {
+  Sites sites = prepared.sites;
+  data.scale = normalisation_scale(prepared.set.normalisation, choices.range_exponent);
+  const Eigen::VectorXd factor = prepared.common.scale.cwiseQuotient(data.scale);
+  sites.points = factor.asDiagonal() * sites.points;
+  data.cover.points = factor.asDiagonal() * data.cover.points;
+  sites.kernel = choices.kernel;
+  sites.truncation = choices.truncation;
+  sites.smoothing = choices.smoothing;
+  return sites;
 }
+
+}  // namespace
 
 Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
   Eigen::VectorXd jnd_N(prepared.sites.count());
@@ -64,32 +62,45 @@ Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
   return jnd_N;
 }
 
-Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request, const FitControl& control,
-                             const MethodFit* base) {
-  const Eigen::VectorXd jnd_N = site_thresholds(prepared);
-  // If cross-validation rejected the correction, every method returns the trend, a model without centres.
-  MethodRequest asked = request;
+Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& plan, const FitControl& control,
+                             const MethodFit* base, const OpenChoices* choices) {
+  MethodFit fit{prepared.common, prepared.notes};
+  ModelData& data = fit.data;
+  // If cross-validation takes no correction, the model is the trend, and is called so.
+  ModelPlan asked = plan;
   if (!prepared.corrects()) asked.method = &kTrendMethod;
+  Sites sites = prepared.sites;
+  if (plan.base == Base::force) {
+    Result<OpenChoices> selected = choices != nullptr ? *choices : OpenChoices{};
+    if (choices == nullptr) {
+      selected = select_open_choices(prepared.set, sites, data, plan.selects_centres() ? plan.centres : 0, plan.kernel,
+                                     control.at(0.0));
+    }
+    if (!selected) return selected.error();
+    fit.choices = *selected;
+    sites = chosen_sites(*selected, prepared, data);
+    fit.notes.push_back(choices_text(*selected));
+  }
   const CorrectionPtr from = base == nullptr || asked.method->base == nullptr ? nullptr : base->data.correction;
-  auto fitted = fit_correction({prepared.sites, jnd_N, asked, from}, control);
+  auto fitted = fit_correction({sites, site_thresholds(prepared), asked, from}, control);
   if (!fitted) return fitted.error();
-  if (!prepared.corrects() && request.method->can_take(kTakesCentres)) fitted->size = "0";
-  MethodFit fit{prepared.common, std::move(fitted->notes)};
-  fit.notes.insert(fit.notes.end(), prepared.notes.begin(), prepared.notes.end());
+  fit.kernel = sites.kernel;
+  fit.rank = fitted->rank;
+  fit.condition_number = fitted->condition_number;
+  fit.notes.insert(fit.notes.begin(), fitted->notes.begin(), fitted->notes.end());
   if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
     fit.notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
                         " samples were used, evenly spaced");
   }
-  ModelData& data = fit.data;
-  data.method = request.method->name;
-  data.name = data.method + (fitted->size.empty() ? "" : "-" + fitted->size);
-  data.provenance.seed = request.seed;
+  data.method = family_name(asked);
+  data.name = plan_name(asked);
+  data.provenance.seed = plan.seed;
   data.correction = std::move(fitted->correction);
   if (prepared.left_out) {
     std::vector<CorrectionPtr> of_folds;
     const int folds = data.correction ? prepared.left_out->folds() : 0;
     for (int fold = 0; fold < folds; ++fold) {
-      auto of_fold = fit_without(prepared, fold, request, control);
+      auto of_fold = fit_without(prepared, fold, asked, control);
       if (!of_fold) return of_fold.error();
       of_folds.push_back(std::move(*of_fold));
     }

@@ -1,13 +1,12 @@
 // Direct interpolation: every site is a centre, with the side condition of eq. 3.
 //
-// The projected system (projected_kernel.h) is solved by a Cholesky factorisation. With Sites::as_2009 the symmetric
-// matrix of eq. 4 is inverted by its eigenvalues, without those below its size x epsilon x the largest (the numerical
-// rank; the paper gives no threshold). That takes some thirty times longer.
-// Source: Hoever & Harders (2009), section 3, eqs. 2-8.
+// The projected system (projected_kernel.h) is solved by a Cholesky factorisation, with the smoothing of the sites. The
+// paper inverts the saddle matrix of eq. 4 by truncated singular values, which takes a hundred times as long and has
+// the same purpose (models/fit/open_choices.h). Source: Hoever & Harders (2009), section 3, eqs. 2-8.
 #pragma once
 
 #include "models/fit/methods.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/solve/solve_weights.h"
 
 namespace palpate {
 
@@ -17,6 +16,6 @@ inline constexpr Eigen::Index kMostDirectSites = 20000;
 // With smoothing 0 the function interpolates as closely as the smallest smoothing allows at which the matrix can be
 // factorised. Errors: too many sites; no factorisation; interrupted, checked before each step. Deterministic on one
 // machine. Slow side; O(N^3), N^2 doubles.
-Result<RbfFunction> fit_direct(const Sites& sites, const FitControl& control = {});
+Result<SolvedWeights> fit_direct(const Sites& sites, const FitControl& control = {});
 
 }  // namespace palpate

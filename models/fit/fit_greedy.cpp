@@ -19,13 +19,13 @@ constexpr int kMostSubsets = 5;
 
 Result<FittedCorrection> fit_greedy(const MethodTask& task, const FitControl& control) {
   const Sites& sites = task.sites;
-  const MethodRequest& request = task.request;
+  const ModelPlan& plan = task.plan;
   const BlasThreads one_thread(1);
   std::vector<Eigen::Index> left = distinct_sites(sites);  // the sites that are not selected yet
   const Eigen::Index first = left.front();
-  const auto most = std::clamp(request.centres, 0, static_cast<int>(left.size()));
-  const bool all = request.candidates <= 0 || static_cast<std::size_t>(request.candidates) >= left.size();
-  SplitMix64 random(request.seed);
+  const auto most = std::clamp(plan.centres, 0, static_cast<int>(left.size()));
+  const bool all = plan.candidates <= 0 || static_cast<std::size_t>(plan.candidates) >= left.size();
+  SplitMix64 random(plan.seed);
   CandidateGains gains(sites);
   OrthogonalBasis basis(sites, most);
   const auto less = [&](Eigen::Index a, Eigen::Index b) { return gains.gain(a) < gains.gain(b); };
@@ -33,7 +33,7 @@ Result<FittedCorrection> fit_greedy(const MethodTask& task, const FitControl& co
   int without_gain = 0;
   while (static_cast<int>(selected.size()) < most && without_gain < (all ? 1 : kMostSubsets)) {
     if (!control.may_continue(0.95 * static_cast<double>(selected.size()) / most)) return interrupted();
-    const std::size_t count = all ? left.size() : draw_first(left, request.candidates, random);
+    const std::size_t count = all ? left.size() : draw_first(left, plan.candidates, random);
     gains.update(std::span(left).first(count), basis);
     const auto best = std::max_element(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(count), less);
     if (!(gains.gain(*best) > 0.0)) {
@@ -46,7 +46,7 @@ Result<FittedCorrection> fit_greedy(const MethodTask& task, const FitControl& co
   }
   if (selected.empty() && most > 0) selected.push_back(first);  // a model file has at least one centre
   return fit_centres(task, sites.points(Eigen::all, selected),
-                     most < request.centres ? "there are no more distinct sites" : "no other site lowers the error");
+                     most < plan.centres ? "there are no more distinct sites" : "no other site lowers the error");
 }
 
 }  // namespace

@@ -122,8 +122,8 @@ class GrowingFit {
 
 Result<FittedCorrection> fit_kdtree(const MethodTask& task, const FitControl& control) {
   const Sites& sites = task.sites;
-  const MethodRequest& request = task.request;
-  const auto most = static_cast<std::size_t>(std::min<Eigen::Index>(std::max(request.centres, 0), sites.count()));
+  const ModelPlan& plan = task.plan;
+  const auto most = static_cast<std::size_t>(std::min<Eigen::Index>(std::max(plan.centres, 0), sites.count()));
   const BlasThreads one_thread(1);
   std::vector<Leaf> leaves;
   std::vector<std::size_t> leaf_of(static_cast<std::size_t>(sites.count()), 0);

@@ -10,8 +10,8 @@ namespace {
 
 Result<FittedCorrection> fit_random(const MethodTask& task, const FitControl&) {
   std::vector<Eigen::Index> order = distinct_sites(task.sites);
-  SplitMix64 random(task.request.seed);
-  order.resize(draw_first(order, task.request.centres, random));
+  SplitMix64 random(task.plan.seed);
+  order.resize(draw_first(order, task.plan.centres, random));
   return fit_centres(task, task.sites.points(Eigen::all, order), "there are no more distinct sites");
 }
 

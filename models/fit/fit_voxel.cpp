@@ -38,8 +38,8 @@ std::vector<int> default_grid(std::size_t features) {
 }
 
 // Node coordinates of one axis: the means of even nodes and of quantiles of the data. (After a fast poke most of an
-// even axis has no data, and slow motion too few nodes.) `even`: even nodes, as in the paper.
-std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count, bool even) {
+// even axis has no data, and slow motion too few nodes.)
+std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count) {
   std::vector<double> sorted(values.data(), values.data() + values.size());
   std::sort(sorted.begin(), sorted.end());
   const double low = sorted.front();
@@ -57,7 +57,7 @@ std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count, bool ev
     const std::size_t above = std::min(below + 1, sorted.size() - 1);
     const double quantile = sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
     const double evenly = low + share * (high - low);
-    nodes.push_back(even ? evenly : 0.5 * evenly + 0.5 * quantile);
+    nodes.push_back(0.5 * evenly + 0.5 * quantile);
   }
   return nodes;
 }
@@ -65,7 +65,9 @@ std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count, bool ev
 Result<FittedCorrection> fit_voxel(const MethodTask& task, const FitControl& control) {
   const Sites& sites = task.sites;
   const auto d = static_cast<std::size_t>(sites.dimension());
-  const std::vector<int> sizes = task.request.grid.empty() ? default_grid(d) : task.request.grid;
+  std::vector<int> sizes = task.plan.grid.empty() ? default_grid(d) : task.plan.grid;
+  // The number of features is not known before they are selected: those without a size have the last one.
+  if (task.plan.features == FeatureChoice::automatic) sizes.resize(d, sizes.back());
   if (sizes.size() != d) {
     return Error{"the grid has " + std::to_string(sizes.size()) + " sizes, the scene has " + std::to_string(d) +
                  " features; give one size per feature, e.g. --grid 25x11x11x11 for four"};
@@ -76,19 +78,17 @@ Result<FittedCorrection> fit_voxel(const MethodTask& task, const FitControl& con
     return Error{"the grid would have " + std::string(asked) + " nodes, at most 1e7 can be saved; give smaller sizes"};
   }
   VoxelGrid grid;
-  std::string size_text;
   for (std::size_t k = 0; k < d; ++k) {
     if (sizes[k] < 2)
       return Error{"a grid needs at least 2 nodes along every feature, found " + std::to_string(sizes[k])};
-    grid.nodes.push_back(axis_nodes(sites.points.row(static_cast<Eigen::Index>(k)), sizes[k], sites.as_2009));
-    size_text.append(size_text.empty() ? "" : "x").append(std::to_string(sizes[k]));
+    grid.nodes.push_back(axis_nodes(sites.points.row(static_cast<Eigen::Index>(k)), sizes[k]));
   }
   const RbfCorrection evaluator(*rbf_of(task.base));
   const Status filled = fill_grid(
       grid, [&](const Eigen::MatrixXd& points, Eigen::VectorXd& out) { evaluator.evaluate_many(points, out); },
       control);
   if (!filled) return filled.error();
-  return FittedCorrection{std::make_shared<const GridCorrection>(std::move(grid)), {}, std::move(size_text)};
+  return FittedCorrection{std::make_shared<const GridCorrection>(std::move(grid)), {}};
 }
 
 }  // namespace

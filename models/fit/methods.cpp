@@ -12,19 +12,6 @@ const std::vector<const Method*>& methods() {
   return table;
 }
 
-const Method* find_method(std::string_view name) {
-  const auto at = std::ranges::find(methods(), name, &Method::name);
-  return at == methods().end() ? nullptr : *at;
-}
-
-std::string method_names(unsigned option) {
-  std::string names;
-  for (const Method* method : methods()) {
-    if ((method->takes & option) == option) names += (names.empty() ? "" : ", ") + std::string(method->name);
-  }
-  return names;
-}
-
 double expected_seconds(const Method& method) {
   return method.expected_seconds + (method.base == nullptr ? 0.0 : expected_seconds(*method.base));
 }
@@ -32,23 +19,24 @@ double expected_seconds(const Method& method) {
 Result<FittedCorrection> fit_correction(const MethodTask& task, const FitControl& control) {
   if (const Status status = validate_sites(task.sites); !status) return status.error();
   if (!control.may_continue(0.0)) return interrupted();
-  const Method& method = *task.request.method;
+  const Method& method = *task.plan.method;
   if (method.base == nullptr || task.base != nullptr) return method.fit(task, control);
-  MethodRequest of_base = task.request;
+  ModelPlan of_base = task.plan;
   of_base.method = method.base;
   const auto base = fit_correction({task.sites, task.jnd_N, of_base}, control);
   if (!base) return base.error();
-  return method.fit({task.sites, task.jnd_N, task.request, base->correction}, control);
+  return method.fit({task.sites, task.jnd_N, task.plan, base->correction}, control);
 }
 
 Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres,
                                      const std::string& shortage) {
-  RbfFunction function = solve_weights(task.sites, centres);
+  SolvedWeights solved = solve_weights(task.sites, centres);
+  const RbfFunction& function = solved.function;
   if (!function.weights.allFinite() || !function.tail.allFinite())
     return Error{"the weights of the centres could not be computed; check the recording for extreme values"};
   FittedCorrection fitted{
-      std::make_shared<const RbfCorrection>(std::move(function)), {}, std::to_string(task.request.centres)};
-  if (centres.cols() < task.request.centres) {
+      std::make_shared<const RbfCorrection>(std::move(solved.function)), {}, solved.rank, solved.condition_number};
+  if (centres.cols() < task.plan.centres) {
     fitted.notes.push_back("only " + std::to_string(centres.cols()) + " centres: " + shortage);
   }
   return fitted;

@@ -9,33 +9,23 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
+#include "models/fit/model_plan.h"
 #include "models/model/correction.h"
 #include "models/training/sites.h"
 
 namespace palpate {
 
-struct Method;
-extern const Method kTrendMethod, kDirectMethod, kVoxelMethod, kRandomMethod, kKdTreeMethod, kGreedyMethod;
-
-// The parameters of a method; each uses those that its row names in `takes`.
-struct MethodRequest {
-  const Method* method = &kGreedyMethod;
-  int centres = 100;
-  int candidates = 100;     // per greedy step; 0: every site
-  std::vector<int> grid{};  // nodes per feature; empty: 25 for depth (200 if alone), 11 for others, fewer beyond four
-  std::uint64_t seed = 1;
-};
+extern const Method kTrendMethod, kDirectMethod, kVoxelMethod, kRandomMethod, kKdTreeMethod;
 
 // The input of a method. References must be valid during the call.
 struct MethodTask {
   const Sites& sites;            // normalised
   const Eigen::VectorXd& jnd_N;  // threshold at each site, > 0
-  const MethodRequest& request;
+  const ModelPlan& plan;
   CorrectionPtr base{};  // fit of the row's base; null: none
 };
 
@@ -43,7 +33,8 @@ struct MethodTask {
 struct FittedCorrection {
   CorrectionPtr correction;
   std::vector<std::string> notes;  // sentences for the user
-  std::string size;                // end of the model's name, after the method: "100"; or empty
+  Eigen::Index rank = 0;           // of the weights' equations: singular values or rows that are used; 0: none
+  double condition_number = 0.0;   // of these equations; 0: none
 };
 
 enum MethodOption : unsigned {
@@ -75,18 +66,14 @@ struct Method {
 
 // In the order of reports and lists.
 const std::vector<const Method*>& methods();
-// Null for an unknown name.
-const Method* find_method(std::string_view name);
-// "random, kdtree, greedy": the methods that use this option; 0: all methods.
-std::string method_names(unsigned option = 0);
 // The sum for the method and its base.
 double expected_seconds(const Method& method);
 
-// Fits request.method, and before it its base if the task has none. Errors: those of validate_sites and of the method.
+// Fits plan.method, and before it its base if the task has none. Errors: those of validate_sites and of the method.
 Result<FittedCorrection> fit_correction(const MethodTask& task, const FitControl& control = {});
 
 // For methods that select centres (d x n): their weights (models/solve/solve_weights.h). `shortage`: why there are
-// fewer than requested. Errors: the weights could not be computed.
+// fewer than planned. Errors: the weights could not be computed.
 Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres,
                                      const std::string& shortage);
 

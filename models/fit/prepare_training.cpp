@@ -15,29 +15,31 @@ constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kTrendRows = 8000;
 // A dwell of many samples counts as at most this many.
 constexpr double kMaximumSiteCount = 16.0;
-// No limits for the recipe of 2009: normalised features are about 1, and an extrapolating function stays below a
-// hundred times the forces of its data.
+// The radius of a trust that is 1 everywhere: normalised features are about 1.
 constexpr double kEverywhere = 1e6;
-constexpr double kUnlimited = 100.0;
+// The number of relaxation times of the paper.
+constexpr std::size_t kPapersTimes = 2;
 
-bool is_papers_recipe(const TrainingRequest& request) { return request.recipe == FitRecipe::paper_2009; }
+bool selects_features(const ModelPlan& plan) {
+  return plan.base == Base::trend && plan.features == FeatureChoice::automatic;
+}
 
-bool is_automatic(const TrainingRequest& request) { return request.choice == FeatureChoice::automatic; }
-
-// The features of the recipe of 2009: the scene's, with low-passes of these times.
+// These features with low-passes of these times.
 std::vector<FeatureSpec> with_filters(std::vector<FeatureSpec> features, const std::vector<double>& times_s) {
-  std::erase_if(features, [](const FeatureSpec& spec) { return spec.kind == FeatureKind::lowpass_velocity; });
+  std::erase_if(features, [](const FeatureSpec& spec) {
+    return spec.kind != FeatureKind::depth && spec.kind != FeatureKind::velocity;
+  });
   for (const double time_s : times_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
   return features;
 }
 
 // The sites of the reduced samples, their cover and the limit of the correction.
-void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
+void make_sites(PreparedTraining& prepared, const ModelPlan& plan) {
   ModelData& common = prepared.common;
   const auto n = static_cast<Eigen::Index>(prepared.set.sites.size());
   const auto d = static_cast<Eigen::Index>(common.features.size());
   Sites& sites = prepared.sites;
-  sites = {Eigen::MatrixXd(d, n), Eigen::VectorXd(n), Eigen::VectorXd(n), request.kernel};
+  sites = {Eigen::MatrixXd(d, n), Eigen::VectorXd(n), Eigen::VectorXd(n), plan.kernel.value_or(KernelKind::cubic)};
   double largest_N = 0.0;
   for (Eigen::Index k = 0; k < n; ++k) {
     const TrainingSite& site = prepared.set.sites[static_cast<std::size_t>(k)];
@@ -45,22 +47,19 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     sites.points.col(k) = (x - common.offset).cwiseQuotient(common.scale);
     const double trend_N = common.trend.at(site.features.data(), common.features);
     // Where no force is measured and the trend is below 0, no correction is needed.
-    const bool needless = site.no_force && trend_N < 0.0 && common.corrects_trend;
-    const double residual_N = needless ? 0.0 : site.force_N - trend_N;
-    sites.target_N(k) = common.corrects_trend ? residual_N : site.force_N;
+    const bool needless = site.no_force && trend_N < 0.0;
+    sites.target_N(k) = needless ? 0.0 : site.force_N - trend_N;
     sites.row_scale(k) =
-        row_scale(request.weighting, request.jnd, site.force_N) * std::sqrt(std::min(site.count, kMaximumSiteCount));
-    largest_N = std::max(largest_N, std::abs(residual_N));
+        row_scale(plan.weights(), common.jnd, site.force_N) * std::sqrt(std::min(site.count, kMaximumSiteCount));
+    largest_N = std::max(largest_N, std::abs(sites.target_N(k)));
   }
   common.cover = make_cover(sites.points);
   common.correction_limit_N = kCorrectionMargin * largest_N;
-  if (!is_papers_recipe(request)) return;
-  // The paper uses its function everywhere, within the limits of the output only, with even grids and with
-  // pseudo-inverses by truncated singular values.
-  sites.as_2009 = true;
+  if (plan.base == Base::trend) return;
+  // The paper uses its function everywhere, within the limits of the force only.
   common.cover.inner_radius = kEverywhere;
   common.cover.outer_radius = 2.0 * kEverywhere;
-  common.correction_limit_N *= kUnlimited;
+  common.correction_limit_N = kForceMargin * std::max(common.largest_force_N, -common.lowest_force_N);
 }
 
 // The recordings with the corrections of the registration that are used.
@@ -72,31 +71,35 @@ struct CorrectedRecordings {
 };
 
 // Sets the corrections, measures the recordings, and moves the surface out if they begin under a preload.
-Status apply(CorrectedRecordings& corrected, MotionSource& source, const TrainingRequest& request,
+Status apply(CorrectedRecordings& corrected, MotionSource& source, const TrainingScene& scene, const ModelPlan& plan,
              const FitControl& control) {
   const auto measure = [&]() -> Status {
     source.correct(corrected.surfaces, corrected.surface_m);
-    const auto extent = measure_extent(source, request.jnd, control);
+    const auto extent = measure_extent(source, scene.jnd, control);
     if (!extent) return extent.error();
     corrected.extent = *extent;
     return {};
   };
   if (Status status = measure(); !status) return status;
-  if (request.surface == Surface::recorded) return {};
-  const auto preload_m = find_preload_surface(source, corrected.extent, request.jnd, control.at(0.05));
+  if (plan.base == Base::force) return {};
+  const auto preload_m = find_preload_surface(source, corrected.extent, scene.jnd, control.at(0.05));
   if (!preload_m) return preload_m.error();
   if (*preload_m == 0.0) return {};
   corrected.surface_m += *preload_m;
   return measure();
 }
 
-TrendProblem problem_of(const MotionSource& source, const TrainingExtent& extent, const TrainingRequest& request) {
+TrendProblem problem_of(const MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
+                        const ModelPlan& plan) {
   // Contact with a material that pulls is not one-sided: a force of 0 counts like any other.
   const double force_noise_floor_N =
       extent.lowest_force_N < 0.0 ? -std::numeric_limits<double>::infinity() : no_force_N(source.force_noise_N());
-  return {extent.depth_m,      extent.rms_velocity_m_per_s,
-          force_noise_floor_N, is_papers_recipe(request) ? Weighting::jnd : request.weighting,
-          request.jnd,         source.folds()};
+  return {extent.depth_m,
+          extent.rms_velocity_m_per_s,
+          force_noise_floor_N,
+          plan.base == Base::force ? Weighting::jnd : plan.weights(),
+          jnd,
+          source.folds()};
 }
 
 // Whether any recording has this correction.
@@ -139,23 +142,23 @@ std::vector<CorrectedRecordings> possible_corrections(const RegisteredSurfaces& 
 // Corrects the recordings by their offsets, force zeros and lag as far as a trend confirms it: an effect of the
 // material that the registration does not know may look like an offset. The candidates differ in the samples that are
 // in contact, so the comparison is paired only by pieces of strokes.
-Result<CorrectedRecordings> correct_recordings(MotionSource& source, const TrainingRequest& request,
+Result<CorrectedRecordings> correct_recordings(MotionSource& source, const TrainingScene& scene, const ModelPlan& plan,
                                                std::vector<std::string>& notes, const FitControl& control) {
   source.correct({});
   std::vector<CorrectedRecordings> candidates(1);  // as recorded
-  if (request.surface == Surface::automatic) {
-    const auto found = register_surfaces(source, request.jnd, control);
+  if (plan.base == Base::trend) {
+    const auto found = register_surfaces(source, scene.jnd, control);
     if (!found) return found.error();
     candidates = possible_corrections(*found);
   }
   std::vector<FoldErrors> errors;
   for (CorrectedRecordings& one : candidates) {
-    if (Status status = apply(one, source, request, control); !status) return status.error();
+    if (Status status = apply(one, source, scene, plan, control); !status) return status.error();
     // Without contact there is nothing to compare.
     if (candidates.size() == 1 || !(one.extent.depth_m > 0.0)) break;
     // The folds are pieces of strokes, because the question is whether one trend suits all recordings.
     source.assign_folds(one.extent.folds(1));
-    auto error = simple_law_error({source, problem_of(source, one.extent, request), control.at(0.05)},
+    auto error = simple_law_error({source, problem_of(source, one.extent, scene.jnd, plan), control.at(0.05)},
                                   dictionary(one.extent, source.sensor().encoder_step_m));
     if (!error) return error.error();
     errors.push_back(std::move(*error));
@@ -169,22 +172,23 @@ Result<CorrectedRecordings> correct_recordings(MotionSource& source, const Train
   return std::move(chosen);
 }
 
-// The scene's features with the relaxation times of the scene, of the request, or identified ones.
-Result<FeatureList> scene_list(const TrendData& data, const TrainingExtent& extent, const TrainingRequest& request) {
-  const bool velocity = has_kind(request.features, FeatureKind::velocity);
-  std::vector<double> times_s = relaxation_times_s(request.features);
-  if (request.relaxation != Relaxation::scene && times_s.empty()) {
-    return Error{"scene \"" + request.scene +
+// The scene's features with the relaxation times of the scene, of the plan, or identified ones.
+Result<FeatureList> scene_list(const TrendData& data, const TrainingExtent& extent, const TrainingScene& scene,
+                               const ModelPlan& plan) {
+  const bool velocity = has_kind(scene.features, FeatureKind::velocity);
+  const std::vector<double> times_s = relaxation_times_s(scene.features);
+  const bool papers = plan.features == FeatureChoice::automatic;
+  if (times_s.empty() && (papers || plan.relaxation == Relaxation::scene)) return single_times(velocity, times_s);
+  if (times_s.empty()) {
+    return Error{"scene \"" + scene.name +
                  "\" has no relaxation features; leave out --relaxation, or use a scene "
                  "that has them (palpate scenes)"};
   }
-  if (request.relaxation == Relaxation::given) times_s = request.relaxation_times_s;
-  if (request.relaxation == Relaxation::automatic) {
-    auto identified = identify_relaxation(data, dictionary_times_s(extent), velocity, request.relaxation_count);
-    if (!identified) return identified.error();
-    times_s = std::move(*identified);
-  }
-  return single_times(velocity, times_s);
+  if (!papers && plan.relaxation == Relaxation::scene) return single_times(velocity, times_s);
+  if (!papers && plan.relaxation == Relaxation::given) return single_times(velocity, plan.relaxation_times_s);
+  const auto identified = identify_relaxation(data, dictionary_times_s(extent), velocity, papers ? kPapersTimes : 0);
+  if (!identified) return identified.error();
+  return single_times(velocity, *identified);
 }
 
 // The gain of each part of the list: the cross-validated error with it and without it.
@@ -202,21 +206,21 @@ void add_gains(std::vector<PartGain>& gains, const TrendRows& rows, const TrendE
 
 // Trend, sites and choice of the correction of one list of features.
 Status prepare_list(PreparedTraining& prepared, const TrendData& data, const FeatureList& list,
-                    const TrainingExtent& extent, const TrainingRequest& request) {
-  const bool papers = is_papers_recipe(request);
+                    const TrainingExtent& extent, const TrainingScene& scene, const ModelPlan& plan) {
   ModelData& common = prepared.common;
-  common.corrects_trend = !papers;
+  const bool papers = plan.base == Base::force;
   const auto rows = gather_rows(data, papers ? FeatureList{} : list, kTrendRows);
   if (!rows) return rows.error();
   const TrendEstimator estimator(*rows);
   const CrossValidated left_out = estimator.cross_validate(estimator.all_columns());
   const Eigen::VectorXd x = estimator.fit(estimator.all_columns());
-  if (is_automatic(request)) add_gains(prepared.gains, *rows, estimator, left_out, x);
-  const FittedTrend fitted = fitted_trend(*rows, x, !is_automatic(request));
-  common.trend = fitted.trend;
-  common.features = papers ? with_filters(request.features, relaxation_times_s(list.features)) : fitted.features;
-  auto set = make_training_set(data.source, common.features, request.reduction, data.problem.force_noise_floor_N,
-                               data.control);
+  if (selects_features(plan)) add_gains(prepared.gains, *rows, estimator, left_out, x);
+  const FittedTrend fitted = fitted_trend(*rows, x, !selects_features(plan));
+  const std::vector<FeatureSpec>& kinds = plan.features == FeatureChoice::given ? plan.list.features : scene.features;
+  common.features = papers ? with_filters(kinds, relaxation_times_s(list.features)) : fitted.features;
+  if (plan.base == Base::trend) common.trend = fitted.trend;
+  auto set =
+      make_training_set(data.source, common.features, plan.thins(), data.problem.force_noise_floor_N, data.control);
   if (!set) return set.error();
   prepared.set = std::move(*set);
   common.largest_force_N = std::max(0.0, extent.force_N);
@@ -225,13 +229,13 @@ Status prepare_list(PreparedTraining& prepared, const TrendData& data, const Fea
   common.scale = prepared.set.normalisation.scale;
   common.lower = prepared.set.normalisation.lower;
   common.upper = prepared.set.normalisation.upper;
-  common.jnd = request.jnd;
-  make_sites(prepared, request);
-  if (papers) return {};
+  common.jnd = scene.jnd;
+  make_sites(prepared, plan);
+  if (plan.base == Base::force) return {};
   if (!data.control.may_continue()) return interrupted();
   prepared.left_out = cross_validation_rows(common, *rows, fitted.row_features, left_out.solutions);
   prepared.left_out->strokes = extent.strokes;
-  prepared.left_out->kernel = request.kernel;
+  prepared.left_out->kernel = prepared.sites.kernel;
   const CorrectionChoice choice = choose_correction(*prepared.left_out, common);
   prepared.correction = choice;
   prepared.sites.smoothing = choice.smoothing;
@@ -243,10 +247,10 @@ Status prepare_list(PreparedTraining& prepared, const TrendData& data, const Fea
 
 }  // namespace
 
-Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
+Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingScene& scene, const ModelPlan& plan,
                                           const FitControl& control) {
   PreparedTraining prepared;
-  auto corrected = correct_recordings(source, request, prepared.notes, control);
+  auto corrected = correct_recordings(source, scene, plan, prepared.notes, control);
   if (!corrected) return corrected.error();
   const TrainingExtent& extent = corrected->extent;
   if (!control.may_continue(0.05)) return interrupted();
@@ -256,17 +260,17 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
         "record a press, check the sign of position_m, or set its zero (palpate import FILE --zero contact)"};
   }
   source.assign_folds(extent.folds(source.recordings().size()));
-  const TrendProblem problem = problem_of(source, extent, request);
-  Result<FeatureList> list = request.list;
-  if (is_automatic(request)) {
+  const TrendProblem problem = problem_of(source, extent, scene.jnd, plan);
+  Result<FeatureList> list = plan.list;
+  if (selects_features(plan)) {
     list = select_memory_law({source, problem, control.at(0.15)}, dictionary(extent, source.sensor().encoder_step_m),
                              prepared.gains);
-  } else if (request.choice != FeatureChoice::given) {
-    list = scene_list({source, problem, control.at(0.1)}, extent, request);
+  } else if (plan.features != FeatureChoice::given) {
+    list = scene_list({source, problem, control.at(0.1)}, extent, scene, plan);
   }
   if (!list) return list.error();
   const TrendData data{source, problem, control.at(0.2)};
-  if (Status status = prepare_list(prepared, data, *list, extent, request); !status) return status.error();
+  if (Status status = prepare_list(prepared, data, *list, extent, scene, plan); !status) return status.error();
 
   // A model takes positions in the coordinate of its recordings.
   for (FeatureSpec& spec : prepared.common.features) {
@@ -276,15 +280,15 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   Provenance& provenance = prepared.common.provenance;
   provenance.surfaces = std::move(corrected->surfaces);
   for (const auto& recording : source.recordings()) provenance.recordings.push_back(recording.name);
-  provenance.scene = request.scene;
+  provenance.scene = scene.name;
   provenance.samples = source.rows();
   provenance.contact_samples = prepared.set.contact_samples;
   provenance.samples_after_reduction = prepared.set.sites.size();
-  provenance.weighting = kWeightingNames[static_cast<std::size_t>(request.weighting)];
-  provenance.reduction = kReductionNames[static_cast<std::size_t>(request.reduction)];
-  const Relaxation relaxation = request.choice == FeatureChoice::automatic ? Relaxation::automatic
-                                : request.choice == FeatureChoice::given   ? Relaxation::given
-                                                                           : request.relaxation;
+  provenance.weighting = kWeightingNames[static_cast<std::size_t>(plan.weights())];
+  provenance.thinning = kThinningNames[static_cast<std::size_t>(plan.thins())];
+  const Relaxation relaxation = plan.features == FeatureChoice::automatic ? Relaxation::automatic
+                                : plan.features == FeatureChoice::given   ? Relaxation::given
+                                                                          : plan.relaxation;
   provenance.relaxation = kRelaxationNames[static_cast<std::size_t>(relaxation)];
   if (!control.may_continue(0.3)) return interrupted();
   return prepared;

@@ -34,39 +34,37 @@ nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
 
 }  // namespace
 
-Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingRequest& scene,
-                                     const FitOptions& options, std::chrono::steady_clock::time_point began,
+Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingScene& scene,
+                                     const ModelPlan& plan, std::chrono::steady_clock::time_point began,
                                      const std::function<bool(double)>& progress) {
   MotionSource source(training_recordings(std::move(recordings)));
-  const TrainingRequest training = training_request(options, scene);
-  auto prepared = prepare_training(source, training, part_of(progress, 0.0, kPrepared));
+  auto prepared = prepare_training(source, scene, plan, part_of(progress, 0.0, kPrepared));
   if (!prepared) return prepared.error();
-  MethodRequest method = method_request(options);
-  // The number of features is not known before: features without a size get the last size of the grid.
-  if (training.choice == FeatureChoice::automatic && !method.grid.empty())
-    method.grid.resize(prepared->common.features.size(), method.grid.back());
-  auto fit = fit_method(*prepared, method, part_of(progress, kPrepared, 1.0));
+  auto fit = fit_method(*prepared, plan, part_of(progress, kPrepared, 1.0));
   if (!fit) return fit.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return RecordingsFit{std::move(*prepared), std::move(*fit), seconds};
 }
 
-nlohmann::ordered_json fit_json(const RecordingsFit& fitted, const FitOptions& options) {
-  const ModelData& data = fitted.fit.data;
+nlohmann::ordered_json fit_json(const RecordingsFit& fitted) {
+  const MethodFit& fit = fitted.fit;
+  const ModelData& data = fit.data;
   nlohmann::ordered_json features = nlohmann::ordered_json::array();
   for (const FeatureSpec& spec : data.features) features.push_back(feature_name(spec));
-  return {{"method", data.method},
+  return {{"name", data.name},
+          {"method", data.method},
           {"centres", data.centre_count()},
-          {"kernel", options.kernel},
-          {"weighting", options.weighting},
+          {"kernel", kernel_name(fit.kernel)},
+          {"weighting", data.provenance.weighting},
           {"samples", data.provenance.samples},
           {"samples_after_reduction", data.provenance.samples_after_reduction},
+          {"rank", fit.rank},
+          {"condition_number", fit.condition_number},
           {"fit_seconds", fitted.seconds},
           {"training_within_jnd", data.provenance.training_within_jnd},
-          {"name", data.name},
           {"features", features},
           {"recordings", surfaces_json(data.provenance)},
-          {"notes", fitted.fit.notes}};
+          {"notes", fit.notes}};
 }
 
 }  // namespace palpate

@@ -10,7 +10,6 @@
 #include "engine/base/result.h"
 #include "models/check/check_recording.h"
 #include "models/fit/fit.h"
-#include "models/fit_library/fit_options.h"
 
 namespace palpate {
 
@@ -20,13 +19,13 @@ struct RecordingsFit {
   double seconds = 0.0;
 };
 
-// `scene`, `options`: as training_request. `began`: the time from which `seconds` are counted. `progress`: called with
-// the finished fraction, returns false to interrupt; may be empty. Errors: those of the fit; interrupted.
-Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingRequest& scene,
-                                     const FitOptions& options, std::chrono::steady_clock::time_point began,
+// `began`: the time from which `seconds` are counted. `progress`: called with the finished fraction, returns false to
+// interrupt; may be empty. Errors: those of the fit; interrupted.
+Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingScene& scene,
+                                     const ModelPlan& plan, std::chrono::steady_clock::time_point began,
                                      const std::function<bool(double)>& progress);
 
 // The JSON object that `palpate fit --json` prints.
-nlohmann::ordered_json fit_json(const RecordingsFit& fitted, const FitOptions& options);
+nlohmann::ordered_json fit_json(const RecordingsFit& fitted);
 
 }  // namespace palpate

@@ -19,9 +19,9 @@ namespace palpate::library {
 namespace {
 
 // The scene of a fit without a scene file: the features of Hoever & Harders (2009).
-TrainingRequest default_scene() {
-  TrainingRequest scene;
-  scene.scene = "silicone_block";
+TrainingScene default_scene() {
+  TrainingScene scene;
+  scene.name = "silicone_block";
   scene.features = {{.kind = FeatureKind::depth},
                     {.kind = FeatureKind::velocity},
                     {.kind = FeatureKind::lowpass_velocity, .relaxation_time_s = 0.17},
@@ -63,9 +63,9 @@ palpate_model* palpate_fit(const palpate_recording* recordings, size_t recording
   return palpate::library::made<palpate_model>(error, error_size, [&]() -> palpate::Result<palpate_model*> {
     const auto began = std::chrono::steady_clock::now();
     if (recordings == nullptr || recording_count == 0) return Error{"found no recording, expected one or more"};
-    const auto chosen = palpate::parse_fit_options(options == nullptr ? "" : options);
-    if (!chosen) return chosen.error();
-    const palpate::TrainingRequest scene = palpate::library::default_scene();
+    const auto plan = palpate::parse_plan_options(options == nullptr ? "" : options);
+    if (!plan) return plan.error();
+    const palpate::TrainingScene scene = palpate::library::default_scene();
     std::vector<palpate::CheckedFile> files;
     for (size_t i = 0; i < recording_count; ++i) {
       auto file = palpate::library::checked(recordings[i], palpate::check_request(scene.jnd, scene.features));
@@ -75,9 +75,9 @@ palpate_model* palpate_fit(const palpate_recording* recordings, size_t recording
     if (palpate::Status status = palpate::refuse_unusable(files); !status) return status.error();
     std::function<bool(double)> report;
     if (progress != nullptr) report = [&](double fraction) { return progress(fraction, context) != 0; };
-    auto fitted = palpate::fit_recordings(std::move(files), scene, *chosen, began, report);
+    auto fitted = palpate::fit_recordings(std::move(files), scene, *plan, began, report);
     if (!fitted) return fitted.error();
-    const std::string figures = palpate::fit_json(*fitted, *chosen).dump();
+    const std::string figures = palpate::fit_json(*fitted).dump();
     return new palpate_model(std::make_shared<const palpate::FittedModel>(std::move(fitted->fit.data)), figures);
   });
 }

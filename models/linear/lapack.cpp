@@ -16,11 +16,10 @@ void dgemv_(const char*, const int*, const int*, const double*, const double*, c
 void dgeqrt_(const int*, const int*, const int*, double*, const int*, double*, const int*, double*, int*);
 void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
             double*, const int*);
-void dsyevd_(const char*, const char*, const int*, double*, const int*, double*, double*, const int*, int*, const int*,
-             int*);
-void dgelsd_(const int*, const int*, const int*, double*, const int*, double*, const int*, double*, const double*, int*,
-             double*, const int*, int*, int*);
+void dgesdd_(const char*, const int*, const int*, double*, const int*, double*, double*, const int*, double*,
+             const int*, double*, const int*, int*, int*);
 void dpotrf_(const char*, const int*, double*, const int*, int*);
+void dpocon_(const char*, const int*, const double*, const int*, const double*, double*, double*, int*, int*);
 // Only in OpenBLAS; null with another BLAS.
 [[gnu::weak]] void openblas_set_num_threads(int);
 [[gnu::weak]] int openblas_get_num_threads(void);
@@ -136,43 +135,42 @@ void qr_in_place(MatrixRef a) {
   assert(info == 0);
 }
 
-bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values) {
-  const int n = to_int(a.rows());
-  values.resize(n);
-  double wanted = 0.0;
-  int wanted_integers = 0;
-  int query = -1;
-  int info = 0;
-  dsyevd_("V", "L", &n, a.data(), &n, values.data(), &wanted, &query, &wanted_integers, &query, &info);
-  const int work_size = static_cast<int>(wanted);
-  Eigen::VectorXd work(work_size);
-  std::vector<int> integers(static_cast<std::size_t>(wanted_integers));
-  dsyevd_("V", "L", &n, a.data(), &n, values.data(), work.data(), &work_size, integers.data(), &wanted_integers, &info);
-  return info == 0;
-}
-
-Eigen::VectorXd least_squares(Eigen::MatrixXd a, Eigen::VectorXd b, double smallest) {
+SingularValues singular_values(Eigen::MatrixXd a) {
   const int m = to_int(a.rows());
   const int n = to_int(a.cols());
-  const int one = 1;
-  const int lda = std::max(1, m);
-  const int ldb = std::max({1, m, n});
-  b.conservativeResize(ldb);
-  Eigen::VectorXd singular(std::min(m, n));
+  const int least = std::min(m, n);
+  SingularValues found{Eigen::MatrixXd(m, least), Eigen::VectorXd(least), Eigen::MatrixXd(least, n)};
+  if (least == 0) return found;
   double wanted = 0.0;
-  int wanted_integers = 0;
   int query = -1;
-  int rank = 0;
   int info = 0;
-  dgelsd_(&m, &n, &one, a.data(), &lda, b.data(), &ldb, singular.data(), &smallest, &rank, &wanted, &query,
-          &wanted_integers, &info);
+  std::vector<int> integers(8 * static_cast<std::size_t>(least));
+  dgesdd_("S", &m, &n, a.data(), &m, found.values.data(), found.u.data(), &m, found.vt.data(), &least, &wanted, &query,
+          integers.data(), &info);
   const int work_size = static_cast<int>(wanted);
   Eigen::VectorXd work(work_size);
-  std::vector<int> integers(static_cast<std::size_t>(wanted_integers));
-  dgelsd_(&m, &n, &one, a.data(), &lda, b.data(), &ldb, singular.data(), &smallest, &rank, work.data(), &work_size,
-          integers.data(), &info);
-  if (info != 0) b.setConstant(std::numeric_limits<double>::quiet_NaN());
-  return b.head(n);
+  dgesdd_("S", &m, &n, a.data(), &m, found.values.data(), found.u.data(), &m, found.vt.data(), &least, work.data(),
+          &work_size, integers.data(), &info);
+  if (info != 0) found.values.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return found;
+}
+
+Eigen::Index SingularValues::rank(double smallest) const {
+  Eigen::Index count = 0;
+  while (count < values.size() && values(count) > smallest * values(0)) ++count;
+  return count;
+}
+
+double SingularValues::condition_number(double smallest) const {
+  const Eigen::Index kept = rank(smallest);
+  return kept > 0 ? values(0) / values(kept - 1) : 1.0;
+}
+
+Eigen::VectorXd SingularValues::solve(const Eigen::VectorXd& b, double smallest) const {
+  if (!values.allFinite()) return Eigen::VectorXd::Constant(vt.cols(), std::numeric_limits<double>::quiet_NaN());
+  const Eigen::Index kept = rank(smallest);
+  const Eigen::VectorXd shares = (u.leftCols(kept).transpose() * b).cwiseQuotient(values.head(kept));
+  return vt.topRows(kept).transpose() * shares;
 }
 
 bool cholesky_in_place(MatrixRef a) {
@@ -181,6 +179,17 @@ bool cholesky_in_place(MatrixRef a) {
   int info = 0;
   dpotrf_("L", &n, a.data(), &lda, &info);
   return info == 0;
+}
+
+double cholesky_condition(const ConstMatrixRef& factor, double norm) {
+  const int n = to_int(factor.rows());
+  const int lda = leading(factor);
+  Eigen::VectorXd work(3 * n);
+  std::vector<int> integers(static_cast<std::size_t>(n));
+  double reciprocal = 0.0;
+  int info = 0;
+  dpocon_("L", &n, factor.data(), &lda, &norm, &reciprocal, work.data(), integers.data(), &info);
+  return 1.0 / reciprocal;
 }
 
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) {

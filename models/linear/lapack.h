@@ -47,16 +47,26 @@ void gram(const ConstMatrixRef& a, MatrixRef c);
 // Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation; the rest becomes meaningless.
 void qr_in_place(MatrixRef a);
 
-// Eigenvalues in ascending order in `values`, eigenvectors in the columns of `a`, of which only the lower triangle is
-// read. False if the iteration did not converge.
-bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values);
+// The singular value decomposition a = u diag(values) v^T, with min(rows, columns) values in descending order. All are
+// NaN if the iteration did not converge, which fit_centres reports as an error.
+struct SingularValues {
+  Eigen::MatrixXd u;
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vt;
 
-// Minimises |a x - b| and returns the x of least norm. Singular values up to `smallest` times the largest count as 0.
-// Returns NaN if the iteration did not converge, which fit_centres reports as an error.
-Eigen::VectorXd least_squares(Eigen::MatrixXd a, Eigen::VectorXd b, double smallest);
+  // The number of values above `smallest` times the largest, and the ratio of the largest of them to the last.
+  Eigen::Index rank(double smallest) const;
+  double condition_number(double smallest) const;
+  // The x of least norm that minimises |a x - b|. Values up to `smallest` times the largest count as 0.
+  Eigen::VectorXd solve(const Eigen::VectorXd& b, double smallest) const;
+};
+SingularValues singular_values(Eigen::MatrixXd a);
 
 // Cholesky factor in the lower triangle of `a`. False if `a` is not positive definite.
 bool cholesky_in_place(MatrixRef a);
+// The condition number of the factorised matrix in the 1-norm, estimated (Higham 1988). `norm`: the 1-norm of the
+// matrix.
+double cholesky_condition(const ConstMatrixRef& factor, double norm);
 // Replaces b by the solution of a x = b; `factor`: from cholesky_in_place.
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
 // Solves a x = b for a positive semidefinite `a`, given by its lower triangle. Rows and columns are scaled to a

@@ -74,14 +74,12 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   // faster, some are slower by up to 26 ns (Zen 4).
   const double trend_N = data_.trend.at(features, trend_inputs_);
   const DomainGuard::Leaf leaf = guard_.leaf(u.data());
-  double correction_N = data_.correction ? data_.correction->evaluate(u.data()) : 0.0;
+  const double correction_N = data_.correction ? data_.correction->evaluate(u.data()) : 0.0;
   const double squared_distance = guard_.squared_distance(u.data(), leaf);
   const double trust = guard_.trust_at(squared_distance);
   double force_N = trend_N;
-  if (trust > 0.0 && data_.correction) {
-    if (!data_.corrects_trend) correction_N -= trend_N;
+  if (trust > 0.0 && data_.correction)
     force_N += trust * std::clamp(correction_N, -data_.correction_limit_N, data_.correction_limit_N);
-  }
   // The comparisons are false for NaN, so that the result is always a finite force.
   const double largest_N = kForceMargin * data_.largest_force_N;
   if (!(force_N > 0.0)) force_N = force_N < 0.0 ? std::max(force_N, data_.lowest_force_N) : 0.0;

@@ -1,14 +1,14 @@
 // A fitted force model: its data, and the ForceModel that evaluates them.
 //
-//   f(x) = clamp( T(x) + g(u) clamp(h(u) - b(x), -limit, limit), lowest, largest )
+//   f(x) = clamp( T(x) + g(u) clamp(h(u), -limit, limit), lowest, largest )
 //   u = (x - offset) / scale                                    normalised features
 //
 // T: the trend (models/model/trend.h). h: the correction (models/model/correction.h): eq. 2 of Hoever & Harders (2009),
-// a grid of its values, or none. g: the trust, 1 near the data, 0 out of the domain (models/model/domain_guard.h). b: 0
-// if h was fitted to the residual of the trend (default), T(x) if it was fitted to the force (the paper's recipe).
+// a grid of its values, or none. g: the trust, 1 near the data, 0 out of the domain (models/model/domain_guard.h).
 // limit: 1.1 x the largest residual of the trend in the training data. largest: 1.2 x the largest training force.
-// lowest: the lowest training force of a material that adheres to the tool, else 0. Out of its domain every model is
-// thus the trend: continuous, bounded, and attracting the tool at most as much as the material did.
+// lowest: the lowest training force of a material that adheres to the tool, else 0. Out of its domain a model is thus
+// the trend: continuous, bounded, and attracting the tool at most as much as the material did. A model that was fitted
+// to the measured force has T = 0 and g = 1 everywhere.
 //
 // Thread guarantee: FittedModel is immutable; `evaluate` as in ForceModel.
 #pragma once
@@ -53,7 +53,7 @@ struct Provenance {
   std::uint64_t samples_after_reduction = 0;
   std::uint64_t seed = 0;
   std::string weighting;   // jnd, relative, none
-  std::string reduction;   // coverage, force, none
+  std::string thinning;    // coverage, force, none
   std::string relaxation;  // scene, auto, given
   double training_within_jnd = 0.0;
 };
@@ -77,20 +77,19 @@ struct ErrorBound {
 };
 
 struct ModelData {
-  std::string name;    // e.g. "greedy-100"
-  std::string method;  // name of a row in models/fit/methods.h, e.g. "greedy"
+  std::string name;    // of its plan (models/fit/model_plan.h), e.g. "trend+greedy-100"
+  std::string method;  // the name without the number of centres, e.g. "trend+greedy"
   std::vector<FeatureSpec> features;
   Eigen::VectorXd offset;  // per feature, SI
   Eigen::VectorXd scale;   // per feature, SI, > 0
   Eigen::VectorXd lower;   // smallest values of the training data, SI
   Eigen::VectorXd upper;
   Trend trend;
-  bool corrects_trend = true;  // h was fitted to f - T; false: to f
   double correction_limit_N = 0.0;
   double largest_force_N = 0.0;  // of the training data; the output is at most 1.2 times this
   double lowest_force_N = 0.0;   // of the training data if the material pulls, else 0; <= 0
   DomainCover cover;
-  std::optional<ErrorBound> error_bound;  // none in earlier files and in the paper's recipe
+  std::optional<ErrorBound> error_bound;  // none of a fit to the measured force
   // The position sensor of the training recordings, the coarsest of them: the default sensor of streams and exported
   // files; no effect on the force of a feature vector. None in earlier files.
   std::optional<SensorSpec> sensor;

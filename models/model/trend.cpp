@@ -62,31 +62,6 @@ ElasticSpline combined_spline(const std::vector<ElasticSpline>& basis, const dou
   return sum;
 }
 
-ElasticSpline spline_from_powers(const std::array<double, 3>& power_N, const std::array<double, 7>& knot_N) {
-  ElasticSpline spline;
-  for (std::size_t piece = 0; piece < kElasticPieces; ++piece) {
-    const double u = static_cast<double>(piece) / kPieces;
-    double value = u * (power_N[0] + u * (power_N[1] + u * power_N[2]));
-    double slope = power_N[0] + u * (2.0 * power_N[1] + u * 3.0 * power_N[2]);
-    double half_curvature = power_N[1] + 3.0 * u * power_N[2];
-    double cubic = power_N[2];
-    for (std::size_t k = 0; k < knot_N.size(); ++k) {
-      const double above = u - static_cast<double>(k + 1) / 8.0;
-      if (above < 0.0) continue;
-      value += knot_N[k] * above * above * above;
-      slope += 3.0 * knot_N[k] * above * above;
-      half_curvature += 3.0 * knot_N[k] * above;
-      cubic += knot_N[k];
-    }
-    double* c = spline.pieces_N.data() + piece * kElasticCoefficients;
-    c[0] = value;
-    c[1] = slope / kPieces;
-    c[2] = half_curvature / (kPieces * kPieces);
-    c[3] = cubic / (kPieces * kPieces * kPieces);
-  }
-  return spline;
-}
-
 TrendInputs::TrendInputs(const std::vector<FeatureSpec>& specs) noexcept {
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const auto index = static_cast<std::uint8_t>(i);

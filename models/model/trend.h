@@ -48,10 +48,6 @@ inline constexpr std::size_t kElasticTerms = kElasticPieces + 2;
 std::vector<ElasticSpline> spline_basis();
 ElasticSpline combined_spline(const std::vector<ElasticSpline>& basis, const double* weights);
 
-// The spline of an earlier model file, given in truncated powers:
-//   sum_k power_N[k] u^(k+1) + sum_k knot_N[k] max(0, u - (k + 1) / 8)^3.
-ElasticSpline spline_from_powers(const std::array<double, 3>& power_N, const std::array<double, 7>& knot_N);
-
 inline constexpr std::size_t kViscosityCoefficients = 3;
 
 // The indices of the trend's inputs among the features, determined once outside the tick.

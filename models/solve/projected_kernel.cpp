@@ -9,6 +9,21 @@
 
 namespace palpate {
 
+namespace {
+
+// The 1-norm of a symmetric matrix of which only the lower triangle is set.
+double lower_norm(const Eigen::MatrixXd& lower) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(lower.cols());
+  for (Eigen::Index k = 0; k < lower.cols(); ++k) {
+    const auto below = lower.col(k).tail(lower.rows() - k - 1);
+    sums(k) += std::abs(lower(k, k)) + below.lpNorm<1>();
+    sums.tail(below.size()) += below.cwiseAbs();
+  }
+  return sums.maxCoeff();
+}
+
+}  // namespace
+
 ProjectedKernel::ProjectedKernel(KernelKind kernel, const Eigen::MatrixXd& points, const Eigen::VectorXd& scale)
     : kernel_(kernel), points_(points), arrays_(points), scale_(scale) {
   // Directions weaker than this come from a constant or repeated feature.
@@ -66,11 +81,12 @@ Eigen::MatrixXd ProjectedKernel::matrix(double fill, double smoothing) const {
   return matrix;
 }
 
-std::optional<Eigen::MatrixXd> ProjectedKernel::cholesky(double smoothing) const {
+std::optional<ProjectedKernel::Factor> ProjectedKernel::cholesky(double smoothing) const {
   smoothing = std::max(smoothing, smallest_smoothing_);
   for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
-    Eigen::MatrixXd factor = matrix(mean_eigenvalue_, smoothing);
-    if (cholesky_in_place(factor)) return factor;
+    Factor factor{matrix(mean_eigenvalue_, smoothing)};
+    factor.norm = lower_norm(factor.lower);
+    if (cholesky_in_place(factor.lower)) return factor;
   }
   return std::nullopt;
 }

@@ -30,7 +30,11 @@ class ProjectedKernel {
   Eigen::MatrixXd matrix(double fill, double smoothing) const;
   // The Cholesky factor of that matrix with the mean eigenvalue as fill. If rounding prevents it, the smoothing is
   // multiplied by ten until the factor exists; none after eight attempts.
-  std::optional<Eigen::MatrixXd> cholesky(double smoothing) const;
+  struct Factor {
+    Eigen::MatrixXd lower;
+    double norm = 0.0;  // the 1-norm of the matrix
+  };
+  std::optional<Factor> cholesky(double smoothing) const;
 
   // P v.
   Eigen::VectorXd project(const Eigen::VectorXd& v) const { return v - q_ * (q_.transpose() * v); }

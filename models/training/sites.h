@@ -54,8 +54,9 @@ struct Sites {
   // Factor of the roughness penalty: the ratio of noise variance to prior variance, which does not depend on the number
   // of centres. A fit selects it by cross-validation (models/fit/correction_choice.h).
   double smoothing = 0.0;
-  // Solve as Hoever & Harders (2009): truncated singular values, even grids.
-  bool as_2009 = false;
+  // Above 0: the weights of centres are those of Hoever & Harders (2009), by a pseudo-inverse without the singular
+  // values below this share of the largest, instead of the penalty.
+  double truncation = 0.0;
 
   Eigen::Index count() const { return points.cols(); }
   int dimension() const { return static_cast<int>(points.rows()); }

@@ -100,8 +100,8 @@ std::vector<TrainingSite> force_reduced(const std::vector<TrainingSite>& samples
 
 }  // namespace
 
-Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
-                                      Reduction reduction, double force_noise_floor_N, const FitControl& control) {
+Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features, Thinning thinning,
+                                      double force_noise_floor_N, const FitControl& control) {
   std::vector<TrainingSite> samples;
   FeatureFilter filter(features);
   const Status status = source.for_each(
@@ -121,10 +121,11 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   for (std::size_t i = 0; i < samples.size(); i += samples.size() / kMaximumEvaluationSamples + 1) {
     set.evaluation_features.push_back(samples[i].features);
     set.evaluation_force_N.push_back(samples[i].force_N);
+    set.evaluation_fold.push_back(samples[i].fold);
   }
-  set.sites = reduction == Reduction::coverage ? coverage_reduced(samples, set.normalisation)
-              : reduction == Reduction::force  ? force_reduced(samples, set.reduction_force_N)
-                                               : std::move(samples);
+  set.sites = thinning == Thinning::coverage ? coverage_reduced(samples, set.normalisation)
+              : thinning == Thinning::force  ? force_reduced(samples, set.thinning_force_N)
+                                             : std::move(samples);
   return set;
 }
 

@@ -1,14 +1,15 @@
-// From recordings to sites: features, normalisation and reduction.
+// From recordings to sites: features, normalisation and thinning.
 //
 // Normalisation: u = (x - mean) / sqrt(range x 4 sigma) for each feature, over the samples in contact. The range alone
 // would compress all slow motion after one fast poke; sigma alone would stretch the poke. Their geometric mean had the
 // lowest errors on recordings that were not used for training.
 //
-// Reduction, one of
+// Thinning, one of
 //   coverage  the feature space is divided into cubes of side `step`; all samples of a cube become one site with their
 //             mean feature vector and mean force (default). This thins rests, keeps every visited region and averages
 //             noise. The step starts at kCoverageStep and grows by a quarter while there are more than kCoverageSites.
-//   force     the paper's rule (section 2.1): a sample is kept when the force has changed by 50 mN since the last kept
+//   force     the reduction of the paper (section 2.1): a sample is kept when the force has changed by 50 mN since the
+//   last kept
 //             one. The 50 mN grow by a quarter while there are more than kMaximumSites.
 //   none      every sample in contact
 //
@@ -28,9 +29,9 @@
 
 namespace palpate {
 
-enum class Reduction { coverage, force, none };
+enum class Thinning { coverage, force, none };
 // In commands and model files, in the order of the values.
-inline constexpr std::array<const char*, 3> kReductionNames{"coverage", "force", "none"};
+inline constexpr std::array<const char*, 3> kThinningNames{"coverage", "force", "none"};
 
 inline constexpr std::size_t kMaximumSites = 10000;
 inline constexpr std::size_t kCoverageSites = 7500;  // the paper worked with 6,850
@@ -57,15 +58,16 @@ struct TrainingSet {
   Normalisation normalisation;
   std::vector<TrainingSite> sites;
   std::size_t contact_samples = 0;
-  double reduction_force_N = 0.0;  // final step of Reduction::force
+  double thinning_force_N = 0.0;  // final step of Thinning::force
   // Evenly spaced samples in contact, to evaluate a model on its training data: at most kMaximumEvaluationSamples.
   std::vector<std::array<double, kMaxFeatures>> evaluation_features;
   std::vector<double> evaluation_force_N;
+  std::vector<int> evaluation_fold;
 };
 
 // `force_noise_floor_N`: at or below this magnitude a sample has no measured force. Errors: no sample in contact;
 // interrupted.
-Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
-                                      Reduction reduction, double force_noise_floor_N, const FitControl& control = {});
+Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features, Thinning thinning,
+                                      double force_noise_floor_N, const FitControl& control = {});
 
 }  // namespace palpate

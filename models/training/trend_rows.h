@@ -44,6 +44,7 @@ struct FeatureList {
 
   // Adds a feature in the order of kinds. `constants`: as constants_of; none for velocity. Without parts adds nothing.
   void add(FeatureKind kind, const std::vector<double>& constants = {});
+  bool operator==(const FeatureList&) const = default;
 };
 
 // The dictionary: all terms that a recording of this length and rate can identify. The non-negative regression sets the

@@ -13,7 +13,7 @@
 #include "engine/live/pacer.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/scene/folders.h"
-#include "scenes/worker/slot_plan.h"
+#include "scenes/worker/model_request.h"
 
 namespace palpate {
 namespace {
@@ -210,10 +210,10 @@ void DemoApp::use_material(const std::string& scene, const std::vector<std::stri
   next_->recordings = recordings;
   next_->device = device;
   next_->models.clear();
-  next_->kept = session_->models().plans();
+  next_->kept = session_->models().requests();
   next_->refits = true;
-  std::erase_if(next_->kept, [](const SlotPlan& plan) { return !plan.is_file(); });
-  for (SlotPlan& plan : next_->kept) plan.of_this_material = false;
+  std::erase_if(next_->kept, [](const ModelRequest& plan) { return !plan.is_file(); });
+  for (ModelRequest& plan : next_->kept) plan.of_this_material = false;
   if (next_->line_up.empty()) next_->line_up = line_ups().front().name;
 }
 
@@ -222,7 +222,7 @@ void DemoApp::use_device(const std::string& device) {
   next_ = request_;
   next_->recordings = session_->scene().recordings;
   next_->device = device;
-  next_->kept = session_->models().plans();
+  next_->kept = session_->models().requests();
   next_->refits = next_->kept.empty();
   next_->line_up = session_->line_up();
 }

@@ -10,7 +10,7 @@
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
 #include "rendering/panels/window_view.h"
-#include "scenes/worker/slot_plan.h"
+#include "scenes/worker/model_request.h"
 
 namespace palpate {
 namespace {

@@ -14,8 +14,8 @@
 #include "rendering/app/study_app.h"
 #include "scenes/scene/folders.h"
 #include "scenes/study/prepare_strokes.h"
+#include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
-#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,7 @@
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
-#include "scenes/worker/slot_plan.h"
+#include "scenes/worker/model_request.h"
 
 namespace palpate {
 namespace {

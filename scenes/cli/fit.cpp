@@ -30,36 +30,38 @@ constexpr double kContradiction = 0.005;
 
 struct FitArguments {
   std::vector<std::string> recordings;
-  FitOptions options;
+  std::vector<OptionText> options;
+  ModelPlan plan;
   std::string scene = "silicone_block";
   std::string out;
   bool force = false;
   bool json = false;
 };
 
-// The options that only some methods have.
-constexpr std::pair<const char*, MethodOption> kMethodOnly[] = {{"--centres", kTakesCentres},
-                                                                {"--candidates", kTakesCandidates},
-                                                                {"--grid", kTakesGrid},
-                                                                {"--kernel", kTakesKernel}};
-
-// Checks for options that exclude each other by their values, and for those that the method does not have.
-void check_usage(const CLI::App& verb, const FitArguments& arguments) {
-  if (verb.count("--relaxation") > 0 && verb.count("--features") > 0 && arguments.options.features != "scene") {
-    throw CLI::ValidationError("--relaxation", "found --features \"" + arguments.options.features +
-                                                   "\", expected the scene's features; leave one of the two out");
-  }
-  const Method& method = *find_method(arguments.options.method);
-  for (const auto& [option, takes] : kMethodOnly) {
-    if (verb.count(option) == 0 || method.can_take(takes)) continue;
-    throw CLI::ValidationError(option, std::string("method ") + method.name + " does not take this option, only " +
-                                           method_names(takes) + "; leave it out");
-  }
+void list_methods() {
+  for (const ModelPlan& plan : all_plans()) std::cout << family_name(plan) << "\n";
+  throw CLI::Success();
 }
 
-void list_methods() {
-  for (const Method* method : methods()) std::cout << method->name << "\n";
-  throw CLI::Success();
+// An option of plan_options(), whose text goes to `arguments`.
+void add_plan_option(CLI::App& verb, const PlanOption& option, const std::shared_ptr<FitArguments>& arguments) {
+  std::string help = option.help;
+  if (option.takes != 0) help += ", for " + family_names(option.takes);
+  const auto check = [name = option.name](const std::string& text) { return option_error(name, text); };
+  const auto keep = [name = option.name, arguments](const std::string& text) {
+    arguments->options.push_back({name, text});
+  };
+  verb.add_option_function<std::string>("--" + option.name, keep, help)
+      ->check(CLI::Validator(check, option.values))
+      ->type_name(option.values)
+      ->default_str(option.default_text);
+}
+
+// Reads the options together: some exclude each other, or need another method.
+void read_plan(FitArguments& arguments) {
+  auto plan = plan_of(arguments.options);
+  if (!plan) throw CLI::ValidationError("--" + plan.error().message);
+  arguments.plan = std::move(*plan);
 }
 
 // Replays the training recordings as recorded, and reports where their share within the JND contradicts that of the
@@ -91,8 +93,7 @@ std::string relaxation_text(const std::vector<FeatureSpec>& features) {
   return texts.empty() ? "none" : joined(texts);
 }
 
-// One row for each feature: the cross-validated error of the trend with it and without it. The rule that selects
-// (models/training/cross_validation.h) compares these errors and their standard errors.
+// One row for each feature: the cross-validated error of the trend with it and without it.
 void print_gains(const std::vector<PartGain>& gains) {
   if (gains.empty()) return;
   std::printf("%-32s %-5s %12s %12s   cross-validated error [JND]\n", "FEATURE", "TAKEN", "WITH", "WITHOUT");
@@ -131,7 +132,7 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
   const Provenance& provenance = fit.data.provenance;
   std::cout << "model               " << fit.data.name << "\n"
             << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
-            << "after reduction     " << provenance.samples_after_reduction << "\n";
+            << "after thinning      " << provenance.samples_after_reduction << "\n";
   print_surfaces(provenance);
   // The depth is the first feature.
   if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
@@ -139,7 +140,8 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
               << " mm, where the force of the recordings begins\n";
   std::cout << "relaxation times    " << relaxation_text(fit.data.features) << "\n"
             << "correction          "
-            << (prepared.correction ? correction_text(*prepared.correction) : "the whole force, without a trend")
+            << (prepared.correction ? correction_text(*prepared.correction)
+                                    : "none: the method is fitted to the measured force")
             << "\n"
             << "fit time            " << fixed(seconds, 2) << " s\n"
             << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %"
@@ -154,13 +156,13 @@ Status run_fit(const FitArguments& arguments) {
   // Reports before the fit if the output cannot be written.
   if (const auto trial = AtomicFile::create(arguments.out, arguments.force); !trial) return trial.error();
   const auto began = std::chrono::steady_clock::now();
-  std::optional<ProgressLine> line("fitting " + arguments.options.method);
+  std::optional<ProgressLine> line("fitting " + plan_name(arguments.plan));
   auto checked = check_before_use(arguments.recordings, check_request(*scene));
   if (!checked) return checked.error();
   // An accelerometer reduces the training error, and a device may have none.
   const bool accelerometer =
       std::ranges::any_of(*checked, [](const CheckedFile& one) { return one.recording().columns.acceleration; });
-  const auto fitted = fit_recordings(*checked, training_request(*scene), arguments.options, began,
+  const auto fitted = fit_recordings(*checked, training_scene(*scene), arguments.plan, began,
                                      [&](double fraction) { return line->update(fraction); });
   if (!fitted) return fitted.error();
   const ModelData& data = fitted->fit.data;
@@ -169,7 +171,7 @@ Status run_fit(const FitArguments& arguments) {
   line.reset();  // ends the progress line
   if (!contradiction.empty()) std::cerr << "note: " << contradiction << "\n";
   if (arguments.json) {
-    print_json(fit_json(*fitted, arguments.options));
+    print_json(fit_json(*fitted));
   } else {
     print_fit(*fitted, accelerometer, arguments.out);
   }
@@ -187,57 +189,14 @@ void add_fit(CLI::App& app, Verbs& verbs) {
       ->type_name("CSV");
   std::vector<std::string> names;
   for (const Method* method : methods()) names.emplace_back(method->name);
-  verb->add_option("--method", arguments->options.method, "Method of the correction: " + method_names())
-      ->required()
-      ->check(CLI::IsMember(names));
-  verb->add_flag_callback("--list-methods", list_methods, "Print the names of the methods, one per line");
+  for (const PlanOption& option : plan_options()) add_plan_option(*verb, option, arguments);
+  verb->add_flag_callback("--list-methods", list_methods, "Print the names of all methods, one per line");
   verb->option_defaults()->always_capture_default();
-  verb->add_option("--centres", arguments->options.centres,
-                   "Number of centres, for " + method_names(kTakesCentres) + "; direct uses every site")
-      ->type_name("INT")
-      ->check(CLI::Validator(check_centres, "1 - " + std::to_string(kMostFittedCentres)));
-  verb->add_option("--candidates", arguments->options.candidates,
-                   "Candidate sites per step, a number or all, for " + method_names(kTakesCandidates))
-      ->check(CLI::Validator(check_candidates, "N|all"));
-  verb->add_option("--kernel", arguments->options.kernel, "Kernel, for " + method_names(kTakesKernel))
-      ->check(CLI::IsMember(kernel_names()));
-  verb->add_option("--weighting", arguments->options.weighting,
-                   "Weight of an error: jnd (1/JND), relative (1/force, as in the paper) or none (1)")
-      ->check(CLI::IsMember({"jnd", "relative", "none"}));
-  verb->add_option("--reduction", arguments->options.reduction,
-                   "Samples that become sites: coverage of the feature space, force (steps of 50 mN, as in the paper) "
-                   "or none (all)")
-      ->check(CLI::IsMember({"coverage", "force", "none"}));
-  CLI::Option* recipe = verb->add_option("--recipe", arguments->options.recipe,
-                                         "The recipe of Hoever & Harders (2009), the same as --reduction force "
-                                         "--weighting relative; it also sets the features and the surface")
-                            ->check(CLI::IsMember({kRecipe2009}));
-  for (const char* decided : {"--reduction", "--weighting"}) recipe->excludes(decided);
-  verb->add_option(
-          "--features", arguments->options.features,
-          std::string("Features of the force: auto (those that the recordings support), scene (the scene's), or a "
-                      "list such as ") +
-              kFeatureListExample)
-      ->check(CLI::Validator(check_features, "auto|scene|LIST"));
-  verb->add_option(
-          "--relaxation", arguments->options.relaxation,
-          "Use the scene's features with these relaxation times: scene (the scene's), auto (identified) or a list in s")
-      ->check(CLI::Validator(check_relaxation, "scene|auto|S,S"));
-  verb->add_option("--surface", arguments->options.surface,
-                   "Surface position of each recording: auto (estimated) or recorded (0)")
-      ->check(CLI::IsMember({"auto", "recorded"}));
-  for (const char* decided : {"--features", "--surface"}) recipe->excludes(decided);
-  verb->add_option("--grid", arguments->options.grid,
-                   "Nodes of the grid along each feature [25x11x11x11], for " + method_names(kTakesGrid))
-      ->check(CLI::Validator(check_grid, "NxN"));
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line");
-  verb->add_option("--seed", arguments->options.seed, "Seed of the random numbers, for " + method_names(kTakesSeed))
-      ->type_name("INT")
-      ->check(CLI::Validator(check_seed, ""));
   verb->add_option("--out", arguments->out, "Model file to write (JSON)")->required()->type_name("JSON");
   verb->add_flag("--force", arguments->force, "Replace an existing file");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
-  verb->parse_complete_callback([verb, arguments] { check_usage(*verb, *arguments); });
+  verb->parse_complete_callback([arguments] { read_plan(*arguments); });
   verbs.emplace_back(verb, [arguments] { return run_fit(*arguments); });
 }
 

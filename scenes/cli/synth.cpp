@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/recording/recording.h"
-#include "models/fit_library/fit_options.h"
+#include "models/fit/model_plan.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/material/rig.h"
@@ -53,7 +53,7 @@ void add_synth(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("synth", "Make a recording in which a virtual hand presses a virtual material");
   verb->add_option("--material", options->rig.material, "Material to press; --list prints the names")->required();
   verb->add_option("--seed", options->rig.seed, "Seed of the hand motion and the sensor noise")
-      ->check(CLI::Validator(check_seed, ""))
+      ->check(CLI::Validator([](const std::string& text) { return option_error("seed", text); }, ""))
       ->capture_default_str();
   verb->add_option("--seconds", options->rig.seconds, "Length in s [depends on the material]");
   verb->add_option("--rate", options->rig.rate_Hz, "Rows per second (Hz), 10 to 20000")->capture_default_str();

@@ -81,13 +81,13 @@ Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings
 
 // If no scene was named and all models are files, takes the scene from the first file's provenance, without its
 // virtual material: it is not the truth of those models.
-void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& scene) {
-  if (static_cast<std::size_t>(std::ranges::count_if(plans, &SlotPlan::is_file)) != files) return;
-  std::erase_if(plans, [](const SlotPlan& plan) { return !plan.is_file(); });
-  const Provenance& from = plans.front().loaded->data().provenance;
+void take_provenance(std::vector<ModelRequest>& requests, std::size_t files, Scene& scene) {
+  if (static_cast<std::size_t>(std::ranges::count_if(requests, &ModelRequest::is_file)) != files) return;
+  std::erase_if(requests, [](const ModelRequest& one) { return !one.is_file(); });
+  const Provenance& from = requests.front().loaded->data().provenance;
   if (auto own = load_scene(from.scene)) scene = std::move(*own);
   scene.material.reset();
-  scene.title = plan_name(plans.front()) + ": a model";
+  scene.title = request_name(requests.front()) + ": a model";
   scene.description = "Fitted to " + (from.recordings.empty() ? "" : from.recordings.front()) + " in " + scene.name;
 }
 
@@ -115,11 +115,11 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   device_request.hand.strongest_press_N = scene->strongest_press_N;
   if (const Status status = take_recordings(request, *scene, device_request.hand); !status) return status.error();
   const LineUp* line_up = request.models.empty() && scene->has_material() ? find_line_up(request.line_up) : nullptr;
-  Result<std::vector<SlotPlan>> plans = std::vector<SlotPlan>();
+  Result<std::vector<ModelRequest>> plans = std::vector<ModelRequest>();
   if (request.refits)
-    plans = plan_slots(*scene, line_up != nullptr ? line_up->models : request.models, request.position_only);
+    plans = requested_models(*scene, line_up != nullptr ? line_up->models : request.models, request.position_only);
   if (!plans) return plans.error();
-  for (const SlotPlan& plan : request.kept) {
+  for (const ModelRequest& plan : request.kept) {
     // A plan without a model needs a material to fit to.
     if (plans->size() < kMaxModels && (plan.loaded != nullptr || scene->has_material())) plans->push_back(plan);
   }
@@ -134,7 +134,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   return session;
 }
 
-Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
+Status LiveSession::begin(const std::vector<ModelRequest>& plans) {
   if (scene_.material && !device_->measures_force()) {
     const Result<Material> material = find_material(*scene_.material);
     if (!material) return material.error();
@@ -208,10 +208,10 @@ void LiveSession::treat_as_this_material(std::size_t slot) {
 void LiveSession::use_line_up(const std::string& name) {
   const LineUp* line_up = find_line_up(name);
   if (line_up == nullptr || !scene_.has_material()) return;
-  const auto plans = plan_slots(scene_, line_up->models, false);
+  const auto plans = requested_models(scene_, line_up->models, false);
   if (!plans) return;
   request_.line_up = name;
-  models_.use_plans(*plans);
+  models_.use_requests(*plans);
   publish("other models are shown");
 }
 

@@ -23,7 +23,7 @@
 #include "scenes/live/session_recorder.h"
 #include "scenes/live/verdict.h"
 #include "scenes/scene/scene.h"
-#include "scenes/worker/slot_plan.h"
+#include "scenes/worker/model_request.h"
 
 namespace palpate {
 
@@ -33,9 +33,9 @@ struct SessionRequest {
   std::vector<std::string> recordings;
   std::string device = "auto";
   std::vector<std::string> models;  // methods or model files; empty: those of `line_up`
-  std::string line_up;              // a name of line_ups() (slot_plan.h); empty or unknown: the scene's default models
-  // Additional models, of an earlier session (SessionModels::plans). `refits` false: the session has only these.
-  std::vector<SlotPlan> kept;
+  std::string line_up;  // a name of line_ups() (model_request.h); empty or unknown: the scene's default models
+  // Additional models, of an earlier session (SessionModels::requests). `refits` false: the session has only these.
+  std::vector<ModelRequest> kept;
   bool refits = true;
   std::uint64_t seed = 1;      // of the training recording and the fits; the simulated hand has seed + 1
   bool position_only = false;  // adds a model with the depth as its only feature
@@ -51,8 +51,8 @@ std::vector<DeviceDescription> device_choices();
 class LiveSession {
  public:
   // Reads the scene, recordings and model files, opens the device and starts the loop; models are fitted in the
-  // background. Errors: those of load_scene, read_usable_recording, plan_slots and open_device; a thread cannot be
-  // started.
+  // background. Errors: those of load_scene, read_usable_recording, requested_models and open_device; a thread cannot
+  // be started.
   static Result<std::unique_ptr<LiveSession>> open(const SessionRequest& request);
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -123,7 +123,7 @@ class LiveSession {
 
  private:
   LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);
-  Status begin(const std::vector<SlotPlan>& plans);
+  Status begin(const std::vector<ModelRequest>& plans);
   void update_models();
   void publish(std::string why);
   void read_snapshots();

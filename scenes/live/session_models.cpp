@@ -12,11 +12,11 @@ namespace palpate {
 SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices)
     : scene_(scene), notices_(notices), worker_(scene_, seed) {}
 
-Status SessionModels::start(const std::vector<SlotPlan>& plans, bool claimed) {
-  for (const SlotPlan& plan : plans) {
-    Slot& slot = slots_[add_slot(plan)];
+Status SessionModels::start(const std::vector<ModelRequest>& requests, bool claimed) {
+  for (const ModelRequest& request : requests) {
+    Slot& slot = slots_[add_slot(request)];
     slot.claimed = claimed;
-    worker_.add_job(slot.job, plan, slots_.size() == 1);
+    worker_.add_job(slot.job, request, slots_.size() == 1);
   }
   return worker_.start();
 }
@@ -26,14 +26,14 @@ Status SessionModels::start(const std::vector<SlotPlan>& plans, bool claimed) {
 std::optional<std::size_t> SessionModels::room() const noexcept {
   for (const bool removed : {true, false}) {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
-      if (direct_ != i && (removed ? slots_[i].removed : slots_[i].hidden())) return i;
+      if (reference_ != i && (removed ? slots_[i].removed : slots_[i].hidden())) return i;
     }
     if (slots_.size() < kMaxModels) return slots_.size();
   }
   return std::nullopt;
 }
 
-std::size_t SessionModels::add_slot(const SlotPlan& plan) {
+std::size_t SessionModels::add_slot(const ModelRequest& request) {
   const std::size_t index = *room();
   if (index == slots_.size()) {
     slots_.emplace_back();
@@ -42,13 +42,13 @@ std::size_t SessionModels::add_slot(const SlotPlan& plan) {
   }
   Slot& slot = slots_[index] = Slot{};
   slot.job = next_job_++;
-  slot.info.name = distinct_name(plan_name(plan), &slot);
-  slot.info.method = plan_method(plan);
-  slot.info.takes_centres = !plan.is_file() && plan.recipe != Recipe::position &&
-                            plan.method->can_take(kTakesCentres) && scene_.has_material();
-  slot.info.paper = plan.recipe == Recipe::paper;
-  slot.plan = plan;
-  slot.asked_centres = plan.centres;
+  slot.info.name = distinct_name(request_name(request), &slot);
+  slot.info.method = request_family(request);
+  slot.info.takes_centres =
+      !request.is_file() && request.plan != position_plan() && request.plan.selects_centres() && scene_.has_material();
+  slot.info.paper = !request.is_file() && request.plan.base == Base::force;
+  slot.request = request;
+  slot.asked_centres = request.plan.centres;
   return index;
 }
 
@@ -65,7 +65,7 @@ std::vector<std::size_t> SessionModels::update() {
     if (!index) continue;  // the model was removed meanwhile
     Slot& slot = slots_[*index];
     // The user has asked for another number of centres meanwhile: another fit follows.
-    const bool old = slot.info.refitting && finished.centres != slot.plan.centres;
+    const bool old = slot.info.refitting && finished.centres != slot.request.plan.centres;
     if (join(*index, finished)) ready.push_back(*index);
     slot.info.refitting = old;
   }
@@ -82,8 +82,8 @@ std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noe
 // A model file of another material is not compared with the true force of this one. If the user named recordings, there
 // is no true force, and no model counts as one of another material.
 bool SessionModels::is_of_other_material(const Slot& slot) const {
-  const bool claimed = slot.claimed || slot.plan.of_this_material;
-  if (!scene_.material || claimed || !slot.plan.is_file()) return false;
+  const bool claimed = slot.claimed || slot.request.of_this_material;
+  if (!scene_.material || claimed || !slot.request.is_file()) return false;
   const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
   return std::ranges::any_of(recordings, [&](const std::string& name) {
     const std::string start = *scene_.material + "_";  // the rig names its recordings MATERIAL_SEED
@@ -97,11 +97,11 @@ Status SessionModels::save(std::size_t slot, const std::string& path) const {
 }
 
 bool SessionModels::fits() const noexcept {
-  return std::ranges::any_of(slots_, [](const Slot& slot) { return !slot.plan.is_file(); });
+  return std::ranges::any_of(slots_, [](const Slot& slot) { return !slot.request.is_file(); });
 }
 
 std::optional<std::size_t> SessionModels::reference() const noexcept {
-  if (direct_) return direct_;
+  if (reference_) return reference_;
   if (fits()) return std::nullopt;
   const auto shown = ready_slots();
   return shown.size() > 1 ? std::optional<std::size_t>(shown.front()) : std::nullopt;
@@ -137,27 +137,29 @@ bool SessionModels::join(std::size_t index, const FinishedModel& finished) {
   slot.info.centres = slot.model->centre_count();
   slot.info.tick = finished.tick;
   slot.info.other_material = is_of_other_material(slot);
-  if (slot.plan.recipe != Recipe::position) {
+  if (slot.request.is_file() || slot.request.plan != position_plan()) {
     slot.info.method = slot.model->method();
-    slot.info.name = distinct_name((slot.info.paper ? kPaperPrefix : "") + slot.model->name(), &slot);
+    slot.info.name = distinct_name(slot.model->name(), &slot);
   }
-  if (!direct_ && slot.info.method == "direct" && !slot.info.paper) direct_ = index;
+  const auto plan = parse_plan(slot.info.method);
+  slot.info.paper = plan && plan->base == Base::force;
+  if (!reference_ && !slot.request.is_file() && !slot.info.paper) reference_ = index;
   if (!slot.hidden() && (first || (index == 0 && !user_chose_))) selected_ = index;
   return true;
 }
 
-void SessionModels::use_plans(const std::vector<SlotPlan>& plans) {
+void SessionModels::use_requests(const std::vector<ModelRequest>& requests) {
   for (Slot& slot : slots_) {
-    if (!slot.plan.is_file()) slot.info.state = SlotState::hidden;
+    if (!slot.request.is_file()) slot.info.state = SlotState::hidden;
   }
   std::optional<std::size_t> first;
-  for (const SlotPlan& plan : plans) {
-    const auto same = std::ranges::find_if(slots_, [&](const Slot& slot) { return slot.is(plan); });
+  for (const ModelRequest& request : requests) {
+    const auto same = std::ranges::find_if(slots_, [&](const Slot& slot) { return slot.is(request); });
     auto index = static_cast<std::size_t>(same - slots_.begin());
     if (same == slots_.end()) {
-      if (!has_room("show " + plan_name(plan))) continue;
-      index = add_slot(plan);
-      worker_.add_job(slots_[index].job, plan, !first);
+      if (!has_room("show " + request_name(request))) continue;
+      index = add_slot(request);
+      worker_.add_job(slots_[index].job, request, !first);
     }
     slots_[index].show();
     if (!first) first = index;
@@ -181,7 +183,7 @@ bool SessionModels::remove(std::size_t index) {
   }
   slot.removed = true;
   slot.info.state = SlotState::hidden;
-  if (direct_ != index) free(index);  // the reference keeps its slot
+  if (reference_ != index) free(index);  // the reference keeps its slot
   select_what_is_there();
   return true;
 }
@@ -201,11 +203,11 @@ void SessionModels::rename(std::size_t slot, const std::string& name) {
 void SessionModels::refit(std::size_t index, int centres) {
   if (index >= slots_.size() || !slots_[index].info.takes_centres || centres < 1) return;
   Slot& slot = slots_[index];
-  if (slot.model == nullptr || slot.plan.centres == centres) return;
-  slot.plan.centres = centres;
-  slot.plan.loaded = nullptr;
+  if (slot.model == nullptr || slot.request.plan.centres == centres) return;
+  slot.request.plan.centres = centres;
+  slot.request.loaded = nullptr;
   slot.info.refitting = true;
-  worker_.add_job(slot.job, slot.plan);
+  worker_.add_job(slot.job, slot.request);
 }
 
 double SessionModels::trained_depth_m() const noexcept {
@@ -244,7 +246,7 @@ std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
   std::vector<std::shared_ptr<const ForceModel>> models;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     // The reference is in every set, even when it is hidden.
-    if (!slots_[i].takes_part() && !(direct_ == i && slots_[i].model != nullptr)) continue;
+    if (!slots_[i].takes_part() && !(reference_ == i && slots_[i].model != nullptr)) continue;
     set.models[i] = models.size();
     models.push_back(slots_[i].model);
   }
@@ -268,14 +270,14 @@ void SessionModels::write_selection(LoopControls& controls) const {
   controls.selected = static_cast<std::uint32_t>(sets_.back().index_of(selected_));
 }
 
-std::vector<SlotPlan> SessionModels::plans() const {
-  std::vector<SlotPlan> plans;
+std::vector<ModelRequest> SessionModels::requests() const {
+  std::vector<ModelRequest> requests;
   for (const auto& slot : slots_) {
     if (slot.removed || slot.info.state == SlotState::failed) continue;
-    plans.push_back(slot.plan);
-    if (!slot.info.refitting) plans.back().loaded = slot.model;
+    requests.push_back(slot.request);
+    if (!slot.info.refitting) requests.back().loaded = slot.model;
   }
-  return plans;
+  return requests;
 }
 
 bool SessionModels::select(std::size_t slot) {
@@ -292,11 +294,11 @@ bool SessionModels::load_file(const std::string& path) {
     notices_.push_back({model.error().message, true});
     return false;
   }
-  const SlotPlan plan{.path = path, .loaded = std::move(*model)};
-  const std::size_t index = add_slot(plan);
+  const ModelRequest request{.plan = {}, .path = path, .loaded = std::move(*model)};
+  const std::size_t index = add_slot(request);
   const Slot& slot = slots_[index];
   loaded_.push_back(index);
-  join(index, {slot.job, 0, plan.loaded, time_of_tick(plan.loaded)});
+  join(index, {slot.job, 0, request.loaded, time_of_tick(request.loaded)});
   notices_.push_back({"loaded " + slot.info.name + " from " + path +
                           (slot.info.other_material ? ": of " + joined(slot.model->data().provenance.recordings) +
                                                           ", without a reference force here"

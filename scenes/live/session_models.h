@@ -16,8 +16,8 @@
 #include "scenes/evaluation/model_timing.h"
 #include "scenes/live/notices.h"
 #include "scenes/scene/scene.h"
+#include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
-#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 
@@ -32,7 +32,7 @@ enum class SlotState : std::uint8_t {
 // Identity and state of a slot's model. Its errors are in Comparison.
 struct ModelInfo {
   std::string name;    // unique among the slots
-  std::string method;  // name of a method; "position": the depth is the only feature
+  std::string method;  // family of its plan: "trend+greedy"; "position": the depth is the only feature
   int centres = 0;     // nodes for a grid; 0 until ready
   SlotState state = SlotState::waiting;
   double progress = 0.0;        // of the fit, 0..1
@@ -42,7 +42,7 @@ struct ModelInfo {
   double tick_ns() const noexcept { return tick.low_ns; }  // the minimum, because other programs only add time
   bool refitting = false;      // with another number of centres; the present model stays until then
   bool takes_centres = false;  // the number of centres can be changed
-  bool paper = false;          // fitted by the recipe of the paper (2009)
+  bool paper = false;          // a method on the measured force, as in the paper (2009)
 };
 
 // A published set of models. Snapshots of a set may still arrive after the next set was published.
@@ -64,9 +64,9 @@ class SessionModels {
   SessionModels(const SessionModels&) = delete;
   SessionModels& operator=(const SessionModels&) = delete;
 
-  // Makes a slot for each plan. `claimed`: model files count as models of this material, whatever their provenance.
+  // Makes a slot for each request. `claimed`: model files count as models of this material, whatever their provenance.
   // Errors: a thread cannot be started.
-  Status start(const std::vector<SlotPlan>& plans, bool claimed);
+  Status start(const std::vector<ModelRequest>& requests, bool claimed);
   // Interrupts fits; does not wait.
   void cancel() noexcept { worker_.cancel(); }
   // Call it once a frame. Returns the slots whose models became ready. If there are any, publish a new set.
@@ -84,9 +84,9 @@ class SessionModels {
   std::vector<std::size_t> ready_slots() const;
   // Null until ready.
   const std::shared_ptr<const FittedModel>& model(std::size_t slot) const noexcept { return slots_[slot].model; }
-  // The plans of all slots that are neither removed nor failed, each with its model where it is ready. A next
+  // The requests of all slots that are neither removed nor failed, each with its model where it is ready. A next
   // session that starts from them fits only the others.
-  std::vector<SlotPlan> plans() const;
+  std::vector<ModelRequest> requests() const;
 
   std::size_t size() const noexcept { return slots_.size(); }
   const ModelInfo& info(std::size_t slot) const noexcept { return slots_[slot].info; }
@@ -94,20 +94,20 @@ class SessionModels {
   // The slot of the active model. The rendered force may still fade to it.
   std::size_t selected() const noexcept { return selected_; }
   bool select(std::size_t slot);  // returns false and changes nothing unless the model is ready
-  // The model that is the reference where no true force is known: the first direct interpolant without the paper's
-  // recipe, or if all models are from files the first of at least two. Empty: there is none.
+  // The model that is the reference where no true force is known: the first one with a trend, or if all models are from
+  // files the first of at least two. Empty: there is none.
   std::optional<std::size_t> reference() const noexcept;
   // Whether any model is fitted in this session, not read from a file.
   bool fits() const noexcept;
   // Treats the model as one of this material, whatever its provenance.
   void treat_as_this_material(std::size_t slot) noexcept {
-    slots_[slot].plan.of_this_material = true;
+    slots_[slot].request.of_this_material = true;
     slots_[slot].info.other_material = false;
   }
 
-  // Shows the models of these plans, fits those that are missing and hides all others except models from files.
+  // Shows the models of these requests, fits those that are missing and hides all others except models from files.
   // The active model stays active if it is shown; else the first model becomes active.
-  void use_plans(const std::vector<SlotPlan>& plans);
+  void use_requests(const std::vector<ModelRequest>& requests);
   // Removes a model permanently. Returns false, with a notice, for the last model.
   bool remove(std::size_t slot);
   // The slots whose models were removed or replaced since the last call. Discard all results of theirs.
@@ -132,7 +132,7 @@ class SessionModels {
  private:
   struct Slot {
     ModelInfo info;
-    SlotPlan plan;
+    ModelRequest request;
     std::size_t job = 0;                       // id of the worker's job
     int asked_centres = 0;                     // of the plan, before the user changed the number
     std::shared_ptr<const FittedModel> model;  // null until ready
@@ -144,13 +144,14 @@ class SessionModels {
     void show() {
       info.state = model != nullptr ? SlotState::ready : info.problem.empty() ? SlotState::waiting : SlotState::failed;
     }
-    bool is(const SlotPlan& other) const {  // `other` is not a file
-      return !removed && !plan.is_file() && plan.method == other.method && plan.recipe == other.recipe &&
-             asked_centres == other.centres;
+    bool is(const ModelRequest& other) const {  // `other` is not a file
+      ModelPlan plan = request.plan;
+      plan.centres = asked_centres;
+      return !removed && !request.is_file() && plan == other.plan;
     }
   };
 
-  std::size_t add_slot(const SlotPlan& plan);
+  std::size_t add_slot(const ModelRequest& request);
   bool is_of_other_material(const Slot& slot) const;
   bool join(std::size_t index, const FinishedModel& finished);
   std::optional<std::size_t> room() const noexcept;
@@ -165,7 +166,7 @@ class SessionModels {
   ModelWorker worker_;
   std::vector<Slot> slots_;
   std::vector<PublishedSet> sets_;  // newest last
-  std::optional<std::size_t> direct_;
+  std::optional<std::size_t> reference_;
   std::size_t selected_ = 0;
   bool user_chose_ = false;
   std::size_t next_job_ = 0;

@@ -16,18 +16,15 @@ constexpr double kNear = 0.2;  // the budget is drawn if a tick takes more than 
 constexpr std::uint64_t kFewSamples = 20;
 
 // The colour of the model's method, which the window uses as well; grey for no force.
-Hue model_colour(const PlannedModel& plan) {
-  return plan.recipe == Recipe::no_force ? kMutedColour : plan.request.method->colour;
-}
+Hue model_colour(const ModelResult& model) { return model.plan ? Hue(colour_of(*model.plan)) : kMutedColour; }
 
-// The models of each recipe and method, in order of their size.
+// The models of each family, in order of their size.
 std::vector<std::vector<const ModelResult*>> kinds_of(const ReportData& data) {
   std::vector<std::vector<const ModelResult*>> kinds;
   for (const ModelResult& one : data.models) {
     if (!one.model) continue;
     const auto is_same = [&](const std::vector<const ModelResult*>& kind) {
-      const PlannedModel& plan = kind.front()->plan;
-      return plan.recipe == one.plan.recipe && plan.request.method == one.plan.request.method;
+      return family_name(*kind.front()->plan) == family_name(*one.plan);
     };
     auto kind = std::ranges::find_if(kinds, is_same);
     if (kind == kinds.end()) kind = kinds.emplace(kinds.end());
@@ -40,20 +37,18 @@ std::vector<std::vector<const ModelResult*>> kinds_of(const ReportData& data) {
 using BinFigure = double (*)(const ForceBin&);
 
 // Error against force of the methods of one recipe; the panel of this program's recipe includes the trend.
-Panel force_panel(const ReportData& data, const std::string& title, Recipe recipe, BinFigure figure) {
+Panel force_panel(const ReportData& data, const std::string& title, Base base, BinFigure figure) {
   Panel panel;
-  panel.title = title + (recipe == Recipe::paper ? ", recipe of 2009" : ", Palpate");
+  panel.title = title + (base == Base::force ? ", on the force" : ", on the trend");
   panel.x.title = "Measured force [N]";
   panel.y = {"Error [JND]", "", true};
   panel.names_at_ends = true;
   panel.levels.push_back({1.0, "1 JND"});
   for (const std::size_t i : data.choice.candidates) {
     const ModelResult& one = data.models[i];
-    if (one.plan.recipe != recipe) continue;
-    Series series{one.plan.request.method->label,
-                  model_colour(one.plan),
-                  recipe == Recipe::paper ? Mark::hollow_curve : Mark::curve,
-                  {}};
+    if (!one.plan || one.plan->base != base) continue;
+    Series series{
+        one.plan->method->label, model_colour(one), base == Base::force ? Mark::hollow_curve : Mark::curve, {}};
     for (const ForceBin& bin : one.errors.bins) {
       if (bin.force_N.count() >= kFewSamples) series.rows.push_back({bin.force_N.mean(), figure(bin)});
     }
@@ -86,7 +81,7 @@ Figure speed_figure(const ReportData& data) {
       if (!one->time.measured) continue;
       slowest_s = std::max(slowest_s, 1e-9 * one->time.tick.high_ns);
       least = std::min(least, std::max(one->errors.p99_error_over_jnd, 1e-6));
-      curve.colour = model_colour(one->plan);
+      curve.colour = model_colour(*one);
       curve.rows.push_back({1e-9 * one->time.tick.median_ns, one->errors.p99_error_over_jnd});
     }
     if (curve.rows.size() > 1) panel.series.push_back(std::move(curve));
@@ -96,9 +91,9 @@ Figure speed_figure(const ReportData& data) {
     if (!one.time.measured) continue;
     const Interval interval = one.errors.p99_interval();
     const Timing& tick = one.time.tick;
-    panel.series.push_back({one.plan.name,
-                            model_colour(one.plan),
-                            one.plan.recipe == Recipe::paper ? Mark::hollow_bars : Mark::bars,
+    panel.series.push_back({one.name,
+                            model_colour(one),
+                            one.plan && one.plan->base == Base::force ? Mark::hollow_bars : Mark::bars,
                             {{1e-9 * tick.median_ns, one.errors.p99_error_over_jnd, interval.low, interval.high,
                               1e-9 * tick.low_ns, 1e-9 * tick.high_ns}}});
   }
@@ -135,9 +130,9 @@ Figure worst_figure(const ReportData& data) {
   difference.series = {{"within 1 JND", kMutedColour, Mark::area, {}}};
   // The recommended model, the first one, is drawn last, on top of the others.
   for (std::size_t i = worst.models.size(); i-- > 0;) {
-    const PlannedModel& plan = data.models[worst.models[i]].plan;
-    const Mark mark = plan.recipe == Recipe::paper ? Mark::dashed : Mark::line;
-    for (Panel* panel : {&force, &difference}) panel->series.push_back({plan.name, model_colour(plan), mark, {}});
+    const ModelResult& model = data.models[worst.models[i]];
+    const Mark mark = model.plan->base == Base::force ? Mark::dashed : Mark::line;
+    for (Panel* panel : {&force, &difference}) panel->series.push_back({model.name, model_colour(model), mark, {}});
   }
   double largest = 1.2;
   for (const StretchRow& row : worst.rows) {
@@ -165,7 +160,7 @@ Figure worst_figure(const ReportData& data) {
   figure.plot.height = 0.8;
   figure.caption =
       "The worst " + three_digits(worst.rows.empty() ? 0.0 : worst.rows.back().time_s - worst.rows.front().time_s) +
-      " s of " + data.models[data.choice.recommended].plan.name + " (largest mean squared error over the JND): RMS " +
+      " s of " + data.models[data.choice.recommended].name + " (largest mean squared error over the JND): RMS " +
       three_digits(std::sqrt(std::max(0.0, worst.score))) +
       " JND. Below: model minus measurement; grey: differences that a hand cannot notice.";
   return figure;
@@ -177,8 +172,8 @@ Figure force_figure(const ReportData& data) {
       {"Maximum", [](const ForceBin& bin) { return bin.over_jnd.largest(); }}};
   Figure figure;
   for (const auto& [title, value] : rows) {
-    Panel paper = force_panel(data, title, Recipe::paper, value);
-    Panel palpate = force_panel(data, title, Recipe::palpate, value);
+    Panel paper = force_panel(data, title, Base::force, value);
+    Panel palpate = force_panel(data, title, Base::trend, value);
     share_scale(paper, palpate);
     figure.plot.panels.push_back(std::move(paper));
     figure.plot.panels.push_back(std::move(palpate));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "models/fit/methods.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/scene/scene.h"
 
@@ -56,25 +57,24 @@ class Measurement {
   // Returns the expected time of the whole measurement, s.
   double plan_models(bool quick) {
     double total = 2.0 * kPrepareSeconds;
-    for (PlannedModel& plan : make_plan(quick, data_.scene.features.size())) {
+    models_.emplace_back();
+    for (const ModelPlan& plan : report_plans(quick, data_.scene.features.size())) {
       ModelResult& model = models_.emplace_back();
-      model.plan = std::move(plan);
-      model.recorded_samples = model.moved_samples = ModelErrors(data_.scene.jnd);
-      const MethodRequest& request = model.plan.request;
-      total += kEvaluateSeconds;
-      if (model.plan.recipe != Recipe::no_force) total += request.method->expected_seconds;
+      model.plan = plan;
+      model.name = plan_name(plan);
+      total += plan.method->expected_seconds + kEvaluateSeconds;
     }
+    for (ModelResult& model : models_) model.recorded_samples = model.moved_samples = ModelErrors(data_.scene.jnd);
     return static_cast<double>(data_.recordings.folds.size()) * total;
   }
 
   // Fits all planned models of one fold.
-  Status fit(RecipeFits& fits) {
+  Status fit(ModelFits& fits) {
     for (ModelResult& result : models_) {
-      const PlannedModel& plan = result.plan;
-      if (plan.recipe == Recipe::no_force) continue;
-      auto one = fits.fit(plan.recipe, plan.request, progress_.next(plan.request.method->expected_seconds));
+      if (!result.plan) continue;
+      auto one = fits.fit(*result.plan, progress_.next(result.plan->method->expected_seconds));
       if (!one && !progress_.next(0.0).may_continue(0.0)) return interrupted();
-      if (!one) return Error{plan.name + ": " + one.error().message};
+      if (!one) return Error{result.name + ": " + one.error().message};
       result.fit_seconds += one->seconds / static_cast<double>(data_.recordings.folds.size());
       result.model = std::make_shared<const FittedModel>(std::move(one->data));
       result.size = std::max(result.size, result.model->centre_count());
@@ -84,10 +84,10 @@ class Measurement {
   }
 
   Status run_fold(const Split& fold) {
-    RecipeFits fits(fold.train, data_.scene);
-    const auto paper = fits.prepare(Recipe::paper, progress_.next(kPrepareSeconds));
+    ModelFits fits(fold.train, training_scene(data_.scene));
+    const auto paper = fits.prepare({.base = Base::force}, progress_.next(kPrepareSeconds));
     if (!paper) return paper.error();
-    const auto palpate = fits.prepare(Recipe::palpate, progress_.next(kPrepareSeconds));
+    const auto palpate = fits.prepare({}, progress_.next(kPrepareSeconds));
     if (!palpate) return palpate.error();
     if (data_.gains.empty()) remember(**paper, **palpate);
     if (const Status fitted = fit(fits); !fitted) return fitted;
@@ -101,16 +101,17 @@ class Measurement {
     result.errors = result.recorded_samples.unit_errors();
     result.moved = result.moved_samples.summary();
     // A fit has at most as many centres as sites; the name has the actual number.
-    const MethodRequest& request = result.plan.request;
-    if (result.model && request.method->can_take(kTakesCentres) && result.size < request.centres)
-      result.plan.name = model_name(result.plan.recipe, *request.method, result.size);
+    if (!result.model || !result.plan->selects_centres() || result.size == 0) return;
+    ModelPlan actual = *result.plan;
+    actual.centres = result.size;
+    result.name = plan_name(actual);
   }
 
   void remember(const PreparedTraining& paper, const PreparedTraining& palpate) {
     data_.surfaces = palpate.common.provenance.surfaces;
     data_.gains = palpate.gains;
     if (palpate.correction) data_.corrects = palpate.correction->used;
-    data_.times_2009_s = relaxation_times_s(paper.common.features);
+    data_.papers_times_s = relaxation_times_s(paper.common.features);
   }
 
   Status evaluate_test(const PreparedRecordingPointer& tested, double counted_from_s) {
@@ -120,7 +121,7 @@ class Measurement {
     for (const ModelResult& one : models_) {
       if (!one.model) continue;
       models.push_back({one.model, data_.scene.jnd});
-      if (one.plan.main && one.plan.is_corrected()) request.surface_models.push_back(one.model);
+      if (is_main(*one.plan) && one.plan->base == Base::trend) request.surface_models.push_back(one.model);
     }
     request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
     const auto result = evaluate(rows_of(tested->recording), models, request);
@@ -160,8 +161,8 @@ class Measurement {
       });
       if (first == kept.end()) {
         kept.push_back(std::move(one));
-      } else if (first->plan.name != one.plan.name) {
-        first->same.push_back(one.plan.name);
+      } else if (first->name != one.name) {
+        first->same.push_back(one.name);
       }
     }
     models_ = std::move(kept);
@@ -172,7 +173,7 @@ class Measurement {
     const Choice& choice = data_.choice;
     std::vector<std::size_t> shown{choice.recommended};
     for (const std::size_t i : choice.candidates) {
-      if (i != choice.recommended && (i == choice.best || models_[i].plan.is_greedy_2009())) shown.push_back(i);
+      if (i != choice.recommended && (i == choice.best || is_papers_greedy(*models_[i].plan))) shown.push_back(i);
     }
     for (std::size_t fold = 0; fold < data_.recordings.folds.size(); ++fold) {
       std::vector<ModelPointer> models;
@@ -245,8 +246,8 @@ Choice choose(const std::vector<ModelResult>& models) {
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const ModelResult& one = models[i];
-    corrected = corrected || (one.model && one.plan.is_corrected());
-    if (!one.model || !one.plan.main) continue;
+    corrected = corrected || (one.model && one.plan->base == Base::trend && one.plan->method != &kTrendMethod);
+    if (!one.model || !is_main(*one.plan)) continue;
     choice.candidates.push_back(i);
     candidates.push_back({one.errors, one.time.tick});
   }
@@ -258,7 +259,7 @@ Choice choose(const std::vector<ModelResult>& models) {
     if (ranking.qualified[i]) choice.qualified.push_back(choice.candidates[i]);
   }
   for (std::size_t i = 0; i < models.size(); ++i) {
-    if (!models[i].model || models[i].plan.main) continue;
+    if (!models[i].model || is_main(*models[i].plan)) continue;
     const UnitErrors& errors = models[i].errors;
     if (!dominates({errors, models[i].time.tick}, candidates[ranking.recommended])) continue;
     if (choice.dominating && errors.p99_error_over_jnd >= models[*choice.dominating].errors.p99_error_over_jnd)
@@ -270,10 +271,7 @@ Choice choose(const std::vector<ModelResult>& models) {
 
 std::vector<std::size_t> headline_models(const ReportData& data) {
   std::vector<std::size_t> rows{0};
-  for (const std::size_t i : data.choice.candidates) {
-    const PlannedModel& plan = data.models[i].plan;
-    if (plan.recipe != Recipe::paper || plan.is_greedy_2009() || i == data.choice.recommended) rows.push_back(i);
-  }
+  rows.insert(rows.end(), data.choice.candidates.begin(), data.choice.candidates.end());
   return rows;
 }
 

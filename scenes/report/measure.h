@@ -6,7 +6,7 @@
 
 #include "engine/base/fit_control.h"
 #include "models/check/noise_floor.h"
-#include "models/fit/fit.h"
+#include "models/fit/model_fits.h"
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/evaluation/model_timing.h"
@@ -40,7 +40,8 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
 
 // The results of a planned model over all folds. The errors of all models are over the same samples.
 struct ModelResult {
-  PlannedModel plan;
+  std::string name = "no force";
+  std::optional<ModelPlan> plan;             // none: 0 N
   int size = 0;                              // centres, or nodes of the grid; the largest of all folds
   UnitErrors errors;                         // positions as recorded
   ErrorSummary moved;                        // with the surface offset of every test recording subtracted
@@ -62,7 +63,7 @@ struct MovedSurface {
 
 // The choice of a model. All numbers are indices of ReportData::models.
 struct Choice {
-  std::vector<std::size_t> candidates;  // one per method and recipe
+  std::vector<std::size_t> candidates;  // one per family
   std::vector<std::size_t> qualified;   // non-inferior candidates
   std::size_t best = 0;                 // the candidate with the smallest 99 % error
   std::size_t recommended = 0;
@@ -81,7 +82,7 @@ struct ReportData {
   Choice choice;
   WorstStretch worst;                      // of the recommended model
   std::vector<RecordingSurface> surfaces;  // of the training recordings; this and the following: of the first fold
-  std::vector<double> times_2009_s;        // relaxation times fitted for the 2009 recipe
+  std::vector<double> papers_times_s;      // relaxation times identified for the methods on the measured force
   std::optional<bool> corrects;            // whether cross-validation selected the correction
   std::vector<PartGain> gains;             // of each part of the trend
 };
@@ -92,8 +93,7 @@ Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, b
 
 // The candidates are the main models of the plan; rank() recommends one of them by the test errors and times.
 Choice choose(const std::vector<ModelResult>& models);
-// The models of the page's first table: no force and the candidates, without those of the recipe of 2009 that are
-// neither recommended nor greedy, which the paper recommends.
+// The models of the page's first table: no force and the candidates.
 std::vector<std::size_t> headline_models(const ReportData& data);
 
 }  // namespace palpate

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kQuickShare = 0.2;  // of the recordings
 constexpr double kStep_N = 0.05;
-constexpr int kCentres = 100;
 const std::vector<int> kGrid{25, 11, 11, 11};
 constexpr int kNodesOfFigure2 = 10;
 // Bins with fewer samples are omitted.
@@ -27,16 +26,16 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-MethodRequest request_of(std::size_t which) {
+ModelPlan plan_of(std::size_t which) {
   const Method* methods[kPaperMethods] = {&kVoxelMethod, &kRandomMethod, &kKdTreeMethod, &kGreedyMethod,
                                           &kGreedyMethod};
-  return {methods[which], kCentres, which == kGreedy20 ? 20 : 100, kGrid};
+  return {.base = Base::force, .method = methods[which], .candidates = which == kGreedy20 ? 20 : 100, .grid = kGrid};
 }
 
 const char* const kNames[kPaperMethods] = {"grid", "random", "kD-tree", "greedy-20", "greedy-100"};
 // greedy-20 has a shade of the colour of `greedy`.
 std::uint32_t colour_of(std::size_t which) {
-  return which == kGridOfAll ? kDirectMethod.colour : which == kGreedy20 ? 0xCC79A7 : request_of(which).method->colour;
+  return which == kGridOfAll ? kDirectMethod.colour : which == kGreedy20 ? 0xCC79A7 : plan_of(which).method->colour;
 }
 
 class PaperMeasurement {
@@ -63,12 +62,14 @@ class PaperMeasurement {
         [this, parts](double fraction) { return control_.may_continue(std::min(0.99, (done_ + fraction) / parts)); }};
   }
 
-  Result<PreparedTraining> prepare(TrainingRequest request) {
+  // With the relaxation times of the scene, or identified ones.
+  Result<PreparedTraining> prepare(const TrainingScene& scene, bool identified) {
     MotionSource source({recordings_[0]});
-    auto prepared = prepare_training(source, request, part());
+    const ModelPlan plan{.base = Base::force, .features = identified ? FeatureChoice::automatic : FeatureChoice::scene};
+    auto prepared = prepare_training(source, scene, plan, part());
     if (!prepared) return prepared.error();
-    if (prepared->set.reduction_force_N != kStep_N)
-      return Error{"the steps of the reduction grew to " + std::to_string(prepared->set.reduction_force_N) +
+    if (prepared->set.thinning_force_N != kStep_N)
+      return Error{"the steps of the reduction grew to " + std::to_string(prepared->set.thinning_force_N) +
                    " N, expected 0.05 N as in the paper"};
     return prepared;
   }
@@ -79,9 +80,7 @@ class PaperMeasurement {
     recordings_ = std::move(*made);
     for (const bool fitted : {false, true}) {
       if (fitted && quick_) continue;
-      TrainingRequest request = recipe_2009_request(training_request(scene_));
-      if (!fitted) request.relaxation = Relaxation::scene;  // 0.17 and 1.27 s, the paper's
-      const auto prepared = prepare(request);
+      const auto prepared = prepare(training_scene(scene_), fitted);  // the scene's are the paper's, 0.17 and 1.27 s
       if (!prepared) return prepared.error();
       PaperRun run{material,
                    fitted,
@@ -103,7 +102,7 @@ class PaperMeasurement {
     std::vector<EvaluatedModel> evaluated;
     for (std::size_t which = 0; which < kPaperMethods; ++which) {
       const auto start = std::chrono::steady_clock::now();
-      auto fit = fit_method(prepared, request_of(which), part());
+      auto fit = fit_method(prepared, plan_of(which), part());
       if (!fit) return Error{run.material + ", " + kNames[which] + ": " + fit.error().message};
       run.models.push_back({kNames[which], colour_of(which), seconds_since(start), {}, {}});
       models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
@@ -133,7 +132,7 @@ class PaperMeasurement {
       FitTimes times{static_cast<std::size_t>(some.count()), {}};
       for (std::size_t which = 0; which < kPaperMethods; ++which) {
         const auto start = std::chrono::steady_clock::now();
-        const auto fit = fit_correction({some, jnd_N, request_of(which)}, part());
+        const auto fit = fit_correction({some, jnd_N, plan_of(which)}, part());
         if (!fit) return fit.error();
         times.seconds.push_back(seconds_since(start));
       }
@@ -146,13 +145,12 @@ class PaperMeasurement {
     std::vector<FeatureSpec> features = scene_.features;
     for (const double time_s : kMoreTimes_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
     for (std::size_t d = 1; d <= (quick_ ? std::size_t{4} : features.size()); ++d) {
-      TrainingRequest request = recipe_2009_request(training_request(scene_));
-      request.features.assign(features.begin(), features.begin() + static_cast<std::ptrdiff_t>(d));
-      request.relaxation = Relaxation::scene;
-      const auto prepared = prepare(request);
+      TrainingScene scene = training_scene(scene_);
+      scene.features.assign(features.begin(), features.begin() + static_cast<std::ptrdiff_t>(d));
+      const auto prepared = prepare(scene, false);
       if (!prepared) return prepared.error();
       const Eigen::VectorXd jnd_N = site_thresholds(*prepared);
-      MethodRequest asked = request_of(kGridOfAll);
+      ModelPlan asked = plan_of(kGridOfAll);
       asked.method = &kDirectMethod;
       auto start = std::chrono::steady_clock::now();
       const auto solved = fit_correction({prepared->sites, jnd_N, asked}, part());

@@ -78,10 +78,10 @@ class Sentence {
 std::string percent(double share) { return share >= 1.0 ? "100 %" : fixed(std::floor(1e4 * share) / 100.0, 2) + " %"; }
 
 SentencePart number(const ModelResult& model, const char* figure, const std::string& text) {
-  return {text, model.plan.name, figure};
+  return {text, model.name, figure};
 }
 
-SentencePart name(const ModelResult& model) { return {model.plan.name}; }
+SentencePart name(const ModelResult& model) { return {model.name}; }
 
 SentencePart tick(const ModelResult& model) {
   return number(model, "tick_ns", with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns");
@@ -158,7 +158,7 @@ Sentence answer(const ReportData& data) {
   }
   for (const std::size_t i : data.choice.candidates) {
     const ModelResult& one = data.models[i];
-    if (one.plan.is_greedy_2009() && &one != &use && &one != &best) add_comparison(sentence, one, use);
+    if (one.plan && is_papers_greedy(*one.plan) && &one != &use && &one != &best) add_comparison(sentence, one, use);
   }
   return sentence;
 }
@@ -174,7 +174,7 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
   for (const Figure& figure : figures) list.push_back(figure.plot.name);
   const auto named = [&](const std::vector<std::size_t>& models) {
     OrderedJson names = OrderedJson::array();
-    for (const std::size_t index : models) names.push_back(data.models[index].plan.name);
+    for (const std::size_t index : models) names.push_back(data.models[index].name);
     return names;
   };
   OrderedJson offsets = OrderedJson::array();
@@ -192,14 +192,14 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
             {"p99_error_over_jnd", data.floor.p99_error_over_jnd}}},
           {"surface_offset_m", offsets},
           {"correction_off", data.choice.correction_off},
-          {"relaxation_times_2009_s", data.times_2009_s},
+          {"relaxation_papers_times_s", data.papers_times_s},
           {"tables", numbers},
           {"figures", list},
           {"timings",
            {{"machine", machine},
             {"seconds", seconds},
             {"answer", answer.plain_text()},
-            {"recommended", data.models[data.choice.recommended].plan.name},
+            {"recommended", data.models[data.choice.recommended].name},
             {"candidates", named(data.choice.candidates)},
             {"qualified", named(data.choice.qualified)},
             {"tables", times}}},
@@ -219,7 +219,7 @@ std::string notes_html(const ReportData& data) {
       three_digits(kMargin_jnd) + " JND apart 57 % of the answers are correct; guessing gives 50 %.");
   for (const ModelResult& one : data.models) {
     if (one.same.empty()) continue;
-    notes.push_back("The same forces as " + one.plan.name + ": " + joined(one.same) + ".");
+    notes.push_back("The same forces as " + one.name + ": " + joined(one.same) + ".");
   }
   const std::string& tested_on = data.recordings.folds.front().words;
   if (!tested_on.empty()) notes.push_back("No test recording: " + tested_on + ".");
@@ -254,7 +254,7 @@ std::string learnt_html(const ReportData& data) {
   std::vector<std::string> features, times;
   for (const FeatureSpec& spec : chosen.model->features())
     features.push_back(feature_name(spec).substr(std::string("feature_").size()));
-  for (const double time_s : data.times_2009_s) times.push_back(three_digits(time_s));
+  for (const double time_s : data.papers_times_s) times.push_back(three_digits(time_s));
   const auto row = [](const char* name, const std::string& value) {
     return "<tr><td class=\"text\">" + std::string(name) + "</td><td class=\"text\">" + escape_html(value) +
            "</td></tr>\n";
@@ -264,7 +264,8 @@ std::string learnt_html(const ReportData& data) {
     html += row("Correction by centres", *data.corrects ? "used: it lowers the cross-validated error"
                                                         : "not used: it does not lower the cross-validated error");
   if (!times.empty())
-    html += row("Relaxation times, recipe of 2009", joined(times, " and ") + " s, fitted to the training recordings");
+    html += row("Relaxation times of the methods on the force",
+                joined(times, " and ") + " s, fitted to the training recordings");
   for (const RecordingSurface& surface : data.surfaces) {
     html += row(("Surface of " + escape_html(surface.name)).c_str(),
                 fixed(1e3 * surface.offset_m, 3) + " mm" +

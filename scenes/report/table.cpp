@@ -63,7 +63,7 @@ Table models_table(const ReportData& data) {
     const Interval p99 = errors.p99_interval();
     const PairedDifference difference = paired_difference(errors, data.models[data.choice.best].errors);
     table.begin_row();
-    table.add({"model", "model"}, one.plan.name);
+    table.add({"model", "model"}, one.name);
     table.add({"size", "size"}, one.size);
     table.add({"contact_samples", "samples"}, errors.samples);
     table.add({"within_jnd", "≤ JND [%]", kInPercent, 2}, errors.within_jnd);
@@ -93,7 +93,7 @@ Table times_table(const ReportData& data) {
   for (const ModelResult& one : data.models) {
     if (!one.time.measured) continue;
     table.begin_row();
-    table.add({"model", "model"}, one.plan.name);
+    table.add({"model", "model"}, one.name);
     table.add({"tick_ns", "tick [ns]", 1.0, 0, 2}, one.time.tick.median_ns);
     table.add({"tick_low_ns", "", 1.0, 0}, one.time.tick.low_ns);
     table.add({"tick_high_ns", "", 1.0, 0}, one.time.tick.high_ns);
@@ -134,9 +134,9 @@ Table bins_table(const ReportData& data) {
   Table table{"force_bins"};
   for (const ModelResult& one : data.models) {
     for (const ForceBin& bin : one.errors.bins) {
-      if (!one.plan.main || bin.force_N.count() == 0) continue;
+      if (!one.plan || !is_main(*one.plan) || bin.force_N.count() == 0) continue;
       table.begin_row();
-      table.add({"model", ""}, one.plan.name);
+      table.add({"model", ""}, one.name);
       table.add({"force_from_N", ""}, bin.force_from_N);
       table.add({"force_to_N", ""}, bin.force_to_N);
       table.add({"count", ""}, bin.force_N.count());
@@ -227,7 +227,7 @@ Table headline_table(const ReportData& data) {
     const Interval interval = errors.p99_interval();
     const auto time = [&](double time_ns) { return one.time.measured ? time_ns : kNoNumber; };
     table.begin_row();
-    table.add({"", "model"}, one.plan.name);
+    table.add({"", "model"}, one.name);
     table.add({"", "tick [ns]", 1.0, 0, 2}, time(one.time.tick.median_ns));
     table.add({}, time(one.time.tick.low_ns));
     table.add({}, time(one.time.tick.high_ns));

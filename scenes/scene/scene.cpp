@@ -228,20 +228,13 @@ std::string describe_features(const Scene& scene) {
   return joined(words);
 }
 
-TrainingRequest training_request(const Scene& scene) {
-  TrainingRequest request;
-  request.scene = scene.name;
-  request.features = scene.features;
-  request.jnd = scene.jnd;
-  request.choice = FeatureChoice::automatic;
-  return request;
-}
+TrainingScene training_scene(const Scene& scene) { return {scene.name, scene.features, scene.jnd}; }
 
-std::uint32_t method_rgb(std::string_view method) {
+std::uint32_t method_rgb(std::string_view name) {
   constexpr std::uint32_t kPositionColour = 0xF0E442;  // from the palette of Okabe & Ito; grey is the JND band
-  if (method == "position") return kPositionColour;
-  const Method* row = find_method(method);
-  return row == nullptr ? kNeutralColour : row->colour;
+  if (name == "position") return kPositionColour;
+  const auto plan = parse_plan(name);
+  return plan ? colour_of(*plan) : kNeutralColour;
 }
 
 }  // namespace palpate

@@ -14,7 +14,7 @@
 
 namespace palpate {
 
-struct TrainingRequest;
+struct TrainingScene;
 
 // The undisturbed surface of the block is at height 0. The tool is a ball.
 struct BlockGeometry {
@@ -66,12 +66,11 @@ Result<std::vector<std::string>> scene_names();
 // Errors: unknown scene (lists the known ones); those of parse_scene; the file is not readable.
 Result<Scene> load_scene(const std::string& name);
 
-// The request of `palpate fit` with default options (models/fit/fit.h), with the scene's JND line. The fit selects its
-// features by itself; those of the scene are for `--features scene` and for the recipe of 2009.
-TrainingRequest training_request(const Scene& scene);
+// What the scene gives to a fit (models/fit/fit.h).
+TrainingScene training_scene(const Scene& scene);
 
-// The colour 0xRRGGBB of a method (models/fit/methods.h), or of "position", the model of depth alone. 0, the ink
-// colour of the page, for methods without a hue and unknown names.
-std::uint32_t method_rgb(std::string_view method);
+// The colour 0xRRGGBB of a model by its name (models/fit/model_plan.h), or of "position", the model of depth alone. 0,
+// the ink colour of the page, for methods without a hue and unknown names.
+std::uint32_t method_rgb(std::string_view name);
 
 }  // namespace palpate

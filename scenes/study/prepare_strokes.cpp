@@ -12,8 +12,8 @@
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/scene.h"
+#include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"
-#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -147,14 +147,14 @@ Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& sce
     return Error{"found " + std::to_string(models.size()) +
                  " models, expected one, to compare with the recorded force, or two; leave some out"};
   }
-  Result<std::vector<SlotPlan>> plans = plan_slots(*loaded, models, false);
+  Result<std::vector<ModelRequest>> plans = requested_models(*loaded, models, false);
   if (!plans) return plans.error();
   plans->resize(std::max<std::size_t>(models.size(), 1));
   const Result<Recording> rendered = test_recording(*loaded, recording);
   if (!rendered) return rendered.error();
   ModelWorker worker(*loaded, kTrainingSeed);
   std::vector<Model> made;
-  for (const SlotPlan& plan : *plans) {
+  for (const ModelRequest& plan : *plans) {
     auto model = worker.make(plan);
     if (!model) return model.error();
     made.push_back(std::move(*model));

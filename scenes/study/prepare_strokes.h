@@ -24,8 +24,8 @@ namespace palpate {
 // comparison. One: the comparison; the recorded force is the reference. None: as one, the first default model of the
 // scene. `recording`: the file to render, to which no model was fitted; empty: a recording of the scene's virtual
 // material with seed 2.
-// Errors: more than two models; those of load_scene, of plan_slots, of the fits and of the recording; neither recording
-// nor virtual material; no piece within the limits.
+// Errors: more than two models; those of load_scene, of requested_models, of the fits and of the recording; neither
+// recording nor virtual material; no piece within the limits.
 Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& scene,
                                                           const std::vector<std::string>& models,
                                                           const std::string& recording);

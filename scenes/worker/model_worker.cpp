@@ -24,16 +24,13 @@ constexpr int kNice = 10;
 constexpr double kRecorded = 0.3;
 constexpr double kPrepared = 0.7;
 
-// Additional time of a model with the depth as its only feature, which needs its own preparation.
-constexpr double kOwnPreparation_s = 1.0;
-// Additional time of the selection of features. The recipe of the paper does not select, so that its models come first.
-constexpr double kChoosesFeatures_s = 2.0;
+// Additional time of the trend, with its selection of features, so that the methods on the force come first.
+constexpr double kTrend_s = 1.0;
 
 // Approximate time to make a model; only the order matters. It puts a method after its base, from which it starts.
-double expected_cost_s(const SlotPlan& plan) {
-  if (plan.loaded != nullptr) return 0.0;
-  return expected_seconds(*plan.method) + (plan.recipe == Recipe::paper ? 0.0 : kChoosesFeatures_s) +
-         (plan.recipe == Recipe::position ? kOwnPreparation_s : 0.0);
+double expected_cost_s(const ModelRequest& request) {
+  if (request.loaded != nullptr) return 0.0;
+  return expected_seconds(*request.plan.method) + (request.plan.base == Base::trend ? kTrend_s : 0.0);
 }
 
 }  // namespace
@@ -78,10 +75,10 @@ Status ModelWorker::start() {
   return {};
 }
 
-void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan, bool at_once) {
+void ModelWorker::add_job(std::size_t job_id, const ModelRequest& request, bool at_once) {
   const std::lock_guard lock(mutex_);
   std::erase_if(jobs_, [&](const auto& other) { return other.second.job_id == job_id; });
-  jobs_.emplace(at_once ? -1.0 : expected_cost_s(plan), Job{job_id, plan});
+  jobs_.emplace(at_once ? -1.0 : expected_cost_s(request), Job{job_id, request});
   wake_.notify_all();
 }
 
@@ -105,16 +102,16 @@ void ModelWorker::work() {
     working_on_ = job.job_id;
     share_.store(0.0, std::memory_order_relaxed);
     lock.unlock();
-    FinishedModel made{job.job_id, job.plan.centres, make(job.plan), {}};
+    FinishedModel made{job.job_id, job.request.plan.centres, make(job.request), {}};
     if (made.model) made.tick = time_of_tick(*made.model);
     lock.lock();
     finished_.push_back(std::move(made));
   }
 }
 
-Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const SlotPlan& plan) {
-  if (plan.loaded != nullptr) return plan.loaded;
-  Result<ModelData> data = fit(plan);
+Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const ModelRequest& request) {
+  if (request.loaded != nullptr) return request.loaded;
+  Result<ModelData> data = fit(request.plan);
   if (!data) return data.error();
   return std::make_shared<const FittedModel>(std::move(*data));
 }
@@ -141,19 +138,18 @@ Status ModelWorker::prepare_recordings() {
     if (!recording) return recording.error();
     recordings.push_back(prepare_recording(std::move(*recording)));
   }
-  fits_.emplace(std::move(recordings), scene_);
+  fits_.emplace(std::move(recordings), training_scene(scene_));
   return {};
 }
 
-Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
+Result<ModelData> ModelWorker::fit(const ModelPlan& asked) {
   if (const Status status = prepare_recordings(); !status) return status.error();
-  if (const auto prepared = fits_->prepare(plan.recipe, control(kRecorded, kPrepared)); !prepared)
-    return prepared.error();
-  MethodRequest request{.method = plan.method, .seed = seed_};
-  if (plan.centres > 0) request.centres = plan.centres;
+  ModelPlan plan = asked;
+  plan.seed = seed_;
+  if (const auto prepared = fits_->prepare(plan, control(kRecorded, kPrepared)); !prepared) return prepared.error();
   // The progress of the preparation, or 0 if it was done before.
   const double done = share_.load(std::memory_order_relaxed);
-  auto fitted = fits_->fit(plan.recipe, request, control(done, 1.0));
+  auto fitted = fits_->fit(plan, control(done, 1.0));
   if (!fitted) return fitted.error();
   return std::move(fitted->data);
 }

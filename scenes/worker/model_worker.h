@@ -16,10 +16,11 @@
 #include <thread>
 #include <vector>
 
+#include "models/fit/model_fits.h"
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/model_timing.h"
-#include "scenes/scene/recipe_fits.h"
-#include "scenes/worker/slot_plan.h"
+#include "scenes/scene/scene.h"
+#include "scenes/worker/model_request.h"
 
 namespace palpate {
 
@@ -44,15 +45,15 @@ class ModelWorker {
   // Interrupts the running fit and waits for the worker.
   ~ModelWorker();
 
-  // Fits the model of one plan in the calling thread; call it before `start`. Errors: those of the fit; the scene has
-  // no material to fit to.
-  Result<std::shared_ptr<const FittedModel>> make(const SlotPlan& plan);
+  // Makes the model of one request in the calling thread; call it before `start`. Errors: those of the fit; the scene
+  // has no material to fit to.
+  Result<std::shared_ptr<const FittedModel>> make(const ModelRequest& request);
 
   // Errors: the thread cannot be started.
   Status start();
   // Adds a job to the queue, which is in the order of expected times. A job of the same id that has not begun is
   // replaced. `at_once`: before all others.
-  void add_job(std::size_t job_id, const SlotPlan& plan, bool at_once = false);
+  void add_job(std::size_t job_id, const ModelRequest& request, bool at_once = false);
   // Returns and clears the models that were finished since the last call.
   std::vector<FinishedModel> read_finished();
 
@@ -69,16 +70,16 @@ class ModelWorker {
  private:
   struct Job {
     std::size_t job_id = 0;
-    SlotPlan plan;
+    ModelRequest request;
   };
   void work();  // until cancelled
-  Result<ModelData> fit(const SlotPlan& plan);
+  Result<ModelData> fit(const ModelPlan& plan);
   Status prepare_recordings();
   FitControl control(double from, double to);
 
   Scene scene_;
   std::uint64_t seed_;
-  std::optional<RecipeFits> fits_;  // used by the worker's thread only; none before the first fit
+  std::optional<ModelFits> fits_;  // used by the worker's thread only; none before the first fit
 
   std::thread thread_;
   std::atomic<bool> cancelled_{false};

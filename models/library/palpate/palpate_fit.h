@@ -13,17 +13,17 @@ extern "C" {
 /* Fits one model to all recordings together; saved, it has the bytes of the file of `palpate fit` with these options.
  *
  * options: "NAME=VALUE" separated by blanks, e.g. "method=random centres=40"; NULL or "": the defaults, in brackets.
- *   method      trend, direct, voxel, random, kdtree, greedy [greedy]
+ *   method      direct, voxel, random, kdtree, greedy: a method on the measured force, as Hoever and Harders (2009);
+ *               trend; trend+direct ... trend+greedy: the trend and a correction; a number of centres may follow:
+ *               greedy-40 [trend+greedy]
  *   centres     of random, kdtree and greedy: 1 to 2000 [100]
  *   candidates  of greedy: candidate sites per step, or all [100]
- *   kernel      cubic, linear, thin-plate [cubic]
- *   weighting   weight of an error: jnd, relative, none [jnd]
- *   reduction   samples that become sites: coverage, force, none [coverage]
- *   recipe      paper-2009: that of Hoever and Harders (2009) [none]
  *   features    auto, scene (those of 2009), or a list such as depth,velocity,maxwell:0.17 [auto]
  *   relaxation  of the scene's features: scene, auto, or times in s such as 0.17,1.27 [none]
- *   surface     of each recording: auto (estimated), recorded (0) [auto]
+ *   kernel      auto, cubic, linear, thin-plate [auto]
  *   grid        of voxel: nodes per feature such as 25x11x11x11 [automatic]
+ *   weighting   weight of an error: jnd, relative, none [jnd with the trend, relative with the force]
+ *   thinning    samples that become sites: coverage, force, none [coverage with the trend, force with the force]
  *   seed        of random and greedy [1]
  * progress: called from time to time with the finished fraction and `context`; returns 0 to interrupt; may be NULL.
  *

@@ -55,25 +55,13 @@ void describe_feature(auto& file, FeatureSpec& spec) {
     if (spec.kind != FeatureKind::stops) file.number("relaxation_time_s", part.relaxation_time_s, kPositive);
     describe_drive(file, part.drive);
   };
-  if (is_branch(spec.kind) && file.has("drive", false)) {  // the only branch, in earlier files
-    spec.part_count = 1;
-    return describe_part(0);
-  }
   file.each("parts", spec.part_count, kMaxFeatureParts, describe_part);
 }
 
 void describe_trend(auto& file, Trend& trend) {
   file.object("trend", "an object", [&] {
     file.number("reference_depth_m", trend.reference_depth_m, kPositive);
-    if (file.has("elastic_N", false)) {  // of earlier files: powers of u, of which fits used three, and knots
-      std::array<double, 6> power_N{};
-      std::array<double, 7> knot_N{};
-      file.list("elastic_N", power_N);
-      if (file.has("elastic_knot_N", false)) file.list("elastic_knot_N", knot_N);
-      trend.elastic = spline_from_powers({power_N[0], power_N[1], power_N[2]}, knot_N);
-    } else {
-      file.list("elastic_pieces_N", trend.elastic.pieces_N);
-    }
+    file.list("elastic_pieces_N", trend.elastic.pieces_N);
     file.list("viscosity_Ns_per_m", trend.viscosity_Ns_per_m);
     file.list("thinning_Ns_per_m", trend.thinning_Ns_per_m);
     file.number("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, kPositive);
@@ -106,9 +94,8 @@ void describe_provenance(auto& file, Provenance& from) {
     file.count("contact_samples", from.contact_samples);
     file.count("samples_after_reduction", from.samples_after_reduction);
     file.count("seed", from.seed);
-    for (const char* key : {"fit_seconds", "relaxation_times"}) file.has(key, false);  // of earlier files
     file.text("weighting", from.weighting);
-    file.text("reduction", from.reduction);
+    file.text("thinning", from.thinning);
     file.text("relaxation", from.relaxation);
     file.number("training_within_jnd", from.training_within_jnd, {0.0, 1.0});
   });
@@ -132,7 +119,6 @@ void describe_rest(auto& file, ModelData& data) {
     file.numbers("scale", data.scale, dimension, kOnePerFeature, kPositive);
   });
   describe_trend(file, data.trend);
-  file.flag("corrects_trend", data.corrects_trend);
   file.number("correction_limit_N", data.correction_limit_N, {0.0, kMaximumForce_N});
   file.number("largest_force_N", data.largest_force_N, {0.0, kMaximumForce_N});
   file.object("jnd", "an object with offset_N and weber_fraction", [&] {

@@ -113,11 +113,6 @@ class ModelReader {
   }
 
   void kind(FeatureKind& value) {
-    const JsonNode node = fields_.optional_member(at_, "kind");
-    if (node.value != nullptr && *node.value == "maxwell_branch") {  // of earlier files
-      value = FeatureKind::maxwell_spectrum;
-      return;
-    }
     std::vector<std::string> names;
     for (const FeatureKindFacts& one : kFeatureKinds) names.emplace_back(one.name);
     choice("kind", value, names);

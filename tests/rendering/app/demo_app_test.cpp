@@ -10,7 +10,7 @@
 #include <set>
 
 #include "engine/recording/recording.h"
-#include "scenes/worker/slot_plan.h"
+#include "scenes/worker/model_request.h"
 #include "tests/support/demo_window.h"
 
 namespace palpate {

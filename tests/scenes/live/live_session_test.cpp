@@ -306,7 +306,7 @@ TEST_F(SessionOfFiles, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(0).errors.samples > 100; }));
   EXPECT_EQ(beside->figures(loaded).errors.samples, 0u);
   beside->treat_as_this_material(loaded);
-  EXPECT_TRUE(beside->models().plans().at(loaded).of_this_material) << "in the next session, too";
+  EXPECT_TRUE(beside->models().requests().at(loaded).of_this_material) << "in the next session, too";
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(loaded).errors.samples > 100; }));
 
   // A model that this session fitted and saved is of this material.

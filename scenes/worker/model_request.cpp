@@ -1,0 +1,82 @@
+#include "scenes/worker/model_request.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "engine/tick/haptics_tick.h"
+#include "models/fit/methods.h"
+#include "models/model/file/model_io.h"
+
+namespace palpate {
+namespace {
+
+Result<ModelRequest> request_of(const Scene& scene, const std::string& asked) {
+  const auto plan = parse_plan(asked);
+  std::error_code missing;
+  if (plan && scene.has_material()) return ModelRequest{*plan};
+  if (plan) {
+    return Error{"the scene \"" + scene.name +
+                 "\" has no virtual material to fit models to; pass model files, made by palpate fit --scene " +
+                 scene.name};
+  }
+  if (!std::filesystem::exists(asked, missing)) {
+    return Error{"found no model \"" + asked + "\", expected the name of a model (" + family_names() +
+                 ") or a model file that exists"};
+  }
+  auto model = load_model(asked);
+  if (!model) return model.error();
+  return ModelRequest{.plan = {}, .path = asked, .loaded = std::move(*model)};
+}
+
+}  // namespace
+
+ModelPlan position_plan() { return {.features = FeatureChoice::given}; }
+
+std::string request_name(const ModelRequest& request) {
+  if (request.is_file()) return std::filesystem::path(request.path).stem().string();
+  return request.plan == position_plan() ? "position only" : plan_name(request.plan);
+}
+
+std::string request_family(const ModelRequest& request) {
+  if (request.is_file()) return {};
+  return request.plan == position_plan() ? "position" : family_name(request.plan);
+}
+
+const std::vector<LineUp>& line_ups() {
+  static const std::vector<LineUp> all = {
+      {"Comparison",
+       "the methods of Hoever & Harders (2009) with 100 centres, and this program's best",
+       {"voxel", "random-100", "kdtree-100", "greedy-100", "trend+greedy-100"}},
+      {"Sizes",
+       "the greedy method with 10 to 200 centres",
+       {"greedy-10", "greedy-20", "greedy-50", "greedy-100", "greedy-200"}},
+      {"Corrections",
+       "the trend alone, and with the correction of each method",
+       {"trend", "trend+voxel", "trend+random-100", "trend+kdtree-100", "trend+greedy-100"}},
+      {"Direct", "the interpolation of every sample", {"direct", "voxel", "trend+direct", "trend+greedy-100"}}};
+  return all;
+}
+
+const LineUp* find_line_up(const std::string& name) {
+  const auto found = std::ranges::find(line_ups(), name, &LineUp::name);
+  return found == line_ups().end() ? nullptr : &*found;
+}
+
+Result<std::vector<ModelRequest>> requested_models(const Scene& scene, const std::vector<std::string>& models,
+                                                   bool position_only) {
+  std::vector<ModelRequest> requests;
+  // Without a material and without named models, the session waits for a file.
+  if (models.empty() && !scene.has_material()) return requests;
+  for (const std::string& asked : models.empty() ? line_ups().front().models : models) {
+    auto request = request_of(scene, asked);
+    if (!request) return request.error();
+    requests.push_back(std::move(*request));
+  }
+  if (position_only && scene.has_material()) requests.push_back({position_plan()});
+  if (requests.size() <= kMaxModels) return requests;
+  return Error{"found " + std::to_string(requests.size()) + " models, expected at most " + std::to_string(kMaxModels) +
+               "; leave some out"};
+}
+
+}  // namespace palpate
