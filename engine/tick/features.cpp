@@ -69,7 +69,7 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs)
 void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept {
   const double depth_m = std::max(0.0, motion.position_m - surface_position_m_);
   if (!state.started) state = {};
-  state.vector.in_contact = sample.position_m > surface_position_m_;
+  state.vector.in_contact = in_contact(sample, surface_position_m_);
   const double step_s = state.started ? std::max(0.0, sample.time_s - state.time_s) : 0.0;
   const double surface_m = advance_branches(state, depth_m, step_s);
   V4 bristle_N[kMaxLaneGroups];

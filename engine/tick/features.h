@@ -10,7 +10,7 @@
 //   surface_lag       s - d, s the depth of the material's surface          [m]
 //
 // The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is this filter with a spring of stiffness
-// g'(d) in front; g = d / tau gives the low-pass. g is identified from recordings (models/training/trend_estimator.h).
+// g'(d) in front; g = d / tau gives the low-pass. g is identified from recordings (models/trend/trend_estimator.h).
 // The input of both is the depth: in free air the material relaxes.
 //
 // The tool is in contact when its position is greater than the depth feature's `surface_position_m`. That is 0, or

@@ -8,6 +8,7 @@
 #include "engine/recording/press_direction.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/sensor_identification.h"
+#include "models/check/force_lag.h"
 #include "models/check/noise_floor.h"
 #include "models/check/recording_measures.h"
 
@@ -53,7 +54,7 @@ class Checker {
   Checker(const PreparedRecording& prepared, const CheckRequest& request, const RecordingFaults& faults)
       : prepared_(prepared),
         recording_(prepared.recording),
-        surface_(prepared.offsets.surface),
+        surface_(prepared.surface),
         noise_N_(prepared.force_noise_N),
         request_(request),
         faults_(faults) {}
@@ -227,17 +228,24 @@ class Checker {
   }
 
   void check_lag() {
-    const OffsetEstimate& lag = prepared_.offsets.lag;
+    // Without an onset of force, a lag cannot be distinguished from the material's memory.
+    if (!surface_.air.found || prepared_.motion.empty()) return;
+    std::vector<Sample> rows;
+    for (std::size_t i = 0; i < prepared_.motion.size(); ++i) {
+      const RecordingRow& row = recording_.rows[i];
+      rows.push_back({tool_sample(row), prepared_.motion[i], row.force_N});
+    }
+    const OffsetEstimate lag = find_force_lag(rows, noise_N_);
     if (lag.not_zero && !lag.identified) {
       add("lag_unknown", Severity::note, 0.0,
-          "the force may lag or lead the position, but neither this lag nor the surface can be identified",
+          "the force may lag or lead the position, but this lag cannot be identified",
           "record both with the same clock");
     }
     if (lag.at == 0.0) return;
     add("lag", Severity::warning, lag.at,
         words("the force %s the position by %.3g ms (+- %.2g)", lag.at > 0.0 ? "lags" : "leads", 1e3 * std::abs(lag.at),
               1e3 * lag.standard_error),
-        "record both with the same clock; palpate fit corrects this lag, unless its error is lower without");
+        "record both with the same clock; a fit does not correct the lag");
   }
 
   void check_surface() {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/text.h"
-#include "models/recordings/surface_rows.h"
+#include "models/samples/sample.h"
 
 namespace palpate {
 namespace {

@@ -20,7 +20,7 @@ constexpr double kLeastPerForce = 0.05;
 
 }  // namespace
 
-void BoundEstimator::add(const CrossValidationRows& rows, const ModelData& common,
+void BoundEstimator::add(const ResidualRows& rows, const ModelData& common,
                          const std::vector<CorrectionPtr>& corrections) {
   const double inner_radius = common.cover.inner_radius;
   for (std::size_t i = 0; i < rows.fold.size(); ++i) {

@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include "models/fit/cross_validation_rows.h"
+#include "models/fit/residual_rows.h"
 
 namespace palpate {
 
@@ -27,7 +27,7 @@ class BoundEstimator {
   void add(double error_N, double predicted_N, double beyond) { rows_.push_back({error_N, predicted_N, beyond}); }
   // Adds all rows. `corrections`: fitted to the sites without each fold; empty: none, the errors are those of the
   // trend.
-  void add(const CrossValidationRows& rows, const ModelData& common, const std::vector<CorrectionPtr>& corrections);
+  void add(const ResidualRows& rows, const ModelData& common, const std::vector<CorrectionPtr>& corrections);
 
   // Empty with fewer than 50 predictions.
   std::optional<ErrorBound> fit() const;

@@ -33,20 +33,20 @@
 
 namespace palpate {
 
-// The corrections of a training recording: its offset from the others of its set, its force zero and force lag.
-struct RecordingSurface {
+// The offset of a training recording: of its positions from the surface of the model, and of its forces. 0: as
+// recorded.
+struct RecordingOffset {
   std::string name;
   double offset_m = 0.0;
   double standard_error_m = 0.0;  // infinite: not identified
   double force_zero_N = 0.0;
-  double lag_s = 0.0;              // the forces were shifted to earlier times by this
   std::uint64_t content_hash = 0;  // of its rows as recorded; not stored in files
 };
 
 // The origin of a model; it has no effect on the forces.
 struct Provenance {
   std::vector<std::string> recordings;
-  std::vector<RecordingSurface> surfaces;  // empty: positions as recorded
+  std::vector<RecordingOffset> offsets;
   std::string scene;
   std::uint64_t samples = 0;  // rows of all recordings
   std::uint64_t contact_samples = 0;

@@ -77,10 +77,9 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
   const double as_recorded = errors.within_jnd();
   const double printed = data.provenance.training_within_jnd;
   if (!(std::abs(as_recorded - printed) > kContradiction)) return {};
-  const auto& surfaces = data.provenance.surfaces;
-  const bool changed = std::ranges::any_of(surfaces, [](const RecordingSurface& one) {
-    return one.offset_m != 0.0 || one.force_zero_N != 0.0 || one.lag_s != 0.0;
-  });
+  const auto& surfaces = data.provenance.offsets;
+  const bool changed = std::ranges::any_of(
+      surfaces, [](const RecordingOffset& one) { return one.offset_m != 0.0 || one.force_zero_N != 0.0; });
   return "the training recordings have " + fixed(100.0 * as_recorded, 2) + " % within the JND as recorded, and " +
          fixed(100.0 * printed, 2) + " % " +
          (changed ? "with the surfaces, force zeros and lags above corrected"
@@ -114,21 +113,20 @@ std::string correction_text(const CorrectionChoice& choice) {
 }
 
 void print_surfaces(const Provenance& provenance) {
-  for (const RecordingSurface& surface : provenance.surfaces) {
+  for (const RecordingOffset& surface : provenance.offsets) {
     const std::string error = std::isfinite(surface.standard_error_m)
                                   ? " +- " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
                                   : std::string(" mm (not identified)");
     std::cout << "surface             " << fixed(1e3 * surface.offset_m, 3) << error << ", force zero "
               << fixed(1e3 * surface.force_zero_N, 1) << " mN"
-              << (surface.lag_s != 0.0 ? ", force lag " + fixed(1e3 * surface.lag_s, 1) + " ms" : "") << ": "
-              << surface.name << "\n";
+              << ": " << surface.name << "\n";
   }
 }
 
 // `out`: the file that was written.
 void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::string& out) {
-  const auto& [prepared, fit, seconds] = fitted;
-  print_gains(prepared.gains);
+  const auto& [gains, correction, fit, seconds] = fitted;
+  print_gains(gains);
   const Provenance& provenance = fit.data.provenance;
   std::cout << "model               " << fit.data.name << "\n"
             << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
@@ -140,9 +138,7 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
               << " mm, where the force of the recordings begins\n";
   std::cout << "relaxation times    " << relaxation_text(fit.data.features) << "\n"
             << "correction          "
-            << (prepared.correction ? correction_text(*prepared.correction)
-                                    : "none: the method is fitted to the measured force")
-            << "\n"
+            << (correction ? correction_text(*correction) : "none: the method is fitted to the measured force") << "\n"
             << "fit time            " << fixed(seconds, 2) << " s\n"
             << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %"
             << (accelerometer ? " (with the accelerometer)" : " (from positions alone)") << "\n";
@@ -187,8 +183,6 @@ void add_fit(CLI::App& app, Verbs& verbs) {
                    "Training recordings (CSV); together they form one training set")
       ->required()
       ->type_name("CSV");
-  std::vector<std::string> names;
-  for (const Method* method : methods()) names.emplace_back(method->name);
   for (const PlanOption& option : plan_options()) add_plan_option(*verb, option, arguments);
   verb->add_flag_callback("--list-methods", list_methods, "Print the names of all methods, one per line");
   verb->option_defaults()->always_capture_default();

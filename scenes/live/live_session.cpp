@@ -7,7 +7,7 @@
 
 #include "engine/base/text.h"
 #include "models/model/fitted_model.h"
-#include "models/recordings/recording_faults.h"
+#include "models/samples/recording_faults.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/folders.h"
 

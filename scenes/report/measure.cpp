@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "models/fit/methods.h"
+#include "models/correction/methods.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/scene/scene.h"
 
@@ -108,7 +108,7 @@ class Measurement {
   }
 
   void remember(const PreparedTraining& paper, const PreparedTraining& palpate) {
-    data_.surfaces = palpate.common.provenance.surfaces;
+    data_.surfaces = palpate.common.provenance.offsets;
     data_.gains = palpate.gains;
     if (palpate.correction) data_.corrects = palpate.correction->used;
     data_.papers_times_s = relaxation_times_s(paper.common.features);

@@ -80,11 +80,11 @@ struct ReportData {
   NoiseFloor floor;                  // of all test recordings together
   std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces
   Choice choice;
-  WorstStretch worst;                      // of the recommended model
-  std::vector<RecordingSurface> surfaces;  // of the training recordings; this and the following: of the first fold
-  std::vector<double> papers_times_s;      // relaxation times identified for the methods on the measured force
-  std::optional<bool> corrects;            // whether cross-validation selected the correction
-  std::vector<PartGain> gains;             // of each part of the trend
+  WorstStretch worst;                     // of the recommended model
+  std::vector<RecordingOffset> surfaces;  // of the training recordings; this and the following: of the first fold
+  std::vector<double> papers_times_s;     // relaxation times identified for the methods on the measured force
+  std::optional<bool> corrects;           // whether cross-validation selected the correction
+  std::vector<PartGain> gains;            // of each part of the trend
 };
 
 // Fits every planned model once per fold and pools its errors over the folds. All results but times are

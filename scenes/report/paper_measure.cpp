@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
+#include "models/correction/methods.h"
 #include "models/fit/fit.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/report/paper.h"
@@ -38,6 +39,13 @@ std::uint32_t colour_of(std::size_t which) {
   return which == kGridOfAll ? kDirectMethod.colour : which == kGreedy20 ? 0xCC79A7 : plan_of(which).method->colour;
 }
 
+MethodTask task_of(std::size_t which, const Sites& sites, const Eigen::VectorXd& jnd_N) {
+  MethodTask task{sites, jnd_N};
+  task.candidates = plan_of(which).candidates;
+  task.grid = kGrid;
+  return task;
+}
+
 class PaperMeasurement {
  public:
   PaperMeasurement(bool quick, const FitControl& control) : quick_(quick), control_(control) {}
@@ -64,12 +72,13 @@ class PaperMeasurement {
 
   // With the relaxation times of the scene, or identified ones.
   Result<PreparedTraining> prepare(const TrainingScene& scene, bool identified) {
-    MotionSource source({recordings_[0]});
+    auto samples = make_samples({recordings_[0]}, scene.jnd, part());
+    if (!samples) return samples.error();
     const ModelPlan plan{.base = Base::force, .features = identified ? FeatureChoice::automatic : FeatureChoice::scene};
-    auto prepared = prepare_training(source, scene, plan, part());
+    auto prepared = prepare_training(std::make_shared<const Samples>(std::move(*samples)), scene, plan, part());
     if (!prepared) return prepared.error();
-    if (prepared->set.thinning_force_N != kStep_N)
-      return Error{"the steps of the reduction grew to " + std::to_string(prepared->set.thinning_force_N) +
+    if (prepared->thinning_force_N != kStep_N)
+      return Error{"the steps of the reduction grew to " + std::to_string(prepared->thinning_force_N) +
                    " N, expected 0.05 N as in the paper"};
     return prepared;
   }
@@ -132,7 +141,7 @@ class PaperMeasurement {
       FitTimes times{static_cast<std::size_t>(some.count()), {}};
       for (std::size_t which = 0; which < kPaperMethods; ++which) {
         const auto start = std::chrono::steady_clock::now();
-        const auto fit = fit_correction({some, jnd_N, plan_of(which)}, part());
+        const auto fit = fit_correction(*plan_of(which).method, task_of(which, some, jnd_N), part());
         if (!fit) return fit.error();
         times.seconds.push_back(seconds_since(start));
       }
@@ -150,16 +159,15 @@ class PaperMeasurement {
       const auto prepared = prepare(scene, false);
       if (!prepared) return prepared.error();
       const Eigen::VectorXd jnd_N = site_thresholds(*prepared);
-      ModelPlan asked = plan_of(kGridOfAll);
-      asked.method = &kDirectMethod;
       auto start = std::chrono::steady_clock::now();
-      const auto solved = fit_correction({prepared->sites, jnd_N, asked}, part());
+      const auto solved = fit_correction(kDirectMethod, {prepared->sites, jnd_N}, part());
       if (!solved) return solved.error();
       DimensionTimes times{d, seconds_since(start), 0.0};
-      asked.method = &kVoxelMethod;
+      MethodTask asked{prepared->sites, jnd_N};
       asked.grid.assign(d, kNodesOfFigure2);
+      asked.base = solved->correction;
       start = std::chrono::steady_clock::now();
-      const auto grid = fit_correction({prepared->sites, jnd_N, asked, solved->correction}, part());
+      const auto grid = fit_correction(kVoxelMethod, asked, part());
       if (!grid) return grid.error();
       times.grid_s = seconds_since(start);
       data_.by_dimension.push_back(times);

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "models/fit/methods.h"
+#include "models/correction/methods.h"
 
 namespace palpate {
 namespace {

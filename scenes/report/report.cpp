@@ -266,7 +266,7 @@ std::string learnt_html(const ReportData& data) {
   if (!times.empty())
     html += row("Relaxation times of the methods on the force",
                 joined(times, " and ") + " s, fitted to the training recordings");
-  for (const RecordingSurface& surface : data.surfaces) {
+  for (const RecordingOffset& surface : data.surfaces) {
     html += row(("Surface of " + escape_html(surface.name)).c_str(),
                 fixed(1e3 * surface.offset_m, 3) + " mm" +
                     (std::isfinite(surface.standard_error_m) ? " ± " + fixed(1e3 * surface.standard_error_m, 3) + " mm"

@@ -96,7 +96,7 @@ TEST(ClosedLoop, AMassThatNothingHoldsBouncesOnTheSurfaceAndNoMore) {
 }
 
 // A rig that never leaves the material measures depth from a preload, here 0.9 N. The trend
-// starts where that load would be 0 (models/training/motion_source.h); a force step at the
+// starts where that load would be 0 (models/samples/samples.h); a force step at the
 // surface would make a relaxed finger buzz. Measured: 0.7 steps and 0.8 JND;
 // a free mass that is pushed firmly keeps moving, by 27 steps.
 TEST(ClosedLoop, ComesToRestInEveryHandOnAModelOfRecordingsThatBeginUnderLoad) {

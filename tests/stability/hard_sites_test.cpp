@@ -6,8 +6,8 @@
 
 #include "engine/base/random_stream.h"
 #include "engine/base/text.h"
+#include "models/correction/methods.h"
 #include "models/fit/correction_choice.h"
-#include "models/fit/methods.h"
 #include "tests/stability/hard_cases.h"
 
 namespace palpate::test {

@@ -1,7 +1,7 @@
 // The function of a method that selects centres, in one call.
 #pragma once
 
-#include "models/fit/methods.h"
+#include "models/correction/methods.h"
 #include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate::test {

@@ -69,7 +69,7 @@ void describe_trend(auto& file, Trend& trend) {
   });
 }
 
-void describe_surface(auto& file, RecordingSurface& surface) {
+void describe_surface(auto& file, RecordingOffset& surface) {
   file.text("name", surface.name);
   file.number("surface_offset_m", surface.offset_m);
   if (file.has("standard_error_m", std::isfinite(surface.standard_error_m))) {
@@ -78,16 +78,15 @@ void describe_surface(auto& file, RecordingSurface& surface) {
     surface.standard_error_m = HUGE_VAL;
   }
   file.number("force_zero_N", surface.force_zero_N);
-  describe_unless_0(file, "force_lag_s", surface.lag_s);
 }
 
 void describe_provenance(auto& file, Provenance& from) {
   file.object("provenance", "an object", [&] {
     file.names("recordings", from.recordings);
     // Models fitted to positions as recorded have no such list.
-    if (file.has("surfaces", !from.surfaces.empty())) {
-      describe_each(file, "surfaces", from.surfaces, 0,
-                    [&](RecordingSurface& surface) { describe_surface(file, surface); });
+    if (file.has("surfaces", !from.offsets.empty())) {
+      describe_each(file, "surfaces", from.offsets, 0,
+                    [&](RecordingOffset& surface) { describe_surface(file, surface); });
     }
     file.text("scene", from.scene);
     file.count("samples", from.samples);

@@ -1,5 +1,5 @@
 // Planted dropouts and repeated positions are found. Other recordings lose no row.
-#include "models/recordings/recording_faults.h"
+#include "models/samples/recording_faults.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "engine/tick/jnd.h"
 #include "engine/tick/replay.h"
-#include "models/fit/methods.h"
+#include "models/correction/methods.h"
 #include "models/model/file/model_io.h"
 #include "tests/support/compiled_model.h"
 #include "tests/support/fitting.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "models/model/fitted_model.h"
-#include "models/recordings/recording_faults.h"
+#include "models/samples/recording_faults.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/material/rig.h"
 #include "scenes/report/plan.h"
