@@ -120,13 +120,13 @@ class Checker {
                 faults_.position_dropouts, faults_.force_dropouts, 100.0 * share),
           "check cables, connectors and the interface of the sensor");
     }
-    if (faults_.update_step_s > 0.0) {
-      add("repeated_positions", Severity::warning, faults_.update_step_s,
-          words("the position changes only every %.3g ms and is repeated in the rows between: only the %zu rows with a "
-                "new position are used",
-                1e3 * faults_.update_step_s, faults_.updates),
-          "read the position as often as the force");
-    }
+    if (faults_.update_step_s == 0.0) return;
+    const char* const held = faults_.held_force ? "force" : "position";
+    add(faults_.held_force ? "repeated_forces" : "repeated_positions", Severity::warning, faults_.update_step_s,
+        words("the %s changes only every %.3g ms and is repeated in the rows between: only the %zu rows with a new %s "
+              "are used",
+              held, 1e3 * faults_.update_step_s, faults_.updates, held),
+        words("read the %s as often as the %s", held, faults_.held_force ? "position" : "force"));
   }
 
   void check_signs() {
