@@ -30,6 +30,8 @@ constexpr double kGapSteps = 20.0;
 // converter.
 constexpr double kClippedTravelShare = 0.015;
 constexpr std::size_t kClippedRows = 5;
+// The tool crosses the highest step of a quantised force in and out, and may turn there.
+constexpr double kClippedSteps = 3.0;
 // The share of the way in that the tool must move out to separate depth and memory.
 constexpr double kMonotonicShare = 0.1;
 // After three relaxation times 5 % of a relaxation are left, less than the Weber fraction of force.
@@ -219,7 +221,8 @@ class Checker {
   void check_clipping() {
     // Zero force is no limit.
     if (!(measures_.highest_force_N > 0.0)) return;
-    if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < kClippedTravelShare * travel_m()) return;
+    const double least_m = std::max(kClippedTravelShare * travel_m(), kClippedSteps * measures_.step_travel_m);
+    if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < least_m) return;
     add("clipping", Severity::warning, measures_.highest_force_N,
         words("the force stays at exactly %.5g N for %zu rows while the tool moves by %.3g mm",
               measures_.highest_force_N, measures_.flat_rows, 1e3 * measures_.flat_travel_m),

@@ -112,13 +112,13 @@ constexpr std::size_t kLeastUpdates = 50;
 constexpr double kFewIntervals = 0.05;    // shorter ones are jitter
 constexpr double kEqualIntervals = 0.75;  // of the median
 constexpr double kLargeChange = 1.5;      // steps of the channel
-constexpr double kMovingShare = 0.25;     // of the motion across an update
+constexpr double kMovingShare = 0.25;     // of the motion from a row to the next one, which has an update
 
-// The intervals between the large changes of a channel, and the motion of the other channel meanwhile.
+// The intervals between the large changes of a channel, and the motion meanwhile.
 struct Updates {
-  std::vector<double> rows;       // of the runs between two large changes
-  double inside_m_per_row = 0.0;  // sum of the motion within these runs, for each row
-  double across_m_per_row = 0.0;  // sum of the motion from them to the next row
+  std::vector<double> rows;  // of the runs between two large changes
+  double inside_m = 0.0;     // sum of the motions within these runs
+  double across_m = 0.0;     // sum of the motions from their last row to the next one
 };
 
 Updates updates_of(const Rows& rows, const std::vector<Run>& runs) {
@@ -127,14 +127,11 @@ Updates updates_of(const Rows& rows, const std::vector<Run>& runs) {
   const double large = kLargeChange * quantile_of(changes, 0.0);
   Updates updates;
   for (std::size_t i = 1; i + 1 < runs.size(); ++i) {
+    const Run& run = runs[i];
     if (!(changes[i - 1] > large) || !(changes[i] > large)) continue;
-    const auto count = static_cast<double>(runs[i].end - runs[i].begin);
-    const auto motion_m = [&](std::size_t from, std::size_t to) {
-      return std::abs(rows[to].position_m - rows[from].position_m);
-    };
-    updates.rows.push_back(count);
-    updates.inside_m_per_row += motion_m(runs[i].begin, runs[i].end - 1) / std::max(1.0, count - 1.0);
-    updates.across_m_per_row += motion_m(runs[i].end - 1, runs[i].end);
+    updates.rows.push_back(static_cast<double>(run.end - run.begin));
+    updates.inside_m += std::abs(rows[run.end - 1].position_m - rows[run.begin].position_m);
+    updates.across_m += std::abs(rows[run.end].position_m - rows[run.end - 1].position_m);
   }
   return updates;
 }
@@ -150,9 +147,8 @@ double update_rows(const Rows& rows, Column column, const std::vector<Run>& runs
   const double middle = quantile_of(updates.rows, 0.5);
   const double shortest = quantile_of(lengths, kFewIntervals);
   if (!(shortest >= 2.0) || shortest + 1.0 < middle * kEqualIntervals) return 0.0;
-  // A force that rests while the tool rests needs no other reason.
-  const bool is_force = column == &RecordingRow::force_N;
-  if (is_force && updates.inside_m_per_row < kMovingShare * updates.across_m_per_row) return 0.0;
+  // A tool that moves in steps explains the steps of a force.
+  if (column == &RecordingRow::force_N && updates.inside_m < kMovingShare * updates.across_m) return 0.0;
   double sum = 0.0;
   double count = 0.0;
   for (const double length : updates.rows) {
