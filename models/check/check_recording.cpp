@@ -144,18 +144,24 @@ class Checker {
           "if pressing decreases position_m or force_N, reverse its sign (palpate import --flip)");
       return;
     }
+    // Advice for one sign must not undo the reversal of the other.
+    const bool both = direction.position_flipped && direction.force_flipped;
+    const auto advice = [&](const char* rule, const char* this_one, const char* other) {
+      return std::string(rule) + (both ? ": reverse both signs (palpate import --flip both)"
+                                       : std::string(": reverse its sign (palpate import --flip ") + this_one +
+                                             ", or --flip both if it was imported with --flip " + other + ")");
+    };
     if (direction.position_flipped) {
       add("position_sign", Severity::fatal, change_N,
           words("the force is %.3g N at the lowest positions and %.3g N at the highest positions, as in free air",
                 direction.deep_force_N, direction.shallow_force_N),
-          "position_m must be positive inside the block: reverse its sign (palpate import --flip position)");
+          advice("position_m must be positive inside the block", "position", "force"));
     }
     if (direction.force_flipped) {
       add("force_sign", Severity::fatal, change_N,
           words("the force falls from %.3g N at the surface to %.3g N at the deepest position",
                 direction.shallow_force_N, direction.deep_force_N),
-          "force_N must be positive when the block pushes the tool out: reverse its sign (palpate import --flip "
-          "force)");
+          advice("force_N must be positive when the block pushes the tool out", "force", "position"));
     }
   }
 

@@ -231,6 +231,26 @@ TEST(CheckRecording, OnlyWarnsOfSignsWhereAMaterialMayBeLikeThat) {
   EXPECT_STRNE(check.verdict(), "unusable") << all_of(check);
 }
 
+// The advice for one wrong sign must not undo the remedy for the other.
+TEST(CheckRecording, AdviceForBothSignsIsToReverseBoth) {
+  const auto advice = [](bool position, bool force, const char* code) {
+    Recording recording = silicone();
+    for (RecordingRow& row : recording.rows) {
+      if (position) row.position_m = -row.position_m;
+      if (force) row.force_N = -row.force_N;
+    }
+    const RecordingCheck check = checked(recording, kSilicone);
+    const Finding* const finding = find(check, code);
+    return finding != nullptr ? finding->advice : "none";
+  };
+  for (const char* code : {"position_sign", "force_sign"}) {
+    EXPECT_NE(advice(true, true, code).find("reverse both signs (palpate import --flip both)"), std::string::npos);
+  }
+  EXPECT_NE(advice(true, false, "position_sign").find("--flip position, or --flip both if"), std::string::npos);
+  EXPECT_NE(advice(false, true, "force_sign").find("--flip force, or --flip both if"), std::string::npos);
+  EXPECT_EQ(advice(true, false, "force_sign"), "none");
+}
+
 // The highest value of a quantised or held force is no limit of the sensor; a limit is found in all of them.
 TEST(CheckRecording, TellsAHeldOrQuantisedTopFromClipping) {
   const auto change = [](double limit_N, double step_N, std::size_t rows) {
