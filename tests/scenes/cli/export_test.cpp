@@ -12,6 +12,8 @@
 #include "tests/support/compiled_model.h"
 #include "tests/support/fitting.h"
 #include "tests/support/message_parts.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -118,6 +120,15 @@ TEST_F(ExportVerb, TheEncoderStepIsThatOfTheOption) {
   const std::string text = exported(recording("silicone", 6.0, 1), {"--method", "trend"}, {"--encoder-step", "1e-6"});
   EXPECT_TRUE(test::has_parts(text, {"#define PALPATE_ENCODER_STEP_M 1e-06"}));
   EXPECT_TRUE(test::has_parts(printed_, {"steps of 1 um"}));
+}
+
+TEST_F(ExportVerb, NeverWritesOverTheModel) {
+  const test::TemporaryFolder folder;
+  const std::string model = folder.with_file("m.json", "mine\n");
+  for (const std::string& out : {model, folder.path() + "/./m.json"}) {
+    EXPECT_TRUE(test::fails(1, {"export", model, "--c", out, "--force"}, {"m.json", "the file to read from", "--c"}));
+  }
+  EXPECT_EQ(test::read_text(model), "mine\n");
 }
 
 }  // namespace
