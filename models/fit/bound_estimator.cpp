@@ -58,7 +58,9 @@ std::optional<ErrorBound> BoundEstimator::fit() const {
   const double factor = ratios[rank];
   bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);
   bound.per_force = std::max(factor * bound.per_force, strokes_ < kFewStrokes ? kLeastPerForce : 0.0);
-  bound.per_distance_N = std::max(factor * bound.per_distance_N, least_per_distance_N);
+  // One unit beyond the data nothing is known but the range of the force.
+  bound.per_distance_N =
+      std::clamp(factor * bound.per_distance_N, least_per_distance_N, std::max(least_per_distance_N, largest_force_N_));
   return bound;
 }
 
