@@ -15,7 +15,7 @@
 #include "engine/base/random_stream.h"
 #include "engine/live/live_tick.h"
 
-namespace palpate::test {
+namespace palpate {
 
 struct Grip {
   std::string name;
@@ -79,6 +79,7 @@ class SimulatedTool final : public Device {
 
   double time_s() const noexcept;
   double position_m() const noexcept { return position_m_; }
+  double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
   double force_N() const noexcept { return force_N_; }
   const LoopEnergy& energy() const noexcept { return energy_; }
 
@@ -111,6 +112,7 @@ class ClosedLoop {
   using AfterTick = std::function<void(const LoopSnapshot&)>;
 
   explicit ClosedLoop(const LoopSettings& settings);
+  virtual ~ClosedLoop() = default;
 
   // Publishes a set of one model, which the next tick takes.
   void publish(std::shared_ptr<const ForceModel> model);
@@ -119,9 +121,11 @@ class ClosedLoop {
 
   SimulatedTool& tool() { return tool_; }
   ModelSlot<LiveModels>& slot() { return slot_; }
-  // Sum of the RtGuard counts of all ticks so far; 0 if rt_guard_works() is false.
-  int offences() const { return offences_; }
   std::uint32_t faults() const { return faults_; }
+
+ protected:
+  // One tick; tests watch it.
+  virtual const LoopSnapshot& tick() { return live_.run(tool_.time_s(), controls_); }
 
  private:
   std::int64_t next_tick();
@@ -134,10 +138,9 @@ class ClosedLoop {
   RandomStream random_{1, 77};
   std::int64_t step_ = 0, deadline_ = 0, due_ = 0;
   std::uint32_t id_ = 0, faults_ = 0;
-  int offences_ = 0;
 };
 
 // Minimum jerk from `from_m` to `to_m` within `duration_s`, then held.
 ClosedLoop::Drive minimum_jerk(double from_m, double to_m, double duration_s, double time_s);
 
-}  // namespace palpate::test
+}  // namespace palpate

@@ -1,12 +1,10 @@
-#include "tests/support/closed_loop.h"
+#include "scenes/hard/closed_loop.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "tests/support/rt_guard.h"
-
-namespace palpate::test {
+namespace palpate {
 namespace {
 
 constexpr int kStepsPerSecond = 20000;
@@ -52,7 +50,7 @@ DeviceHealth SimulatedTool::health(double) noexcept {
 }
 
 void SimulatedTool::write(double force_N) noexcept {
-  if (count_ == written_.size()) return;  // the delays of these tests fill less than half
+  if (count_ == written_.size()) return;  // a delay of 10 ms fills less than half
   written_[(first_ + count_++) % written_.size()] = {force_N,
                                                      step_ + std::llround(settings_.delay_s * kStepsPerSecond)};
 }
@@ -109,9 +107,7 @@ void ClosedLoop::run(double seconds, const Path& path, const AfterTick& after_ti
   const std::int64_t end = step_ + std::llround(seconds * kStepsPerSecond);
   for (; step_ < end; ++step_) {
     if (step_ == due_) {
-      RtGuard guard;
-      const LoopSnapshot& snapshot = live_.run(tool_.time_s(), controls_);
-      offences_ += guard.stop().total();
+      const LoopSnapshot& snapshot = tick();
       faults_ |= snapshot.faults;
       due_ = next_tick();
       if (after_tick) after_tick(snapshot);
@@ -128,4 +124,4 @@ ClosedLoop::Drive minimum_jerk(double from_m, double to_m, double duration_s, do
           way_m * 30.0 * u * u * (1.0 - u) * (1.0 - u) / duration_s, 0.0};
 }
 
-}  // namespace palpate::test
+}  // namespace palpate

@@ -9,7 +9,7 @@
 #include "engine/recording/recording.h"
 #include "scenes/material/block.h"
 
-namespace palpate::test {
+namespace palpate {
 
 // The position of the tool, m, as a function of time, s.
 using Path = std::function<double(double time_s)>;
@@ -44,4 +44,4 @@ struct Press {
 // Resets `block` and moves the tool along `path`. `times_s`: ascending.
 Press press_into(Block& block, const Path& path, const std::vector<double>& times_s, const PressSensors& sensors = {});
 
-}  // namespace palpate::test
+}  // namespace palpate

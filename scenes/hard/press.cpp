@@ -1,4 +1,4 @@
-#include "tests/support/press.h"
+#include "scenes/hard/press.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,11 @@
 
 #include "engine/base/random_stream.h"
 
-namespace palpate::test {
+namespace palpate {
 namespace {
 
 // Half the span of a central difference of a path.
-constexpr double kStep_s = 50e-6;
+constexpr double kHalfSpan_s = 50e-6;
 // Peak speed of a minimum-jerk path of length 1 in time 1.
 constexpr double kPeakSpeed = 1.875;
 
@@ -46,11 +46,11 @@ Press press_into(Block& block, const Path& path, const std::vector<double>& time
   RandomStream noise(sensors.seed, 0);
   Press press;
   press.recording.name = "press";
-  double last_s = times_s.front() - kStep_s;
+  double last_s = times_s.front() - kHalfSpan_s;
   block.reset(path(last_s));
   for (const double time_s : times_s) {
     double position_m = path(time_s);
-    const double velocity_m_per_s = (path(time_s + kStep_s) - path(time_s - kStep_s)) / (2.0 * kStep_s);
+    const double velocity_m_per_s = (path(time_s + kHalfSpan_s) - path(time_s - kHalfSpan_s)) / (2.0 * kHalfSpan_s);
     const double force_N = block.step(position_m, velocity_m_per_s, time_s - last_s);
     if (sensors.encoder_step_m > 0.0)
       position_m = sensors.encoder_step_m * std::round(position_m / sensors.encoder_step_m);
@@ -61,4 +61,4 @@ Press press_into(Block& block, const Path& path, const std::vector<double>& time
   return press;
 }
 
-}  // namespace palpate::test
+}  // namespace palpate
