@@ -57,7 +57,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("FILE_OR_METHOD");
   app.add_option("files", arguments.files, "Models, or recordings or other programs' tables to train or to test on")
       ->type_name("FILE");
-  app.add_option("--train", session.recordings, "Recordings that models are fitted to, as one training set")
+  app.add_option(
+         "--train", session.recordings,
+         "Recordings that models are fitted to, as one training set; without --test, the end of the last is the test")
       ->type_name("REC.csv");
   app.add_option("--test", arguments.test, "Replay this recording; models are judged on it, and not fitted to it")
       ->type_name("REC.csv")
@@ -141,6 +143,9 @@ Status run_demo(Arguments& arguments) {
     arguments.demo.settings_file = *folder + "/window.json";
   sort_files(arguments);
   if (!arguments.test.empty()) device = "replay:" + arguments.test;
+  // Without a test recording, the end of the last training recording is replayed.
+  const std::vector<std::string>& training = arguments.demo.session.recordings;
+  if (!training.empty() && device == "auto") device = "replay:" + training.back();
   auto app = DemoApp::create(arguments.demo);
   if (!app) return app.error();
   run_frames(**app, arguments.seconds);

@@ -147,7 +147,7 @@ Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& sce
     return Error{"found " + std::to_string(models.size()) +
                  " models, expected one, to compare with the recorded force, or two; leave some out"};
   }
-  Result<std::vector<ModelRequest>> plans = requested_models(*loaded, models, false);
+  Result<std::vector<ModelRequest>> plans = requested_models(*loaded, models);
   if (!plans) return plans.error();
   plans->resize(std::max<std::size_t>(models.size(), 1));
   const Result<Recording> rendered = test_recording(*loaded, recording);
