@@ -50,7 +50,6 @@ class StreamErrors {
   void begin_stroke() {
     if (strokes_.units() + 1 == kMostStrokes) return;
     append_stroke(strokes_);
-    stroke_ = {};
     stroke_within_ = stroke_samples_ = 0.0;
   }
   // Adds one sample in contact to the stroke that began last. Both forces are finite.
@@ -58,7 +57,6 @@ class StreamErrors {
     const double over_jnd = jnd.error_over_jnd(model_N, reference_N);
     figures_.add(model_N, reference_N, false, jnd);
     quantile_.add(over_jnd);
-    stroke_.add(over_jnd);
     stroke_samples_ += 1.0;
     stroke_within_ += over_jnd <= 1.0 ? 1.0 : 0.0;
   }
@@ -81,14 +79,12 @@ class StreamErrors {
     if (stroke_samples_ == 0.0) return;
     strokes.unit_samples.push_back(stroke_samples_);
     strokes.unit_within.push_back(stroke_within_);
-    strokes.unit_p99.push_back(stroke_.p99());
     strokes.units_above_jnd += stroke_within_ < stroke_samples_ ? 1 : 0;
   }
 
   ErrorFigures figures_;
   ErrorQuantile quantile_;
   UnitErrors strokes_;  // those that ended, without the figures in total
-  ErrorQuantile stroke_;
   double stroke_samples_ = 0.0;
   double stroke_within_ = 0.0;
 };

@@ -36,7 +36,10 @@ Verdict judge(std::vector<EvaluatedSlot> evaluated, const SessionModels& models,
     return std::ranges::any_of(all, [&](const EvaluatedSlot& other) { return copies(one, other, models); });
   });
   std::vector<Candidate> candidates;
-  for (const EvaluatedSlot& one : evaluated) candidates.push_back({*one.unit_errors, models.info(one.slot).tick});
+  for (const EvaluatedSlot& one : evaluated) {
+    const ModelInfo& info = models.info(one.slot);
+    candidates.push_back({info.method, one.unit_errors->p99_error_over_jnd, info.tick_ns()});
+  }
   const Ranking ranking = rank(candidates);
   Verdict verdict;
   const EvaluatedSlot& chosen = evaluated[ranking.recommended];
@@ -46,7 +49,7 @@ Verdict judge(std::vector<EvaluatedSlot> evaluated, const SessionModels& models,
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const EvaluatedSlot& one = evaluated[i];
     if (i == ranking.recommended) continue;
-    if (ranking.qualified[i]) {
+    if (ranking.near_best[i]) {
       as_good.push_back(models.info(one.slot).name);
     } else if (one.p99_error_over_jnd > 1.0) {
       noticed.push_back(models.info(one.slot).name);
