@@ -131,7 +131,8 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
   for (const double time_s : relaxation_times_s(fit.data.features)) times.push_back(general(time_s, 3));
   if (!times.empty()) print_line("relaxation times", joined(times) + " s");
   if (prepared.correction) print_line("correction", correction_text(*prepared.correction));
-  for (const std::string& note : fit.notes) print_line(fit.choices && note == choices_text(*fit.choices) ? "selected" : "note", note);
+  for (const std::string& note : fit.notes)
+    print_line(fit.choices && note == choices_text(*fit.choices) ? "selected" : "note", note);
   print_line("training <= JND", fixed(100.0 * provenance.training_within_jnd, 2) + " %" +
                                     (accelerometer ? " (with the accelerometer)" : " (from positions alone)"));
   print_line("written", out);

@@ -272,7 +272,7 @@ Table headline_table(const ReportData& data) {
     table.add({"", "", 1.0, 0}, time(one.time.tick.low_ns));
     table.add({"", "", 1.0, 0}, time(one.time.tick.high_ns));
     table.add(
-        {"", "99 % error above the lowest"},
+        {"", "above lowest [JND]"},
         verdict(data.choice, i, errors.p99_error_over_jnd - data.models[data.choice.best].errors.p99_error_over_jnd));
   }
   return table;

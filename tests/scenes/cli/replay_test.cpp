@@ -81,8 +81,8 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
                                         "surface_identified", "predicted_error", "bins"}));
     EXPECT_EQ(keys(model["surface_moved"]), (std::vector<std::string>{"rms_error_N", "max_error_N", "within_jnd",
                                                                       "p99_error_over_jnd", "max_error_over_jnd"}));
-    EXPECT_EQ(keys(model["predicted_error"]),
-              (std::vector<std::string>{"bound_95_held", "bound_95_held_moved", "median_bound_N", "median_bound_over_jnd"}));
+    EXPECT_EQ(keys(model["predicted_error"]), (std::vector<std::string>{"bound_95_held", "bound_95_held_moved",
+                                                                        "median_bound_N", "median_bound_over_jnd"}));
     EXPECT_EQ(keys(model["evaluation_ns"]), (std::vector<std::string>{"median", "p99"}));
     EXPECT_GT(model["evaluation_ns"]["median"], 0.0);
     EXPECT_GE(model["evaluation_ns"]["p99"], model["evaluation_ns"]["median"]);
@@ -146,7 +146,8 @@ TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
   const std::regex narrow("MODEL +RMS mN +WITHIN JND % +P99 JND +MAX JND +TICK ns");
   const std::regex wide("MODEL +RMS mN +MAX mN .*TICK P99 ns .*SURFACE mm .*ALIGNED RMS mN .*BOUND JND");
   for (const bool all : {false, true}) {
-    const auto ran = run({models_[0], models_[5]}, all ? std::vector<std::string>{"--all"} : std::vector<std::string>{});
+    const auto ran =
+        run({models_[0], models_[5]}, all ? std::vector<std::string>{"--all"} : std::vector<std::string>{});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     std::istringstream lines(ran.out);
     std::vector<std::string> rows;

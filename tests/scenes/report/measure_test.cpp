@@ -108,7 +108,8 @@ TEST(Measure, HasTheMainModelsWithFiveSeedsAndNamesWithTheNumberOfCentres) {
 // Of one method there are 100 centres and the number that the training recordings select.
 TEST(Measure, AMethodHasAtMostTwoNumbersOfCentres) {
   std::vector<PreparedRecordingPointer> recordings;
-  for (const unsigned seed : {1U, 2U}) recordings.push_back(prepare_recording(*record_sensors({"layered", seed, 8.0, 250.0})));
+  for (const unsigned seed : {1U, 2U})
+    recordings.push_back(prepare_recording(*record_sensors({"layered", seed, 8.0, 250.0})));
   const auto set = test::must(split_recordings({recordings[0]}, {recordings[1]}));
   const auto data = test::must(measure(set, test::must(load_scene("silicone_block")), false, {}));
   std::map<std::string, int> rows;

@@ -37,8 +37,8 @@ TEST(Table, HtmlShowsUnitsEscapesTextAndAlignsNumbers) {
 
 TEST(Table, TextIsThatOfThePageWithoutMarks) {
   EXPECT_EQ(table_text(example()), (std::vector<std::vector<std::string>>{{"model", "count", "RMS [mN]", "share [%]"},
-                                                                           {"a,\"b\"", "12,345", "100", "99.95"},
-                                                                           {"<i>", "0", "–", "100.00"}}));
+                                                                          {"a,\"b\"", "12,345", "100", "99.95"},
+                                                                          {"<i>", "0", "–", "100.00"}}));
 }
 
 TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
