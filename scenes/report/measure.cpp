@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kPrepareSeconds = 1.0;   // estimate for one recipe
+constexpr double kPrepareSeconds = 1.0;   // estimate for one base
 constexpr double kEvaluateSeconds = 0.1;  // estimate for one model
 
 // Combines the progress of parts of different lengths, which are given in expected seconds.
