@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "models/fit/cross_validation_rows.h"
+#include "models/training/cross_validation.h"
 
 namespace palpate {
 
@@ -26,8 +27,9 @@ class BoundEstimator {
   // row of another fold, beyond the inner radius.
   void add(double error_N, double predicted_N, double beyond) { rows_.push_back({error_N, predicted_N, beyond}); }
   // Adds all rows. `corrections`: fitted to the sites without each fold; empty: none, the errors are those of the
-  // trend.
-  void add(const CrossValidationRows& rows, const ModelData& common, const std::vector<CorrectionPtr>& corrections);
+  // trend. Returns the errors by fold.
+  FoldErrors add(const CrossValidationRows& rows, const ModelData& common,
+                 const std::vector<CorrectionPtr>& corrections);
 
   // Empty with fewer than 50 predictions.
   std::optional<ErrorBound> fit() const;

@@ -29,8 +29,8 @@ class FitVerb : public ::testing::Test {
     Arguments arguments = {"fit"};
     std::vector<std::pair<std::string, std::string>> defaults = {
         {"--recording", recording()}, {"--method", method}, {"--out", out()}};
-    const Method* row = find_method(method);
-    if (row != nullptr && row->can_take(kTakesCentres)) defaults.emplace_back("--centres", "20");
+    const auto plan = parse_plan(method);
+    if (plan && plan->selects_centres()) defaults.emplace_back("--centres", "20");
     for (const auto& [option, value] : defaults) {
       if (std::find(more.begin(), more.end(), option) == more.end()) arguments.insert(arguments.end(), {option, value});
     }
@@ -60,8 +60,8 @@ TEST_F(FitVerb, JsonIsOneObjectWithTheContractsKeys) {
   const auto object = nlohmann::json::parse(run.out);  // refuses any text after the object
   ASSERT_TRUE(object.is_object());
   EXPECT_EQ(object.at("method"), "greedy");
-  EXPECT_EQ(object.at("kernel"), "cubic");
-  EXPECT_EQ(object.at("weighting"), "jnd");
+  EXPECT_TRUE(kernel_from_name(object.at("kernel").get<std::string>()).has_value());
+  EXPECT_EQ(object.at("weighting"), "relative");
   EXPECT_EQ(object.at("centres"), 20);
   EXPECT_EQ(object.at("samples"), 1000);
   EXPECT_TRUE(object.at("samples_after_reduction").is_number_integer());
@@ -75,20 +75,34 @@ TEST_F(FitVerb, JsonIsOneObjectWithTheContractsKeys) {
 }
 
 TEST_F(FitVerb, TheSameCommandTwiceGivesTheSameBytes) {
-  for (const Method* method : methods()) {
+  for (const ModelPlan& plan : all_plans()) {
     std::string texts[2];
     for (std::string& text : texts) {
-      expect_model(fit({"--force"}, method->name));
+      expect_model(fit({"--force"}, family_name(plan)));
       text = read_text(out());
     }
-    EXPECT_EQ(texts[0], texts[1]) << method->name;
+    EXPECT_EQ(texts[0], texts[1]) << family_name(plan);
   }
 }
 
 TEST_F(FitVerb, NamesItsMethodsOneToALine) {
   const ProgramRun run = run_palpate({"fit", "--list-methods"});
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_EQ(run.out, "trend\ndirect\nvoxel\nrandom\nkdtree\ngreedy\n");
+  EXPECT_EQ(run.out,
+            "direct\nvoxel\nrandom\nkdtree\ngreedy\ntrend\ntrend+direct\ntrend+voxel\ntrend+random\n"
+            "trend+kdtree\ntrend+greedy\n");
+}
+
+TEST_F(FitVerb, SaysWhatWasSelectedAndWhatComesNext) {
+  const ProgramRun force = fit({});
+  expect_model(force);
+  EXPECT_TRUE(has_parts(force.out, {"model", "greedy-20, fitted in", "samples", "1000, ", "relaxation times",
+                                    "selected", "kernel, each feature divided by", "truncation", "training <= JND",
+                                    "written", out(), "palpate replay --recording TEST.csv --model " + out()}));
+  EXPECT_EQ(force.out.find("FEATURE"), std::string::npos) << "there is no dictionary of features";
+  const ProgramRun trend = fit({"--force"}, "trend");
+  expect_model(trend);
+  EXPECT_TRUE(has_parts(trend.out, {"FEATURE OF THE TREND", "WEIGHT ABOVE 0", "model", "trend, fitted in"}));
 }
 
 TEST_F(FitVerb, TheTrendAloneHasNoCentres) {
@@ -112,31 +126,22 @@ TEST_F(FitVerb, EveryOptionHasAUse) {
                                {"--kernel", "thin-plate"},
                                {"--weighting", "relative"},
                                {"--weighting", "none"},
-                               {"--reduction", "force"},
-                               {"--reduction", "none"},
+                               {"--thinning", "coverage"},
+                               {"--thinning", "none"},
                                {"--relaxation", "auto"},
                                {"--relaxation", "0.1,0.5"},
                                {"--candidates", "all"},
                                {"--scene", "elastic_block"},
                                {"--centres", "2000"},
                                {"--seed", "7"},
-                               {"--reduction", "force", "--weighting", "relative"}};
+                               {"--thinning", "coverage", "--weighting", "jnd"}};
   for (Arguments option : options) {
     SCOPED_TRACE(option[0] + " " + option[1]);
     option.push_back("--force");
     expect_model(fit(option));
   }
-  expect_model(fit({"--grid", "4x3x3x3", "--recipe", "paper-2009", "--force"}, "voxel"));
-  EXPECT_EQ((*load_model(out()))->name(), "voxel-4x3x3x3");
-}
-
-TEST_F(FitVerb, ThePapersRecipeHasTwoSpellings) {
-  expect_model(fit({"--recipe", "paper-2009"}));
-  const std::string model = read_text(out());
-  expect_model(fit({"--reduction", "force", "--weighting", "relative", "--force"}));
-  EXPECT_EQ(read_text(out()), model);
-  std::filesystem::remove(out());
-  expect_refused(fit({"--recipe", "paper-2009", "--surface", "auto"}), 2, {"--surface"});
+  expect_model(fit({"--grid", "4x3x3x3", "--force"}, "voxel"));
+  EXPECT_EQ((*load_model(out()))->centre_count(), 4 * 3 * 3 * 3);
 }
 
 TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
@@ -158,10 +163,10 @@ TEST_F(FitVerb, WarnsOfTheSameRecordingTwice) {
 }
 
 TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
-  expect_refused(fit({}, "guess"), 2, {"direct,voxel,random,kdtree,greedy"});
-  expect_refused(fit({"--kernel", "gauss"}), 2, {"cubic,linear,thin-plate"});
-  expect_refused(fit({"--weighting", "x"}), 2, {"jnd,relative,none"});
-  expect_refused(fit({"--reduction", "x"}), 2, {"coverage,force,none"});
+  expect_refused(fit({}, "guess"), 2, {"direct, voxel, random, kdtree, greedy, trend, trend+direct"});
+  expect_refused(fit({"--kernel", "gauss"}), 2, {"cubic", "linear", "thin-plate"});
+  expect_refused(fit({"--weighting", "x"}), 2, {"jnd, relative, none"});
+  expect_refused(fit({"--thinning", "x"}), 2, {"coverage, force, none"});
   expect_refused(fit({"--centres", "0"}), 2, {"2000"});
   expect_refused(fit({"--centres", "100000"}), 2, {"2000"});
   for (const char* features : {"auto", "depth"}) {
@@ -179,8 +184,8 @@ TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
 
 TEST_F(FitVerb, FailuresAreOneErrorLine) {
   expect_refused(fit({"--scene", "marble"}), 1, {"marble", "silicone_block"});
-  expect_refused(fit({"--grid", "25", "--recipe", "paper-2009"}, "voxel"), 1, {"1", "4"});
-  expect_refused(fit({"--grid", "1000x1000x1000x1000", "--recipe", "paper-2009"}, "voxel"), 1, {"at most 1e7"});
+  expect_refused(fit({"--grid", "25", "--features", "scene"}, "voxel"), 1, {"1", "4"});
+  expect_refused(fit({"--grid", "1000x1000x1000x1000"}, "voxel"), 1, {"at most 1e7"});
   expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, {"--relaxation"});
   expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, {"none.csv"});
 }

@@ -173,7 +173,9 @@ TEST_F(SessionOfFiles, RecommendsTheModelThatAReportRecommends) {
   const auto evaluation = test::must(evaluate(rows_of(recording), models));
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < 3; ++i)
-    candidates.push_back({evaluation.models[i].as_recorded.unit_errors(), session->models().info(i).tick});
+    candidates.push_back({session->models().info(i).method,
+                          evaluation.models[i].as_recorded.summary().p99_error_over_jnd,
+                          session->models().info(i).tick_ns()});
   EXPECT_EQ(rank(candidates).recommended, 2u);
   for (const bool moved : {true, false}) {
     session->move_surface(moved);
