@@ -44,7 +44,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (Status status = Window::find_display(); !status) return status;
   request_ = request.session;
   // Models with differences from obvious to unnoticeable.
-  if (request.exhibit && request_.models.empty()) request_.models = {"random-5", "kdtree-40", "trend+greedy-100"};
+  if (request.exhibit && request_.models.empty()) request_.models = {"random-3", "kdtree-10", "trend+greedy-100"};
   if (const auto folder = data_folder()) request_.data_folder = *folder;
   files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
   if (!view_.settings.line_up.empty() && request_.models.empty() && !request_.line_up.empty())
@@ -91,10 +91,16 @@ void DemoApp::listen() {
   ui_ = std::make_unique<UiContext>(window_->handle());
 }
 
-DemoApp::~DemoApp() {
-  // Hides the window first, because the end of a fit may take a moment.
+void DemoApp::finish() {
   if (window_ != nullptr) glfwHideWindow(window_->handle());
-  if (blocks_ != nullptr && session_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
+  if (session_ == nullptr) return;
+  if (blocks_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
+  session_->close();
+  files_.finish();
+}
+
+DemoApp::~DemoApp() {
+  finish();
   session_.reset();
   blocks_.reset();
 }
@@ -221,7 +227,7 @@ void DemoApp::use_device(const std::string& device) {
   next_ = request_;
   next_->recordings = session_->scene().recordings;
   // The test of the hand is that of the replay before.
-  next_->test = device.rfind("replay:", 0) == 0 ? "" : session_->test_file();
+  next_->test = device.rfind("replay:", 0) == 0 || session_->tests_training() ? "" : session_->test_file();
   next_->device = device;
   next_->kept = session_->models().requests();
   next_->refits = next_->kept.empty();

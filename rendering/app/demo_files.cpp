@@ -155,9 +155,9 @@ std::string DemoFiles::new_path(const char* name) {
   return same_second_ == 1 ? path : path + "-" + std::to_string(same_second_);
 }
 
-DemoFiles::~DemoFiles() {
+void DemoFiles::finish() {
   if (running_.valid()) running_.wait();
-  for (const Task& task : waiting_) {
+  for (const Task& task : std::exchange(waiting_, {})) {
     if (task.saves) (void)task.work();
   }
 }

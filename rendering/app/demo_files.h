@@ -37,8 +37,9 @@ class DemoFiles {
       : view_(view), notify_(std::move(notify)), read_(std::move(read)) {}
   DemoFiles(const DemoFiles&) = delete;
   DemoFiles& operator=(const DemoFiles&) = delete;
+  ~DemoFiles() { finish(); }
   // Waits for the work that runs, and completes the saves that wait.
-  ~DemoFiles();
+  void finish();
 
   // Reads the settings from `file`; empty: settings are neither read nor saved.
   void use_settings(const std::string& file);

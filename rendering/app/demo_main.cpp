@@ -1,6 +1,7 @@
 // palpate-demo: the window program's command line.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -146,16 +147,18 @@ Status run_demo(Arguments& arguments) {
   // Without a test recording, the end of the last training recording is replayed.
   const std::vector<std::string>& training = arguments.demo.session.recordings;
   if (!training.empty() && device == "auto") device = "replay:" + training.back();
-  auto app = DemoApp::create(arguments.demo);
-  if (!app) return app.error();
-  run_frames(**app, arguments.seconds);
-  if (!(*app)->outcome()) return (*app)->outcome();
-  if (!arguments.screenshot.empty()) {
-    if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
-  }
-  if (arguments.stats.empty()) return {};
-  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->shown(), (*app)->view().frames),
-                               arguments.force);
+  auto created = DemoApp::create(arguments.demo);
+  if (!created) return created.error();
+  // It is not destroyed, because it would wait for a fit; `main` ends the program.
+  DemoApp& app = *created->release();
+  run_frames(app, arguments.seconds);
+  Status status = app.outcome();
+  if (status && !arguments.screenshot.empty()) status = app.screenshot(arguments.screenshot, arguments.force);
+  if (status && !arguments.stats.empty())
+    status = write_file_atomically(arguments.stats, stats_text(app.session(), app.shown(), app.view().frames),
+                                   arguments.force);
+  app.finish();
+  return status;
 }
 
 int run_program(int argc, char** argv) {
@@ -183,7 +186,9 @@ int main(int argc, char** argv) {
     palpate::ignore_broken_pipes();
     palpate::prepare_to_fit();
     const palpate::StopListener listener;
-    return palpate::run_program(argc, argv);
+    const int code = palpate::run_program(argc, argv);
+    std::fflush(nullptr);
+    std::_Exit(code);
   } catch (const std::exception& error) {
     return palpate::fail(std::string("unexpected: ") + error.what());
   }

@@ -62,7 +62,7 @@ ModelsView models_view(const LiveSession& session, double until_s) {
   if (comparison.reference() == ReferenceKind::model && view.compared) view.reference = *session.models().reference();
   view.reference_name = session.reference_words(true);
   view.counted = counted_words(session);
-  view.replays_training = session.replays_training();
+  view.replays_training = session.replay() != nullptr && session.tests_training();
   view.jnd = session.jnd();
   view.verdict = session.verdict();
   const ForceHistory& history = comparison.history();

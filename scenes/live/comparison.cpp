@@ -46,10 +46,9 @@ void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
   const double step_s = std::clamp(snapshot.loop_time_s - last_loop_time_s_, 0.0, kLongestStep_s);
   last_loop_time_s_ = snapshot.loop_time_s;
   const double time_s = snapshot.tick.time_s;
-  if (snapshot.restarted || set == nullptr) {
-    settled_ = set != nullptr && time_s < begins_at_s_ + kBeginning_s;
-    stream_began_s_ = last_time_s_ = time_s;
-  }
+  // Models that join in a stream are initialised with its motion from its first sample on (HapticsTick::recall).
+  if (snapshot.restarted) settled_ = time_s < begins_at_s_ + kBeginning_s;
+  if (snapshot.restarted || (set == nullptr && !settled_)) stream_began_s_ = last_time_s_ = time_s;
   if (set != nullptr &&
       (!snapshot.tick.in_contact || time_s > stream_began_s_ + kSettled_memories * models_.longest_memory_s()))
     settled_ = true;

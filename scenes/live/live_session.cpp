@@ -163,8 +163,10 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   std::optional<Recording> part;
   const std::string test = test_file_of(request, *scene);
   const auto shared = std::ranges::find(scene->recordings, test);
-  const bool fits = std::ranges::any_of(*plans, [](const ModelRequest& plan) { return plan.loaded == nullptr; });
-  if (shared != scene->recordings.end() && (fits || request.test == test))
+  const bool set_apart = std::ranges::any_of(*plans, [&](const ModelRequest& plan) {
+    return !plan.is_file() && (plan.loaded == nullptr || request.test == test);
+  });
+  if (shared != scene->recordings.end() && set_apart)
     part = take_test_part((*training)[static_cast<std::size_t>(shared - scene->recordings.begin())]);
   device_request.seed = request.seed + 1;  // so that the gestures differ from those of the training recording
   Result<std::unique_ptr<Device>> device = std::unique_ptr<Device>();
@@ -205,7 +207,9 @@ Status LiveSession::begin(const std::vector<ModelRequest>& plans) {
   return loop_->start();
 }
 
-LiveSession::~LiveSession() {
+LiveSession::~LiveSession() { close(); }
+
+void LiveSession::close() {
   models_.cancel();
   recorder_.reset();  // completes a recording
   if (loop_ != nullptr) loop_->stop();
@@ -294,9 +298,8 @@ bool LiveSession::has_reference() const {
   return comparison_.reference() != ReferenceKind::model || models_.reference().has_value();
 }
 
-bool LiveSession::replays_training() const noexcept {
-  return replay() != nullptr && !set_apart_ && models_.fits() &&
-         std::ranges::count(scene_.recordings, replayed_file(request_.device)) > 0;
+bool LiveSession::tests_training() const {
+  return !set_apart_ && models_.fits() && std::ranges::count(scene_.recordings, test_file()) > 0;
 }
 
 std::string LiveSession::test_file() const { return test_file_of(request_, scene_); }
@@ -347,11 +350,11 @@ void LiveSession::update_verdict() {
   verdict_ = judge(judged, of_model ? models_.info(*models_.reference()).name : "");
   note(start_.verdict_s, true);
   models_.propose(*verdict_.chosen);
-  verdict_.detail = of_model             ? "There is no true force here: open a second recording to test on (M)."
-                    : live               ? "Of the presses so far, against " + reference_words(true) + "."
-                    : replays_training() ? "Of " + test_name() + ", to which the models were fitted."
-                                         : "99 % of the errors over " + test_name() +
-                                               ", which no model was fitted to. This test chose the model.";
+  verdict_.detail = of_model           ? "There is no true force here: open a second recording to test on (M)."
+                    : live             ? "Of the presses so far, against " + reference_words(true) + "."
+                    : tests_training() ? "Of " + test_name() + ", to which the models were fitted."
+                                       : "99 % of the errors over " + test_name() +
+                                             ", which no model was fitted to. This test chose the model.";
 }
 
 Verdict LiveSession::verdict() const {
@@ -385,7 +388,7 @@ std::string LiveSession::reference_words(bool brief) const {
   if (comparison_.reference() == ReferenceKind::measured) {
     if (replay() == nullptr) return brief ? "the real block" : "measured force of the real block";
     return brief ? "the recording"
-                 : "as recorded in " + replay()->recording().name + (replays_training() ? ", fitted to it" : "");
+                 : "as recorded in " + replay()->recording().name + (tests_training() ? ", fitted to it" : "");
   }
   if (!models_.reference()) return "no truth to compare with";
   const std::string& model = models_.info(*models_.reference()).name;

@@ -36,7 +36,7 @@ struct SessionRequest {
   std::vector<std::string> recordings;
   // The recording that models are tested on. Empty: the one that the device replays, else the last training recording,
   // else that of the scene's virtual material with another seed. The last part of a recording that is in the training
-  // set as well is set apart for the test, if models are fitted or this names it.
+  // set as well is set apart for the test, if models are fitted to the rest or were (this names it).
   std::string test{};
   std::string device = "auto";
   std::vector<std::string> models;  // methods or model files; empty: those of `line_up`
@@ -62,8 +62,11 @@ class LiveSession {
   static Result<std::unique_ptr<LiveSession>> open(const SessionRequest& request);
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
-  // Ends a recording and waits until it is on the disk; ramps the force to zero; interrupts fits.
+  // Calls `close`, and waits for the fits that it interrupts.
   ~LiveSession();
+  // Ends a recording and waits until it is on the disk; ramps the force to zero; interrupts fits and does not wait for
+  // them. Then only the destructor may be called.
+  void close();
 
   // Call it once a frame: processes all ticks since the last call and the models that became ready.
   void update();
@@ -93,8 +96,8 @@ class LiveSession {
   std::string test_file() const;
   std::string test_name() const;
   Verdict verdict() const;
-  // Whether the recording that is replayed belongs to the training set.
-  bool replays_training() const noexcept;
+  // Whether models were fitted to the test recording.
+  bool tests_training() const;
   // "true force of the virtual material, silicone"; `brief`: "the material".
   std::string reference_words(bool brief = false) const;
   // Clears the errors of the ticks so far and acknowledges the alarms; the history stays.

@@ -17,7 +17,7 @@ namespace palpate {
 namespace {
 
 // Niceness of fits, so that graphics and haptics have priority where there are few cores.
-constexpr int kNice = 10;
+constexpr int kNice = 5;
 // Progress of a fit when the recording, and when the preparation is done; both are done once.
 constexpr double kRecorded = 0.2;
 constexpr double kPrepared = 0.7;
