@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "models/fit/residual_rows.h"
+#include "models/samples/cross_validation.h"
 
 namespace palpate {
 
@@ -25,8 +26,8 @@ class BoundEstimator {
   // row of another fold, beyond the inner radius.
   void add(double error_N, double predicted_N, double beyond) { rows_.push_back({error_N, predicted_N, beyond}); }
   // Adds all rows. `corrections`: fitted to the sites without each fold; empty: none, the errors are those of the
-  // trend.
-  void add(const ResidualRows& rows, const ModelData& common, const std::vector<CorrectionPtr>& corrections);
+  // trend. Returns the errors by fold.
+  FoldErrors add(const ResidualRows& rows, const ModelData& common, const std::vector<CorrectionPtr>& corrections);
 
   // Empty with fewer than 50 predictions.
   std::optional<ErrorBound> fit() const;

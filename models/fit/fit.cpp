@@ -96,6 +96,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     }
     if (!selected) return selected.error();
     fit.choices = *selected;
+    fit.error_over_jnd = selected->error_over_jnd;
     sites = chosen_sites(*selected, prepared, data);
     fit.notes.push_back(choices_text(*selected));
   }
@@ -133,7 +134,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
       of_folds.push_back(std::move(*of_fold));
     }
     BoundEstimator bound(data.jnd, data.largest_force_N, prepared.left_out->strokes);
-    bound.add(*prepared.left_out, data, of_folds);
+    fit.error_over_jnd = bound.add(*prepared.left_out, data, of_folds).rms_at_mean_score();
     data.error_bound = bound.fit();
   }
   if (const Status valid = check_forces(data); !valid) {

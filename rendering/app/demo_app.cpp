@@ -43,10 +43,8 @@ Status DemoApp::set_up(const DemoRequest& request) {
   // Reports a missing display before anything else starts.
   if (Status status = Window::find_display(); !status) return status;
   request_ = request.session;
-  if (request.exhibit) {  // models with differences from obvious to unnoticeable
-    request_.position_only = true;
-    if (request_.models.empty()) request_.models = {"greedy", "2009-greedy-10"};
-  }
+  // Models with differences from obvious to unnoticeable.
+  if (request.exhibit && request_.models.empty()) request_.models = {"random-3", "kdtree-10", "trend+greedy-100"};
   if (const auto folder = data_folder()) request_.data_folder = *folder;
   files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
   if (!view_.settings.line_up.empty() && request_.models.empty() && !request_.line_up.empty())
@@ -101,11 +99,16 @@ std::string DemoApp::end() {
   return stats;
 }
 
-DemoApp::~DemoApp() {
-  Window::at_loss_of_display([this] { end(); });
-  // Hides the window first, because the end of a fit may take a moment.
+void DemoApp::finish() {
   if (window_ != nullptr) glfwHideWindow(window_->handle());
-  if (blocks_ != nullptr && session_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
+  if (session_ == nullptr) return;
+  if (blocks_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
+  session_->close();
+  files_.finish();
+}
+
+DemoApp::~DemoApp() {
+  finish();
   session_.reset();
   blocks_.reset();
   Window::at_loss_of_display(nullptr);
@@ -219,6 +222,7 @@ void DemoApp::use_material(const std::string& scene, const std::vector<std::stri
   next_->scene = scene;
   next_->recordings = recordings;
   next_->device = device;
+  next_->test.clear();
   next_->models.clear();
   next_->kept = session_->models().requests();
   next_->refits = true;
@@ -231,6 +235,8 @@ void DemoApp::use_material(const std::string& scene, const std::vector<std::stri
 void DemoApp::use_device(const std::string& device) {
   next_ = request_;
   next_->recordings = session_->scene().recordings;
+  // The test of the hand is that of the replay before.
+  next_->test = device.rfind("replay:", 0) == 0 || session_->tests_training() ? "" : session_->test_file();
   next_->device = device;
   next_->kept = session_->models().requests();
   next_->refits = next_->kept.empty();
@@ -241,7 +247,7 @@ void DemoApp::use_recording_roles() {
   const RecordingRoles roles = std::exchange(view_.dialogs.recording_roles, {});
   const std::string test = roles.test().empty() ? "" : "replay:" + roles.test();
   if (!roles.training().empty()) {
-    use_material(request_.scene, roles.training(), test.empty() ? first_device_ : test);
+    use_material(request_.scene, roles.training(), test.empty() ? "replay:" + roles.training().back() : test);
   } else if (!test.empty()) {
     use_device(test);
   }

@@ -39,6 +39,9 @@ class DemoApp {
   DemoApp(const DemoApp&) = delete;
   DemoApp& operator=(const DemoApp&) = delete;
   ~DemoApp();
+  // Saves all that is to be saved and lets go of the device; then only the destructor may be called, which waits for
+  // fits. A factorisation cannot be interrupted.
+  void finish();
 
   // Processes events, updates the session, draws and shows a frame, and waits for the next one.
   void frame();

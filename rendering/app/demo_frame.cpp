@@ -71,7 +71,7 @@ void DemoApp::draw_blocks(const SceneArea& area) {
 
 std::vector<BlockPose> DemoApp::block_poses() const {
   if (view_.exhibit.on) {
-    const std::vector<BlockPose> revealed = exhibit_.reveal_poses(*session_, view_.settings.theme);
+    const std::vector<BlockPose> revealed = exhibit_.shown_poses(*session_, shown_, view_.settings.theme);
     return revealed.empty() ? true_poses() : revealed;
   }
   std::vector<BlockPose> poses = true_poses();
@@ -116,8 +116,7 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
   const bool exaggerated = view_.exaggerated && !view_.exhibit.on && std::isfinite(reference_N);
   const float shown_N = exaggerated ? reference_N + kExaggeration * (force_N - reference_N) : force_N;
   pose.force_N = std::isfinite(shown_N) ? std::max(0.0F, shown_N) : 0.0F;
-  pose.arrow = view_.exhibit.on ? exhibit_colour(model.method, model.paper, view_.settings.theme)
-                                : slot_colour(models, slot, view_.settings.theme);
+  pose.arrow = slot_colour(models, slot, view_.settings.theme);
   pose.chosen = slot == models.selected;
   if (view_.exhibit.blind) pose.arrow = palette(view_.settings.theme).text;
   pose.shows_error = !view_.exhibit.blind;

@@ -46,9 +46,9 @@ struct Overlay {
     return at.y + text_size(font, text, room).y;
   }
 
-  // Draws the sliders that scale the rendered force.
-  void draw_feel() const {
-    ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.4F * height_of(fonts().heading)});
+  // Draws the sliders that scale the rendered force. Returns the y below them.
+  float draw_feel(float top_px) const {
+    ImGui::SetNextWindowPos({area.at.x + 2.0F, top_px});
     ImGui::Begin("feel", nullptr, kFloating);
     auto stiffness = static_cast<float>(session.controls().scale.stiffness);
     auto damping = static_cast<float>(session.controls().scale.damping_Ns_per_m);
@@ -61,8 +61,10 @@ struct Overlay {
             moved;
     ImGui::PopItemWidth();
     tip("Changes only the rendered force. Curves and figures show the unchanged models. J ends it.");
+    const float below_px = top_px + ImGui::GetWindowHeight();
     ImGui::End();
     if (moved) session.controls().scale = {static_cast<double>(stiffness), static_cast<double>(damping)};
+    return below_px;
   }
 
   // Draws the title of the scene, and any exaggeration of force or picture.
@@ -104,14 +106,16 @@ struct Overlay {
     return y + 0.3F * line();
   }
 
-  void draw_data_warning(float top_px) const {
+  // Returns the y below it.
+  float draw_data_warning(float top_px) const {
     const std::string text = data_warning(models());
-    if (text.empty()) return;
+    if (text.empty()) return top_px;
     const float wrap = 0.8F * area.size.x, pad = 0.4F * line();
     const ImVec2 size = text_size(fonts().body, text, wrap);
     const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), top_px + pad);
     draw_plate(list(), at, size, {2.0F * pad, pad}, ink(colours().raised), ink(colours().raised));
     text_at(fonts().body, at, text_ink(false), text, wrap);
+    return at.y + size.y + 2.0F * pad;
   }
 
   // Draws the hint how to press, until the user has pressed with half a newton. Returns the y below it.
@@ -185,17 +189,18 @@ struct Overlay {
 
   float big_number_height(float lift) const { return lift + height_of(fonts().big) + 1.9F * line(); }
 
-  // Draws the error of the active model as a large number with its description, and the colour scale of errors.
+  // Draws the error of the model in the headline as a large number with its description, and the colour scale of
+  // errors.
   void draw_big_number(float lift) const {
     const ImVec2 corner(area.at.x + 1.1F * line(), area.at.y + area.size.y - lift);
-    const BigNumber big = big_number(models(), shown.reference_block == "the true material");
+    const BigNumber big = big_number(models());
     const Rgb colour = big.error_over_jnd > 1.0 ? text_colour(kAboveJndColour, style.theme()) : colours().text;
     const float y = area.at.y + area.size.y - big_number_height(lift);
     text_at(fonts().big, {corner.x, y}, ink(colour), big.number);
     if (ImGui::IsMouseHoveringRect({corner.x, y}, {area.at.x + area.size.x, corner.y})) {
       ImGui::SetTooltip(
-          "99 %% of the samples in contact are off by at most this, in just noticeable differences (JND):\n"
-          "the active row of the table, over %s",
+          "99 %% of the samples in contact are off by at most this, in just noticeable differences (JND), over %s.\n"
+          "Your press: the same of what was pressed here since the last reset (C), with the active model.",
           models().counted.c_str());
     }
     const ImVec2 usual = text_size(fonts().big, "0.00");
@@ -268,10 +273,10 @@ struct Overlay {
     tip("Speed of the replay");
     ImGui::SameLine();
     ImGui::Text("%.2f x", replay.speed());
-    if (session.replay_test().found_m() != 0.0) {
-      bool moved = session.replay_test().moved();
+    if (session.test().found_m() != 0.0) {
+      bool moved = session.test().moved();
       const std::string label =
-          "surface " + fixed(1e3 * session.replay_test().found_m(), 2) + " mm from that of the models; move it there";
+          "surface " + fixed(1e3 * session.test().found_m(), 2) + " mm from that of the models; move it there";
       if (ImGui::Checkbox(label.c_str(), &moved)) session.move_surface(moved);
       tip("On: the surface is moved to where the models fit the recording best. Off: the positions are as recorded.");
     }
@@ -328,7 +333,7 @@ struct Overlay {
     const bool exhibit = view.exhibit.on;  // has its own texts
     const float buttons =
         exhibit ? 0.0F : std::max(ImGui::GetFrameHeight() + 2.0F * ImGui::GetStyle().WindowPadding.y, 2.4F * line());
-    const float surface = session.replay_test().found_m() != 0.0 ? 1.7F * line() : 0.0F;
+    const float surface = session.test().found_m() != 0.0 ? 1.7F * line() : 0.0F;
     const float bars = buttons + (session.replay() != nullptr ? 2.4F * line() + surface : 0.0F);
     float top_px = area.at.y + 2.0F * line();
     if (!exhibit) {
@@ -336,9 +341,9 @@ struct Overlay {
       if (!models().slots.empty()) draw_big_number(bars);
       draw_title();
       top_px = draw_headline();
-      draw_data_warning(top_px);
+      top_px = draw_data_warning(top_px);
       if (view.scales_force) {
-        draw_feel();
+        top_px = draw_feel(top_px);
       } else if (data_warning(models()).empty()) {
         top_px = draw_hint(top_px);
       }

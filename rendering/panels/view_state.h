@@ -139,8 +139,7 @@ struct ViewState {
   std::vector<Toast> toasts;
   bool scales_force = false;                           // shows the sliders that scale the rendered force
   bool exaggerated = false;                            // arrows show ten times the difference
-  bool centres_together = true;                        // the slider of centres refits all models that have centres
-  int requested_centres = 0;                           // last value of that slider
+  int requested_centres = 0;                           // last value of the slider of centres
   bool details = false;                                // shows the figures and faults of the loop
   bool has_pressed = false;                            // the user has pressed a block, so that the hint is hidden
   std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse; its curves are labelled
