@@ -16,7 +16,7 @@ Recording shorter(RigSettings settings, std::uint64_t seed) {
   return *test::rig_recording(settings);
 }
 
-std::vector<SurfaceRow> moved(const Recording& recording, double offset_m) {
+std::vector<Sample> moved(const Recording& recording, double offset_m) {
   Recording copy = recording;
   for (RecordingRow& row : copy.rows) row.position_m += offset_m;
   return thinned_rows(copy, kSearchRows);

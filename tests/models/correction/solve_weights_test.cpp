@@ -26,6 +26,10 @@ Eigen::MatrixXd naive_matrix(const Sites& sites, KernelKind kernel, const Eigen:
   return whole.array().colwise() * sites.row_scale.array();
 }
 
+RbfFunction solved(const Sites& sites, const Eigen::MatrixXd& centres) {
+  return solve_weights(sites, centres).function;
+}
+
 double worst_error(const RbfFunction& function, const Sites& sites) {
   double worst = 0.0;
   for (Eigen::Index i = 0; i < sites.count(); ++i)
@@ -39,7 +43,7 @@ TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
     const Eigen::VectorXd tail = random_points(1, tail_size(tail_degree(kernel), 2), 3).transpose();
     sites.target_N = tail_matrix(tail_degree(kernel), sites.points) * tail;
     sites.kernel = kernel;
-    const RbfFunction fitted = solve_weights(sites, sites.points.leftCols(20));
+    const RbfFunction fitted = solved(sites, sites.points.leftCols(20));
     EXPECT_LE((fitted.tail - tail).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
     EXPECT_LE(fitted.weights.cwiseAbs().maxCoeff(), 1e-10);
   }
@@ -48,7 +52,7 @@ TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
 // With as few sites as unknowns, signal and noise cannot be separated reliably.
 TEST(SolveWeights, FollowsAsManySitesAsUnknownsToWithinTheSmoothing) {
   const Sites sites = smooth_sites(3, 40, 0.0, 2);
-  const RbfFunction fitted = solve_weights(sites, sites.points);
+  const RbfFunction fitted = solved(sites, sites.points);
   EXPECT_LE(worst_error(fitted, sites), 0.1);
 }
 
@@ -56,8 +60,8 @@ TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
   const Sites sites = smooth_sites(2, 300, 0.0, 2);
   Eigen::MatrixXd centres(2, 16);
   centres << sites.points.leftCols(8), sites.points.leftCols(8);
-  const RbfFunction fitted = solve_weights(sites, centres);
-  const auto alone = solve_weights(sites, sites.points.leftCols(8));
+  const RbfFunction fitted = solved(sites, centres);
+  const auto alone = solved(sites, sites.points.leftCols(8));
   const auto& weights = fitted.weights;
   EXPECT_LT(weights.cwiseAbs().maxCoeff(), 2.0 * alone.weights.cwiseAbs().maxCoeff());
   EXPECT_LT((weights.head(8) - weights.tail(8)).cwiseAbs().maxCoeff(), 1e-6);
@@ -66,25 +70,25 @@ TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
 
 TEST(SolveWeights, OneSiteGivesItsForce) {
   const Sites sites = smooth_sites(4, 1, 0.0, 2);
-  const RbfFunction fitted = solve_weights(sites, sites.points);
+  const RbfFunction fitted = solved(sites, sites.points);
   EXPECT_NEAR(rbf_value(fitted, sites.points.data()), sites.target_N[0], 1e-13);
 }
 
 TEST(SolveWeights, ZeroForcesGiveAZeroFunction) {
   Sites sites = smooth_sites(4, 100, 0.0, 2);
   sites.target_N.setZero();
-  const RbfFunction fitted = solve_weights(sites, sites.points.leftCols(10));
+  const RbfFunction fitted = solved(sites, sites.points.leftCols(10));
   EXPECT_EQ(fitted.weights.norm(), 0.0);
   EXPECT_EQ(fitted.tail.norm(), 0.0);
 }
 
 TEST(SolveWeights, ASiteWithScaleZeroDoesNotCount) {
   Sites sites = smooth_sites(2, 200, 0.0, 2);
-  const RbfFunction before = solve_weights(sites, sites.points.leftCols(10));
+  const RbfFunction before = solved(sites, sites.points.leftCols(10));
   sites.row_scale[150] = 0.0;
-  const RbfFunction without = solve_weights(sites, sites.points.leftCols(10));
+  const RbfFunction without = solved(sites, sites.points.leftCols(10));
   sites.target_N[150] = 1e6;
-  const RbfFunction wild = solve_weights(sites, sites.points.leftCols(10));
+  const RbfFunction wild = solved(sites, sites.points.leftCols(10));
   EXPECT_EQ(without.weights, wild.weights);
 }
 
@@ -119,11 +123,11 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
     for (const double smoothing : {1e-2, 1.0}) {
       sites.kernel = kernel;
       sites.smoothing = smoothing;
-      const auto some = solve_weights(sites, sites.points);
+      const auto some = solved(sites, sites.points);
       const auto all = fit_direct(sites);
       ASSERT_TRUE(all.ok());
       // Two algorithms for systems with condition numbers up to some 1e6.
-      EXPECT_LT(test::largest_difference(some, *all, sites.points), 1e-7) << kernel_name(kernel);
+      EXPECT_LT(test::largest_difference(some, all->function, sites.points), 1e-7) << kernel_name(kernel);
     }
   }
 }
@@ -131,22 +135,86 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
 TEST(PenalisedWeights, MuchSmoothingLeavesTheTail) {
   Sites sites = smooth_sites(2, 200, 0.1, 7);
   sites.smoothing = 1e14;
-  const auto fitted = solve_weights(sites, sites.points.leftCols(30));
+  const auto fitted = solved(sites, sites.points.leftCols(30));
   EXPECT_LT(fitted.weights.cwiseAbs().maxCoeff(), 1e-9);
 }
 
-// The recipe of 2009.
-TEST(SolveWeights, TruncatedSingularValuesShareTheWeightOfCoincidingCentres) {
+// Eq. 8 and the rows of the side condition (eq. 3), literally.
+struct PseudoInverse {
+  Eigen::VectorXd weights_and_tail;
+  Eigen::Index rank = 0;
+  double condition_number = 0.0;
+};
+PseudoInverse pseudo_inverse(const Sites& sites, const Eigen::MatrixXd& centres) {
+  const Eigen::MatrixXd tail = tail_matrix(tail_degree(sites.kernel), centres);
+  const Eigen::MatrixXd rows = naive_matrix(sites, sites.kernel, centres);
+  Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(rows.rows() + tail.cols(), rows.cols());
+  stack.topRows(rows.rows()) = rows;
+  stack.bottomLeftCorner(tail.cols(), centres.cols()) = tail.transpose();
+  Eigen::VectorXd data = Eigen::VectorXd::Zero(stack.rows());
+  data.head(rows.rows()) = sites.target_N.cwiseProduct(sites.row_scale);
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(stack, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXd values = svd.singularValues();
+  PseudoInverse result{Eigen::VectorXd::Zero(stack.cols())};
+  for (; result.rank < values.size() && values(result.rank) > sites.truncation * values(0); ++result.rank) {
+    const double share = svd.matrixU().col(result.rank).dot(data) / values(result.rank);
+    result.weights_and_tail += share * svd.matrixV().col(result.rank);
+  }
+  result.condition_number = values(0) / values(result.rank - 1);
+  return result;
+}
+
+TEST(TruncatedWeights, AreThoseOfThePapersPseudoInverse) {
+  for (const KernelKind kernel : kKernelKinds) {
+    Sites sites = smooth_sites(2, 300, 0.01, 3);
+    sites.kernel = kernel;
+    Eigen::MatrixXd centres = sites.points.leftCols(30);
+    centres.col(29) = centres.col(0);
+    Eigen::Index rank_before = 0;
+    for (const double truncation : {1e-2, 1e-4, 1e-9}) {
+      sites.truncation = truncation;
+      const SolvedWeights solved = solve_weights(sites, centres);
+      const PseudoInverse expected = pseudo_inverse(sites, centres);
+      SCOPED_TRACE(std::string(kernel_name(kernel)) + " " + std::to_string(truncation));
+      EXPECT_EQ(solved.rank, expected.rank);
+      EXPECT_GT(solved.rank, rank_before) << "a smaller cut keeps more";
+      rank_before = solved.rank;
+      EXPECT_NEAR(solved.condition_number, expected.condition_number, 1e-8 * expected.condition_number);
+      EXPECT_LT(solved.condition_number, 1.0 / truncation);
+      // Rounding of the largest value over the smallest that is kept.
+      const double tolerance = 1e-13 * expected.condition_number * expected.weights_and_tail.norm();
+      EXPECT_LT((solved.function.weights - expected.weights_and_tail.head(30)).norm(), tolerance);
+      EXPECT_LT((solved.function.tail - expected.weights_and_tail.tail(solved.function.tail.size())).norm(), tolerance);
+    }
+    // 30 centres of which two coincide.
+    EXPECT_EQ(rank_before, 29 + tail_size(tail_degree(kernel), 2)) << kernel_name(kernel);
+  }
+}
+
+TEST(TruncatedWeights, CoincidingCentresShareTheirWeight) {
   Sites sites = smooth_sites(2, 300, 0.0, 3);
   sites.row_scale = sites.target_N.cwiseInverse();
-  sites.as_2009 = true;
+  sites.truncation = 1e-12;
   Eigen::MatrixXd centres = sites.points.leftCols(40);
   centres.col(39) = centres.col(0);
-  const RbfFunction fitted = solve_weights(sites, centres);
-  const RbfFunction once = solve_weights(sites, centres.leftCols(39));
+  const RbfFunction fitted = solved(sites, centres);
+  const RbfFunction once = solved(sites, centres.leftCols(39));
   EXPECT_NEAR(fitted.weights(0), fitted.weights(39), 1e-6 * fitted.weights.cwiseAbs().maxCoeff());
   // The same least squares error as without the duplicate.
   EXPECT_NEAR(worst_error(fitted, sites), worst_error(once, sites), 1e-6);
+}
+
+TEST(PenalisedWeights, TellRankAndConditionNumber) {
+  const Sites sites = smooth_sites(2, 300, 0.0, 2);
+  Eigen::MatrixXd centres(2, 16);
+  centres << sites.points.leftCols(8), sites.points.leftCols(8);
+  const SolvedWeights twice = solve_weights(sites, centres);
+  const SolvedWeights once = solve_weights(sites, centres.leftCols(8));
+  // Without a penalty eight weights with three side conditions, and a tail of three.
+  EXPECT_EQ(once.rank, 8 - 3 + 3);
+  EXPECT_EQ(twice.rank, once.rank);
+  EXPECT_GT(once.condition_number, 1.0);
+  EXPECT_LT(once.condition_number, 1e6) << "of columns of length 1";
 }
 
 TEST(DistinctSites, KeepsTheFirstOfEachPoint) {

@@ -8,26 +8,23 @@
 namespace palpate {
 namespace {
 
-Result<MethodFit> fit_trend_alone(Weighting weighting, Reduction reduction) {
-  MotionSource source({prepare_recording(test::example_recording(1500, 250.0))});
-  TrainingRequest request;
-  request.scene = "test";
-  request.features = test::paper_features();
-  request.weighting = weighting;
-  request.reduction = reduction;
-  if (reduction == Reduction::force) request.recipe = FitRecipe::paper_2009;
-  const auto prepared = prepare_training(source, request);
+Result<MethodFit> fit_trend_alone(Weighting weighting, Thinning thinning) {
+  auto samples = make_samples({prepare_recording(test::example_recording(1500, 250.0))}, JndLine{});
+  if (!samples) return samples.error();
+  const ModelPlan plan{.method = &kTrendMethod,
+                       .weighting = weighting,
+                       .thinning = thinning,
+                       .features = FeatureChoice::scene};
+  const auto prepared = prepare_training(std::make_shared<const Samples>(std::move(*samples)),
+                                         {"test", test::paper_features(), {}}, plan);
   if (!prepared) return prepared.error();
-  MethodRequest asked;
-  asked.method = &kTrendMethod;
-  return fit_method(*prepared, asked);
+  return fit_method(*prepared, plan);
 }
 
 TEST(TrendMethod, IsTheTrendEverywhereAndHasNoCentres) {
-  // With the paper's recipe the correction of other methods replaces the trend.
-  for (const auto& [weighting, reduction] :
-       {std::pair{Weighting::jnd, Reduction::coverage}, std::pair{Weighting::relative, Reduction::force}}) {
-    const auto fit = fit_trend_alone(weighting, reduction);
+  for (const auto& [weighting, thinning] :
+       {std::pair{Weighting::jnd, Thinning::coverage}, std::pair{Weighting::relative, Thinning::force}}) {
+    const auto fit = fit_trend_alone(weighting, thinning);
     ASSERT_TRUE(fit.ok()) << fit.error().message;
     const ModelData& data = fit->data;
     EXPECT_EQ(data.name, "trend");
@@ -44,7 +41,7 @@ TEST(TrendMethod, IsTheTrendEverywhereAndHasNoCentres) {
 }
 
 TEST(TrendMethod, ComesBackFromItsFile) {
-  const auto fit = fit_trend_alone(Weighting::jnd, Reduction::coverage);
+  const auto fit = fit_trend_alone(Weighting::jnd, Thinning::coverage);
   ASSERT_TRUE(fit.ok()) << fit.error().message;
   const auto text = write_model_text(fit->data);
   ASSERT_TRUE(text.ok());
@@ -57,10 +54,10 @@ TEST(TrendMethod, ComesBackFromItsFile) {
 
 // The fit, not the command line, fills in the provenance, so that live fits have it too.
 TEST(TrendMethod, ProvenanceSaysHowTheDataWerePrepared) {
-  const auto fit = fit_trend_alone(Weighting::relative, Reduction::force);
+  const auto fit = fit_trend_alone(Weighting::relative, Thinning::force);
   ASSERT_TRUE(fit.ok()) << fit.error().message;
   EXPECT_EQ(fit->data.provenance.weighting, "relative");
-  EXPECT_EQ(fit->data.provenance.reduction, "force");
+  EXPECT_EQ(fit->data.provenance.thinning, "force");
   EXPECT_EQ(fit->data.provenance.relaxation, "scene");
 }
 

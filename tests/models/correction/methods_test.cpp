@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "models/model/grid/voxel_grid.h"
 #include "tests/support/fit_centres.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
@@ -14,12 +15,6 @@ namespace palpate {
 namespace {
 
 using test::smooth_sites;
-
-TEST(Methods, AreFoundByTheirNames) {
-  for (const Method* method : methods()) EXPECT_EQ(find_method(method->name), method);
-  EXPECT_EQ(find_method("position"), nullptr);
-  EXPECT_EQ(find_method(""), nullptr);
-}
 
 TEST(Methods, EveryRowIsWhole) {
   std::set<std::string> names;
@@ -31,7 +26,7 @@ TEST(Methods, EveryRowIsWhole) {
     EXPECT_GT(method->expected_seconds, 0.0);
     EXPECT_NE(method->fit, nullptr);
     if (method->base == nullptr) continue;
-    EXPECT_EQ(find_method(method->base->name), method->base);
+    EXPECT_NE(std::ranges::find(methods(), method->base), methods().end());
   }
 }
 
@@ -39,10 +34,33 @@ TEST(Methods, ABaseTakesItsTimeToo) {
   EXPECT_EQ(expected_seconds(kVoxelMethod), kVoxelMethod.expected_seconds + kDirectMethod.expected_seconds);
 }
 
-TEST(Methods, AreListedByWhatTheyTake) {
-  EXPECT_EQ(method_names(kTakesGrid), "voxel");
-  EXPECT_EQ(method_names(kTakesCandidates), "greedy");
-  EXPECT_EQ(method_names(kTakesCentres), "random, kdtree, greedy");
+TEST(Methods, TakeTheirOptions) {
+  const auto that_take = [](MethodOption option) {
+    std::vector<std::string> names;
+    for (const Method* method : methods())
+      if (method->can_take(option)) names.emplace_back(method->name);
+    return names;
+  };
+  EXPECT_EQ(that_take(kTakesGrid), (std::vector<std::string>{"voxel"}));
+  EXPECT_EQ(that_take(kTakesCandidates), (std::vector<std::string>{"greedy"}));
+  EXPECT_EQ(that_take(kTakesCentres), (std::vector<std::string>{"random", "kdtree", "greedy"}));
+  EXPECT_EQ(that_take(kTakesKernel), (std::vector<std::string>{"direct", "voxel", "random", "kdtree", "greedy"}));
+}
+
+// A base that is given is not fitted again: of another one the result differs.
+TEST(Methods, StartFromTheBaseThatTheyAreGiven) {
+  const Sites sites = smooth_sites(2, 60, 0.0, 1);
+  MethodTask task{sites, sites.target_N};
+  task.grid = {5, 5};
+  const auto alone = fit_correction(kVoxelMethod, task);
+  const auto direct = fit_correction(kDirectMethod, task);
+  ASSERT_TRUE(alone.ok() && direct.ok());
+  task.base = direct->correction;
+  const auto from_direct = fit_correction(kVoxelMethod, task);
+  ASSERT_TRUE(from_direct.ok());
+  EXPECT_EQ(grid_of(from_direct->correction)->values_N, grid_of(alone->correction)->values_N);
+  task.base = fit_correction(kRandomMethod, task)->correction;
+  EXPECT_NE(grid_of(fit_correction(kVoxelMethod, task)->correction)->values_N, grid_of(alone->correction)->values_N);
 }
 
 // Calls `test` with each method that selects centres; greedy ones with subsets of candidates and with all.
@@ -62,9 +80,9 @@ Eigen::VectorXd jnd_of(const Sites& sites) { return sites.row_scale.cwiseInverse
 TEST(Methods, SameDataAndSeedSameBits) {
   const Sites sites = smooth_sites(4, 1500, 0.01, 1);
   for_every_selection([&](const Method& method, int candidates) {
-    const MethodRequest request{.centres = 25, .candidates = candidates, .seed = 9};
-    const auto a = test::fit_centres(method, sites, jnd_of(sites), request);
-    const auto b = test::fit_centres(method, sites, jnd_of(sites), request);
+    const test::CentreOptions options{.centres = 25, .candidates = candidates, .seed = 9};
+    const auto a = test::fit_centres(method, sites, jnd_of(sites), options);
+    const auto b = test::fit_centres(method, sites, jnd_of(sites), options);
     ASSERT_TRUE(a.ok() && b.ok());
     EXPECT_EQ(a->centres, b->centres);
     EXPECT_EQ(a->weights, b->weights);
@@ -77,9 +95,11 @@ TEST(Methods, DegenerateDataHaveADefinedOutcome) {
     for (const Sites& sites : test::degenerate_sites()) {
       const auto distinct = static_cast<int>(distinct_sites(sites).size());
       for (const int centres : {0, 1, 2, 30, 1000}) {
-        const MethodRequest request{.method = &method, .centres = centres, .candidates = candidates};
         const Eigen::VectorXd jnd_N = jnd_of(sites);
-        const auto fitted = fit_correction({sites, jnd_N, request});
+        MethodTask task{sites, jnd_N};
+        task.centres = centres;
+        task.candidates = candidates;
+        const auto fitted = fit_correction(method, task);
         ASSERT_TRUE(fitted.ok());
         EXPECT_TRUE(rbf_of(fitted->correction)->weights.allFinite());
         const int used = fitted->correction->size();
@@ -99,11 +119,11 @@ TEST(Methods, RefuseWrongSitesAndCanBeInterrupted) {
   for_every_selection([&](const Method& method, int candidates) {
     Sites sites = smooth_sites(2, 30, 0.0, 1);
     const Eigen::VectorXd jnd_N = jnd_of(sites);
-    const MethodRequest request{.centres = 20, .candidates = candidates};
-    const auto stopped = test::fit_centres(method, sites, jnd_N, request, {[](double) { return false; }});
+    const test::CentreOptions options{.centres = 20, .candidates = candidates};
+    const auto stopped = test::fit_centres(method, sites, jnd_N, options, {[](double) { return false; }});
     EXPECT_EQ(stopped.error().message, "interrupted");
     sites.target_N[7] = std::nan("");
-    EXPECT_TRUE(test::has_parts(test::fit_centres(method, sites, jnd_N, request).error().message,
+    EXPECT_TRUE(test::has_parts(test::fit_centres(method, sites, jnd_N, options).error().message,
                                 {"not finite", "; check the recording"}));
   });
 }

@@ -24,10 +24,16 @@ double rms_error(const RbfFunction& function, const Sites& truth) {
   return std::sqrt((values - truth.target_N).squaredNorm() / static_cast<double>(truth.count()));
 }
 
+Result<RbfFunction> function_of(const Sites& sites) {
+  auto solved = fit_direct(sites);
+  if (!solved) return solved.error();
+  return std::move(solved->function);
+}
+
 Result<RbfFunction> smoothed_fit(Sites sites, KernelKind kernel, double smoothing) {
   sites.kernel = kernel;
   sites.smoothing = smoothing;
-  return fit_direct(sites);
+  return function_of(sites);
 }
 
 // The system of eq. 4 with the smoothing on its diagonal, by dense LU with
@@ -84,7 +90,7 @@ TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
   for (const KernelKind kernel : kKernelKinds) {
     for (Sites sites : all) {
       sites.kernel = kernel;
-      const auto fitted = fit_direct(sites);
+      const auto fitted = function_of(sites);
       ASSERT_TRUE(fitted.ok());
       EXPECT_TRUE(fitted->weights.allFinite());
       // At the sites the force is at most twice the largest target.
@@ -95,14 +101,14 @@ TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
     }
     Sites one = smooth_sites(4, 1, 0.0, 1);
     one.kernel = kernel;
-    EXPECT_NEAR(rbf_value(*fit_direct(one), one.points.data()), one.target_N[0], 1e-12);
+    EXPECT_NEAR(rbf_value(*function_of(one), one.points.data()), one.target_N[0], 1e-12);
   }
 }
 
 TEST(FitDirect, SameDataSameBits) {
   const Sites sites = smooth_sites(4, 700, 0.01, 1);
-  const auto a = fit_direct(sites);
-  const auto b = fit_direct(sites);
+  const auto a = function_of(sites);
+  const auto b = function_of(sites);
   ASSERT_TRUE(a.ok() && b.ok());
   EXPECT_EQ(a->weights, b->weights);
   EXPECT_EQ(a->tail, b->tail);
@@ -125,16 +131,28 @@ TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
   }
 }
 
-// The recipe of 2009.
-TEST(FitDirect, TruncatedSingularValuesInterpolateEverySite) {
-  Sites sites = smooth_sites(2, 150, 0.0, 3);
-  sites.row_scale = sites.target_N.cwiseInverse();
-  sites.as_2009 = true;
-  const auto fitted = fit_direct(sites);
-  ASSERT_TRUE(fitted.ok()) << fitted.error().message;
-  EXPECT_LT(rms_error(*fitted, sites), 1e-8);
-  // The side condition, eq. 3.
-  EXPECT_LT(std::abs(fitted->weights.sum()), 1e-6 * fitted->weights.cwiseAbs().sum());
+// The condition number in the 1-norm of the factorised matrix, from its inverse.
+TEST(FitDirect, TellsRankAndConditionNumber) {
+  for (const KernelKind kind : kKernelKinds) {
+    Sites sites = smooth_sites(3, 80, 0.0, 3);
+    sites.kernel = kind;
+    sites.smoothing = 1e-3;
+    const ProjectedKernel projected(kind, sites.points, sites.row_scale);
+    Eigen::MatrixXd matrix = projected.matrix(projected.mean_eigenvalue(), sites.smoothing);
+    matrix.triangularView<Eigen::StrictlyUpper>() = matrix.transpose();
+    const auto norm = [](const Eigen::MatrixXd& a) { return a.cwiseAbs().colwise().sum().maxCoeff(); };
+    const double expected = norm(matrix) * norm(matrix.inverse());
+    const auto solved = fit_direct(sites);
+    ASSERT_TRUE(solved.ok());
+    EXPECT_EQ(solved->rank, 80);
+    // The estimate is a lower bound, rarely below a third (Higham 1988).
+    EXPECT_LE(solved->condition_number, expected * (1.0 + 1e-6)) << kernel_name(kind);
+    EXPECT_GE(solved->condition_number, expected / 3.0) << kernel_name(kind);
+    const auto fitted = fit_correction(kDirectMethod, {sites, sites.target_N});
+    ASSERT_TRUE(fitted.ok());
+    EXPECT_EQ(fitted->rank, solved->rank);
+    EXPECT_EQ(fitted->condition_number, solved->condition_number);
+  }
 }
 
 }  // namespace
