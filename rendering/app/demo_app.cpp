@@ -61,7 +61,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto window = Window::open(asked);
   if (!window) return window.error();
   window_ = std::move(*window);
-  auto blocks = BlockView::create(session_->scene());
+  auto blocks = BlockView::create(session_->scene(), view_.exhibit.on ? 1.0F : kDeeperDents);
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
   blocks_->camera().turn(view_.settings.camera);
@@ -87,6 +87,19 @@ void DemoApp::listen() {
   glfwSetKeyCallback(window_->handle(), [](GLFWwindow* handle, int key, int, int action, int modifiers) {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
     app->handle_key_event(key, action, modifiers);
+  });
+  // Their values are ImGui's; here they are only signs of a user.
+  glfwSetMouseButtonCallback(window_->handle(), [](GLFWwindow* handle, int, int, int) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
+  });
+  glfwSetScrollCallback(window_->handle(), [](GLFWwindow* handle, double, double) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
+  });
+  glfwSetCharCallback(window_->handle(), [](GLFWwindow* handle, unsigned) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
+  });
+  glfwSetWindowRefreshCallback(window_->handle(), [](GLFWwindow* handle) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
   });
   // After these callbacks: ImGui installs its own and calls them.
   ui_ = std::make_unique<UiContext>(window_->handle());
@@ -125,12 +138,19 @@ void DemoApp::close() {
 
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
   if (view_.exhibit.on) return;
+  note_input();
   for (const std::string& path : paths) files_.open(path, *session_);
 }
 
 void DemoApp::handle_key_event(int key, int action, int modifiers) {
   if (view_.exhibit.on && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
+  note_input();
   input_.add_key(key, action, modifiers);
+}
+
+void DemoApp::note_input() {
+  constexpr double kLively_s = 0.3;  // a list opens, takes the focus and is laid out within a few frames
+  lively_until_s_ = steady_now_s() + kLively_s;
 }
 
 void DemoApp::handle_keys() {
@@ -184,11 +204,11 @@ void DemoApp::frame() {
   look();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_began_s_ = now_s;
-  draw();
+  draw(needs_texts(now_s));
   handle_keys();
   // The session changes between two frames, because drawing refers to it.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
-  window_->show_frame();
+  window_->show_frame(changed_);
   const double shown_s = steady_now_s();
   view_.frames.times.add(static_cast<std::int64_t>(1e9 * (shown_s - last_frame_s_)));
   view_.frames.seconds += shown_s - last_frame_s_;
@@ -298,7 +318,7 @@ Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {
   resolution_ = {};  // full resolution at any load
-  draw();
+  draw(true);
   return window_->save_frame(path, overwrite);
 }
 

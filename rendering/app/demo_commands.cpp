@@ -83,8 +83,9 @@ std::vector<WindowChoice> DemoApp::choices() {
   const auto names = [](auto... all) { return std::vector<std::string>{all...}; };
   const auto first_is = [](bool& value) { return [&value](std::size_t i) { value = i == 0; }; };
   return {
-      {GLFW_KEY_B, "Blocks", "one, two or four blocks side by side", names("1", "2", "4"), settings.block_count / 2,
-       [this](std::size_t i) { use_block_count(std::size_t{1} << i); }},
+      {GLFW_KEY_B, "Blocks", "one block, two, or one of each model and of the truth", names("1", "2", "all"),
+       std::min<std::size_t>(settings.block_count - 1, 2),
+       [this](std::size_t i) { use_block_count(i < 2 ? i + 1 : kAllBlocks); }},
       {GLFW_KEY_N, "Models", "the next set of models: comparison, sizes, corrections, direct", models, line_up,
        [this](std::size_t i) { use_line_up(line_ups()[i]); },
        "there is nothing to fit models to: O chooses a material, a recording is one too"},
@@ -214,7 +215,7 @@ void DemoApp::use_block_count(std::size_t wanted) {
   // Says why there are fewer blocks than the user selected.
   const bool reference = shown_.models.compared && shown_.models.reference == kReferenceBlock && wanted > 1;
   const std::size_t shown = shown_.models.drawn().size() + (reference ? 1 : 0);
-  if (shown < wanted)
+  if (wanted == 2 && shown < wanted)
     notify(std::to_string(shown) + " of " + std::to_string(wanted) + " blocks: no more models are ready", false);
 }
 

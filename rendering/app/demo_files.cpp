@@ -97,8 +97,8 @@ Result<Settings> read_settings(const std::string& path) {
   if (!json.is_object())
     return Error{path + ": found no JSON object, expected the window's settings; the defaults are used"};
   if (field<std::string>(json, "theme", "") == "dark") settings.theme = Theme::dark;
-  const double blocks = field(json, "blocks", 4.0);
-  settings.block_count = blocks == 1.0 ? 1 : blocks == 2.0 ? 2 : 4;
+  const double blocks = field(json, "blocks", static_cast<double>(kAllBlocks));
+  settings.block_count = blocks == 1.0 ? 1 : blocks == 2.0 ? 2 : kAllBlocks;
   settings.difference = field(json, "difference", settings.difference);
   settings.text_size = std::clamp(field(json, "text_size", 1.0F), kSmallestText, kLargestText);
   settings.line_up = field(json, "line_up", settings.line_up);

@@ -20,7 +20,8 @@ constexpr const char* kPictureHelp[] = {
     "JND: the smallest difference of force that a hand can feel, 0.065 N plus 6 % of the force. Grey band: one JND to "
     "either side of the reference. A hand cannot feel the difference between the reference and a curve in the band.",
     "Green: the reference, the true or the recorded force. Other colours: one for each method; hollow marks: the "
-    "paper of 2009. On a dent: its error, from light (0) to green (1 JND); magenta is above.",
+    "paper of 2009. In the cut of a block: the error, from light (0) to green (1 JND), magenta with a halo above; the "
+    "arrows are the forces of the model and, narrow, of the truth.",
     "Centres: the points that a radial basis function model is made of. More centres cost time. They mostly bring more "
     "of a press within the JND (the column % in JND), but the largest errors (99 %) may grow."};
 

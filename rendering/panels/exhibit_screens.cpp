@@ -301,13 +301,10 @@ struct Exhibit::Screens {
 
   // Draws the name of block `index` of `count` at its foot.
   void draw_name(std::size_t index, std::size_t count, const std::string& text, const Rgb& colour) const {
-    const BlockGeometry& block = blocks.geometry();
     const SceneArea& scene = layout.scene;
     ImFont* font = style.fonts().heading;
     const ImVec2 size = text_size(font, text);
-    const glm::vec2 foot = blocks.on_screen(
-        index, count, {0.0F, -1.05F * static_cast<float>(block.height_m), 0.5F * static_cast<float>(block.length_m)},
-        {scene.size.x, scene.size.y});
+    const glm::vec2 foot = blocks.foot(index, count, {scene.size.x, scene.size.y});
     text_at(font,
             {scene.at.x + std::clamp(foot.x - 0.5F * size.x, 4.0F, scene.size.x - size.x - 4.0F),
              scene.at.y + std::min(foot.y + 0.6F * size.y, scene.size.y - 1.3F * size.y)},

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/live/time_histogram.h"
-#include "rendering/picture/camera.h"
+#include "rendering/picture/block_view.h"
 #include "rendering/ui/colours.h"
 #include "scenes/live/live_session.h"
 
@@ -18,6 +18,8 @@ namespace palpate {
 
 inline constexpr double kShown_s = 10.0;       // time span of the curves without zoom
 inline constexpr double kLeastShown_s = 0.02;  // smallest time span of the curves
+
+inline constexpr std::size_t kAllBlocks = BlockView::kMostBlocks;  // a block of each model and of the reference
 
 inline constexpr float kSmallestText = 0.8F;  // factor on the size of text
 inline constexpr float kLargestText = 1.6F;
@@ -84,11 +86,11 @@ struct FilePicker {
 // Settings that are kept between runs.
 struct Settings {
   Theme theme = Theme::light;
-  std::size_t block_count = 4;      // 1, 2 or 4
-  bool difference = true;           // the lower curves show the difference of every tick; else its mean over 50 ms
-  float text_size = 1.0F;           // factor
-  std::string line_up;              // empty: the default
-  std::vector<std::string> recent;  // files that were opened, the newest first
+  std::size_t block_count = kAllBlocks;  // 1, 2 or all
+  bool difference = true;                // the lower curves show the difference of every tick; else its mean over 50 ms
+  float text_size = 1.0F;                // factor
+  std::string line_up;                   // empty: the default
+  std::vector<std::string> recent;       // files that were opened, the newest first
   CameraTurn camera;
   bool operator==(const Settings&) const = default;
 };

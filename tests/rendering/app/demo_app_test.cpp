@@ -81,7 +81,7 @@ TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
 // Blocks, texts, panels and exhibit use one view, which is made once per frame.
 TEST_F(DemoAppTest, WhatIsShownIsMadeOnceAFrame) {
   open("hand");
-  app_->view().settings.block_count = 4;
+  app_->view().settings.block_count = kAllBlocks;
   frames(2);
   const std::uint64_t before = app_->shown().number;
   frames(10);

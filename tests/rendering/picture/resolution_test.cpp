@@ -1,4 +1,4 @@
-#include "rendering/picture/smooth_target.h"
+#include "rendering/picture/resolution.h"
 
 #include <gtest/gtest.h>
 
@@ -34,11 +34,11 @@ TEST(Resolution, RisesAgainOnlyWhereThereIsRoomForIt) {
   EXPECT_EQ(resolution.scale(), 1.0F);
 }
 
-TEST(Smoothing, IsAFilterWhereTheRendererIsAProgram) {
-  EXPECT_EQ(smoothing_for("llvmpipe (LLVM 15.0.6, 256 bits)"), Smoothing::filter);
-  EXPECT_EQ(smoothing_for("softpipe"), Smoothing::filter);
-  EXPECT_EQ(smoothing_for("Mesa Intel(R) UHD Graphics 620 (KBL GT2)"), Smoothing::samples);
-  EXPECT_EQ(smoothing_for("NVIDIA GeForce RTX 3060/PCIe/SSE2"), Smoothing::samples);
+TEST(Resolution, IsReducedOnlyWhereTheRendererIsAProgram) {
+  EXPECT_TRUE(is_software("llvmpipe (LLVM 15.0.6, 256 bits)"));
+  EXPECT_TRUE(is_software("softpipe"));
+  EXPECT_FALSE(is_software("Mesa Intel(R) UHD Graphics 620 (KBL GT2)"));
+  EXPECT_FALSE(is_software("NVIDIA GeForce RTX 3060/PCIe/SSE2"));
 }
 
 }  // namespace
