@@ -154,7 +154,8 @@ TEST(RecordingWriter, WritesNotesAboveTheRows) {
   for (int i = 0; i < 2000; ++i) {
     ASSERT_TRUE(writer.add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
     if (i % 80 == 40) writer.note("note " + std::to_string(i));
-    if (i == 1500) ASSERT_TRUE(writer.publish());
+    if (i != 1500) continue;
+    ASSERT_TRUE(writer.publish());
   }
   ASSERT_TRUE(writer.commit());
   EXPECT_TRUE(test::has_parts(test::read_text(folder.file("a.csv")),
