@@ -170,7 +170,7 @@ TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
   expect_refused(fit({"--centres", "0"}), 2, {"2000"});
   expect_refused(fit({"--centres", "100000"}), 2, {"2000"});
   for (const char* features : {"auto", "depth"}) {
-    expect_refused(fit({"--features", features, "--relaxation", "0.1,1"}), 2, {"--features", features});
+    expect_refused(fit({"--features", features, "--relaxation", "0.1,1"}), 2, {"--relaxation", "features", features});
   }
   expect_refused(fit({"--candidates", "some"}), 2, {"--candidates", "1", "all"});
   for (const char* times : {"0.1,", "0", "nan", "soon", "1,2,3,4,5,6,7"}) {
