@@ -1,17 +1,28 @@
 #include "engine/recording/recording_writer.h"
 
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <filesystem>
+#include <limits>
 #include <string_view>
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
 
 // The longest comment: '#', a blank and the text fit in one line.
 constexpr std::size_t kMaximumCommentBytes = kMaximumLineBytes - 2;
+
+constexpr std::uint64_t kMostNotes = 20;
 
 // Appends one '#' line for each line of `comment`, up to the longest comment. Control characters become blanks, because
 // the reader would refuse them or take them for line ends.
@@ -46,10 +57,34 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& path, Recordi
                                                 const std::vector<std::string>& comments, bool overwrite) {
   auto file = AtomicFile::create(path, overwrite);
   if (!file) return file.error();
+  auto claim = Claim::of(path);
+  if (!claim) return claim.error();
   std::string head;
   for (const std::string& comment : comments) append_comment(head, comment);
   file->write(head + line_of(columns, [](std::size_t i) { return kColumnNames[i]; }));
-  return RecordingWriter(std::move(*file), path, columns);
+  return RecordingWriter(std::move(*claim), std::move(*file), path, columns);
+}
+
+// An abstract Unix address made of the file's folder, as the disk knows it, and its name.
+Result<RecordingWriter::Claim> RecordingWriter::Claim::of(const std::string& path) {
+  const std::filesystem::path file(path);
+  struct stat folder {};
+  stat(file.has_parent_path() ? file.parent_path().c_str() : ".", &folder);
+  const std::string name = "palpate-recording-" + std::to_string(folder.st_dev) + "-" + std::to_string(folder.st_ino) +
+                           "-" + std::to_string(std::hash<std::string>()(file.filename().string()));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::ranges::copy(name, address.sun_path + 1);
+  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), size) == 0 || errno != EADDRINUSE)
+    return Claim(descriptor);
+  ::close(descriptor);
+  return Error{path + ": another recording is being written into it; choose another name, or end that one"};
+}
+
+RecordingWriter::Claim::~Claim() {
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 Status RecordingWriter::add(const RecordingRow& row) {
@@ -59,6 +94,10 @@ Status RecordingWriter::add(const RecordingRow& row) {
   const auto values = column_values(row);
   file_.write(line_of(columns_, [&](std::size_t i) { return shortest(values[i]); }));
   return {};
+}
+
+void RecordingWriter::note(const std::string& comment) {
+  if (++noted_ <= kMostNotes) append_comment(notes_, comment);
 }
 
 Status RecordingWriter::publish() {
@@ -74,7 +113,13 @@ Status RecordingWriter::commit() {
     const AtomicFile given_up = std::move(file_);
     return Error{path_ + ": cannot write: " + fault->text};
   }
-  return file_.commit();
+  Status committed = file_.commit();
+  if (!committed || notes_.empty()) return committed;
+  if (noted_ > kMostNotes) append_comment(notes_, std::to_string(noted_ - kMostNotes) + " more such notes");
+  if (const auto text = read_plain_file(path_, "the recording", "", std::numeric_limits<std::size_t>::max())) {
+    static_cast<void>(write_file_atomically(path_, notes_ + *text, true));
+  }
+  return {};
 }
 
 }  // namespace palpate

@@ -17,12 +17,16 @@ namespace palpate {
 
 class RecordingWriter {
  public:
-  // `comments` become '#' lines, one for each line of text. Errors: those of AtomicFile::create.
+  // `comments` become '#' lines, one for each line of text. Errors: those of AtomicFile::create; another writer, of any
+  // program on this machine, is writing a recording of this name.
   static Result<RecordingWriter> create(const std::string& path, RecordingColumns columns,
                                         const std::vector<std::string>& comments, bool overwrite);
 
   // Buffered. Errors: a row that breaks a rule (engine/recording/recording.h); it is not written.
   Status add(const RecordingRow& row);
+
+  // Adds a comment, which `commit` writes above the others.
+  void note(const std::string& comment);
 
   std::uint64_t rows() const { return rules_.rows(); }
   // Whether an input/output error has occurred, which `commit` will return.
@@ -35,18 +39,34 @@ class RecordingWriter {
   // The number of rows that `publish` has made available.
   std::uint64_t published_rows() const noexcept { return published_rows_; }
 
-  // Errors: those of AtomicFile::commit; fewer than 10 rows, or a rate outside the reader's range. Then only the
+  // The file gets its notes when it is complete; without room on the disk for a copy it is left without them. Errors:
+  // those of AtomicFile::commit; fewer than 10 rows, or a rate outside the reader's range. Then only the
   // published file, if any, is left.
   Status commit();
 
  private:
-  RecordingWriter(AtomicFile file, std::string path, RecordingColumns columns)
-      : file_(std::move(file)), path_(std::move(path)), columns_(columns) {}
+  // Reserves the name of a file that has none yet: an address that the system frees with its descriptor.
+  class Claim {
+   public:
+    static Result<Claim> of(const std::string& path);
+    Claim(Claim&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    ~Claim();
 
+   private:
+    explicit Claim(int descriptor) : descriptor_(descriptor) {}
+    int descriptor_;  // -1: the system has no such addresses
+  };
+
+  RecordingWriter(Claim claim, AtomicFile file, std::string path, RecordingColumns columns)
+      : claim_(std::move(claim)), file_(std::move(file)), path_(std::move(path)), columns_(columns) {}
+
+  Claim claim_;
   AtomicFile file_;
   std::string path_;
   RecordingColumns columns_;
   RowRules rules_;
+  std::string notes_;  // '#' lines
+  std::uint64_t noted_ = 0;
   std::uint64_t published_rows_ = 0;
 };
 

@@ -23,4 +23,7 @@ struct SensorSpec {
   double acceleration_noise_m_per_s2 = 0.0;  // white noise only; a drifting bias is always estimated
 };
 
+// Whether the tool is in contact with a surface at this position: the only definition, for tick, replay and fits.
+constexpr bool in_contact(const ToolSample& sample, double surface_m) noexcept { return sample.position_m > surface_m; }
+
 }  // namespace palpate

@@ -14,8 +14,8 @@
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
 #include "models/check/recording_measures.h"
-#include "models/recordings/prepared_recording.h"
-#include "models/recordings/recording_faults.h"
+#include "models/samples/prepared_recording.h"
+#include "models/samples/recording_faults.h"
 
 namespace palpate {
 
@@ -74,11 +74,12 @@ struct CheckedFile {
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request);
 
 // The median difference of the forces of two recordings of one set, second minus first, N, if no single model can
-// render both; else none. The cause may be another specimen, a preload, or a force zero. They contradict each other if
-// the central 90 % of their forces do not overlap in four of five bins of their positions, if the median difference
-// exceeds two JND, and if no shift of one against the other explains this (models/recordings/force_curve.h). A shift is
-// another surface, which a fit corrects.
-std::optional<double> find_contradiction_N(const Recording& first, const Recording& second, const JndLine& jnd);
+// render both; else none. The cause may be another specimen, a preload, a moved surface, or a force zero. They
+// contradict each other if the central 90 % of their forces do not overlap in four of five bins of their positions, and
+// if the median difference exceeds two JND (force_curve.h). Positions count from the surfaces where both are clear, as
+// in a fit.
+std::optional<double> find_contradiction_N(const PreparedRecording& first, const PreparedRecording& second,
+                                           const JndLine& jnd);
 
 // Checks several recordings of one set. Equal rows, and forces that contradict those of another recording, are findings
 // of the later one. Errors: those of the first file that cannot be read.
@@ -88,7 +89,7 @@ Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::st
 // The recordings of checked files, for a fit.
 std::vector<PreparedRecordingPointer> training_recordings(std::vector<CheckedFile> files);
 
-// An error with the first fatal finding: "path: force_sign: ...; ...".
+// An error with the fatal findings of the first unusable file: "path: position_sign: ...; ...; force_sign: ...; ...".
 Status refuse_unusable(const std::vector<CheckedFile>& files);
 // One line for each warning: "path: gap: ...; ...".
 std::vector<std::string> warning_lines(const std::vector<CheckedFile>& files);

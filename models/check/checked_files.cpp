@@ -6,7 +6,7 @@
 
 #include "engine/base/text.h"
 #include "models/check/check_recording.h"
-#include "models/recordings/force_curve.h"
+#include "models/check/force_curve.h"
 
 namespace palpate {
 namespace {
@@ -45,13 +45,13 @@ void add_repetitions(std::vector<CheckedFile>& files) {
 void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
   for (std::size_t i = 1; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const auto found_N = find_contradiction_N(files[j].recording(), files[i].recording(), jnd);
+      const auto found_N = find_contradiction_N(*files[j].prepared, *files[i].prepared, jnd);
       if (!found_N) continue;
       add_finding(files[i],
                   {"contradiction", Severity::warning, *found_N,
                    "its forces differ by " + general(std::abs(*found_N), 2) + " N from those of " + files[j].path +
-                       " at the same depth: the cause may be another specimen, a preload, a force zero or "
-                       "another speed",
+                       " at the same depth: the cause may be another specimen, a preload, a moved surface, a force "
+                       "zero or another speed",
                    "one model cannot render both: fit them separately, or correct the difference first"});
       return;
     }
@@ -60,16 +60,18 @@ void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
 
 }  // namespace
 
-std::optional<double> find_contradiction_N(const Recording& first, const Recording& second, const JndLine& jnd) {
-  const std::vector<ForceAtPosition> a = forces_of(first);
-  const std::vector<ForceAtPosition> b = forces_of(second);
+std::optional<double> find_contradiction_N(const PreparedRecording& first, const PreparedRecording& second,
+                                           const JndLine& jnd) {
+  const std::vector<ForceAtPosition> a = forces_of(first.recording);
+  const std::vector<ForceAtPosition> b = forces_of(second.recording);
   const double bin_m = common_bin_m(a, b);
   if (!(bin_m > 0.0)) return std::nullopt;
   const ForceCurve one(a, bin_m);
   const ForceCurve other(b, bin_m);
-  const auto found = difference(one, other, 0.0, jnd);
+  const bool clear = first.surface.identified() && second.surface.identified();
+  const double shift_m = clear ? second.surface.raw_offset_m - first.surface.raw_offset_m : 0.0;
+  const auto found = difference(one, other, shift_m, jnd);
   if (!found || found->apart_share < kApartShare || !(found->median_jnds > kLeastJnds)) return std::nullopt;
-  if (find_shift_m(one, other, jnd)) return std::nullopt;
   return found->median_N;
 }
 
@@ -109,9 +111,11 @@ std::vector<PreparedRecordingPointer> training_recordings(std::vector<CheckedFil
 
 Status refuse_unusable(const std::vector<CheckedFile>& files) {
   for (const CheckedFile& file : files) {
+    std::vector<std::string> fatal;
     for (const Finding& finding : file.check.findings) {
-      if (finding.severity == Severity::fatal) return Error{file.path + ": " + finding_text(finding)};
+      if (finding.severity == Severity::fatal) fatal.push_back(finding_text(finding));
     }
+    if (!fatal.empty()) return Error{file.path + ": " + joined(fatal, "; ")};
   }
   return {};
 }

@@ -15,7 +15,7 @@ NoiseFloor noise_floor(const std::vector<const PreparedRecording*>& recordings, 
   double squares_N2 = 0.0;
   for (const PreparedRecording* prepared : recordings) {
     const std::vector<RecordingRow>& rows = prepared->recording.rows;
-    const SurfaceEstimate& surface = prepared->offsets.surface;
+    const SurfaceEstimate& surface = prepared->surface;
     const double noise_N = prepared->force_noise_N;
     for (std::size_t i = 0; i < rows.size(); i += rows.size() / kMostSamples + 1) {
       if (!(rows[i].position_m > surface.offset_m)) continue;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/tick/jnd.h"
-#include "models/recordings/prepared_recording.h"
+#include "models/samples/prepared_recording.h"
 
 namespace palpate {
 

@@ -5,6 +5,7 @@
 
 #include "engine/tick/sensor_identification.h"
 #include "models/linear/non_negative.h"
+#include "models/samples/weighting.h"
 
 namespace palpate {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kLeastPerForce = 0.05;
 
 }  // namespace
 
-FoldErrors BoundEstimator::add(const CrossValidationRows& rows, const ModelData& common,
+FoldErrors BoundEstimator::add(const ResidualRows& rows, const ModelData& common,
                                const std::vector<CorrectionPtr>& corrections) {
   const double inner_radius = common.cover.inner_radius;
   FoldErrors errors(static_cast<std::size_t>(rows.folds()));
@@ -62,7 +63,9 @@ std::optional<ErrorBound> BoundEstimator::fit() const {
   const double factor = ratios[rank];
   bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);
   bound.per_force = std::max(factor * bound.per_force, strokes_ < kFewStrokes ? kLeastPerForce : 0.0);
-  bound.per_distance_N = std::max(factor * bound.per_distance_N, least_per_distance_N);
+  // One unit beyond the data nothing is known but the range of the force.
+  bound.per_distance_N =
+      std::clamp(factor * bound.per_distance_N, least_per_distance_N, std::max(least_per_distance_N, largest_force_N_));
   return bound;
 }
 

@@ -7,11 +7,11 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/random_stream.h"
+#include "models/correction/projected_kernel.h"
 #include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/projected_kernel.h"
-#include "models/training/cross_validation.h"
+#include "models/samples/cross_validation.h"
 
 namespace palpate {
 namespace {
@@ -36,7 +36,7 @@ struct Candidate : CorrectionChoice {
 // The fits of a correction without each fold, for any smoothing. The rows are sorted by fold.
 class LeftOutFits {
  public:
-  explicit LeftOutFits(const CrossValidationRows& rows);
+  explicit LeftOutFits(const ResidualRows& rows);
 
   // Predicts the correction at every row from the rows of the other folds.
   Eigen::VectorXd predict(double smoothing) const;
@@ -56,7 +56,7 @@ class LeftOutFits {
   };
   void gather(int fold);
 
-  const CrossValidationRows& rows_;
+  const ResidualRows& rows_;
   Eigen::MatrixXd centres_;
   ProjectedKernel kernel_;   // of the centres
   Eigen::MatrixXd penalty_;  // its lower triangle
@@ -64,7 +64,7 @@ class LeftOutFits {
   std::vector<Fold> folds_;
 };
 
-LeftOutFits::LeftOutFits(const CrossValidationRows& rows)
+LeftOutFits::LeftOutFits(const ResidualRows& rows)
     : rows_(rows),
       centres_(random_centres(rows.points)),
       kernel_(rows.kernel, centres_, Eigen::VectorXd::Ones(centres_.cols())),
@@ -116,7 +116,7 @@ Eigen::VectorXd LeftOutFits::predict(double smoothing) const {
 
 }  // namespace
 
-CorrectionChoice choose_correction(const CrossValidationRows& rows, const ModelData& common) {
+CorrectionChoice choose_correction(const ResidualRows& rows, const ModelData& common) {
   const double least_radius = common.cover.inner_radius;
   const auto folds = static_cast<std::size_t>(rows.folds());
   if (rows.fold.size() < 2 || folds < 2) return {.inner_radius = least_radius};
@@ -147,10 +147,7 @@ CorrectionChoice choose_correction(const CrossValidationRows& rows, const ModelD
     const Eigen::VectorXd h = fits.predict(first->smoothing);
     for (std::size_t i = 0; i < kRadiusFactors.size(); ++i) score(first[static_cast<std::ptrdiff_t>(i)], h);
   });
-  // From the simplest to the most complex: no correction, then by growing reach and, with the same reach, by falling
-  // smoothing. (Similar strokes do not identify the reach.)
-  std::ranges::stable_sort(candidates.begin() + 1, candidates.end(), {}, &Candidate::inner_radius);
-  const Candidate& chosen = candidates[simplest_adequate(errors_of(candidates))];
+  const Candidate& chosen = candidates[best_score(errors_of(candidates))];
   CorrectionChoice choice = chosen;
   choice.trend_error_over_jnd = candidates.front().errors.rms_at_mean_score();
   choice.error_over_jnd = chosen.errors.rms_at_mean_score();

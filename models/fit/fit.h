@@ -1,33 +1,31 @@
-// The fit of a model to recordings (`palpate fit`), in two steps, so that a comparison of methods prepares the data
-// once.
+// The fit of a model to the samples of recordings (`palpate fit`), in two steps, so that plans that differ in the
+// method only share the first.
 //
-//   prepare_training   surfaces, greatest depth, relaxation times, trend, features, normalisation, reduction,
-//                      one-sided contact, domain cover, whether the correction is used
-//   fit_method         one of the methods of models/fit/methods.h on the prepared sites
+//   prepare_training   features, trend, normalisation, thinned sites, domain, whether the correction is used
+//   fit_method         one of the methods of models/correction/methods.h on the prepared sites
 //
 // With Base::trend the methods fit the residual of the trend. With Base::force they fit the measured force, as Hoever &
 // Harders (2009): the scene's features with two identified relaxation times, the 50 mN reduction, rows scaled by 1 / f,
-// no trend, no trust, positions as recorded. What the paper leaves open is selected by cross-validation
-// (open_choices.h). Forces are limited as in every model, to 1.2 times the largest measured one and to 0, or to the
-// lowest one of a material that pulls. Thread guarantee: slow side.
+// no trend and no trust. What the paper leaves open is selected by cross-validation (open_choices.h). Forces are
+// limited as in every model, to 1.2 times the largest measured one and to 0, or to the lowest one of a material that
+// pulls. Thread guarantee: slow side.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
-#include "engine/tick/features.h"
-#include "engine/tick/jnd.h"
 #include "models/fit/correction_choice.h"
-#include "models/fit/methods.h"
+#include "models/fit/model_plan.h"
 #include "models/fit/open_choices.h"
 #include "models/model/fitted_model.h"
-#include "models/training/memory_law.h"
-#include "models/training/sites.h"
-#include "models/training/training_set.h"
+#include "models/trend/memory_law.h"
 
 namespace palpate {
+
+using SamplesPointer = std::shared_ptr<const Samples>;
 
 // What a scene gives to a fit.
 struct TrainingScene {
@@ -37,13 +35,15 @@ struct TrainingScene {
 };
 
 struct PreparedTraining {
-  TrainingSet set;
-  Sites sites;                                  // normalised; target: the residual of the trend, or the force
-  ModelData common;                             // the parts of the model that all methods have in common
-  std::vector<PartGain> gains;                  // of each term of the dictionary; empty unless FeatureChoice::automatic
-  std::optional<CorrectionChoice> correction;   // of the residual of the trend; none with Base::force
-  std::optional<CrossValidationRows> left_out;  // rows for cross-validation; none with Base::force
-  std::vector<std::string> notes;               // for the report of every fit
+  SamplesPointer samples;
+  Eigen::MatrixXd features;  // at the samples in contact, one column each, SI
+  Normalisation normalisation;
+  Sites sites;                                 // target: the residual of the trend, or the force
+  double thinning_force_N = 0.0;               // the step of Thinning::force
+  ModelData common;                            // the parts of the model that all methods have in common
+  std::vector<PartGain> gains;                 // of each term of the dictionary; empty unless the features are selected
+  std::optional<CorrectionChoice> correction;  // of the residual of the trend; none with Base::force
+  std::optional<ResidualRows> left_out;        // rows for cross-validation; none with Base::force
 
   // False if cross-validation rejected the correction; every method then returns the trend.
   bool corrects() const { return !correction || correction->used; }
@@ -59,8 +59,8 @@ struct MethodFit {
   double condition_number = 0.0;
 };
 
-// Errors: those of the recordings; no sample in contact; the plan does not suit the scene; interrupted.
-Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingScene& scene, const ModelPlan& plan,
+// Errors: the plan does not suit the scene; interrupted.
+Result<PreparedTraining> prepare_training(SamplesPointer samples, const TrainingScene& scene, const ModelPlan& plan,
                                           const FitControl& control = {});
 
 // The JND at the force of each site.

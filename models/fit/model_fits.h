@@ -16,19 +16,23 @@ class ModelFits {
  public:
   ModelFits(std::vector<PreparedRecordingPointer> recordings, TrainingScene scene)
       : recordings_(std::move(recordings)), scene_(std::move(scene)) {}
+  ModelFits(SamplesPointer samples, TrainingScene scene) : scene_(std::move(scene)), samples_(std::move(samples)) {}
 
-  // The preparation of a plan. Valid while this lives. Errors: those of prepare_training.
+  // The samples of the recordings. Errors: those of make_samples.
+  Result<SamplesPointer> samples(const FitControl& control);
+  // The preparation of a plan. Valid while this lives. Errors: those of make_samples and prepare_training.
   Result<const PreparedTraining*> prepare(const ModelPlan& plan, const FitControl& control);
 
   struct Fit : MethodFit {
     double seconds = 0.0;  // with its base, without the preparation
   };
-  // Errors: those of prepare_training and fit_method.
+  // Errors: those of prepare and fit_method.
   Result<Fit> fit(const ModelPlan& plan, const FitControl& control);
 
  private:
   std::vector<PreparedRecordingPointer> recordings_;
   TrainingScene scene_;
+  SamplesPointer samples_;
   std::vector<std::pair<ModelPlan, std::unique_ptr<PreparedTraining>>> prepared_;
   std::vector<std::pair<ModelPlan, Fit>> fits_;  // to start others from
 };

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "models/fit/methods.h"
+#include "models/correction/methods.h"
 
 namespace palpate {
 namespace {

@@ -16,20 +16,18 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "models/correction/methods.h"
+#include "models/correction/thinning.h"
 #include "models/model/rbf/kernels.h"
-#include "models/training/sites.h"
-#include "models/training/training_set.h"
-#include "models/training/trend_rows.h"
+#include "models/samples/weighting.h"
+#include "models/trend/trend_columns.h"
 
 namespace palpate {
-
-struct Method;
-extern const Method kGreedyMethod;
 
 // What the method is fitted to: the measured force, or the residual of the trend.
 enum class Base : std::uint8_t { force, trend };
 
-// The features: automatic (with the trend, those of the dictionary of models/training/trend_rows.h that the regression
+// The features: automatic (with the trend, those of the dictionary of models/trend/trend_columns.h that the regression
 // weights; with the force, the scene's with identified relaxation times), those of the scene, or a list.
 enum class FeatureChoice : std::uint8_t { automatic, scene, given };
 // The relaxation times of FeatureChoice::scene: the scene's, identified ones, or a list.

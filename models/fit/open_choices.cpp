@@ -9,12 +9,13 @@
 #include "engine/base/parallel.h"
 #include "engine/base/random_stream.h"
 #include "engine/base/text.h"
+#include "models/correction/projected_kernel.h"
+#include "models/correction/solve_weights.h"
 #include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/projected_kernel.h"
-#include "models/solve/solve_weights.h"
-#include "models/training/cross_validation.h"
+#include "models/samples/cross_validation.h"
+#include "models/samples/weighting.h"
 
 namespace palpate {
 namespace {
@@ -22,7 +23,8 @@ namespace {
 // More of either give the same selection.
 constexpr std::size_t kMostTrained = 3000;
 constexpr std::size_t kMostTested = 3000;
-constexpr Eigen::Index kMostCentres = 200;
+constexpr Eigen::Index kMostCentres = 200;  // of the direct interpolation
+constexpr Eigen::Index kMostRandom = 500;
 constexpr std::array kRangeExponents{0.5, 1.0};
 // Decades of the truncation, and of the smoothing over the mean eigenvalue of the kernel. Larger cuts win the
 // cross-validation and lose on new recordings: with 1e-3 the recorded sets have 80.9 % instead of 83.1 %.
@@ -52,35 +54,35 @@ std::vector<std::size_t> by_fold(std::size_t count, std::size_t most, const auto
 
 class Selection {
  public:
-  Selection(const TrainingSet& set, const Sites& sites, const ModelData& common, int centres)
-      : set_(set), common_(common), truncates_(centres > 0) {
-    const auto d = sites.points.rows();
-    const auto site_order = by_fold(set.sites.size(), kMostTrained, [&](std::size_t i) { return set.sites[i].fold; });
-    resize(train_, d, site_order.size());
+  Selection(const Samples& samples, const Eigen::MatrixXd& features, const Normalisation& normalisation,
+            const Sites& sites, const ModelData& common, int centres)
+      : normalisation_(normalisation), common_(common), truncates_(centres > 0), folds_(samples.folds) {
+    const auto site_order = by_fold(sites.fold.size(), kMostTrained, [&](std::size_t i) { return sites.fold[i]; });
+    resize(train_, features.rows(), site_order.size());
     for (std::size_t k = 0; k < site_order.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k), site = static_cast<Eigen::Index>(site_order[k]);
-      train_.features.col(column) = Eigen::Map<const Eigen::VectorXd>(set.sites[site_order[k]].features.data(), d);
+      train_.features.col(column) = normalisation.offset + normalisation.scale.cwiseProduct(sites.points.col(site));
       train_.force_N(column) = sites.target_N(site);
       train_.row_scale(column) = sites.row_scale(site);
-      train_.fold.push_back(set.sites[site_order[k]].fold);
+      train_.fold.push_back(sites.fold[site_order[k]]);
     }
+    const auto& contact = samples.contact;
     const auto row_order =
-        by_fold(set.evaluation_force_N.size(), kMostTested, [&](std::size_t i) { return set.evaluation_fold[i]; });
-    resize(tested_, d, row_order.size());
+        by_fold(contact.size(), kMostTested, [&](std::size_t i) { return samples.fold[contact[i]]; });
+    resize(tested_, features.rows(), row_order.size());
     for (std::size_t k = 0; k < row_order.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
-      tested_.features.col(column) = Eigen::Map<const Eigen::VectorXd>(set.evaluation_features[row_order[k]].data(), d);
-      tested_.force_N(column) = set.evaluation_force_N[row_order[k]];
-      tested_.fold.push_back(set.evaluation_fold[row_order[k]]);
+      tested_.features.col(column) = features.col(static_cast<Eigen::Index>(row_order[k]));
+      tested_.force_N(column) = samples.rows[contact[row_order[k]]].force_N;
+      tested_.fold.push_back(samples.fold[contact[row_order[k]]]);
     }
-    folds_ = std::max(train_.fold.back(), tested_.fold.back()) + 1;
     const Eigen::Index most = truncates_ ? centres : kMostCentres;
     order_.resize(train_.fold.size());
     std::iota(order_.begin(), order_.end(), Eigen::Index{0});
     SplitMix64 random(1);
     const auto limit = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(order_.size()) / 4);
-    order_.resize(draw_first(order_, std::min({most, limit, Eigen::Index{500}}), random));
-    std::vector<double> depth_m(tested_.features.row(0).begin(), tested_.features.row(0).end());
+    order_.resize(draw_first(order_, std::min({most, limit, kMostRandom}), random));
+    const std::vector<double> depth_m(tested_.features.row(0).begin(), tested_.features.row(0).end());
     deepest_m_ = deepest_elsewhere_m(tested_.fold, depth_m, folds_);
   }
 
@@ -93,7 +95,7 @@ class Selection {
 
   // The candidates with this kernel and normalisation, one for each regularisation.
   std::vector<Candidate> with(KernelKind kernel, double exponent) const {
-    const Eigen::VectorXd scale = normalisation_scale(set_.normalisation, exponent);
+    const Eigen::VectorXd scale = normalisation_.scale_of(exponent);
     Sites sites{normalised(train_.features, scale), train_.force_N, train_.row_scale, kernel};
     const Eigen::MatrixXd rows = normalised(tested_.features, scale);
     const Eigen::MatrixXd centres = sites.points(Eigen::all, order_);
@@ -135,7 +137,7 @@ class Selection {
   }
 
   Eigen::MatrixXd normalised(const Eigen::MatrixXd& features, const Eigen::VectorXd& scale) const {
-    return (features.colwise() - set_.normalisation.offset).array().colwise() / scale.array();
+    return (features.colwise() - normalisation_.offset).array().colwise() / scale.array();
   }
 
   std::vector<Candidate> regularised(KernelKind kernel, double exponent, double mean_eigenvalue) const {
@@ -196,7 +198,7 @@ class Selection {
     }
   }
 
-  const TrainingSet& set_;
+  const Normalisation& normalisation_;
   const ModelData& common_;
   bool truncates_;
   int folds_ = 1;
@@ -208,16 +210,6 @@ class Selection {
 
 }  // namespace
 
-Eigen::VectorXd normalisation_scale(const Normalisation& normalisation, double range_exponent) {
-  // The scale is the geometric mean of the range and 4 sigma.
-  Eigen::VectorXd scale = normalisation.scale;
-  for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    const double range = normalisation.upper(k) - normalisation.lower(k);
-    if (range > 0.0) scale(k) = range * std::pow(scale(k) / range, 2.0 * (1.0 - range_exponent));
-  }
-  return scale;
-}
-
 std::string choices_text(const OpenChoices& choices) {
   const char* normalised =
       choices.range_exponent == 1.0 ? "its range" : "the geometric mean of its range and deviation";
@@ -227,10 +219,11 @@ std::string choices_text(const OpenChoices& choices) {
          ": cross-validated error " + fixed(choices.error_over_jnd, 3) + " JND";
 }
 
-Result<OpenChoices> select_open_choices(const TrainingSet& set, const Sites& sites, const ModelData& common,
+Result<OpenChoices> select_open_choices(const Samples& samples, const Eigen::MatrixXd& features,
+                                        const Normalisation& normalisation, const Sites& sites, const ModelData& common,
                                         int centres, std::optional<KernelKind> kernel, const FitControl& control) {
   const BlasThreads one_thread(1);
-  const Selection selection(set, sites, common, centres);
+  const Selection selection(samples, features, normalisation, sites, common, centres);
   std::vector<std::pair<KernelKind, double>> settings;
   for (const KernelKind kind : kKernelKinds) {
     for (const double exponent : kRangeExponents) {
@@ -238,9 +231,9 @@ Result<OpenChoices> select_open_choices(const TrainingSet& set, const Sites& sit
     }
   }
   std::vector<Selection::Candidate> candidates;
-  for (const auto& [kind, exponent] : settings) {
-    if (!control.may_continue()) return interrupted();
-    std::ranges::move(selection.with(kind, exponent), std::back_inserter(candidates));
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    if (!control.may_continue(static_cast<double>(i) / static_cast<double>(settings.size()))) return interrupted();
+    std::ranges::move(selection.with(settings[i].first, settings[i].second), std::back_inserter(candidates));
   }
   const Selection::Candidate& best = candidates[best_score(errors_of(candidates))];
   OpenChoices choices = best.choices;

@@ -7,7 +7,7 @@
 // lambda / (lambda + smoothing) over the eigenvalues lambda (Hansen 1998, section 4.2).
 //
 // Each candidate is fitted on random centres to the sites outside of a fold and predicts the samples in contact of that
-// fold (models/training/cross_validation.h). The lowest score wins.
+// fold (models/samples/cross_validation.h). The lowest score wins.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -17,9 +17,8 @@
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
+#include "models/correction/thinning.h"
 #include "models/model/fitted_model.h"
-#include "models/training/sites.h"
-#include "models/training/training_set.h"
 
 namespace palpate {
 
@@ -34,12 +33,11 @@ struct OpenChoices {
 // "cubic kernel, normalised by ...": what was selected, for the user.
 std::string choices_text(const OpenChoices& choices);
 
-// The scale of a normalisation with this exponent.
-Eigen::VectorXd normalisation_scale(const Normalisation& normalisation, double range_exponent);
-
-// `sites`: of the set, with targets and factors. `centres`: of the method, 0: the direct interpolation. `kernel`: that
-// of the request, none: selected. Errors: interrupted.
-Result<OpenChoices> select_open_choices(const TrainingSet& set, const Sites& sites, const ModelData& common,
+// `features`: at the samples in contact, SI. `sites`: of the same samples, with targets. `common`: with the limits of
+// the force. `centres`: of the method, 0: the direct interpolation. `kernel`: that of the plan, none: selected. Errors:
+// interrupted.
+Result<OpenChoices> select_open_choices(const Samples& samples, const Eigen::MatrixXd& features,
+                                        const Normalisation& normalisation, const Sites& sites, const ModelData& common,
                                         int centres, std::optional<KernelKind> kernel, const FitControl& control);
 
 }  // namespace palpate

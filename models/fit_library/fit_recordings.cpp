@@ -6,28 +6,17 @@
 namespace palpate {
 namespace {
 
-// The share of the progress for the preparation of the training.
-constexpr double kPrepared = 0.3;
+// The approximate time of the preparation, to compare with the expected time of the method.
+constexpr double kPreparation_s = 0.5;
 
-FitControl part_of(const std::function<bool(double)>& progress, double begin, double end) {
-  FitControl control;
-  if (progress) control.progress = [=](double fraction) { return progress(begin + (end - begin) * fraction); };
-  return control;
-}
-
-nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
-  std::vector<RecordingSurface> surfaces = provenance.surfaces;
-  if (surfaces.empty()) {
-    for (const std::string& name : provenance.recordings) surfaces.push_back({name, 0.0, 0.0, 0.0});
-  }
+nlohmann::ordered_json offsets_json(const Provenance& provenance) {
   auto list = nlohmann::ordered_json::array();
-  for (const RecordingSurface& surface : surfaces) {
-    list.push_back({{"name", surface.name},
-                    {"surface_offset_m", surface.offset_m},
-                    {"standard_error_m", surface.standard_error_m},  // not finite: null
-                    {"identified", std::isfinite(surface.standard_error_m)},
-                    {"force_zero_N", surface.force_zero_N},
-                    {"force_lag_s", surface.lag_s}});
+  for (const RecordingOffset& one : provenance.offsets) {
+    list.push_back({{"name", one.name},
+                    {"surface_offset_m", one.offset_m},
+                    {"standard_error_m", one.standard_error_m},  // not finite: null
+                    {"identified", std::isfinite(one.standard_error_m)},
+                    {"force_zero_N", one.force_zero_N}});
   }
   return list;
 }
@@ -37,13 +26,15 @@ nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
 Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingScene& scene,
                                      const ModelPlan& plan, std::chrono::steady_clock::time_point began,
                                      const std::function<bool(double)>& progress) {
-  MotionSource source(training_recordings(std::move(recordings)));
-  auto prepared = prepare_training(source, scene, plan, part_of(progress, 0.0, kPrepared));
+  ModelFits fits(training_recordings(std::move(recordings)), scene);
+  const FitControl control{progress};
+  const double prepared_at = kPreparation_s / (kPreparation_s + expected_seconds(*plan.method));
+  const auto prepared = fits.prepare(plan, control.part(0.0, prepared_at));
   if (!prepared) return prepared.error();
-  auto fit = fit_method(*prepared, plan, part_of(progress, kPrepared, 1.0));
+  auto fit = fits.fit(plan, control.part(prepared_at, 1.0));
   if (!fit) return fit.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  return RecordingsFit{std::move(*prepared), std::move(*fit), seconds};
+  return RecordingsFit{(*prepared)->gains, (*prepared)->correction, std::move(*fit), seconds};
 }
 
 nlohmann::ordered_json fit_json(const RecordingsFit& fitted) {
@@ -63,7 +54,7 @@ nlohmann::ordered_json fit_json(const RecordingsFit& fitted) {
           {"fit_seconds", fitted.seconds},
           {"training_within_jnd", data.provenance.training_within_jnd},
           {"features", features},
-          {"recordings", surfaces_json(data.provenance)},
+          {"recordings", offsets_json(data.provenance)},
           {"notes", fit.notes}};
 }
 

@@ -9,12 +9,13 @@
 
 #include "engine/base/result.h"
 #include "models/check/check_recording.h"
-#include "models/fit/fit.h"
+#include "models/fit/model_fits.h"
 
 namespace palpate {
 
 struct RecordingsFit {
-  PreparedTraining prepared;
+  std::vector<PartGain> gains;  // as in PreparedTraining
+  std::optional<CorrectionChoice> correction;
   MethodFit fit;
   double seconds = 0.0;
 };

@@ -13,7 +13,7 @@
 #include "models/check/check_recording.h"
 #include "models/fit_library/fit_recordings.h"
 #include "models/library/c_interface.h"
-#include "models/recordings/recording_faults.h"
+#include "models/samples/recording_faults.h"
 
 namespace palpate::library {
 namespace {

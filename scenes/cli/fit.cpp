@@ -77,14 +77,8 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
   const double as_recorded = errors.within_jnd();
   const double printed = data.provenance.training_within_jnd;
   if (!(std::abs(as_recorded - printed) > kContradiction)) return {};
-  const auto& surfaces = data.provenance.surfaces;
-  const bool changed = std::ranges::any_of(surfaces, [](const RecordingSurface& one) {
-    return one.offset_m != 0.0 || one.force_zero_N != 0.0 || one.lag_s != 0.0;
-  });
-  return "the training recordings have " + fixed(100.0 * as_recorded, 2) + " % within the JND as recorded, and " +
-         fixed(100.0 * printed, 2) + " % " +
-         (changed ? "with the surfaces, force zeros and lags above corrected"
-                  : "where the model is in contact; the other forces were measured outside of it");
+  return "in training, " + fixed(100.0 * as_recorded, 2) + " % within the JND as recorded, " +
+         fixed(100.0 * printed, 2) + " % with the offsets corrected and in the contact of the model";
 }
 
 // One row for each term of the trend's dictionary: whether the regression uses it, and the cross-validated error of the
@@ -107,30 +101,29 @@ std::string correction_text(const CorrectionChoice& choice) {
          fixed(choice.trend_error_over_jnd, 3) + " JND";
 }
 
-std::string surface_text(const RecordingSurface& surface) {
+std::string surface_text(const RecordingOffset& surface) {
   return surface.name + " at " + fixed(1e3 * surface.offset_m, 3) +
          (std::isfinite(surface.standard_error_m) ? " +- " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
                                                   : std::string(" mm (not identified)")) +
-         ", force zero " + fixed(1e3 * surface.force_zero_N, 1) + " mN" +
-         (surface.lag_s != 0.0 ? ", force lag " + fixed(1e3 * surface.lag_s, 1) + " ms" : "");
+         ", force zero " + fixed(1e3 * surface.force_zero_N, 1) + " mN";
 }
 
 // `out`: the file that was written.
 void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::string& out) {
-  const auto& [prepared, fit, seconds] = fitted;
+  const auto& [gains, correction, fit, seconds] = fitted;
   const Provenance& provenance = fit.data.provenance;
-  print_gains(prepared.gains);
+  print_gains(gains);
   print_line("model", fit.data.name + ", fitted in " + fixed(seconds, 2) + " s");
   print_line("samples", std::to_string(provenance.samples) + ", " + std::to_string(provenance.contact_samples) +
                             " in contact, " + std::to_string(provenance.samples_after_reduction) + " after thinning");
-  for (const RecordingSurface& surface : provenance.surfaces) print_line("surface", surface_text(surface));
+  for (const RecordingOffset& surface : provenance.offsets) print_line("surface", surface_text(surface));
   // The depth is the first feature.
   if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
     print_line("depth starts", "at " + fixed(1e3 * begins_m, 3) + " mm, where the force of the recordings begins");
   std::vector<std::string> times;
   for (const double time_s : relaxation_times_s(fit.data.features)) times.push_back(general(time_s, 3));
   if (!times.empty()) print_line("relaxation times", joined(times) + " s");
-  if (prepared.correction) print_line("correction", correction_text(*prepared.correction));
+  if (correction) print_line("correction", correction_text(*correction));
   for (const std::string& note : fit.notes)
     print_line(fit.choices && note == choices_text(*fit.choices) ? "selected" : "note", note);
   print_line("training <= JND", fixed(100.0 * provenance.training_within_jnd, 2) + " %" +
@@ -140,6 +133,9 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
 }
 
 Status run_fit(const FitArguments& arguments) {
+  std::vector<std::string> inputs = arguments.recordings;
+  inputs.push_back(arguments.scene);
+  if (const Status status = refuse_input_as_output(arguments.out, inputs, "--out"); !status) return status;
   const auto scene = load_scene(arguments.scene);
   if (!scene) return scene.error();
   // Reports before the fit if the output cannot be written.

@@ -24,9 +24,9 @@ constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 
 // In the order of --help.
-constexpr void (*kVerbs[])(CLI::App&, Verbs&) = {add_synth,  add_import, add_check,   add_fit,
-                                                 add_replay, add_export, add_report,  add_paper,
-                                                 add_record, add_scenes, add_devices, add_study};
+constexpr void (*kVerbs[])(CLI::App&, Verbs&) = {add_synth,  add_import,  add_check, add_fit,  add_replay,
+                                                 add_export, add_report,  add_paper, add_hard, add_record,
+                                                 add_scenes, add_devices, add_study};
 
 int fail(const std::string& message, int exit_code) {
   const std::string block = "error: " + message + "\n";

@@ -123,7 +123,7 @@ Result<RecordingEvaluation> evaluate(const RowSource& rows, const Models& models
     result.models.push_back({recorded->errors[i], recorded->errors[i], recorded->bounds[i], recorded->bounds[i], {}});
   }
   if (!request.move_surface) return result;
-  const std::vector<SurfaceRow> searched = thinned_rows(surface_rows.rows(), kSearchRows);
+  const std::vector<Sample> searched = thinned_rows(surface_rows.rows(), kSearchRows);
   std::map<double, std::vector<std::size_t>> by_offset;
   OffsetEstimate common;
   if (!request.surface_models.empty()) common = locate_surface(searched, request.surface_models, models.front().jnd);

@@ -1,6 +1,6 @@
 // Evaluates models on one recording through the tick of the live loop, kMaxModels at a time. Errors are computed twice:
 // with the positions as recorded, and with a surface offset subtracted from every position. The offset is estimated for
-// each model (models/surface/surface_search.h), or once for all models. With the offset, contact is determined anew.
+// each model (scenes/evaluation/surface_search.h), or once for all models. With the offset, contact is determined anew.
 // Thread guarantee: slow side; one thread per call.
 #pragma once
 
@@ -14,9 +14,9 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/replay.h"
-#include "models/surface/surface_search.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/evaluation/model_timing.h"
+#include "scenes/evaluation/surface_search.h"
 
 namespace palpate {
 

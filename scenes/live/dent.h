@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/tick/features.h"
-#include "models/training/trend_rows.h"
+#include "models/trend/trend_columns.h"
 
 namespace palpate {
 

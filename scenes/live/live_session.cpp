@@ -7,7 +7,7 @@
 
 #include "engine/base/text.h"
 #include "models/model/fitted_model.h"
-#include "models/recordings/recording_faults.h"
+#include "models/samples/recording_faults.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/folders.h"
 
@@ -158,8 +158,13 @@ Status LiveSession::begin(const std::vector<ModelRequest>& plans) {
 
 LiveSession::~LiveSession() {
   models_.cancel();
+  close();
+}
+
+void LiveSession::close() {
   recorder_.reset();  // completes a recording
   if (loop_ != nullptr) loop_->stop();
+  device_->close();
 }
 
 void LiveSession::update() {

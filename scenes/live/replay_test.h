@@ -12,8 +12,8 @@
 
 #include "engine/live/device.h"
 #include "engine/tick/jnd.h"
-#include "models/surface/surface_search.h"
 #include "scenes/evaluation/model_errors.h"
+#include "scenes/evaluation/surface_search.h"
 
 namespace palpate {
 

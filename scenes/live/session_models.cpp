@@ -6,7 +6,7 @@
 
 #include "engine/base/text.h"
 #include "models/model/file/model_io.h"
-#include "models/training/trend_rows.h"
+#include "models/trend/trend_columns.h"
 
 namespace palpate {
 SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices)

@@ -4,7 +4,7 @@
 #include <ranges>
 #include <utility>
 
-#include "models/fit/methods.h"
+#include "models/correction/methods.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/scene/scene.h"
 
@@ -176,7 +176,7 @@ class Measurement {
   }
 
   void remember(const PreparedTraining& paper, const PreparedTraining& palpate) {
-    data_.surfaces = palpate.common.provenance.surfaces;
+    data_.surfaces = palpate.common.provenance.offsets;
     data_.gains = palpate.gains;
     data_.corrects = palpate.corrects();
     data_.papers_times_s = relaxation_times_s(paper.common.features);

@@ -275,7 +275,7 @@ std::string learnt_html(const ReportData& data) {
                                     : "Cross-validated by number of centres, on the trend",
                 joined(sizes));
   }
-  for (const RecordingSurface& surface : data.surfaces) {
+  for (const RecordingOffset& surface : data.surfaces) {
     html += row(("Surface of " + escape_html(surface.name)).c_str(),
                 fixed(1e3 * surface.offset_m, 3) + " mm" +
                     (std::isfinite(surface.standard_error_m) ? " ± " + fixed(1e3 * surface.standard_error_m, 3) + " mm"

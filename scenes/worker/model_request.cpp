@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/tick/haptics_tick.h"
-#include "models/fit/methods.h"
+#include "models/correction/methods.h"
 #include "models/model/file/model_io.h"
 
 namespace palpate {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "models/linear/lapack.h"
-#include "models/recordings/recording_faults.h"
+#include "models/samples/recording_faults.h"
 #include "scenes/evaluation/model_timing.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/scene.h"

@@ -98,8 +98,8 @@ TEST(SyntheticAccuracy, IdentifiedRelaxation) {
                                  {"gel", "silicone_block", {}, 0.985, 4.0}};
   for (const Material& material : kMaterials) {
     SCOPED_TRACE(material.name);
-    TrainingRequest request = scene_request(material.scene);
-    request.relaxation = Relaxation::automatic;
+    FitRequest request = scene_request(material.scene);
+    request.plan.relaxation = Relaxation::automatic;
     const PreparedTraining prepared = prepare({train_recording(material.name)}, request);
     // The candidates are four relaxation times per decade. One close to each true time must be selected.
     const std::vector<double> found_s = relaxation_times_s(prepared.common.features);
@@ -130,10 +130,9 @@ TEST(SyntheticAccuracy, StiffAndElasticBlocksWithTheFeaturesTheyNeed) {
 
 // Reduction by force steps and rows weighted by 1/f, as in Hoever & Harders (2009).
 TEST(SyntheticAccuracy, ThePapersRecipeReproducesThePaper) {
-  TrainingRequest request = recipe_2009_request(scene_request("silicone_block"));
-  request.relaxation = Relaxation::scene;
+  const FitRequest request = on_the_force(scene_request("silicone_block"));
   const PreparedTraining prepared = prepare({train_recording("maxwell")}, request);
-  EXPECT_NEAR(static_cast<double>(prepared.set.sites.size()), 6850.0, 150.0) << "the paper's N";
+  EXPECT_NEAR(static_cast<double>(prepared.sites.count()), 6850.0, 150.0) << "the paper's N";
   const ErrorSummary greedy = judged(prepared, &kGreedyMethod, test_recording("maxwell"));
   const ErrorSummary kdtree = judged(prepared, &kKdTreeMethod, test_recording("maxwell"));
   EXPECT_LT(worst_bin_over_jnd(greedy, 0.5), 1.0);

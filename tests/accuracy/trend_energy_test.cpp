@@ -95,7 +95,7 @@ ModelPtr trend_of(const std::string& material) {
   RigSettings settings = train_settings(material);
   settings.seconds = 15.0;
   settings.rate_Hz = 250.0;
-  return fit(prepare({rig_recording(settings)}, default_request("silicone_block")), find_method("trend"));
+  return fit(prepare({rig_recording(settings)}, default_request("silicone_block")), &kTrendMethod);
 }
 
 TEST(TrendEnergy, NoMotionFromRestEverGetsOutMoreThanWasPutIn) {

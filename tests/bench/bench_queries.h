@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 
-#include "models/training/sites.h"
+#include "models/correction/sites.h"
 
 namespace palpate::bench {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <string>
 
+#include "models/correction/fill_grid.h"
 #include "models/model/fitted_model.h"
 #include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/fill_grid.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
 

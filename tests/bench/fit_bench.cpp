@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "models/fit/fit_direct.h"
+#include "models/correction/fill_grid.h"
+#include "models/correction/fit_direct.h"
 #include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/fill_grid.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
 #include "tests/support/fit_centres.h"

@@ -40,7 +40,7 @@ const std::vector<ModelPtr>& loop_models(const std::string& material) {
                                                 : default_request("silicone_block"));
   if (simple) return models = fit_all(prepared);
   for (const char* method : {"trend", "direct", "voxel", "greedy"}) {
-    models.push_back(fit(prepared, find_method(method)));
+    models.push_back(fit(prepared, parse_plan(method)->method));
   }
   return models;
 }
@@ -62,7 +62,7 @@ void Rest::keep_worse(const Rest& other) {
 }
 
 Rest hold(const ForcePtr& model, const LoopSettings& settings, const HandPress& press, double seconds, double still_s) {
-  ClosedLoop loop(settings);
+  GuardedLoop loop(settings);
   loop.publish(model);
   const Grip& grip = settings.grip;
   Rest rest;

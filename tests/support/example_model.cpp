@@ -45,6 +45,14 @@ VoxelGrid random_grid(std::size_t dimension, std::uint64_t seed) {
   return grid;
 }
 
+// About 1.8 N at the greatest depth, twice as stiff there as at the surface.
+ElasticSpline stiffening_spline() {
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < kElasticTerms; ++i)
+    weights.push_back(1.2 + 1.2 * static_cast<double>(i) / kElasticTerms);
+  return combined_spline(spline_basis(), weights.data());
+}
+
 Provenance example_provenance() {
   Provenance from;
   from.recordings = {"press-1", "press-2"};
@@ -54,7 +62,7 @@ Provenance example_provenance() {
   from.samples_after_reduction = 6850;
   from.seed = 18446744073709551615ULL;
   from.weighting = "jnd";
-  from.reduction = "coverage";
+  from.thinning = "coverage";
   from.relaxation = "auto";
   from.training_within_jnd = 0.9991;
   return from;
@@ -127,7 +135,7 @@ ModelData example_model(const std::string& method, KernelKind kernel, std::vecto
   data.lower = data.offset - data.scale;
   data.upper = data.offset + data.scale;
   data.trend.reference_depth_m = kDepth_m;
-  data.trend.elastic = spline_from_powers({1.0, 0.4, 0.3}, {0.2, 0.0, 0.1});
+  data.trend.elastic = stiffening_spline();
   data.trend.viscosity_Ns_per_m = {1.0, 0.5, -0.0};
   data.trend.thinning_Ns_per_m = {0.5, 0.0, 0.25};
   data.trend.thinning_velocity_m_per_s = 0.05;
@@ -162,11 +170,10 @@ std::vector<ModelData> example_models() {
       example_model("trend", KernelKind::cubic, maxwell_features(), 9),
       example_model("greedy", KernelKind::cubic, paper_features(), 8),
   };
-  models.back().corrects_trend = false;
-  models.back().name = "paper-recipe";
+  models.back().trend = Trend{.reference_depth_m = kDepth_m};
+  models.back().name = "on-the-force";
   models.push_back(example_model("greedy", KernelKind::cubic, memory_features(), 21));
   models.push_back(example_model("greedy", KernelKind::cubic, lagging_features(), 22));
-  models.back().trend.elastic = spline_from_powers({1.0, 0.4, 0.3}, models.back().features[1].drive.knot_N);
   models.back().features[0].surface_position_m = 0.4e-3;
   return models;
 }

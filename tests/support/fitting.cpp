@@ -67,33 +67,42 @@ std::vector<RecordingPtr> skin_recordings(const std::string& kind, const std::ve
   return recordings;
 }
 
-TrainingRequest default_request(const std::string& scene) { return training_request(must(load_scene(scene))); }
+FitRequest default_request(const std::string& scene) { return {training_scene(must(load_scene(scene)))}; }
 
-TrainingRequest scene_request(const std::string& scene) {
-  TrainingRequest request = default_request(scene);
-  request.choice = FeatureChoice::scene;
-  return request;
+FitRequest scene_request(const std::string& scene) {
+  FitRequest setup = default_request(scene);
+  setup.plan.features = FeatureChoice::scene;
+  return setup;
 }
 
-TrainingRequest position_request() { return scene_request("elastic_block"); }
+FitRequest position_request() { return scene_request("elastic_block"); }
 
-PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request) {
+FitRequest on_the_force(FitRequest setup) {
+  setup.plan.base = Base::force;
+  return setup;
+}
+
+SamplesPointer samples_of(const std::vector<RecordingPtr>& recordings, const JndLine& jnd) {
   std::vector<PreparedRecordingPointer> prepared;
   for (const RecordingPtr& recording : recordings) prepared.push_back(prepare_recording(*recording));
-  MotionSource source(std::move(prepared));
-  return must(prepare_training(source, request));
+  return std::make_shared<const Samples>(must(make_samples(std::move(prepared), jnd)));
+}
+
+PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const FitRequest& setup) {
+  return must(prepare_training(samples_of(recordings, setup.scene.jnd), setup.scene, setup.plan));
 }
 
 ModelPtr fit(const PreparedTraining& prepared, const Method* method, std::uint64_t seed) {
-  MethodRequest request;
-  request.method = method;
-  request.seed = seed;
-  return std::make_shared<const FittedModel>(must(fit_method(prepared, request)).data);
+  const ModelPlan plan{
+      .base = prepared.correction ? Base::trend : Base::force, .method = method, .seed = seed};
+  return std::make_shared<const FittedModel>(must(fit_method(prepared, plan)).data);
 }
 
 std::vector<ModelPtr> fit_all(const PreparedTraining& prepared) {
   std::vector<ModelPtr> models;
-  for (const Method* method : methods()) models.push_back(fit(prepared, method));
+  for (const Method* method : methods()) {
+    if (prepared.correction || method != &kTrendMethod) models.push_back(fit(prepared, method));
+  }
   return models;
 }
 

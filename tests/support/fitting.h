@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "models/correction/methods.h"
 #include "models/fit/fit.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/material/rig.h"
@@ -39,15 +40,23 @@ RecordingPtr real_recording(const std::string& file);
 // `kind`: "train" or "test".
 std::vector<RecordingPtr> skin_recordings(const std::string& kind, const std::vector<std::string>& forces_mN);
 
-// The requests of `palpate fit --scene SCENE`, without and with `--features scene`.
-TrainingRequest default_request(const std::string& scene);
-TrainingRequest scene_request(const std::string& scene);
-// A request for a model with the depth as its only feature.
-TrainingRequest position_request();
+// What a scene and a plan give to a fit.
+struct FitRequest {
+  TrainingScene scene;
+  ModelPlan plan{};
+};
+// `palpate fit --scene SCENE`, without and with `--features scene`.
+FitRequest default_request(const std::string& scene);
+FitRequest scene_request(const std::string& scene);
+// A model with the depth as its only feature.
+FitRequest position_request();
+// The same with the methods on the measured force.
+FitRequest on_the_force(FitRequest setup);
 
-PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request);
+SamplesPointer samples_of(const std::vector<RecordingPtr>& recordings, const JndLine& jnd = {});
+PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const FitRequest& setup);
 ModelPtr fit(const PreparedTraining& prepared, const Method* method, std::uint64_t seed = 1);
-// One of each method, in the order of methods().
+// One of each method, in the order of methods(); on the measured force without the trend.
 std::vector<ModelPtr> fit_all(const PreparedTraining& prepared);
 
 // The errors over the samples in contact, as recorded.

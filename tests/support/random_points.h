@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "models/correction/sites.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/training/sites.h"
 
 namespace palpate::test {
 

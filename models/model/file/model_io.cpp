@@ -313,7 +313,7 @@ Result<std::string> write_model_text(const ModelData& data) {
   if (const Status status = check_forces(data); !status) return status.error();
   ModelData written = data;
   for (std::string& name : written.provenance.recordings) name = stem_of(name);
-  for (RecordingSurface& surface : written.provenance.surfaces) surface.name = stem_of(surface.name);
+  for (RecordingOffset& surface : written.provenance.offsets) surface.name = stem_of(surface.name);
   std::string text = ModelWriter().write(written);
   // What cannot be read is not written.
   if (const auto back = read_model_text(text, "its text"); !back) return back.error();

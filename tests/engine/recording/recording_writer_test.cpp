@@ -129,5 +129,39 @@ TEST(RecordingWriter, GivesTheSameFileRowByRowAndLeavesOutWhatIsRefused) {
   EXPECT_EQ(test::read_text(folder.file("rows.csv")), test::read_text(folder.file("whole.csv")));
 }
 
+TEST(RecordingWriter, ANameThatIsBeingWrittenIsRefusedAtTheStart) {
+  const test::TemporaryFolder folder;
+  const auto writer = [&](const char* name, bool overwrite) {
+    return RecordingWriter::create(folder.file(name), {}, {}, overwrite);
+  };
+  {
+    const auto first = writer("a.csv", false);
+    ASSERT_TRUE(first.ok());
+    for (const bool overwrite : {false, true}) {
+      const auto second = writer("a.csv", overwrite);
+      ASSERT_FALSE(second.ok());
+      EXPECT_TRUE(test::has_parts(second.error().message, {"a.csv: another recording is being written into it; "}));
+    }
+    EXPECT_FALSE(writer("./a.csv", false).ok()) << "the same file";
+    EXPECT_TRUE(writer("b.csv", false).ok());
+  }
+  EXPECT_TRUE(writer("a.csv", false).ok()) << "the first one was given up";
+}
+
+TEST(RecordingWriter, WritesNotesAboveTheRows) {
+  const test::TemporaryFolder folder;
+  auto writer = test::must(RecordingWriter::create(folder.file("a.csv"), {}, {"first"}, false));
+  for (int i = 0; i < 2000; ++i) {
+    ASSERT_TRUE(writer.add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
+    if (i % 80 == 40) writer.note("note " + std::to_string(i));
+    if (i == 1500) ASSERT_TRUE(writer.publish());
+  }
+  ASSERT_TRUE(writer.commit());
+  EXPECT_TRUE(test::has_parts(test::read_text(folder.file("a.csv")),
+                              {"# note 40\n# note 120\n", "# 5 more such notes\n# first\ntime_s,"}));
+  EXPECT_EQ(test::must(read_recording(folder.file("a.csv"))).rows.size(), 2000u);
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
+}
+
 }  // namespace
 }  // namespace palpate

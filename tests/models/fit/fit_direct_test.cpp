@@ -1,4 +1,4 @@
-#include "models/fit/fit_direct.h"
+#include "models/correction/fit_direct.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/correction/projected_kernel.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/projected_kernel.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"

@@ -1,4 +1,4 @@
-#include "models/fit/methods.h"
+#include "models/correction/methods.h"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "models/fit/fit_direct.h"
+#include "models/correction/fit_direct.h"
+#include "models/correction/projected_kernel.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/projected_kernel.h"
 
 namespace palpate {
 namespace {

@@ -1,5 +1,5 @@
 // Shifts between the force curves of two recordings, with shapes whose shift is known.
-#include "models/recordings/force_curve.h"
+#include "models/check/force_curve.h"
 
 #include <gtest/gtest.h>
 

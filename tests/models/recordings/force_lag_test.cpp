@@ -1,5 +1,5 @@
 // Identification of a force lag, separately from viscosity (a force lead), and without false alarms.
-#include "models/recordings/force_lag.h"
+#include "models/check/force_lag.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The search for an offset: identified if the blocks agree, never at an edge or between two minima.
-#include "models/recordings/profile_search.h"
+#include "models/samples/profile_search.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "models/recordings/surface_estimate.h"
+#include "models/samples/surface_estimate.h"
 
 #include <gtest/gtest.h>
 

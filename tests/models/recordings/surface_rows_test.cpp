@@ -1,4 +1,4 @@
-#include "models/recordings/surface_rows.h"
+#include "models/samples/sample.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "models/solve/candidate_gains.h"
+#include "models/correction/candidate_gains.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "models/solve/solve_weights.h"
+#include "models/correction/solve_weights.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "models/fit/fit_direct.h"
-#include "models/solve/projected_kernel.h"
+#include "models/correction/fit_direct.h"
+#include "models/correction/projected_kernel.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 

@@ -9,9 +9,9 @@
 
 #include "engine/recording/recording.h"
 #include "engine/tick/replay.h"
+#include "models/check/force_lag.h"
 #include "models/model/file/model_io.h"
-#include "models/recordings/force_lag.h"
-#include "models/recordings/surface_estimate.h"
+#include "models/samples/surface_estimate.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/material/material.h"
 #include "scenes/material/rig.h"
@@ -60,7 +60,7 @@ TEST(SurfaceRegistration, InventsNothing) {
     const std::string name(material.name);
     const RegisteredSurfaces found = registered({rig(name, 4), rig(name, 5)});
     EXPECT_EQ(found.surface_position_m, 0.0) << name;
-    for (const RecordingSurface& surface : found.recordings) {
+    for (const RecordingOffset& surface : found.recordings) {
       EXPECT_EQ(surface.lag_s, 0.0) << name;
       EXPECT_EQ(surface.offset_m, 0.0) << name;
       EXPECT_EQ(surface.force_zero_N, 0.0) << name;
@@ -98,7 +98,7 @@ TEST(SurfaceRegistration, TwoSpeedsAreNotAShift) {
     return recording;
   };
   const RegisteredSurfaces found = registered({pressed(2e-3), pressed(50e-3)});
-  for (const RecordingSurface& surface : found.recordings) EXPECT_EQ(surface.offset_m, 0.0);
+  for (const RecordingOffset& surface : found.recordings) EXPECT_EQ(surface.offset_m, 0.0);
 }
 
 // A porous solid under cyclic presses: the pressure of its fluid relaxes within times of 4 s / (2 n + 1)^2, and acts on
@@ -135,7 +135,7 @@ TEST(SurfaceRegistration, FrequenciesOfAPorousSolidAreNoOffsets) {
   const std::vector<RecordingPtr> recordings{porous_presses(0.2, 4e-3, 20.0), porous_presses(1.0, 4e-3, 10.0),
                                              porous_presses(0.5, 2e-3, 10.0)};
   const PreparedTraining prepared = test::prepare(recordings, test::default_request("silicone_block"));
-  for (const auto& surface : prepared.common.provenance.surfaces) EXPECT_EQ(surface.offset_m, 0.0) << surface.name;
+  for (const auto& surface : prepared.common.provenance.offsets) EXPECT_EQ(surface.offset_m, 0.0) << surface.name;
   const test::ModelPtr model = test::fit(prepared, find_method("trend"));
   // 0.84; with the offsets 0.68.
   EXPECT_GT(test::judge(*porous_presses(0.4, 3.5e-3, 15.0), model).within_jnd, 0.8);
@@ -146,7 +146,7 @@ TEST(SurfaceRegistration, ACommonShiftIsTheModelsSurface) {
   for (const double shift_m : {-0.55e-3, 0.55e-3}) {
     const RegisteredSurfaces found = registered({rig("maxwell", 1, shift_m), rig("maxwell", 2, shift_m)});
     EXPECT_NEAR(found.surface_position_m, shift_m, 0.05e-3);
-    for (const RecordingSurface& surface : found.recordings) EXPECT_EQ(surface.offset_m, 0.0);
+    for (const RecordingOffset& surface : found.recordings) EXPECT_EQ(surface.offset_m, 0.0);
     EXPECT_NEAR(registered({rig("maxwell", 1, shift_m)}).surface_position_m, shift_m, 0.05e-3);
   }
 }
@@ -162,7 +162,7 @@ TEST(SurfaceRegistration, ALagThatTheRecordingsShareIsTheRigs) {
   EXPECT_NEAR(registered({late(1), late(2)}).recordings[0].lag_s, 10e-3, 2e-3);
   // The trend confirms it.
   const PreparedTraining prepared = test::prepare({late(1), late(2)}, test::default_request("silicone_block"));
-  for (const auto& surface : prepared.common.provenance.surfaces) EXPECT_NEAR(surface.lag_s, 10e-3, 2e-3);
+  for (const auto& surface : prepared.common.provenance.offsets) EXPECT_NEAR(surface.lag_s, 10e-3, 2e-3);
 }
 
 // A press from 1.2 mm to 3.2 mm and back, always in contact.
@@ -206,16 +206,16 @@ TEST(SurfaceRegistration, TheOrderOfRecordingsChangesNoByteOfTheModel) {
 TEST(SurfaceRegistration, AModelSaysWhereItsRecordingsWere) {
   const auto prepared =
       test::prepare({rig("maxwell", 2, 0.5e-3), rig("maxwell", 3)}, test::scene_request("silicone_block"));
-  const auto& surfaces = prepared.common.provenance.surfaces;
+  const auto& surfaces = prepared.common.provenance.offsets;
   ASSERT_EQ(surfaces.size(), 2u);
   // Either of the two may be moved.
   EXPECT_NEAR(surfaces[1].offset_m - surfaces[0].offset_m, 0.5e-3, 0.1e-3);
   const auto model = test::fit(prepared, &kRandomMethod);
   const ModelData back = test::must(read_model_text(test::must(write_model_text(model->data())), "m.json"));
-  ASSERT_EQ(back.provenance.surfaces.size(), 2u);
-  EXPECT_EQ(back.provenance.surfaces[1].offset_m, surfaces[1].offset_m);
-  EXPECT_EQ(back.provenance.surfaces[1].standard_error_m, surfaces[1].standard_error_m);
-  EXPECT_EQ(back.provenance.surfaces[1].force_zero_N, surfaces[1].force_zero_N);
+  ASSERT_EQ(back.provenance.offsets.size(), 2u);
+  EXPECT_EQ(back.provenance.offsets[1].offset_m, surfaces[1].offset_m);
+  EXPECT_EQ(back.provenance.offsets[1].standard_error_m, surfaces[1].standard_error_m);
+  EXPECT_EQ(back.provenance.offsets[1].force_zero_N, surfaces[1].force_zero_N);
 }
 
 // Two recordings with the same name: each has its own offset.
@@ -228,7 +228,7 @@ TEST(SurfaceRegistration, SurfacesAreKnownByTheContentOfTheirRecordings) {
   }
   const auto prepared = test::prepare(recordings, test::scene_request("silicone_block"));
   double offsets_m[2] = {NAN, NAN};
-  for (const RecordingSurface& surface : prepared.common.provenance.surfaces) {
+  for (const RecordingOffset& surface : prepared.common.provenance.offsets) {
     for (std::size_t i = 0; i < 2; ++i)
       if (surface.content_hash == content_hash(*recordings[i])) offsets_m[i] = surface.offset_m;
   }
@@ -256,7 +256,7 @@ TEST(SurfaceRegistration, RecordedSwitchesItOff) {
   TrainingRequest request = test::scene_request("silicone_block");
   request.surface = Surface::recorded;
   const auto prepared = test::prepare({rig("maxwell", 2, 0.5e-3)}, request);
-  EXPECT_TRUE(prepared.common.provenance.surfaces.empty());
+  EXPECT_TRUE(prepared.common.provenance.offsets.empty());
   EXPECT_EQ(surface_position_m(prepared.common.features), 0.0);
 }
 

@@ -1,4 +1,4 @@
-#include "models/surface/surface_search.h"
+#include "scenes/evaluation/surface_search.h"
 
 #include <gtest/gtest.h>
 

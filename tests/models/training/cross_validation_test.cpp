@@ -1,4 +1,4 @@
-#include "models/training/cross_validation.h"
+#include "models/samples/cross_validation.h"
 
 #include <gtest/gtest.h>
 

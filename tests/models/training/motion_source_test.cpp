@@ -1,4 +1,4 @@
-#include "models/training/motion_source.h"
+#include "models/samples/samples.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 namespace palpate {
 namespace {
 
-RecordingSurface corrected_by(double offset_m, double force_zero_N) {
-  RecordingSurface surface;
+RecordingOffset corrected_by(double offset_m, double force_zero_N) {
+  RecordingOffset surface;
   surface.offset_m = offset_m;
   surface.force_zero_N = force_zero_N;
   return surface;

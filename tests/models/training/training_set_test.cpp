@@ -1,4 +1,4 @@
-#include "models/training/training_set.h"
+#include "models/correction/thinning.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "models/training/trend_estimator.h"
+#include "models/trend/trend_estimator.h"
 
 #include <gtest/gtest.h>
 

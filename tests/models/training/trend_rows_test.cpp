@@ -1,4 +1,4 @@
-#include "models/training/trend_rows.h"
+#include "models/trend/trend_columns.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "models/fit/methods.h"
+#include "models/correction/methods.h"
 #include "scenes/material/rig.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"

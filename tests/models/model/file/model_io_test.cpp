@@ -125,11 +125,11 @@ TEST(ModelIo, AwkwardNumbersRoundTripBitForBit) {
                             3.0,
                             std::nextafter(1.0, 2.0)};
   // This field accepts any number.
-  for (const double offset_m : awkward) data.provenance.surfaces.push_back({"press-1", offset_m, 0.0, 0.0});
+  for (const double offset_m : awkward) data.provenance.offsets.push_back({"press-1", offset_m, 0.0, 0.0});
   const ModelData back = read_back(data);
-  ASSERT_EQ(back.provenance.surfaces.size(), std::size(awkward));
+  ASSERT_EQ(back.provenance.offsets.size(), std::size(awkward));
   for (std::size_t i = 0; i < std::size(awkward); ++i) {
-    EXPECT_EQ(bits(back.provenance.surfaces[i].offset_m), bits(awkward[i])) << awkward[i];
+    EXPECT_EQ(bits(back.provenance.offsets[i].offset_m), bits(awkward[i])) << awkward[i];
   }
 }
 

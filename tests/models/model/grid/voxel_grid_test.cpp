@@ -1,5 +1,5 @@
 #include "models/model/grid/voxel_grid.h"
-#include "models/solve/fill_grid.h"
+#include "models/correction/fill_grid.h"
 
 #include <gtest/gtest.h>
 

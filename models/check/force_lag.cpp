@@ -1,0 +1,211 @@
+#include "models/check/force_lag.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+
+#include "engine/tick/sensor_identification.h"
+#include "models/linear/non_negative.h"
+
+namespace palpate {
+namespace {
+
+// The force at `time_s`, interpolated between two of the rows; none before the first and after the last. `rows`: in
+// time order, Sample or derived. `at`: index of the first of the two, 0 at first; increases from call to call.
+std::optional<double> force_at(const std::vector<Sample>& rows, double time_s, std::size_t& at) {
+  while (at + 2 < rows.size() && rows[at + 1].tool.time_s < time_s) ++at;
+  if (at + 1 >= rows.size()) return std::nullopt;
+  const Sample& before = rows[at];
+  const Sample& after = rows[at + 1];
+  if (time_s < before.tool.time_s || time_s > after.tool.time_s) return std::nullopt;
+  const double share = (time_s - before.tool.time_s) / (after.tool.time_s - before.tool.time_s);
+  return before.force_N + share * (after.force_N - before.force_N);
+}
+
+constexpr double kMostLag_s = 0.05;
+constexpr double kCoarse_s = 0.005;  // between lags, and at least between rows
+constexpr double kFine_s = 0.2e-3;
+constexpr int kElastic = 24;
+constexpr int kBranch = 6;
+constexpr int kViscous = 6;
+constexpr std::array kTimes_s{0.03, 0.3, 3.0};
+constexpr int kFirstBranch = 2 + kElastic;  // after the constants
+constexpr int kFirstViscous = kFirstBranch + kBranch * static_cast<int>(kTimes_s.size());
+constexpr int kColumns = kFirstViscous + kViscous;
+constexpr double kForceShare = 0.03;
+constexpr double kHuberLimit = 3.0;
+constexpr int kPasses = 3;
+constexpr double kIdleScale = 0.1;
+
+// Integral of a hat: rises from 0 to 1 within one knot to either side.
+double rise(double u) {
+  if (u <= -1.0) return 0.0;
+  if (u >= 1.0) return 1.0;
+  return u < 0.0 ? 0.5 * (u + 1.0) * (u + 1.0) : 1.0 - 0.5 * (1.0 - u) * (1.0 - u);
+}
+
+double hat(double u) { return std::max(0.0, 1.0 - std::abs(u)); }
+
+// Position and velocity at any time, by cubic Hermite interpolation between the rows.
+class MotionAt {
+ public:
+  explicit MotionAt(const std::vector<Sample>& rows) : rows_(rows) {}
+
+  MotionEstimate operator()(double time_s) {
+    while (at_ + 2 < rows_.size() && rows_[at_ + 1].tool.time_s <= time_s) ++at_;
+    const Sample& a = rows_[at_];
+    const Sample& b = rows_[at_ + 1];
+    const double step_s = b.tool.time_s - a.tool.time_s;
+    const double u = std::clamp((time_s - a.tool.time_s) / step_s, 0.0, 1.0);
+    const double step_m = b.motion.position_m - a.motion.position_m;
+    const double c = step_s * a.motion.velocity_m_per_s - step_m;
+    const double d = -step_s * b.motion.velocity_m_per_s + step_m;
+    return {a.motion.position_m + u * step_m + u * (1.0 - u) * (c * (1.0 - u) + d * u),
+            a.motion.velocity_m_per_s + u * (b.motion.velocity_m_per_s - a.motion.velocity_m_per_s)};
+  }
+
+ private:
+  const std::vector<Sample>& rows_;
+  std::size_t at_ = 0;
+};
+
+// The regression of the recording with one lag.
+class LagRegression {
+ public:
+  // `noise_N`: standard deviation of the forces.
+  LagRegression(const std::vector<Sample>& rows, double noise_N)
+      : rows_(rows), noise_N_(noise_N), block_(blocks_by_path(rows)) {
+    std::tie(low_m_, high_m_) = position_range_m(rows);
+    const auto count = static_cast<Eigen::Index>(rows.size());
+    force_N_.resize(count);
+    scale_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      force_N_(i) = rows[static_cast<std::size_t>(i)].force_N;
+      scale_(i) = 1.0 / (no_force_N(noise_N) + kForceShare * std::abs(force_N_(i)));
+    }
+  }
+
+  // The cost J of the fit at this lag, by blocks of equal path length.
+  BlockCosts costs(double lag_s) const {
+    const Design design = design_at(lag_s);
+    Eigen::VectorXd scale = scale_;
+    Eigen::VectorXd predicted_N;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const Design scaled = scale.asDiagonal() * design;
+      const Eigen::MatrixXd gram = scaled.transpose() * scaled;
+      predicted_N = design * solve_non_negative(gram, scaled.transpose() * scale.cwiseProduct(force_N_));
+      for (Eigen::Index i = 0; i < scale.size(); ++i) {
+        // An idle row counts a hundredth: without any the next fit would be free there.
+        const double idle = is_idle(i, predicted_N(i)) ? kIdleScale : 1.0;
+        const double size = std::max(std::abs(error(i, predicted_N(i))), 1e-12);
+        scale(i) = scale_(i) * idle * std::sqrt(std::min(1.0, kHuberLimit / size));
+      }
+    }
+    BlockCosts costs(kBlocks, 0.0);
+    for (Eigen::Index i = 0; i < force_N_.size(); ++i)
+      costs[block_[static_cast<std::size_t>(i)]] += huber(error(i, predicted_N(i)), kHuberLimit);
+    return costs;
+  }
+
+ private:
+  using Design = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  Design design_at(double lag_s) const {
+    Design design(force_N_.size(), kColumns);
+    MotionAt motion_at(rows_);
+    std::array<double, kBranch> drive{};
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const MotionEstimate motion = motion_at(rows_[r].tool.time_s - lag_s);
+      const double x = (motion.position_m - low_m_) / (high_m_ - low_m_);
+      double* row = design.row(static_cast<Eigen::Index>(r)).data();
+      row[0] = 1.0;
+      row[1] = -1.0;
+      for (int k = 0; k < kElastic; ++k) row[2 + k] = rise(x * kElastic - (k + 0.5));
+      for (int k = 0; k < kViscous; ++k)
+        row[kFirstViscous + k] = motion.velocity_m_per_s * hat(std::clamp(x, 0.0, 1.0) * (kViscous - 1) - k);
+      std::array<double, kBranch> rising{};
+      for (int k = 0; k < kBranch; ++k) rising[static_cast<std::size_t>(k)] = rise(x * kBranch - (k + 0.5));
+      const double step_s = r > 0 ? rows_[r].tool.time_s - rows_[r - 1].tool.time_s : 0.0;
+      for (std::size_t t = 0; t < kTimes_s.size(); ++t) {
+        const double keep = std::exp(-step_s / kTimes_s[t]);
+        const double gain = r > 0 ? kTimes_s[t] * (1.0 - keep) / step_s : 0.0;
+        double* state = row + kFirstBranch + kBranch * static_cast<int>(t);
+        const double* before = state - kColumns;
+        for (std::size_t k = 0; k < kBranch; ++k)
+          state[k] = r > 0 ? keep * before[k] + gain * (rising[k] - drive[k]) : 0.0;
+      }
+      drive = rising;
+    }
+    return design;
+  }
+
+  // Contact is one-sided: where no force is measured the fit may be below 0.
+  bool is_idle(Eigen::Index i, double predicted_N) const {
+    return predicted_N < 0.0 && std::abs(force_N_(i)) <= no_force_N(noise_N_);
+  }
+
+  double error(Eigen::Index i, double predicted_N) const {
+    return is_idle(i, predicted_N) ? 0.0 : (force_N_(i) - predicted_N) * scale_(i);
+  }
+
+  const std::vector<Sample>& rows_;
+  double noise_N_;
+  std::vector<std::size_t> block_;
+  double low_m_ = 0.0;
+  double high_m_ = 0.0;
+  Eigen::VectorXd force_N_;
+  Eigen::VectorXd scale_;  // 1 / N
+};
+
+// Strokes at different speeds distinguish a lag from memory; one press does not.
+constexpr int kLeastStrokes = 3;
+
+// Counts how often the tool passes the middle of its range inwards.
+int strokes_of(const std::vector<Sample>& rows, double middle_m) {
+  int strokes = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i - 1].motion.position_m <= middle_m && rows[i].motion.position_m > middle_m) ++strokes;
+  }
+  return strokes;
+}
+
+// The first kSearchRows rows with at least kCoarse_s between them.
+std::vector<Sample> first_rows(const std::vector<Sample>& rows) {
+  std::vector<Sample> kept;
+  for (const Sample& row : rows) {
+    if (kept.size() == kSearchRows) break;
+    if (kept.empty() || row.tool.time_s >= kept.back().tool.time_s + kCoarse_s) kept.push_back(row);
+  }
+  return kept;
+}
+
+}  // namespace
+
+OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_noise_N) {
+  const std::vector<Sample> some = first_rows(rows);
+  if (some.size() < 100) return {};
+  const double step_s = (some.back().tool.time_s - some.front().tool.time_s) / static_cast<double>(some.size() - 1);
+  if (step_s > 10.0 * kLagAccuracy_s) return {};
+  const auto [low_m, high_m] = position_range_m(some);
+  if (!(high_m > low_m) || strokes_of(some, 0.5 * (low_m + high_m)) < kLeastStrokes) return {};
+  const LagRegression regression(some, force_noise_N);
+  return estimate_offset([&](double lag_s) { return regression.costs(lag_s); },
+                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kLagAccuracy_s, kLagAccuracy_s});
+}
+
+std::vector<Sample> without_lag(const std::vector<Sample>& rows, double lag_s) {
+  std::vector<Sample> moved;
+  std::size_t at = 0;
+  for (const Sample& row : rows) {
+    const auto force_N = force_at(rows, row.tool.time_s + lag_s, at);
+    if (!force_N) continue;
+    moved.push_back(row);
+    moved.back().force_N = *force_N;
+  }
+  return moved;
+}
+
+}  // namespace palpate

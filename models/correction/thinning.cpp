@@ -1,0 +1,132 @@
+#include "models/correction/thinning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "models/samples/weighting.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kGrowth = 1.25;
+
+// The samples that make a site: their mean and number.
+struct Mean {
+  std::array<double, kMaxFeatures> u{};  // normalised features
+  double force_N = 0.0;
+  double count = 1.0;
+  int fold = 0;
+  int recording = 0;
+};
+
+using CellKey = std::array<std::int32_t, kMaxFeatures + 1>;
+struct CellHash {
+  std::size_t operator()(const CellKey& key) const {
+    return std::hash<std::string_view>{}({reinterpret_cast<const char*>(key.data()), sizeof key});
+  }
+};
+
+// Replaces the samples in each visited cube of the feature space by their mean.
+std::vector<Mean> covered(const std::vector<Mean>& samples, double no_force_N) {
+  std::vector<Mean> sites;
+  std::unordered_map<CellKey, std::size_t, CellHash> cells;  // index of the site of each visited cube
+  double step = kCoverageStep;
+  const auto add = [&](const Mean& site) {
+    CellKey key{};
+    for (std::size_t i = 0; i < kMaxFeatures; ++i)
+      key[i] = static_cast<std::int32_t>(std::clamp(std::floor(site.u[i] / step), -1e9, 1e9));
+    key[kMaxFeatures] = 2 * site.fold + (std::abs(site.force_N) <= no_force_N ? 1 : 0);
+    const auto [cell, fresh] = cells.try_emplace(key, sites.size());
+    if (fresh) {
+      sites.push_back(site);
+      return;
+    }
+    Mean& mean = sites[cell->second];
+    mean.count += site.count;
+    const double share = site.count / mean.count;
+    for (std::size_t i = 0; i < kMaxFeatures; ++i) mean.u[i] += share * (site.u[i] - mean.u[i]);
+    mean.force_N += share * (site.force_N - mean.force_N);
+  };
+  for (const Mean& sample : samples) {
+    add(sample);
+    while (sites.size() > kCoverageSites) {
+      step *= kGrowth;
+      cells.clear();
+      for (const Mean& one : std::exchange(sites, {})) add(one);
+    }
+  }
+  return sites;
+}
+
+// The reduction of the paper. `step_N`: receives the step.
+std::vector<Mean> force_reduced(const std::vector<Mean>& samples, double& step_N) {
+  for (step_N = kReductionForce_N;; step_N *= kGrowth) {
+    std::vector<Mean> kept;
+    for (const Mean& one : samples) {
+      const bool near = !kept.empty() && one.recording == kept.back().recording &&
+                        std::abs(one.force_N - kept.back().force_N) < step_N;
+      if (!near) kept.push_back(one);
+    }
+    if (kept.size() <= kMaximumSites) return kept;
+  }
+}
+
+}  // namespace
+
+Normalisation normalisation_of(const Eigen::MatrixXd& features) {
+  const Eigen::VectorXd mean = features.rowwise().mean();
+  Normalisation result{mean, Eigen::VectorXd::Ones(mean.size()), features.rowwise().minCoeff(),
+                       features.rowwise().maxCoeff()};
+  for (Eigen::Index i = 0; i < mean.size(); ++i) {
+    const double variance = (features.row(i).array() - mean(i)).square().mean();
+    const double scale = std::sqrt((result.upper(i) - result.lower(i)) * 4.0 * std::sqrt(variance));
+    // A spread at the level of rounding counts as 0; the scale stays 1.
+    if (scale > 1e-12 * std::max(std::abs(result.lower(i)), std::abs(result.upper(i)))) result.scale(i) = scale;
+  }
+  return result;
+}
+
+Eigen::VectorXd Normalisation::scale_of(double range_exponent) const {
+  Eigen::VectorXd other = scale;
+  for (Eigen::Index k = 0; k < other.size(); ++k) {
+    const double range = upper(k) - lower(k);
+    if (range > 0.0) other(k) = range * std::pow(scale(k) / range, 2.0 * (1.0 - range_exponent));
+  }
+  return other;
+}
+
+Sites thin(const Samples& samples, const Eigen::MatrixXd& features, const Normalisation& normalisation,
+           Thinning thinning, double& step_N) {
+  std::vector<Mean> means(samples.contact.size());
+  const Eigen::Index d = features.rows();
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    Eigen::Map<Eigen::VectorXd>(means[k].u.data(), d) =
+        (features.col(static_cast<Eigen::Index>(k)) - normalisation.offset).cwiseQuotient(normalisation.scale);
+    const std::size_t row = samples.contact[k];
+    means[k].force_N = samples.rows[row].force_N;
+    means[k].fold = samples.fold[row];
+    means[k].recording = samples.recording[row];
+  }
+  if (thinning == Thinning::coverage) means = covered(means, samples.no_force_N());
+  if (thinning == Thinning::force) means = force_reduced(means, step_N);
+  const auto count = static_cast<Eigen::Index>(means.size());
+  Sites sites;
+  sites.points.resize(d, count);
+  for (Eigen::VectorXd* column : {&sites.target_N, &sites.row_scale, &sites.force_N, &sites.samples})
+    column->setZero(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Mean& mean = means[static_cast<std::size_t>(k)];
+    sites.points.col(k) = Eigen::Map<const Eigen::VectorXd>(mean.u.data(), d);
+    sites.force_N(k) = mean.force_N;
+    sites.samples(k) = mean.count;
+    sites.fold.push_back(mean.fold);
+  }
+  return sites;
+}
+
+}  // namespace palpate

@@ -1,0 +1,207 @@
+#include "models/samples/profile_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kMostValleys = 4;
+constexpr double kMostScans = 1e6;
+constexpr double kForceResolution = 1e-3;  // of the largest force
+constexpr double kGolden = 0.6180339887498949;
+constexpr int kMostGoldenSteps = 100;  // an interval shrinks by 1e-21: beyond the digits of any number
+// Replaces a cost that is not finite: worse than any other, and sums of it stay finite.
+constexpr double kWorstCost = 1e100;
+
+double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
+
+// Whether the sum of `one` exceeds the sum of `best` by at most one standard error of their paired differences.
+bool is_within_one_standard_error(const std::vector<double>& one, const std::vector<double>& best) {
+  const auto count = static_cast<double>(one.size());
+  const double sum = std::accumulate(one.begin(), one.end(), 0.0) - std::accumulate(best.begin(), best.end(), 0.0);
+  if (count < 2.0) return sum <= 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k) squares += std::pow(one[k] - best[k] - sum / count, 2);
+  return sum <= std::sqrt(squares * count / (count - 1.0));
+}
+
+// Whether `one` is significantly worse than `best` (profile_search.h). The tenth of the mean block damps blocks with
+// small costs, whose relative differences are noise.
+bool is_significantly_worse(const std::vector<double>& one, const std::vector<double>& best) {
+  constexpr double kLeastBlock = 0.1;
+  const auto count = static_cast<double>(one.size());
+  const double least = kLeastBlock * std::accumulate(best.begin(), best.end(), 0.0) / count;
+  double mean = 0.0;
+  double squares = 0.0;
+  for (std::size_t b = 0; b < one.size(); ++b) {
+    const double whole = one[b] + best[b] + least;
+    const double share = whole > 0.0 ? (one[b] - best[b]) / whole : 0.0;
+    mean += share / count;
+    squares += share * share;
+  }
+  const double variance = std::max(0.0, squares / count - mean * mean) / std::max(1.0, count - 1.0);
+  return mean > 2.0 * std::sqrt(variance);
+}
+
+struct Candidate {
+  double at = 0.0;
+  BlockCosts costs;
+};
+
+Candidate candidate_at(const CostFunction& cost, double at) {
+  Candidate made{at, cost(at)};
+  for (double& one : made.costs) one = std::abs(one) < kWorstCost ? one : kWorstCost;
+  return made;
+}
+
+// The minimum between `low` and `high` by golden sections.
+Candidate golden(const CostFunction& cost, double low, double high, double fine_step) {
+  Candidate a = candidate_at(cost, high - kGolden * (high - low));
+  Candidate b = candidate_at(cost, low + kGolden * (high - low));
+  for (int step = 0; step < kMostGoldenSteps && high - low > fine_step; ++step) {
+    if (sum(a.costs) < sum(b.costs)) {
+      high = b.at;
+      b = std::move(a);
+      a = candidate_at(cost, high - kGolden * (high - low));
+    } else {
+      low = a.at;
+      a = std::move(b);
+      b = candidate_at(cost, low + kGolden * (high - low));
+    }
+  }
+  return sum(a.costs) < sum(b.costs) ? a : b;
+}
+
+class Search {
+ public:
+  Search(const CostFunction& cost, const SearchRange& range) : cost_(cost), range_(range) {}
+
+  OffsetEstimate run() {
+    if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans)) return {};
+    scan();
+    const Candidate zero = candidate_at(cost_, 0.0);
+    const double effect = range_.systematic_effect;
+    const bool any_better = std::any_of(scanned_.begin(), scanned_.end(), [&](const Candidate& one) {
+      return is_significantly_worse(zero.costs, one.costs);
+    });
+    if (effect > 0.0 && !any_better) return {};
+    refine_valleys();
+    look_around();
+    OffsetEstimate found;
+    found.standard_error = jackknife_error();
+    double half = kSignificantErrors * found.standard_error;
+    found.identified = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
+    if (effect > 0.0) {
+      found.identified =
+          found.identified && significantly_worse(best_.at - effect) && significantly_worse(best_.at + effect);
+      half += effect;
+      found.standard_error = std::max(found.standard_error, effect / kSignificantErrors);
+    }
+    found.not_zero = std::abs(best_.at) > half;
+    if (effect > 0.0 && found.not_zero && !is_significantly_worse(zero.costs, best_.costs)) found.identified = false;
+    if (!found.identified) found.standard_error = kUnknownError;
+    if (found.identified && found.not_zero) found.at = best_.at;
+    found.minimum_at = best_.at;
+    found.minimum = best_.costs;
+    return found;
+  }
+
+ private:
+  void scan() {
+    const auto steps = static_cast<int>((range_.high - range_.low) / range_.coarse_step) + 1;
+    for (int i = 0; i <= steps; ++i)
+      scanned_.push_back(candidate_at(cost_, range_.low + (range_.high - range_.low) * i / steps));
+  }
+
+  void refine_valleys() {
+    std::vector<std::size_t> valleys;
+    for (std::size_t i = 0; i < scanned_.size(); ++i) {
+      const double here = sum(scanned_[i].costs);
+      const bool left = i == 0 || here <= sum(scanned_[i - 1].costs);
+      const bool right = i + 1 == scanned_.size() || here < sum(scanned_[i + 1].costs);
+      if (left && right) valleys.push_back(i);
+    }
+    std::sort(valleys.begin(), valleys.end(),
+              [&](std::size_t a, std::size_t b) { return sum(scanned_[a].costs) < sum(scanned_[b].costs); });
+    valleys.resize(std::min(valleys.size(), kMostValleys));
+    std::vector<Candidate> bottoms;
+    for (const std::size_t valley : valleys) {
+      const double around = scanned_[valley].at;
+      bottoms.push_back(golden(cost_, std::max(range_.low, around - range_.coarse_step),
+                               std::min(range_.high, around + range_.coarse_step), range_.fine_step));
+      scanned_.push_back(bottoms.back());
+    }
+    best_ = *std::min_element(bottoms.begin(), bottoms.end(),
+                              [](const Candidate& a, const Candidate& b) { return sum(a.costs) < sum(b.costs); });
+    alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const Candidate& one) {
+      return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_significantly_worse(one.costs, best_.costs);
+    });
+  }
+
+  // Adds offsets at growing distances from the best, for the minima of the jackknife.
+  void look_around() {
+    for (double step = range_.fine_step; step < range_.coarse_step; step *= 2.0) {
+      for (const double at : {best_.at - step, best_.at + step}) {
+        if (at > range_.low && at < range_.high) scanned_.push_back(candidate_at(cost_, at));
+      }
+    }
+    std::sort(scanned_.begin(), scanned_.end(), [](const Candidate& a, const Candidate& b) { return a.at < b.at; });
+  }
+
+  // The minimum of the cost without one block: a parabola through the best offset tried and its neighbours.
+  double best_without(std::size_t block) const {
+    const auto cost = [&](std::size_t i) { return sum(scanned_[i].costs) - scanned_[i].costs[block]; };
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < scanned_.size(); ++i) best = cost(i) < cost(best) ? i : best;
+    const double at = scanned_[best].at;
+    if (best == 0 || best + 1 == scanned_.size()) return at;
+    const double left = at - scanned_[best - 1].at;
+    const double right = scanned_[best + 1].at - at;
+    if (!(left > 0.0) || !(right > 0.0)) return at;
+    const double fall = (cost(best - 1) - cost(best)) / left;
+    const double climb = (cost(best + 1) - cost(best)) / right;
+    const double bend = fall + climb;
+    return bend > 0.0 ? at + 0.5 * (fall * right - climb * left) / bend : at;
+  }
+
+  bool significantly_worse(double at) const {
+    return is_significantly_worse(candidate_at(cost_, at).costs, best_.costs);
+  }
+
+  // The jackknife of Quenouille (1956) and Tukey (1958), with one block left out at a time.
+  double jackknife_error() const {
+    const std::size_t count = best_.costs.size();
+    std::vector<double> minima;
+    for (std::size_t b = 0; b < count; ++b) minima.push_back(best_without(b));
+    const double mean = std::accumulate(minima.begin(), minima.end(), 0.0) / static_cast<double>(count);
+    double squares = 0.0;
+    for (const double at : minima) squares += (at - mean) * (at - mean);
+    return std::max(std::sqrt(squares * static_cast<double>(count - 1) / static_cast<double>(count)), range_.fine_step);
+  }
+
+  const CostFunction& cost_;
+  SearchRange range_;
+  std::vector<Candidate> scanned_;
+  Candidate best_;
+  bool alone_ = true;
+};
+
+}  // namespace
+
+OffsetEstimate estimate_offset(const CostFunction& cost, const SearchRange& range) { return Search(cost, range).run(); }
+
+OffsetEstimate unless_force_offset(OffsetEstimate shift, const CostFunction& cost, double most_N) {
+  if (!shift.identified || !shift.not_zero || !(most_N > 0.0)) return shift;
+  // J, a sum of Huber's losses, has one minimum over the force offset.
+  const Candidate best = golden(cost, -most_N, most_N, kForceResolution * most_N);
+  if (!is_within_one_standard_error(best.costs, shift.minimum)) return shift;
+  shift.identified = false;
+  shift.at = 0.0;
+  shift.standard_error = kUnknownError;
+  shift.force_offset_N = best.at;
+  return shift;
+}
+
+}  // namespace palpate

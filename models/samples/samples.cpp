@@ -1,0 +1,243 @@
+#include "models/samples/samples.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "engine/base/parallel.h"
+#include "engine/tick/sensor_identification.h"
+
+namespace palpate {
+namespace {
+
+// The material pulls if at least kLeastPulls samples and a share of kPullShare have a force below -JND(0), and the
+// lowest force is certain (certain_force_N).
+constexpr double kLeastPulls = 10.0;
+constexpr double kPullShare = 1e-3;
+
+constexpr std::size_t kFewestRecordings = 3;
+constexpr std::size_t kMostFolds = 6;
+constexpr int kStrokeFolds = 5;
+// The number of pieces of one long stroke, two for each fold, so that no fold consists of a single phase.
+constexpr std::size_t kPieces = 10;
+constexpr std::size_t kPiecesOneWay = 50;
+// An unloading path below this share of the loading path counts as none.
+constexpr double kLeastUnloading = 0.1;
+
+// The offsets of the recordings from the surface of the table.
+void set_offsets(Samples& samples, const std::vector<PreparedRecordingPointer>& recordings) {
+  std::vector<double> surfaces_m;
+  for (const PreparedRecordingPointer& one : recordings) {
+    if (one->surface.identified()) surfaces_m.push_back(one->surface.raw_offset_m);
+  }
+  const double middle_m = median_of(surfaces_m);
+  if (std::abs(middle_m) > kLeastSurface_m) samples.surface_m = middle_m;
+  for (const PreparedRecordingPointer& one : recordings) {
+    RecordingOffset& offset = samples.offsets.emplace_back();
+    offset.name = one->recording.name;
+    offset.content_hash = one->content_hash;
+    offset.force_zero_N = one->surface.force_zero_N;
+    offset.standard_error_m = one->surface.standard_error_m;
+    if (!one->surface.identified()) continue;
+    const double away_m = one->surface.raw_offset_m - samples.surface_m;
+    if (std::abs(away_m) > std::max(kLeastSurface_m, kSignificantErrors * offset.standard_error_m))
+      offset.offset_m = away_m;
+  }
+}
+
+// The rows of one recording, with its offset. Every `stride`-th is kept, with the motion that was estimated from all.
+Status add_rows(Samples& samples, const PreparedRecording& prepared, std::size_t stride, const FitControl& control) {
+  const auto index = static_cast<std::size_t>(samples.recording.empty() ? 0 : samples.recording.back() + 1);
+  const RecordingOffset& offset = samples.offsets[index];
+  const double surface_m = samples.surface_m + offset.offset_m;
+  const std::vector<RecordingRow>& recorded = prepared.recording.rows;
+  MotionEstimator estimator(prepared.sensor);
+  for (std::size_t i = 0; i < recorded.size(); ++i) {
+    if (i % kRowsPerQuestion == 0 && !control.may_continue()) return interrupted();
+    Sample sample{tool_sample(recorded[i]), {}, recorded[i].force_N - offset.force_zero_N};
+    sample.motion = prepared.motion.empty() ? estimator.update(sample.tool) : prepared.motion[i];
+    if (i % stride != 0) continue;
+    sample.tool.position_m -= surface_m;
+    sample.motion.position_m -= surface_m;
+    samples.rows.push_back(sample);
+    samples.recording.push_back(static_cast<int>(index));
+  }
+  return {};
+}
+
+// Strokes, rows in contact and their ranges.
+void measure(Samples& samples, const JndLine& jnd) {
+  double squares = 0.0;
+  double lowest_N = 0.0;
+  double pulls = 0.0;
+  double start_s = 0.0;
+  double duration_s = 0.0;
+  double steps = 0.0;
+  int stroke = 0;
+  bool was_in_contact = false;
+  for (std::size_t i = 0; i < samples.rows.size(); ++i) {
+    const Sample& row = samples.rows[i];
+    const bool first = samples.begins_recording(i);
+    const bool contact = in_contact(row.tool, 0.0);
+    if (first) {
+      start_s = row.tool.time_s;
+    } else {
+      duration_s += row.tool.time_s - samples.rows[i - 1].tool.time_s;
+      steps += 1.0;
+    }
+    if (contact && (first || !was_in_contact)) ++stroke;
+    was_in_contact = contact;
+    samples.stroke.push_back(stroke);
+    samples.longest_recording_s = std::max(samples.longest_recording_s, row.tool.time_s - start_s);
+    if (!contact) continue;
+    samples.contact.push_back(i);
+    samples.depth_m = std::max({samples.depth_m, row.motion.position_m, 1e-9});
+    samples.force_N = std::max(samples.force_N, row.force_N);
+    if (row.force_N < -jnd.at(0.0)) ++pulls;
+    lowest_N = std::min(lowest_N, row.force_N);
+    squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
+  }
+  const auto count = static_cast<double>(samples.contact.size());
+  const bool pulling = pulls >= std::max(kLeastPulls, kPullShare * count);
+  if (pulling && lowest_N < -certain_force_N(samples.force_noise_N)) samples.lowest_force_N = lowest_N;
+  samples.strokes = static_cast<std::size_t>(stroke);
+  samples.sample_s = duration_s / std::max(1.0, steps);
+  // A tool that never moved still needs a scale: 1 um/s.
+  samples.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
+}
+
+// The force that all rows but one in a thousand exceed.
+double exceeded_N(const Samples& samples) {
+  std::vector<double> forces_N;
+  for (const Sample& row : samples.rows) forces_N.push_back(row.force_N);
+  const auto at = forces_N.begin() + static_cast<std::ptrdiff_t>(forces_N.size() / 1000);
+  std::nth_element(forces_N.begin(), at, forces_N.end());
+  return *at;
+}
+
+// Whether the tool moves outwards in contact by more than a share of its motion inwards.
+bool has_unloading(const Samples& samples) {
+  double inward_m = 0.0;
+  double outward_m = 0.0;
+  for (const std::size_t i : samples.contact) {
+    if (samples.begins_recording(i)) continue;
+    const double travel_m = samples.rows[i].motion.position_m - samples.rows[i - 1].motion.position_m;
+    (travel_m > 0.0 ? inward_m : outward_m) += std::abs(travel_m);
+  }
+  return outward_m > kLeastUnloading * inward_m;
+}
+
+void split_into_folds(Samples& samples) {
+  const std::size_t count = samples.rows.size();
+  samples.fold.assign(count, 0);
+  if (samples.offsets.size() >= kFewestRecordings) {
+    samples.folds = static_cast<int>(std::min(samples.offsets.size(), kMostFolds));
+    for (std::size_t i = 0; i < count; ++i) samples.fold[i] = samples.recording[i] % samples.folds;
+    return;
+  }
+  samples.folds = kStrokeFolds;
+  const std::size_t longest = samples.contact.size() / (has_unloading(samples) ? kPieces : kPiecesOneWay) + 1;
+  std::size_t in_piece = 0;
+  int piece = -1;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (in_contact(samples.rows[i].tool, 0.0)) {
+      const bool begins = samples.stroke[i] > (i > 0 ? samples.stroke[i - 1] : 0);
+      if (begins || in_piece >= longest) {
+        ++piece;
+        in_piece = 0;
+      }
+      ++in_piece;
+    }
+    samples.fold[i] = std::max(piece, 0) % samples.folds;
+  }
+}
+
+}  // namespace
+
+double Samples::no_force_N() const {
+  return lowest_force_N < 0.0 ? -std::numeric_limits<double>::infinity() : palpate::no_force_N(force_noise_N);
+}
+
+Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, const JndLine& jnd,
+                             const FitControl& control, std::size_t most_rows) {
+  // By descending length, then by the hash of the content, then by name: the order in which they are given is
+  // irrelevant.
+  std::ranges::stable_sort(recordings, {}, [](const PreparedRecordingPointer& one) {
+    const Recording& recording = one->recording;
+    return std::tuple(-static_cast<std::ptrdiff_t>(recording.rows.size()), one->content_hash, recording.name);
+  });
+  Samples samples;
+  for (const PreparedRecordingPointer& one : recordings) {
+    samples.recorded_rows += one->recording.rows.size();
+    const SensorSpec sensor{one->sensor.encoder_step_m, one->sensor.position_noise_m};
+    samples.sensor = std::max(samples.sensor, sensor, [](const SensorSpec& a, const SensorSpec& b) {
+      return std::tie(a.encoder_step_m, a.position_noise_m) < std::tie(b.encoder_step_m, b.position_noise_m);
+    });
+    samples.force_noise_N = std::max(samples.force_noise_N, one->force_noise_N);
+  }
+  set_offsets(samples, recordings);
+  const std::size_t stride = std::max<std::size_t>(1, (samples.recorded_rows + most_rows - 1) / most_rows);
+  samples.rows.reserve(samples.recorded_rows / stride + recordings.size());
+  for (const PreparedRecordingPointer& one : recordings) {
+    if (Status status = add_rows(samples, *one, stride, control); !status) return status.error();
+  }
+  measure(samples, jnd);
+  if (samples.contact.empty()) {
+    return Error{
+        "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; record a press, "
+        "check the sign of position_m, or set its origin (palpate import FILE --origin contact)"};
+  }
+  samples.always_N = exceeded_N(samples);
+  split_into_folds(samples);
+  return samples;
+}
+
+Samples thinned(const Samples& samples, double least_step_s) {
+  Samples few = samples;
+  few.rows.clear();
+  few.contact.clear();
+  for (std::vector<int>* column : {&few.recording, &few.stroke, &few.fold}) column->clear();
+  double last_s = 0.0;
+  for (std::size_t i = 0; i < samples.rows.size(); ++i) {
+    const double time_s = samples.rows[i].tool.time_s;
+    if (!samples.begins_recording(i) && time_s - last_s < least_step_s) continue;
+    last_s = time_s;
+    if (in_contact(samples.rows[i].tool, 0.0)) few.contact.push_back(few.rows.size());
+    few.rows.push_back(samples.rows[i]);
+    few.recording.push_back(samples.recording[i]);
+    few.stroke.push_back(samples.stroke[i]);
+    few.fold.push_back(samples.fold[i]);
+  }
+  return few;
+}
+
+Result<Eigen::MatrixXd> features_at(const Samples& samples, const std::vector<FeatureSpec>& features,
+                                    const std::vector<std::size_t>& rows, const FitControl& control) {
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(features.size()), static_cast<Eigen::Index>(rows.size()));
+  const std::size_t plans = (features.size() + kMaxFeatures - 1) / kMaxFeatures;
+  std::atomic<bool> stopped = false;
+  parallel_for(static_cast<int>(plans), [&](int plan) {
+    const std::size_t first = static_cast<std::size_t>(plan) * kMaxFeatures;
+    const std::size_t count = std::min(kMaxFeatures, features.size() - first);
+    FeatureFilter filter({features.begin() + static_cast<std::ptrdiff_t>(first),
+                          features.begin() + static_cast<std::ptrdiff_t>(first + count)});
+    Eigen::Index column = 0;
+    for (std::size_t i = 0; i < samples.rows.size() && column < values.cols(); ++i) {
+      if (i % kRowsPerQuestion == 0 && (stopped || (plan == 0 && !control.may_continue()))) {
+        stopped = true;
+        return;
+      }
+      if (samples.begins_recording(i)) filter.reset();
+      const FeatureVector& vector = filter.update(samples.rows[i].tool, samples.rows[i].motion);
+      if (i != rows[static_cast<std::size_t>(column)]) continue;
+      values.col(column++).segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count)) =
+          Eigen::Map<const Eigen::VectorXd>(vector.values.data(), static_cast<Eigen::Index>(count));
+    }
+  });
+  if (stopped) return interrupted();
+  return values;
+}
+
+}  // namespace palpate

@@ -1,0 +1,285 @@
+#include "models/trend/trend_columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "engine/base/text.h"
+
+namespace palpate {
+namespace {
+
+// Neighbouring times differ by a factor of 1.8; a sum of two fits any time between them better than the data resolve.
+constexpr double kTimesPerDecade = 4.0;
+// 1 ms is the tick; no exploration shows what takes longer than 100 s.
+constexpr double kShortest_s = 1e-3;
+constexpr double kLongest_s = 100.0;
+constexpr std::size_t kBands = 3;
+// The trend limits velocities to this multiple of the greatest recorded one.
+constexpr double kVelocityMargin = 1.5;
+
+std::vector<double> ladder(double shortest_s, double longest_s, double per_decade) {
+  std::vector<double> times_s;
+  // Rounding must not drop the last time.
+  const double end_s = longest_s * (1.0 + 1e-9);
+  for (int i = 0;; ++i) {
+    const double time_s = shortest_s * std::pow(10.0, i / per_decade);
+    if (!(time_s <= end_s)) return times_s;
+    times_s.push_back(time_s);
+  }
+}
+
+double longest_time_s(const Samples& samples) { return std::min(kLongest_s, samples.longest_recording_s / 3.0); }
+
+// The quadratic Bernstein polynomials (1 - u)^2, 2 u (1 - u) and u^2: coefficients of u^0 .. u^2.
+constexpr std::array<std::array<double, kViscosityCoefficients>, kViscosityCoefficients> kViscousBasis{
+    {{1.0, -2.0, 1.0}, {0.0, 2.0, -2.0}, {0.0, 0.0, 1.0}}};
+// Their integrals, and the friction of a bristle: coefficients of u^1 .. u^4.
+using Basis = std::array<std::array<double, kDriveCoefficients>, kCurveTerms>;
+constexpr Basis kDrives{{{1.0, -1.0, 1.0 / 3.0, 0.0}, {0.0, 1.0, -2.0 / 3.0, 0.0}, {0.0, 0.0, 1.0 / 3.0, 0.0}}};
+constexpr Basis kFrictions{{{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
+
+// One feature for each basis function of a part.
+void add_columns(std::vector<FeatureSpec>& columns, const FeatureSpec& candidate, std::size_t part,
+                 double reference_depth_m) {
+  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+    std::array<double, kCurveTerms> one{};
+    one[k] = 1.0;
+    FeatureSpec& column = columns.emplace_back(FeatureSpec{candidate.kind});
+    column.slowing = candidate.slowing;
+    column.part_count = 1;
+    column.parts[0] = candidate.parts[part];
+    column.parts[0].drive = combined_curve(candidate.kind, one.data(), reference_depth_m);
+    if (candidate.kind == FeatureKind::creep) column.parts[0].threshold_m = reference_depth_m;
+  }
+}
+
+// The samples with the depth of the material's surface in place of that of the tool.
+Samples at_the_surface(const Samples& samples, const std::vector<FeatureSpec>& surface) {
+  Samples moved = samples;
+  FeatureFilter filter(surface);
+  for (std::size_t i = 0; i < moved.rows.size(); ++i) {
+    if (moved.begins_recording(i)) filter.reset();
+    filter.update(moved.rows[i].tool, moved.rows[i].motion);
+    moved.rows[i].motion.position_m = filter.surface_m();
+  }
+  return moved;
+}
+
+Trend trend_from(const TrendColumns& columns, const Eigen::VectorXd& x) {
+  const Samples& samples = columns.samples();
+  Trend trend;
+  trend.reference_depth_m = samples.depth_m;
+  trend.elastic = combined_spline(spline_basis(), x.data());
+  if (has_kind(columns.list().features, FeatureKind::velocity)) {
+    trend.thinning_velocity_m_per_s = samples.rms_velocity_m_per_s;
+    auto column = static_cast<Eigen::Index>(kElasticTerms);
+    for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
+      for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column) {
+        for (std::size_t j = 0; j < kViscosityCoefficients; ++j) (*viscosity)[j] += x(column) * kViscousBasis[k][j];
+      }
+    }
+  }
+  for (const std::size_t row : columns.rows()) {
+    const double velocity_m_per_s = samples.rows[row].motion.velocity_m_per_s;
+    trend.velocity_limit_m_per_s = std::max(trend.velocity_limit_m_per_s, kVelocityMargin * std::abs(velocity_m_per_s));
+  }
+  return trend;
+}
+
+// The feature with the drive curves of `weights`, without the parts whose weights are 0, unless `all`.
+FeatureSpec with_drives(const FeatureSpec& candidate, const double* weights, double depth_m, bool all) {
+  FeatureSpec spec = candidate;
+  spec.part_count = 0;
+  spec.parts = {};
+  for (std::size_t p = 0; p < candidate.part_count; ++p, weights += kCurveTerms) {
+    const bool carries = std::any_of(weights, weights + kCurveTerms, [](double weight) { return weight > 0.0; });
+    if (!carries && !all) continue;
+    FeaturePart& part = spec.parts[spec.part_count++] = candidate.parts[p];
+    part.drive = combined_curve(spec.kind, weights, depth_m);
+    if (spec.kind == FeatureKind::creep) part.threshold_m = depth_m;
+  }
+  return spec;
+}
+
+}  // namespace
+
+bool has_kind(const std::vector<FeatureSpec>& features, FeatureKind kind) {
+  return std::ranges::find(features, kind, &FeatureSpec::kind) != features.end();
+}
+
+void FeatureList::add(FeatureKind kind, const std::vector<double>& constants) {
+  if (has_parts(kind) && constants.empty()) return;
+  FeatureSpec spec{kind};
+  for (const double constant : constants) {
+    FeaturePart& part = spec.parts[spec.part_count++];
+    (kind == FeatureKind::stops ? part.threshold_m : part.relaxation_time_s) = constant;
+  }
+  features.insert(std::ranges::upper_bound(features, kind, {}, &FeatureSpec::kind), spec);
+}
+
+std::vector<double> relaxation_times_s(const std::vector<FeatureSpec>& features) {
+  std::vector<double> times_s;
+  for (const FeatureSpec& spec : features) {
+    if (has_time(spec.kind)) times_s.push_back(spec.relaxation_time_s);
+    if (!is_branch(spec.kind)) continue;
+    for (const double time_s : constants_of(spec)) times_s.push_back(time_s);
+  }
+  return times_s;
+}
+
+std::vector<double> constants_of(const FeatureSpec& spec) {
+  std::vector<double> constants;
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    const FeaturePart& part = spec.parts[p];
+    constants.push_back(spec.kind == FeatureKind::stops ? part.threshold_m : part.relaxation_time_s);
+  }
+  return constants;
+}
+
+std::vector<double> dictionary_times_s(const Samples& samples) {
+  return ladder(std::max(kShortest_s, 2.0 * samples.sample_s), longest_time_s(samples), kTimesPerDecade);
+}
+
+FeatureList dictionary(const Samples& samples) {
+  FeatureList list;
+  list.add(FeatureKind::velocity);
+  const std::vector<double> times_s = dictionary_times_s(samples);
+  for (std::size_t band = 0; band < kBands; ++band) {
+    const auto from = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * band / kBands);
+    const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
+    list.add(FeatureKind::maxwell_spectrum, {from, to});
+  }
+  std::vector<double> thresholds_m;
+  for (double threshold_m = 0.5 * samples.depth_m;
+       thresholds_m.size() < kMaxFeatureParts && threshold_m >= samples.sensor.encoder_step_m; threshold_m *= 0.5) {
+    thresholds_m.insert(thresholds_m.begin(), threshold_m);
+  }
+  list.add(FeatureKind::stops, thresholds_m);
+  list.add(FeatureKind::creep, ladder(kShortest_s, longest_time_s(samples), 1.0));
+  return list;
+}
+
+FeatureList single_times(bool velocity, const std::vector<double>& times_s) {
+  FeatureList list;
+  if (velocity) list.add(FeatureKind::velocity);
+  for (const double time_s : times_s) list.add(FeatureKind::maxwell_spectrum, {time_s});
+  return list;
+}
+
+std::string term_name(const FeatureSpec& spec) {
+  if (spec.kind == FeatureKind::velocity) return "velocity";
+  const bool stops = spec.kind == FeatureKind::stops;
+  const char* words = stops ? "stops " : spec.kind == FeatureKind::creep ? "creep " : "relaxation ";
+  const double unit = stops ? 1e3 : 1.0;
+  const std::vector<double> constants = constants_of(spec);
+  std::string text = words + general(unit * constants.front(), 3);
+  if (constants.size() > 1) text.append("-").append(general(unit * constants.back(), 3));
+  return text + (stops ? " mm" : " s");
+}
+
+DriveCurve combined_curve(FeatureKind kind, const double* weights, double reference_depth_m) {
+  const Basis& basis = is_bristle(kind) ? kFrictions : kDrives;
+  DriveCurve curve;
+  curve.reference_depth_m = reference_depth_m;
+  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+    for (std::size_t j = 0; j < kDriveCoefficients; ++j) curve.coefficient_N[j] += weights[k] * basis[k][j];
+  }
+  return curve;
+}
+
+Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list, std::size_t most_rows,
+                                        const FitControl& control) {
+  TrendColumns made;
+  made.samples_ = &samples;
+  made.stride_ = (samples.contact.size() + most_rows - 1) / most_rows;
+  for (std::size_t i = 0; i < samples.contact.size(); i += made.stride_) made.rows_.push_back(samples.contact[i]);
+  // The columns with memory: branches, which follow the surface, and bristles.
+  std::vector<FeatureSpec> branches, bristles;
+  Eigen::Index columns = 0;
+  for (const FeatureSpec& spec : list.features) {
+    for (std::size_t p = 0; p < spec.part_count; ++p)
+      add_columns(is_branch(spec.kind) ? branches : bristles, spec, p, samples.depth_m);
+    const std::size_t count = spec.kind == FeatureKind::depth      ? kElasticTerms
+                              : spec.kind == FeatureKind::velocity ? 2 * kViscosityCoefficients
+                                                                   : kCurveTerms * spec.part_count;
+    ColumnList& of_feature = made.feature_columns_.emplace_back(count);
+    std::iota(of_feature.begin(), of_feature.end(), columns);
+    columns += static_cast<Eigen::Index>(count);
+  }
+  const bool lags = !list.surface.empty();
+  const auto of_branches =
+      features_at(lags ? at_the_surface(samples, list.surface) : samples, branches, made.rows_, control);
+  if (!of_branches) return of_branches.error();
+  const auto of_bristles = features_at(samples, bristles, made.rows_, control);
+  if (!of_bristles) return of_bristles.error();
+  const std::vector<ElasticSpline> elastic = spline_basis();
+  const bool viscous = has_kind(list.features, FeatureKind::velocity);
+  made.list_ = std::move(list);
+  made.terms_.resize(static_cast<Eigen::Index>(made.count()), columns);
+  for (std::size_t i = 0; i < made.count(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double depth_m = std::max(0.0, made.depth_m(i));
+    const double velocity_m_per_s = depth_m > 0.0 ? samples.rows[made.rows_[i]].motion.velocity_m_per_s : 0.0;
+    const double u = std::min(depth_m / samples.depth_m, 1.0);
+    double* to = made.terms_.row(row).data();
+    for (const ElasticSpline& curve : elastic) *to++ = curve.at(u);
+    if (viscous) {
+      for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, samples.rms_velocity_m_per_s)}) {
+        for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
+      }
+    }
+    to = std::copy(of_branches->col(row).begin(), of_branches->col(row).end(), to);
+    std::copy(of_bristles->col(row).begin(), of_bristles->col(row).end(), to);
+  }
+  return made;
+}
+
+FeatureSpec surface_lag_of(const ElasticSpline& elastic, double reference_depth_m) {
+  constexpr std::size_t kCoarsePieces = kDriveKnots + 1;
+  constexpr double kWidth = 1.0 / kCoarsePieces;
+  // The Greville abscissae in units of a piece.
+  std::array<double, kCoarsePieces + 3> average{};
+  for (std::size_t i = 1; i <= kCoarsePieces + 1; ++i) average[i] = static_cast<double>(i) - 1.0;
+  average[1] = 1.0 / 3.0;
+  average[kCoarsePieces + 1] = kCoarsePieces - 1.0 / 3.0;
+  average[kCoarsePieces + 2] = kCoarsePieces;
+  // The slope is a quadratic B-spline: its weights, and the second derivative of the curve at each knot.
+  std::array<double, kCoarsePieces + 2> weight{};
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    weight[i] = (elastic.at(average[i + 1] * kWidth) - elastic.at(average[i] * kWidth)) /
+                ((average[i + 1] - average[i]) * kWidth);
+  }
+  std::array<double, kCoarsePieces + 1> bend{};
+  for (std::size_t k = 0; k <= kCoarsePieces; ++k) {
+    bend[k] = (k == 0 || k == kCoarsePieces ? 2.0 : 1.0) * (weight[k + 1] - weight[k]) / kWidth;
+  }
+  const auto cube = [&](std::size_t piece) { return (bend[piece + 1] - bend[piece]) / (6.0 * kWidth); };
+  FeatureSpec lag{FeatureKind::surface_lag};
+  DriveCurve& curve = lag.drive;
+  curve.reference_depth_m = reference_depth_m;
+  curve.has_knots = true;
+  curve.coefficient_N = {weight[0], 0.5 * bend[0], cube(0), 0.0};
+  for (std::size_t k = 0; k < kDriveKnots; ++k) curve.knot_N[k] = cube(k + 1) - cube(k);
+  return lag;
+}
+
+FittedTrend fitted_trend(const TrendColumns& columns, const Eigen::VectorXd& x, bool all) {
+  const double depth_m = columns.samples().depth_m;
+  FittedTrend fitted{trend_from(columns, x), {}};
+  for (std::size_t f = 0; f < columns.list().features.size(); ++f) {
+    const FeatureSpec& candidate = columns.list().features[f];
+    const Eigen::VectorXd weights = x(columns.feature_columns()[f]);
+    if (!has_parts(candidate.kind)) {
+      fitted.features.push_back(candidate);
+    } else if (all || weights.maxCoeff() > 0.0) {
+      fitted.features.push_back(with_drives(candidate, weights.data(), depth_m, all));
+    }
+    if (candidate.kind == FeatureKind::depth && !columns.list().surface.empty())
+      fitted.features.push_back(surface_lag_of(fitted.trend.elastic, depth_m));
+  }
+  return fitted;
+}
+
+}  // namespace palpate

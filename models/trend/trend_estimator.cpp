@@ -1,0 +1,146 @@
+#include "models/trend/trend_estimator.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/parallel.h"
+#include "models/linear/lapack.h"
+#include "models/linear/non_negative.h"
+
+namespace palpate {
+namespace {
+
+// Active set and robust weights converge within these passes.
+constexpr int kPasses = 4;
+// The candidates for lambda: 1e-6 smooths over a third of the depth, 1e-9 over two pieces.
+constexpr std::array kSmoothness{1e-6, 1e-7, 1e-8, 1e-9};
+constexpr double kFirstSmoothness = 1e-8;
+
+// The trends of some solutions at the rows: rows x solutions.
+Eigen::MatrixXd values_of(const TrendColumns& columns, const Eigen::MatrixXd& solutions) {
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(columns.count()), solutions.cols());
+  // The matrix is stored by rows, which is its transpose stored by columns.
+  const Eigen::Map<const Eigen::MatrixXd> transposed(columns.terms().data(), columns.columns(), values.rows());
+  multiply(transposed, true, solutions, false, 1.0, 0.0, values);
+  return values;
+}
+
+}  // namespace
+
+TrendEstimator::TrendEstimator(const TrendColumns& columns, const TrendWeights& weights, Smoothness smoothness)
+    : columns_(columns),
+      weights_(weights),
+      part_error_(has_kind(columns.list().features, FeatureKind::creep) ? kPartError : kPartErrorOfFew),
+      smoothness_(kFirstSmoothness),
+      equations_(static_cast<std::size_t>(columns.samples().folds) + 1) {
+  std::vector<int> fold;
+  std::vector<double> depth_m;
+  for (std::size_t i = 0; i < columns.count(); ++i) {
+    fold.push_back(columns.fold(i));
+    depth_m.push_back(columns.depth_m(i));
+  }
+  const int folds = columns.samples().folds;
+  deepest_elsewhere_m_ = deepest_elsewhere_m(fold, depth_m, folds);
+  const BlasThreads one_thread(1);
+  parallel_for(folds + 1, [&](int k) { equations_[static_cast<std::size_t>(k)] = gather(k); });
+  if (smoothness == Smoothness::fixed) return;
+  std::vector<FoldErrors> errors(kSmoothness.size());
+  parallel_for(static_cast<int>(kSmoothness.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    errors[at] = cross_validate(all_columns(), kSmoothness[at]).errors;
+  });
+  smoothness_ = kSmoothness[simplest_adequate(errors)];
+}
+
+// Iterates weights and active set on the rows outside the fold `left_out`.
+TrendEstimator::Equations TrendEstimator::gather(int left_out) const {
+  const double no_force_N = columns_.samples().no_force_N();
+  std::vector<double> plain(columns_.count());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    plain[i] = columns_.fold(i) == left_out ? 0.0 : row_scale(weights_.weighting, weights_.jnd, columns_.force_N(i));
+  }
+  std::vector<double> scale = plain;
+  Equations equations = sum(scale);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    equations.start = solve(equations, all_columns(), kFirstSmoothness);
+    const Eigen::VectorXd trend_N = values_of(columns_, equations.start);
+    bool changed = false;
+    for (std::size_t i = 0; i < scale.size(); ++i) {
+      const double force_N = trend_N(static_cast<Eigen::Index>(i));
+      const bool idle = std::abs(columns_.force_N(i)) <= no_force_N && force_N <= 0.0;
+      const double robust = robust_scale(weights_.jnd.error_over_jnd(force_N, columns_.force_N(i)));
+      const double now = idle ? 0.0 : plain[i] * robust;
+      changed = changed || std::abs(now - scale[i]) > 0.1 * plain[i];
+      scale[i] = now;
+    }
+    if (!changed) break;
+    Equations next = sum(scale);
+    next.start = std::move(equations.start);
+    equations = std::move(next);
+  }
+  return equations;
+}
+
+TrendEstimator::Equations TrendEstimator::sum(const std::vector<double>& scale) const {
+  const Eigen::Index n = columns_.columns();
+  Equations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0, Eigen::VectorXd::Zero(n)};
+  Eigen::MatrixXd block(n, kBlockRows);  // one column a row of the regression
+  Eigen::VectorXd force_N(kBlockRows);
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(n, n);
+  Eigen::Index filled = 0;
+  const auto flush = [&] {
+    gram_of_transpose(block.leftCols(filled), product);
+    equations.gram += product;
+    multiply(block.leftCols(filled), false, force_N.head(filled), false, 1.0, 1.0, equations.right_side);
+    filled = 0;
+  };
+  for (std::size_t i = 0; i < columns_.count(); ++i) {
+    if (scale[i] == 0.0) continue;
+    block.col(filled) = scale[i] * columns_.terms().row(static_cast<Eigen::Index>(i)).transpose();
+    force_N(filled) = scale[i] * columns_.force_N(i);
+    equations.scale_squares += scale[i] * scale[i];
+    if (++filled == kBlockRows) flush();
+  }
+  if (filled > 0) flush();
+  equations.gram.triangularView<Eigen::StrictlyUpper>() = equations.gram.transpose();
+  return equations;
+}
+
+// The penalised solution on these columns, 0 in all others. The columns of the elastic response come first.
+Eigen::VectorXd TrendEstimator::solve(const Equations& equations, const ColumnList& columns, double smoothness) const {
+  constexpr auto kElastic = static_cast<Eigen::Index>(kElasticTerms);
+  Eigen::MatrixXd gram = equations.gram;
+  const double smooth = smoothness * equations.scale_squares * static_cast<double>(kElasticPieces);
+  gram.diagonal().tail(gram.cols() - kElastic) *= 1.0 + part_error_ * part_error_;
+  for (Eigen::Index k = 0; k + 1 < kElastic; ++k) {
+    gram(k, k) += smooth;
+    gram(k + 1, k + 1) += smooth;
+    gram(k, k + 1) -= smooth;
+    gram(k + 1, k) -= smooth;
+  }
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(gram.cols());
+  x(columns) = solve_non_negative(gram(columns, columns), equations.right_side(columns), equations.start(columns));
+  return x;
+}
+
+CrossValidated TrendEstimator::cross_validate(const ColumnList& columns, double smoothness) const {
+  const int folds = columns_.samples().folds;
+  CrossValidated result{static_cast<std::size_t>(folds), Eigen::MatrixXd(columns_.terms().cols(), folds)};
+  for (int k = 0; k < folds; ++k) {
+    result.solutions.col(k) = solve(equations_[static_cast<std::size_t>(k)], columns, smoothness);
+  }
+  const bool one_sided = std::isfinite(columns_.samples().no_force_N());
+  const Eigen::MatrixXd trend_N = values_of(columns_, result.solutions);
+  for (std::size_t i = 0; i < columns_.count(); ++i) {
+    const auto fold = static_cast<std::size_t>(columns_.fold(i));
+    if (columns_.depth_m(i) > deepest_elsewhere_m_[fold]) continue;
+    const double force_N = trend_N(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(fold));
+    result.errors.add(fold,
+                      weights_.jnd.error_over_jnd(one_sided ? std::max(0.0, force_N) : force_N, columns_.force_N(i)));
+  }
+  return result;
+}
+
+}  // namespace palpate
