@@ -5,6 +5,7 @@
 
 #include "engine/tick/sensor_identification.h"
 #include "models/linear/non_negative.h"
+#include "models/samples/weighting.h"
 
 namespace palpate {
 namespace {

@@ -77,13 +77,8 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
   const double as_recorded = errors.within_jnd();
   const double printed = data.provenance.training_within_jnd;
   if (!(std::abs(as_recorded - printed) > kContradiction)) return {};
-  const auto& surfaces = data.provenance.offsets;
-  const bool changed = std::ranges::any_of(
-      surfaces, [](const RecordingOffset& one) { return one.offset_m != 0.0 || one.force_zero_N != 0.0; });
-  return "the training recordings have " + fixed(100.0 * as_recorded, 2) + " % within the JND as recorded, and " +
-         fixed(100.0 * printed, 2) + " % " +
-         (changed ? "with the surfaces, force zeros and lags above corrected"
-                  : "where the model is in contact; the other forces were measured outside of it");
+  return "in training, " + fixed(100.0 * as_recorded, 2) + " % within the JND as recorded, " +
+         fixed(100.0 * printed, 2) + " % with the offsets corrected and in the contact of the model";
 }
 
 // One row for each term of the trend's dictionary: whether the regression uses it, and the cross-validated error of the

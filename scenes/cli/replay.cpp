@@ -154,8 +154,8 @@ std::vector<std::pair<std::string, std::string>> table_cells(const ReplayedModel
   add_errors("ALIGNED ", model.surface_moved);
   add("WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound.coverage, 1);
   add("ALIGNED WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound_moved.coverage, 1);
-  const bool unknown = model.bound.has_bounds() && !std::isfinite(model.bound.median_over_jnd);
-  cells.emplace_back("BOUND JND", unknown ? "not known" : at_most_three_decimals(model.bound.median_over_jnd));
+  add("BOUND JND", std::isfinite(model.bound.median_over_jnd), model.bound.median_over_jnd, 2);
+  if (model.bound.has_bounds() && cells.back().second == "-") cells.back().second = "not known";
   return cells;
 }
 

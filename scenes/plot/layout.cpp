@@ -36,6 +36,35 @@ const PlotRow* last_point(const Series& series) {
   return nullptr;
 }
 
+// Moves names beside the panel up and down as little as possible, so that they are a line apart. Those of levels, which
+// are at lines across the panel, stay. With y_i = i line + z_i this is isotonic regression of z.
+void spread(std::vector<NameTag>& names, double line) {
+  std::ranges::stable_sort(names, {}, &NameTag::y);
+  struct Block {
+    double mean;
+    double weight;
+    std::size_t names;
+  };
+  std::vector<Block> blocks;  // pool adjacent violators
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    blocks.push_back({names[i].y - static_cast<double>(i) * line, names[i].colour == kMutedColour ? 1e3 : 1.0, 1});
+    while (blocks.size() > 1 && blocks.back().mean < (blocks.end() - 2)->mean) {
+      const Block last = blocks.back();
+      blocks.pop_back();
+      Block& joined = blocks.back();
+      joined.mean = (joined.weight * joined.mean + last.weight * last.mean) / (joined.weight + last.weight);
+      joined.weight += last.weight;
+      joined.names += last.names;
+    }
+  }
+  const double most = std::max(0.0, 1.0 - line * (static_cast<double>(names.size()) - 1.0));
+  std::size_t i = 0;
+  for (const Block& block : blocks) {
+    for (std::size_t k = 0; k < block.names; ++k, ++i)
+      names[i].y = std::clamp(block.mean, 0.0, most) + static_cast<double>(i) * line;
+  }
+}
+
 // Moves names from their points into one of the quadrants between the bars, to the right or left of the point and above
 // or below it: where a name covers the fewest other names and points.
 void place_beside(std::vector<NameTag>& names, double line, double character) {
@@ -43,14 +72,14 @@ void place_beside(std::vector<NameTag>& names, double line, double character) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double width = character * static_cast<double>(names[i].text.size() + 1);
     double least = std::numeric_limits<double>::infinity();
-    for (const double lines : {0.7, -0.7, 1.6, -1.6}) {
+    for (const double lines : {0.7, -0.7, 1.7, -1.7, 2.7, -2.7, 3.7, -3.7}) {
       for (const bool right : {true, false}) {
         NameTag trial = points[i];
         trial.y += lines * line;
         trial.begins_here = right;
         const double begin = right ? trial.x : trial.x - width;
-        double cost = 0.1 * std::abs(lines);
-        if (begin < 0.0 || begin + width > 1.0 || trial.y < 0.5 * line || trial.y > 1.0 - 0.5 * line) cost += 10.0;
+        double cost = 0.3 * std::abs(lines);
+        if (begin < 0.0 || begin + width > 1.0 || trial.y < 0.5 * line || trial.y > 1.0 - 0.5 * line) cost += 100.0;
         for (std::size_t k = 0; k < names.size(); ++k) {
           if (k == i) continue;
           const bool covers = points[k].x > begin && points[k].x < begin + width;
@@ -59,7 +88,7 @@ void place_beside(std::vector<NameTag>& names, double line, double character) {
           const double other = character * static_cast<double>(names[k].text.size() + 1);
           const double other_begin = names[k].begins_here ? names[k].x : names[k].x - other;
           const bool overlaps = other_begin < begin + width && begin < other_begin + other;
-          if (overlaps && std::abs(names[k].y - trial.y) < line) cost += 2.0;
+          if (overlaps && std::abs(names[k].y - trial.y) < line) cost += 10.0;
         }
         if (cost >= least) continue;
         least = cost;
@@ -133,11 +162,7 @@ std::vector<NameTag> name_tags(const Panel& panel, double line, double character
         .push_back({series.name, series.colour, ends ? 1.0 : fraction_of(panel.x, x, last->x),
                     std::clamp(fraction_of(panel.y, y, last->y), 0.0, 1.0), ends});
   }
-  std::ranges::stable_sort(tags, {}, &NameTag::y);
-  for (std::size_t i = 1; i < tags.size(); ++i) tags[i].y = std::max(tags[i].y, tags[i - 1].y + line);
-  // Names that were pushed above the panel move down again, and push down those below them.
-  for (std::size_t i = tags.size(); i-- > 0;)
-    tags[i].y = std::min(tags[i].y, i + 1 == tags.size() ? 1.0 : tags[i + 1].y - line);
+  spread(tags, line);
   place_beside(points, line, character);
   tags.insert(tags.end(), points.begin(), points.end());
   return tags;

@@ -24,7 +24,7 @@ Mark mark_of(const ModelResult& model, Mark on_force, Mark on_trend) {
 
 using BinFigure = double (*)(const ForceBin&);
 
-// Error against force of the headline models with this base.
+// Error against force of the headline models with this base and 100 centres.
 Panel force_panel(const ReportData& data, const std::string& title, Base base, BinFigure figure) {
   Panel panel;
   panel.title = title + (base == Base::force ? ", on the force" : ", on the trend");
@@ -34,7 +34,7 @@ Panel force_panel(const ReportData& data, const std::string& title, Base base, B
   panel.levels.push_back({1.0, "1 JND"});
   for (const std::size_t i : headline_models(data)) {
     const ModelResult& one = data.models[i];
-    if (!one.plan || one.plan->base != base) continue;
+    if (!one.plan || one.plan->base != base || one.selects_size) continue;
     Series series{one.name, model_colour(one), mark_of(one, Mark::hollow_curve, Mark::curve), {}};
     for (const ForceBin& bin : one.errors.bins) {
       if (bin.force_N.count() >= kFewSamples) series.rows.push_back({bin.force_N.mean(), figure(bin)});

@@ -93,13 +93,13 @@ struct ReportData {
   NoiseFloor floor;                  // of all test recordings together
   std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces
   Choice choice;
-  WorstStretch worst;                      // of the recommended model
+  WorstStretch worst;                     // of the recommended model
   std::vector<RecordingOffset> surfaces;  // of the training recordings; this and the following: of the first fold
-  std::vector<double> papers_times_s;      // relaxation times identified for the methods on the measured force
-  bool corrects = true;                    // whether cross-validation selected the correction
-  std::vector<PartGain> gains;             // of each part of the trend
-  std::map<int, OpenChoices> choices;   // of the methods on the measured force, by their number of centres; 0: direct
-  std::map<Base, ErrorBySize> by_size;  // empty in a quick report
+  std::vector<double> papers_times_s;     // relaxation times identified for the methods on the measured force
+  bool corrects = true;                   // whether cross-validation selected the correction
+  std::vector<PartGain> gains;            // of each part of the trend
+  std::map<int, OpenChoices> choices;     // of the methods on the measured force, by their number of centres; 0: direct
+  std::map<Base, ErrorBySize> by_size;    // empty in a quick report
 };
 
 // Fits every planned model once per fold and pools its errors over the folds. `quick`: the main models with 100

@@ -44,93 +44,53 @@ constexpr double kShareThatMatters = 0.005;
 
 constexpr double kStudiedUpTo_N = 2.5;  // Hoever & Harders (2009), section 4.1
 
-// The answer of a report in words, which page, report.json and terminal show.
-class Sentence {
- public:
-  Sentence& operator<<(const std::string& text) {
-    plain_ += text;
-    html_ += escape_html(text);
-    return *this;
-  }
-  Sentence& name(const ModelResult& model) {
-    plain_ += model.name;
-    html_ += "<b>" + escape_html(model.name) + "</b>";
-    return *this;
-  }
-  // A number with its model and figure of merit, so that tests/scenes/report/check_report.py can recompute it.
-  Sentence& number(const ModelResult& model, const char* figure, const std::string& text) {
-    plain_ += text;
-    html_ += "<span data-model=\"" + escape_html(model.name) + "\" data-figure=\"" + figure + "\">" +
-             escape_html(text) + "</span>";
-    return *this;
-  }
-  const std::string& html() const { return html_; }
-  const std::string& plain() const { return plain_; }
-
- private:
-  std::string html_, plain_;
-};
-
 // Two decimals, rounded down: 99.996 % is "99.99 %".
 std::string percent(double share) { return share >= 1.0 ? "100 %" : fixed(std::floor(1e4 * share) / 100.0, 2) + " %"; }
-
-std::string nanoseconds(const ModelResult& model) {
-  return with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns";
-}
 
 std::string seeds_text(const ModelResult& model) {
   return model.seeds > 1 ? " (the median of " + std::to_string(model.seeds) + " seeds)" : "";
 }
 
 // Says by how much the model with the lowest 99 % error is better, and how much longer it takes.
-void add_best(Sentence& sentence, const ModelResult& best, const ModelResult& use) {
+std::string best_text(const ModelResult& best, const ModelResult& use) {
   const PairedDifference difference = paired_difference(use.errors, best.errors);
-  sentence << "; the lowest 99 % error, ";
-  sentence.number(best, "difference", three_digits(difference.p99)) << " JND less";
-  if (difference.interval.known())
-    sentence << " (95 %: " + three_digits(difference.interval.low) + " to " + three_digits(difference.interval.high) +
-                    ")";
-  sentence << ", is that of ";
-  sentence.name(best) << ", which takes ";
-  sentence.number(best, "time_ratio", three_digits(best.time.tick.median_ns / use.time.tick.median_ns))
-      << " times as long";
+  const Interval& interval = difference.interval;
+  return "; the lowest 99 % error, " + three_digits(difference.p99) + " JND less" +
+         (interval.known() ? " (95 %: " + three_digits(interval.low) + " to " + three_digits(interval.high) + ")"
+                           : "") +
+         ", is that of " + best.name + ", which takes " +
+         three_digits(best.time.tick.median_ns / use.time.tick.median_ns) + " times as long";
 }
 
 // Names the test recording whose surface is farthest from the models'.
-void add_surface(Sentence& sentence, const ReportData& data, const ModelResult& model) {
-  if (model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return;
+std::string surface_text(const ReportData& data, const ModelResult& model) {
+  if (model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return {};
   const MovedSurface& surface =
       *std::ranges::max_element(data.tested, {}, [](const MovedSurface& one) { return std::abs(one.offset_m); });
-  sentence << " The surface of " + surface.name + " is at " + three_digits(1e3 * surface.offset_m) +
-                  " mm for these models; with it moved, which uses the forces of the test, " +
-                  percent(model.moved.within_jnd) + " of the test is within the JND.";
+  return " The surface of " + surface.name + " is at " + three_digits(1e3 * surface.offset_m) +
+         " mm for these models; with it moved, which uses the forces of the test, " + percent(model.moved.within_jnd) +
+         " of the test is within the JND.";
 }
 
-Sentence answer(const ReportData& data) {
+// The answer of a report, which page, report.json and terminal show.
+std::string answer(const ReportData& data) {
   const ModelResult& use = data.models[data.choice.recommended];
   const ModelResult& best = data.models[data.choice.best];
   const UnitErrors& errors = use.errors;
   const Interval interval = errors.p99_interval();
-  Sentence sentence;
-  sentence << (errors.within_jnd >= kGoodShare ? "Use " : "No model is good enough as recorded; the best choice is ");
-  sentence.name(use) << seeds_text(use) + ": a whole tick takes ";
-  sentence.number(use, "tick_ns", nanoseconds(use)) << ", the error is below the just noticeable difference in ";
-  sentence.number(use, "within_jnd", percent(errors.within_jnd)) << " of the test, and 99 % of the errors are below ";
-  sentence.number(use, "p99_error_over_jnd", three_digits(errors.p99_error_over_jnd)) << " JND";
-  if (interval.known()) {
-    sentence << " (95 %: ";
-    sentence.number(use, "p99_low", three_digits(interval.low)) << " to ";
-    sentence.number(use, "p99_high", three_digits(interval.high)) << ")";
-  }
-  if (&best != &use) add_best(sentence, best, use);
-  sentence << "; this test chose it among " + std::to_string(data.choice.candidates.size()) +
-                  " models, so another recording has to confirm these figures.";
-  add_surface(sentence, data, use);
-  return sentence;
+  return (errors.within_jnd >= kGoodShare ? "Use " : "No model is good enough as recorded; the best choice is ") +
+         use.name + seeds_text(use) + ": a whole tick takes " + with_thousands(fixed(use.time.tick.median_ns, 0)) +
+         " ns, the error is below the just noticeable difference in " + percent(errors.within_jnd) +
+         " of the test, and 99 % of the errors are below " + three_digits(errors.p99_error_over_jnd) + " JND" +
+         (interval.known() ? " (95 %: " + three_digits(interval.low) + " to " + three_digits(interval.high) + ")"
+                           : "") +
+         (&best != &use ? best_text(best, use) : "") + "; this test chose it among " +
+         std::to_string(data.choice.candidates.size()) + " models, so another recording has to confirm these figures." +
+         surface_text(data, use);
 }
 
 // All numbers of the report. Those that differ from run to run are in "timings".
-OrderedJson report_json(const ReportData& data, const ReportRequest& request, const Sentence& answer,
+OrderedJson report_json(const ReportData& data, const ReportRequest& request, const std::string& answer,
                         const std::vector<Table>& tables, const std::vector<Figure>& figures,
                         const std::string& machine, double seconds) {
   OrderedJson numbers = OrderedJson::object();
@@ -164,7 +124,7 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
           {"timings",
            {{"machine", machine},
             {"seconds", seconds},
-            {"answer", answer.plain()},
+            {"answer", answer},
             {"recommended", data.models[data.choice.recommended].name},
             {"candidates", named(data.choice.candidates)},
             {"near_best", named(data.choice.near_best)},
@@ -286,14 +246,14 @@ std::string learnt_html(const ReportData& data) {
 }
 
 // The parts of the page beside tables and figures. `origin`: command line, version and machine.
-std::map<std::string, std::string> page_parts(const ReportData& data, const Sentence& answer,
+std::map<std::string, std::string> page_parts(const ReportData& data, const std::string& answer,
                                               const std::string& origin) {
   std::vector<std::string> tests;
   for (std::size_t i = 0; i < data.recordings.all.size(); ++i) {
     if (data.recordings.is_tested(i)) tests.push_back(data.recordings.all[i]->recording.name);
   }
   return {{"title", escape_html(joined(tests))},
-          {"answer", answer.html()},
+          {"answer", escape_html(answer)},
           {"headline", table_html(headline_table(data))},
           {"notes", notes_html(data)},
           {"learnt", learnt_html(data)},
@@ -314,7 +274,7 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   measuring.progress = [&](double fraction) { return control.may_continue(kMeasuringShare * fraction); };
   const auto data = measure(*recordings, request.scene, request.quick, measuring);
   if (!data) return data.error();
-  const Sentence words = answer(*data);
+  const std::string words = answer(*data);
   const std::vector<Table> tables = make_tables(*data);
   const std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), force_figure(*data)};
   const std::string machine =
@@ -326,7 +286,7 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   const Status written =
       write_report(*folder, "page.html", tables, figures, page_parts(*data, words, origin), json, control);
   if (!written) return written.error();
-  return ReportAnswer{table_text(headline_table(*data)), words.plain()};
+  return ReportAnswer{table_text(headline_table(*data)), words};
 }
 
 }  // namespace palpate

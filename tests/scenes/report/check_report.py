@@ -5,18 +5,17 @@
 
 Shares no code with the program. It reads the forces of one test recording, applies the definitions of the page and
 compares
-  - every number of the sentence, as printed (index.html marks each with its model and figure); times, which
-    FORCES.csv does not contain, are compared with tables/times.csv,
+  - the numbers of the sentence, as printed; times, which FORCES.csv does not contain, are compared with
+    tables/times.csv,
   - the rows of each model and of one that always returns 0 N: in tables/models.csv, and in
     tables/force_bins.csv, to one part in a million.
 Intervals of the 99 % error come from random draws: their ends must lie between the quantiles of this script's own draws
 of strokes at half and at twice the probability.
-All models of the sentence must be given. A number of the sentence that is not recomputed is an error.
+All models of the sentence must be given.
 """
 import bisect
 import collections
 import csv
-import html.parser
 import json
 import math
 import random
@@ -27,29 +26,6 @@ STROKE_PAUSE_S = 0.05
 LEAST_UNITS = 3
 DRAWS = 10000
 OFFSET_N, WEBER = 0.065, 0.0633
-
-
-class Marked(html.parser.HTMLParser):
-    """(model, figure) -> printed text."""
-
-    def __init__(self):
-        super().__init__()
-        self.found = {}
-        self.inside = None
-
-    def handle_starttag(self, tag, attributes):
-        names = dict(attributes)
-        if tag == "span" and "data-figure" in names:
-            self.inside = (names["data-model"], names["data-figure"])
-            self.found[self.inside] = ""
-
-    def handle_endtag(self, tag):
-        if tag == "span":
-            self.inside = None
-
-    def handle_data(self, data):
-        if self.inside:
-            self.found[self.inside] += data
 
 
 def rows_of(path):
@@ -203,35 +179,34 @@ def printed(text):
     return float(digits), 0.5 * 10.0 ** (int(exponent or 0) - decimals)
 
 
-def check_sentence(check, folder, known, rows, times, recommended):
-    sentence = Marked()
-    with open(folder + "/index.html", encoding="utf-8", errors="replace") as page:
-        sentence.feed(page.read())
-    for (model, figure), text in sentence.found.items():
-        value, half = printed(text)
-        if figure in ("tick_ns", "time_ratio"):
-            tick = float(times[model]["tick_ns"])
-            expected = {"tick_ns": tick, "time_ratio": tick / float(times[recommended]["tick_ns"])}
-            # Printed with three significant digits.
-            check.near(f"sentence: {figure} of {model}", value, expected[figure], max(1.001 * half, 0.006 * value))
-            continue
-        if model not in known:
-            print(f"the sentence speaks of {model}, whose forces were not given")
-            check.wrong += 1
-            continue
-        expected = known[model][0]
-        floored = lambda share: math.floor(1e4 * share) / 100.0
-        numbers = {"within_jnd": lambda: floored(expected["within_jnd"]),
-                   "p99_error_over_jnd": lambda: expected["p99_error_over_jnd"],
-                   "p99_low": lambda: float(rows[model]["p99_error_over_jnd_low"]),
-                   "p99_high": lambda: float(rows[model]["p99_error_over_jnd_high"]),
-                   "difference": lambda: abs(expected["p99_error_over_jnd"] - known[recommended][0]["p99_error_over_jnd"])}
-        if figure not in numbers:
-            print(f"the sentence has a {figure} that is not recomputed")
-            check.wrong += 1
-            continue
+SENTENCE = re.compile(
+    r"(?P<model>\S+)( \(the median of \d seeds\))?: a whole tick takes (?P<tick>[\d,]+) ns, the error is below the just "
+    r"noticeable difference in (?P<within>[\d.]+) % of the test, and 99 % of the errors are below (?P<p99>\S+) JND"
+    r"( \(95 %: (?P<low>\S+) to (?P<high>\S+)\))?(; the lowest 99 % error, (?P<less>\S+) JND less.*, is that of "
+    r"(?P<best>\S+), which takes (?P<ratio>\S+) times as long)?; this test chose it among (?P<candidates>\d+) models")
+
+
+def check_sentence(check, report, known, rows, times):
+    said = SENTENCE.search(report["answer"])
+    if not said:
+        sys.exit("error: the sentence of the report is not as expected: " + report["answer"])
+    model = said["model"]
+    errors, row = known[model][0], rows[model]
+    numbers = {"tick": float(times[model]["tick_ns"]), "within": math.floor(1e4 * errors["within_jnd"]) / 100.0,
+               "p99": errors["p99_error_over_jnd"], "candidates": len(report["candidates"])}
+    if said["low"]:
+        numbers.update(low=float(row["p99_error_over_jnd_low"]), high=float(row["p99_error_over_jnd_high"]))
+    if said["best"]:
+        best = said["best"]
+        numbers.update(less=errors["p99_error_over_jnd"] - known[best][0]["p99_error_over_jnd"],
+                       ratio=float(times[best]["tick_ns"]) / float(times[model]["tick_ns"]))
+    for figure, expected in numbers.items():
+        value, half = printed(said[figure])
         # Shares are rounded down, and a number on the edge may be rounded either way.
-        check.near(f"sentence: {figure} of {model}", value, numbers[figure](), 1.001 * half + (0.0101 if "%" in text else 0))
+        check.near(f"sentence: {figure}", value, expected, 1.001 * half + (0.0101 if figure == "within" else 0))
+    if model != report["recommended"]:
+        print(f"the sentence recommends {model}, report.json {report['recommended']}")
+        check.wrong += 1
 
 
 def main():
@@ -265,7 +240,7 @@ def main():
                        float(row["p99_error_over_jnd_high"]), drawn, len(strokes))
         check_interval(check, f"{name}: difference", float(row["difference_p99_low"]), float(row["difference_p99_high"]),
                        [one - other for one, other in zip(drawn, of_best)], len(strokes))
-    check_sentence(check, folder, known, rows, times, report["recommended"])
+    check_sentence(check, report, known, rows, times)
     if not check.wrong:
         print(f"{check.done} numbers agree")
     return 1 if check.wrong else 0
