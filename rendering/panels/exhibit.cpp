@@ -19,8 +19,9 @@ using State = ExhibitGame::State;
 
 constexpr double kLifted_m = -0.008;     // position of the tool while it is kept out of the block
 constexpr double kDeviceMoves_m = 5e-4;  // above the noise of a handle at rest
-constexpr double kLeastStroke_s = 0.5;   // a shorter contact is not shown again
-constexpr double kHeld_s = 2.5;          // the moment of the largest difference stands still in attract
+constexpr double kLeastStroke_s =
+    4.0;                         // from the first contact until the press of the largest difference is shown again
+constexpr double kHeld_s = 2.5;  // the moment of the largest difference stands still in attract
 
 std::vector<ExhibitModel> ready_models(const LiveSession& session) {
   std::vector<ExhibitModel> ready;
@@ -114,8 +115,9 @@ void Exhibit::read_ticks(const LiveSession& session) {
       continue;
     }
     if (repeats_) continue;
-    // A stroke ends in air, or after the time of a round.
-    if ((seconds() > kLeastStroke_s && !tick.in_contact) || seconds() >= times_.press_s) {
+    // Ends in air, or after the time of a round.
+    if ((seconds() > std::min(kLeastStroke_s, 0.5 * times_.press_s) && !tick.in_contact) ||
+        seconds() >= times_.press_s) {
       repeats_ = best_.trace.strong();
       if (repeats_) reveal_.start(worst_.trace, session.jnd(), 1.0, session.newest().loop_time_s);
       if (!repeats_) forget_strokes();

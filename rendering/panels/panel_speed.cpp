@@ -137,11 +137,14 @@ struct SpeedPlot {
     const ModelView& one = models.slots[slot];
     const ImVec2 dot = at(one.tick_ns(), one.errors.p99_error_over_jnd);
     const ImVec2 size = ImGui::CalcTextSize(one.name.c_str());
+    // Beyond the ends of the spread of the time.
     const float gap = 0.6F * line();
-    ImVec4 box(dot.x + gap, dot.y - 0.5F * size.y, dot.x + gap + size.x, dot.y + 0.5F * size.y);
+    const float right = std::max(dot.x, plot.x_px(std::log10(one.tick.high_ns)) - 0.3F * line()) + gap;
+    const float left_end = std::min(dot.x, plot.x_px(std::log10(one.tick.low_ns)) + 0.3F * line()) - gap;
+    ImVec4 box(right, dot.y - 0.5F * size.y, right + size.x, dot.y + 0.5F * size.y);
     for (int step = 0; step < 24; ++step) {
       const float shift = static_cast<float>((step / 4 + 1) / 2) * (step / 4 % 2 == 0 ? 0.7F : -0.7F) * size.y;
-      const float left = step % 2 == 0 ? dot.x + gap : dot.x - gap - size.x;
+      const float left = step % 2 == 0 ? right : left_end - size.x;
       const ImVec4 tried(left, dot.y - 0.5F * size.y + shift, left + size.x, dot.y + 0.5F * size.y + shift);
       if (!is_free(tried)) continue;
       box = tried;
@@ -205,7 +208,10 @@ void draw_speed(const ModelsView& models, const UiStyle& style, float height) {
     SpeedPlot drawing{models, style, plot, ranges};
     drawing.draw_grid();
     plot.level(0.0, ink(style.colours().text), 1.5F * style.scale());
-    plot.caption("a hand could tell", plot.y_px(0.0) - 1.1F * ImGui::GetFontSize());
+    const float caption_px = plot.y_px(0.0) - 1.1F * ImGui::GetFontSize();
+    plot.caption("a hand could tell", caption_px);
+    drawing.placed.push_back(
+        {plot.left(), caption_px, plot.left() + ImGui::CalcTextSize("a hand could tell ").x, plot.y_px(0.0)});
     std::vector<std::size_t> dots = models.drawn();
     std::erase_if(dots, [&](std::size_t slot) { return !has_dot(models, slot); });
     for (const std::size_t slot : dots) drawing.draw_dot(slot);

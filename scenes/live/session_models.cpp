@@ -196,6 +196,7 @@ bool SessionModels::join(std::size_t index, const FinishedModel& finished) {
   if (!slot.hidden()) slot.show();
   slot.info.progress = 1.0;
   slot.info.centres = slot.model->centre_count();
+  if (slot.info.centres == 0) slot.info.takes_centres = false;  // no correction was taken
   slot.forces_N = forces_over_strokes(slot.model);
   slot.info.other_material = is_of_other_material(slot);
   slot.info.method = slot.model->method();
@@ -262,8 +263,9 @@ void SessionModels::rename(std::size_t slot, const std::string& name) {
 void SessionModels::refit(std::size_t index, int centres) {
   if (index >= slots_.size() || !slots_[index].info.takes_centres || centres < 1) return;
   Slot& slot = slots_[index];
-  if (slot.model == nullptr || slot.request.plan.centres == centres) return;
+  if (slot.request.plan.centres == centres) return;
   slot.request.plan.centres = centres;
+  if (slot.model == nullptr) slot.info.name = distinct_name(request_name(slot.request), &slot);
   slot.request.loaded = nullptr;
   slot.info.refitting = true;
   worker_.add_job(slot.job, slot.request, true);

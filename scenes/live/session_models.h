@@ -124,7 +124,8 @@ class SessionModels {
   std::vector<std::size_t> read_freed();
   // Appends a number where another listed slot has the name.
   void rename(std::size_t slot, const std::string& name);
-  // Fits a ready model again with this number of centres, in the background. Ignored unless `takes_centres`.
+  // Fits the model, again if it is ready, with this number of centres, before those that wait. Ignored unless
+  // `takes_centres`.
   void refit(std::size_t slot, int centres);
   // Errors: the model is not ready; those of save_model.
   Status save(std::size_t slot, const std::string& path) const;

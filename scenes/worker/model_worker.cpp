@@ -86,12 +86,16 @@ double ModelWorker::left_s() const {
   const std::lock_guard lock(mutex_);
   double left_s = 0.0;
   for (const Lane& lane : lanes_) {
-    double expected_s = 0.0;
+    double expected_s = 0.0, running_s = 0.0;
     for (const auto& [key, job] : lane.jobs) expected_s += expected_cost_s(job.request);
-    if (lane.working_on) expected_s += (1.0 - lane.share.load(std::memory_order_relaxed)) * lane.expected_s;
+    if (lane.working_on) {
+      const double share = lane.share.load(std::memory_order_relaxed);
+      if (share > 0.1) running_s = (steady_now_s() - lane.began_s) * (1.0 - share) / share;
+      running_s = std::max(running_s, (1.0 - share) * lane.expected_s);
+    }
     // The pace of the jobs before, beside other programs.
     const double pace = lane.done_expected_s > 0.0 ? std::max(1.0, lane.done_s / lane.done_expected_s) : 1.0;
-    left_s = std::max(left_s, pace * expected_s);
+    left_s = std::max(left_s, running_s + pace * expected_s);
   }
   return left_s;
 }
