@@ -18,7 +18,8 @@ namespace palpate {
 extern const DeviceProtocol kBridgeProtocol;
 
 // Divides the byte stream into reports: a frame with a valid checksum; one byte for a gap, which is a run of bytes that
-// belong to no frame; the first four bytes of a frame of another version. One thread; wait-free, never throws.
+// belong to no frame; the first four bytes of a frame of another version with a valid checksum. One thread; wait-free,
+// never throws.
 class BridgeReports {
  public:
   // Consumes bytes from `at` until `report` has a report of at most kDeviceBytes. Returns its size; 0: all bytes were
@@ -64,9 +65,9 @@ class BridgeBus final : public DeviceBus {
   // Does not wait for a frame.
   Result<std::unique_ptr<DeviceConnection>> open(const DeviceNode&) override;
 
-  // Opens the device and waits for its first eight frames, up to 4 s (20 s for a program), because a board that resets
-  // when its port is opened takes two seconds. Errors: those of ByteStream; no or too few frames, another version, a
-  // program that ended; interrupted.
+  // Opens the device and measures the rate of its first frames. Waits for them up to 4 s (20 s for a program), because
+  // a board that resets when its port is opened takes two seconds. Errors: those of ByteStream; no or too few frames,
+  // fewer than 100 a second, another version, a program that ended; interrupted.
   Result<OpenedDevice> open_and_identify();
 
  private:

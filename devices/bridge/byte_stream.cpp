@@ -25,6 +25,8 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/live/pacer.h"
+
 namespace palpate {
 namespace {
 
@@ -42,8 +44,8 @@ Error wrong(const std::string& text, const std::string& expected) {
 
 // A small send buffer, for about 50 commands, because commands that wait in it are late.
 constexpr int kQueueBytes = 1024;
-// Time that a child program has to end before it is killed.
-constexpr int kEnd_ms = 500;
+// Time that a child program has to end, at the end of its input and again after SIGTERM; that a socket has to close.
+constexpr double kEnd_s = 0.5, kClosed_s = 0.1;
 
 using Opened = Result<std::unique_ptr<ByteStream>>;
 
@@ -224,15 +226,28 @@ Result<std::unique_ptr<ByteStream>> ByteStream::open(const std::string& target) 
 }
 
 ByteStream::~ByteStream() {
-  ::close(descriptor_);  // a program that reads its input now ends by itself
-  if (child_ == 0 || exit_status_ >= 0) return;
-  kill(-child_, SIGTERM);
-  for (int waited_ms = 0; waited_ms < kEnd_ms; waited_ms += 10) {
-    if (waitpid(child_, nullptr, WNOHANG) != 0) return;
-    poll(nullptr, 0, 10);
+  const bool socket = shutdown(descriptor_, SHUT_WR) == 0;
+  if (child_ == 0) {
+    if (socket) other_end_closes(kClosed_s);
+  } else if (exit_status_ < 0 && !other_end_closes(kEnd_s)) {
+    kill(-child_, SIGTERM);
+    if (!other_end_closes(kEnd_s)) {
+      kill(-child_, SIGKILL);
+      waitpid(child_, nullptr, 0);
+    }
   }
-  kill(-child_, SIGKILL);
-  waitpid(child_, nullptr, 0);
+  ::close(descriptor_);
+}
+
+// Reads meanwhile, so that the other end neither waits for room nor gets an error before it has read all.
+bool ByteStream::other_end_closes(double within_s) noexcept {
+  std::uint8_t unused[4096];
+  for (const double until_s = steady_now_s() + within_s; steady_now_s() < until_s;) {
+    const bool closed = read(unused, sizeof unused, 10) < 0;
+    if (child_ == 0 ? closed : waitpid(child_, nullptr, WNOHANG) != 0) return true;
+    if (closed) poll(nullptr, 0, 1);
+  }
+  return false;
 }
 
 int ByteStream::read(std::uint8_t* bytes, std::size_t capacity, int wait_ms) noexcept {

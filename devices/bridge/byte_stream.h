@@ -27,7 +27,8 @@ class ByteStream {
   explicit ByteStream(int descriptor, int child = 0) noexcept : descriptor_(descriptor), child_(child) {}
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
-  // Ends a child program: SIGTERM, half a second later SIGKILL.
+  // The other end gets the end of its input and time to take what was written before, the last force of 0 among it: a
+  // socket 0.1 s, a child program half a second, then SIGTERM and as long again, then SIGKILL.
   ~ByteStream();
 
   // Returns the number of bytes that arrived within `wait_ms`; 0: none; below 0: the other end is gone.
@@ -40,6 +41,8 @@ class ByteStream {
   std::string end_words() noexcept;
 
  private:
+  bool other_end_closes(double within_s) noexcept;
+
   int descriptor_;
   int child_;
   int exit_status_ = -1;

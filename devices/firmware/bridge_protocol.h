@@ -92,7 +92,8 @@ inline bool decode(const uint8_t* frame, FromHost& out) {
 }
 
 // Finds the frames of one kind in a byte stream. A frame begins with magic bytes, version and kind and ends with its
-// checksum. After a false beginning the search continues at its second byte.
+// checksum. After a false beginning the search continues at its second byte. Noise and a bit error in the version are
+// no other version, because their checksum is wrong.
 template <unsigned kBytes, uint8_t kKind>
 class FrameFinder {
  public:
@@ -106,7 +107,8 @@ class FrameFinder {
         return false;
       } else if (wire::crc32(bytes_, kBytes - 4) == wire::read32(bytes_ + kBytes - 4)) {
         count_ = 0;
-        return true;
+        if (bytes_[2] == kVersion) return true;
+        other_version_ = bytes_[2];
       } else {
         drop_first();
       }
@@ -115,15 +117,11 @@ class FrameFinder {
   }
   const uint8_t* frame() const { return bytes_; }
   uint32_t skipped() const { return skipped_; }             // number of bytes outside of frames, wraps
-  uint8_t other_version() const { return other_version_; }  // last other version that was found; 0: none
+  uint8_t other_version() const { return other_version_; }  // last other version of a whole frame; 0: none
 
  private:
-  // The version is checked only when the kind, which follows it, is right.
-  bool may_be_frame() {
-    if (bytes_[0] != 0x50 || (count_ > 1 && bytes_[1] != 0x42) || (count_ > 3 && bytes_[3] != kKind)) return false;
-    if (count_ < 4 || bytes_[2] == kVersion) return true;
-    other_version_ = bytes_[2];
-    return false;
+  bool may_be_frame() const {
+    return bytes_[0] == 0x50 && (count_ < 2 || bytes_[1] == 0x42) && (count_ < 4 || bytes_[3] == kKind);
   }
   void drop_first() {
     ++skipped_;

@@ -1,10 +1,22 @@
 #include "devices/link/device_endpoint.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 #include <utility>
 
+#include "engine/live/pacer.h"
+
 namespace palpate {
+namespace {
+
+// The rate of an untimed device is measured over so many samples, for so long; one that sends none yet is not waited
+// for.
+constexpr std::uint64_t kMeasuredSamples = 20;
+constexpr double kMeasured_s = 0.3, kFirstSample_s = 0.1;
+
+}  // namespace
 
 DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration, std::string name) noexcept
     : calibration_(calibration), name_(std::move(name)), monitor_(calibration) {
@@ -135,16 +147,34 @@ DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
   DeviceHealth health = state.health;
   if (state.samples > 0) health.sample_age_s = std::max(0.0, now_s - state.sample_time_s);
   if (health.faults == 0) {
-    if (health.sample_age_s > state.late_after_s) health.faults |= device_fault::kLate;
+    if (health.sample_age_s > state.late_after_s) {
+      health.faults |= device_fault::kLate | (state.corrupt > 0 ? device_fault::kCorrupt : 0U);
+    }
     if (stalled(state, now_s)) health.faults |= device_fault::kWriteStalled;
   }
   health.faults |= state.lost;
   if (now_s < state.transient_until_s) health.faults |= state.transient;
-  // A round trip includes the wait for the next sample, on average half the time for which a force is constant. A
-  // device without confirmations is on USB, which takes a frame of 1 ms in each direction.
-  const double round_trip_s = health.round_trip_s > 0.0 ? health.round_trip_s : 2e-3;
+  // A round trip includes the wait for the next sample, at least half the time for which a force is constant. A
+  // repeated command shortens the wait of its confirmation, but not the time for which the force is constant. A device
+  // without confirmations is on USB, which takes a frame of 1 ms in each direction.
+  const double round_trip_s = std::max(health.round_trip_s > 0.0 ? health.round_trip_s : 2e-3, health.interval_s);
   health.lag_s = kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - health.interval_s);
   return health;
+}
+
+Status LinkedDevice::open() {
+  if (const Status started = link_.start(); !started || timed()) return started;
+  const double start_s = steady_now_s();
+  std::uint64_t samples = 0;
+  for (double past_s = 0.0; past_s < (samples > 0 ? kMeasured_s : kFirstSample_s) && samples < kMeasuredSamples;
+       past_s = steady_now_s() - start_s) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    samples = sample_count();
+  }
+  const double interval_s = health(steady_now_s()).interval_s;
+  if (!(interval_s > SampleRate::kLongestInterval_s)) return {};
+  close();
+  return too_slow(link_.description(), interval_s);
 }
 
 }  // namespace palpate

@@ -71,6 +71,13 @@ class DeviceEndpoint : public Device, public LinkListener {
   };
 
   bool stalled(const MonitorState& state, double now_s) const noexcept;
+
+ protected:
+  bool timed() const noexcept { return calibration_.protocol->timed; }
+  // Any thread, wait-free: the number of accepted samples.
+  std::uint64_t sample_count() const noexcept { return accepted_.load(std::memory_order_relaxed); }
+
+ private:
   // Reader thread.
   void publish_state() noexcept;
   void publish_sample() noexcept;
@@ -117,8 +124,9 @@ class LinkedDevice final : public DeviceEndpoint {
   ~LinkedDevice() override { close(); }
 
   bool measures_force() const noexcept override { return measures_force_; }
-  // Errors: a thread cannot be started.
-  Status open() override { return link_.start(); }
+  // Errors: a thread cannot be started; an untimed device sends fewer than 100 samples a second (that of a timed one
+  // was measured when it was identified).
+  Status open() override;
   void close() noexcept override { link_.stop(); }
   // See DeviceLink::description.
   std::string note() const override { return link_.description(); }

@@ -16,6 +16,8 @@ namespace {
 constexpr int kOpenTries = 6;
 constexpr auto kBetweenTries = std::chrono::milliseconds(100);
 constexpr auto kPause = std::chrono::milliseconds(10);
+// A device that takes no report for this time has stopped by its own watchdog.
+constexpr double kStopTaken_s = 0.05;
 // Real-time priority below the 80 of the haptics thread.
 constexpr int kPriority = 70;
 
@@ -92,7 +94,13 @@ void DeviceLink::stop() noexcept {
   stop_.store(true, std::memory_order_relaxed);
   if (writer_.joinable()) writer_.join();
   // The stop is sent before the reader ends, because the reader may wait for an idle device.
-  if (const std::shared_ptr<DeviceConnection> last = connection()) write(*last, protocol_.encode_stop());
+  const double until_s = steady_now_s() + kStopTaken_s;
+  for (std::shared_ptr<DeviceConnection> last = connection(); last != nullptr; last = connection()) {
+    if (write(*last, protocol_.encode_stop()) || steady_now_s() >= until_s) break;
+    last.reset();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  closed_.store(true, std::memory_order_relaxed);
   if (reader_.joinable()) reader_.join();
   use(nullptr);
 }
@@ -100,7 +108,7 @@ void DeviceLink::stop() noexcept {
 void DeviceLink::read_all() noexcept {
   make_this_thread_realtime(kPriority, false);
   std::array<std::uint8_t, kLargestReport + 1> bytes{};
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!closed_.load(std::memory_order_relaxed)) {
     const std::shared_ptr<DeviceConnection> current = connection();
     if (current == nullptr) {
       look_again();
@@ -113,6 +121,8 @@ void DeviceLink::read_all() noexcept {
       use(nullptr);
     }
   }
+  // A program that this thread has started gets a signal when the thread ends, so that it has to end before.
+  use(nullptr);
 }
 
 void DeviceLink::look_again() noexcept {
@@ -127,14 +137,15 @@ void DeviceLink::look_again() noexcept {
   use(std::move(opened->connection));
 }
 
-void DeviceLink::write(DeviceConnection& connection, const OutReports& reports) noexcept {
+bool DeviceLink::write(DeviceConnection& connection, const OutReports& reports) noexcept {
   bool good = reports.count > 0;
   for (std::size_t i = 0; i < reports.count; ++i) {
-    if (!begin_force_write()) return;
+    if (!begin_force_write()) return false;
     good = connection.write(reports.bytes[i].data(), reports.sizes[i]) && good;
     end_force_write();
   }
   if (good) listener_.written(steady_now_s());
+  return good;
 }
 
 void DeviceLink::write_all() noexcept {

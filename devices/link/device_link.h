@@ -80,7 +80,7 @@ class DeviceLink {
 
   // Slow side. Errors: a thread cannot be started.
   Status start();
-  // Slow side, blocking: ends the writer, sends the stop report, which removes the force, and ends the reader.
+  // Slow side, blocking: ends the writer, sends the stop report, which removes the force, and closes the connection.
   void stop() noexcept;
 
   // Slow side: protocol, product, node and what it was tested on, e.g. "OpenFFBoard, one axis: FFBoard, /dev/hidraw7".
@@ -89,7 +89,7 @@ class DeviceLink {
  private:
   void read_all() noexcept;
   void write_all() noexcept;
-  void write(DeviceConnection& connection, const OutReports& reports) noexcept;
+  bool write(DeviceConnection& connection, const OutReports& reports) noexcept;
   void use(std::shared_ptr<DeviceConnection> next) noexcept;
   std::shared_ptr<DeviceConnection> connection() noexcept;
   void look_again() noexcept;
@@ -100,8 +100,9 @@ class DeviceLink {
   const DeviceProtocol& protocol_;
   std::mutex mutex_;  // guards connection_; the haptics thread never locks it
   std::shared_ptr<DeviceConnection> connection_;
-  int stop_slot_ = -1;  // of connection_, see device_stop.h
-  std::atomic<bool> stop_{false};
+  int stop_slot_ = -1;               // of connection_, see device_stop.h
+  std::atomic<bool> stop_{false};    // ends the writer
+  std::atomic<bool> closed_{false};  // ends the reader
   std::thread reader_;
   std::thread writer_;
 };

@@ -26,20 +26,25 @@ std::array<Slot, kSlots> slots;
 std::atomic<int> writes_under_way{0};
 std::atomic<bool> no_more_forces{false};
 constexpr int kLongestWrite_ms = 20;  // several times the duration of a report on USB
+// A child program is ended together with this one; before, it has to take the stop: three samples at 100 Hz.
+constexpr int kTaken_ms = 30;
 
 // Async-signal-safe.
 void stop_all_devices() noexcept {
   no_more_forces.store(true);
   // The wait is bounded, because this handler may have interrupted the thread that writes.
   for (int i = 0; i < kLongestWrite_ms && writes_under_way.load() > 0; ++i) poll(nullptr, 0, 1);
+  bool any = false;
   for (Slot& slot : slots) {
     const int descriptor = slot.descriptor.load(std::memory_order_acquire);
     if (descriptor < 0) continue;
+    any = true;
     for (std::size_t i = 0; i < slot.reports.count; ++i) {
       // A signal handler cannot react to an error.
       [[maybe_unused]] const ssize_t written = ::write(descriptor, slot.reports.bytes[i].data(), slot.reports.sizes[i]);
     }
   }
+  if (any) poll(nullptr, 0, kTaken_ms);
 }
 
 }  // namespace

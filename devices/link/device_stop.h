@@ -11,8 +11,9 @@
 namespace palpate {
 
 // Any thread but the haptics thread; installs the handlers of signals.h. When one of its signals ends the program, new
-// writes of forces are refused, running ones get 20 ms to finish, and then `reports` are written to `descriptor`, which
-// must stay open until `unregister_device_stop`. Returns the slot; -1 when all eight are in use.
+// writes of forces are refused, running ones get 20 ms to finish, `reports` are written to `descriptor`, which must
+// stay open until `unregister_device_stop`, and the devices get 30 ms to take them. Returns the slot; -1 when all eight
+// are in use.
 int register_device_stop(int descriptor, const OutReports& reports) noexcept;
 // Any thread but the haptics thread. -1 is ignored.
 void unregister_device_stop(int slot) noexcept;

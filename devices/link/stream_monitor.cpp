@@ -10,8 +10,6 @@ namespace {
 constexpr double kNoiseSteps = 4.0;
 // The speed is computed with at least this time step, because two reports may arrive in quick succession.
 constexpr double kShortestStep_s = 1e-3;
-// Weight of a new interval in the exponential mean.
-constexpr double kIntervalShare = 0.1;
 // The least difference between the times of two samples.
 constexpr double kLeastStep_s = 1e-6;
 
@@ -142,7 +140,7 @@ void StreamMonitor::watch_zeroing(double now_s) noexcept {
 }
 
 void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, double now_s, double force_N) noexcept {
-  if (verdict == ReportVerdict::corrupt) fault(device_fault::kCorrupt, now_s);
+  if (verdict == ReportVerdict::corrupt) ++state_.corrupt;
   if (verdict == ReportVerdict::wrong_version) fault(device_fault::kWrongFirmware, now_s);
   if (reading.own_fault) fault(device_fault::kOwn, now_s);
   if (reading.stopped) fault(device_fault::kWriteStalled, now_s);
@@ -159,9 +157,9 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
   const double before_s = state_.sample_time_s;
   state_.sample_time_s = std::max(read_time_s_, before_s + kLeastStep_s);
   if (connected_) {
-    const double step_s = std::min(state_.sample_time_s - before_s, kHold_s);
-    state_.health.interval_s +=
-        (step_s - state_.health.interval_s) * (state_.health.interval_s > 0.0 ? kIntervalShare : 1.0);
+    rate_.add(std::min(state_.sample_time_s - before_s, kHold_s));
+    state_.health.interval_s = rate_.interval_s();
+    if (rate_.too_slow()) fault(device_fault::kSlow, now_s);
   }
   if (protocol_.timed) {
     state_.late_after_s =
@@ -170,6 +168,7 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
   state_.measured_N = reading.measured_N;
   state_.health.grip_held = reading.grip;
   ++state_.samples;
+  state_.corrupt = 0;
   last_ = reading;
   connected_ = true;
   first_s_ = -1.0;

@@ -1,7 +1,7 @@
 // Monitors the readings of one device, for all transports: position, zeroing and faults. It has no clock and no thread,
 // and does not decode. A fault on the right has the cause on the left:
 //
-//   the decoder refuses a report                                          kCorrupt, kWrongFirmware
+//   the decoder refuses a report of another version                       kWrongFirmware
 //   a sequence number decreases                                           kOutOfOrder
 //   timed: a sample is older than late_after_s                            kLate
 //   untimed: four reports within kTogether_s waited in a queue            kBurst
@@ -10,9 +10,10 @@
 //   no count changes within `stuck_after_s` at kPushing_N or more         kStuck
 //   the device's watchdog has stopped it                                  kWriteStalled
 //   the device reports a fault                                            kOwn
-// Missing reports are detected by DeviceEndpoint::health. A fault that does not affect the position lasts kHold_s after
-// its last occurrence. A fault that loses the position of an incremental encoder (kJump, kReset, kStuck) lasts until
-// the device is zeroed. A reading that is corrupt, out of order or late is not used.
+//   fewer than 100 samples a second                                       kSlow
+// Missing reports are detected by DeviceEndpoint::health; a corrupt report is a missing one. A fault that does not
+// affect the position lasts kHold_s after its last occurrence. A fault that loses the position of an incremental
+// encoder (kJump, kReset, kStuck) lasts until the device is zeroed. A reading that is out of order or late is not used.
 // Thread guarantee: one thread; wait-free, never throws.
 #pragma once
 
@@ -21,12 +22,14 @@
 #include "devices/link/device_calibration.h"
 #include "devices/link/device_clock.h"
 #include "engine/live/device.h"
+#include "engine/live/sample_rate.h"
 
 namespace palpate {
 
 // The state after a report. The haptics thread gets a copy of it.
 struct MonitorState {
   std::uint64_t samples = 0;   // number of accepted samples
+  std::uint64_t corrupt = 0;   // number of corrupt reports since the last of them
   std::int64_t counts = 0;     // of the newest accepted sample, unwrapped
   double sample_time_s = 0.0;  // host clock, strictly increasing
   double zero_counts = 0.0;    // counts at the rest position
@@ -38,7 +41,7 @@ struct MonitorState {
   std::uint32_t streams = 0;    // number of streams; one begins when the position becomes known or jumps
   double late_after_s = 0.0;    // largest permitted age of a sample, see kLateIntervals
   double measured_N = std::numeric_limits<double>::quiet_NaN();
-  DeviceHealth health;  // zeroing, grip and interval, which is averaged over about ten samples
+  DeviceHealth health;  // zeroing, grip and interval
 };
 
 class StreamMonitor {
@@ -87,6 +90,7 @@ class StreamMonitor {
   const DeviceProtocol& protocol_;
   MonitorState state_;
   DeviceClock clock_;
+  SampleRate rate_;
   DeviceReading last_;
   std::uint32_t refused_ = 0;  // sequence of the last reading that was out of order
   int refused_in_order_ = 0;

@@ -38,6 +38,7 @@ inline constexpr std::uint32_t kReset = 128;         // the firmware restarted; 
 inline constexpr std::uint32_t kWriteStalled = 256;  // commands do not reach the device
 inline constexpr std::uint32_t kOwn = 512;           // the device itself reports a fault
 inline constexpr std::uint32_t kWrongFirmware = 1024;
+inline constexpr std::uint32_t kSlow = 2048;  // fewer than 100 samples a second
 inline constexpr std::uint32_t kLosesPosition = kUnplugged | kStuck | kJump | kReset;
 }  // namespace device_fault
 
@@ -60,9 +61,11 @@ struct Fault {
 };
 
 // In the order of the reports.
-inline constexpr std::array<Fault, 23> kFaults = {{
+inline constexpr std::array<Fault, 24> kFaults = {{
     {FaultSource::device, device_fault::kUnplugged, "the device is disconnected: connect it again"},
     {FaultSource::device, device_fault::kLate, "reports come late: no force until they are on time again"},
+    {FaultSource::device, device_fault::kSlow,
+     "the device sends fewer than 100 samples a second: no force until it sends more"},
     {FaultSource::device, device_fault::kOutOfOrder,
      "a report came out of order: no force until reports are in order again"},
     {FaultSource::device, device_fault::kBurst,

@@ -22,7 +22,7 @@ namespace palpate {
 
 struct ForceLimits {
   double largest_N = 10.0;          // peak, > 0
-  double fastest_N_per_s = 5000.0;  // > 0
+  double fastest_N_per_s = 2000.0;  // > 0
   double ramp_s = 0.3;              // >= 0
   // Force that the motor can hold permanently, > 0; infinite: no thermal limit.
   double continuous_N = std::numeric_limits<double>::infinity();

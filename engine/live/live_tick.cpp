@@ -14,8 +14,6 @@ namespace {
 
 // Strokes for warming up, in and out of contact.
 constexpr int kWarmUpSamples = 500;
-// A force that is written in a tick acts from the next tick on and is held for one.
-constexpr double kInTick_s = 1.5 * kHapticTick_s;
 
 static_assert(static_cast<std::uint32_t>(TickFault::bad_sample) == loop_fault::kBadSample &&
               static_cast<std::uint32_t>(TickFault::time_not_later) == loop_fault::kTimeNotLater &&
@@ -93,9 +91,8 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
     : device_(device),
       slot_(slot),
       mixer_(settings.jnd),
-      stability_(device.sensor().encoder_step_m),
-      bounded_(device.holder() == Holder::person),
-      passivity_(device.sensor().encoder_step_m),
+      guard_(device.sensor().encoder_step_m),
+      held_(device.holder() == Holder::person),
       passivity_on_(settings.passivity && settings.source == nullptr),
       limiter_(device.limits()),
       source_(settings.source),
@@ -190,16 +187,21 @@ Impedance LiveTick::impedance() const noexcept {
   return {mixer_.current(stiffness), mixer_.current(damping)};
 }
 
-double LiveTick::scale(double force_N, double step_s) noexcept {
-  const double lag_s = snapshot_.device.lag_s;
-  stability_.update(lag_s > kInTick_s ? lag_s : kInTick_s, step_s);
-  const Impedance model = impedance();
-  const ForceScale unbounded = controls_.scale.limited(StabilityLimit(), {});
-  const ForceScale limited = bounded_ ? controls_.scale.limited(stability_, model) : unbounded;
-  snapshot_.stiffness_share = static_cast<float>(limited.stiffness / unbounded.stiffness);
-  snapshot_.lag_ms = static_cast<float>(1e3 * stability_.lag_s());
+ForceGuard::Tool LiveTick::tool(bool in_contact) const noexcept {
   const TickSnapshot& tick = snapshot_.tick;
-  return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, limited, step_s);
+  return {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading, snapshot_.samples > 0};
+}
+
+ForceGuard::Timing LiveTick::timing(double step_s) const noexcept {
+  return {snapshot_.device.lag_s, snapshot_.device.interval_s, step_s};
+}
+
+double LiveTick::scale(double force_N, double step_s) noexcept {
+  const double scaled_N =
+      guard_.scaled(force_N, impedance(), controls_.scale, held_, tool(snapshot_.tick.in_contact), timing(step_s));
+  snapshot_.stiffness_share = static_cast<float>(guard_.stiffness_share());
+  snapshot_.lag_ms = static_cast<float>(1e3 * guard_.lag_s());
+  return scaled_N;
 }
 
 bool LiveTick::dead_man_released() const noexcept {
@@ -210,15 +212,8 @@ bool LiveTick::dead_man_released() const noexcept {
 // Off in a study, which presents forces that do not depend on the position of the tool.
 double LiveTick::passive(double commanded_N, double step_s) noexcept {
   if (!passivity_on_) return commanded_N;
-  const TickSnapshot& tick = snapshot_.tick;
-  const bool in_contact = tick.in_contact && !snapshot_.restarted;
-  const double hold_s = std::max(kHapticTick_s, snapshot_.device.interval_s);
-  const PassivityController::Loop loop{std::max(0.0, stability_.lag_s() - 0.5 * hold_s),
-                                       std::max(0.0, stability_.damping_Ns_per_m() - scaled_.now().damping_Ns_per_m),
-                                       hold_s};
-  return passivity_.apply(commanded_N,
-                          {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading, snapshot_.samples > 0},
-                          loop, snapshot_.rendered_N, step_s);
+  return guard_.passive(commanded_N, tool(snapshot_.tick.in_contact && !snapshot_.restarted), timing(step_s),
+                        snapshot_.rendered_N);
 }
 
 void LiveTick::render(double step_s) noexcept {

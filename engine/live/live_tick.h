@@ -16,11 +16,10 @@
 
 #include "engine/live/device.h"
 #include "engine/live/faults.h"
+#include "engine/live/force_guard.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/force_mixer.h"
 #include "engine/live/handover.h"
-#include "engine/live/passivity_controller.h"
-#include "engine/live/stability_limit.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
 
@@ -157,6 +156,8 @@ class LiveTick {
   double mix(double step_s) noexcept;
   bool dead_man_released() const noexcept;
   Impedance impedance() const noexcept;
+  ForceGuard::Tool tool(bool in_contact) const noexcept;
+  ForceGuard::Timing timing(double step_s) const noexcept;
   double scale(double force_N, double step_s) noexcept;
   double passive(double commanded_N, double step_s) noexcept;
   void render(double step_s) noexcept;
@@ -164,10 +165,8 @@ class LiveTick {
   Device& device_;
   ModelSlot<LiveModels>& slot_;
   ForceMixer mixer_;
-  StabilityLimit stability_;
-  bool bounded_;  // by stability_: true if a person holds the device
-  ScaledForce scaled_;
-  PassivityController passivity_;
+  ForceGuard guard_;
+  bool held_;  // by a person
   bool passivity_on_;
   ForceLimiter limiter_;
   ForceSource* source_;

@@ -54,7 +54,7 @@ double PassivityController::arrived_N(const Tool& tool, double lag_s, double wri
 
 double PassivityController::apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N,
                                   double step_s) noexcept {
-  const double acted_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, kHapticTick_s);
+  const double acted_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, loop.tick_s);
   if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
     begin_at(0.0);
     return reduced(commanded_N, 0.0);

@@ -41,6 +41,7 @@ class PassivityController {
     double transport_s = 1e-3;       // from a sample to its force; with hold_s at most 63 ms
     double damping_Ns_per_m = 16.0;  // b
     double hold_s = 1e-3;            // T, for which a force is held: one tick, or until the next sample
+    double tick_s = kHapticTick_s;   // between two calls
   };
 
   // Once a tick, before the limiter. `written_N`: the device's force in the last tick; `step_s`: since then, 0 in the

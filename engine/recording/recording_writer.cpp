@@ -1,7 +1,14 @@
 #include "engine/recording/recording_writer.h"
 
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -46,10 +53,34 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& path, Recordi
                                                 const std::vector<std::string>& comments, bool overwrite) {
   auto file = AtomicFile::create(path, overwrite);
   if (!file) return file.error();
+  auto claim = Claim::of(path);
+  if (!claim) return claim.error();
   std::string head;
   for (const std::string& comment : comments) append_comment(head, comment);
   file->write(head + line_of(columns, [](std::size_t i) { return kColumnNames[i]; }));
-  return RecordingWriter(std::move(*file), path, columns);
+  return RecordingWriter(std::move(*claim), std::move(*file), path, columns);
+}
+
+// An abstract Unix address made of the file's folder, as the disk knows it, and its name.
+Result<RecordingWriter::Claim> RecordingWriter::Claim::of(const std::string& path) {
+  const std::filesystem::path file(path);
+  struct stat folder {};
+  stat(file.has_parent_path() ? file.parent_path().c_str() : ".", &folder);
+  const std::string name = "palpate-recording-" + std::to_string(folder.st_dev) + "-" + std::to_string(folder.st_ino) +
+                           "-" + std::to_string(std::hash<std::string>()(file.filename().string()));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::ranges::copy(name, address.sun_path + 1);
+  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), size) == 0 || errno != EADDRINUSE)
+    return Claim(descriptor);
+  ::close(descriptor);
+  return Error{path + ": another recording is being written into it; choose another name, or end that one"};
+}
+
+RecordingWriter::Claim::~Claim() {
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 Status RecordingWriter::add(const RecordingRow& row) {

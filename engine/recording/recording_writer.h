@@ -17,7 +17,8 @@ namespace palpate {
 
 class RecordingWriter {
  public:
-  // `comments` become '#' lines, one for each line of text. Errors: those of AtomicFile::create.
+  // `comments` become '#' lines, one for each line of text. Errors: those of AtomicFile::create; another writer, of any
+  // program on this machine, is writing a recording of this name.
   static Result<RecordingWriter> create(const std::string& path, RecordingColumns columns,
                                         const std::vector<std::string>& comments, bool overwrite);
 
@@ -40,9 +41,22 @@ class RecordingWriter {
   Status commit();
 
  private:
-  RecordingWriter(AtomicFile file, std::string path, RecordingColumns columns)
-      : file_(std::move(file)), path_(std::move(path)), columns_(columns) {}
+  // Reserves the name of a file that has none yet: an address that the system frees with its descriptor.
+  class Claim {
+   public:
+    static Result<Claim> of(const std::string& path);
+    Claim(Claim&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    ~Claim();
 
+   private:
+    explicit Claim(int descriptor) : descriptor_(descriptor) {}
+    int descriptor_;  // -1: the system has no such addresses
+  };
+
+  RecordingWriter(Claim claim, AtomicFile file, std::string path, RecordingColumns columns)
+      : claim_(std::move(claim)), file_(std::move(file)), path_(std::move(path)), columns_(columns) {}
+
+  Claim claim_;
   AtomicFile file_;
   std::string path_;
   RecordingColumns columns_;

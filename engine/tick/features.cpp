@@ -46,8 +46,8 @@ std::string feature_name(const FeatureSpec& spec) {
   return name.append(facts_of(spec.kind).unit);
 }
 
-FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs)
-    : specs_(specs), surface_position_m_(palpate::surface_position_m(specs)) {
+FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs, double deepest_m)
+    : specs_(specs), surface_position_m_(palpate::surface_position_m(specs)), deepest_m_(deepest_m) {
   assert(!specs.empty() && specs.size() <= kMaxFeatures);
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     const FeatureSpec& spec = specs_[i];
@@ -67,7 +67,8 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs)
 }
 
 void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept {
-  const double depth_m = std::max(0.0, motion.position_m - surface_position_m_);
+  const double present_m = std::max(0.0, motion.position_m - surface_position_m_);
+  const double depth_m = std::min(present_m, deepest_m_);  // remembered
   if (!state.started) state = {};
   state.vector.in_contact = in_contact(sample, surface_position_m_);
   const double step_s = state.started ? std::max(0.0, sample.time_s - state.time_s) : 0.0;
@@ -80,7 +81,7 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
     double& value = state.vector.values[i];
     switch (spec.kind) {
       case FeatureKind::depth:
-        value = depth_m;
+        value = present_m;
         break;
       case FeatureKind::velocity:
         value = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;

@@ -137,7 +137,7 @@ struct FeatureVector {
 // The state of the filters of one list of features. Trivially copyable.
 struct alignas(sizeof(V4)) FeatureState {
   FeatureVector vector;
-  double depth_m = 0.0;    // at the last sample
+  double depth_m = 0.0;    // at the last sample, at most the deepest of the plan
   double surface_m = 0.0;  // s >= depth_m; equal without a surface_lag
   double time_s = 0.0;
   bool started = false;
@@ -149,10 +149,15 @@ static_assert(std::is_trivially_copyable_v<FeatureState>);
 // Thread guarantee: immutable; constructing allocates, all else is wait-free.
 class FeaturePlan {
  public:
-  // `specs`: 1 to 8 features; relaxation times > 0.
-  explicit FeaturePlan(const std::vector<FeatureSpec>& specs);
+  // `specs`: 1 to 8 features; relaxation times > 0. `deepest_m`: a greater depth enters the memory of the features as
+  // this one, so that an error of the sensor, or a press far beyond the training data, is soon forgotten.
+  explicit FeaturePlan(const std::vector<FeatureSpec>& specs,
+                       double deepest_m = std::numeric_limits<double>::infinity());
 
   const std::vector<FeatureSpec>& specs() const noexcept { return specs_; }
+  bool is_of(const std::vector<FeatureSpec>& specs, double deepest_m) const noexcept {
+    return deepest_m_ == deepest_m && specs_ == specs;
+  }
 
   // Advances `state` by a sample and its motion estimate; times increase. Contact is determined from the raw position.
   void update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
@@ -170,12 +175,15 @@ class FeaturePlan {
   BristleLanes bristles_;
   std::size_t lag_ = kMaxFeatures;  // index of the surface_lag; kMaxFeatures: none
   double surface_position_m_ = 0.0;
+  double deepest_m_;
 };
 
 // A plan and a state, for one stream of samples.
 class FeatureFilter {
  public:
-  explicit FeatureFilter(const std::vector<FeatureSpec>& specs) : plan_(specs) {}
+  explicit FeatureFilter(const std::vector<FeatureSpec>& specs,
+                         double deepest_m = std::numeric_limits<double>::infinity())
+      : plan_(specs, deepest_m) {}
 
   const FeaturePlan& plan() const noexcept { return plan_; }
   const FeatureState& state() const noexcept { return state_; }

@@ -31,6 +31,8 @@ class ForceModel {
   virtual ForceEstimate evaluate(const double* features) const noexcept = 0;
 
   virtual const std::vector<FeatureSpec>& features() const noexcept = 0;
+  // The greatest depth that enters the memory of the features, m: that of the training domain.
+  virtual double deepest_m() const noexcept { return std::numeric_limits<double>::infinity(); }
   virtual const std::string& name() const noexcept = 0;    // e.g. "greedy-100"
   virtual const std::string& method() const noexcept = 0;  // e.g. "greedy"
   virtual int centre_count() const noexcept = 0;           // nodes for a grid

@@ -58,8 +58,8 @@ HapticsTick::HapticsTick(const SensorSpec& sensor, ForceModels models) : motion_
   assert(models_.size() <= kMaxModels);
   for (const auto& model : models_) {
     std::size_t index = 0;
-    while (index < filters_.size() && filters_[index].plan().specs() != model->features()) ++index;
-    if (index == filters_.size()) filters_.emplace_back(model->features());
+    while (index < filters_.size() && !filters_[index].plan().is_of(model->features(), model->deepest_m())) ++index;
+    if (index == filters_.size()) filters_.emplace_back(model->features(), model->deepest_m());
     filter_of_.push_back(index);
   }
   extremes_.resize(filters_.size());

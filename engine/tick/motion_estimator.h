@@ -43,8 +43,8 @@ class MotionEstimator {
   // Resets the state; the next sample is the first one.
   void reset() noexcept { state_ = {}; }
 
-  // Takes the next sample and returns the estimate. A sample that is not later than the last one is ignored. So is the
-  // first reading beyond the reach of a hand (0.1 m and 10 m/s); if the next one is as far, the filters restart there.
+  // Takes the next sample and returns the estimate. A sample that is not later than the last one is ignored. So are
+  // readings beyond the reach of a hand (20 mm and 10 m/s), for at most 0.1 s; then the filters restart there.
   // The estimated position is within half an encoder step plus three standard deviations of the noise of the reading.
   MotionEstimate update(const ToolSample& sample) noexcept;
   // The last estimate.

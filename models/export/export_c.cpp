@@ -89,11 +89,6 @@ void write_constants(CText& out, const ModelData& data) {
   out.define("CORRECTION_LIMIT_N", data.correction_limit_N);
   out.define("LARGEST_FORCE_N", kForceMargin * data.largest_force_N);
   out.define("LOWEST_FORCE_N", data.lowest_force_N);
-  // A press deeper than the recorded ones, as in the library. Infinity has no literal in C.
-  std::size_t depth = 0;
-  const double deepest_m = std::min(deepest_in_domain_m(data, depth), 1e30);
-  out.define("DEPTH_FEATURE", depth);
-  out.define("DEEPEST_M", deepest_m);
   out.list("offset", data.offset);
   out.list("inverse_scale", Eigen::VectorXd(data.scale.cwiseInverse()));
 }
@@ -115,6 +110,11 @@ std::string export_c(const ModelData& data, const SensorSpec& sensor, bool singl
   out.define("MOTION_STATES", std::size_t{3});
   out.define("FEATURES", data.features.size());
   out.define("SURFACE_POSITION_M", surface_position_m(data.features));
+  // A press deeper than the recorded ones, as in the library. Infinity has no literal in C.
+  std::size_t depth = 0;
+  const double deepest_m = std::min(deepest_in_domain_m(data, depth), 1e30);
+  out.define("DEPTH_FEATURE", depth);
+  out.define("DEEPEST_M", deepest_m);
   out.add(c_source::declarations);
   out.add(c_source::motion_filter);
   write_features(out, data.features);
@@ -123,6 +123,7 @@ std::string export_c(const ModelData& data, const SensorSpec& sensor, bool singl
   write_trust(out, data.cover);
   write_constants(out, data);
   out.add(c_source::tick);
+  out.add(single_precision ? c_source::step : c_source::time);
   return out.text();
 }
 

@@ -33,7 +33,7 @@ void write_parts(CText& out, const std::string& name, const std::vector<PartRow>
 std::string value_of(const CText& out, const FeatureSpec& spec, const std::string& value, const std::string& range) {
   switch (spec.kind) {
     case FeatureKind::depth:
-      return "depth_m";
+      return "present_m";
     case FeatureKind::velocity:
       return "depth_m > R(0.0) ? motion.velocity_m_per_s : R(0.0)";
     case FeatureKind::lowpass_velocity:
@@ -93,7 +93,8 @@ void write_features(CText& out, const std::vector<FeatureSpec>& features) {
   out.add(
       "\n/* `first`: nothing came before, and every filter is at rest. */\n"
       "static void update_features(real step_s, int first) {\n  real s;\n"
-      "  depth_m = larger(R(0.0), motion.estimate_m - SURFACE_POSITION_M);\n  s = " +
+      "  const real present_m = larger(R(0.0), motion.estimate_m - SURFACE_POSITION_M);\n"
+      "  depth_m = smaller(present_m, DEEPEST_M);\n  s = " +
       std::string(lags ? "first ? depth_m : surface_above(step_s)" : "depth_m") +
       ";\n  (void)step_s;\n  (void)first;\n" + body + "  last_depth_m = depth_m;\n  surface_m = s;\n}\n");
 }

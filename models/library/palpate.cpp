@@ -1,5 +1,5 @@
 // The C interface of models/library/palpate/palpate.h: handles around a fitted model, a
-// haptics tick with that one model, and a force limiter. No exception leaves a function.
+// haptics tick with that one model, and the stages before an actuator. No exception leaves a function.
 #include "models/library/palpate/palpate.h"
 
 #include <algorithm>
@@ -12,7 +12,10 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/live/force_guard.h"
 #include "engine/live/force_limiter.h"
+#include "engine/live/live_tick.h"
+#include "engine/live/sample_rate.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
@@ -21,10 +24,16 @@
 
 struct palpate_stream {
   palpate_stream(const palpate::SensorSpec& spec, std::shared_ptr<const palpate::ForceModel> model)
-      : sensor(spec), tick(spec, {std::move(model)}) {}
+      : sensor(spec), tick(spec, {model}) {
+    const palpate::LiveModels measured(1, spec, {model});
+    impedance = {measured.stiffness_N_per_m[0], measured.damping_Ns_per_m[0]};
+  }
 
   palpate::SensorSpec sensor;
   palpate::HapticsTick tick;
+  palpate::Impedance impedance;
+  bool accepted = false;  // the last sample
+  bool restarted = true;  // before the first sample
   // The values of the last accepted sample.
   bool out_of_domain = false;
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
@@ -35,6 +44,12 @@ struct palpate_limiter {
 
   palpate::ForceLimiter limiter;
   bool stop = false;
+  // Of palpate_limiter_render.
+  palpate::ForceGuard guard{0.0};
+  double encoder_step_m = 0.0;  // of `guard`
+  double lag_s = 0.0;
+  palpate::SampleRate calls, samples;
+  double sample_age_s = std::numeric_limits<double>::infinity();
 };
 
 namespace palpate::library {
@@ -117,10 +132,43 @@ Result<ForceLimits> force_limits(const palpate_limits& limits) {
 
 double step(palpate_stream& stream, const ToolSample& sample) noexcept {
   const TickSnapshot& snapshot = stream.tick.step(sample);
-  if (snapshot.fault == TickFault::bad_sample || snapshot.fault == TickFault::time_not_later) return 0.0;
+  stream.accepted = snapshot.fault != TickFault::bad_sample && snapshot.fault != TickFault::time_not_later;
+  if (!stream.accepted) return 0.0;
   stream.out_of_domain = (snapshot.out_of_domain_mask & 1U) != 0;
   stream.predicted_error_N = snapshot.predicted_error_N[0];
   return snapshot.force_N[0];
+}
+
+// A longer interval counts as this, because a pause is no rate.
+constexpr double kPause_s = 0.1;
+
+// The last force of the stream after the stages of LiveTick. `step_s` >= 0.
+double render(palpate_limiter& limiter, palpate_stream& stream, double step_s) noexcept {
+  const TickSnapshot& tick = stream.tick.snapshot();
+  if (limiter.encoder_step_m != stream.sensor.encoder_step_m) {
+    limiter.encoder_step_m = stream.sensor.encoder_step_m;
+    limiter.guard = ForceGuard(limiter.encoder_step_m);
+  }
+  const bool first = std::isinf(limiter.sample_age_s);
+  limiter.sample_age_s += step_s;
+  if (!first && step_s > 0.0) limiter.calls.add(std::min(step_s, kPause_s));
+  if (stream.accepted) {
+    if (!first && limiter.sample_age_s > 0.0) limiter.samples.add(std::min(limiter.sample_age_s, kPause_s));
+    limiter.sample_age_s = 0.0;
+  }
+  const double interval_s = std::max(limiter.calls.interval_s(), limiter.samples.interval_s());
+  const double tick_s = limiter.calls.interval_s() > 0.0 ? limiter.calls.interval_s() : kHapticTick_s;
+  const ForceGuard::Timing timing{std::max(limiter.lag_s, 1.5 * interval_s), interval_s, step_s, tick_s};
+  const bool in_contact = stream.tick.features_of(0).in_contact && !std::exchange(stream.restarted, false);
+  const ForceGuard::Tool tool{tick.position_m, tick.velocity_m_per_s, in_contact, false, stream.accepted};
+  const double scaled_N = limiter.guard.scaled(tick.force_N[0], stream.impedance, {}, true, tool, timing);
+  const double passive_N = limiter.guard.passive(scaled_N, tool, timing, limiter.limiter.force_N());
+  ForceConditions conditions;
+  conditions.sample_age_s = limiter.sample_age_s;
+  conditions.device_fault =
+      std::exchange(limiter.stop, false) || limiter.calls.too_slow() || limiter.samples.too_slow();
+  conditions.bad_sample = tick.fault == TickFault::bad_sample;
+  return limiter.limiter.limit(passive_N, step_s, conditions);
 }
 
 }  // namespace
@@ -229,6 +277,8 @@ void palpate_stream_free(palpate_stream* stream) { delete stream; }
 void palpate_stream_reset(palpate_stream* stream) {
   if (stream == nullptr) return;
   stream->tick.reset();
+  stream->accepted = false;
+  stream->restarted = true;
   stream->out_of_domain = false;
   stream->predicted_error_N = std::numeric_limits<double>::quiet_NaN();
 }
@@ -266,6 +316,8 @@ int palpate_stream_replay(palpate_stream* stream, const palpate_recording* motio
   return 0;
 }
 
+int palpate_stream_accepted(const palpate_stream* stream) { return stream != nullptr && stream->accepted ? 1 : 0; }
+
 int palpate_stream_out_of_domain(const palpate_stream* stream) {
   return stream != nullptr && stream->out_of_domain ? 1 : 0;
 }
@@ -301,6 +353,17 @@ double palpate_limiter_force(palpate_limiter* limiter, double commanded_N, doubl
   conditions.device_fault = limiter->stop;
   limiter->stop = false;
   return limiter->limiter.limit(commanded_N, step_s, conditions);
+}
+
+double palpate_limiter_render(palpate_limiter* limiter, palpate_stream* stream, double time_s, double position_m,
+                              double step_s) {
+  if (limiter == nullptr || stream == nullptr) return 0.0;
+  palpate_stream_force(stream, time_s, position_m);
+  return palpate::library::render(*limiter, *stream, std::isfinite(step_s) ? std::max(0.0, step_s) : 0.0);
+}
+
+void palpate_limiter_set_lag(palpate_limiter* limiter, double lag_s) {
+  if (limiter != nullptr && std::isfinite(lag_s) && lag_s >= 0.0) limiter->lag_s = lag_s;
 }
 
 void palpate_limiter_stop(palpate_limiter* limiter) {

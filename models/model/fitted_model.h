@@ -122,6 +122,7 @@ class FittedModel final : public ForceModel {
 
   ForceEstimate evaluate(const double* features) const noexcept override;
   const std::vector<FeatureSpec>& features() const noexcept override { return data_.features; }
+  double deepest_m() const noexcept override { return deepest_m_; }
   const std::string& name() const noexcept override { return data_.name; }
   const std::string& method() const noexcept override { return data_.method; }
   int centre_count() const noexcept override { return data_.centre_count(); }

@@ -55,6 +55,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto session = LiveSession::open(request_);
   if (!session) return session.error();
   session_ = std::move(*session);
+  Window::at_loss_of_display([this] { end(); });
   yield_to_haptics(session_->loop().scheduling());
   // The window is opened after the haptics thread, because the driver's threads inherit the priority of this one.
   WindowRequest asked = request.window;
@@ -93,12 +94,21 @@ void DemoApp::listen() {
   ui_ = std::make_unique<UiContext>(window_->handle());
 }
 
+std::string DemoApp::end() {
+  if (session_ == nullptr) return "";
+  std::string stats = stats_text(*session_, shown_, view_.frames);
+  session_->close();
+  return stats;
+}
+
 DemoApp::~DemoApp() {
+  Window::at_loss_of_display([this] { end(); });
   // Hides the window first, because the end of a fit may take a moment.
   if (window_ != nullptr) glfwHideWindow(window_->handle());
   if (blocks_ != nullptr && session_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
   session_.reset();
   blocks_.reset();
+  Window::at_loss_of_display(nullptr);
 }
 
 bool DemoApp::closing() const noexcept {

@@ -46,6 +46,9 @@ class DemoApp {
   void close();
   // An error when the program closes by itself because no session could be opened.
   const Status& outcome() const noexcept { return outcome_; }
+  // Completes a recording, removes the force and closes the device, without GLFW and OpenGL: for the loss of the
+  // display. Returns the text of --stats.
+  std::string end();
   // Draws the present state in full resolution and saves it. Errors: those of Window::save_frame.
   Status screenshot(const std::string& path, bool overwrite);
 

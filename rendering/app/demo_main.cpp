@@ -143,14 +143,19 @@ Status run_demo(Arguments& arguments) {
   if (!arguments.test.empty()) device = "replay:" + arguments.test;
   auto app = DemoApp::create(arguments.demo);
   if (!app) return app.error();
+  Status written;
+  const auto write_stats = [&](const std::string& text) {
+    const std::string path = std::exchange(arguments.stats, "");
+    if (!path.empty() && !text.empty()) written = write_file_atomically(path, text, arguments.force);
+  };
+  Window::at_loss_of_display([&] { write_stats((*app)->end()); });
   run_frames(**app, arguments.seconds);
   if (!(*app)->outcome()) return (*app)->outcome();
   if (!arguments.screenshot.empty()) {
     if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
   }
-  if (arguments.stats.empty()) return {};
-  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->shown(), (*app)->view().frames),
-                               arguments.force);
+  write_stats(stats_text((*app)->session(), (*app)->shown(), (*app)->view().frames));
+  return written;
 }
 
 int run_program(int argc, char** argv) {

@@ -39,6 +39,8 @@ Result<std::unique_ptr<StudyApp>> StudyApp::create(const WindowRequest& asked, c
   std::unique_ptr<StudyApp> app(new StudyApp);
   app->window_ = std::move(*window);
   app->study_ = std::move(*study);
+  // Removes the force; the answers so far are in the file.
+  Window::at_loss_of_display([&owner = app->study_] { owner.reset(); });
   GLFWwindow* handle = app->window_->handle();
   glfwSetWindowUserPointer(handle, app.get());
   glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int) {

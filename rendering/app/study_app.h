@@ -20,6 +20,7 @@ class StudyApp {
   // `strokes`: of the discrimination; null: the JND study. Errors: those of Window; the device cannot be opened.
   static Result<std::unique_ptr<StudyApp>> create(const WindowRequest& asked, const std::string& device,
                                                   std::shared_ptr<const StrokePair> strokes, bool realtime = true);
+  ~StudyApp() { Window::at_loss_of_display(nullptr); }
   StudyApp(const StudyApp&) = delete;
   StudyApp& operator=(const StudyApp&) = delete;
 

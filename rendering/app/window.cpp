@@ -4,10 +4,16 @@
 // GLFW after epoxy, which declares the functions of OpenGL.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <dlfcn.h>
 #include <png.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <cstdio>
+#include <exception>
+#include <utility>
 #include <vector>
 
 #include "engine/base/atomic_file.h"
@@ -30,6 +36,36 @@ std::string& last_problem() {
 }
 
 void keep_problem(int, const char* text) { last_problem() = text; }
+
+std::function<void()>& end_of_program() {
+  static std::function<void()> end;
+  return end;
+}
+
+// Called by Xlib, on any thread that draws. Does not return, because Xlib would then call exit().
+[[noreturn]] void end_without_display(const char* why) {
+  static std::atomic<bool> ending{false};
+  while (ending.exchange(true)) pause();  // another thread ends the program
+  try {
+    if (end_of_program()) end_of_program()();
+  } catch (const std::exception&) {  // the line below says what matters
+  }
+  std::fprintf(stderr, "error: %s; start the program again\n", why);
+  std::fflush(nullptr);
+  _exit(1);
+}
+
+int on_lost_server(void*) {
+  end_without_display("the display is gone: its server has ended or the connection is closed");
+}
+int on_refused_request(void*, void*) { end_without_display("the display refused a request of the window"); }
+
+// GLFW is linked to Xlib or, built for Wayland alone, not.
+template <typename Handler>
+void set_handler(const char* name, Handler handler) {
+  using Set = Handler (*)(Handler);
+  if (const auto set = reinterpret_cast<Set>(dlsym(RTLD_DEFAULT, name)); set != nullptr) set(handler);
+}
 
 constexpr std::size_t kChannels = 3;
 
@@ -90,11 +126,14 @@ void keep_on_screen(GLFWwindow* handle) {
 
 Status Window::find_display() {
   glfwSetErrorCallback(keep_problem);
+  set_handler("XSetIOErrorHandler", &on_lost_server);
   if (glfwInit() == GLFW_TRUE) return {};
   return Error{"no display (" + last_problem() +
                "), expected an X11 or Wayland session; run it on a desktop, under xvfb-run, or use `palpate` "
                "without a window"};
 }
+
+void Window::at_loss_of_display(std::function<void()> end) { end_of_program() = std::move(end); }
 
 Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -122,6 +161,7 @@ Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
     glfwTerminate();
     return error;
   }
+  set_handler("XSetErrorHandler", &on_refused_request);  // GLFW resets it while it makes a context
   std::unique_ptr<Window> window(new Window(handle));
   window->paced_by_display_ = window->display_sets_pace(request.empty);
   return window;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -24,6 +25,10 @@ class Window {
  public:
   // Checks for a display; fast. Call it first. Errors: there is none.
   static Status find_display();
+  // Sets what happens when the X server goes away, or refuses a request, in place of the last one; null: nothing. The
+  // handlers of Xlib call exit(), which would destroy what other threads still use. The program ends after `end`, which
+  // must call neither GLFW nor OpenGL, with an `error:` line and exit code 1.
+  static void at_loss_of_display(std::function<void()> end);
   // Call it after `find_display`. Errors: no window with OpenGL 3.3.
   static Result<std::unique_ptr<Window>> open(const WindowRequest& request);
   Window(const Window&) = delete;

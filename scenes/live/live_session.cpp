@@ -158,8 +158,13 @@ Status LiveSession::begin(const std::vector<ModelRequest>& plans) {
 
 LiveSession::~LiveSession() {
   models_.cancel();
+  close();
+}
+
+void LiveSession::close() {
   recorder_.reset();  // completes a recording
   if (loop_ != nullptr) loop_->stop();
+  device_->close();
 }
 
 void LiveSession::update() {

@@ -56,8 +56,11 @@ class LiveSession {
   static Result<std::unique_ptr<LiveSession>> open(const SessionRequest& request);
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
-  // Ends a recording and waits until it is on the disk; ramps the force to zero; interrupts fits.
+  // `close`, and interrupts fits.
   ~LiveSession();
+  // Ends a recording and waits until it is on the disk; ramps the force to zero; closes the device. Only the destructor
+  // may follow.
+  void close();
 
   // Call it once a frame: processes all ticks since the last call and the models that became ready.
   void update();

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <utility>
 
 #include "models/export/export_c.h"
 #include "tests/support/run_program.h"
@@ -22,7 +23,15 @@ class CompiledModel {
   // Compiles and loads the output of `palpate export`.
   explicit CompiledModel(const std::string& text) { load(text); }
 
-  Real (*force)(Real, Real) = nullptr;
+  // The force at a time; in single precision by steps, which are computed here as a board would from its clock.
+  Real force(double time_s, Real position_m) const {
+    if constexpr (sizeof(Real) > sizeof(float)) return force_at(time_s, position_m);
+    const double step_s = time_s - std::exchange(last_s_, time_s);
+    return force_after(static_cast<Real>(step_s), position_m);
+  }
+  bool loaded() const { return force_after != nullptr; }
+
+  Real (*force_at)(Real, Real) = nullptr;  // null in single precision
   Real (*force_after)(Real, Real) = nullptr;
   void (*reset)() = nullptr;
   int (*out_of_domain)() = nullptr;
@@ -38,7 +47,7 @@ class CompiledModel {
     library_.reset(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL));
     EXPECT_NE(library_, nullptr);
     if (library_ == nullptr) return;
-    force = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force"));
+    force_at = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force"));
     force_after = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force_after"));
     reset = reinterpret_cast<void (*)()>(dlsym(library_.get(), "palpate_reset"));
     out_of_domain = reinterpret_cast<int (*)()>(dlsym(library_.get(), "palpate_out_of_domain"));
@@ -48,6 +57,7 @@ class CompiledModel {
     void operator()(void* library) const { dlclose(library); }
   };
   TemporaryFolder folder_;
+  mutable double last_s_ = 0.0;
   std::unique_ptr<void, Close> library_;
 };
 

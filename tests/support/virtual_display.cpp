@@ -2,10 +2,12 @@
 
 #include <fcntl.h>
 #include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
+#include <utility>
 
 namespace palpate::test {
 namespace {
@@ -24,12 +26,13 @@ namespace {
   _exit(127);
 }
 
-// Returns the name of the display, or an empty string.
-std::string start_server() {
+// Returns the name of the display, or an empty string. `process`: receives the id of the server.
+std::string start_server(pid_t& process) {
   int ends[2];
   if (pipe(ends) != 0) return {};
   const pid_t parent = getpid();
-  if (fork() == 0) become_server(ends[1], parent);
+  process = fork();
+  if (process == 0) become_server(ends[1], parent);
   close(ends[1]);
   std::string number;
   char byte = 0;
@@ -41,13 +44,22 @@ std::string start_server() {
 }  // namespace
 
 const std::string& virtual_display() {
-  static const std::string name = start_server();
+  static pid_t server = 0;
+  static const std::string name = start_server(server);
   if (!name.empty()) {
     setenv("DISPLAY", name.c_str(), 1);
     unsetenv("WAYLAND_DISPLAY");
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
   }
   return name;
+}
+
+OwnDisplay::OwnDisplay() { name_ = start_server(process_); }
+
+void OwnDisplay::end() {
+  if (process_ <= 0) return;
+  kill(process_, SIGTERM);
+  waitpid(std::exchange(process_, 0), nullptr, 0);
 }
 
 }  // namespace palpate::test

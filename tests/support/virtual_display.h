@@ -10,4 +10,19 @@ namespace palpate::test {
 // the process. Returns its name, or an empty string if Xvfb does not start.
 const std::string& virtual_display();
 
+// A display of its own, for a program that loses it.
+class OwnDisplay {
+ public:
+  OwnDisplay();
+  OwnDisplay(const OwnDisplay&) = delete;
+  OwnDisplay& operator=(const OwnDisplay&) = delete;
+  ~OwnDisplay() { end(); }
+  const std::string& name() const { return name_; }  // empty if Xvfb does not start
+  void end();
+
+ private:
+  int process_ = 0;
+  std::string name_;
+};
+
 }  // namespace palpate::test

@@ -3,7 +3,8 @@
  *
  *   palpate_model *model = palpate_model_load("block.json", error, sizeof error);
  *   palpate_stream *stream = palpate_stream_new(model, 30e-6, error, sizeof error);
- *   for (;;) force_N = palpate_stream_force(stream, time_s, position_m);
+ *   palpate_limiter *limiter = palpate_limiter_new(NULL, error, sizeof error);
+ *   for (;;) push(palpate_limiter_render(limiter, stream, time_s, position_m, 1e-3));
  *
  * Units are SI. position_m runs along the inward surface normal: 0 at the undisturbed surface, positive inside. If the
  * training recordings had their surface at another position, so has the model. Forces act along the outward normal,
@@ -126,6 +127,9 @@ PALPATE_API int palpate_stream_forces(palpate_stream*, size_t n, const double* t
 PALPATE_API int palpate_stream_replay(palpate_stream*, const palpate_recording*, double* force_N, double* bound_N,
                                       double* features);
 
+/* 1 if the last call took its sample, 0 if it refused it (a value that is not finite, a time that is not later) or
+ * there was none. The 0 N of a refused sample are no force of the material. Wait-free. */
+PALPATE_API int palpate_stream_accepted(const palpate_stream*);
 /* 1 if the motion at the last accepted sample was out of the domain of the recordings, so that the force is
  * mainly the model's trend; otherwise, and out of contact, 0. Wait-free. */
 PALPATE_API int palpate_stream_out_of_domain(const palpate_stream*);
@@ -133,7 +137,7 @@ PALPATE_API int palpate_stream_out_of_domain(const palpate_stream*);
  * Wait-free. */
 PALPATE_API double palpate_stream_predicted_error(const palpate_stream*);
 
-/* ---- the force limiter, before an actuator ---- */
+/* ---- before an actuator ---- */
 
 /* The limiter applies, in this order: no force during a fault; a ramp after the start and after each fault;
  * |force| <= largest_N, less when the motor warms up; a limited rate of change. */
@@ -157,13 +161,24 @@ enum { /* bits of palpate_limiter_flags: what the limiter did to the last force 
        PALPATE_LIMIT_STOPPED = 64
 };
 
-/* 10 N, 5000 N/s, ramp 0.3 s, no thermal limit, stale after 10 ms, stop within 10 ms. */
+/* 10 N, 2000 N/s, ramp 0.3 s, no thermal limit, stale after 10 ms, stop within 10 ms. */
 PALPATE_API void palpate_limits_default(palpate_limits*);
 /* NULL limits: the defaults. Returns NULL if a limit is out of its range. Slow side. */
 PALPATE_API palpate_limiter* palpate_limiter_new(const palpate_limits*, char* error, size_t error_size);
 PALPATE_API void palpate_limiter_free(palpate_limiter*);
-/* The force to render instead of `commanded_N`, always finite. `step_s`: since the last call; `sample_age_s`: age of
- * the sample that the force was computed from, 0 for a new one. Wait-free. */
+/* The force on a hand: takes the next sample into the stream and returns what to render, always finite. The model's
+ * force passes the stages of the program's own loop: the stiffness that a hand can hold stably with the lag of the
+ * loop, the passivity controller, the limiter. `step_s`: since the last call. A sample that is not later than the last
+ * one holds the force, until it is stale_after_s old; one that is not finite stops it. A loop with fewer than 100 calls
+ * or samples a second has no force (PALPATE_LIMIT_STOPPED). One limiter belongs to one stream. Wait-free. */
+PALPATE_API double palpate_limiter_render(palpate_limiter*, palpate_stream*, double time_s, double position_m,
+                                          double step_s);
+/* The lag of the force behind the motion for palpate_limiter_render: transport there and back, waits, and half the time
+ * for which a force is held. The default, and the least, is 1.5 times the interval between calls or samples. Values
+ * below 0 or not finite are ignored. Wait-free. */
+PALPATE_API void palpate_limiter_set_lag(palpate_limiter*, double lag_s);
+/* The limiter alone: the force to render instead of `commanded_N`, always finite. `step_s`: since the last call;
+ * `sample_age_s`: age of the sample that the force was computed from, 0 for a new one. Wait-free. */
 PALPATE_API double palpate_limiter_force(palpate_limiter*, double commanded_N, double step_s, double sample_age_s);
 /* Reports a device fault or a released dead-man switch: the next force goes towards 0. To be called once per tick while
  * the fault lasts. Wait-free. */

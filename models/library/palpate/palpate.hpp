@@ -3,7 +3,7 @@
 //   palpate::Model model("block.json");
 //   palpate::Stream stream(model, 30e-6);                  // encoder step in metres
 //   palpate::Limiter limiter({.largest_N = 5.0});          // C++20; or set the field
-//   for (;;) render(limiter.force(stream.force(time_s, position_m), step_s));
+//   for (;;) push(limiter.render(stream, time_s, position_m, step_s));
 //
 // With palpate::fit linked also
 //   palpate::fit({palpate::Recording("press.csv")}, "method=random centres=40").save("block.json");
@@ -133,6 +133,8 @@ class Stream {
   double force(double time_s, double position_m, double velocity_m_per_s, double acceleration_m_per_s2) noexcept {
     return palpate_stream_force_with_motion(stream_.get(), time_s, position_m, velocity_m_per_s, acceleration_m_per_s2);
   }
+  // Whether the last call took its sample: tells a refused one from no contact.
+  bool accepted() const noexcept { return palpate_stream_accepted(stream_.get()) != 0; }
   // Whether the last sample was out of the domain of the recordings.
   bool out_of_domain() const noexcept { return palpate_stream_out_of_domain(stream_.get()) != 0; }
   // The 95 % bound on the error of the force at the last sample, N; NaN if the model has none.
@@ -163,7 +165,7 @@ struct Limits {
   }
 };
 
-// The force limiter, before an actuator.
+// The stages before an actuator: stability limit and passivity controller (with `render`), force limiter.
 class Limiter {
  public:
   // Throws: a limit is out of its range.
@@ -175,7 +177,14 @@ class Limiter {
           return palpate_limiter_new(&plain, error, size);
         })) {}
 
-  // The force to render, finite. `step_s`: since the last call. Wait-free.
+  // The force on a hand: takes the next sample into the stream and returns what to render, finite. See
+  // palpate_limiter_render. `step_s`: since the last call. Wait-free.
+  double render(Stream& stream, double time_s, double position_m, double step_s) noexcept {
+    return palpate_limiter_render(limiter_.get(), stream.handle(), time_s, position_m, step_s);
+  }
+  // The lag of the force behind the motion, for `render`; at least 1.5 times the interval between calls.
+  void set_lag(double lag_s) noexcept { palpate_limiter_set_lag(limiter_.get(), lag_s); }
+  // The limiter alone: the force to render, finite. Wait-free.
   double force(double commanded_N, double step_s, double sample_age_s = 0.0) noexcept {
     return palpate_limiter_force(limiter_.get(), commanded_N, step_s, sample_age_s);
   }

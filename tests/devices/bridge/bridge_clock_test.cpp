@@ -20,6 +20,8 @@ struct Event {
   void (*begin)(SimulatedDevice&);
   double lasts_s;
   bool ends;  // the line is as before afterwards
+  // Of the mean force before, that is left afterwards. With more lag it is smaller on purpose.
+  double least_share = 0.98, most_share = 1.02;
 };
 
 void later_by_15_ms(SimulatedDevice& simulated) {
@@ -38,7 +40,7 @@ void silence(SimulatedDevice& simulated) { simulated.on_the_way_in = test::lost;
 
 constexpr Event kEvents[] = {
     {"nothing", [](SimulatedDevice&) {}, 0.0, false},
-    {"15 ms later from now on", later_by_15_ms, 0.0, false},
+    {"15 ms later from now on", later_by_15_ms, 0.0, false, 0.12, 0.3},
     {"clock set back by 10 ms", [](SimulatedDevice& s) { s.board().clock_offset_us -= 10'000; }, 0.0, false},
     {"clock set forward by 10 ms", [](SimulatedDevice& s) { s.board().clock_offset_us += 10'000; }, 0.0, false},
     {"silent for 1 s", silence, 1.0, true},
@@ -60,12 +62,19 @@ TEST(BridgeClock, NeitherDriftNorDelayCostsTheForceForLong) {
         simulated.board().clock_drift = drift;
         simulated.rest = false;
         simulated.run_s(1.0);
+        double mean_N = 0.0;
         const auto without_ms = [&](double seconds) {
+          const int count = static_cast<int>(1e3 * seconds);
           int ticks = 0;
-          for (int i = 0; i < static_cast<int>(1e3 * seconds); ++i) ticks += simulated.tick().rendered_N == 0.0 ? 1 : 0;
+          mean_N = 0.0;
+          for (int i = 0; i < count; ++i) {
+            ticks += simulated.tick().rendered_N == 0.0 ? 1 : 0;
+            mean_N += simulated.snapshot.rendered_N / count;
+          }
           return ticks;
         };
         const int before = without_ms(1.0);
+        const double before_N = mean_N;
         event.begin(simulated);
         simulated.run_s(event.lasts_s);
         if (event.ends) simulated.on_the_way_in = nullptr;
@@ -76,6 +85,8 @@ TEST(BridgeClock, NeitherDriftNorDelayCostsTheForceForLong) {
         EXPECT_EQ(before, 0) << "ms without force after 1 s";
         EXPECT_EQ(after, 0) << "ms without force after recovery";
         EXPECT_EQ(simulated.snapshot.device.faults, 0u);
+        EXPECT_GE(mean_N, event.least_share * before_N);
+        EXPECT_LE(mean_N, event.most_share * before_N);
         EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), 0.15);
       }
     }

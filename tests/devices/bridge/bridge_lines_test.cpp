@@ -193,6 +193,75 @@ TEST(BridgeLines, AChildProgramEndsWithItsDevice) {
   EXPECT_FALSE(running());
 }
 
+// The example program, 3 mm inside, which logs each force that it applies, and "end" when it ends by itself. `start`:
+// its first statements.
+std::string logging_program(const test::TemporaryFolder& folder, const std::string& start = "") {
+  std::string text = test::read_text(std::string(PALPATE_SOURCE_DIR) + "/assets/examples/bridge/bridge.py");
+  const auto put = [&](const std::string& old, const std::string& next) {
+    const std::size_t at = text.find(old);
+    ASSERT_NE(at, std::string::npos) << old;
+    text.replace(at, old.size(), next);
+  };
+  put("RATE_HZ = 1000", "RATE_HZ = 1000\nLOG = open(\"" + folder.file("log") + "\", \"a\", buffering=1)\n" + start);
+  put("return position_m, 400", "return 0.003, 400");
+  put("limit it here as well to the rated force of your motor.\"\"\"",
+      "limit it.\"\"\"\n    LOG.write(\"%.3f\\n\" % force_N)");
+  put("finally:\n    apply_force(0.0)", "finally:\n    apply_force(0.0)\n    LOG.write(\"end\\n\")");
+  return folder.with_file("logging.py", text);
+}
+
+TEST(BridgeLines, AProgramAppliesTheLastForceOf0BeforeItIsEnded) {
+  for (const char* start : {"",  // and one that ends once and is started again, by another thread
+                            "if not os.path.exists(__file__ + \"2\"):\n    open(__file__ + \"2\", \"w\")\n"
+                            "    import threading\n    threading.Timer(1.0, os._exit, [3]).start()\n"}) {
+    SCOPED_TRACE(start);
+    const test::TemporaryFolder folder;
+    const std::string program = logging_program(folder, start);
+    auto device = open_bridge("exec:python3 " + program);
+    ASSERT_TRUE(device.ok());
+    {
+      SpringSession session(std::move(*device));
+      ASSERT_TRUE(test::wait_for([&] { return session.loop().newest().rendered_N > 2.0; }));
+      if (*start != '\0') {
+        ASSERT_TRUE(
+            test::wait_for([&] { return (session.loop().newest().device.faults & device_fault::kUnplugged) != 0; }));
+        ASSERT_TRUE(test::wait_for([&] { return session.loop().newest().rendered_N > 2.0; }));
+      }
+    }
+    const std::string log = test::read_text(folder.file("log"));
+    EXPECT_EQ(log.substr(log.size() - 16), "0.000\n0.000\nend\n");
+  }
+}
+
+TEST(BridgeLines, AProgramThatIgnoresTheEndOfItsInputIsStillEnded) {
+  const test::TemporaryFolder folder;
+  const std::string program = logging_program(folder,
+                                              "signal = __import__(\"signal\")\n"
+                                              "signal.signal(signal.SIGTERM, signal.SIG_IGN)\n");
+  std::string text = test::read_text(program);
+  text.replace(text.find("                return\n"), 23, "                break\n");
+  folder.with_file("logging.py", text);
+  auto device = open_bridge("exec:python3 " + program);
+  ASSERT_TRUE(device.ok());
+  const double start_s = steady_now_s();
+  device->reset();
+  EXPECT_LT(steady_now_s() - start_s, 3.0);
+}
+
+TEST(BridgeLines, FewerThanOneHundredSamplesASecondAreRefusedAtTheStart) {
+  const test::TemporaryFolder folder;
+  const std::string text = test::read_text(std::string(PALPATE_SOURCE_DIR) + "/assets/examples/bridge/bridge.py");
+  for (const auto& [rate_Hz, words] :
+       {std::pair{"9", "sends 9 samples"}, {"30", "sends 30 samples"}, {"80", "sends "}}) {
+    std::string slow = text;
+    slow.replace(slow.find("RATE_HZ = 1000"), 14, std::string("RATE_HZ = ") + rate_Hz);
+    const auto device = open_bridge("exec:python3 " + folder.with_file("slow.py", slow));
+    ASSERT_FALSE(device.ok()) << rate_Hz;
+    EXPECT_TRUE(test::has_parts(device.error().message,
+                                {words, " a second, expected 100 to 10000; raise the rate of the device's program"}));
+  }
+}
+
 TEST(BridgeLines, ErrorsHaveReasonAndAdvice) {
   const auto complaint = [](const std::string& target) {
     const auto device = open_bridge(target);

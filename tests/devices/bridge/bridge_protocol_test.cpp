@@ -9,6 +9,7 @@
 
 #include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_protocol.h"
+#include "engine/base/random_stream.h"
 
 namespace palpate {
 namespace {
@@ -124,6 +125,19 @@ TEST(FrameFinder, ReportsAnotherVersion) {
   DeviceReading reading;
   EXPECT_EQ(verdict_of(other, &reading), ReportVerdict::wrong_version);
   EXPECT_EQ(reading.version, 2);
+}
+
+TEST(FrameFinder, NoiseHasNoVersion) {
+  RandomStream random(7, 0);
+  Finder finder;
+  for (int i = 0; i < 200'000; ++i) {
+    // The first bytes of a frame, more often than in noise.
+    for (const std::uint8_t byte : {std::uint8_t{0x50}, std::uint8_t{0x42}}) EXPECT_FALSE(finder.add(byte));
+    EXPECT_FALSE(finder.add(static_cast<std::uint8_t>(random.index(256))));
+    EXPECT_FALSE(finder.add(bridge::kFromDevice));
+    EXPECT_FALSE(finder.add(static_cast<std::uint8_t>(random.index(256))));
+  }
+  EXPECT_EQ(finder.other_version(), 0);
 }
 
 }  // namespace

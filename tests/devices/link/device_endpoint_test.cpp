@@ -107,6 +107,11 @@ auto burst() {
   };
 }
 
+void of_version_9(Report& report) {
+  report[2] = 9;
+  wire::write32(report.data() + 24, wire::crc32(report.data(), 24));
+}
+
 const std::vector<Injection>& injections() {
   using namespace device_fault;
   static const std::vector<Injection> all = {
@@ -125,9 +130,7 @@ const std::vector<Injection>& injections() {
       {"frames are cut short",
        [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report.resize(12); }); }, kCorrupt,
        0},
-      {"another version",
-       [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report[2] = 9; }); }, 0,
-       kWrongFirmware},
+      {"another version", [](SimulatedDevice& s) { s.on_the_way_in = test::changed(of_version_9); }, 0, kWrongFirmware},
       {"the board reports an error",
        [](SimulatedDevice& s) { s.on_the_way_in = test::changed([](Report& report) { report[1] = 15; }); }, kOwn, 0},
       {"the device reports a motor fault", [](SimulatedDevice& s) { s.board().conditions = bridge::kMotorFault; }, 0,
@@ -248,6 +251,56 @@ TEST(BridgeEndpoint, EveryFaultRemovesTheForceUntilTheTimeInTheReadme) {
   std::printf("%s", table.c_str());
   EXPECT_TRUE(test::has_parts(test::read_text(source + "/devices/README.md"), {table}))
       << "put the table above into devices/README.md";
+}
+
+// A bit error, a lost byte and an inserted one.
+TEST(BridgeEndpoint, ADamagedFrameCostsNoForce) {
+  const std::vector<void (*)(Report&)> damages = {[](Report& report) { report[13] ^= 0x10; },
+                                                  [](Report& report) { report[2] ^= 0x40; },
+                                                  [](Report& report) { report.erase(report.begin() + 7); },
+                                                  [](Report& report) { report.insert(report.begin(), 0x50); }};
+  for (std::size_t i = 0; i < damages.size(); ++i) {
+    SCOPED_TRACE(i);
+    SimulatedDevice simulated(&kBridgeProtocol);
+    simulated.press();
+    simulated.on_the_way_in = [&, n = 0](Report report) mutable {
+      if (n++ % 20 == 0) damages[i](report);
+      return test::Reports{report};
+    };
+    for (int tick = 0; tick < 500; ++tick) {
+      ASSERT_GT(simulated.tick().rendered_N, 3.5) << tick;
+      ASSERT_EQ(simulated.snapshot.device.faults, 0u) << tick;
+    }
+  }
+}
+
+TEST(BridgeEndpoint, TheLagIsAtLeastTheIntervalBetweenSamples) {
+  for (const std::uint32_t period_us : {12'500u, 10'000u, 4'000u}) {
+    SimulatedDevice simulated(&kBridgeProtocol);
+    simulated.board().period_us = period_us;
+    simulated.press();
+    EXPECT_GE(simulated.snapshot.device.lag_s, 1e-6 * period_us);
+  }
+}
+
+TEST(BridgeEndpoint, ARateThatFallsBelowOneHundredHzTakesTheForceAwayUntilItRises) {
+  for (const std::uint32_t period_us : {12'500u, 20'000u, 33'333u}) {
+    SCOPED_TRACE(period_us);
+    SimulatedDevice simulated(&kBridgeProtocol);
+    simulated.press();
+    simulated.board().period_us = period_us;
+    simulated.run_s(2.0);
+    EXPECT_EQ(simulated.snapshot.rendered_N, 0.0);
+    EXPECT_EQ(simulated.motor_N(), 0.0);
+    EXPECT_NE(simulated.snapshot.device.faults & device_fault::kSlow, 0u);
+    for (int tick = 0; tick < 200; ++tick) ASSERT_EQ(simulated.tick().rendered_N, 0.0);
+    simulated.board().period_us = 1000;
+    std::uint32_t faults = 0;
+    EXPECT_LT(ticks_until(simulated, true, 1000, faults), 500);
+    EXPECT_LT(simulated.snapshot.rendered_N, 0.2) << "with a ramp";
+    simulated.run_s(4.0);
+    EXPECT_GT(simulated.motor_N(), 3.5);
+  }
 }
 
 TEST(DeviceEndpoint, AHapticsThreadThatHangsPushesNoLonger) {

@@ -79,7 +79,7 @@ TEST(LinkedDevice, ComesBackAfterItWasPluggedInAgain) {
 
 TEST(LinkedDevice, ADeviceThatBlocksOnEveryWriteDoesNotHoldTheTickUp) {
   FakeDeviceBus bus;
-  bus.write_ms = 5;
+  bus.write_ms = 3;  // with two reports for each command, 160 positions a second
   auto device = open_board(bus);
   LoopSettings settings;
   settings.realtime = false;
@@ -89,6 +89,18 @@ TEST(LinkedDevice, ADeviceThatBlocksOnEveryWriteDoesNotHoldTheTickUp) {
   loop.stop();
   EXPECT_GT(bus.writes, 0);
   EXPECT_LT(bus.writes, static_cast<int>(loop.statistics().ticks)) << "only the newest command is written";
+}
+
+TEST(LinkedDevice, OneThatSendsFewerThanOneHundredPositionsASecondIsRefused) {
+  FakeDeviceBus bus;
+  bus.write_ms = 10;
+  Result<OpenedDevice> opened = open_first(bus, {&kOpenFfBoardProtocol});
+  LinkedDevice device(bus, test::example_calibration(&kOpenFfBoardProtocol), std::move(*opened));
+  const Status status = device.open();
+  ASSERT_FALSE(status.ok());
+  EXPECT_TRUE(test::has_parts(status.error().message,
+                              {"/dev/hidraw7", " samples a second, expected 100 to 10000; raise the rate"}));
+  EXPECT_EQ(bus.motor_units(), 0.0);
 }
 
 }  // namespace

@@ -134,14 +134,58 @@ TEST(StreamMonitor, ASequenceThatBeginsAnewIsAReset) {
 TEST(StreamMonitor, FaultsAddUpWhileTheyLast) {
   Stream stream(true);
   stream.steps(10);
-  stream.monitor.update(ReportVerdict::corrupt, {}, stream.now_s, 0.0);
+  stream.monitor.update(ReportVerdict::wrong_version, {}, stream.now_s, 0.0);
   DeviceReading older = stream.next;
   older.sequence -= 3;
   stream.send(older);
-  EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt | device_fault::kOutOfOrder);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kWrongFirmware | device_fault::kOutOfOrder);
   stream.now_s += 1.0;
+  stream.monitor.update(ReportVerdict::wrong_version, {}, stream.now_s, 0.0);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kWrongFirmware);
+}
+
+TEST(StreamMonitor, ACorruptReportIsALostOne) {
+  Stream stream(true);
+  stream.steps(10);
   stream.monitor.update(ReportVerdict::corrupt, {}, stream.now_s, 0.0);
-  EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt);
+  EXPECT_EQ(stream.monitor.state().transient, 0u);
+  EXPECT_EQ(stream.monitor.state().corrupt, 1u);
+  stream.step();
+  EXPECT_EQ(stream.monitor.state().corrupt, 0u);
+}
+
+// Ten at 1 kHz, then one every `period_us`. Returns the time in s until kSlow; negative: none within 3 s.
+double slow_after_s(std::uint32_t period_us) {
+  Stream stream(true);
+  stream.steps(10);
+  const double start_s = stream.now_s;
+  while (stream.now_s < start_s + 3.0) {
+    stream.now_s += 1e-6 * period_us - 1e-3;
+    stream.next.time_us += period_us - 1000;
+    stream.step(stream.next.counts);
+    if ((stream.monitor.state().transient & device_fault::kSlow) != 0) return stream.now_s - start_s;
+  }
+  return -1.0;
+}
+
+TEST(StreamMonitor, FewerThanOneHundredSamplesASecondAreAFault) {
+  EXPECT_LT(slow_after_s(10'000), 0.0);
+  EXPECT_LT(slow_after_s(10'300), 0.0) << "the clock of a board";
+  for (const std::uint32_t period_us : {11'500u, 20'000u, 50'000u}) {
+    EXPECT_GT(slow_after_s(period_us), 0.0) << period_us;
+    EXPECT_LT(slow_after_s(period_us), 2.5) << period_us;
+  }
+}
+
+TEST(StreamMonitor, LostSamplesOfADeviceWithOneHundredASecondAreNoFault) {
+  Stream stream(true);
+  for (int i = 1; i < 300; ++i) {
+    const std::uint32_t period_us = i % 50 == 0 ? 20'000 : 10'000;  // 2 % are lost
+    stream.now_s += 1e-6 * period_us - 1e-3;
+    stream.next.time_us += period_us - 1000;
+    stream.step(stream.next.counts);
+    ASSERT_EQ(stream.monitor.state().transient, 0u) << i;
+  }
 }
 
 TEST(StreamMonitor, ZeroingTakesTheMiddleOfWhereItRested) {

@@ -39,7 +39,7 @@ TEST(Faults, TellsTheAlarmsAmongTheBits) {
   EXPECT_EQ(alarm_words(FaultSource::loop, kForceSlewed | kDeadlineMissed | kDeviceFault), std::vector<std::string>{});
   const std::size_t row = fault_index(FaultSource::loop, kForceThermal);
   EXPECT_EQ(alarm_words(FaultSource::loop, kForceThermal), std::vector<std::string>{kFaults[row].sentence});
-  EXPECT_EQ(device_fault_words(fault_bits_of(FaultSource::device)).size(), 11u);
+  EXPECT_EQ(device_fault_words(fault_bits_of(FaultSource::device)).size(), 12u);
 }
 
 }  // namespace

@@ -129,5 +129,24 @@ TEST(RecordingWriter, GivesTheSameFileRowByRowAndLeavesOutWhatIsRefused) {
   EXPECT_EQ(test::read_text(folder.file("rows.csv")), test::read_text(folder.file("whole.csv")));
 }
 
+TEST(RecordingWriter, ANameThatIsBeingWrittenIsRefusedAtTheStart) {
+  const test::TemporaryFolder folder;
+  const auto writer = [&](const char* name, bool overwrite) {
+    return RecordingWriter::create(folder.file(name), {}, {}, overwrite);
+  };
+  {
+    const auto first = writer("a.csv", false);
+    ASSERT_TRUE(first.ok());
+    for (const bool overwrite : {false, true}) {
+      const auto second = writer("a.csv", overwrite);
+      ASSERT_FALSE(second.ok());
+      EXPECT_TRUE(test::has_parts(second.error().message, {"a.csv: another recording is being written into it; "}));
+    }
+    EXPECT_FALSE(writer("./a.csv", false).ok()) << "the same file";
+    EXPECT_TRUE(writer("b.csv", false).ok());
+  }
+  EXPECT_TRUE(writer("a.csv", false).ok()) << "the first one was given up";
+}
+
 }  // namespace
 }  // namespace palpate

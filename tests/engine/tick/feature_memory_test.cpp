@@ -125,5 +125,34 @@ TEST(FeatureMemory, AnotherFilterAdoptsTheMemoryOfTheSameFeatures) {
       << "after seven times its relaxation time";
 }
 
+// An excursion beyond the training domain is remembered as one to its edge, by every feature; the depth itself is not
+// changed.
+TEST(FeatureMemory, KeepsNoDepthBeyondTheDomain) {
+  constexpr double kDeepest_m = 4e-3;
+  FeatureSpec slowed = spectrum({0.05, 0.8}, stiffening());
+  slowed.slowing = 1.5;
+  const std::vector<FeatureSpec> specs = {FeatureSpec{},
+                                          lowpass(0.17),
+                                          slowed,
+                                          stops({0.1e-3, 1e-3}, stiffening()),
+                                          creep({2.0}, stiffening()),
+                                          surface_lag(stiffening())};
+  for (const double beyond_m : {4.1e-3, 8e-3, 0.5, 1e3}) {
+    FeatureFilter far(specs, kDeepest_m), edge(specs, kDeepest_m), free(specs);
+    bool differs = false;
+    for (int i = 0; i < 1000; ++i) {
+      const double position_m = 3e-3 * std::sin(0.02 * i);
+      const bool out = i > 200 && i % 97 < 5;
+      feed(far, 1e-3 * i, out ? beyond_m : position_m);
+      feed(edge, 1e-3 * i, out ? kDeepest_m : position_m);
+      feed(free, 1e-3 * i, out ? beyond_m : position_m);
+      ASSERT_EQ(far.vector().values[0], out ? beyond_m : std::max(0.0, position_m));
+      for (std::size_t k = 1; k < specs.size(); ++k) ASSERT_EQ(far.vector().values[k], edge.vector().values[k]) << k;
+      differs = differs || free.vector().values != far.vector().values;
+    }
+    EXPECT_TRUE(differs);
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -59,8 +59,9 @@ def exported(folder, palpate, model, motion, single):
     run(palpate, "export", model, "--c", source, *(["--float"] if single else []))
     run("cc", "-std=c99", "-O2", "-c", source, "-o", source.with_suffix(".o"))
     text_bytes = int(run("size", source.with_suffix(".o")).splitlines()[1].split()[0])
-    tick = "(double)palpate_force((%s)time_s[i], (%s)(position_m[i] + 1e-200 * last))" % (real, real)
-    ns = timed(folder, source.stem + "_timer", "%s palpate_force(%s, %s);\nvoid palpate_reset(void);" % ((real,) * 3), "",
+    tick = ("(double)palpate_force_after((%s)(time_s[i] - (i > 0 ? time_s[i - 1] : 0.0)), "
+            "(%s)(position_m[i] + 1e-200 * last))" % (real, real))
+    ns = timed(folder, source.stem + "_timer", "%s palpate_force_after(%s, %s);\nvoid palpate_reset(void);" % ((real,) * 3), "",
                "palpate_reset();", tick, [source.with_suffix(".o")], motion)
     return text_bytes, ns
 

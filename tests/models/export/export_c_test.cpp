@@ -50,7 +50,7 @@ TEST(ExportC, InDoublePrecisionItGivesReplaysForcesToANanonewton) {
   for (const ModelData& data : models) {
     for (const Recording& recording : recordings()) {
       const CompiledModel<double> compiled(data, positions_of(recording));
-      ASSERT_NE(compiled.force, nullptr);
+      ASSERT_TRUE(compiled.loaded());
       double worst_N = 0.0;
       double largest_N = 0.0;
       for_each_force(recording, data, [&](const RecordingRow& row, double force_N, bool out_of_domain) {
@@ -104,7 +104,7 @@ TEST(ExportC, GivesTheLibrarysForcesWhateverTheSteps) {
     for (const ModelData& data : models_by_features()) {
       const SensorSpec sensor{encoder_step_m, 0.0};
       const CompiledModel<double> compiled(data, sensor);
-      ASSERT_NE(compiled.force, nullptr);
+      ASSERT_TRUE(compiled.loaded());
       for (const std::uint64_t seed : {1U, 2U}) {
         HapticsTick tick(sensor, {std::make_shared<FittedModel>(data)});
         compiled.reset();
@@ -125,13 +125,51 @@ TEST(ExportC, InSinglePrecisionNobodyFeelsTheDifference) {
   const JndLine jnd;
   for (const ModelData& data : test::example_models()) {
     const CompiledModel<float> compiled(data, positions_of(recording));
-    ASSERT_NE(compiled.force, nullptr);
+    ASSERT_TRUE(compiled.loaded());
     double worst = 0.0;
     for_each_force(recording, data, [&](const RecordingRow& row, double force_N, bool) {
-      const double exported_N = compiled.force(static_cast<float>(row.time_s), static_cast<float>(row.position_m));
+      const double exported_N = compiled.force(row.time_s, static_cast<float>(row.position_m));
       worst = std::max(worst, std::abs(exported_N - force_N) / std::max(1e-3, 0.02 * jnd.at(force_N)));
     });
     EXPECT_LT(worst, 1.0) << data.name;
+  }
+}
+
+// A board that has run for a day, with a clock in whole microseconds.
+TEST(ExportC, SinglePrecisionTakesNoTimeThatCouldBecomeCoarse) {
+  const Recording& recording = recordings().front();
+  const ModelData data = test::example_models().front();
+  const CompiledModel<float> fresh(data, positions_of(recording)), old(data, positions_of(recording));
+  ASSERT_TRUE(fresh.loaded() && old.loaded());
+  EXPECT_EQ(fresh.force_at, nullptr);
+  EXPECT_EQ(export_c(data, {}, true).find("time_s, real position_m);"), std::string::npos);
+  std::uint32_t last_us = 0, old_us = 4'000'000'000;  // wraps
+  const std::uint32_t since_us = old_us;
+  for (const RecordingRow& row : recording.rows) {
+    const auto now_us = static_cast<std::uint32_t>(std::lround(1e6 * row.time_s));
+    const auto position_m = static_cast<float>(row.position_m);
+    const auto step_s = [](std::uint32_t to_us, std::uint32_t from_us) {
+      return 1e-6F * static_cast<float>(to_us - from_us);
+    };
+    ASSERT_EQ(fresh.force_after(step_s(now_us, std::exchange(last_us, now_us)), position_m),
+              old.force_after(step_s(now_us + since_us, std::exchange(old_us, now_us + since_us)), position_m));
+  }
+}
+
+// Bad samples in a row, within and beyond the reach of a hand.
+TEST(ExportC, GivesTheLibrarysForcesDuringAndAfterBadSamples) {
+  const Recording& recording = recordings().front();
+  for (const ModelData& data : models_by_features()) {
+    const CompiledModel<double> compiled(data, positions_of(recording));
+    ASSERT_TRUE(compiled.loaded());
+    HapticsTick tick(positions_of(recording), {std::make_shared<FittedModel>(data)});
+    const double bad_m[] = {0.012, 0.05, 0.5, 1e3, -0.5};
+    for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+      ToolSample sample{recording.rows[i].time_s, recording.rows[i].position_m, 0.0, 0.0};
+      if (i % 300 < 2 + i / 300 * 20) sample.position_m = bad_m[i / 300 % std::size(bad_m)];
+      ASSERT_NEAR(compiled.force(sample.time_s, sample.position_m), tick.step(sample).force_N[0], 1e-9)
+          << data.name << " " << i;
+    }
   }
 }
 
@@ -179,7 +217,7 @@ TEST(ExportC, ANameCannotLeaveItsComment) {
   ModelData data = test::example_models().front();
   data.name = "a*/ int x; /* \\";
   const CompiledModel<double> compiled(data, {});
-  EXPECT_NE(compiled.force, nullptr);
+  EXPECT_TRUE(compiled.loaded());
 }
 
 }  // namespace

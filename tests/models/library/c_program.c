@@ -43,6 +43,9 @@ static void check_handles(const char* no_model) {
   palpate_limiter_stop(NULL);
   expect(palpate_limiter_force(NULL, 1.0, 0.001, 0.0) == 0.0, "no limiter: no force");
   expect(palpate_limiter_flags(NULL) == 0, "no limiter: no flags");
+  expect(palpate_stream_accepted(NULL) == 0, "no stream: nothing is accepted");
+  expect(palpate_limiter_render(NULL, NULL, 0.0, 0.001, 0.001) == 0.0, "no limiter: no force");
+  palpate_limiter_set_lag(NULL, 0.001);
 }
 
 static void check_samples(const palpate_model* model) {

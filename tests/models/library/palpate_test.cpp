@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <deque>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -168,6 +172,135 @@ TEST_F(LibraryC, TheLimiterIsTheProgramsOwn) {
   limits.fastest_N_per_s = -1.0;
   EXPECT_EQ(palpate_limiter_new(&limits, error_, sizeof error_), nullptr);
   EXPECT_TRUE(test::has_parts(error_, {"fastest_N_per_s", "found -1.000000", "above 0"}));
+}
+
+TEST_F(LibraryC, AStreamTellsARefusedSampleFromNoContact) {
+  const ModelHandle model = load(save(test::example_models().front()));
+  const StreamPtr one = stream(model, {});
+  EXPECT_EQ(palpate_stream_accepted(one.get()), 0) << "no sample yet";
+  for (const auto& [time_s, position_m, accepted] : {std::tuple{0.0, -1e-3, 1},
+                                                     {1e-3, 2e-3, 1},
+                                                     {1e-3, 2e-3, 0},
+                                                     {0.5e-3, 2e-3, 0},
+                                                     {2e-3, double{NAN}, 0},
+                                                     {double{INFINITY}, 2e-3, 0},
+                                                     {2e-3, -1e-3, 1}}) {
+    const double force_N = palpate_stream_force(one.get(), time_s, position_m);
+    EXPECT_EQ(palpate_stream_accepted(one.get()), accepted) << time_s;
+    EXPECT_EQ(force_N != 0.0, accepted == 1 && position_m > 0.0) << time_s;
+  }
+  palpate_stream_reset(one.get());
+  EXPECT_EQ(palpate_stream_accepted(one.get()), 0);
+}
+
+// A loop of its own around a stream, on a tool that a hand holds. Forces act `delay` calls later.
+struct OwnLoop {
+  palpate_stream* stream;
+  palpate_limiter* limiter;
+  double step_s = 1e-3;
+  std::size_t delay = 1;
+  double position_m = 0.0, velocity_m_per_s = 0.0, time_s = 0.0;
+  std::deque<double> forces_N{};
+
+  // `wrong`: what to give instead of the sample.
+  double call(std::optional<std::pair<double, double>> wrong = std::nullopt) {
+    time_s += step_s;
+    const auto [at_s, at_m] = wrong.value_or(std::pair{time_s, 1e-5 * std::round(1e5 * position_m)});
+    forces_N.push_back(palpate_limiter_render(limiter, stream, at_s, at_m, step_s));
+    if (forces_N.size() > delay + 1) forces_N.pop_front();
+    // A relaxed hand of 80 g that pushes with 1 N.
+    for (int i = 0; i < 20; ++i) {
+      const double h = step_s / 20;
+      velocity_m_per_s += h * (1.0 + 150.0 * (2e-3 - position_m) - 3.5 * velocity_m_per_s - forces_N.front()) / 0.08;
+      position_m += h * velocity_m_per_s;
+    }
+    return forces_N.back();
+  }
+  void press() {
+    while (time_s < 2.0) call();
+  }
+  double swing_m() {
+    double low_m = position_m, high_m = position_m;
+    for (double until_s = time_s + 1.0; time_s < until_s; call()) {
+      low_m = std::min(low_m, position_m);
+      high_m = std::max(high_m, position_m);
+    }
+    return high_m - low_m;
+  }
+};
+
+using LimiterHandle = std::unique_ptr<palpate_limiter, decltype(&palpate_limiter_free)>;
+
+LimiterHandle default_limiter() { return {palpate_limiter_new(nullptr, nullptr, 0), &palpate_limiter_free}; }
+
+TEST_F(LibraryC, ARepeatedSampleIsHeldAndNoneChangesTheForceByMoreThan2NInAMillisecond) {
+  const ModelHandle model = load(save(test::example_models().front()));
+  struct Case {
+    int bad;
+    double time_s, position_m;  // of the bad samples; time 0: repeated
+    bool held;
+  };
+  for (const auto& [bad, bad_s, bad_m, held] : {Case{1, 0.0, 2e-3, true},
+                                                {3, 0.0, 0.5, true},
+                                                {1, NAN, 2e-3, false},
+                                                {1, 9e3, NAN, false},
+                                                {30, 0.0, 2e-3, false}}) {
+    const StreamPtr one = stream(model, {1e-5, 0.0, 0.0, 0.0});
+    const LimiterHandle limiter = default_limiter();
+    OwnLoop loop{one.get(), limiter.get()};
+    loop.press();
+    const double before_N = loop.call();
+    ASSERT_GT(before_N, 0.2);
+    double last_N = before_N, least_N = before_N;
+    for (int i = 0; i < bad + 50; ++i) {
+      const double force_N = i < bad ? loop.call(std::pair{bad_s == 0.0 ? loop.time_s : bad_s, bad_m}) : loop.call();
+      ASSERT_LE(std::abs(force_N - last_N), 2.0 + 1e-9) << i;
+      least_N = std::min(least_N, force_N);
+      last_N = force_N;
+    }
+    EXPECT_EQ(least_N > 0.9 * before_N, held) << bad << " " << bad_s << " " << bad_m;
+    for (int i = 0; i < 1000; ++i) last_N = loop.call();
+    EXPECT_GT(last_N, 0.5 * before_N) << "with a ramp";
+  }
+}
+
+TEST_F(LibraryC, ALateOrSlowLoopOfItsOwnDoesNotDriveAHand) {
+  const std::string recording = folder_.file("stiff.csv"), path = folder_.file("stiff.json");
+  test::must_run({"synth", "--material", "stiff", "--seconds", "8", "--out", recording});
+  test::must_run({"fit", "--recording", recording, "--method", "random", "--centres", "20", "--out", path});
+  const ModelHandle model = load(path);
+  struct Case {
+    double step_s;
+    std::size_t delay;
+    bool stopped;
+  };
+  for (const auto& [step_s, delay, stopped] : {Case{1e-3, 1, false},
+                                               {1e-3, 6, false},
+                                               {4e-3, 1, false},
+                                               {10e-3, 1, false},
+                                               {12.5e-3, 1, true},
+                                               {33e-3, 1, true}}) {
+    SCOPED_TRACE(std::to_string(step_s) + " s, " + std::to_string(delay));
+    const StreamPtr one = stream(model, {1e-5, 0.0, 0.0, 0.0});
+    const LimiterHandle limiter = default_limiter();
+    palpate_limiter_set_lag(limiter.get(), step_s * (static_cast<double>(delay) + 0.5));
+    OwnLoop loop{one.get(), limiter.get(), step_s, delay};
+    loop.press();
+    EXPECT_LT(loop.swing_m(), 0.2e-3);
+    EXPECT_EQ(loop.call() == 0.0, stopped);
+    EXPECT_EQ((palpate_limiter_flags(limiter.get()) & PALPATE_LIMIT_STOPPED) != 0, stopped);
+  }
+}
+
+TEST_F(LibraryC, RenderingDoesNothingForbidden) {
+  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  const ModelHandle model = load(save(test::example_models().front()));
+  const StreamPtr one = stream(model, {1e-5, 0.0, 0.0, 0.0});
+  const LimiterHandle limiter = default_limiter();
+  test::RtGuard guard;
+  for (int i = 0; i < 2000; ++i)
+    palpate_limiter_render(limiter.get(), one.get(), 1e-3 * (i - i % 7 / 6), 2e-3 * std::sin(0.01 * i), 1e-3);
+  EXPECT_EQ(guard.stop().total(), 0);
 }
 
 TEST_F(LibraryC, AnErrorIsCutBetweenCharacters) {

@@ -98,6 +98,43 @@ class AsThePrograms(Case):
         self.assertEqual(loaded.report, {})
 
 
+class Loop(Case):
+    def test_a_stream_gives_the_forces_of_a_batch(self):
+        t, x = self.rec["time_s"][:2000], self.rec["position_m"][:2000]
+        force_N, bound_N = self.model.render(t, x, sensor=30e-6)
+        stream = palpate.Stream(self.model, 30e-6)
+        self.assertFalse(stream.accepted)
+        for i in range(len(t)):
+            self.assertEqual(stream.force(t[i], x[i]), force_N[i])
+            np.testing.assert_equal(stream.bound(), bound_N[i])
+            self.assertTrue(stream.accepted)
+        self.assertEqual(stream.force(t[-1], 0.002), 0.0)
+        self.assertFalse(stream.accepted)
+        stream.reset()
+        self.assertEqual([stream.force(t[i], x[i]) for i in range(100)], force_N[:100].tolist())
+        palpate.Stream(self.model).force(0, 0)
+        self.refused("model: found str", palpate.Stream, "model.json")
+        self.refused("sensor: found str", palpate.Stream, self.model, "30e-6")
+
+    def test_a_loop_holds_a_repeated_sample_and_changes_by_2_N_per_ms(self):
+        stream, limiter = palpate.Stream(self.model, 30e-6), palpate.Limiter(largest_N=5, ramp_s=0.1)
+        last_N = 0.0
+        for i in range(1000):
+            force_N = limiter.render(stream, (i - (i == 700)) / 1000.0, 0.002, 1e-3)
+            self.assertLessEqual(abs(force_N - last_N), 2.0 + 1e-9)
+            if i == 700:
+                self.assertGreater(force_N, 0.9 * last_N)
+            last_N = force_N
+        self.assertGreater(last_N, 0.1)
+        limiter.stop()
+        limiter.render(stream, 2.0, 0.002, 1e-3)
+        self.assertEqual(limiter.flags & 64, 64)
+        alone = palpate.Limiter(ramp_s=0)
+        self.assertEqual([alone.force(9.0, 1e-3) for _ in range(3)], [0.0, 2.0, 4.0])
+        self.refused("fastest_N_per_s", palpate.Limiter, fastest_N_per_s=-1)
+        self.refused("found the limit 'peak_N', expected lag_s, largest_N", palpate.Limiter, peak_N=5)
+
+
 class WrongArguments(Case):
     def test_errors_name_what_was_found_and_expected(self):
         rec, model = self.rec, self.model
@@ -120,6 +157,46 @@ class WrongArguments(Case):
         self.assertFalse(strided.flags.c_contiguous)
         np.testing.assert_array_equal(self.model.render(list(time_s), strided)[0], expected)
         self.model.render(time_s.astype(np.float32) + np.arange(400), np.zeros(400, int))
+
+    def test_what_is_missing_is_refused(self):
+        t, x = np.arange(50) / 1000.0, np.full(50, 0.001)
+        self.refused("position_m: found None", self.model.render, t, None)
+        self.refused("time_s: found None", self.model.render, None, x)
+        self.refused("position_m: found None", self.model.features, t, None)
+        self.refused("force_N: found None", palpate.in_contact, x, None)
+        self.refused("position_m: found None", palpate.in_contact, None, x)
+
+    def test_forces_that_are_not_numbers_are_refused(self):
+        measured = np.where(np.arange(10) % 2, np.nan, 1.0)
+        self.refused("measured_N: found 5 of 10 values that are not finite", palpate.within_jnd, np.ones(10), measured)
+        self.refused("force_N: found 1 of 1", palpate.within_jnd, [np.inf], [1.0])
+        masked = np.ma.masked_array(np.ones(10), np.arange(10) < 3)
+        self.refused("measured_N: found masked values", palpate.within_jnd, np.ones(10), masked)
+        t, x = np.arange(10) / 1000.0, np.ma.masked_array(np.full(10, 0.001), np.arange(10) < 3)
+        self.refused("position_m: found masked values", self.model.render, t, x)
+        self.refused("time_s: found masked values", self.model.render, np.ma.masked_less(t, 0.004), np.ones(10))
+        self.assertEqual(len(self.model.render(t, np.ma.masked_array(np.full(10, 0.001)))[0]), 10)
+
+    def test_an_option_is_one_word(self):
+        for options in (dict(kernel="cubic seed=3"), dict(method="random\tseed=3"), dict(features=["depth seed=3"]),
+                        {"kernel=cubic seed": 3}, dict(kernel="")):
+            self.refused("expected one word", palpate.fit, [self.rec], **options)
+
+    def test_a_sensor_may_be_the_step_of_an_encoder(self):
+        t, x = self.rec["time_s"], self.rec["position_m"]
+        expected = self.model.render(t, x, sensor=palpate.Sensor(30e-6))[0]
+        for sensor in (30e-6, np.float64(30e-6), np.array(30e-6)[()]):
+            np.testing.assert_array_equal(self.model.render(t, x, sensor=sensor)[0], expected)
+        self.model.render(t, x, sensor=0)
+        for sensor in ("30e-6", [30e-6], True):
+            self.refused("sensor: found", self.model.render, t, x, sensor=sensor)
+
+    def test_times_that_stand_still_are_refused(self):
+        t, x = 1.7e9 + np.arange(1000) / 1000.0, np.full(1000, 0.002)
+        self.assertTrue(np.any(self.model.render(t, x)[0] > 0.0))
+        self.refused("float32 cannot tell", self.model.render, t.astype(np.float32), x)
+        self.refused("expected increasing seconds", self.model.render, np.floor(t), x)
+        self.refused("expected increasing seconds", self.model.render, t[::-1], x)
 
     def test_a_fit_stops_when_progress_says_so(self):
         self.refused("interrupted", palpate.fit, [self.rec], progress=lambda fraction: False)

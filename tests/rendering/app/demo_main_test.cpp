@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -54,6 +57,35 @@ TEST_F(DemoMain, UnknownScenesModelsAndDevicesAreNamed) {
   expect_error(demo({"--model", "magic"}), "magic");
   expect_error(demo({"--model", folder_.file("none.json")}), "none.json");
   expect_error(demo({"--device", "wand"}), "wand");
+}
+
+// The X server ends while models are fitted and after that, with a block, a game or a study in the window.
+TEST_F(DemoMain, WhenTheDisplayGoesAwayTheProgramSavesItsResultsAndSaysSo) {
+  struct Case {
+    std::vector<std::string> arguments;
+    int after_s;
+  };
+  for (const auto& [arguments, after_s] : {Case{{}, 3},
+                                           {{"--scene", "silicone_block", "--kiosk"}, 5},
+                                           {{"--scene", "jnd_study", "--device", "hand"}, 3}}) {
+    SCOPED_TRACE(arguments.empty() ? "" : arguments.back());
+    test::OwnDisplay display;
+    ASSERT_FALSE(display.name().empty());
+    const std::string stats = folder_.file("stats.json");
+    std::vector<std::string> all = {"--stats", stats, "--force", "--seconds", "60"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    std::filesystem::remove(stats);
+    std::thread server_ends([&display, seconds = after_s] {
+      std::this_thread::sleep_for(std::chrono::seconds(seconds));
+      display.end();
+    });
+    const ProgramRun run = demo(all, {"DISPLAY=" + display.name(), "WAYLAND_DISPLAY="});
+    server_ends.join();
+    expect_error(run, "the display is gone");
+    if (arguments.empty() || arguments.back() == "--kiosk") {
+      EXPECT_EQ(nlohmann::json::parse(std::ifstream(stats)).count("haptics"), 1u);
+    }
+  }
 }
 
 TEST_F(DemoMain, WrongUsageIsExitCode2) {

@@ -54,7 +54,7 @@ class ExportVerb : public ::testing::Test {
   template <typename Real, typename Distance>
   double worst(const Recording& test_recording, const std::string& text, const Distance& distance) {
     const test::CompiledModel<Real> compiled(text);
-    if (compiled.force == nullptr) return INFINITY;
+    if (!compiled.loaded()) return INFINITY;
     // Writes and reads the file, so that the decimals are those that replay reads.
     EXPECT_TRUE(write_recording(folder_.file("test.csv"), test_recording, {}, true).ok());
     const Recording read = test::must(read_recording(folder_.file("test.csv")));
@@ -62,7 +62,7 @@ class ExportVerb : public ::testing::Test {
     const ReplaySummary summary =
         replay(read, {test::must(load_model(folder_.file("m.json")))},
                [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-                 const Real force_N = compiled.force(static_cast<Real>(row.time_s), static_cast<Real>(row.position_m));
+                 const Real force_N = compiled.force(row.time_s, static_cast<Real>(row.position_m));
                  largest = std::max(largest, distance(static_cast<double>(force_N), snapshot.force_N[0]));
                });
     EXPECT_GT(summary.contact_samples, 500U);

@@ -9,6 +9,9 @@
     u = model.features(rec["time_s"], rec["position_m"])  # columns: model.feature_names
     model.save("model.json")
 
+    stream, limiter = palpate.Stream(model), palpate.Limiter(largest_N=5)    # a loop of your own, 1 kHz
+    device.push(limiter.render(stream, time_s, position_m, 1e-3))
+
 A recording is a `palpate.Recording`: a structured numpy array with the fields time_s, position_m and force_N
 (velocity_m_per_s and acceleration_m_per_s2 where they were measured), and a name. `fit` also takes any structured array
 or table with these columns, or the path of a file.
@@ -25,7 +28,8 @@ installed one.
 from ._library import Error, Sensor
 from ._models import Model, fit, load
 from ._recordings import Recording, in_contact, jnd_N, make_recording, read_recording, within_jnd
+from ._streams import Limiter, Stream
 
 # Without Recording, whose help would be that of all numpy arrays.
-__all__ = ["Error", "Model", "Sensor", "fit", "in_contact", "jnd_N", "load", "make_recording", "read_recording",
-           "within_jnd"]
+__all__ = ["Error", "Limiter", "Model", "Sensor", "Stream", "fit", "in_contact", "jnd_N", "load", "make_recording",
+           "read_recording", "within_jnd"]

@@ -41,6 +41,15 @@ class Sensor(ctypes.Structure):
         return "Sensor(%s)" % ", ".join("%s=%r" % (name, getattr(self, name)) for name, _ in self._fields_)
 
 
+def as_sensor(given):
+    """A `Sensor` from one, or from the step of an encoder in metres."""
+    if isinstance(given, Sensor):
+        return given
+    if isinstance(given, (int, float, np.number)) and not isinstance(given, bool):
+        return Sensor(encoder_step_m=float(given))
+    raise Error("sensor: found %s, expected a palpate.Sensor or the encoder's step in metres" % type(given).__name__)
+
+
 class RecordingStruct(ctypes.Structure):
     """A recording in columns; `of` keeps them in `arrays`, so that they live as long as the struct."""
 
@@ -49,7 +58,11 @@ class RecordingStruct(ctypes.Structure):
 
     @classmethod
     def of(cls, columns, name="recording"):
-        """`columns`: arrays of one length by their names, or None."""
+        """`columns`: arrays of one length by their names, or None. Times and positions, and measured forces where
+        they are asked for, are necessary."""
+        for column in REQUIRED:
+            if column in columns and columns[column] is None:
+                raise Error("%s: found None, expected an array of numbers" % column)
         arrays = {column: doubles(column, values) for column, values in columns.items() if values is not None}
         size = len(arrays["position_m"])
         for column, array in arrays.items():
@@ -69,6 +82,13 @@ _RECORDING = ctypes.POINTER(RecordingStruct)
 _MESSAGE = [ctypes.c_char_p, ctypes.c_size_t]
 Progress = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double, ctypes.c_void_p)
 
+class Limits(ctypes.Structure):
+    """palpate_limits of palpate.h."""
+
+    _fields_ = [(name, ctypes.c_double) for name in
+                ("largest_N", "fastest_N_per_s", "ramp_s", "continuous_N", "thermal_time_s", "stale_after_s", "stop_s")]
+
+
 _SIGNATURES = {
     "palpate_abi_version": (_INT, []),
     "palpate_model_load": (_HANDLE, [_TEXT, *_MESSAGE]),
@@ -83,8 +103,22 @@ _SIGNATURES = {
     "palpate_in_contact": (_INT, [_RECORDING, _ARRAY]),
     "palpate_sensor_of": (_INT, [_RECORDING, ctypes.POINTER(Sensor)]),
     "palpate_stream_new_with_sensor": (_HANDLE, [_HANDLE, ctypes.POINTER(Sensor), *_MESSAGE]),
+    "palpate_stream_new": (_HANDLE, [_HANDLE, _DOUBLE, *_MESSAGE]),
     "palpate_stream_free": (None, [_HANDLE]),
+    "palpate_stream_reset": (None, [_HANDLE]),
+    "palpate_stream_force": (_DOUBLE, [_HANDLE, _DOUBLE, _DOUBLE]),
+    "palpate_stream_accepted": (_INT, [_HANDLE]),
+    "palpate_stream_out_of_domain": (_INT, [_HANDLE]),
+    "palpate_stream_predicted_error": (_DOUBLE, [_HANDLE]),
     "palpate_stream_replay": (_INT, [_HANDLE, _RECORDING, _ARRAY, _ARRAY, _ARRAY]),
+    "palpate_limits_default": (None, [ctypes.POINTER(Limits)]),
+    "palpate_limiter_new": (_HANDLE, [ctypes.POINTER(Limits), *_MESSAGE]),
+    "palpate_limiter_free": (None, [_HANDLE]),
+    "palpate_limiter_render": (_DOUBLE, [_HANDLE, _HANDLE, _DOUBLE, _DOUBLE, _DOUBLE]),
+    "palpate_limiter_set_lag": (None, [_HANDLE, _DOUBLE]),
+    "palpate_limiter_force": (_DOUBLE, [_HANDLE, _DOUBLE, _DOUBLE, _DOUBLE]),
+    "palpate_limiter_stop": (None, [_HANDLE]),
+    "palpate_limiter_flags": (ctypes.c_uint, [_HANDLE]),
     "palpate_fit": (_HANDLE, [_RECORDING, _SIZE, _TEXT, Progress, ctypes.c_void_p, *_MESSAGE]),
 }
 
@@ -120,6 +154,12 @@ def call(name, *arguments):
     return result
 
 
+def checked(name, *arguments):
+    """Calls a function that returns 0, or -1 without a message."""
+    if getattr(library(), name)(*arguments) != 0:
+        raise Error("%s: the arrays do not fit the stream, expected those of one motion" % name)
+
+
 def path_bytes(path):
     """The bytes of a file's name."""
     try:
@@ -130,6 +170,9 @@ def path_bytes(path):
 
 def doubles(name, values):
     """`values` as contiguous doubles in one dimension."""
+    if np.ma.is_masked(values):
+        raise Error("%s: found masked values, expected an array without a mask; leave those samples out, or fill them "
+                    "with NaN" % name)
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
         raise Error("%s: found dtype %s, expected numbers" % (name, array.dtype))

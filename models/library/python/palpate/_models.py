@@ -6,7 +6,7 @@ from typing import Callable, Mapping, Optional, Sequence, Tuple, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import Error, Progress, RecordingStruct, Sensor, call, library, path_bytes
+from ._library import Error, Progress, RecordingStruct, Sensor, as_sensor, call, checked, library, path_bytes
 from ._recordings import as_recording
 
 
@@ -45,7 +45,7 @@ class Model:
 
     def render(self, time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: Optional[ArrayLike] = None,
                acceleration_m_per_s2: Optional[ArrayLike] = None,
-               sensor: Optional[Sensor] = None) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
+               sensor: Union[Sensor, float, None] = None) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The forces along a motion: the tick of the live loop, bit for bit those of ``palpate replay``.
 
         Parameters
@@ -54,13 +54,14 @@ class Model:
             Times [s] and positions [m] of the samples, in order. The filters begin at rest.
         velocity_m_per_s, acceleration_m_per_s2 : array_like, shape (n,), optional
             Measured velocity and acceleration.
-        sensor : Sensor, optional
-            By default identified from the first 30,000 samples, as ``palpate replay`` does.
+        sensor : Sensor or float, optional
+            A number is the step of an encoder [m]. By default identified from the first 30,000 samples, as ``palpate replay`` does.
 
         Returns
         -------
         force_N : ndarray, shape (n,)
-            0 out of contact, and at a sample that is not finite or not later than the last one.
+            0 out of contact, and at a sample that is not finite or not later than the last one. If that are more than
+            half of the samples, or their times are of a type with coarse steps, `Error` is raised.
         bound_N : ndarray, shape (n,)
             The 95 % bound on the error; 0 out of contact, NaN if the model has none.
         """
@@ -68,7 +69,7 @@ class Model:
 
     def features(self, time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: Optional[ArrayLike] = None,
                  acceleration_m_per_s2: Optional[ArrayLike] = None,
-                 sensor: Optional[Sensor] = None) -> NDArray[np.float64]:
+                 sensor: Union[Sensor, float, None] = None) -> NDArray[np.float64]:
         """The feature vectors along a motion, out of contact too; SI units. Parameters as for `render`.
 
         Returns an array of shape (n, d), one column for each of `feature_names`.
@@ -78,10 +79,12 @@ class Model:
     def _replay(self, columns, sensor):
         names = ("time_s", "position_m", "velocity_m_per_s", "acceleration_m_per_s2")
         motion = RecordingStruct.of(dict(zip(names, columns)))
+        _check_times(motion.arrays["time_s"], np.asarray(columns[0]).dtype)
         if sensor is None:
             sensor = Sensor()
-            library().palpate_sensor_of(motion, sensor)
+            checked("palpate_sensor_of", motion, sensor)
         else:  # a channel without a column is not measured
+            sensor = as_sensor(sensor)
             sensor = Sensor(sensor.encoder_step_m, sensor.position_noise_m,
                             sensor.velocity_noise_m_per_s if columns[2] is not None else 0.0,
                             sensor.acceleration_noise_m_per_s2 if columns[3] is not None else 0.0)
@@ -89,7 +92,7 @@ class Model:
         features = np.empty((motion.size, library().palpate_model_feature_count(self._handle)))
         stream = call("palpate_stream_new_with_sensor", self._handle, sensor)
         try:
-            library().palpate_stream_replay(stream, motion, *(a.ctypes.data for a in (force_N, bound_N, features)))
+            checked("palpate_stream_replay", stream, motion, *(a.ctypes.data for a in (force_N, bound_N, features)))
         finally:
             library().palpate_stream_free(stream)
         return force_N, bound_N, features
@@ -100,6 +103,16 @@ class Model:
         Raises `Error` if the file exists, or cannot be written.
         """
         call("palpate_model_save", self._handle, path_bytes(path), int(overwrite))
+
+
+def _check_times(time_s, dtype):
+    """Refuses times that would give 0 N without a word."""
+    steps = np.diff(time_s)
+    stand = int(np.count_nonzero(~(steps > 0.0)))
+    coarse = dtype.kind == "f" and dtype.itemsize < 8
+    if stand > 0 and (coarse or 2 * stand > len(steps)):
+        raise Error("time_s: found %d of %d samples that are not later than the one before, expected increasing seconds"
+                    % (stand, len(time_s)) + ("; %s cannot tell such times apart, use float64" % dtype if coarse else ""))
 
 
 def load(path: Union[str, os.PathLike]) -> Model:
@@ -157,6 +170,8 @@ def fit(recordings: object, method: str = "greedy", centres: int = 100, *,
     words = []
     for name, value in {"method": method, "centres": centres, **options}.items():
         joined = ("x" if name == "grid" else ",").join(map(str, value)) if np.ndim(value) else value
+        if any(len(str(word).split()) != 1 for word in (name, joined)) or "=" in name + str(joined):
+            raise Error("%s: found %r, expected one word without blanks and \"=\"" % (name, value))
         words += [] if value is None else ["%s=%s" % (name, joined)]
     failure = []
 

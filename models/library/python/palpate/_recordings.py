@@ -5,7 +5,7 @@ from typing import Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, call, doubles, library, path_bytes
+from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, call, checked, doubles, library, path_bytes
 
 # Hoever & Harders (2009).
 _JND_OFFSET_N, _JND_WEBER_FRACTION = 0.065, 0.0633
@@ -89,7 +89,7 @@ def in_contact(position_m: ArrayLike, force_N: ArrayLike) -> NDArray[np.bool_]:
     """
     recording = RecordingStruct.of({"position_m": position_m, "force_N": force_N})
     contact = np.empty(recording.size, np.bool_)
-    library().palpate_in_contact(recording, contact.ctypes.data)
+    checked("palpate_in_contact", recording, contact.ctypes.data)
     return contact
 
 
@@ -108,10 +108,20 @@ def within_jnd(force_N: ArrayLike, measured_N: ArrayLike, in_contact: Optional[A
     -------
     float
         0 to 1; NaN without a sample in contact.
+
+    Raises
+    ------
+    Error
+        A force is not finite, or the sizes differ.
     """
     force_N, measured_N = doubles("force_N", force_N), doubles("measured_N", measured_N)
     if force_N.shape != measured_N.shape:
         raise Error("measured_N: found %d values, expected %d as of force_N" % (len(measured_N), len(force_N)))
+    for name, values in (("force_N", force_N), ("measured_N", measured_N)):
+        wrong = int(np.count_nonzero(~np.isfinite(values)))
+        if wrong:
+            raise Error("%s: found %d of %d values that are not finite, expected numbers; leave those samples out"
+                        % (name, wrong, len(values)))
     if in_contact is None:
         in_contact = (force_N != 0.0) | (np.abs(measured_N) > _JND_OFFSET_N)
     counts = np.asarray(in_contact)
