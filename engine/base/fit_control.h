@@ -18,6 +18,11 @@ struct FitControl {
     if (!progress) return {};
     return {[call = progress, fraction](double) { return call(fraction); }};
   }
+  // The control of a step that takes the finished fraction from `begin` to `end`.
+  FitControl part(double begin, double end) const {
+    if (!progress) return {};
+    return {[call = progress, begin, end](double fraction) { return call(begin + (end - begin) * fraction); }};
+  }
 };
 
 inline Error interrupted() { return Error{"interrupted"}; }

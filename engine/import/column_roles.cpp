@@ -91,19 +91,25 @@ int name_claim(std::string_view list, const std::string& name, const std::vector
   return 0;
 }
 
-// How strongly a column claims each role; 0: not at all.
-std::array<int, kRoles> claims_of(const ForeignColumn& column) {
+using Claims = std::array<int, kRoles>;
+
+Claims name_claims(const ForeignColumn& column, const std::vector<std::string>& words) {
   std::string name = plain_name(column.parts.name);
   if (name.starts_with('%')) name.erase(0, 1);
+  return {name_claim(kTimeWords, name, words), name_claim(kPositionWords, name, words),
+          name_claim(kForceWords, name, words)};
+}
+
+// How strongly a column claims each role; 0: not at all.
+Claims claims_of(const ForeignColumn& column) {
   const std::vector<std::string> words = words_of(column.parts.name);
-  std::array<int, kRoles> claims = {name_claim(kTimeWords, name, words), name_claim(kPositionWords, name, words),
-                                    name_claim(kForceWords, name, words)};
+  Claims claims = name_claims(column, words);
   const auto& unit = column.parts.unit;
   for (std::size_t role = 0; role < kRoles; ++role) {
     if (unit) claims[role] = static_cast<std::size_t>(unit->quantity) == role ? claims[role] + kRightUnit : 0;
-    // A unit in brackets that belongs to no role: "Weg [%]".
+    // A unit that belongs to no role or is unknown ("Weg [%]"): a last choice, whose unit is then an error.
     const bool volts = role == 2 && volts_of(column.parts.foreign_unit) > 0.0;
-    if (!column.parts.foreign_unit.empty() && !volts) claims[role] = 0;
+    if (!column.parts.foreign_unit.empty() && !volts) claims[role] = std::min(claims[role], 1);
     if (claims[role] > 0 && any_word_in(kSecondWords, words)) claims[role] = std::max(1, claims[role] - kSecondChoice);
   }
   if (column.constant) claims[0] = 0;
@@ -114,6 +120,44 @@ std::array<int, kRoles> claims_of(const ForeignColumn& column) {
   if (claims[2] > 0 && !unit) claims[1] = 0;
   if (any_word_in(kOtherWords, words) && !unit) claims = {};
   return claims;
+}
+
+// The parts of a header. What follows a mark of units after a word for a role ("Kraft/Stein", "Weg in Furlong") is an
+// unknown unit.
+NameAndUnit header_parts(std::string_view header) {
+  NameAndUnit parts = split_name_and_unit(header);
+  if (parts.unit || !parts.foreign_unit.empty()) return parts;
+  for (const std::string_view mark : {"/", " in ", ","}) {
+    const std::size_t at = header.rfind(mark);
+    if (at == std::string_view::npos) continue;
+    const std::string name = plain_name(trimmed(header.substr(0, at)));
+    const std::string_view last = trimmed(header.substr(at + mark.size()));
+    const std::vector<std::string> words = words_of(last);
+    const auto is_role = [](const std::string& word) {
+      return is_word_of(kTimeWords, word) || is_word_of(kPositionWords, word) || is_word_of(kForceWords, word);
+    };
+    if (!is_role(name) || words.size() != 1 || is_role(words.front())) continue;
+    return {std::string(trimmed(header.substr(0, at))), std::nullopt, std::string(last)};
+  }
+  return parts;
+}
+
+// The columns with the strongest claim to a role; none without a claim.
+std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, std::size_t role) {
+  int strongest = 1;
+  for (const Claims& claim : claims) strongest = std::max(strongest, claim[role]);
+  std::vector<std::size_t> best;
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    if (claims[i][role] == strongest) best.push_back(i);
+  }
+  return best;
+}
+
+// A role other than `role` that is the whole name of a column; kRoles: none.
+std::size_t contradicted_role(const ForeignColumn& column, std::size_t role) {
+  const Claims claims = name_claims(column, words_of(column.parts.name));
+  const auto whole = std::find(claims.begin(), claims.end(), kWholeName);
+  return claims[role] > 0 ? kRoles : static_cast<std::size_t>(whole - claims.begin());
 }
 
 // The factor of a unit such as "mm/s" to m/s; 0 if `text` is no unit of velocity.
@@ -177,7 +221,36 @@ Error several_columns(const std::vector<ForeignColumn>& columns, std::size_t rol
                joined(flags, " or ") + "; the columns are " + list_columns(columns)};
 }
 
+Error contradicting_unit(const std::vector<ForeignColumn>& columns, std::size_t role, std::size_t index,
+                         std::size_t named) {
+  return Error{"found column \"" + printable(columns[index].header) + "\", named as a " + kRoleNames[named] +
+               ", with the unit " + std::string(columns[index].parts.unit->name) + " of a " + kRoleNames[role] +
+               ", expected a name and a unit that agree; correct the header, or confirm the role with " +
+               flag_for(role, std::to_string(index + 1)) + "; the columns are " + list_columns(columns)};
+}
+
 }  // namespace
+
+bool NamedRoles::contradicts(const NamedRoles& other) const {
+  const auto differs = [&](std::size_t role) {
+    return column[role] > 0 && other.column[role] > 0 && column[role] != other.column[role];
+  };
+  return differs(1) && differs(2);
+}
+
+NamedRoles named_roles(const std::vector<std::string_view>& fields) {
+  std::vector<Claims> claims;
+  for (const std::string_view field : fields) claims.push_back(claims_of({std::string(field), header_parts(field)}));
+  NamedRoles named;
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    const std::vector<std::size_t> best = strongest_columns(claims, role);
+    if (best.empty()) continue;
+    ++named.count;
+    named.strength += claims[best.front()][role];
+    if (best.size() == 1) named.column[role] = best.front() + 1;
+  }
+  return named;
+}
 
 std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
                                            const std::vector<std::vector<std::string_view>>& rows) {
@@ -187,12 +260,16 @@ std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
     ForeignColumn& column = columns[i];
     if (!layout.names.empty()) {
       column.header = layout.names[i];
-      column.parts = split_name_and_unit(column.header);
+      column.parts = header_parts(column.header);
     } else if (i < first.size()) {
       column.header = first[i];
     }
     if (i < layout.units.size()) {
-      if (const auto unit = find_unit(layout.units[i])) column.parts.unit = unit;
+      if (const auto unit = find_unit(layout.units[i])) {
+        column.parts.unit = unit;
+      } else if (!column.parts.unit && layout.units[i].find_first_not_of("-[]() ") != std::string_view::npos) {
+        column.parts.foreign_unit = layout.units[i];
+      }
     }
     const auto changes = [&](const auto& row) { return i < std::min(row.size(), first.size()) && row[i] != first[i]; };
     column.constant = rows.size() > 1 && std::none_of(rows.begin(), rows.end(), changes);
@@ -213,9 +290,8 @@ Result<RoleColumns> choose_columns(const std::vector<ForeignColumn>& columns, co
   const auto choose = [&](std::size_t role, std::size_t index, bool guessed) {
     chosen[role] = {index + 1, has_header ? columns[index].header : "", "", guessed};
   };
-  std::vector<std::array<int, kRoles>> claims;
-  for (const ForeignColumn& column : columns)
-    claims.push_back(has_header ? claims_of(column) : std::array<int, kRoles>{});
+  std::vector<Claims> claims;
+  for (const ForeignColumn& column : columns) claims.push_back(has_header ? claims_of(column) : Claims{});
   for (std::size_t role = needs_time ? 0 : 1; role < kRoles; ++role) {
     if (request[role].empty()) continue;
     const auto found = find_column(columns, role, request[role]);
@@ -225,14 +301,11 @@ Result<RoleColumns> choose_columns(const std::vector<ForeignColumn>& columns, co
   }
   for (std::size_t role = needs_time ? 0 : 1; role < kRoles; ++role) {
     if (chosen[role].number > 0) continue;
-    int strongest = 0;
-    for (const auto& claim : claims) strongest = std::max(strongest, claim[role]);
-    std::vector<std::size_t> best;
-    for (std::size_t i = 0; i < columns.size() && strongest > 0; ++i) {
-      if (claims[i][role] == strongest) best.push_back(i);
-    }
+    const std::vector<std::size_t> best = strongest_columns(claims, role);
     if (best.empty()) return no_column(columns, role, has_header);
     if (best.size() > 1) return several_columns(columns, role, best);
+    const std::size_t named = contradicted_role(columns[best.front()], role);
+    if (named < kRoles) return contradicting_unit(columns, role, best.front(), named);
     choose(role, best.front(), true);
   }
   for (std::size_t a = 0; a < kRoles; ++a) {

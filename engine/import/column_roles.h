@@ -30,6 +30,18 @@ struct ForeignColumn {
 std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
                                            const std::vector<std::vector<std::string_view>>& rows);
 
+// How well a line names the columns of a table: the roles that its fields name, by words or units, and the sum of the
+// strongest claims.
+struct NamedRoles {
+  int count = 0;
+  int strength = 0;
+  std::array<std::size_t, kRoles> column{};  // from 1; 0: none, or several with equal claims
+
+  // Whether both name other columns for the position and for the force.
+  bool contradicts(const NamedRoles& other) const;
+};
+NamedRoles named_roles(const std::vector<std::string_view>& fields);
+
 // The user's choice for each role: a name or a number from 1; empty: to be determined.
 using RoleRequest = std::array<std::string, kRoles>;
 
@@ -43,7 +55,8 @@ struct ImportedColumn {
 using RoleColumns = std::array<ImportedColumn, kRoles>;
 
 // Chooses a column for each role; units stay empty. `needs_time`: false with a given rate. Errors (without the file's
-// name), with the header and the option to add: an unknown name; no column or several for a role; one for two roles.
+// name), with the header and the option to add: an unknown name; no column or several for a role; one for two roles; a
+// guess by the unit that contradicts the name ("Position (N)").
 Result<RoleColumns> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
                                    bool has_header, bool needs_time);
 

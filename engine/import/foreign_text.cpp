@@ -1,6 +1,8 @@
 #include "engine/import/foreign_text.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -55,7 +57,13 @@ Error wrong_kind(const std::string& path, const char* found, const char* advice)
 }  // namespace
 
 Result<ForeignText> read_foreign_text(const std::string& path) {
-  auto file = read_plain_file(path, "a table as text (CSV, TXT)");
+  constexpr const char* kExpected = "a table as text (CSV, TXT)";
+  std::error_code unknown;
+  if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown && bytes > kLargestTableBytes) {
+    return Error{path + ": found " + std::to_string(bytes >> 20) + " MiB, expected " + kExpected + " of at most " +
+                 std::to_string(kLargestTableBytes >> 20) + " MiB; split the file"};
+  }
+  auto file = read_plain_file(path, kExpected, "", kLargestTableBytes);
   if (!file) return file.error();
   std::string& bytes = *file;
   if (bytes.empty()) return wrong_kind(path, "an empty file", "check that the recording was saved");

@@ -1,9 +1,10 @@
 // Converts a text table of another program into a recording in SI units, with a note on every guess.
 //
-//   foreign_text   bytes to text          table_layout   separator, decimal mark, header
-//   units          units in headers       column_roles   time, position, force
-//   table_cell     numbers, times
-//   import_table   all rows, units, sign; descriptions of the result
+//   foreign_text   bytes to text          table_layout     separator, decimal mark
+//   table_header   names, units           column_roles     time, position, force
+//   units          units in headers       table_columns    roles with their units
+//   table_cell     numbers, times         repeated_times   a clock coarser than the rows
+//   import_table   all rows, sign; descriptions of the result
 //
 // Nothing is repaired without a note: what cannot be determined is an error that shows the header and the option to
 // add.

@@ -176,16 +176,19 @@ double RowTimes::examine(const std::vector<std::string_view>& fields) {
   has_date_ = clock_ && has_date(fields.front());
   std::vector<double> steps;
   std::optional<TableTime> last;
+  std::size_t intervals = 0;  // also those without a step
   for (const std::string_view field : fields) {
     const auto time = parse(field);
     if (!time) break;
-    if (const double step = last ? since(*time, *last) : 0.0; step > 0.0) steps.push_back(step);
+    const double step = last ? since(*time, *last) : -1.0;
+    if (step > 0.0) steps.push_back(step);
+    if (step >= 0.0) ++intervals;
     last = time;
   }
   if (steps.empty()) return 0.0;
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return *middle * static_cast<double>(steps.size()) / static_cast<double>(intervals);
 }
 
 std::optional<TableTime> RowTimes::parse(std::string_view field) const {

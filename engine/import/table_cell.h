@@ -35,8 +35,8 @@ class RowTimes {
  public:
   explicit RowTimes(char decimal) : decimal_(decimal) {}
 
-  // Determines from the fields of the first rows whether the times are those of a clock. Returns the median of the
-  // steps, as in the file; 0 without any.
+  // Determines from the fields of the first rows whether the times are those of a clock. Returns the median step
+  // from a row to the next, as in the file; rows that share a time share a step. 0 without any step.
   double examine(const std::vector<std::string_view>& fields);
   bool are_of_a_clock() const noexcept { return clock_; }
   bool have_dates() const noexcept { return has_date_; }

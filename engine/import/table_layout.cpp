@@ -5,7 +5,7 @@
 
 #include "engine/base/text.h"
 #include "engine/import/table_cell.h"
-#include "engine/import/units.h"
+#include "engine/import/table_header.h"
 
 namespace palpate {
 namespace {
@@ -13,11 +13,10 @@ namespace {
 // Preambles of testing machines are some hundred lines long at most.
 constexpr std::size_t kSampleLines = 2000;
 constexpr std::size_t kSampleBytes = 1024 * 1024;
-// A header is at most this many lines above the numbers: units, a type, a rule may follow it.
-constexpr std::size_t kHeaderReach = 6;
-// In the order in which they are tried.
-constexpr std::array kDelimiters = {Delimiter{"tab", "\t"}, Delimiter{"semicolon", ";"}, Delimiter{"comma", ","},
-                                    Delimiter{"blanks", " \t"}};
+// A run of rows begins with at most this many short lines of a preamble.
+constexpr std::size_t kMostShortRows = 5;
+// Fewer rows with more fields than the others are damaged or have remarks.
+constexpr std::size_t kRowsOfAWidth = 5;
 
 std::vector<std::string_view> sample_lines(std::string_view text) {
   std::vector<std::string_view> lines;
@@ -53,6 +52,7 @@ struct Reading {
   std::size_t rows = 0;
   std::size_t numbers = 0;
   std::size_t mangled = 0;
+  std::size_t widest = 0;  // fields of the widest row that is no exception
 
   bool better_than(const Reading& other) const {
     if ((mangled == 0) != (other.mangled == 0)) return mangled == 0;
@@ -70,19 +70,30 @@ Reading read_as(const std::vector<std::string_view>& lines, const Delimiter& del
   for (std::size_t i = 0; i < lines.size();) {
     Reading run;
     run.first = i;
-    std::vector<std::size_t> counts;
+    std::vector<std::size_t> counts;  // rows by their number of fields, empty ones included
+    std::vector<std::size_t> filled;  // rows by their last field with a value
+    std::vector<std::size_t> widths;  // the last field with a value in the rows of each number of fields
     for (; i < lines.size(); ++i) {
       if (trimmed(lines[i]).empty()) continue;
-      split_table_fields(lines[i], delimiter, fields);
+      const std::size_t count = split_table_fields(lines[i], delimiter, fields);
       const std::size_t numbers = count_if(is_number);
-      if (numbers < 2 || 2 * numbers < fields.size()) break;
-      if (fields.size() >= counts.size()) counts.resize(fields.size() + 1);
-      ++counts[fields.size()];
+      const std::size_t empty = count_if([](std::string_view field) { return field.empty(); });
+      if (numbers < 2 || 2 * numbers < fields.size() - empty) break;
+      if (count >= counts.size()) {
+        for (auto* list : {&counts, &filled, &widths}) list->resize(count + 1);
+      }
+      ++counts[count];
+      ++filled[fields.size()];
+      widths[count] = std::max(widths[count], fields.size());
       ++run.rows;
       run.numbers += numbers;
       run.mangled += count_if([&](std::string_view field) { return is_mangled(field) && !is_number(field); });
     }
-    run.layout.columns = static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
+    if (run.rows > 0) {
+      run.layout.columns = widths[static_cast<std::size_t>(std::ranges::max_element(counts) - counts.begin())];
+      run.widest = filled.size() - 1;
+      while (filled[run.widest] < kRowsOfAWidth && run.widest > run.layout.columns) --run.widest;
+    }
     if (run.numbers > best.numbers) best = run;
     ++i;
   }
@@ -95,124 +106,12 @@ Reading read_as(const std::vector<std::string_view>& lines, const Delimiter& del
 void skip_short_rows(std::string_view text, const std::vector<std::string_view>& lines, Reading& reading) {
   std::vector<std::string_view> fields;
   const auto is_short = [&](std::string_view line) {
-    split_table_fields(line, reading.layout.delimiter, fields);
-    return fields.size() < reading.layout.columns;
+    return split_table_fields(line, reading.layout.delimiter, fields) < reading.layout.columns;
   };
-  const std::size_t last = std::min(lines.size(), reading.first + kHeaderReach) - 1;
+  const std::size_t last = std::min(lines.size() - 1, reading.first + kMostShortRows);
   while (reading.first < last && is_short(lines[reading.first])) ++reading.first;
   reading.layout.data_line = reading.first + 1;
   reading.layout.data_offset = static_cast<std::size_t>(lines[reading.first].data() - text.data());
-}
-
-// Removes the mark of a comment before the names.
-std::string_view without_comment_mark(std::string_view line) {
-  line = trimmed(line);
-  const std::size_t begin = line.find_first_not_of("#%/");
-  // "%time" is a name of ROS, and a lone mark is a name of a column of row numbers.
-  if (begin == std::string_view::npos || (begin == 1 && line.front() == '%' && line.find_first_of(" \t") > 5))
-    return line;
-  return trimmed(line.substr(begin));
-}
-
-// In a header separated by blanks, joins units in brackets with the name before.
-void join_bracketed(std::vector<std::string_view>& fields) {
-  std::size_t kept = 0;
-  for (const std::string_view field : fields) {
-    if (kept > 0 && (field.front() == '[' || field.front() == '(')) {
-      std::string_view& last = fields[kept - 1];
-      last = std::string_view(last.data(), static_cast<std::size_t>(field.data() + field.size() - last.data()));
-    } else {
-      fields[kept++] = field;
-    }
-  }
-  fields.resize(kept);
-}
-
-void split_at_wide_gaps(std::string_view line, std::vector<std::string_view>& fields) {
-  fields.clear();
-  while (!(line = trimmed(line)).empty()) {
-    const std::size_t end = std::min(line.find("  "), line.find('\t'));
-    fields.push_back(trimmed(line.substr(0, end)));
-    line.remove_prefix(std::min(end, line.size()));
-  }
-}
-
-// Splits a line above the table, by the separator of the table or, if that fails, by any one that gives as many fields
-// as the table has columns.
-bool split_header(std::string_view line, const TableLayout& layout, std::vector<std::string_view>& fields) {
-  const std::string_view bare = without_comment_mark(line);
-  const bool blanks = layout.delimiter.is_blanks();
-  const auto fits = [&] { return blanks ? fields.size() == layout.columns : fields.size() >= layout.columns; };
-  for (const std::string_view text : {line, bare}) {
-    split_table_fields(text, layout.delimiter, fields);
-    if (fits()) return true;
-    if (!blanks) continue;
-    join_bracketed(fields);
-    if (fits()) return true;
-    split_at_wide_gaps(text, fields);
-    if (fits()) return true;
-  }
-  for (const Delimiter& other : kDelimiters) {
-    split_table_fields(bare, other, fields);
-    if (fields.size() == layout.columns) return true;
-  }
-  return false;
-}
-
-// Splits a header of a table of R: the column of row numbers has no name, so the header has one field less.
-bool split_header_of_row_names(std::string_view line, const Reading& reading,
-                               const std::vector<std::string_view>& lines, std::vector<std::string_view>& fields) {
-  double number = 0.0;
-  split_table_fields(lines[reading.first], reading.layout.delimiter, fields);
-  if (fields.empty() || !parse_table_number(fields.front(), '.', number) || number != 1.0) return false;
-  split_table_fields(line, reading.layout.delimiter, fields);
-  if (fields.size() + 1 != reading.layout.columns) return false;
-  fields.insert(fields.begin(), std::string_view());
-  return true;
-}
-
-bool is_units_row(const std::vector<std::string_view>& fields) {
-  std::size_t units = 0;
-  for (const std::string_view field : fields) {
-    if (field.empty() || field == "-" || field == "[]" || field == "[-]") continue;
-    const bool bracketed = field.size() > 2 && (field.front() == '[' || field.front() == '(');
-    if (!find_unit(field) && !bracketed && field.size() > 3) return false;
-    if (find_unit(field)) ++units;
-  }
-  return units >= 2;
-}
-
-bool is_names_row(const std::vector<std::string_view>& fields) {
-  std::size_t names = 0;
-  for (const std::string_view field : fields) {
-    double value = 0.0;
-    const bool has_letter = std::any_of(field.begin(), field.end(), [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
-    });
-    if (has_letter && !parse_table_number(field, '.', value)) ++names;
-  }
-  return names >= 2;
-}
-
-void find_header(Reading& reading, const std::vector<std::string_view>& lines) {
-  TableLayout& layout = reading.layout;
-  std::vector<std::string_view> fields;
-  std::size_t seen = 0;
-  for (std::size_t i = reading.first; i-- > 0 && seen < kHeaderReach;) {
-    if (trimmed(lines[i]).empty()) continue;
-    ++seen;
-    if (!split_header(lines[i], layout, fields) && !split_header_of_row_names(lines[i], reading, lines, fields)) {
-      continue;
-    }
-    fields.resize(layout.columns);
-    if (layout.units.empty() && is_units_row(fields)) {
-      layout.units = fields;
-    } else if (is_names_row(fields)) {
-      layout.names = fields;
-      layout.header_line = i + 1;
-      return;
-    }
-  }
 }
 
 // Text files of LabVIEW have the units of the columns above the table and, if the table has no times, the interval of
@@ -225,7 +124,10 @@ void read_labview_head(std::string_view text, TableLayout& layout) {
   while (!head.empty()) {
     split_table_fields(next_line(head), layout.delimiter, fields);
     if (fields.size() < 2) continue;
-    if (fields[0] == "Y_Unit_Label") layout.units = fields;
+    if (fields[0] == "Y_Unit_Label") {
+      layout.units = fields;
+      layout.units[0] = {};
+    }
     if (fields[0] == "X_Columns") times = fields[1] != "No";
     if (fields[0] == "Delta_X") step = fields[1];
   }
@@ -278,7 +180,8 @@ std::string_view next_line(std::string_view& text) {
   return line;
 }
 
-void split_table_fields(std::string_view line, const Delimiter& delimiter, std::vector<std::string_view>& fields) {
+std::size_t split_table_fields(std::string_view line, const Delimiter& delimiter,
+                               std::vector<std::string_view>& fields) {
   fields.clear();
   if (delimiter.is_blanks()) line = trimmed(line);
   for (std::size_t begin = 0; begin <= line.size();) {
@@ -290,7 +193,9 @@ void split_table_fields(std::string_view line, const Delimiter& delimiter, std::
     begin = end + 1;
     if (delimiter.is_blanks()) begin = std::min(line.find_first_not_of(delimiter.marks, begin), line.size() + 1);
   }
+  const std::size_t count = fields.size();
   while (!fields.empty() && fields.back().empty()) fields.pop_back();
+  return count;
 }
 
 Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> given_decimal) {
@@ -310,7 +215,7 @@ Result<TableLayout> find_table_layout(std::string_view text, std::optional<char>
                  ", expected a table with columns of time, position and force; export the recording as CSV"};
   }
   skip_short_rows(text, lines, best);
-  find_header(best, lines);
+  find_table_header(lines, best.first, best.widest, best.layout);
   read_labview_head(text, best.layout);
   if (best.layout.decimal == ',' && !given_decimal) {
     if (const Status status = check_decimal_comma(best, lines); !status) return status.error();

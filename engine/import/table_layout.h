@@ -3,11 +3,11 @@
 //
 // Every pair of separator and decimal mark is tried on the first lines. Pairs are preferred in which no field begins
 // like a number without being one, and among these the pair with the most numbers. The longest run of rows of numbers
-// is the table, and the nearest line above it with names for all columns is the header; lines further above are a
-// preamble.
+// is the table; its header is above it (table_header.h).
 // Thread guarantee: slow side only.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -26,11 +26,17 @@ struct Delimiter {
   bool is_blanks() const noexcept { return marks.size() > 1; }
 };
 
+// In the order in which they are tried.
+inline constexpr std::array kDelimiters = {Delimiter{"tab", "\t"}, Delimiter{"semicolon", ";"}, Delimiter{"comma", ","},
+                                           Delimiter{"blanks", " \t"}};
+
 struct TableLayout {
   Delimiter delimiter;
   char decimal = '.';
-  std::size_t columns = 0;              // of a row of numbers
-  std::vector<std::string_view> names;  // one a column; empty without a header
+  std::size_t columns = 0;              // of a row of numbers; empty cells at its end do not count
+  std::vector<std::string_view> names;  // one a column, unless `misfit`; empty without a header
+  bool misfit = false;                  // the number of names is not that of the columns
+  std::uint64_t rival_line = 0;         // a line that names other columns for position and force than the header
   std::vector<std::string_view> units;  // one a column; empty without a row of units
   std::uint64_t header_line = 0;        // from 1; 0 without a header
   std::uint64_t data_line = 0;
@@ -47,8 +53,9 @@ struct TableLayout {
 Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> given_decimal);
 
 // The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
-// line are omitted.
-void split_table_fields(std::string_view line, const Delimiter& delimiter, std::vector<std::string_view>& fields);
+// line are omitted. Returns the number of fields with these.
+std::size_t split_table_fields(std::string_view line, const Delimiter& delimiter,
+                               std::vector<std::string_view>& fields);
 
 // Removes the first line from `text` and returns it without its line end.
 std::string_view next_line(std::string_view& text);

@@ -1,6 +1,7 @@
 #include "engine/import/units.h"
 
 #include <array>
+#include <vector>
 
 #include "engine/base/text.h"
 
@@ -28,16 +29,31 @@ constexpr std::array kUnits = {
     SpelledUnit{{"um", Quantity::length, 1e-6}, "um \xC2\xB5m \xCE\xBCm micron microns"},
     SpelledUnit{{"nm", Quantity::length, 1e-9}, "nm"},
     SpelledUnit{{"inch", Quantity::length, 25.4e-3}, "in inch inches"},
+    SpelledUnit{{"mil", Quantity::length, 25.4e-6}, "mil mils thou"},
+    SpelledUnit{{"ft", Quantity::length, 304.8e-3}, "ft foot feet"},
     SpelledUnit{{"N", Quantity::force, 1.0}, "N newton newtons"},
     SpelledUnit{{"mN", Quantity::force, 1e-3}, "mN"},
     SpelledUnit{{"uN", Quantity::force, 1e-6}, "uN \xC2\xB5N \xCE\xBCN"},
+    SpelledUnit{{"nN", Quantity::force, 1e-9}, "nN"},
+    SpelledUnit{{"pN", Quantity::force, 1e-12}, "pN"},
     SpelledUnit{{"cN", Quantity::force, 1e-2}, "cN"},
+    SpelledUnit{{"dN", Quantity::force, 1e-1}, "dN"},
+    SpelledUnit{{"daN", Quantity::force, 1e1}, "daN"},
     SpelledUnit{{"kN", Quantity::force, 1e3}, "kN"},
     SpelledUnit{{"g", Quantity::force, kGramForce_N}, "g gf gram grams"},
-    SpelledUnit{{"kg", Quantity::force, 1e3 * kGramForce_N}, "kg kgf"},
+    SpelledUnit{{"kg", Quantity::force, 1e3 * kGramForce_N}, "kg kgf kp kilopond"},
+    SpelledUnit{{"ozf", Quantity::force, kPoundForce_N / 16.0}, "ozf oz"},
     SpelledUnit{{"lbf", Quantity::force, kPoundForce_N}, "lbf lb lbs"},
-    SpelledUnit{{"kip", Quantity::force, 1e3 * kPoundForce_N}, "kip kips"},
+    SpelledUnit{{"kip", Quantity::force, 1e3 * kPoundForce_N}, "kip kips klbf"},
 };
+
+// In lower case.
+constexpr std::string_view kOtherUnits =
+    "% a amp ma v mv volt volts pa kpa mpa gpa psi bar mbar c degc \xC2\xB0"
+    "c degf \xC2\xB0"
+    "f k deg degrees \xC2\xB0 "
+    "rad rev rpm hz khz nm n*m n\xC2\xB7m ncm j mj w count counts cnt cycle cycles segment segments step steps pulse "
+    "pulses point points pts lsb bit bits digit digits raw adc pwm none unitless";
 
 constexpr std::string_view kOpening = "[(<{";
 constexpr std::string_view kClosing = "])>}";
@@ -66,6 +82,14 @@ std::optional<NameAndUnit> bracketed(std::string_view header) {
   return result;
 }
 
+// Whether `text` is a unit with a prefix that is in no list: "hN".
+bool is_prefixed_unit(std::string_view text) {
+  for (const std::string_view prefix : {"da", "h", "k", "M", "G", "T", "d", "c", "m", "u", "n", "p", "f"}) {
+    if (text.starts_with(prefix) && is_word_of("N m s g lbf", text.substr(prefix.size()))) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool is_word_of(std::string_view list, std::string_view word) {
@@ -83,13 +107,29 @@ std::optional<Unit> find_unit(std::string_view text) {
   for (const SpelledUnit& one : kUnits) {
     if (is_word_of(one.spellings, text)) return one.unit;
   }
-  // "MN" may be meganewtons and "NM" a torque, so they are not guessed.
+  // "MN" may be meganewtons, "NM" a torque, "PN" a number of a part and "DN" a diameter, so they are not guessed.
   const std::string lower = lower_ascii(text);
-  if (lower == "mn" || lower == "nm" || lower == "m") return std::nullopt;
+  if (is_word_of("mn nm m pn nn dn", lower)) return std::nullopt;
   for (const SpelledUnit& one : kUnits) {
     if (is_word_of(lower_ascii(one.spellings), lower)) return one.unit;
   }
   return std::nullopt;
+}
+
+std::string unit_names(Quantity quantity) {
+  std::vector<std::string> names;
+  for (const SpelledUnit& one : kUnits) {
+    if (one.unit.quantity == quantity) names.emplace_back(one.unit.name);
+  }
+  return joined(names);
+}
+
+bool is_other_unit(std::string_view text) {
+  text = without_brackets(text);
+  const std::size_t slash = text.find('/');
+  // A rate, a stiffness: "mm/s", "N/mm", "1/s".
+  if (slash != std::string_view::npos && find_unit(text.substr(slash + 1))) return true;
+  return is_word_of(kOtherUnits, lower_ascii(text));
 }
 
 double volts_of(std::string_view text) {
@@ -115,6 +155,10 @@ NameAndUnit split_name_and_unit(std::string_view header) {
   if (const auto result = split_at(header.rfind('/'), 1)) return *result;
   if (const auto result = split_at(header.rfind(" in "), 4)) return *result;
   if (const auto result = split_at(header.find_last_of(" _,;:-."), 1)) return *result;
+  if (const std::size_t mark = header.find_last_of(" _,;:-./"); mark != std::string_view::npos && mark > 0) {
+    const std::string_view last = header.substr(mark + 1);
+    if (is_prefixed_unit(last)) return {std::string(trimmed(header.substr(0, mark))), std::nullopt, std::string(last)};
+  }
   return {std::string(header), std::nullopt, ""};
 }
 

@@ -27,8 +27,14 @@ std::optional<Unit> find_unit(std::string_view text);
 struct NameAndUnit {
   std::string name;          // without the unit
   std::optional<Unit> unit;  // when it is known
-  std::string foreign_unit;  // unknown unit in brackets: "%", "degC"
+  std::string foreign_unit;  // unknown unit: "%", "degC", "hN"
 };
+
+// The names of the units of a quantity: "m, cm, mm, um, nm, inch, mil, ft".
+std::string unit_names(Quantity quantity);
+
+// Whether `text` is a unit of another quantity or a word for a number without a unit: "%", "MPa", "mm/s", "cycles".
+bool is_other_unit(std::string_view text);
 
 // The size in volts of the unit in `text`, "V" or "mV" in any common spelling; 0: no voltage.
 double volts_of(std::string_view text);

@@ -45,7 +45,6 @@ struct NumberRange {
   std::string words() const;
 };
 inline constexpr NumberRange kNotNegative{0.0};
-inline constexpr NumberRange kPositive{0.0, kLargestNumber, true};
 
 // A value and its JSON pointer; `value` is null if it does not exist.
 struct JsonNode {

@@ -9,16 +9,20 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <limits>
 #include <string_view>
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
 
 // The longest comment: '#', a blank and the text fit in one line.
 constexpr std::size_t kMaximumCommentBytes = kMaximumLineBytes - 2;
+
+constexpr std::uint64_t kMostNotes = 20;
 
 // Appends one '#' line for each line of `comment`, up to the longest comment. Control characters become blanks, because
 // the reader would refuse them or take them for line ends.
@@ -92,6 +96,10 @@ Status RecordingWriter::add(const RecordingRow& row) {
   return {};
 }
 
+void RecordingWriter::note(const std::string& comment) {
+  if (++noted_ <= kMostNotes) append_comment(notes_, comment);
+}
+
 Status RecordingWriter::publish() {
   if (rules_.rows() < kRateRows) return {};
   Status published = file_.publish();
@@ -105,7 +113,13 @@ Status RecordingWriter::commit() {
     const AtomicFile given_up = std::move(file_);
     return Error{path_ + ": cannot write: " + fault->text};
   }
-  return file_.commit();
+  Status committed = file_.commit();
+  if (!committed || notes_.empty()) return committed;
+  if (noted_ > kMostNotes) append_comment(notes_, std::to_string(noted_ - kMostNotes) + " more such notes");
+  if (const auto text = read_plain_file(path_, "the recording", "", std::numeric_limits<std::size_t>::max())) {
+    static_cast<void>(write_file_atomically(path_, notes_ + *text, true));
+  }
+  return {};
 }
 
 }  // namespace palpate

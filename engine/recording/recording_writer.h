@@ -25,6 +25,9 @@ class RecordingWriter {
   // Buffered. Errors: a row that breaks a rule (engine/recording/recording.h); it is not written.
   Status add(const RecordingRow& row);
 
+  // Adds a comment, which `commit` writes above the others.
+  void note(const std::string& comment);
+
   std::uint64_t rows() const { return rules_.rows(); }
   // Whether an input/output error has occurred, which `commit` will return.
   bool failed() const noexcept { return file_.failed(); }
@@ -36,7 +39,8 @@ class RecordingWriter {
   // The number of rows that `publish` has made available.
   std::uint64_t published_rows() const noexcept { return published_rows_; }
 
-  // Errors: those of AtomicFile::commit; fewer than 10 rows, or a rate outside the reader's range. Then only the
+  // The file gets its notes when it is complete; without room on the disk for a copy it is left without them. Errors:
+  // those of AtomicFile::commit; fewer than 10 rows, or a rate outside the reader's range. Then only the
   // published file, if any, is left.
   Status commit();
 
@@ -61,6 +65,8 @@ class RecordingWriter {
   std::string path_;
   RecordingColumns columns_;
   RowRules rules_;
+  std::string notes_;  // '#' lines
+  std::uint64_t noted_ = 0;
   std::uint64_t published_rows_ = 0;
 };
 

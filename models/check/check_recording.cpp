@@ -31,6 +31,8 @@ constexpr double kGapSteps = 20.0;
 // converter.
 constexpr double kClippedTravelShare = 0.015;
 constexpr std::size_t kClippedRows = 5;
+// The tool crosses the highest step of a quantised force in and out, and may turn there.
+constexpr double kClippedSteps = 3.0;
 // The share of the way in that the tool must move out to separate depth and memory.
 constexpr double kMonotonicShare = 0.1;
 // After three relaxation times 5 % of a relaxation are left, less than the Weber fraction of force.
@@ -121,13 +123,13 @@ class Checker {
                 faults_.position_dropouts, faults_.force_dropouts, 100.0 * share),
           "check cables, connectors and the interface of the sensor");
     }
-    if (faults_.update_step_s > 0.0) {
-      add("repeated_positions", Severity::warning, faults_.update_step_s,
-          words("the position changes only every %.3g ms and is repeated in the rows between: only the %zu rows with a "
-                "new position are used",
-                1e3 * faults_.update_step_s, faults_.updates),
-          "read the position as often as the force");
-    }
+    if (faults_.update_step_s == 0.0) return;
+    const char* const held = faults_.held_force ? "force" : "position";
+    add(faults_.held_force ? "repeated_forces" : "repeated_positions", Severity::warning, faults_.update_step_s,
+        words("the %s changes only every %.3g ms and is repeated in the rows between: only the %zu rows with a new %s "
+              "are used",
+              held, 1e3 * faults_.update_step_s, faults_.updates, held),
+        words("read the %s as often as the %s", held, faults_.held_force ? "position" : "force"));
   }
 
   void check_signs() {
@@ -143,18 +145,24 @@ class Checker {
           "if pressing decreases position_m or force_N, reverse its sign (palpate import --flip)");
       return;
     }
+    // Advice for one sign must not undo the reversal of the other.
+    const bool both = direction.position_flipped && direction.force_flipped;
+    const auto advice = [&](const char* rule, const char* this_one, const char* other) {
+      return std::string(rule) + (both ? ": reverse both signs (palpate import --flip both)"
+                                       : std::string(": reverse its sign (palpate import --flip ") + this_one +
+                                             ", or --flip both if it was imported with --flip " + other + ")");
+    };
     if (direction.position_flipped) {
       add("position_sign", Severity::fatal, change_N,
           words("the force is %.3g N at the lowest positions and %.3g N at the highest positions, as in free air",
                 direction.deep_force_N, direction.shallow_force_N),
-          "position_m must be positive inside the block: reverse its sign (palpate import --flip position)");
+          advice("position_m must be positive inside the block", "position", "force"));
     }
     if (direction.force_flipped) {
       add("force_sign", Severity::fatal, change_N,
           words("the force falls from %.3g N at the surface to %.3g N at the deepest position",
                 direction.shallow_force_N, direction.deep_force_N),
-          "force_N must be positive when the block pushes the tool out: reverse its sign (palpate import --flip "
-          "force)");
+          advice("force_N must be positive when the block pushes the tool out", "force", "position"));
     }
   }
 
@@ -220,7 +228,8 @@ class Checker {
   void check_clipping() {
     // Zero force is no limit.
     if (!(measures_.highest_force_N > 0.0)) return;
-    if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < kClippedTravelShare * travel_m()) return;
+    const double least_m = std::max(kClippedTravelShare * travel_m(), kClippedSteps * measures_.step_travel_m);
+    if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < least_m) return;
     add("clipping", Severity::warning, measures_.highest_force_N,
         words("the force stays at exactly %.5g N for %zu rows while the tool moves by %.3g mm",
               measures_.highest_force_N, measures_.flat_rows, 1e3 * measures_.flat_travel_m),

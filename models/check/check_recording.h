@@ -89,7 +89,7 @@ Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::st
 // The recordings of checked files, for a fit.
 std::vector<PreparedRecordingPointer> training_recordings(std::vector<CheckedFile> files);
 
-// An error with the first fatal finding: "path: force_sign: ...; ...".
+// An error with the fatal findings of the first unusable file: "path: position_sign: ...; ...; force_sign: ...; ...".
 Status refuse_unusable(const std::vector<CheckedFile>& files);
 // One line for each warning: "path: gap: ...; ...".
 std::vector<std::string> warning_lines(const std::vector<CheckedFile>& files);

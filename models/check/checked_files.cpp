@@ -111,9 +111,11 @@ std::vector<PreparedRecordingPointer> training_recordings(std::vector<CheckedFil
 
 Status refuse_unusable(const std::vector<CheckedFile>& files) {
   for (const CheckedFile& file : files) {
+    std::vector<std::string> fatal;
     for (const Finding& finding : file.check.findings) {
-      if (finding.severity == Severity::fatal) return Error{file.path + ": " + finding_text(finding)};
+      if (finding.severity == Severity::fatal) fatal.push_back(finding_text(finding));
     }
+    if (!fatal.empty()) return Error{file.path + ": " + joined(fatal, "; ")};
   }
   return {};
 }

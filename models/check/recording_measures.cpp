@@ -24,6 +24,8 @@ constexpr double kSpeedWindow_s = 0.02;
 // sampling rate, and neither noise nor creep.
 constexpr double kStrokeShare = 0.15;
 constexpr std::size_t kShortestFlat = 3;
+constexpr double kHighForces = 0.5;  // of the greatest
+constexpr double kMostSteps = 0.9;
 
 void measure_sampling(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
   std::vector<double> steps_s;
@@ -48,20 +50,31 @@ void measure_ranges(const std::vector<RecordingRow>& rows, RecordingMeasures& me
   measures.highest_force_N = strongest.force_N;
 }
 
+// Runs of rows with one force. Those at the greatest force are flat tops, and the others, above half of it, show how
+// far the tool moves within one step of a quantised or held force.
 void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].force_N != measures.highest_force_N) continue;
+  std::vector<double> step_travels_m;
+  for (std::size_t i = 0; i < rows.size();) {
     const std::size_t begin = i;
+    const double force_N = rows[i].force_N;
     double low_m = rows[i].position_m;
     double high_m = rows[i].position_m;
-    for (; i < rows.size() && rows[i].force_N == measures.highest_force_N; ++i) {
+    for (; i < rows.size() && rows[i].force_N == force_N; ++i) {
       low_m = std::min(low_m, rows[i].position_m);
       high_m = std::max(high_m, rows[i].position_m);
     }
-    if (i - begin < kShortestFlat) continue;
-    measures.flat_rows += i - begin;
-    measures.flat_travel_m = std::max(measures.flat_travel_m, high_m - low_m);
+    if (force_N < measures.highest_force_N) {
+      if (force_N > kHighForces * measures.highest_force_N) step_travels_m.push_back(high_m - low_m);
+    } else if (i - begin >= kShortestFlat) {
+      measures.flat_rows += i - begin;
+      measures.flat_travel_m = std::max(measures.flat_travel_m, high_m - low_m);
+    }
   }
+  if (step_travels_m.empty()) return;
+  const auto count = static_cast<double>(step_travels_m.size() - 1);
+  const auto most = step_travels_m.begin() + static_cast<std::ptrdiff_t>(kMostSteps * count);
+  std::nth_element(step_travels_m.begin(), most, step_travels_m.end());
+  measures.step_travel_m = *most;
 }
 
 // Divides a motion into strokes in and out. A stroke ends when the depth has come back from its extreme by more than

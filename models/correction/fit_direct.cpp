@@ -18,7 +18,8 @@ Result<SolvedWeights> fit_direct(const Sites& sites, const FitControl& control) 
   const BlasThreads threads(thread_count());
   const ProjectedKernel kernel(sites.kernel, sites.points, sites.row_scale);
   if (!control.may_continue(0.1)) return interrupted();
-  const auto factor = kernel.cholesky(sites.smoothing);
+  const auto factor = kernel.cholesky(sites.smoothing, control.part(0.1, 0.95));
+  if (!factor && !control.may_continue(0.95)) return interrupted();
   if (!factor) return Error{"the kernel matrix could not be factorised; check the recording for extreme values"};
   if (!control.may_continue(0.95)) return interrupted();
   const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);

@@ -20,11 +20,12 @@ Result<FittedCorrection> fit_correction(const Method& method, const MethodTask& 
   if (const Status status = validate_sites(task.sites); !status) return status.error();
   if (!control.may_continue(0.0)) return interrupted();
   if (method.base == nullptr || task.base != nullptr) return method.fit(task, control);
-  const auto base = fit_correction(*method.base, task, control);
+  const double share = expected_seconds(*method.base) / expected_seconds(method);
+  const auto base = fit_correction(*method.base, task, control.part(0.0, share));
   if (!base) return base.error();
   MethodTask with_base = task;
   with_base.base = base->correction;
-  return method.fit(with_base, control);
+  return method.fit(with_base, control.part(share, 1.0));
 }
 
 Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres,

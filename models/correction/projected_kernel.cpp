@@ -81,12 +81,13 @@ Eigen::MatrixXd ProjectedKernel::matrix(double fill, double smoothing) const {
   return matrix;
 }
 
-std::optional<ProjectedKernel::Factor> ProjectedKernel::cholesky(double smoothing) const {
+std::optional<ProjectedKernel::Factor> ProjectedKernel::cholesky(double smoothing, const FitControl& control) const {
   smoothing = std::max(smoothing, smallest_smoothing_);
   for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
     Factor factor{matrix(mean_eigenvalue_, smoothing)};
     factor.norm = lower_norm(factor.lower);
-    if (cholesky_in_place(factor.lower)) return factor;
+    if (cholesky_in_place(factor.lower, control)) return factor;
+    if (!control.may_continue()) return std::nullopt;
   }
   return std::nullopt;
 }

@@ -29,12 +29,12 @@ class ProjectedKernel {
   // The lower triangle of P K P + fill q q^T + smoothing I, N x N; the upper one is not set. Uses all cores.
   Eigen::MatrixXd matrix(double fill, double smoothing) const;
   // The Cholesky factor of that matrix with the mean eigenvalue as fill. If rounding prevents it, the smoothing is
-  // multiplied by ten until the factor exists; none after eight attempts.
+  // multiplied by ten until the factor exists; none after eight attempts, or if interrupted.
   struct Factor {
     Eigen::MatrixXd lower;
     double norm = 0.0;  // the 1-norm of the matrix
   };
-  std::optional<Factor> cholesky(double smoothing) const;
+  std::optional<Factor> cholesky(double smoothing, const FitControl& control = {}) const;
 
   // P v.
   Eigen::VectorXd project(const Eigen::VectorXd& v) const { return v - q_ * (q_.transpose() * v); }

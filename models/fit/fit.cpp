@@ -12,6 +12,10 @@
 namespace palpate {
 namespace {
 
+// The finished fraction of a fit after its choices, and after the method. The fits without each fold follow.
+constexpr double kChosen = 0.15;
+constexpr double kFitted = 0.6;
+
 // At most this many samples, evenly spaced, for the share of the training within the JND.
 constexpr std::size_t kMostEvaluated = 100000;
 
@@ -85,8 +89,9 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
   if (plan.base == Base::force) {
     Result<OpenChoices> selected = choices != nullptr ? *choices : OpenChoices{};
     if (choices == nullptr) {
-      selected = select_open_choices(*prepared.samples, prepared.features, prepared.normalisation, sites, data,
-                                     plan.selects_centres() ? plan.centres : 0, plan.kernel, control.at(0.0));
+      selected =
+          select_open_choices(*prepared.samples, prepared.features, prepared.normalisation, sites, data,
+                              plan.selects_centres() ? plan.centres : 0, plan.kernel, control.part(0.0, kChosen));
     }
     if (!selected) return selected.error();
     fit.choices = *selected;
@@ -95,7 +100,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
   }
   const CorrectionPtr from = base == nullptr || asked.method->base == nullptr ? nullptr : base->data.correction;
   const Eigen::VectorXd jnd_N = site_thresholds(prepared);
-  auto fitted = fit_correction(*asked.method, task_of(asked, sites, jnd_N, from), control);
+  auto fitted = fit_correction(*asked.method, task_of(asked, sites, jnd_N, from), control.part(kChosen, kFitted));
   if (!fitted) return fitted.error();
   fit.kernel = sites.kernel;
   fit.rank = fitted->rank;
@@ -113,7 +118,8 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     std::vector<CorrectionPtr> of_folds;
     const int folds = data.correction ? prepared.left_out->folds() : 0;
     for (int fold = 0; fold < folds; ++fold) {
-      auto of_fold = fit_without(prepared, fold, asked, control);
+      auto of_fold =
+          fit_without(prepared, fold, asked, control.part(kFitted + (1.0 - kFitted) * fold / folds, 1.0).at(0.0));
       if (!of_fold) return of_fold.error();
       of_folds.push_back(std::move(*of_fold));
     }

@@ -231,9 +231,9 @@ Result<OpenChoices> select_open_choices(const Samples& samples, const Eigen::Mat
     }
   }
   std::vector<Selection::Candidate> candidates;
-  for (const auto& [kind, exponent] : settings) {
-    if (!control.may_continue()) return interrupted();
-    std::ranges::move(selection.with(kind, exponent), std::back_inserter(candidates));
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    if (!control.may_continue(static_cast<double>(i) / static_cast<double>(settings.size()))) return interrupted();
+    std::ranges::move(selection.with(settings[i].first, settings[i].second), std::back_inserter(candidates));
   }
   const Selection::Candidate& best = candidates[best_score(errors_of(candidates))];
   OpenChoices choices = best.choices;

@@ -6,14 +6,8 @@
 namespace palpate {
 namespace {
 
-// The share of the progress for the preparation of the training.
-constexpr double kPrepared = 0.3;
-
-FitControl part_of(const std::function<bool(double)>& progress, double begin, double end) {
-  FitControl control;
-  if (progress) control.progress = [=](double fraction) { return progress(begin + (end - begin) * fraction); };
-  return control;
-}
+// The approximate time of the preparation, to compare with the expected time of the method.
+constexpr double kPreparation_s = 0.5;
 
 nlohmann::ordered_json offsets_json(const Provenance& provenance) {
   auto list = nlohmann::ordered_json::array();
@@ -33,9 +27,11 @@ Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const 
                                      const ModelPlan& plan, std::chrono::steady_clock::time_point began,
                                      const std::function<bool(double)>& progress) {
   ModelFits fits(training_recordings(std::move(recordings)), scene);
-  const auto prepared = fits.prepare(plan, part_of(progress, 0.0, kPrepared));
+  const FitControl control{progress};
+  const double prepared_at = kPreparation_s / (kPreparation_s + expected_seconds(*plan.method));
+  const auto prepared = fits.prepare(plan, control.part(0.0, prepared_at));
   if (!prepared) return prepared.error();
-  auto fit = fits.fit(plan, part_of(progress, kPrepared, 1.0));
+  auto fit = fits.fit(plan, control.part(prepared_at, 1.0));
   if (!fit) return fit.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return RecordingsFit{(*prepared)->gains, (*prepared)->correction, std::move(*fit), seconds};

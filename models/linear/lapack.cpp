@@ -19,6 +19,8 @@ void dsyrk_(const char*, const char*, const int*, const int*, const double*, con
 void dgesdd_(const char*, const int*, const int*, double*, const int*, double*, double*, const int*, double*,
              const int*, double*, const int*, int*, int*);
 void dpotrf_(const char*, const int*, double*, const int*, int*);
+void dtrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
+            const int*, double*, const int*);
 void dpocon_(const char*, const int*, const double*, const int*, const double*, double*, double*, int*, int*);
 // Only in OpenBLAS; null with another BLAS.
 [[gnu::weak]] void openblas_set_num_threads(int);
@@ -107,17 +109,25 @@ void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b
          c.data(), &ldc);
 }
 
-void gram(const ConstMatrixRef& a, MatrixRef c) {
-  const int n = to_int(a.cols());
-  const int k = to_int(a.rows());
-  assert(c.rows() == n && c.cols() == n);
-  if (n == 0) return;
+namespace {
+
+void rank_update(const char* transpose, Eigen::Index size, Eigen::Index depth, const ConstMatrixRef& a, MatrixRef c) {
+  assert(c.rows() == size && c.cols() == size);
+  if (size == 0) return;
+  const int n = to_int(size);
+  const int k = to_int(depth);
   const double one = 1.0;
   const double zero = 0.0;
   const int lda = leading(a);
   const int ldc = leading(c);
-  dsyrk_("L", "T", &n, &k, &one, a.data(), &lda, &zero, c.data(), &ldc);
+  dsyrk_("L", transpose, &n, &k, &one, a.data(), &lda, &zero, c.data(), &ldc);
 }
+
+}  // namespace
+
+void gram(const ConstMatrixRef& a, MatrixRef c) { rank_update("T", a.cols(), a.rows(), a, c); }
+
+void gram_of_transpose(const ConstMatrixRef& at, MatrixRef c) { rank_update("N", at.rows(), at.cols(), at, c); }
 
 // Uses the recursive panels of dgeqrt: dgeqrf factorises up to 128 columns one by one, which takes 2.5 times as long
 // with 106 columns.
@@ -179,6 +189,28 @@ bool cholesky_in_place(MatrixRef a) {
   int info = 0;
   dpotrf_("L", &n, a.data(), &lda, &info);
   return info == 0;
+}
+
+bool cholesky_in_place(MatrixRef a, const FitControl& control) {
+  constexpr Eigen::Index kColumns = 256;
+  const double one = 1.0;
+  const double minus_one = -1.0;
+  const int lda = leading(a);
+  const Eigen::Index size = a.rows();
+  for (Eigen::Index first = 0; first < size; first += kColumns) {
+    const double left = static_cast<double>(size - first) / static_cast<double>(size);
+    if (!control.may_continue(1.0 - left * left * left)) return false;
+    const Eigen::Index columns = std::min(kColumns, size - first);
+    const Eigen::Index below = size - first - columns;
+    if (!cholesky_in_place(a.block(first, first, columns, columns))) return false;
+    if (below == 0) break;
+    const int m = to_int(below);
+    const int n = to_int(columns);
+    double* const panel = &a(first + columns, first);
+    dtrsm_("R", "L", "T", "N", &m, &n, &one, &a(first, first), &lda, panel, &lda);
+    dsyrk_("L", "N", &m, &n, &minus_one, panel, &lda, &one, &a(first + columns, first + columns), &lda);
+  }
+  return true;
 }
 
 double cholesky_condition(const ConstMatrixRef& factor, double norm) {

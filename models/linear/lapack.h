@@ -9,6 +9,8 @@
 #include <Eigen/Core>
 #include <mutex>
 
+#include "engine/base/fit_control.h"
+
 namespace palpate {
 
 using MatrixRef = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
@@ -41,8 +43,10 @@ inline constexpr Eigen::Index kBlockRows = 512;
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
               double beta, MatrixRef c);
 
-// The lower triangle of c = a^T a; the rest of c stays as it is.
+// The lower triangle of c = a^T a; the rest of c stays as it is. `at`: a is given by its transpose, whose columns are
+// the rows of a.
 void gram(const ConstMatrixRef& a, MatrixRef c);
+void gram_of_transpose(const ConstMatrixRef& at, MatrixRef c);
 
 // Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation; the rest becomes meaningless.
 void qr_in_place(MatrixRef a);
@@ -64,6 +68,9 @@ SingularValues singular_values(Eigen::MatrixXd a);
 
 // Cholesky factor in the lower triangle of `a`. False if `a` is not positive definite.
 bool cholesky_in_place(MatrixRef a);
+// The same in steps of some hundred columns. False, too, if `control` interrupts it; the fraction is that of the
+// operations.
+bool cholesky_in_place(MatrixRef a, const FitControl& control);
 // The condition number of the factorised matrix in the 1-norm, estimated (Higham 1988). `norm`: the 1-norm of the
 // matrix.
 double cholesky_condition(const ConstMatrixRef& factor, double norm);

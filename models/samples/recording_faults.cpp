@@ -111,26 +111,48 @@ void remove_marked(Rows& rows, const std::vector<bool>& out) {
 constexpr std::size_t kLeastUpdates = 50;
 constexpr double kFewIntervals = 0.05;    // shorter ones are jitter
 constexpr double kEqualIntervals = 0.75;  // of the median
-constexpr double kManySteps = 3.0;        // ratio of the median change to the smallest; encoder steps have less
+constexpr double kLargeChange = 1.5;      // steps of the channel
+constexpr double kMovingShare = 0.25;     // of the motion from a row to the next one, which has an update
 
-// The number of rows from one update of the position to the next; 0 if every row may be an update.
-double update_rows(const std::vector<Run>& runs) {
-  if (runs.size() < kLeastUpdates) return 0.0;
-  std::vector<double> lengths;
-  std::vector<double> steps;
-  // The first and the last run are incomplete.
+// The intervals between the large changes of a channel, and the motion meanwhile.
+struct Updates {
+  std::vector<double> rows;  // of the runs between two large changes
+  double inside_m = 0.0;     // sum of the motions within these runs
+  double across_m = 0.0;     // sum of the motions from their last row to the next one
+};
+
+Updates updates_of(const Rows& rows, const std::vector<Run>& runs) {
+  std::vector<double> changes;
+  for (std::size_t i = 1; i < runs.size(); ++i) changes.push_back(std::abs(runs[i].value - runs[i - 1].value));
+  const double large = kLargeChange * quantile_of(changes, 0.0);
+  Updates updates;
   for (std::size_t i = 1; i + 1 < runs.size(); ++i) {
-    lengths.push_back(static_cast<double>(runs[i].end - runs[i].begin));
-    steps.push_back(std::abs(runs[i].value - runs[i - 1].value));
+    const Run& run = runs[i];
+    if (!(changes[i - 1] > large) || !(changes[i] > large)) continue;
+    updates.rows.push_back(static_cast<double>(run.end - run.begin));
+    updates.inside_m += std::abs(rows[run.end - 1].position_m - rows[run.begin].position_m);
+    updates.across_m += std::abs(rows[run.end].position_m - rows[run.end - 1].position_m);
   }
-  const double middle = quantile_of(lengths, 0.5);
+  return updates;
+}
+
+// The number of rows from one update of a channel to the next; 0 if every row may be an update.
+double update_rows(const Rows& rows, Column column, const std::vector<Run>& runs) {
+  if (runs.size() < kLeastUpdates) return 0.0;
+  const Updates updates = updates_of(rows, runs);
+  if (updates.rows.size() < kLeastUpdates / 2) return 0.0;
+  std::vector<double> lengths;
+  // The first and the last run are incomplete.
+  for (std::size_t i = 1; i + 1 < runs.size(); ++i) lengths.push_back(static_cast<double>(runs[i].end - runs[i].begin));
+  const double middle = quantile_of(updates.rows, 0.5);
   const double shortest = quantile_of(lengths, kFewIntervals);
   if (!(shortest >= 2.0) || shortest + 1.0 < middle * kEqualIntervals) return 0.0;
-  if (quantile_of(steps, 0.5) < kManySteps * quantile_of(steps, 0.0)) return 0.0;
+  // A tool that moves in steps explains the steps of a force.
+  if (column == &RecordingRow::force_N && updates.inside_m < kMovingShare * updates.across_m) return 0.0;
   double sum = 0.0;
   double count = 0.0;
-  for (const double length : lengths) {
-    if (length > 1.5 * middle) continue;  // at rest
+  for (const double length : updates.rows) {
+    if (length > 1.5 * middle) continue;  // two equal readings
     sum += length;
     count += 1.0;
   }
@@ -162,12 +184,21 @@ RecordingFaults remove_faults(Recording& recording) {
   faults.force_dropouts =
       mark(dropouts(rows, &RecordingRow::force_N, identify_force_noise_N(rows.data(), rows.size()), false), out);
   if (faults.any()) remove_marked(rows, out);
-  const std::vector<Run> runs = runs_of(rows, &RecordingRow::position_m);
-  const double interval = update_rows(runs);
+  // Of two slow channels the slower one determines the rows.
+  double interval = 0.0;
+  std::vector<Run> updates;
+  for (const Column column : {&RecordingRow::position_m, &RecordingRow::force_N}) {
+    std::vector<Run> runs = runs_of(rows, column);
+    const double found = update_rows(rows, column, runs);
+    if (!(found > interval)) continue;
+    interval = found;
+    faults.held_force = column == &RecordingRow::force_N;
+    updates = std::move(runs);
+  }
   if (interval == 0.0 || static_cast<double>(rows.size()) < interval * kRecordingMinimumRows) return faults;
   const double step_s = (rows.back().time_s - rows.front().time_s) / static_cast<double>(rows.size() - 1);
   faults.update_step_s = interval * step_s;
-  keep_updates(rows, runs, interval);
+  keep_updates(rows, updates, interval);
   faults.updates = rows.size();
   return faults;
 }

@@ -1,5 +1,5 @@
 // Finds and removes rows of a recording without information about the material, before anything is computed: dropouts
-// and repeated positions.
+// and held values.
 //
 // Dropout: up to three consecutive rows with one value outside the range of their neighbours. Its distance from the
 // median of itself and its two neighbours exceeds six times the noise, six times the 90 % quantile of these distances,
@@ -7,10 +7,11 @@
 // otherwise, and for a force below 100 Hz, three dropouts must have exactly the same value. Fewer than three dropouts,
 // or more than a tenth of all rows, are not removed.
 //
-// Repeated positions: the position channel is slower than the rows. It changes at equal intervals of two rows or more
-// at any speed, whereas an encoder changes more often in faster motion, by one step. Only the rows with an update are
-// kept; at rest, rows at the same intervals.
-// Thread guarantee: slow side, pure but for read_usable_recording (does I/O).
+// Held values: the position or the force is slower than the rows, so that rows repeat its last value. It changes by
+// several of its steps at once and then not for equal intervals of two rows or more, at any speed, whereas a quantised
+// signal changes by one step, and in faster motion more often. A force must do so while the tool moves. Only the rows
+// with an update are kept; at rest, rows at the same intervals. Of two slow channels the slower one determines the
+// rows. Thread guarantee: slow side, pure but for read_usable_recording (does I/O).
 #pragma once
 
 #include <cstddef>
@@ -25,7 +26,8 @@ struct RecordingFaults {
   std::size_t rows = 0;               // number of recorded rows
   std::size_t position_dropouts = 0;  // number of rows
   std::size_t force_dropouts = 0;
-  double update_step_s = 0.0;  // interval of the updates; 0: every row has a position of its own
+  double update_step_s = 0.0;  // interval of the updates of a slow channel; 0: every row has its own values
+  bool held_force = false;     // the slow channel is the force, not the position
   std::size_t updates = 0;     // number of rows with an update that were kept
 
   bool any() const { return position_dropouts + force_dropouts > 0 || update_step_s > 0.0; }

@@ -18,6 +18,15 @@ constexpr int kPasses = 4;
 constexpr std::array kSmoothness{1e-6, 1e-7, 1e-8, 1e-9};
 constexpr double kFirstSmoothness = 1e-8;
 
+// The trends of some solutions at the rows: rows x solutions.
+Eigen::MatrixXd values_of(const TrendColumns& columns, const Eigen::MatrixXd& solutions) {
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(columns.count()), solutions.cols());
+  // The matrix is stored by rows, which is its transpose stored by columns.
+  const Eigen::Map<const Eigen::MatrixXd> transposed(columns.terms().data(), columns.columns(), values.rows());
+  multiply(transposed, true, solutions, false, 1.0, 0.0, values);
+  return values;
+}
+
 }  // namespace
 
 TrendEstimator::TrendEstimator(const TrendColumns& columns, const TrendWeights& weights, Smoothness smoothness)
@@ -56,7 +65,7 @@ TrendEstimator::Equations TrendEstimator::gather(int left_out) const {
   Equations equations = sum(scale);
   for (int pass = 0; pass < kPasses; ++pass) {
     equations.start = solve(equations, all_columns(), kFirstSmoothness);
-    const Eigen::VectorXd trend_N = columns_.terms() * equations.start;
+    const Eigen::VectorXd trend_N = values_of(columns_, equations.start);
     bool changed = false;
     for (std::size_t i = 0; i < scale.size(); ++i) {
       const double force_N = trend_N(static_cast<Eigen::Index>(i));
@@ -77,24 +86,24 @@ TrendEstimator::Equations TrendEstimator::gather(int left_out) const {
 TrendEstimator::Equations TrendEstimator::sum(const std::vector<double>& scale) const {
   const Eigen::Index n = columns_.columns();
   Equations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0, Eigen::VectorXd::Zero(n)};
-  Eigen::MatrixXd block(kBlockRows, n);
+  Eigen::MatrixXd block(n, kBlockRows);  // one column a row of the regression
   Eigen::VectorXd force_N(kBlockRows);
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(n, n);
   Eigen::Index filled = 0;
   const auto flush = [&] {
-    gram(block.topRows(filled), product);
+    gram_of_transpose(block.leftCols(filled), product);
     equations.gram += product;
-    equations.right_side += block.topRows(filled).transpose() * force_N.head(filled);
+    multiply(block.leftCols(filled), false, force_N.head(filled), false, 1.0, 1.0, equations.right_side);
     filled = 0;
   };
   for (std::size_t i = 0; i < columns_.count(); ++i) {
     if (scale[i] == 0.0) continue;
-    block.row(filled) = scale[i] * columns_.terms().row(static_cast<Eigen::Index>(i));
+    block.col(filled) = scale[i] * columns_.terms().row(static_cast<Eigen::Index>(i)).transpose();
     force_N(filled) = scale[i] * columns_.force_N(i);
     equations.scale_squares += scale[i] * scale[i];
     if (++filled == kBlockRows) flush();
   }
-  flush();
+  if (filled > 0) flush();
   equations.gram.triangularView<Eigen::StrictlyUpper>() = equations.gram.transpose();
   return equations;
 }
@@ -123,7 +132,7 @@ CrossValidated TrendEstimator::cross_validate(const ColumnList& columns, double 
     result.solutions.col(k) = solve(equations_[static_cast<std::size_t>(k)], columns, smoothness);
   }
   const bool one_sided = std::isfinite(columns_.samples().no_force_N());
-  const Eigen::MatrixXd trend_N = columns_.terms() * result.solutions;
+  const Eigen::MatrixXd trend_N = values_of(columns_, result.solutions);
   for (std::size_t i = 0; i < columns_.count(); ++i) {
     const auto fold = static_cast<std::size_t>(columns_.fold(i));
     if (columns_.depth_m(i) > deepest_elsewhere_m_[fold]) continue;

@@ -6,6 +6,7 @@
 #include "engine/base/atomic_file.h"
 #include "models/export/export_c.h"
 #include "models/model/file/model_io.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -33,6 +34,7 @@ void print_summary(const ExportArguments& arguments, const ModelData& data, cons
 }
 
 Status run_export(const ExportArguments& arguments) {
+  if (const Status status = refuse_input_as_output(arguments.out, {arguments.model}, "--c"); !status) return status;
   const auto model = load_model(arguments.model);
   if (!model) return model.error();
   const ModelData& data = (*model)->data();

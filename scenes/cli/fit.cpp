@@ -147,6 +147,9 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
 }
 
 Status run_fit(const FitArguments& arguments) {
+  std::vector<std::string> inputs = arguments.recordings;
+  inputs.push_back(arguments.scene);
+  if (const Status status = refuse_input_as_output(arguments.out, inputs, "--out"); !status) return status;
   const auto scene = load_scene(arguments.scene);
   if (!scene) return scene.error();
   // Reports before the fit if the output cannot be written.

@@ -45,10 +45,9 @@ void read_column(const std::string& text, RoleRequest& columns) {
 void read_unit(const std::string& text, std::vector<Unit>& units) {
   const auto unit = find_unit(text);
   if (!unit) {
-    throw CLI::ValidationError("--units",
-                               "found \"" + text +
-                                   "\", expected a unit of length (m, cm, mm, um, inch), force (N, mN, kN, g, kg, "
-                                   "lbf) or time (s, ms, us, ns)");
+    throw CLI::ValidationError(
+        "--units", "found \"" + text + "\", expected a unit of length (" + unit_names(Quantity::length) + "), force (" +
+                       unit_names(Quantity::force) + ") or time (" + unit_names(Quantity::time) + ")");
   }
   for (const Unit& other : units) {
     if (other.quantity == unit->quantity) {

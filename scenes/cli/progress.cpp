@@ -34,9 +34,10 @@ ProgressLine::~ProgressLine() {
 
 bool ProgressLine::update(double fraction) {
   const Clock::time_point now = Clock::now();
+  most_ = std::max(most_, fraction);
   if (terminal_ && now - last_drawn_ >= kDrawInterval) {
     const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-    std::fprintf(stderr, "\r\033[K%s", progress_text(label_, fraction, elapsed_s).c_str());
+    std::fprintf(stderr, "\r\033[K%s", progress_text(label_, most_, elapsed_s).c_str());
     std::fflush(stderr);
     last_drawn_ = now;
     drawn_ = true;

@@ -18,7 +18,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine();  // clears the line
 
-  // `fraction`: the share done, 0..1. Returns false after an interrupt: then end the job without a file.
+  // `fraction`: the share done, 0..1; a smaller one than before is drawn as before. Returns false after an interrupt:
+  // then end the job without a file.
   bool update(double fraction);
 
  private:
@@ -30,6 +31,7 @@ class ProgressLine {
   Clock::time_point last_drawn_;
   bool terminal_;
   bool drawn_ = false;
+  double most_ = 0.0;  // of the fractions
 };
 
 // "label  37 %  12 s left"; the remaining time is shown after 2 % and 1 s.

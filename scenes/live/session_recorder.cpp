@@ -25,7 +25,8 @@ std::string counted(std::uint64_t count, const char* words) {
 }  // namespace
 
 std::optional<double> RecordingTime::file_time_s(double time_s, bool restart) noexcept {
-  if (!started_ || restart) {
+  const double at_s = start_s_ + (time_s - origin_s_);
+  if (!started_ || (restart && !(at_s > last_s_))) {
     if (started_) {
       start_s_ = last_s_ + kStreamGap_s;
       gaps_s_ += kStreamGap_s;
@@ -35,7 +36,6 @@ std::optional<double> RecordingTime::file_time_s(double time_s, bool restart) no
     last_s_ = start_s_;
     return start_s_;
   }
-  const double at_s = start_s_ + (time_s - origin_s_);
   if (!(at_s > last_s_)) return std::nullopt;
   last_s_ = at_s;
   return at_s;
@@ -124,8 +124,13 @@ void SessionRecorder::write(const RecordedSample& sample) {
     ++counts_.without_force;
     return;
   }
+  const double gaps_s = time_.gaps_s();
   const std::optional<double> time_s = time_.file_time_s(sample.tool.time_s, restart_pending_);
   restart_pending_ = false;
+  if (time_.gaps_s() > gaps_s) {
+    writer_->note("the time of the device began again at time_s " + shortest(*time_s) + ": the " +
+                  general(kStreamGap_s, 3) + " s before it were not measured");
+  }
   if (!time_s) {
     ++counts_.unusable;
     return;

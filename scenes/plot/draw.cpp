@@ -1,7 +1,11 @@
 #include "scenes/plot/draw.h"
 
+#include <fcntl.h>
 #include <stdlib.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
@@ -13,6 +17,10 @@ namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kRandomLetters = 6;  // of mkdtemp
+// A folder is locked within this time after it was made.
+constexpr std::chrono::seconds kLockedBy(10);
 
 // Quotes the text for the shell, so that no character has a special meaning.
 std::string shell_quoted(const std::string& text) {
@@ -55,16 +63,49 @@ Status run_gnuplot(const std::string& folder, const std::string& script) {
                "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
 }
 
+// Locks a folder against `remove_abandoned`; -1 if another object has locked it.
+int lock_folder(const std::string& path) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0 || flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  close(descriptor);
+  return -1;
+}
+
+// Removes the scratch folders of programs that were killed: nothing locks them, and they are too old to be locked next.
+void remove_abandoned(const std::string& parent, const std::string& name) {
+  std::error_code error;
+  std::vector<fs::path> abandoned;
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent, error)) {
+    const std::string found = entry.path().filename().string();
+    if (!found.starts_with(name) || found.size() != name.size() + kRandomLetters || !entry.is_directory(error))
+      continue;
+    const auto age = fs::file_time_type::clock::now() - entry.last_write_time(error);
+    if (!error && age > kLockedBy) abandoned.push_back(entry.path());
+  }
+  for (const fs::path& path : abandoned) {
+    const int lock = lock_folder(path.string());
+    if (lock < 0) continue;
+    fs::remove_all(path, error);
+    close(lock);
+  }
+}
+
 }  // namespace
 
 ScratchFolder::ScratchFolder(const std::string& parent, const std::string& name)
-    : path_(parent + "/" + name + "XXXXXX") {
-  if (mkdtemp(path_.data()) == nullptr) path_.clear();
+    : path_(parent + "/" + name + std::string(kRandomLetters, 'X')) {
+  remove_abandoned(parent, name);
+  if (mkdtemp(path_.data()) == nullptr) {
+    path_.clear();
+  } else {
+    lock_ = lock_folder(path_);
+  }
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   if (!path_.empty()) fs::remove_all(path_, ignored);
+  if (lock_ >= 0) close(lock_);
 }
 
 Status find_gnuplot() {

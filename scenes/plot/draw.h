@@ -21,6 +21,7 @@ class ScratchFolder {
 
  private:
   std::string path_;
+  int lock_ = -1;  // of the folder: the system releases it when the program ends
 };
 
 // Errors: there is no gnuplot in PATH; says what to install.

@@ -81,21 +81,32 @@ Result<ReportFolder> ReportFolder::create(const std::string& path, bool overwrit
     return Error{"cannot write a report to \"" + path + "\": it is no name of a new folder; name one for --out"};
   }
   if (const Status target = check_target(clean, overwrite); !target) return target.error();
-  const fs::path parent = clean.has_parent_path() ? clean.parent_path() : fs::path(".");
   ReportFolder folder;
   folder.path_ = clean.string();
-  folder.temporary_ = std::make_unique<ScratchFolder>(parent.string(), ".palpate-report-");
-  if (folder.temporary_->path().empty()) {
-    return Error{"cannot write " + clean.string() + ": cannot make a folder in " + parent.string() + " (" +
+  // Reports before the work of a report if nothing can be written.
+  if (const Status trial = folder.open(); !trial) return trial.error();
+  folder.temporary_.reset();
+  return folder;
+}
+
+Status ReportFolder::open() {
+  const fs::path path(path_);
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  temporary_ = std::make_unique<ScratchFolder>(parent.string(), ".palpate-report-");
+  if (temporary_->path().empty()) {
+    return Error{"cannot write " + path_ + ": cannot make a folder in " + parent.string() + " (" +
                  std::generic_category().message(errno) + "); create that folder first, or name another one"};
   }
   // Only the owner can read a new scratch folder.
   std::error_code error;
-  fs::permissions(folder.temporary_->path(), static_cast<fs::perms>(0755), error);
-  return folder;
+  fs::permissions(temporary_->path(), static_cast<fs::perms>(0755), error);
+  return {};
 }
 
-Status ReportFolder::write(const std::string& name, std::string_view text) const {
+Status ReportFolder::write(const std::string& name, std::string_view text) {
+  if (!temporary_) {
+    if (Status opened = open(); !opened) return opened;
+  }
   std::error_code ignored;
   fs::create_directories(fs::path(path_of(name)).parent_path(), ignored);
   return write_file_atomically(path_of(name), text, true);

@@ -17,7 +17,8 @@
 namespace palpate {
 
 // A folder that gets its final name only when it is complete. Files are written into a hidden folder beside `path`,
-// which `commit` renames. The destructor removes the hidden folder if it was not committed.
+// which the first `write` makes and `commit` renames. The destructor removes the hidden folder if it was not committed;
+// that of a killed program is removed when the next one writes beside it.
 class ReportFolder {
  public:
   // Errors: `path` exists and `overwrite` is false, or it is not a folder, or it has files but no report.json and so
@@ -25,7 +26,8 @@ class ReportFolder {
   static Result<ReportFolder> create(const std::string& path, bool overwrite);
 
   // Writes a whole file and creates its subfolder where necessary.
-  Status write(const std::string& name, std::string_view text) const;
+  Status write(const std::string& name, std::string_view text);
+  // Where a file is before `commit`; after the first `write`.
   std::string path_of(const std::string& name) const { return temporary_->path() + "/" + name; }
 
   // Moves the folder to its final name and removes an earlier report there.
@@ -33,6 +35,7 @@ class ReportFolder {
 
  private:
   ReportFolder() = default;
+  Status open();
   std::string path_;
   std::unique_ptr<ScratchFolder> temporary_;
 };

@@ -147,9 +147,9 @@ Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& sce
     return Error{"found " + std::to_string(models.size()) +
                  " models, expected one, to compare with the recorded force, or two; leave some out"};
   }
-  Result<std::vector<ModelRequest>> plans = requested_models(*loaded, models, false);
+  const std::vector<std::string> wanted = models.empty() ? std::vector<std::string>{plan_name(ModelPlan{})} : models;
+  const Result<std::vector<ModelRequest>> plans = requested_models(*loaded, wanted, false);
   if (!plans) return plans.error();
-  plans->resize(std::max<std::size_t>(models.size(), 1));
   const Result<Recording> rendered = test_recording(*loaded, recording);
   if (!rendered) return rendered.error();
   ModelWorker worker(*loaded, kTrainingSeed);

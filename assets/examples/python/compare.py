@@ -18,8 +18,8 @@ import palpate
 EXAMPLE = pathlib.Path(__file__).resolve().parents[1] / "silicone_press.csv"
 # Options of palpate.fit, and the colour-blind-safe colours of Okabe & Ito.
 MODELS = {"depth alone": (dict(method="trend", features="depth"), "#0072B2"),
-          "recipe of 2009": (dict(method="greedy", centres=60, recipe="paper-2009"), "#E69F00"),
-          "greedy": (dict(method="greedy", centres=60), "#D55E00")}
+          "greedy of 2009": (dict(method="greedy", centres=60), "#D55E00"),
+          "trend+greedy": (dict(method="trend+greedy", centres=60), "#CC79A7")}
 
 
 def main(recording=EXAMPLE, figure="compare.png"):

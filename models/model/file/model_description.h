@@ -18,6 +18,8 @@ namespace palpate::model_file {
 inline constexpr NumberRange kDriveForce_N{-1e9, 1e9};
 // Relaxation times that change by more than a factor of exp(20), or 5e8, with the depth indicate a damaged file.
 inline constexpr NumberRange kSlowing{-20.0, 20.0};
+// A divisor, in SI units: smaller than a motion or force of any sensor, and so large that quotients have finite squares.
+inline constexpr NumberRange kDivisor{1e-12, kLargestNumber, true};
 inline constexpr const char* kOnePerFeature = "numbers, one per feature";
 
 void describe_each(auto& file, const char* key, auto& items, std::size_t most, const auto& body) {
@@ -35,7 +37,7 @@ void describe_unless_0(auto& file, const char* key, double& value, NumberRange r
 
 void describe_drive(auto& file, DriveCurve& curve) {
   file.object("drive", "an object with reference_depth_m and coefficient_N", [&] {
-    file.number("reference_depth_m", curve.reference_depth_m, kPositive);
+    file.number("reference_depth_m", curve.reference_depth_m, kDivisor);
     file.list("coefficient_N", curve.coefficient_N, kDriveForce_N);
     curve.has_knots = file.has("knot_N", curve.has_knots);
     if (curve.has_knots) file.list("knot_N", curve.knot_N, kDriveForce_N);
@@ -44,15 +46,15 @@ void describe_drive(auto& file, DriveCurve& curve) {
 
 void describe_feature(auto& file, FeatureSpec& spec) {
   file.kind(spec.kind);
-  if (has_time(spec.kind)) file.number("relaxation_time_s", spec.relaxation_time_s, kPositive);
+  if (has_time(spec.kind)) file.number("relaxation_time_s", spec.relaxation_time_s, kDivisor);
   if (spec.kind == FeatureKind::depth) describe_unless_0(file, "surface_position_m", spec.surface_position_m);
   if (is_branch(spec.kind)) describe_unless_0(file, "slowing", spec.slowing, kSlowing);
   if (has_drive(spec.kind)) describe_drive(file, spec.drive);
   if (!has_parts(spec.kind)) return;
   const auto describe_part = [&](std::size_t p) {
     FeaturePart& part = spec.parts[p];
-    if (is_bristle(spec.kind)) file.number("threshold_m", part.threshold_m, kPositive);
-    if (spec.kind != FeatureKind::stops) file.number("relaxation_time_s", part.relaxation_time_s, kPositive);
+    if (is_bristle(spec.kind)) file.number("threshold_m", part.threshold_m, kDivisor);
+    if (spec.kind != FeatureKind::stops) file.number("relaxation_time_s", part.relaxation_time_s, kDivisor);
     describe_drive(file, part.drive);
   };
   file.each("parts", spec.part_count, kMaxFeatureParts, describe_part);
@@ -60,11 +62,11 @@ void describe_feature(auto& file, FeatureSpec& spec) {
 
 void describe_trend(auto& file, Trend& trend) {
   file.object("trend", "an object", [&] {
-    file.number("reference_depth_m", trend.reference_depth_m, kPositive);
+    file.number("reference_depth_m", trend.reference_depth_m, kDivisor);
     file.list("elastic_pieces_N", trend.elastic.pieces_N);
     file.list("viscosity_Ns_per_m", trend.viscosity_Ns_per_m);
     file.list("thinning_Ns_per_m", trend.thinning_Ns_per_m);
-    file.number("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, kPositive);
+    file.number("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, kDivisor);
     file.number("velocity_limit_m_per_s", trend.velocity_limit_m_per_s, kNotNegative);
   });
 }
@@ -115,13 +117,13 @@ void describe_rest(auto& file, ModelData& data) {
   const auto dimension = static_cast<Eigen::Index>(data.features.size());
   file.object("normalisation", "an object with offset and scale", [&] {
     file.numbers("offset", data.offset, dimension, kOnePerFeature);
-    file.numbers("scale", data.scale, dimension, kOnePerFeature, kPositive);
+    file.numbers("scale", data.scale, dimension, kOnePerFeature, kDivisor);
   });
   describe_trend(file, data.trend);
   file.number("correction_limit_N", data.correction_limit_N, {0.0, kMaximumForce_N});
   file.number("largest_force_N", data.largest_force_N, {0.0, kMaximumForce_N});
   file.object("jnd", "an object with offset_N and weber_fraction", [&] {
-    file.number("offset_N", data.jnd.offset_N, kPositive);
+    file.number("offset_N", data.jnd.offset_N, kDivisor);
     file.number("weber_fraction", data.jnd.weber_fraction, kNotNegative);
   });
   describe_provenance(file, data.provenance);

@@ -148,5 +148,20 @@ TEST(RecordingWriter, ANameThatIsBeingWrittenIsRefusedAtTheStart) {
   EXPECT_TRUE(writer("a.csv", false).ok()) << "the first one was given up";
 }
 
+TEST(RecordingWriter, WritesNotesAboveTheRows) {
+  const test::TemporaryFolder folder;
+  auto writer = test::must(RecordingWriter::create(folder.file("a.csv"), {}, {"first"}, false));
+  for (int i = 0; i < 2000; ++i) {
+    ASSERT_TRUE(writer.add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
+    if (i % 80 == 40) writer.note("note " + std::to_string(i));
+    if (i == 1500) ASSERT_TRUE(writer.publish());
+  }
+  ASSERT_TRUE(writer.commit());
+  EXPECT_TRUE(test::has_parts(test::read_text(folder.file("a.csv")),
+                              {"# note 40\n# note 120\n", "# 5 more such notes\n# first\ntime_s,"}));
+  EXPECT_EQ(test::must(read_recording(folder.file("a.csv"))).rows.size(), 2000u);
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
+}
+
 }  // namespace
 }  // namespace palpate

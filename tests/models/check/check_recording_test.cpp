@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <functional>
 
+#include "engine/base/text.h"
+#include "models/recordings/recording_faults.h"
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"
 
@@ -227,6 +229,51 @@ TEST(CheckRecording, OnlyWarnsOfSignsWhereAMaterialMayBeLikeThat) {
   }
   const RecordingCheck check = checked(softening, CheckRequest{});
   EXPECT_STRNE(check.verdict(), "unusable") << all_of(check);
+}
+
+// The advice for one wrong sign must not undo the remedy for the other.
+TEST(CheckRecording, AdviceForBothSignsIsToReverseBoth) {
+  const auto advice = [](bool position, bool force, const char* code) {
+    Recording recording = silicone();
+    for (RecordingRow& row : recording.rows) {
+      if (position) row.position_m = -row.position_m;
+      if (force) row.force_N = -row.force_N;
+    }
+    const RecordingCheck check = checked(recording, kSilicone);
+    const Finding* const finding = find(check, code);
+    return finding != nullptr ? finding->advice : "none";
+  };
+  for (const char* code : {"position_sign", "force_sign"}) {
+    EXPECT_NE(advice(true, true, code).find("reverse both signs (palpate import --flip both)"), std::string::npos);
+  }
+  EXPECT_NE(advice(true, false, "position_sign").find("--flip position, or --flip both if"), std::string::npos);
+  EXPECT_NE(advice(false, true, "force_sign").find("--flip force, or --flip both if"), std::string::npos);
+  EXPECT_EQ(advice(true, false, "force_sign"), "none");
+}
+
+// The highest value of a quantised or held force is no limit of the sensor; a limit is found in all of them.
+TEST(CheckRecording, TellsAHeldOrQuantisedTopFromClipping) {
+  const auto change = [](double limit_N, double step_N, std::size_t rows) {
+    Recording recording = silicone();
+    double value_N = 0.0;
+    for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+      double& force_N = recording.rows[i].force_N;
+      if (i % rows == 0) value_N = std::min(limit_N, step_N * std::round(force_N / step_N));
+      force_N = value_N;
+    }
+    RecordingFaults faults = remove_faults(recording);
+    return checked(recording, kSilicone, faults);
+  };
+  const double peak_N = std::ranges::max(silicone().rows, {}, &RecordingRow::force_N).force_N;
+  for (const double step_N : {1e-6, 0.1}) {
+    for (const std::size_t rows : {1u, 12u}) {
+      const std::string place = general(step_N, 3) + " N, " + std::to_string(rows) + " rows";
+      const RecordingCheck whole = change(1e6, step_N, rows);
+      EXPECT_EQ(find(whole, "clipping"), nullptr) << place << "\n" << all_of(whole);
+      const RecordingCheck limited = change(0.5 * peak_N, step_N, rows);
+      EXPECT_NE(find(limited, "clipping"), nullptr) << place << "\n" << all_of(limited);
+    }
+  }
 }
 
 TEST(CheckRecording, CountsStrokesAlikeAtEveryRate) {

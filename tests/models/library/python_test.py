@@ -58,7 +58,7 @@ class AsThePrograms(Case):
         for options in (dict(method="random", centres=30, seed=4),
                         dict(method="voxel", grid=[9, 5], features=["depth", "velocity"]),
                         dict(method="greedy", centres=10, candidates="all", relaxation=[0.1, 0.5]),
-                        dict(method="random", recipe="paper-2009")):
+                        dict(method="trend+random", thinning="none"), dict(method="trend")):
             path, expected = self.folder / "model.json", self.folder / "expected.json"
             words = []
             for name, value in options.items():

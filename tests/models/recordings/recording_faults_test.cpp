@@ -29,9 +29,21 @@ std::size_t drop(Recording& recording, double RecordingRow::*column, double shar
   return count;
 }
 
-void repeat_positions(Recording& recording, std::size_t rows) {
-  for (std::size_t i = 0; i < recording.rows.size(); ++i)
-    recording.rows[i].position_m = recording.rows[i - i % rows].position_m;
+// Repeats every value of a channel for `rows` rows, as a sensor of 1 / rows of the rate.
+void hold(Recording& recording, double RecordingRow::*column, double rows) {
+  double next = 0.0;
+  double value = 0.0;
+  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+    if (static_cast<double>(i) >= next) {
+      value = recording.rows[i].*column;
+      next += rows;
+    }
+    recording.rows[i].*column = value;
+  }
+}
+
+void quantise(Recording& recording, double step_N) {
+  for (RecordingRow& row : recording.rows) row.force_N = step_N * std::round(row.force_N / step_N);
 }
 
 TEST(RecordingFaults, LeavesEveryVirtualMaterialAsItIs) {
@@ -78,16 +90,73 @@ TEST(RecordingFaults, ATapIsNoDropout) {
   EXPECT_EQ(remove_faults(taps).position_dropouts, 0u);
 }
 
-TEST(RecordingFaults, UsesTheUpdatesOfASlowPositionChannel) {
-  for (const std::size_t rows : {5u, 19u, 44u, 100u}) {
-    Recording recording = silicone();
-    const double step_s = recording.rows[1].time_s - recording.rows[0].time_s;
-    const std::size_t recorded = recording.rows.size();
-    repeat_positions(recording, rows);
-    const RecordingFaults faults = remove_faults(recording);
-    EXPECT_NEAR(faults.update_step_s, static_cast<double>(rows) * step_s, 0.02 * static_cast<double>(rows) * step_s);
-    EXPECT_NEAR(static_cast<double>(recording.rows.size()), static_cast<double>(recorded / rows), 2.0);
+TEST(RecordingFaults, UsesTheUpdatesOfASlowChannel) {
+  for (const auto column : {&RecordingRow::position_m, &RecordingRow::force_N}) {
+    for (const double rows : {5.0, 12.5, 19.0, 44.0, 100.0}) {
+      SCOPED_TRACE(rows);
+      Recording recording = silicone();
+      const double step_s = recording.rows[1].time_s - recording.rows[0].time_s;
+      const auto recorded = static_cast<double>(recording.rows.size());
+      hold(recording, column, rows);
+      const RecordingFaults faults = remove_faults(recording);
+      EXPECT_EQ(faults.held_force, column == &RecordingRow::force_N);
+      EXPECT_NEAR(faults.update_step_s, rows * step_s, 0.02 * rows * step_s);
+      EXPECT_NEAR(static_cast<double>(recording.rows.size()), recorded / rows, 0.02 * recorded / rows + 2.0);
+    }
   }
+}
+
+// A load cell of 80 Hz with steps of 10 mN, and one whose intervals vary by a row.
+TEST(RecordingFaults, AHeldForceMayBeQuantisedAndJitter) {
+  for (const double step_N : {1e-3, 10e-3, 50e-3}) {
+    Recording recording = silicone();
+    quantise(recording, step_N);
+    hold(recording, &RecordingRow::force_N, 12.5);
+    EXPECT_TRUE(remove_faults(recording).held_force) << step_N;
+  }
+  Recording late = silicone();
+  double value = 0.0;
+  for (std::size_t i = 0, next = 0; i < late.rows.size(); ++i) {
+    if (i == next) {
+      value = late.rows[i].force_N;
+      next += 11 + (i * 7 % 5) / 2;
+    }
+    late.rows[i].force_N = value;
+  }
+  EXPECT_TRUE(remove_faults(late).held_force);
+}
+
+TEST(RecordingFaults, OfTwoSlowChannelsTheSlowerOneCounts) {
+  Recording recording = silicone();
+  hold(recording, &RecordingRow::position_m, 10.0);
+  hold(recording, &RecordingRow::force_N, 20.0);
+  const RecordingFaults faults = remove_faults(recording);
+  EXPECT_TRUE(faults.held_force);
+  EXPECT_NEAR(faults.update_step_s, 20e-3, 1e-3);
+  recording = silicone();
+  hold(recording, &RecordingRow::position_m, 20.0);
+  hold(recording, &RecordingRow::force_N, 20.0);
+  EXPECT_NEAR(remove_faults(recording).update_step_s, 20e-3, 1e-3);
+}
+
+TEST(RecordingFaults, AQuantisedForceIsNoSlowChannel) {
+  for (const double step_N : {1e-3, 10e-3, 0.1, 0.5}) {
+    Recording recording = silicone();
+    quantise(recording, step_N);
+    EXPECT_FALSE(remove_faults(recording).any()) << step_N;
+  }
+}
+
+// A tool that moves in steps and rests in between: the force follows in steps of its own resolution.
+TEST(RecordingFaults, AForceThatRestsWithTheToolIsNoSlowChannel) {
+  Recording steps;
+  RandomStream random(5, 0);
+  for (int i = 0; i < 3000; ++i) {
+    const double depth_m = 0.3e-3 * std::abs(20 - i / 10 % 40);
+    const double force_N = 0.1 * std::round(800.0 * depth_m / 0.1);
+    steps.rows.push_back({0.1 * i, depth_m + 1e-6 * random.uniform(-1.0, 1.0), force_N, 0.0, 0.0});
+  }
+  EXPECT_FALSE(remove_faults(steps).any());
 }
 
 TEST(RecordingFaults, AnEncoderIsNoSlowChannel) {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -11,13 +12,14 @@ namespace {
 
 using test::run_palpate;
 
-std::string pressed(double sign) {
+std::string pressed(double sign, double inward = 1.0) {
   std::string text = "time_s,position_m,force_N\n";
   for (int i = 0; i < 600; ++i) {
     const double phase = (i % 200) / 100.0;
     const double position_mm = 5.0 * (phase < 1.0 ? phase : 2.0 - phase) - 1.0;
     const double force_N = position_mm > 0.0 ? sign * 0.5 * position_mm : 0.0;
-    text += std::to_string(0.01 * i) + "," + std::to_string(1e-3 * position_mm) + "," + std::to_string(force_N) + "\n";
+    text += std::to_string(0.01 * i) + "," + std::to_string(1e-3 * inward * position_mm) + "," +
+            std::to_string(force_N) + "\n";
   }
   return text;
 }
@@ -40,6 +42,14 @@ TEST(CheckVerb, EndsWithOneForARecordingThatFitsNothing) {
   EXPECT_EQ(check.err.rfind("error: " + bad + ": force_sign: ", 0), 0u) << check.err;
   EXPECT_TRUE(
       test::fails(1, {"fit", "--recording", bad, "--method", "greedy", "--out", folder.file("m.json")}, {check.err}));
+}
+
+// Both signs are wrong: the error names all that check prints.
+TEST(CheckVerb, TheErrorNamesEveryFatalFinding) {
+  const test::TemporaryFolder folder;
+  const auto check = run_palpate({"check", folder.with_file("bad.csv", pressed(-1.0, -1.0))});
+  EXPECT_EQ(check.exit_code, 1);
+  EXPECT_TRUE(test::has_parts(check.err, {"error: ", "position_sign: ", "--flip both", "force_sign: ", "--flip both"}));
 }
 
 }  // namespace

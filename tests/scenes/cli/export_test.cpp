@@ -12,6 +12,8 @@
 #include "tests/support/compiled_model.h"
 #include "tests/support/fitting.h"
 #include "tests/support/message_parts.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -81,23 +83,24 @@ class ExportVerb : public ::testing::Test {
 TEST_F(ExportVerb, EveryMethodGivesReplaysForcesOfAnotherRecording) {
   const Recording train = recording("friction", 10.0, 1);
   const Recording other = recording("friction", 6.0, 2);
-  for (const Method* method : methods()) {
-    const std::string text = exported(train, {"--method", method->name});
-    EXPECT_LT(worst_N(other, text), 1e-9) << method->name;
-    EXPECT_TRUE(has_feature(FeatureKind::stops)) << method->name;
+  for (const ModelPlan& plan : all_plans()) {
+    const std::string name = family_name(plan);
+    const std::string text = exported(train, {"--method", name});
+    EXPECT_LT(worst_N(other, text), 1e-9) << name;
+    EXPECT_EQ(has_feature(FeatureKind::stops), plan.base == Base::trend) << name;
     EXPECT_TRUE(test::has_parts(printed_, {"30 um", "0 um"}));
   }
 }
 
 TEST_F(ExportVerb, AMaterialThatCreepsIsExportedWithItsMemory) {
-  const std::string text = exported(recording("softening", 15.0, 1), {"--method", "greedy"});
+  const std::string text = exported(recording("softening", 15.0, 1), {"--method", "trend+greedy"});
   EXPECT_TRUE(has_feature(FeatureKind::creep));
   EXPECT_LT(worst_N(recording("softening", 8.0, 2), text), 1e-9);
 }
 
 // The estimated noise differs slightly between two recordings, but the identified sensor is the same.
 TEST_F(ExportVerb, PositionsWithNoiseGiveReplaysForcesToo) {
-  const std::string text = exported(recording("silicone", 8.0, 1, 200e-6), {"--method", "random"});
+  const std::string text = exported(recording("silicone", 8.0, 1, 200e-6), {"--method", "trend+random"});
   EXPECT_LT(worst_N(recording("silicone", 8.0, 2, 200e-6), text), 1e-9);
 }
 
@@ -108,7 +111,7 @@ TEST_F(ExportVerb, SinglePrecisionDiffersByLessThanTheJnd) {
     return std::abs(a_N - b_N) / std::max(1e-3, 0.02 * jnd.at(b_N));
   };
   for (const char* material : {"friction", "softening"}) {
-    const std::string text = exported(recording(material, 12.0, 1), {"--method", "greedy"}, {"--float"});
+    const std::string text = exported(recording(material, 12.0, 1), {"--method", "trend+greedy"}, {"--float"});
     EXPECT_LT(worst<float>(recording(material, 8.0, 2), text, over_limit), 1.0) << material;
   }
 }
@@ -117,6 +120,15 @@ TEST_F(ExportVerb, TheEncoderStepIsThatOfTheOption) {
   const std::string text = exported(recording("silicone", 6.0, 1), {"--method", "trend"}, {"--encoder-step", "1e-6"});
   EXPECT_TRUE(test::has_parts(text, {"#define PALPATE_ENCODER_STEP_M 1e-06"}));
   EXPECT_TRUE(test::has_parts(printed_, {"steps of 1 um"}));
+}
+
+TEST_F(ExportVerb, NeverWritesOverTheModel) {
+  const test::TemporaryFolder folder;
+  const std::string model = folder.with_file("m.json", "mine\n");
+  for (const std::string& out : {model, folder.path() + "/./m.json"}) {
+    EXPECT_TRUE(test::fails(1, {"export", model, "--c", out, "--force"}, {"m.json", "the file to read from", "--c"}));
+  }
+  EXPECT_EQ(test::read_text(model), "mine\n");
 }
 
 }  // namespace

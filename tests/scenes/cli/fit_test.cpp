@@ -25,12 +25,12 @@ class FitVerb : public ::testing::Test {
   std::string out() const { return folder_.file("model.json"); }
 
   // `palpate fit` with default options, which those of `more` replace.
-  ProgramRun fit(const Arguments& more, const std::string& method = "greedy") const {
+  ProgramRun fit(const Arguments& more, const std::string& method = "trend+greedy") const {
     Arguments arguments = {"fit"};
     std::vector<std::pair<std::string, std::string>> defaults = {
         {"--recording", recording()}, {"--method", method}, {"--out", out()}};
-    const Method* row = find_method(method);
-    if (row != nullptr && row->can_take(kTakesCentres)) defaults.emplace_back("--centres", "20");
+    const auto plan = parse_plan(method);
+    if (plan.ok() && plan->selects_centres()) defaults.emplace_back("--centres", "20");
     for (const auto& [option, value] : defaults) {
       if (std::find(more.begin(), more.end(), option) == more.end()) arguments.insert(arguments.end(), {option, value});
     }
@@ -59,7 +59,8 @@ TEST_F(FitVerb, JsonIsOneObjectWithTheContractsKeys) {
   expect_model(run);
   const auto object = nlohmann::json::parse(run.out);  // refuses any text after the object
   ASSERT_TRUE(object.is_object());
-  EXPECT_EQ(object.at("method"), "greedy");
+  EXPECT_EQ(object.at("method"), "trend+greedy");
+  EXPECT_EQ(object.at("name"), "trend+greedy-20");
   EXPECT_EQ(object.at("kernel"), "cubic");
   EXPECT_EQ(object.at("weighting"), "jnd");
   EXPECT_EQ(object.at("centres"), 20);
@@ -75,20 +76,22 @@ TEST_F(FitVerb, JsonIsOneObjectWithTheContractsKeys) {
 }
 
 TEST_F(FitVerb, TheSameCommandTwiceGivesTheSameBytes) {
-  for (const Method* method : methods()) {
+  for (const ModelPlan& plan : all_plans()) {
     std::string texts[2];
     for (std::string& text : texts) {
-      expect_model(fit({"--force"}, method->name));
+      expect_model(fit({"--force"}, family_name(plan)));
       text = read_text(out());
     }
-    EXPECT_EQ(texts[0], texts[1]) << method->name;
+    EXPECT_EQ(texts[0], texts[1]) << family_name(plan);
   }
 }
 
 TEST_F(FitVerb, NamesItsMethodsOneToALine) {
   const ProgramRun run = run_palpate({"fit", "--list-methods"});
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_EQ(run.out, "trend\ndirect\nvoxel\nrandom\nkdtree\ngreedy\n");
+  EXPECT_EQ(run.out,
+            "direct\nvoxel\nrandom\nkdtree\ngreedy\ntrend\ntrend+direct\ntrend+voxel\ntrend+random\ntrend+kdtree\n"
+            "trend+greedy\n");
 }
 
 TEST_F(FitVerb, TheTrendAloneHasNoCentres) {
@@ -112,31 +115,36 @@ TEST_F(FitVerb, EveryOptionHasAUse) {
                                {"--kernel", "thin-plate"},
                                {"--weighting", "relative"},
                                {"--weighting", "none"},
-                               {"--reduction", "force"},
-                               {"--reduction", "none"},
+                               {"--thinning", "force"},
+                               {"--thinning", "none"},
                                {"--relaxation", "auto"},
                                {"--relaxation", "0.1,0.5"},
                                {"--candidates", "all"},
                                {"--scene", "elastic_block"},
                                {"--centres", "2000"},
                                {"--seed", "7"},
-                               {"--reduction", "force", "--weighting", "relative"}};
+                               {"--thinning", "force", "--weighting", "relative"}};
   for (Arguments option : options) {
     SCOPED_TRACE(option[0] + " " + option[1]);
     option.push_back("--force");
     expect_model(fit(option));
   }
-  expect_model(fit({"--grid", "4x3x3x3", "--recipe", "paper-2009", "--force"}, "voxel"));
-  EXPECT_EQ((*load_model(out()))->name(), "voxel-4x3x3x3");
+  expect_model(fit({"--grid", "4x3x3x3", "--force"}, "voxel"));
+  EXPECT_EQ((*load_model(out()))->name(), "voxel");
+  EXPECT_EQ((*load_model(out()))->centre_count(), 4 * 3 * 3 * 3);
 }
 
-TEST_F(FitVerb, ThePapersRecipeHasTwoSpellings) {
-  expect_model(fit({"--recipe", "paper-2009"}));
-  const std::string model = read_text(out());
-  expect_model(fit({"--reduction", "force", "--weighting", "relative", "--force"}));
-  EXPECT_EQ(read_text(out()), model);
-  std::filesystem::remove(out());
-  expect_refused(fit({"--recipe", "paper-2009", "--surface", "auto"}), 2, {"--surface"});
+TEST_F(FitVerb, OnTheForceSaysWhatItSelected) {
+  const ProgramRun run = fit({"--json"}, "kdtree");
+  expect_model(run);
+  const auto object = nlohmann::json::parse(run.out);
+  EXPECT_EQ(object.at("name"), "kdtree-20");
+  EXPECT_EQ(object.at("weighting"), "relative");
+  EXPECT_GT(object.at("rank"), 0);
+  EXPECT_GE(object.at("condition_number"), 1.0);
+  const std::string notes = object.at("notes").dump();
+  EXPECT_TRUE(test::has_parts(notes, {"kernel", "divided by", "truncation", "cross-validated error"})) << notes;
+  expect_model(fit({"--kernel", "linear", "--json", "--force"}, "kdtree"));
 }
 
 TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
@@ -158,14 +166,16 @@ TEST_F(FitVerb, WarnsOfTheSameRecordingTwice) {
 }
 
 TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
-  expect_refused(fit({}, "guess"), 2, {"direct,voxel,random,kdtree,greedy"});
-  expect_refused(fit({"--kernel", "gauss"}), 2, {"cubic,linear,thin-plate"});
-  expect_refused(fit({"--weighting", "x"}), 2, {"jnd,relative,none"});
-  expect_refused(fit({"--reduction", "x"}), 2, {"coverage,force,none"});
+  expect_refused(fit({}, "guess"), 2, {"direct, voxel, random, kdtree, greedy, trend, trend+direct"});
+  expect_refused(fit({}, "greedy-0"), 2, {"greedy-0", "1 to 2000"});
+  expect_refused(fit({"--centres", "30"}, "greedy-40"), 2, {"--centres", "30", "40"});
+  expect_refused(fit({"--kernel", "gauss"}), 2, {"auto", "cubic, linear, thin-plate"});
+  expect_refused(fit({"--weighting", "x"}), 2, {"jnd, relative, none"});
+  expect_refused(fit({"--thinning", "x"}), 2, {"coverage, force, none"});
   expect_refused(fit({"--centres", "0"}), 2, {"2000"});
   expect_refused(fit({"--centres", "100000"}), 2, {"2000"});
   for (const char* features : {"auto", "depth"}) {
-    expect_refused(fit({"--features", features, "--relaxation", "0.1,1"}), 2, {"--features", features});
+    expect_refused(fit({"--features", features, "--relaxation", "0.1,1"}), 2, {"--relaxation", features});
   }
   expect_refused(fit({"--candidates", "some"}), 2, {"--candidates", "1", "all"});
   for (const char* times : {"0.1,", "0", "nan", "soon", "1,2,3,4,5,6,7"}) {
@@ -179,8 +189,8 @@ TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
 
 TEST_F(FitVerb, FailuresAreOneErrorLine) {
   expect_refused(fit({"--scene", "marble"}), 1, {"marble", "silicone_block"});
-  expect_refused(fit({"--grid", "25", "--recipe", "paper-2009"}, "voxel"), 1, {"1", "4"});
-  expect_refused(fit({"--grid", "1000x1000x1000x1000", "--recipe", "paper-2009"}, "voxel"), 1, {"at most 1e7"});
+  expect_refused(fit({"--grid", "25", "--features", "scene"}, "voxel"), 1, {"1", "4"});
+  expect_refused(fit({"--grid", "1000x1000x1000x1000"}, "voxel"), 1, {"at most 1e7"});
   expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, {"--relaxation"});
   expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, {"none.csv"});
 }
@@ -209,6 +219,19 @@ TEST_F(FitVerb, AnInterruptedRunLeavesNoFile) {
   EXPECT_EQ(run.exit_code, 130);
   EXPECT_EQ(run.err, "error: interrupted\n");
   EXPECT_EQ(folder_.entries(), Arguments{"press.csv"});
+}
+
+TEST(FitVerb, NeverWritesOverItsRecording) {
+  const test::TemporaryFolder folder;
+  const std::string recording = folder.with_file("rec.csv", "mine\n");
+  std::filesystem::create_hard_link(recording, folder.file("same.csv"));
+  std::filesystem::create_symlink(recording, folder.file("link.csv"));
+  for (const char* out : {"rec.csv", "same.csv", "link.csv"}) {
+    EXPECT_TRUE(
+        test::fails(1, {"fit", "--recording", recording, "--method", "greedy", "--out", folder.file(out), "--force"},
+                    {out, "the file to read from", "--out"}));
+  }
+  EXPECT_EQ(test::read_text(recording), "mine\n");
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST(Study, SimulatedSubjectsDiscriminateStrokes) {
       {"study", "simulate", "--discriminate", foam, "--model", "greedy", "--subjects", "2", "--out", out});
   EXPECT_EQ(run.err, "");
   EXPECT_TRUE(test::has_parts(
-      run.out, {"comparison   greedy-0\nstroke       foam, ", "Predicted above the JND", "one JND: consistent."}))
+      run.out, {"comparison   greedy-100\nstroke       foam, ", "Predicted above the JND", "one JND: consistent."}))
       << "a model of silicone against foam: " << run.out;
   EXPECT_EQ(test::must(read_study(out + "/S02.csv")).records.size(), 104u);
 
@@ -66,8 +66,9 @@ TEST(Study, RecordsTheSceneWithoutAFile) {
   const test::TemporaryFolder folder;
   const auto run =
       test::must_run({"study", "simulate", "--discriminate", "--subjects", "1", "--out", folder.file("out")});
-  EXPECT_TRUE(test::has_parts(run.out, {"reference    recorded force\ncomparison   greedy-0\nstroke       silicone_2, ",
-                                        "Predicted below the JND"}));
+  EXPECT_TRUE(
+      test::has_parts(run.out, {"reference    recorded force\ncomparison   trend+greedy-100\nstroke       silicone_2, ",
+                                "Predicted below the JND"}));
 }
 
 TEST(Study, RefusesWrongUsage) {

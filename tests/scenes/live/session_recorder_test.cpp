@@ -137,6 +137,10 @@ TEST(SessionRecorder, ContinuesWhenAReplayRestarts) {
     }
   }
   EXPECT_EQ(restarts, 2);
+  EXPECT_TRUE(
+      test::has_parts(test::read_text(folder.file("a.csv")),
+                      {"# the time of the device began again at time_s 30.5", "30 s before it were not measured",
+                       "# the time of the device began again at time_s 61", "time_s,position_m"}));
 }
 
 TEST(SessionRecorder, OmitsSamplesThatTheLoopRefused) {
@@ -273,6 +277,18 @@ TEST(RecordingTime, IsStrictlyIncreasing) {
   EXPECT_EQ(time.file_time_s(7.0, true), 0.5 + kStreamGap_s);
   EXPECT_EQ(time.file_time_s(7.25, false), 0.75 + kStreamGap_s);
   EXPECT_EQ(time.last_s() - time.gaps_s(), 0.75);
+}
+
+// A pause of the device or of its cable, after which its time went on.
+TEST(RecordingTime, KeepsTheTimeOfTheDeviceOverAPause) {
+  RecordingTime time;
+  time.file_time_s(1000.0, true);
+  time.file_time_s(1000.5, false);
+  for (const double pause_s : {0.3, 1.5, 60.0}) {
+    const double before_s = time.last_s();
+    EXPECT_EQ(time.file_time_s(1000.0 + before_s + pause_s, true), before_s + pause_s);
+  }
+  EXPECT_EQ(time.gaps_s(), 0.0);
 }
 
 }  // namespace

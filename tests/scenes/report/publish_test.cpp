@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 
 #include "tests/support/message_parts.h"
@@ -40,6 +41,35 @@ TEST(ReportFolder, ReplacesAnEarlierReportOnlyWhenForced) {
   EXPECT_EQ(test::read_text(out + "/report.json"), "new");
   EXPECT_FALSE(std::filesystem::exists(out + "/old.csv"));
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"report"});
+}
+
+TEST(ReportFolder, LeavesNothingBesideWhileTheReportIsMade) {
+  const test::TemporaryFolder folder;
+  auto report = test::must(ReportFolder::create(folder.file("report"), false));
+  EXPECT_TRUE(folder.entries().empty());
+  ASSERT_TRUE(report.write("report.json", "{}").ok());
+  EXPECT_EQ(folder.entries().size(), 1u);
+}
+
+TEST(ReportFolder, RemovesTheFoldersOfKilledPrograms) {
+  const test::TemporaryFolder folder;
+  for (const std::string name :
+       {".palpate-report-AbC123", ".palpate-report-AbC123.old", ".palpate-report-", "report-AbC123"}) {
+    std::filesystem::create_directory(folder.file(name));
+    folder.with_file(name + "/report.json", "{}");
+  }
+  auto running = test::must(ReportFolder::create(folder.file("other"), false));
+  ASSERT_TRUE(running.write("report.json", "{}").ok());
+  const std::size_t all = folder.entries().size();
+  EXPECT_EQ(all, 5u) << "a new folder may be locked next";
+  for (const std::string& name : folder.entries()) {
+    std::filesystem::last_write_time(folder.file(name),
+                                     std::filesystem::file_time_type::clock::now() - std::chrono::minutes(1));
+  }
+  test::must(ReportFolder::create(folder.file("report"), false));
+  EXPECT_FALSE(std::filesystem::exists(folder.file(".palpate-report-AbC123")));
+  EXPECT_EQ(folder.entries().size(), all - 1);
+  EXPECT_TRUE(running.commit().ok());
 }
 
 TEST(ReportFolder, NeverTakesTheWayOfSomethingElse) {

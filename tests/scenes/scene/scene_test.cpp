@@ -43,10 +43,10 @@ TEST(Scene, UnknownNameListsTheKnownOnes) {
 TEST(Scene, GivesAFitItsFeaturesAndJnd) {
   Scene scene = load_scene("silicone_block").value();
   scene.jnd.offset_N = 0.25;
-  const TrainingRequest request = training_request(scene);
-  EXPECT_EQ(request.scene, "silicone_block");
-  EXPECT_EQ(request.features, scene.features);
-  EXPECT_EQ(request.jnd.offset_N, 0.25);
+  const TrainingScene given = training_scene(scene);
+  EXPECT_EQ(given.name, "silicone_block");
+  EXPECT_EQ(given.features, scene.features);
+  EXPECT_EQ(given.jnd.offset_N, 0.25);
 }
 
 const char* const kGood = R"({

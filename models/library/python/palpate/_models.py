@@ -120,7 +120,7 @@ def load(path: Union[str, os.PathLike]) -> Model:
     return Model(call("palpate_model_load", path_bytes(path)))
 
 
-def fit(recordings: object, method: str = "greedy", centres: int = 100, *,
+def fit(recordings: object, method: str = "trend+greedy", centres: Optional[int] = None, *,
         progress: Optional[Callable[[float], object]] = None, **options: object) -> Model:
     """Fits one model to all recordings together: ``palpate fit``, with its options and defaults.
 
@@ -129,27 +129,25 @@ def fit(recordings: object, method: str = "greedy", centres: int = 100, *,
     recordings : list of recordings, or one
         Each a `Recording`, a structured array or table with its columns, or the path of a file.
     method : str
-        ``trend``, ``direct``, ``voxel``, ``random``, ``kdtree`` or ``greedy``.
-    centres : int
-        Of random, kdtree and greedy, 1 to 2000.
+        ``direct``, ``voxel``, ``random``, ``kdtree`` or ``greedy``: a method on the measured force, as Hoever & Harders
+        (2009); ``trend``; ``trend+direct`` ... ``trend+greedy``: the trend and a correction. A number of centres may
+        follow: ``greedy-40``.
+    centres : int, optional
+        Of random, kdtree and greedy, 1 to 2000 [100].
     candidates : int or "all", optional
         Of greedy: sites tried per step [100].
-    kernel : str, optional
-        ``cubic``, ``linear`` or ``thin-plate`` [cubic].
-    weighting : str, optional
-        Weight of an error: ``jnd``, ``relative`` or ``none`` [jnd].
-    reduction : str, optional
-        Samples that become sites: ``coverage``, ``force`` or ``none`` [coverage].
-    recipe : str, optional
-        ``paper-2009``: the recipe of Hoever & Harders (2009).
     features : str or list of str, optional
         ``auto``, ``scene`` (those of 2009), or a list such as ``["depth", "velocity", "maxwell:0.17"]`` [auto].
     relaxation : str or list of float, optional
         Relaxation times of the features of 2009: ``scene`` (0.17 s and 1.27 s), ``auto``, or times [s].
-    surface : str, optional
-        Surface of each recording: ``auto`` (estimated) or ``recorded`` (at 0) [auto].
+    kernel : str, optional
+        ``auto``, ``cubic``, ``linear`` or ``thin-plate`` [auto].
     grid : str or list of int, optional
         Of voxel: nodes per feature, e.g. ``[25, 11, 11, 11]``.
+    weighting : str, optional
+        Weight of an error: ``jnd``, ``relative`` or ``none`` [jnd with the trend, relative with the force].
+    thinning : str, optional
+        Samples that become sites: ``coverage``, ``force`` or ``none`` [coverage with the trend, force with the force].
     seed : int, optional
         Of random and greedy [1].
     progress : callable, optional

@@ -99,7 +99,7 @@ TEST(ModelReader, RefusesWrongNamesAndFeatures) {
                  {"{\"kind\": \"velocity\"}", "7", {"m.json:8:5:", "features[1]", "found 7", "\"kind\"", "; "}},
                  {"\"relaxation_time_s\": 0.1",
                   "\"relaxation_time_s\": 0",
-                  {"m.json:9:66:", "features[2].parts[0].relaxation_time_s", "found 0", "above 0", "; "}},
+                  {"m.json:9:66:", "features[2].parts[0].relaxation_time_s", "found 0", "above 1e-12", "; "}},
                  {"[0.4, 0.3, 0.2, 0.1]",
                   "[0.4, 0.3, 0.2, 1e300]",
                   {"m.json", "features[2].parts[0].drive.coefficient_N[3]", "1e+300", "from -1e+09 up to 1e+09", "; "}},
@@ -125,7 +125,13 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
       {
           {"\"scale\": [0.003, 0.05, 1.0]",
            "\"scale\": [0.003, 0, 1]",
-           {"m.json:13:22:", "normalisation.scale[1]", "found 0", "above 0", "; "}},
+           {"m.json:13:22:", "normalisation.scale[1]", "found 0", "above 1e-12", "; "}},
+          {"\"scale\": [0.003, 0.05, 1.0]",
+           "\"scale\": [0.003, 5e-324, 1]",
+           {"m.json:13:22:", "normalisation.scale[1]", "found 5e-324", "above 1e-12", "; "}},
+          {"\"scale\": [0.003, 0.05, 1.0]",
+           "\"scale\": [1e-200, 0.05, 1]",
+           {"m.json:13:15:", "normalisation.scale[0]", "found 1e-200", "above 1e-12", "; "}},
           {"\"scale\": [0.003, 0.05, 1.0]",
            "\"scale\": [0.003, 0.05]",
            {"m.json:13:14:", "normalisation.scale", "list of 2", "expected 3", "; "}},
@@ -135,7 +141,7 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
           {"\"scale\": [0.003, 0.05, 1.0]",
            "\"scale\": 1",
            {"m.json:13:14:", "normalisation.scale", "found 1", "expected 3", "; "}},
-          {"\"offset_N\": 0.065", "\"offset_N\": 0", {"m.json:27:17:", "jnd.offset_N", "found 0", "above 0", "; "}},
+          {"\"offset_N\": 0.065", "\"offset_N\": 0", {"m.json:27:17:", "jnd.offset_N", "found 0", "above 1e-12", "; "}},
           {"\"jnd\": {", "\"jnd\": 3, \"was\": {", {"m.json:26:10:", "jnd", "found 3", "\"offset_N\"", "; "}},
           {"\"corrects_trend\": true", "\"corrects_trend\": 1", {"m.json:23:21:", "corrects_trend", "found 1", "; "}},
           {"\"largest_force_N\": 2.5",
@@ -174,7 +180,7 @@ TEST(ModelReader, RefusesWhatTheTickCannotCompute) {
                        {part, parts, {"m.json", "features[2].parts", "list of 9", "1 to 8", "; "}},
                        {number("thinning_velocity_m_per_s"),
                         "\"thinning_velocity_m_per_s\": 0",
-                        {"m.json", "trend.thinning_velocity_m_per_s", "found 0", "above 0", "; "}},
+                        {"m.json", "trend.thinning_velocity_m_per_s", "found 0", "above 1e-12", "; "}},
                        {number("velocity_limit_m_per_s"),
                         "\"velocity_limit_m_per_s\": -1",
                         {"m.json", "trend.velocity_limit_m_per_s", "found -1", "0 or more", "; "}},
@@ -185,7 +191,7 @@ TEST(ModelReader, RefusesWhatTheTickCannotCompute) {
   for (const char* const group : {"\"drive\": {", "\"trend\": {"}) {
     const std::size_t at = text.find("\"reference_depth_m\": ", text.find(group));
     const std::string spoiled = std::string(text).replace(at, text.find(',', at) - at, "\"reference_depth_m\": 0");
-    EXPECT_TRUE(test::has_parts(complaint(spoiled), {"reference_depth_m", "found 0", "above 0", "; "}));
+    EXPECT_TRUE(test::has_parts(complaint(spoiled), {"reference_depth_m", "found 0", "above 1e-12", "; "}));
   }
   const std::size_t list = text.find("\"features\": [");
   const std::string none = std::string(text).replace(list, text.find("\n  ]", list) - list, "\"features\": [");

@@ -1,0 +1,212 @@
+#include "engine/import/table_header.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "engine/base/text.h"
+#include "engine/import/column_roles.h"
+#include "engine/import/table_cell.h"
+#include "engine/import/units.h"
+
+namespace palpate {
+namespace {
+
+// A header is at most this many lines above the numbers: units, a type, a rule, the status of a board may follow it.
+constexpr std::size_t kReach = 12;
+// A line with names of so many roles is a header.
+constexpr int kNamedRoles = 2;
+// Two lines with different names for position and force are rivals, unless the names of one are stronger by more than
+// this, which is the strength of a unit.
+constexpr int kClearStrength = 3;
+
+// Removes the mark of a comment before the names.
+std::string_view without_comment_mark(std::string_view line) {
+  line = trimmed(line);
+  const std::size_t begin = line.find_first_not_of("#%/");
+  // "%time" is a name of ROS, and a lone mark is a name of a column of row numbers.
+  if (begin == std::string_view::npos || (begin == 1 && line.front() == '%' && line.find_first_of(" \t") > 5))
+    return line;
+  return trimmed(line.substr(begin));
+}
+
+// In a header separated by blanks, joins units in brackets with the name before.
+void join_bracketed(std::vector<std::string_view>& fields) {
+  std::size_t kept = 0;
+  for (const std::string_view field : fields) {
+    if (kept > 0 && (field.front() == '[' || field.front() == '(')) {
+      std::string_view& last = fields[kept - 1];
+      last = std::string_view(last.data(), static_cast<std::size_t>(field.data() + field.size() - last.data()));
+    } else {
+      fields[kept++] = field;
+    }
+  }
+  fields.resize(kept);
+}
+
+void split_at_wide_gaps(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  while (!(line = trimmed(line)).empty()) {
+    const std::size_t end = std::min(line.find("  "), line.find('\t'));
+    fields.push_back(trimmed(line.substr(0, end)));
+    line.remove_prefix(std::min(end, line.size()));
+  }
+}
+
+// Splits a line above the table by the separator of the table. Returns whether it has a field for each column.
+bool split_header(std::string_view line, const TableLayout& layout, std::vector<std::string_view>& fields) {
+  const std::string_view bare = without_comment_mark(line);
+  const bool blanks = layout.delimiter.is_blanks();
+  const auto fits = [&] { return blanks ? fields.size() == layout.columns : fields.size() >= layout.columns; };
+  for (const std::string_view text : {line, bare}) {
+    split_table_fields(text, layout.delimiter, fields);
+    if (fits()) return true;
+    if (!blanks) continue;
+    split_at_wide_gaps(text, fields);
+    if (fits()) return true;
+    split_table_fields(text, layout.delimiter, fields);
+    join_bracketed(fields);
+    if (fits()) return true;
+  }
+  return false;
+}
+
+// Splits a line by any separator that gives as many fields as the table has columns.
+bool split_otherwise(std::string_view line, const TableLayout& layout, std::vector<std::string_view>& fields) {
+  return std::ranges::any_of(kDelimiters, [&](const Delimiter& other) {
+    split_table_fields(without_comment_mark(line), other, fields);
+    return fields.size() == layout.columns;
+  });
+}
+
+// Splits a header of a table of R: the column of row numbers has no name, so the header has one field less.
+bool split_header_of_row_names(std::string_view line, std::string_view first_row, const TableLayout& layout,
+                               std::vector<std::string_view>& fields) {
+  double number = 0.0;
+  std::vector<std::string_view> row;
+  split_table_fields(first_row, layout.delimiter, row);
+  if (row.empty() || !parse_table_number(row.front(), '.', number) || number != 1.0) return false;
+  std::vector<std::string_view> names;
+  split_table_fields(line, layout.delimiter, names);
+  if (names.size() + 1 != layout.columns) return false;
+  fields = std::move(names);
+  fields.insert(fields.begin(), std::string_view());
+  return true;
+}
+
+bool is_names_row(const std::vector<std::string_view>& fields) {
+  std::size_t names = 0;
+  for (const std::string_view field : fields) {
+    double value = 0.0;
+    const bool has_letter = std::any_of(field.begin(), field.end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
+    });
+    if (has_letter && !parse_table_number(field, '.', value)) ++names;
+  }
+  return names >= 2;
+}
+
+struct UnitCount {
+  std::size_t known = 0;  // of time, length or force
+  std::size_t others = 0;
+  std::size_t words = 0;
+
+  bool decides() const { return known > 0 && known + others >= 2 && known + others > words; }
+};
+
+UnitCount count_units(const std::vector<std::string_view>& fields) {
+  UnitCount count;
+  for (const std::string_view field : fields) {
+    if (field.empty() || field == "-" || field == "[]" || field == "[-]") continue;
+    const bool bracketed = field.size() > 2 && (field.front() == '[' || field.front() == '(');
+    ++(find_unit(field) ? count.known : bracketed || is_other_unit(field) ? count.others : count.words);
+  }
+  return count;
+}
+
+// A line above the table.
+struct Line {
+  std::uint64_t number = 0;  // from 1
+  std::vector<std::string_view> fields;
+  bool fits = true;  // a field for each column
+  bool own = true;   // split by the separator of the table
+  NamedRoles roles;
+  UnitCount units;
+
+  bool is_named() const { return fits && roles.count >= kNamedRoles; }
+  bool is_units() const { return fits && units.decides(); }
+  // A line below the names with some units is a line of units, too.
+  bool has_units() const { return is_units() || (fits && units.known >= 2 && roles.count == 0); }
+
+  int rank() const {
+    if (is_named()) return own ? 4 : 3;
+    if (fits) return 1;
+    return roles.count == static_cast<int>(kRoles) ? 2 : 0;
+  }
+  bool better_than(const Line& other) const {
+    if (rank() != other.rank()) return rank() > other.rank();
+    return is_named() && roles.strength > other.roles.strength;
+  }
+};
+
+Line read_line(std::string_view text, std::string_view first_row, std::size_t widest, const TableLayout& layout) {
+  Line line;
+  line.own = split_header(text, layout, line.fields) || split_header_of_row_names(text, first_row, layout, line.fields);
+  std::vector<std::string_view> own_fields = line.fields;
+  line.fits = line.own || split_otherwise(text, layout, line.fields);
+  line.roles = named_roles(line.fields);
+  // Names beyond the columns are those of remarks, but not of a role.
+  const auto beyond = [&](std::size_t column) { return column > std::max(layout.columns, widest); };
+  line.fits = line.fits && std::ranges::none_of(line.roles.column, beyond);
+  if (!line.fits) {
+    line.own = true;
+    line.fields = std::move(own_fields);
+    line.roles = named_roles(line.fields);
+  }
+  line.units = count_units(line.fields);
+  return line;
+}
+
+}  // namespace
+
+void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, std::size_t widest,
+                       TableLayout& layout) {
+  std::vector<Line> candidates;  // the nearest first
+  std::optional<Line> units;
+  std::size_t seen = 0;
+  for (std::size_t i = first; i-- > 0 && seen < kReach;) {
+    if (trimmed(lines[i]).empty()) continue;
+    ++seen;
+    Line line = read_line(lines[i], lines[first], widest, layout);
+    line.number = i + 1;
+    if (line.is_units()) {
+      if (!units) units = std::move(line);
+    } else if (is_names_row(line.fields) && ((line.fits && line.own) || line.roles.count >= kNamedRoles)) {
+      candidates.push_back(std::move(line));
+    }
+  }
+  const Line* header = nullptr;
+  for (const Line& line : candidates) {
+    if (header == nullptr || line.better_than(*header)) header = &line;
+  }
+  if (header == nullptr) header = units ? &*units : nullptr;  // the units are the only names
+  if (header == nullptr) return;
+  if (units && units->number < header->number) units.reset();
+  for (const Line& line : candidates) {
+    if (&line == header) break;
+    if (!units && header->is_named() && line.has_units()) units = line;
+  }
+  layout.header_line = header->number;
+  layout.names = header->fields;
+  layout.misfit = !header->fits;
+  if (layout.misfit) return;
+  layout.columns = std::clamp(layout.names.size(), layout.columns, std::max(layout.columns, widest));
+  layout.names.resize(layout.columns);
+  if (units) layout.units = units->fields;
+  for (const Line& line : candidates) {
+    const bool weaker = header->roles.strength - line.roles.strength > kClearStrength;
+    if (line.is_named() && !weaker && header->roles.contradicts(line.roles)) layout.rival_line = line.number;
+  }
+}
+
+}  // namespace palpate
