@@ -297,7 +297,7 @@ std::string LiveSession::why_no_verdict() const {
     const std::string& name = models_.info(comparison_.mostly_outside()).name;
     return "No verdict yet: these presses are deeper or faster than what " + name + " was trained on";
   }
-  return models_.ready_slots().empty() ? "The models are being fitted ..." : "The verdict needs a second of contact.";
+  return models_.ready_slots().empty() ? "The models are being fitted ..." : "Press for one second to get a verdict.";
 }
 
 std::string LiveSession::reference_words(bool brief) const {

@@ -182,7 +182,7 @@ TEST(Fit, EveryKernelWeightingAndReduction) {
 TEST(Fit, EachRefusalSaysWhy) {
   const Recording recording = test::example_recording(1000, 1000.0);
   EXPECT_TRUE(test::has_parts(prepare({constant(50, -1e-3, 0.0)}, request_for(test::paper_features())).error().message,
-                              {"in contact (position_m > 0)", "; ", "palpate import FILE --zero contact"}));
+                              {"in contact (position_m > 0)", "; ", "palpate import FILE --origin contact"}));
   TrainingRequest timed = request_for(test::position_features());
   timed.relaxation = Relaxation::automatic;
   EXPECT_TRUE(test::has_parts(prepare({recording}, timed).error().message,
