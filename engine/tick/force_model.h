@@ -33,6 +33,8 @@ class ForceModel {
   virtual const std::vector<FeatureSpec>& features() const noexcept = 0;
   // The greatest depth that enters the memory of the features, m: that of the training domain.
   virtual double deepest_m() const noexcept { return std::numeric_limits<double>::infinity(); }
+  // At a smaller depth, and in air, the model is out of its domain, m: above 0 if the training never left the material.
+  virtual double shallowest_m() const noexcept { return 0.0; }
   virtual const std::string& name() const noexcept = 0;    // e.g. "greedy-100"
   virtual const std::string& method() const noexcept = 0;  // e.g. "greedy"
   virtual int centre_count() const noexcept = 0;           // nodes for a grid

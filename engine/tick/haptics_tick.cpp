@@ -193,6 +193,7 @@ void HapticsTick::evaluate_models() noexcept {
         snapshot_.fault = TickFault::force_not_finite;
       }
     }
+    if (filters_[filter_of_[i]].state().depth_m < models_[i]->shallowest_m()) snapshot_.out_of_domain_mask |= 1U << i;
     snapshot_.force_N[i] = force_N;
     snapshot_.predicted_error_N[i] = predicted_error_N;
   }

@@ -115,6 +115,7 @@ std::string export_c(const ModelData& data, const SensorSpec& sensor, bool singl
   const double deepest_m = std::min(deepest_in_domain_m(data, depth), 1e30);
   out.define("DEPTH_FEATURE", depth);
   out.define("DEEPEST_M", deepest_m);
+  out.define("SHALLOWEST_M", shallowest_in_domain_m(data));
   out.add(c_source::declarations);
   out.add(c_source::motion_filter);
   write_features(out, data.features);

@@ -20,9 +20,10 @@ constexpr double kLeastPerForce = 0.05;
 
 }  // namespace
 
-void BoundEstimator::add(const ResidualRows& rows, const ModelData& common,
-                         const std::vector<CorrectionPtr>& corrections) {
+FoldErrors BoundEstimator::add(const ResidualRows& rows, const ModelData& common,
+                               const std::vector<CorrectionPtr>& corrections) {
   const double inner_radius = common.cover.inner_radius;
+  FoldErrors errors(static_cast<std::size_t>(rows.folds()));
   for (std::size_t i = 0; i < rows.fold.size(); ++i) {
     if (!std::isfinite(rows.distance[i])) continue;  // there is no other fold
     const auto row = static_cast<Eigen::Index>(i);
@@ -32,8 +33,11 @@ void BoundEstimator::add(const ResidualRows& rows, const ModelData& common,
       correction_N = corrections[static_cast<std::size_t>(rows.fold[i])]->evaluate(point.data());
     }
     const double force_N = rows.predicted_N(common, i, inner_radius, correction_N);
+    const double error = common.jnd.error_over_jnd(force_N, rows.force_N(row));
+    errors.add(static_cast<std::size_t>(rows.fold[i]), error * robust_scale(error));
     add(std::abs(force_N - rows.force_N(row)), force_N, std::max(0.0, rows.distance[i] - inner_radius));
   }
+  return errors;
 }
 
 std::optional<ErrorBound> BoundEstimator::fit() const {
@@ -58,7 +62,9 @@ std::optional<ErrorBound> BoundEstimator::fit() const {
   const double factor = ratios[rank];
   bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);
   bound.per_force = std::max(factor * bound.per_force, strokes_ < kFewStrokes ? kLeastPerForce : 0.0);
-  bound.per_distance_N = std::max(factor * bound.per_distance_N, least_per_distance_N);
+  // One unit beyond the data nothing is known but the range of the force.
+  bound.per_distance_N =
+      std::clamp(factor * bound.per_distance_N, least_per_distance_N, std::max(least_per_distance_N, largest_force_N_));
   return bound;
 }
 

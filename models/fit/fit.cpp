@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
+#include "engine/base/text.h"
 #include "models/correction/methods.h"
 #include "models/fit/bound_estimator.h"
 
@@ -95,6 +96,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     }
     if (!selected) return selected.error();
     fit.choices = *selected;
+    fit.error_over_jnd = selected->error_over_jnd;
     sites = chosen_sites(*selected, prepared, data);
     fit.notes.push_back(choices_text(*selected));
   }
@@ -110,6 +112,14 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     fit.notes.push_back("at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
                         " samples were used, evenly spaced");
   }
+  if (data.surface_step_N > 0.0) {
+    fit.notes.push_back("the recordings never leave the material: above a depth of " +
+                        general(1e3 * shallowest_in_domain_m(data), 3) +
+                        " mm the model is out of its domain, and at the surface its force steps from 0 to " +
+                        general(data.surface_step_N, 3) + " N");
+  }
+  // The number in the name is that of the centres, of which there may be fewer than planned.
+  if (asked.selects_centres()) asked.centres = fitted->correction->size();
   data.method = family_name(asked);
   data.name = plan_name(asked);
   data.provenance.seed = plan.seed;
@@ -124,7 +134,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
       of_folds.push_back(std::move(*of_fold));
     }
     BoundEstimator bound(data.jnd, data.largest_force_N, prepared.left_out->strokes);
-    bound.add(*prepared.left_out, data, of_folds);
+    fit.error_over_jnd = bound.add(*prepared.left_out, data, of_folds).rms_at_mean_score();
     data.error_bound = bound.fit();
   }
   if (const Status valid = check_forces(data); !valid) {

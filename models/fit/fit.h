@@ -54,6 +54,7 @@ struct MethodFit {
   std::vector<std::string> notes;  // sentences for the user
   KernelKind kernel = KernelKind::cubic;
   std::optional<OpenChoices> choices{};  // with Base::force
+  double error_over_jnd = 0.0;           // cross-validated (FoldErrors::rms_at_mean_score)
   Eigen::Index rank = 0;                 // as in FittedCorrection
   double condition_number = 0.0;
 };

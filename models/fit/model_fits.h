@@ -16,6 +16,7 @@ class ModelFits {
  public:
   ModelFits(std::vector<PreparedRecordingPointer> recordings, TrainingScene scene)
       : recordings_(std::move(recordings)), scene_(std::move(scene)) {}
+  ModelFits(SamplesPointer samples, TrainingScene scene) : scene_(std::move(scene)), samples_(std::move(samples)) {}
 
   // The samples of the recordings. Errors: those of make_samples.
   Result<SamplesPointer> samples(const FitControl& control);

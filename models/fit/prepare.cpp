@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/recording/recording_rules.h"
 #include "models/fit/fit.h"
 #include "models/trend/trend_estimator.h"
 
@@ -106,7 +107,8 @@ void finish_sites(PreparedTraining& prepared, const ModelPlan& plan) {
         row_scale(plan.weights(), common.jnd, force_N) * std::sqrt(std::min(sites.samples(k), kMaximumSiteCount));
   }
   common.cover = make_cover(sites.points);
-  common.correction_limit_N = kCorrectionMargin * sites.target_N.lpNorm<Eigen::Infinity>();
+  common.correction_limit_N =
+      std::min(kCorrectionMargin * sites.target_N.lpNorm<Eigen::Infinity>(), kMaximumForce_N);  // that of a model file
   if (plan.base == Base::trend) return;
   // The paper uses its function everywhere, within the limits of the force only.
   common.cover.inner_radius = kEverywhere;
@@ -145,6 +147,7 @@ Result<PreparedTraining> prepare_training(SamplesPointer samples, const Training
   common.largest_force_N = table.force_N;
   common.lowest_force_N = table.lowest_force_N;
   common.sensor = table.sensor;
+  if (table.always_N > scene.jnd.at(0.0)) common.surface_step_N = table.always_N;
   common.trend.reference_depth_m = table.depth_m;
   const TrendWeights weights{scene.jnd, plan.weights()};
   std::optional<TrendFit> trend;

@@ -11,7 +11,7 @@ namespace palpate {
 namespace {
 
 // More rows give the same selection.
-constexpr std::size_t kMostRows = 5000;
+constexpr std::size_t kMostRows = 2500;
 constexpr Eigen::Index kMostSites = 1500;  // a tenth of a second for each fold
 
 }  // namespace

@@ -42,7 +42,7 @@ struct ResidualRows {
   std::vector<Eigen::Index> outside(int without) const;
 };
 
-// Rows of the regression of the trend, at most 5000 of them. `common`: with the normalisation. `features`: at the
+// Rows of the regression of the trend, at most 2500 of them. `common`: with the normalisation. `features`: at the
 // samples in contact, SI. `left_out_trends`: columns x folds, the weights of the trends fitted without each fold.
 ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns, const TrendWeights& weights,
                            const Eigen::MatrixXd& features, const Eigen::MatrixXd& left_out_trends);

@@ -57,6 +57,12 @@ double deepest_in_domain_m(const ModelData& data, std::size_t& feature) {
   return deepest_m;
 }
 
+double shallowest_in_domain_m(const ModelData& data) {
+  std::size_t depth = 0;
+  if (!(data.surface_step_N > 0.0) || !std::isfinite(deepest_in_domain_m(data, depth))) return 0.0;
+  return std::max(data.lower(static_cast<Eigen::Index>(depth)), std::numeric_limits<double>::min());
+}
+
 FittedModel::FittedModel(ModelData data)
     : data_(std::move(data)), trend_inputs_(data_.features), guard_(data_.cover), dimension_(data_.features.size()) {
   for (std::size_t i = 0; i < dimension_; ++i) {
@@ -64,6 +70,7 @@ FittedModel::FittedModel(ModelData data)
     inverse_scale_[i] = 1.0 / data_.scale(static_cast<Eigen::Index>(i));
   }
   deepest_m_ = deepest_in_domain_m(data_, depth_);
+  shallowest_m_ = shallowest_in_domain_m(data_);
 }
 
 ForceEstimate FittedModel::evaluate(const double* features) const noexcept {

@@ -88,6 +88,9 @@ struct ModelData {
   double correction_limit_N = 0.0;
   double largest_force_N = 0.0;  // of the training data; the output is at most 1.2 times this
   double lowest_force_N = 0.0;   // of the training data if the material pulls, else 0; <= 0
+  // The force at the outer end of recordings that never leave the material; else 0. In air the model's force is 0, so
+  // that it steps there, and the model is out of its domain above the recorded depths.
+  double surface_step_N = 0.0;
   DomainCover cover;
   std::optional<ErrorBound> error_bound;  // none of a fit to the measured force
   // The position sensor of the training recordings, the coarsest of them: the default sensor of streams and exported
@@ -115,6 +118,9 @@ SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m);
 // depth feature. `feature`: receives the index of the depth feature, or 0.
 double deepest_in_domain_m(const ModelData& data, std::size_t& feature);
 
+// The least depth in the domain, m: above 0 only with a step at the surface.
+double shallowest_in_domain_m(const ModelData& data);
+
 class FittedModel final : public ForceModel {
  public:
   // `data`: from a fit or a file, with sizes that match.
@@ -123,6 +129,7 @@ class FittedModel final : public ForceModel {
   ForceEstimate evaluate(const double* features) const noexcept override;
   const std::vector<FeatureSpec>& features() const noexcept override { return data_.features; }
   double deepest_m() const noexcept override { return deepest_m_; }
+  double shallowest_m() const noexcept override { return shallowest_m_; }
   const std::string& name() const noexcept override { return data_.name; }
   const std::string& method() const noexcept override { return data_.method; }
   int centre_count() const noexcept override { return data_.centre_count(); }
@@ -136,6 +143,7 @@ class FittedModel final : public ForceModel {
   std::size_t dimension_ = 0;
   std::size_t depth_ = 0;   // index of the depth feature
   double deepest_m_ = 0.0;  // deepest_in_domain_m
+  double shallowest_m_ = 0.0;
   std::array<double, kMaxFeatures> offset_{};
   std::array<double, kMaxFeatures> inverse_scale_{};
 };

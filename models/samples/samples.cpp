@@ -108,6 +108,15 @@ void measure(Samples& samples, const JndLine& jnd) {
   samples.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
 }
 
+// The force that all rows but one in a thousand exceed.
+double exceeded_N(const Samples& samples) {
+  std::vector<double> forces_N;
+  for (const Sample& row : samples.rows) forces_N.push_back(row.force_N);
+  const auto at = forces_N.begin() + static_cast<std::ptrdiff_t>(forces_N.size() / 1000);
+  std::nth_element(forces_N.begin(), at, forces_N.end());
+  return *at;
+}
+
 // Whether the tool moves outwards in contact by more than a share of its motion inwards.
 bool has_unloading(const Samples& samples) {
   double inward_m = 0.0;
@@ -180,6 +189,7 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
         "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; record a press, "
         "check the sign of position_m, or set its origin (palpate import FILE --origin contact)"};
   }
+  samples.always_N = exceeded_N(samples);
   split_into_folds(samples);
   return samples;
 }

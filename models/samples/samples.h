@@ -55,6 +55,7 @@ struct Samples {
   std::vector<std::size_t> contact;  // the rows in contact, ascending
   double depth_m = 0.0;              // greatest
   double force_N = 0.0;              // largest
+  double always_N = 0.0;             // only one row in a thousand of all has a smaller force
   double lowest_force_N = 0.0;       // below 0 if the material is known to pull (adhesion), else 0
   double rms_velocity_m_per_s = 0.0;
   std::size_t strokes = 0;

@@ -1,9 +1,8 @@
 // Selects, by cross-validation and the selection rule (cross_validation.h), the parameters of the memory that a linear
 // regression cannot identify: whether the material's surface lags behind a retreating tool (`surface_lag`,
 // engine/tick/features.h), and how the relaxation times change with depth (`slowing`). For models with few features
-// (`--relaxation auto`, and the methods of the paper, whose authors fitted theirs to the transients of the recording) it
-// selects one to three relaxation times.
-// Thread guarantee: slow side.
+// (`--relaxation auto`, and the methods of the paper, whose authors fitted theirs to the transients of the recording)
+// it selects one to three relaxation times. Thread guarantee: slow side.
 #pragma once
 
 #include <string>

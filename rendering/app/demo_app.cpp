@@ -43,10 +43,8 @@ Status DemoApp::set_up(const DemoRequest& request) {
   // Reports a missing display before anything else starts.
   if (Status status = Window::find_display(); !status) return status;
   request_ = request.session;
-  if (request.exhibit) {  // models with differences from obvious to unnoticeable
-    request_.position_only = true;
-    if (request_.models.empty()) request_.models = {"greedy", "2009-greedy-10"};
-  }
+  // Models with differences from obvious to unnoticeable.
+  if (request.exhibit && request_.models.empty()) request_.models = {"random-3", "kdtree-10", "trend+greedy-100"};
   if (const auto folder = data_folder()) request_.data_folder = *folder;
   files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
   if (!view_.settings.line_up.empty() && request_.models.empty() && !request_.line_up.empty())
@@ -63,7 +61,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto window = Window::open(asked);
   if (!window) return window.error();
   window_ = std::move(*window);
-  auto blocks = BlockView::create(session_->scene());
+  auto blocks = BlockView::create(session_->scene(), view_.exhibit.on ? 1.0F : kDeeperDents);
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
   blocks_->camera().turn(view_.settings.camera);
@@ -90,6 +88,19 @@ void DemoApp::listen() {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
     app->handle_key_event(key, action, modifiers);
   });
+  // Their values are ImGui's; here they are only signs of a user.
+  glfwSetMouseButtonCallback(window_->handle(), [](GLFWwindow* handle, int, int, int) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
+  });
+  glfwSetScrollCallback(window_->handle(), [](GLFWwindow* handle, double, double) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
+  });
+  glfwSetCharCallback(window_->handle(), [](GLFWwindow* handle, unsigned) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
+  });
+  glfwSetWindowRefreshCallback(window_->handle(), [](GLFWwindow* handle) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
+  });
   // After these callbacks: ImGui installs its own and calls them.
   ui_ = std::make_unique<UiContext>(window_->handle());
 }
@@ -101,11 +112,16 @@ std::string DemoApp::end() {
   return stats;
 }
 
-DemoApp::~DemoApp() {
-  Window::at_loss_of_display([this] { end(); });
-  // Hides the window first, because the end of a fit may take a moment.
+void DemoApp::finish() {
   if (window_ != nullptr) glfwHideWindow(window_->handle());
-  if (blocks_ != nullptr && session_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
+  if (session_ == nullptr) return;
+  if (blocks_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
+  session_->close();
+  files_.finish();
+}
+
+DemoApp::~DemoApp() {
+  finish();
   session_.reset();
   blocks_.reset();
   Window::at_loss_of_display(nullptr);
@@ -122,12 +138,19 @@ void DemoApp::close() {
 
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
   if (view_.exhibit.on) return;
+  note_input();
   for (const std::string& path : paths) files_.open(path, *session_);
 }
 
 void DemoApp::handle_key_event(int key, int action, int modifiers) {
   if (view_.exhibit.on && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
+  note_input();
   input_.add_key(key, action, modifiers);
+}
+
+void DemoApp::note_input() {
+  constexpr double kLively_s = 0.3;  // a list opens, takes the focus and is laid out within a few frames
+  lively_until_s_ = steady_now_s() + kLively_s;
 }
 
 void DemoApp::handle_keys() {
@@ -181,11 +204,11 @@ void DemoApp::frame() {
   look();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_began_s_ = now_s;
-  draw();
+  draw(needs_texts(now_s));
   handle_keys();
   // The session changes between two frames, because drawing refers to it.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
-  window_->show_frame();
+  window_->show_frame(changed_);
   const double shown_s = steady_now_s();
   view_.frames.times.add(static_cast<std::int64_t>(1e9 * (shown_s - last_frame_s_)));
   view_.frames.seconds += shown_s - last_frame_s_;
@@ -219,6 +242,7 @@ void DemoApp::use_material(const std::string& scene, const std::vector<std::stri
   next_->scene = scene;
   next_->recordings = recordings;
   next_->device = device;
+  next_->test.clear();
   next_->models.clear();
   next_->kept = session_->models().requests();
   next_->refits = true;
@@ -231,6 +255,8 @@ void DemoApp::use_material(const std::string& scene, const std::vector<std::stri
 void DemoApp::use_device(const std::string& device) {
   next_ = request_;
   next_->recordings = session_->scene().recordings;
+  // The test of the hand is that of the replay before.
+  next_->test = device.rfind("replay:", 0) == 0 || session_->tests_training() ? "" : session_->test_file();
   next_->device = device;
   next_->kept = session_->models().requests();
   next_->refits = next_->kept.empty();
@@ -241,7 +267,7 @@ void DemoApp::use_recording_roles() {
   const RecordingRoles roles = std::exchange(view_.dialogs.recording_roles, {});
   const std::string test = roles.test().empty() ? "" : "replay:" + roles.test();
   if (!roles.training().empty()) {
-    use_material(request_.scene, roles.training(), test.empty() ? first_device_ : test);
+    use_material(request_.scene, roles.training(), test.empty() ? "replay:" + roles.training().back() : test);
   } else if (!test.empty()) {
     use_device(test);
   }
@@ -292,7 +318,7 @@ Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {
   resolution_ = {};  // full resolution at any load
-  draw();
+  draw(true);
   return window_->save_frame(path, overwrite);
 }
 

@@ -17,7 +17,7 @@
 #include "rendering/panels/scene_overlay.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/picture/block_view.h"
-#include "rendering/picture/smooth_target.h"
+#include "rendering/picture/resolution.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 
@@ -39,6 +39,9 @@ class DemoApp {
   DemoApp(const DemoApp&) = delete;
   DemoApp& operator=(const DemoApp&) = delete;
   ~DemoApp();
+  // Saves all that is to be saved and lets go of the device; then only the destructor may be called, which waits for
+  // fits. A factorisation cannot be interrupted.
+  void finish();
 
   // Processes events, updates the session, draws and shows a frame, and waits for the next one.
   void frame();
@@ -63,6 +66,8 @@ class DemoApp {
   // within a frame. `action`: of GLFW.
   void drop_files(const std::vector<std::string>& paths);
   void handle_key_event(int key, int action, int modifiers);
+  // An input of any kind, after which the texts are drawn in every frame for a moment.
+  void note_input();
   // The table of commands. An exhibit has its own buttons.
   std::vector<WindowCommand>& commands() noexcept { return commands_; }
 
@@ -80,10 +85,11 @@ class DemoApp {
   void use_block_count(std::size_t wanted);
   void use_line_up(const LineUp& line_up);
   void read_notices(double now_s);
-  void draw();
-  void draw_blocks(const SceneArea& area);
+  bool needs_texts(double now_s);
+  void draw(bool texts);
+  void draw_texts();
+  std::vector<Viewport> draw_blocks(bool all);
   std::vector<BlockPose> block_poses() const;
-  std::vector<BlockPose> true_poses() const;  // without the exaggeration of dents
   BlockPose model_pose(std::size_t slot, BlockPose pose) const;
   BlockPose reference_pose(BlockPose pose) const;
   Status set_up_exhibit(const ExhibitTimes& times);
@@ -113,6 +119,10 @@ class DemoApp {
   Resolution resolution_;
   std::vector<WindowCommand> commands_;
   double key_velocity_m_per_s_ = 0.0;  // of the tool by the keys of this frame, positive inwards
+  WindowLayout layout_;
+  double texts_due_s_ = 0.0;       // when the texts are drawn next
+  double lively_until_s_ = 0.0;    // until then they are drawn in every frame
+  std::vector<Viewport> changed_;  // parts of the window in this frame
   double frame_began_s_ = 0.0;
   double last_frame_s_ = 0.0;  // end of the last frame
   bool leaving_ = false;       // `close` was called; an exhibit ends only by it

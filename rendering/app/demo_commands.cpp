@@ -75,30 +75,20 @@ WindowCommand shown_as(const char* shown, WindowCommand command) {
 std::vector<WindowChoice> DemoApp::choices() {
   constexpr auto kNone = static_cast<std::size_t>(-1);
   Settings& settings = view_.settings;
-  std::vector<std::string> models, references;
-  std::size_t line_up = kNone, reference = kNone;
+  std::vector<std::string> models;
+  std::size_t line_up = kNone;
   if (session_->scene().has_material())
     for (const LineUp& one : line_ups()) models.push_back(one.name);
   if (const LineUp* one = find_line_up(session_->line_up())) line_up = static_cast<std::size_t>(one - &line_ups()[0]);
-  std::vector<ReferenceKind> kinds;
-  for (const ReferenceKind kind : kReferenceKinds) {
-    if (!session_->has_reference(kind)) continue;
-    if (kind == session_->comparison().reference()) reference = kinds.size();
-    kinds.push_back(kind);
-    references.push_back(kind == ReferenceKind::measured ? "measured force"
-                         : kind == ReferenceKind::truth  ? "true force"
-                                                         : "a model: all sites");
-  }
   const auto names = [](auto... all) { return std::vector<std::string>{all...}; };
   const auto first_is = [](bool& value) { return [&value](std::size_t i) { value = i == 0; }; };
   return {
-      {GLFW_KEY_B, "Blocks", "one, two or four blocks side by side", names("1", "2", "4"), settings.block_count / 2,
-       [this](std::size_t i) { use_block_count(std::size_t{1} << i); }},
-      {GLFW_KEY_N, "Models", "the next set of models: Ladder, 2009, Palpate", models, line_up,
+      {GLFW_KEY_B, "Blocks", "one block, two, or one of each model and of the truth", names("1", "2", "all"),
+       std::min<std::size_t>(settings.block_count - 1, 2),
+       [this](std::size_t i) { use_block_count(i < 2 ? i + 1 : kAllBlocks); }},
+      {GLFW_KEY_N, "Models", "the next set of models: comparison, sizes, corrections, direct", models, line_up,
        [this](std::size_t i) { use_line_up(line_ups()[i]); },
        "there is nothing to fit models to: O chooses a material, a recording is one too"},
-      {GLFW_KEY_F, "Compare with", "choose what the models are compared with", references, reference,
-       [this, kinds](std::size_t i) { session_->use_reference(kinds[i]); }},
       {GLFW_KEY_V, "Curves", "the difference in its band, or its mean over 50 ms",
        names("difference", "mean over 50 ms"), settings.difference ? 0U : 1U, first_is(settings.difference)},
       {GLFW_KEY_E, "Plot", "the error against the time that a model takes, or against the force",
@@ -172,8 +162,11 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       when(When::held,
            keys({GLFW_KEY_LEFT, GLFW_KEY_RIGHT}, "scroll back and forth while the curves stand still", scroll)),
       in_replay(with_state(
-          command(GLFW_KEY_P, "Pause", "pause a replayed recording, and play it on",
-                  [this] { session_->replay()->pause(!session_->replay()->paused()); }),
+          command(GLFW_KEY_P, "Pause", "pause a replayed recording and its curves, and play on",
+                  [this] {
+                    session_->replay()->pause(!session_->replay()->paused());
+                    view_.time.run();
+                  }),
           [this] { return session_->replay() != nullptr && session_->replay()->paused(); }, "Play")),
       in_replay(command(GLFW_KEY_BACKSPACE, "Back to the hand", "end the replay and press the block yourself",
                         [this] { use_device(first_device_); })),
@@ -222,7 +215,7 @@ void DemoApp::use_block_count(std::size_t wanted) {
   // Says why there are fewer blocks than the user selected.
   const bool reference = shown_.models.compared && shown_.models.reference == kReferenceBlock && wanted > 1;
   const std::size_t shown = shown_.models.drawn().size() + (reference ? 1 : 0);
-  if (shown < wanted)
+  if (wanted == 2 && shown < wanted)
     notify(std::to_string(shown) + " of " + std::to_string(wanted) + " blocks: no more models are ready", false);
 }
 

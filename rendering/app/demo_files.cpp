@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <glm/common.hpp>
@@ -11,7 +12,6 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/whole_file.h"
-#include "engine/live/pacer.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
 #include "scenes/plot/draw.h"
@@ -58,6 +58,15 @@ Json graphics_json(const FrameFigures& frames) {
            {{"p50", kMsPerUs * times.p50_us}, {"p99", kMsPerUs * times.p99_us}, {"max", kMsPerUs * times.max_us}}}};
 }
 
+Json seconds_json(double seconds) { return std::isnan(seconds) ? Json(nullptr) : Json(seconds); }
+
+// When the comparison stood, in seconds since the session was opened; null: not yet.
+Json start_json(const LiveSession::StartTimes& times) {
+  return {{"first_row_s", seconds_json(times.first_model_s)},
+          {"all_rows_s", seconds_json(times.all_models_s)},
+          {"verdict_s", seconds_json(times.verdict_s)}};
+}
+
 // Figures are null if there are no samples.
 Json model_json(const ModelView& slot) {
   const bool has_errors = slot.errors.samples > 0;
@@ -69,7 +78,8 @@ Json model_json(const ModelView& slot) {
           {"rms_error_N", has_errors ? Json(slot.errors.rms_error_N) : Json(nullptr)},
           {"max_error_over_jnd", has_errors ? Json(slot.errors.max_error_over_jnd) : Json(nullptr)},
           {"p99_error_over_jnd", has_errors ? Json(slot.errors.p99_error_over_jnd) : Json(nullptr)},
-          {"tick_ns", slot.tick_ns() > 0.0 ? Json(slot.tick_ns()) : Json(nullptr)}};
+          {"tick_ns", slot.tick_ns() > 0.0 ? Json(slot.tick_ns()) : Json(nullptr)},
+          {"equals", slot.equals}};
 }
 
 Hue hue_of(const Rgb& colour) {
@@ -87,8 +97,8 @@ Result<Settings> read_settings(const std::string& path) {
   if (!json.is_object())
     return Error{path + ": found no JSON object, expected the window's settings; the defaults are used"};
   if (field<std::string>(json, "theme", "") == "dark") settings.theme = Theme::dark;
-  const double blocks = field(json, "blocks", 4.0);
-  settings.block_count = blocks == 1.0 ? 1 : blocks == 2.0 ? 2 : 4;
+  const double blocks = field(json, "blocks", static_cast<double>(kAllBlocks));
+  settings.block_count = blocks == 1.0 ? 1 : blocks == 2.0 ? 2 : kAllBlocks;
   settings.difference = field(json, "difference", settings.difference);
   settings.text_size = std::clamp(field(json, "text_size", 1.0F), kSmallestText, kLargestText);
   settings.line_up = field(json, "line_up", settings.line_up);
@@ -123,6 +133,7 @@ std::string stats_text(const LiveSession& session, const WindowView& shown, cons
   }
   const Json all = {{"haptics", haptics_json(session)},
                     {"graphics", graphics_json(frames)},
+                    {"start", start_json(session.start_times())},
                     {"models", models},
                     {"verdict", shown.models.verdict.headline},
                     {"faults", faults},
@@ -144,9 +155,9 @@ std::string DemoFiles::new_path(const char* name) {
   return same_second_ == 1 ? path : path + "-" + std::to_string(same_second_);
 }
 
-DemoFiles::~DemoFiles() {
+void DemoFiles::finish() {
   if (running_.valid()) running_.wait();
-  for (const Task& task : waiting_) {
+  for (const Task& task : std::exchange(waiting_, {})) {
     if (task.saves) (void)task.work();
   }
 }
@@ -239,7 +250,7 @@ void DemoFiles::record(LiveSession& session) {
 void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns) {
   const std::string path = new_path("/curves-%Y%m%d-%H%M%S");
   if (path.empty()) return;
-  const double to_s = view_.time.end_s(steady_now_s());
+  const double to_s = view_.time.end_s(shown.now_s);
   CurveSource source{session.scene().title + ", " + session.device_name(),
                      session.reference_words(),
                      session.jnd(),

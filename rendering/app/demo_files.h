@@ -23,8 +23,8 @@ namespace palpate {
 Result<Settings> read_settings(const std::string& path);
 Status write_settings(const std::string& path, const Settings& settings);
 
-// The JSON text of --stats: figures of the loop, the graphics and the models, under the keys haptics, graphics, models,
-// verdict, faults, scene, device and reference.
+// The JSON text of --stats: figures of the loop, the graphics, the start and the models, under the keys haptics,
+// graphics, start, models, verdict, faults, scene, device and reference.
 std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
 
 // Does this work and shows its results as notices.
@@ -37,8 +37,9 @@ class DemoFiles {
       : view_(view), notify_(std::move(notify)), read_(std::move(read)) {}
   DemoFiles(const DemoFiles&) = delete;
   DemoFiles& operator=(const DemoFiles&) = delete;
+  ~DemoFiles() { finish(); }
   // Waits for the work that runs, and completes the saves that wait.
-  ~DemoFiles();
+  void finish();
 
   // Reads the settings from `file`; empty: settings are neither read nor saved.
   void use_settings(const std::string& file);

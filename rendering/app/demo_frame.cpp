@@ -1,5 +1,8 @@
 // Draws a frame of the window.
 #include <epoxy/gl.h>
+// GLFW after epoxy, which declares the functions of OpenGL.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,17 +32,32 @@ Viewport pixels_of(const SceneArea& area) {
 
 }  // namespace
 
-void DemoApp::draw() {
+// Texts, plots and controls are drawn less often than the picture, because nobody reads faster; and at once when the
+// user does something to them.
+bool DemoApp::needs_texts(double now_s) {
+  constexpr double kTexts_s = 1.0 / 15.0;
+  double x = 0.0, y = 0.0;
+  glfwGetCursorPos(window_->handle(), &x, &y);
+  const ImVec2 mouse(static_cast<float>(x), static_cast<float>(y));
+  if (!input_.follow_mouse(*session_, shown_, *blocks_, view_, layout_.scene, mouse)) note_input();
+  // The screens of an exhibit and lists move.
+  const bool lively = now_s < lively_until_s_ || view_.exhibit.on || view_.dialogs.any() || next_;
+  const UiSize size = window_->size();
+  const ImVec2 drawn = ImGui::GetIO().DisplaySize;
+  if (!lively && now_s < texts_due_s_ && size.width == drawn.x && size.height == drawn.y) return false;
+  // A quarter of a frame of tolerance, so that it is every fourth frame at 60 Hz.
+  texts_due_s_ = now_s + kTexts_s - 0.25 / 60.0;
+  return true;
+}
+
+void DemoApp::draw_texts() {
   const bool exhibit = view_.exhibit.on;
   style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
                 exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(input_.tapped());
-  const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
-  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, layout.scene) && !exhibit)
+  layout_ = lay_out(ImGui::GetIO().DisplaySize);
+  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, layout_.scene) && !exhibit)
     notify("the mouse has left the picture: the probe is lifted", false);
-  // With a software renderer, clearing is faster than filling a rectangle.
-  window_->clear(style_.colours().panel);
-  draw_blocks(layout.scene);
   const OverlayActions actions{&commands_,
                                [this] { return choices(); },
                                [this](const std::string& scene) { use_material(scene, {}, first_device_); },
@@ -49,45 +67,51 @@ void DemoApp::draw() {
                                  use_device(device);
                                },
                                [this] { use_recording_roles(); }};
-  draw_overlay(*session_, shown_, *blocks_, view_, style_, layout.scene, actions);
+  draw_overlay(*session_, shown_, *blocks_, view_, style_, layout_.scene, actions);
   if (exhibit) {
-    exhibit_.draw(*session_, shown_, *blocks_, style_, layout);
+    exhibit_.draw(*session_, shown_, *blocks_, style_, layout_);
   } else {
-    draw_panel(curves_, *session_, shown_, view_, style_, layout.panel);
+    draw_panel(curves_, *session_, shown_, view_, style_, layout_.panel);
   }
-  ui_->end_frame();
-  if (!blocks_->filters_edges()) return;
+}
+
+void DemoApp::draw(bool texts) {
+  texts = texts || !window_->keeps_frame();
+  if (texts) draw_texts();
+  changed_ = draw_blocks(texts);
+  if (texts) {
+    // With a software renderer, clearing is faster than filling a rectangle.
+    const Viewport panel = pixels_of(layout_.panel);
+    window_->clear(panel, style_.colours().panel);
+    ui_->end_frame();
+    changed_.push_back(panel);
+  } else {
+    ui_->draw_again(changed_);
+  }
+  if (!window_->is_software()) return;
   // With a software renderer, waits for the drawing here instead of in the buffer swap, to measure its time.
   glFinish();
   resolution_.add(steady_now_s() - frame_began_s_);
 }
 
-void DemoApp::draw_blocks(const SceneArea& area) {
+// Returns the parts of the window that have changed.
+std::vector<Viewport> DemoApp::draw_blocks(bool all) {
+  const SceneArea& area = layout_.scene;
   const std::vector<BlockPose> poses = block_poses();
-  blocks_->show(poses.size(), false);  // their number changes when models become ready
-  blocks_->draw(poses, pixels_of(area), view_.settings.theme, resolution_.scale());
+  const SceneArea stage = stage_of(*session_, view_, style_, area);
+  blocks_->leave_free((stage.at.y - area.at.y) / area.size.y,
+                      1.0F - (stage.at.y - area.at.y + stage.size.y) / area.size.y);
+  blocks_->show(poses.size(), {area.size.x, area.size.y}, false);  // their number changes when models become ready
   view_.frames.picture_scale = resolution_.scale();
-}
-
-std::vector<BlockPose> DemoApp::block_poses() const {
-  if (view_.exhibit.on) {
-    const std::vector<BlockPose> revealed = exhibit_.reveal_poses(*session_, view_.settings.theme);
-    return revealed.empty() ? true_poses() : revealed;
-  }
-  std::vector<BlockPose> poses = true_poses();
-  const float deepest_m = 0.7F * static_cast<float>(blocks_->geometry().height_m);
-  const auto deeper = [&](float depth_m) {
-    return depth_m > 0.0F ? std::min(kDeeperDents * depth_m, std::max(depth_m, deepest_m)) : depth_m;
-  };
-  for (BlockPose& pose : poses) {
-    pose.tool_m = deeper(pose.tool_m);
-    pose.dent_m = deeper(pose.dent_m);
-  }
-  return poses;
+  return blocks_->draw(poses, pixels_of(area), view_.settings.theme, resolution_.scale(), all);
 }
 
 // The poses at the last tick that the curves show.
-std::vector<BlockPose> DemoApp::true_poses() const {
+std::vector<BlockPose> DemoApp::block_poses() const {
+  if (view_.exhibit.on) {
+    const std::vector<BlockPose> revealed = exhibit_.shown_poses(*session_, shown_, view_.settings.theme);
+    if (!revealed.empty()) return revealed;
+  }
   BlockPose pose;
   pose.tool_m = shown_.models.now.position_m;
   pose.dent_m = std::max(0.0F, pose.tool_m);
@@ -116,9 +140,14 @@ BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
   const bool exaggerated = view_.exaggerated && !view_.exhibit.on && std::isfinite(reference_N);
   const float shown_N = exaggerated ? reference_N + kExaggeration * (force_N - reference_N) : force_N;
   pose.force_N = std::isfinite(shown_N) ? std::max(0.0F, shown_N) : 0.0F;
-  pose.arrow = view_.exhibit.on ? exhibit_colour(model.method, model.paper, view_.settings.theme)
-                                : slot_colour(models, slot, view_.settings.theme);
-  pose.chosen = slot == models.selected;
+  pose.arrow = slot_colour(models, slot, view_.settings.theme);
+  // A visitor who compares by hand sees nothing that gives the answer away.
+  pose.shows_truth = !view_.exhibit.on && std::isfinite(reference_N);
+  if (pose.shows_truth) {
+    pose.true_dent_m = reference_pose(pose).dent_m;
+    pose.true_force_N = std::max(0.0F, reference_N);
+    pose.truth = reference_colour(view_.settings.theme);
+  }
   if (view_.exhibit.blind) pose.arrow = palette(view_.settings.theme).text;
   pose.shows_error = !view_.exhibit.blind;
   return pose;
@@ -131,7 +160,7 @@ BlockPose DemoApp::reference_pose(BlockPose pose) const {
   if (active != nullptr && !view_.time.paused) pose.dent_m = static_cast<float>(active->dent_m);
   pose.force_N = std::isfinite(reference_N) ? reference_N : 0.0F;
   pose.arrow = reference_colour(view_.settings.theme);
-  pose.chosen = pose.shows_error = false;
+  pose.shows_error = false;
   return pose;
 }
 

@@ -74,10 +74,9 @@ std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& bl
 // Once the mouse was over a block, it moves the tool in all of the picture, so that a fast move beyond the block still
 // presses. The full trained depth is within reach above the lower edge.
 void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const BlockView& blocks, const ViewState& view,
-                        const SceneArea& area) {
+                        const SceneArea& area, const ImVec2& mouse) {
   ToolInput* tool = session.tool_input();
   if (tool == nullptr || view.exhibit.tool_is_held) return;
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
   const bool aimed = tool->hand_is_exploring() && !view.exhibit.on;  // a visitor can begin anywhere
   const auto index = block_at(shown, blocks, area, mouse, aimed);
   if (!index) return;
@@ -188,8 +187,19 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
   }
   const bool touched = view.exhibit.on && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // even without a move
   if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || touched)
-    move_tool_to_mouse(session, shown, blocks, view, area);
+    move_tool_to_mouse(session, shown, blocks, view, area, io.MousePos);
   return false;
+}
+
+bool DemoInput::follow_mouse(LiveSession& session, const WindowView& shown, const BlockView& blocks,
+                             const ViewState& view, const SceneArea& area, const ImVec2& mouse) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (!down_.empty() || !keys_.empty() || ImGui::IsAnyMouseDown()) return false;
+  if (mouse.x == mouse_.x && mouse.y == mouse_.y) return true;
+  mouse_ = mouse;
+  if (!area.holds(mouse) || !over_scene_ || io.WantCaptureMouse) return false;
+  move_tool_to_mouse(session, shown, blocks, view, area, mouse);
+  return true;
 }
 
 }  // namespace palpate

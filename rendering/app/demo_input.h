@@ -47,6 +47,10 @@ class DemoInput {
   // left the picture, so that the tool was lifted.
   bool handle_mouse(LiveSession& session, const WindowView& shown, BlockView& blocks, const ViewState& view,
                     const SceneArea& area);
+  // The same for a frame without texts, while only the mouse moves. Returns false, without an effect, if that is not
+  // enough: a button or a key is held, or the mouse is not over the free part of the picture.
+  bool follow_mouse(LiveSession& session, const WindowView& shown, const BlockView& blocks, const ViewState& view,
+                    const SceneArea& area, const ImVec2& mouse);
 
  private:
   bool is_down(int key) const;
@@ -56,6 +60,7 @@ class DemoInput {
   bool drives_ = false;    // a key moved the tool in the frame before
   bool orbiting_ = false;
   bool over_scene_ = false;  // in the frame before
+  ImVec2 mouse_{-1.0F, -1.0F};
 };
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 // palpate-demo: the window program's command line.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -57,7 +58,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("FILE_OR_METHOD");
   app.add_option("files", arguments.files, "Models, or recordings or other programs' tables to train or to test on")
       ->type_name("FILE");
-  app.add_option("--train", session.recordings, "Recordings that models are fitted to, as one training set")
+  app.add_option(
+         "--train", session.recordings,
+         "Recordings that models are fitted to, as one training set; without --test, the end of the last is the test")
       ->type_name("REC.csv");
   app.add_option("--test", arguments.test, "Replay this recording; models are judged on it, and not fitted to it")
       ->type_name("REC.csv")
@@ -141,21 +144,26 @@ Status run_demo(Arguments& arguments) {
     arguments.demo.settings_file = *folder + "/window.json";
   sort_files(arguments);
   if (!arguments.test.empty()) device = "replay:" + arguments.test;
-  auto app = DemoApp::create(arguments.demo);
-  if (!app) return app.error();
+  // Without a test recording, the end of the last training recording is replayed.
+  const std::vector<std::string>& training = arguments.demo.session.recordings;
+  if (!training.empty() && device == "auto") device = "replay:" + training.back();
+  auto created = DemoApp::create(arguments.demo);
+  if (!created) return created.error();
+  // It is not destroyed, because it would wait for a fit; `main` ends the program.
+  DemoApp& app = *created->release();
   Status written;
   const auto write_stats = [&](const std::string& text) {
     const std::string path = std::exchange(arguments.stats, "");
     if (!path.empty() && !text.empty()) written = write_file_atomically(path, text, arguments.force);
   };
-  Window::at_loss_of_display([&] { write_stats((*app)->end()); });
-  run_frames(**app, arguments.seconds);
-  if (!(*app)->outcome()) return (*app)->outcome();
-  if (!arguments.screenshot.empty()) {
-    if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
-  }
-  write_stats(stats_text((*app)->session(), (*app)->shown(), (*app)->view().frames));
-  return written;
+  Window::at_loss_of_display([&] { write_stats(app.end()); });
+  run_frames(app, arguments.seconds);
+  Status status = app.outcome();
+  if (status && !arguments.screenshot.empty()) status = app.screenshot(arguments.screenshot, arguments.force);
+  if (status) write_stats(stats_text(app.session(), app.shown(), app.view().frames));
+  Window::at_loss_of_display(nullptr);
+  app.finish();
+  return status ? written : status;
 }
 
 int run_program(int argc, char** argv) {
@@ -183,7 +191,9 @@ int main(int argc, char** argv) {
     palpate::ignore_broken_pipes();
     palpate::prepare_to_fit();
     const palpate::StopListener listener;
-    return palpate::run_program(argc, argv);
+    const int code = palpate::run_program(argc, argv);
+    std::fflush(nullptr);
+    std::_Exit(code);
   } catch (const std::exception& error) {
     return palpate::fail(std::string("unexpected: ") + error.what());
   }

@@ -1,6 +1,8 @@
 #include "rendering/app/window.h"
 
 #include <epoxy/gl.h>
+#include <epoxy/glx.h>
+#undef Status  // of Xlib
 // GLFW after epoxy, which declares the functions of OpenGL.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -18,6 +20,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/live/pacer.h"
+#include "rendering/picture/resolution.h"
 
 namespace palpate {
 namespace {
@@ -122,6 +125,12 @@ void keep_on_screen(GLFWwindow* handle) {
   if (x != window.x || y != window.y) glfwSetWindowPos(handle, x, y);
 }
 
+// Whether parts of a frame can be shown. A software renderer then copies only what has changed.
+bool copies_parts() {
+  Display* display = glXGetCurrentDisplay();  // null without GLX, as in a session of Wayland
+  return display != nullptr && epoxy_has_glx_extension(display, DefaultScreen(display), "GLX_MESA_copy_sub_buffer");
+}
+
 }  // namespace
 
 Status Window::find_display() {
@@ -163,7 +172,10 @@ Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
   }
   set_handler("XSetErrorHandler", &on_refused_request);  // GLFW resets it while it makes a context
   std::unique_ptr<Window> window(new Window(handle));
-  window->paced_by_display_ = window->display_sets_pace(request.empty);
+  window->software_ = palpate::is_software(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+  // A software renderer does not wait; on a busy machine its frames would seem to.
+  window->paced_by_display_ = window->display_sets_pace(request.empty) && !window->software_;
+  window->keeps_frame_ = window->software_ && copies_parts();
   return window;
 }
 
@@ -205,9 +217,15 @@ UiSize Window::size() const noexcept {
 
 void Window::clear(const Rgb& colour) const {
   const UiSize all = size();
-  glViewport(0, 0, all.width_px, all.height_px);
+  clear({0, 0, all.width_px, all.height_px}, colour);
+}
+
+void Window::clear(const Viewport& part, const Rgb& colour) const {
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(part.x, part.y, part.width, part.height);
   glClearColor(colour.r, colour.g, colour.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 Status Window::save_frame(const std::string& path, bool overwrite) {
@@ -223,8 +241,35 @@ Status Window::save_frame(const std::string& path, bool overwrite) {
   return write_file_atomically(path, *png, overwrite);
 }
 
+// Whether the driver's buffer has the size of this frame: to copy a part outside of it is an error that ends the
+// program. The driver follows a window that is resized a few frames late, or before its event arrives.
+bool Window::has_settled() {
+  constexpr int kFrames = 10;
+  const UiSize now = size();
+  const bool same = now.width_px == settled_.width && now.height_px == settled_.height;
+  settled_ = {0, 0, now.width_px, now.height_px};
+  same_size_ = same ? same_size_ + 1 : 0;
+  if (same_size_ < kFrames) return false;
+  unsigned width = 0, height = 0;
+  glXQueryDrawable(glXGetCurrentDisplay(), glXGetCurrentDrawable(), GLX_WIDTH, &width);
+  glXQueryDrawable(glXGetCurrentDisplay(), glXGetCurrentDrawable(), GLX_HEIGHT, &height);
+  if (static_cast<int>(width) != now.width_px || static_cast<int>(height) != now.height_px) same_size_ = 0;
+  return same_size_ > 0;
+}
+
 void Window::show_frame() {
-  glfwSwapBuffers(window_);
+  const UiSize all = size();
+  show_frame({{0, 0, all.width_px, all.height_px}});
+}
+
+void Window::show_frame(const std::vector<Viewport>& changed) {
+  if (keeps_frame_ && has_settled()) {
+    for (const Viewport& part : changed) {
+      glXCopySubBufferMESA(glXGetCurrentDisplay(), glXGetCurrentDrawable(), part.x, part.y, part.width, part.height);
+    }
+  } else {
+    glfwSwapBuffers(window_);
+  }
   if (paced_by_display_) return;
   SteadyPacer clock;
   const std::int64_t now_ns = clock.now_ns();

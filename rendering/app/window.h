@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "engine/base/result.h"
 #include "rendering/ui/ui_style.h"
@@ -37,9 +38,16 @@ class Window {
 
   GLFWwindow* handle() const noexcept { return window_; }
   UiSize size() const noexcept;
-  // Fills the frame with one colour.
+  // Fills the frame, or a part of it, with one colour.
   void clear(const Rgb& colour) const;
+  void clear(const Viewport& part, const Rgb& colour) const;
+  // Whether OpenGL is a program instead of a graphics card.
+  bool is_software() const noexcept { return software_; }
+  // Whether the frame is kept when it is shown, so that the next one may be drawn in parts.
+  bool keeps_frame() const noexcept { return keeps_frame_; }
   // Shows the frame and waits for the next one: until the display is ready if the driver waits for it, else 1/60 s.
+  // `changed`: the parts that differ from the last frame, for a window that keeps it.
+  void show_frame(const std::vector<Viewport>& changed);
   void show_frame();
   // Saves the frame as a PNG file and shows it. Errors: the file exists and `overwrite` is false; it cannot be written.
   Status save_frame(const std::string& path, bool overwrite);
@@ -47,8 +55,13 @@ class Window {
  private:
   explicit Window(GLFWwindow* window) : window_(window) {}
   bool display_sets_pace(const Rgb& empty);
+  bool has_settled();
 
   GLFWwindow* window_;
+  bool software_ = false;
+  bool keeps_frame_ = false;
+  Viewport settled_;   // size of the last frame
+  int same_size_ = 0;  // frames since it has changed
   bool paced_by_display_ = false;
   std::int64_t next_frame_ns_ = 0;
 };

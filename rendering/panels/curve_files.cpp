@@ -9,8 +9,6 @@ namespace palpate {
 namespace {
 
 constexpr double kFigure_jnd = 3.0;
-// Names of ReferenceKind, for the reference of each row; key F changes it.
-constexpr const char* kReferenceNames[] = {"measured", "truth", "model"};
 
 std::string number(float value) { return std::isnan(value) ? "" : general(static_cast<double>(value), 6); }
 
@@ -56,15 +54,14 @@ Plot curve_plot(const CurveColumns& columns, const CurveSource& source) {
 }
 
 std::string curve_csv(const ForceHistory& history, const CurveSource& source) {
-  std::string csv = "# " + source.title + "; now compared with: " + source.reference +
-                    "\ntime_s,depth_m,reference,reference_N,rendered_N";
+  std::string csv =
+      "# " + source.title + "; compared with: " + source.reference + "\ntime_s,depth_m,reference_N,rendered_N";
   for (const CurveModel& model : source.models) csv.append(",").append(model.name).append("_N");
   csv += "\n";
   for (std::size_t i = history.first_at(source.from_s); i < history.size() && history[i].loop_time_s <= source.to_s;
        ++i) {
     const HistoryPoint& point = history[i];
-    csv += fixed(point.loop_time_s - source.zero_s, 6) + "," + number(point.depth_m) + "," +
-           (std::isnan(point.reference_N) ? "" : kReferenceNames[point.reference]) + "," + number(point.reference_N) +
+    csv += fixed(point.loop_time_s - source.zero_s, 6) + "," + number(point.depth_m) + "," + number(point.reference_N) +
            "," + number(point.rendered_N);
     for (const CurveModel& model : source.models) csv.append(",").append(number(point.force_N[model.slot]));
     csv += "\n";

@@ -29,7 +29,7 @@ struct CurveSource {
 // Two panels: force with the JND band, and difference in JND. Every point is the tick of a column (CurveColumn::tick).
 Plot curve_plot(const CurveColumns& columns, const CurveSource& source);
 
-// Every tick from from_s to to_s with the columns time_s,depth_m,reference,reference_N,rendered_N and
+// Every tick from from_s to to_s with the columns time_s,depth_m,reference_N,rendered_N and
 // "<name>_N" for each model. A missing force is an empty field.
 std::string curve_csv(const ForceHistory& history, const CurveSource& source);
 

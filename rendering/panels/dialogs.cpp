@@ -20,14 +20,18 @@ constexpr const char* kPictureHelp[] = {
     "JND: the smallest difference of force that a hand can feel, 0.065 N plus 6 % of the force. Grey band: one JND to "
     "either side of the reference. A hand cannot feel the difference between the reference and a curve in the band.",
     "Green: the reference, the true or the recorded force. Other colours: one for each method; hollow marks: the "
-    "recipe of 2009. On a dent: its error, from light (0) to green (1 JND); magenta is above.",
-    "Centres: the points that a radial basis function model is made of. More centres make it more accurate and "
-    "slower."};
+    "paper of 2009. In the cut of a block: the error, from light (0) to green (1 JND), magenta with a halo above; the "
+    "arrows are the forces of the model and, narrow, of the truth.",
+    "Centres: the points that a radial basis function model is made of. More centres cost time. They mostly bring more "
+    "of a press within the JND (the column % in JND), but the largest errors (99 %) may grow."};
 
-// Begins a dialog in the middle of the window, if it is open. Call ImGui::End if this returns true.
+// The room of a dialog: the width of the picture, so that the panel stays visible beside it.
+ImVec2 dialog_room() { return {lay_out(ImGui::GetIO().DisplaySize).scene.size.x, ImGui::GetIO().DisplaySize.y}; }
+
+// Begins a dialog in the middle of its room, if it is open. Call ImGui::End if this returns true.
 bool begin_dialog(const char* title, bool& open) {
   if (!open) return false;
-  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const ImVec2 all = dialog_room();
   const float margin = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({0.5F * all.x, 0.5F * all.y}, ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, {all.x - margin, all.y - margin});
@@ -56,12 +60,12 @@ void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCo
     keys = std::max(keys, ImGui::CalcTextSize(shown_keys(command).c_str()).x);
     text = std::max(text, ImGui::CalcTextSize(command.help.c_str()).x);
   }
-  ImGui::PushTextWrapPos(0.9F * ImGui::GetIO().DisplaySize.x);
+  ImGui::PushTextWrapPos(0.9F * dialog_room().x);
   for (const char* sentence : kPictureHelp) ImGui::TextWrapped("%s", sentence);
   ImGui::PopTextWrapPos();
   ImGui::Separator();
   // Two columns if one is too high for the window.
-  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const ImVec2 all = dialog_room();
   const float high = (static_cast<float>(commands.size()) + 11.0F) * ImGui::GetTextLineHeightWithSpacing();
   const std::size_t columns = high > all.y ? 2 : 1;
   const float room =
@@ -147,15 +151,15 @@ std::string recording_roles_words(const RecordingRoles& roles) {
   if (training == 0) return "Tests the models that are here on it. None is fitted again.";
   const std::string fits =
       "Fits models to " + std::to_string(training) + (training == 1 ? " recording" : " recordings");
-  return fits +
-         (test ? ", and tests them on the other." : "; you press the best one. Drop a second recording to test on.");
+  return fits + (test ? ", and tests them on the other."
+                      : " without the end, and tests them on that. Drop a second recording to test on it.");
 }
 
 void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
   RecordingRoles& roles = view.dialogs.recording_roles;
   bool open = roles.any();
   if (!begin_dialog(roles.problem.empty() ? "Recordings" : "Not a recording", open)) return;
-  ImGui::PushTextWrapPos(std::min(0.8F * ImGui::GetIO().DisplaySize.x, 42.0F * ImGui::GetFontSize()));
+  ImGui::PushTextWrapPos(std::min(0.8F * dialog_room().x, 42.0F * ImGui::GetFontSize()));
   if (!roles.problem.empty()) {
     ImGui::TextUnformatted(roles.problem.c_str());
     ImGui::TextDisabled(
@@ -199,7 +203,7 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   if (!begin_dialog("Open a file", view.dialogs.file_list)) return picker.folder.clear();
   std::error_code error;
   if (picker.folder.empty()) go_to(picker, fs::current_path(error));
-  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const ImVec2 all = dialog_room();
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const float width = std::min(0.85F * all.x, 44.0F * ImGui::GetFontSize());
   bool done = false;

@@ -19,21 +19,20 @@ using State = ExhibitGame::State;
 
 constexpr double kLifted_m = -0.008;     // position of the tool while it is kept out of the block
 constexpr double kDeviceMoves_m = 5e-4;  // above the noise of a handle at rest
+constexpr double kLeastStroke_s = 0.5;   // a shorter contact is not shown again
+constexpr double kHeld_s = 2.5;          // the moment of the largest difference stands still in attract
 
 std::vector<ExhibitModel> ready_models(const LiveSession& session) {
   std::vector<ExhibitModel> ready;
   for (std::size_t i = 0; i < session.models().size(); ++i) {
     const ModelInfo& slot = session.models().info(i);
-    if (slot.state == SlotState::ready) ready.push_back({i, slot.method, slot.paper});
+    if (slot.state == SlotState::ready) ready.push_back({i, slot.centres, slot.paper});
   }
   return ready;
 }
 
 // Whether the reference is not a model.
-bool has_reference(const LiveSession& session) {
-  return session.has_reference(session.comparison().reference()) &&
-         session.comparison().reference() != ReferenceKind::direct;
-}
+bool has_reference(const LiveSession& session) { return session.comparison().reference() != ReferenceKind::model; }
 
 ExhibitTick tick_of(const HistoryPoint& point, const ExhibitRound& round) {
   const std::size_t second = round.second.slot;
@@ -49,19 +48,7 @@ ExhibitTick tick_of(const HistoryPoint& point, const ExhibitRound& round) {
   return tick;
 }
 
-// The first round, as soon as all rounds of the game are known or all fits have ended; else empty.
-std::optional<ExhibitRound> first_round(const LiveSession& session) {
-  const auto rounds = ExhibitGame::rounds_of(ready_models(session), has_reference(session), false);
-  const bool complete = rounds.size() == ExhibitGame::kMostRounds && rounds.back().second.method == "greedy";
-  if (rounds.empty() || (!complete && !session.models().all_settled())) return std::nullopt;
-  return rounds.front();
-}
-
 }  // namespace
-
-Rgb exhibit_colour(const std::string& method, bool paper, Theme theme) {
-  return method_colour(paper ? "voxel" : method, theme);
-}
 
 void Exhibit::set_up(std::vector<ExhibitWords> languages, const std::string& tally_folder, const ExhibitTimes& times) {
   languages_ = std::move(languages);
@@ -76,7 +63,7 @@ std::string Exhibit::tally_path() const {
 
 const ExhibitRound* Exhibit::pair() const noexcept {
   if (game_.state() != State::attract) return &game_.round();
-  return shown_ ? &*shown_ : nullptr;
+  return ready_ ? &(repeats_ ? worst_ : best_).round : nullptr;
 }
 
 bool Exhibit::update(LiveSession& session, ViewState& view) {
@@ -85,7 +72,7 @@ bool Exhibit::update(LiveSession& session, ViewState& view) {
   const bool left = visitor_ && !here;
   visitor_ = here;
   if (left) forget(session, view);
-  if (game_.state() == State::attract && !shown_) shown_ = first_round(session);
+  if (game_.state() == State::attract) choose_attraction(session);
   read_ticks(session);
   begin_reveal(session);
   // Outside attract and press, the tool is kept out of the block, so that the visitor cannot press it.
@@ -118,6 +105,7 @@ void Exhibit::note_device(const LiveSession& session) {
 void Exhibit::read_ticks(const LiveSession& session) {
   const ForceHistory& history = session.comparison().history();
   const ExhibitRound* now = pair();
+  const auto seconds = [&] { return best_.trace.seconds(); };
   const std::size_t first = history.first_at(std::nextafter(seen_s_, std::numeric_limits<double>::infinity()));
   for (std::size_t next = first; now != nullptr && next < history.size(); ++next) {
     const ExhibitTick tick = tick_of(history[next], *now);
@@ -125,10 +113,38 @@ void Exhibit::read_ticks(const LiveSession& session) {
       game_.add(tick);
       continue;
     }
-    if (trace_.seconds() >= times_.press_s) trace_.clear();
-    trace_.add(tick);
+    if (repeats_) continue;
+    // A stroke ends in air, or after the time of a round.
+    if ((seconds() > kLeastStroke_s && !tick.in_contact) || seconds() >= times_.press_s) {
+      repeats_ = best_.trace.strong();
+      if (repeats_) reveal_.start(worst_.trace, session.jnd(), 1.0, session.newest().loop_time_s);
+      if (!repeats_) forget_strokes();
+      continue;
+    }
+    best_.trace.add(tick);
+    worst_.trace.add(tick_of(history[next], worst_.round));
   }
   if (history.size() > 0) seen_s_ = history[history.size() - 1].loop_time_s;
+}
+
+// Chooses the best and the worst model as soon as all are ready, and returns from the worst to the best.
+void Exhibit::choose_attraction(const LiveSession& session) {
+  const double now_s = session.newest().loop_time_s;
+  if (repeats_ && reveal_.done(now_s - kHeld_s)) {
+    repeats_ = false;
+    forget_strokes();
+  }
+  if (ready_ || !session.models().all_settled()) return;
+  const auto rounds = ExhibitGame::rounds_of(ready_models(session), has_reference(session), false);
+  if (rounds.empty()) return;
+  best_.round = rounds.back();
+  worst_.round = rounds.front();
+  ready_ = true;
+}
+
+void Exhibit::forget_strokes() {
+  best_.trace.clear();
+  worst_.trace.clear();
 }
 
 void Exhibit::let_go(LiveSession& session) {
@@ -158,38 +174,37 @@ void Exhibit::note_result() {
   if (!path.empty()) (void)write_tally(path, tally_);
 }
 
-Rgb Exhibit::colour_of(bool first, Theme theme) const {
+Rgb Exhibit::colour_of(bool first, const WindowView& shown, Theme theme) const {
   const ExhibitRound& round = *pair();
   if (first && !round.first) return reference_colour(theme);
-  const ExhibitModel& model = first ? *round.first : round.second;
-  return exhibit_colour(model.method, model.paper, theme);
+  return slot_colour(shown.models, first ? round.first->slot : round.second.slot, theme);
 }
 
-std::vector<BlockPose> Exhibit::reveal_poses(const LiveSession& session, Theme theme) const {
-  if (game_.state() != State::reveal || !revealed_) return {};
+std::vector<BlockPose> Exhibit::shown_poses(const LiveSession& session, const WindowView& shown, Theme theme) const {
+  if (!shows_worst() && (game_.state() != State::reveal || !revealed_)) return {};
   const ExhibitReveal::Moment moment = reveal_.at(session.newest().loop_time_s);
   BlockPose first;
   first.tool_m = static_cast<float>(moment.position_m);
   first.dent_m = std::max(0.0F, first.tool_m);
   first.force_N = static_cast<float>(moment.first_N);
-  first.arrow = colour_of(true, theme);
+  first.arrow = colour_of(true, shown, theme);
   first.shows_error = false;
   BlockPose second = first;
   second.force_N = static_cast<float>(std::max(0.0, reveal_.second_N(moment)));
   second.error_over_jnd = static_cast<float>(std::abs(moment.over_jnd));
-  second.arrow = colour_of(false, theme);
+  second.arrow = colour_of(false, shown, theme);
   second.shows_error = true;
   return first_is_left() ? std::vector{first, second} : std::vector{second, first};
 }
 
 void Exhibit::begin(const LiveSession& session) {
-  if (shown_) (void)game_.begin(ready_models(session), has_reference(session), session.renders_force(), times_.press_s);
+  if (ready_) (void)game_.begin(ready_models(session), has_reference(session), session.renders_force(), times_.press_s);
 }
 
 void Exhibit::forget(LiveSession& session, ViewState& view) {
   game_.reset();
-  shown_.reset();
-  trace_.clear();
+  ready_ = repeats_ = false;
+  forget_strokes();
   language_ = 0;
   host_ = false;
   session.reset_figures();

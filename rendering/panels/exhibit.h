@@ -1,7 +1,8 @@
 // --kiosk: an exhibit instead of the panel; scenes/live/exhibit_game.h has its rules.
 //
-//   attract   the simulated hand presses two blocks, the difference is drawn, and a sentence invites to play
-//   guess     a description of the model of this round; would a hand notice a difference?
+//   attract   the simulated hand presses the block and the best model with one stroke; then the same stroke is shown
+//             again with the worst model, and so on; a sentence invites to play
+//   guess     a description of the model of this round; would a hand notice a difference? The blocks cannot be pressed
 //   press     without a force device: 15 s with one stroke on both blocks and a live plot of the difference;
 //             with a force device: the visitor compares two blocks and answers
 //   reveal    the press with the largest difference in slow motion (exhibit_reveal.h), then the result
@@ -41,10 +42,6 @@ struct ExhibitTimes {
   double slowness = 4.0;  // of the reveal
 };
 
-// The colour of a model in the exhibit: that of its method, but a model of the paper's recipe has the colour of voxel,
-// so that the rounds differ in colour.
-Rgb exhibit_colour(const std::string& method, bool paper, Theme theme);
-
 class Exhibit {
  public:
   // `languages`: at least one. `tally_folder`: folder of the tally files, one per day; empty: no tally is stored.
@@ -61,11 +58,13 @@ class Exhibit {
   void draw(const LiveSession& session, const WindowView& shown, const BlockView& blocks, const UiStyle& style,
             const WindowLayout& layout);
 
-  // The blocks of the reveal; empty in the other screens.
-  std::vector<BlockPose> reveal_poses(const LiveSession& session, Theme theme) const;
+  // The blocks of a stroke that is shown again, in attract or in the reveal; else empty.
+  std::vector<BlockPose> shown_poses(const LiveSession& session, const WindowView& shown, Theme theme) const;
 
   const ExhibitGame& game() const noexcept { return game_; }
-  const ExhibitTrace& attract_trace() const noexcept { return trace_; }
+  const ExhibitTrace& attract_trace() const noexcept { return shows_worst() ? worst_.trace : best_.trace; }
+  // Whether the last stroke is shown again with the worst model.
+  bool shows_worst() const noexcept { return game_.state() == ExhibitGame::State::attract && repeats_; }
   const ExhibitTally& tally() const noexcept { return tally_; }
   struct Button {
     ImVec2 middle;
@@ -80,6 +79,8 @@ class Exhibit {
   struct Screens;
   void forget(LiveSession& session, ViewState& view);
   void read_ticks(const LiveSession& session);
+  void choose_attraction(const LiveSession& session);
+  void forget_strokes();
   void note_device(const LiveSession& session);
   void begin_reveal(const LiveSession& session);
   void note_result();
@@ -90,15 +91,21 @@ class Exhibit {
   // The two forces on the screen; null: too few models are ready.
   const ExhibitRound* pair() const noexcept;
   // The colour of the first or the second of the pair.
-  Rgb colour_of(bool first, Theme theme) const;
+  Rgb colour_of(bool first, const WindowView& shown, Theme theme) const;
   // Whether the first of the pair is the left block. A reference is the right block.
   bool first_is_left() const { return pair()->first.has_value(); }
   const ExhibitWords& words() const { return languages_[language_]; }
 
   ExhibitGame game_{1};  // seed
   ExhibitTimes times_;
-  std::optional<ExhibitRound> shown_;  // in the state attract
-  ExhibitTrace trace_;                 // in the state attract
+  // In the state attract: a pair of forces, and the trace of one stroke.
+  struct Attraction {
+    ExhibitRound round;
+    ExhibitTrace trace;
+  };
+  Attraction best_, worst_;
+  bool ready_ = false;    // both are known
+  bool repeats_ = false;  // the stroke is shown again with the worst
   ExhibitReveal reveal_;
   std::vector<ExhibitWords> languages_{1};
   std::size_t language_ = 0;

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <tuple>
+
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -104,6 +108,14 @@ void ExhibitReveal::draw_arrows(const UiStyle& style, const SceneArea& area, dou
   const ImVec2 second_tip(first_is_left ? right : left, ground - height(second_N(moment)));
   draw_force_arrow(list, {first_tip.x, ground}, ground - first_tip.y, width, ink(first));
   draw_force_arrow(list, {second_tip.x, ground}, ground - second_tip.y, width, ink(second));
+  // The forces in newtons, above the tips.
+  for (const auto& [tip, force_N, colour] : {std::tuple(first_tip, moment.first_N, first),
+                                             std::tuple(second_tip, std::max(0.0, second_N(moment)), second)}) {
+    const std::string text = fixed(force_N, 1) + " N";
+    const float wide = ImGui::CalcTextSize(text.c_str()).x;
+    const float y = std::max(area.at.y - 1.1F * ImGui::GetFontSize(), tip.y - 1.2F * ImGui::GetFontSize());
+    list.AddText({tip.x - 0.5F * wide, y}, ink(text_colour(colour, style.theme())), text.c_str());
+  }
   // The difference between the tips, in the colour of errors above one JND where it leaves the band.
   const bool above = std::abs(moment.over_jnd) > 1.0;
   const float middle = 0.5F * (left + right);

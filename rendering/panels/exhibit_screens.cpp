@@ -39,16 +39,12 @@ struct Exhibit::Screens {
   float body() const { return height_of(style.fonts().body); }
   double now_s() const { return session.newest().loop_time_s; }
   void space(float lines) const { ImGui::Dummy({1.0F, lines * body()}); }
-  int centres(const ExhibitModel& model) const { return shown.models.slots[model.slot].centres; }
-  std::string centres_of(const ExhibitModel& model) const { return std::to_string(centres(model)); }
+  static std::string centres_of(const ExhibitModel& model) { return std::to_string(model.centres); }
   // The ending of the keys of the texts about a model. A trend without a correction has no centres.
-  std::string kind_of(const ExhibitModel& model) const {
-    if (model.paper) return "paper";
-    if (model.method == "position") return "depth";
-    if (model.method != "greedy") return "other";
-    return centres(model) > 0 ? "best" : "trend";
+  static std::string kind_of(const ExhibitModel& model) {
+    return model.paper ? "paper" : model.centres > 0 ? "best" : "trend";
   }
-  Rgb colour_of(const ExhibitModel& model) const { return exhibit_colour(model.method, model.paper, style.theme()); }
+  Rgb colour_of(const ExhibitModel& model) const { return slot_colour(shown.models, model.slot, style.theme()); }
 
   // The number with the digits that a reader needs.
   std::string number(double value) const {
@@ -89,10 +85,11 @@ struct Exhibit::Screens {
   }
 
   // A button that is high enough for a finger, with its key in the corner. It is pressed at the end of the frame.
+  // `height`: 0: of a line.
   void button(const std::string& text, const std::string& key, float width, std::function<void()> press,
-              bool down = false) {
+              bool down = false, float height = 0.0F) {
     if (down) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-    if (ImGui::Button(text.c_str(), {width, 2.2F * height_of(style.fonts().heading)})) pressed = key;
+    if (ImGui::Button(text.c_str(), {width, std::max(height, 2.2F * height_of(style.fonts().heading))})) pressed = key;
     if (down) ImGui::PopStyleColor();
     const ImVec2 low = ImGui::GetItemRectMin();
     const ImVec2 corner = ImGui::GetItemRectMax();
@@ -118,7 +115,9 @@ struct Exhibit::Screens {
     plot.level(0.0, ink(reference_colour(style.theme())), 4.0F * style.scale());
     std::vector<ImVec2> points;
     const auto flush = [&] {
-      plot.line(points, ink(colour_of(exhibit.pair()->second)), 4.0F * style.scale());
+      // In attract without the colour of a model, which round 1 shows again.
+      const Rgb colour = game.state() == State::attract ? style.colours().text : colour_of(exhibit.pair()->second);
+      plot.line(points, ink(colour), 4.0F * style.scale());
       points.clear();
     };
     for (std::size_t i = 0; i < trace.columns().size(); ++i) {
@@ -145,7 +144,8 @@ struct Exhibit::Screens {
     if (exhibit.pair() == nullptr) return draw_learning();
     button(words()("play"), "1", -1.0F, begin());
     space(0.6F);
-    draw_difference(exhibit.trace_);
+    say(words()(exhibit.shows_worst() ? "attract_worst" : "attract_best"));
+    draw_difference(exhibit.attract_trace());
   }
 
   // Draws the progress of the fits until the first models are ready.
@@ -158,18 +158,21 @@ struct Exhibit::Screens {
     ImGui::ProgressBar(done / all, {-1.0F, 0.8F * body()}, "");
   }
 
+  // The question and two buttons that fill the panel.
   void draw_guess() {
     say_round();
     const ExhibitModel& model = game.round().second;
     say(words()("hint_" + kind_of(model), centres_of(model)));
+    space(0.6F);
     say(words()("question_guess"));
     space(0.4F);
-    const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-    button(words()("yes"), "1", half, [&game = game] { game.guess(true); });
-    ImGui::SameLine();
-    button(words()("no"), "2", half, [&game = game] { game.guess(false); });
-    space(0.6F);
-    draw_difference(game.trace());
+    const float height = 0.5F * (bottom() - ImGui::GetCursorScreenPos().y - ImGui::GetStyle().ItemSpacing.y);
+    ImGui::PushFont(style.fonts().big);
+    button(
+        words()("yes"), "1", -1.0F, [&game = game] { game.guess(true); }, false, height);
+    button(
+        words()("no"), "2", -1.0F, [&game = game] { game.guess(false); }, false, height);
+    ImGui::PopFont();
   }
 
   void draw_press() {
@@ -207,8 +210,8 @@ struct Exhibit::Screens {
     const ImVec2 at(ImGui::GetCursorScreenPos().x, ImGui::GetCursorScreenPos().y + line);
     const ImVec2 size(ImGui::GetContentRegionAvail().x, std::max(bottom() - 1.6F * line - at.y, 4.0F * line));
     const Theme theme = style.theme();
-    exhibit.reveal_.draw_arrows(style, {at, size}, now_s(), exhibit.colour_of(true, theme),
-                                exhibit.colour_of(false, theme), exhibit.first_is_left());
+    exhibit.reveal_.draw_arrows(style, {at, size}, now_s(), exhibit.colour_of(true, shown, theme),
+                                exhibit.colour_of(false, shown, theme), exhibit.first_is_left());
   }
 
   void draw_reveal() {
@@ -258,8 +261,8 @@ struct Exhibit::Screens {
     for (const ExhibitRound& round : rounds) draw_bar(round);
     say_quietly(words()("bars"));
     space(0.4F);
-    // The time of a whole tick, including both blocks and the device.
-    const std::string used_us = number(session.loop().statistics().tick.p50_us);
+    // The time of the tick of the best model alone, as everywhere.
+    const std::string used_us = number(1e-3 * shown.models.slots[rounds.back().second.slot].tick_ns());
     say(game.has_force() ? words()("take_home_felt", used_us)
                          : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
     space(0.4F);
@@ -286,7 +289,7 @@ struct Exhibit::Screens {
     ImGui::PushFont(style.fonts().body);
     exhibit.said_.push_back(
         words()("tally", std::to_string(exhibit.tally_.answers), std::to_string(exhibit.tally_.as_expected)));
-    ImGui::TextUnformatted((exhibit.said_.back() + "\n" + health_words(shown.health, 0.0).text).c_str());
+    ImGui::TextUnformatted((exhibit.said_.back() + "\n" + health_words(shown.health, 0.0, true).text).c_str());
     ImGui::PopFont();
   }
 
@@ -298,21 +301,29 @@ struct Exhibit::Screens {
 
   // Draws the name of block `index` of `count` at its foot.
   void draw_name(std::size_t index, std::size_t count, const std::string& text, const Rgb& colour) const {
-    const BlockGeometry& block = blocks.geometry();
     const SceneArea& scene = layout.scene;
     ImFont* font = style.fonts().heading;
     const ImVec2 size = text_size(font, text);
-    const glm::vec2 foot = blocks.on_screen(
-        index, count, {0.0F, -1.05F * static_cast<float>(block.height_m), 0.5F * static_cast<float>(block.length_m)},
-        {scene.size.x, scene.size.y});
+    const glm::vec2 foot = blocks.foot(index, count, {scene.size.x, scene.size.y});
     text_at(font,
             {scene.at.x + std::clamp(foot.x - 0.5F * size.x, 4.0F, scene.size.x - size.x - 4.0F),
              scene.at.y + std::min(foot.y + 0.6F * size.y, scene.size.y - 1.3F * size.y)},
             ink(colour), text);
   }
 
+  // Says on the picture that the blocks cannot be pressed yet.
+  void draw_answer_first() const {
+    const SceneArea& scene = layout.scene;
+    const std::string& text = words()("answer_first");
+    ImFont* font = style.fonts().big;
+    const ImVec2 size = text_size(font, text, 0.9F * scene.size.x);
+    const ImVec2 at(scene.at.x + 0.5F * (scene.size.x - size.x), scene.at.y + 0.16F * scene.size.y);
+    text_at(font, at, ink(style.colours().text), text, 0.9F * scene.size.x);
+  }
+
   void draw_names() const {
     if (exhibit.pair() == nullptr) return;
+    if (game.state() == State::guess) draw_answer_first();
     const bool revealed = game.state() == State::reveal;
     const bool blind = game.state() != State::attract && game.has_force() && !revealed;
     const std::size_t count = blind ? 1 : 2;
@@ -322,7 +333,7 @@ struct Exhibit::Screens {
       std::string text = blind ? words()(game.chosen() == 2 ? "block_2" : "block_1") : name_of(first);
       if (blind && game.state() != State::press) text.clear();
       if (game.has_force() && revealed) text = words()(first ? "block_1" : "block_2");
-      const Rgb colour = exhibit.colour_of(first, theme);
+      const Rgb colour = exhibit.colour_of(first, shown, theme);
       draw_name(i, count, text, blind ? style.colours().text : text_colour(colour, theme));
     }
   }

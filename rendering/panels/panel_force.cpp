@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "engine/base/text.h"
-#include "engine/live/pacer.h"
 #include "rendering/panels/panel_force.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/panels/time_plot.h"
@@ -95,8 +94,7 @@ struct Drawing {
     ImGui::SameLine(width + ImGui::GetStyle().WindowPadding.x);
     section_title(style, "AGAINST DEPTH");
     tip("The same force against the depth of the tool. Loading and unloading differ (hysteresis).\n"
-        "Green: what the models are compared with; the band is one JND to either side; the active model in its "
-        "colour.");
+        "Green: what the models are compared with; the active model in its colour.");
   }
 
   void draw_titles_of_error() const {
@@ -118,13 +116,16 @@ struct Drawing {
                      "tick.\nV: the difference in its band.");
   }
 
-  // Draws a curve of each model, the active one on top, the values under the mouse, and the name of the model whose row
-  // is under the mouse.
-  void draw_models(TimePlot& plot, SlotRange range, const char* unit) {
+  // Draws a curve of each model, the active one on top.
+  void draw_curves(const TimePlot& plot, SlotRange range) const {
     for (const std::size_t slot : models().drawn()) {
       plot.curve(ink(colour(slot)), (slot == models().selected ? kSelectedLine_px : kModelLine_px) * scale(),
                  [&](const CurveColumn& column) { return range(column, slot); });
     }
+  }
+
+  // Draws the values under the mouse, and the name of the model whose row is under the mouse.
+  void draw_readings(TimePlot& plot, SlotRange range, const char* unit) {
     if (plot.handle_mouse(*shown.history)) hovered = true;
 
     const CurveColumn* under = columns.at(view.time.hover_s);
@@ -165,9 +166,9 @@ struct Drawing {
       if (!close) points.push_back(at);
     };
     const auto flush = [&] {
-      plot.line(reference_points, ink(reference()), kReferenceLine_px * scale());
       if (models().active() != nullptr)
-        plot.line(model_points, ink(colour(models().selected)), kModelLine_px * scale());
+        plot.line(model_points, ink(colour(models().selected)), kSelectedLine_px * scale());
+      plot.line(reference_points, ink(reference()), kModelLine_px * scale());
       reference_points.clear();
       model_points.clear();
     };
@@ -188,12 +189,17 @@ struct Drawing {
     plot.fill(ink(style.colours().band), [](const CurveColumn& column) {
       return around(static_cast<double>(column.tick.reference_N), static_cast<double>(column.jnd_N));
     });
+    for (const float side : {-1.0F, 1.0F}) {
+      plot.curve(ink(style.colours().edge, 0.6F), scale(),
+                 [side](const CurveColumn& column) { return single(column.tick.reference_N + side * column.jnd_N); });
+    }
     fill_prediction(plot, [](const CurveColumn& column) {
       return around(static_cast<double>(column.tick.force_N[column.tick.active]), predicted_error_N(column.tick));
     });
+    draw_curves(plot, force_of);
     plot.curve(ink(reference()), kReferenceLine_px * scale(),
                [](const CurveColumn& column) { return single(column.tick.reference_N); });
-    draw_models(plot, force_of, " N");
+    draw_readings(plot, force_of, " N");
     plot.fault_marks();
   }
 
@@ -202,7 +208,8 @@ struct Drawing {
     plot.jnd_band(-1.0, 1.0);
     fill_prediction(plot, [&](const CurveColumn& column) { return around(0.0, predicted_over_jnd(column)); });
     if (!predicts()) plot.level(0.0, ink(reference()), kReferenceLine_px * scale());
-    draw_models(plot, difference_of, " JND");
+    draw_curves(plot, difference_of);
+    draw_readings(plot, difference_of, " JND");
   }
 
   void draw_sustained(const ImVec2& size, double most) {
@@ -221,7 +228,8 @@ struct Drawing {
                                   ink(colour(slot), 0.35F));
       }
     }
-    draw_models(plot, sustained_of, " JND");
+    draw_curves(plot, sustained_of);
+    draw_readings(plot, sustained_of, " JND");
   }
 };
 
@@ -229,7 +237,7 @@ struct Drawing {
 
 void ForceCurves::draw(const WindowView& shown, ViewState& view, const UiStyle& style, float force_height,
                        float error_height) {
-  Drawing drawing{shown, view, style, columns_, view.time.end_s(steady_now_s())};
+  Drawing drawing{shown, view, style, columns_, view.time.end_s(shown.now_s)};
   const float all = ImGui::GetContentRegionAvail().x;
   const auto count = static_cast<std::size_t>(std::max(40.0F, all / (kColumn_px * style.scale())));
   columns_.gather(*shown.history, shown.models.jnd, shown.models.slots.size(), drawing.end_s - view.time.shown_s,

@@ -96,7 +96,7 @@ float health_height(const HealthView& health, const ViewState& view) {
   return height + (fix + 7.0F + faults) * line;
 }
 
-HealthWords health_words(const HealthView& health, double recent_fps) {
+HealthWords health_words(const HealthView& health, double recent_fps, bool details) {
   const LoopStatistics& statistics = health.loop;
   if (statistics.ticks > 0 && statistics.age_s > kStall_s) {
     return {text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s), true};
@@ -109,7 +109,7 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
     return {"Earlier: " + words.front() + more, true, true};
   }
   const double missed = health.missed_of_late;
-  if (missed > kManyMissed) {
+  if (details && missed > kManyMissed) {
     return {text_of("%.1f %% of the recent deadlines missed: close other programs", 100.0 * missed) +
                 (health.scheduling.realtime ? "" : ", or allow real-time priority"),
             true};
@@ -128,7 +128,7 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
 void draw_health(const HealthView& health, ViewState& view, const UiStyle& style) {
   section_title(style, "LOOP");
   ImGui::SameLine();
-  const HealthWords words = health_words(health, static_cast<double>(ImGui::GetIO().Framerate));
+  const HealthWords words = health_words(health, static_cast<double>(ImGui::GetIO().Framerate), view.details);
   const auto wrapped = [](const Rgb& colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
     ImGui::TextWrapped("%s", text.c_str());

@@ -58,20 +58,22 @@ struct Column {
 };
 constexpr int kName = 0, kColumns = 7;
 constexpr Column kTable[kColumns] = {
-    {"model", "Click, or press its number, to make a model the active one.", "      2009-greedy-10", 0, nullptr,
+    {"model", "Click, or press its number, to make a model the active one.", "      trend+greedy-100", 0, nullptr,
      nullptr},
     {"N", "Force at the right edge of the curves, newtons", "12.34", 4, force_now_N, two_decimals},
     {"mN off", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},
     {"99 %",
      "99 % of the samples in contact are off by at most so many just noticeable differences (JND).\n"
-     "Above 1 a hand could feel it. The big number and the plot below are this one.",
+     "Above 1 a hand could feel it. The headline, the big number and the plot below are this one.",
      "12.34", 5, p99_over_jnd, jnd_text},
     {"% in JND",
-     "Share of the samples in contact whose error a hand cannot feel, since the last reset.\n"
-     "The same samples for all models: those inside the data of each.",
+     "Share of the samples in contact whose error a hand cannot feel, of the test that the line below names.\n"
+     "With more centres it mostly grows, while the largest errors (99 %) may grow, too.",
      "100.00", 0, percent_within, two_decimals},
-    {"ns", "Time of a whole tick of this model alone, nanoseconds: the fastest of several measurements", "12,345", 3,
-     tick_ns, whole},
+    {"ns",
+     "Time of a whole tick of this model alone (motion, features, force), nanoseconds: the median of six\n"
+     "interleaved measurements. The report, the plot below and the headline have the same",
+     "12,345", 3, tick_ns, whole},
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2, centres, whole}};
 
 // Sorts by magnitude; missing values come first.
@@ -154,15 +156,17 @@ void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewS
   std::string name = slot.name;
   if (ImGui::CalcTextSize(("      " + name).c_str()).x > ImGui::GetContentRegionAvail().x)
     name.erase(std::min(name.find('-'), name.size()));
+  if (!slot.equals.empty()) name += "  (why?)";
   const std::string label = "      " + name + "###slot" + std::to_string(index);
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
   if (ImGui::Selectable(label.c_str(), index == models.selected, flags)) session.models().select(index);
   if (ImGui::IsItemHovered()) view.pointed = index;
   draw_menu(session, models, index, view.table);
-  tip((index == models.selected ? slot.name + " is the active model"
-                                : "Click, or press " + std::to_string(models.number_of(index)) + ", to make " +
-                                      slot.name + " the active model")
+  tip(((index == models.selected ? slot.name + " is the active model"
+                                 : "Click, or press " + std::to_string(models.number_of(index)) + ", to make " +
+                                       slot.name + " the active model") +
+       equal_words(slot))
           .c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
@@ -203,6 +207,12 @@ float column_width(int column) {
 }
 
 }  // namespace
+
+std::string equal_words(const ModelInfo& info) {
+  if (info.equals.empty()) return {};
+  return "\nThe same forces: " + joined(info.equals) +
+         (info.method == "trend" ? ". Cross-validation takes no correction here, so that the trend is left." : ".");
+}
 
 std::vector<int> shown_columns(float room, float (*width)(int)) {
   std::vector<int> columns;

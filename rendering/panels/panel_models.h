@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "rendering/panels/view_state.h"
@@ -15,6 +16,8 @@ namespace palpate {
 // compare a model of another material.
 void draw_model_table(LiveSession& session, const ModelsView& models, ViewState& view, const UiStyle& style,
                       float height);
+// Which other models have the forces of this one, and why; empty: none. Begins with a line break.
+std::string equal_words(const ModelInfo& info);
 // The columns of that table that fit into `room`; `width` gives the width of a column. They are dropped in this order:
 // error in mN, centres, time, force, 99 % error. Name and share within the JND always stay.
 std::vector<int> shown_columns(float room, float (*width)(int column));

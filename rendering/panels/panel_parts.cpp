@@ -4,8 +4,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "engine/base/text.h"
-
 namespace palpate {
 namespace {
 
@@ -59,11 +57,6 @@ std::string in_lines(const std::string& text, float width) {
     line = fits ? longer : word;
   }
   return lines + line;
-}
-
-std::string jnd_text(double error_over_jnd) {
-  // Two digits: a quantile of a stream is rounded up by at most 1.1 % (stream_errors.h).
-  return fixed(error_over_jnd, error_over_jnd < 0.995 ? 2 : error_over_jnd < 9.95 ? 1 : 0);
 }
 
 void quiet_words(const std::string& text) {

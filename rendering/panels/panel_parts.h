@@ -41,8 +41,6 @@ void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::string& te
 std::string fitting(const std::string& text, float room);
 // Breaks lines of `width` at blanks only; Dear ImGui would also break after the decimal point of a number.
 std::string in_lines(const std::string& text, float width);
-// An error over the JND with two or three digits.
-std::string jnd_text(double error_over_jnd);
 // Draws secondary text on the rest of the line. Where it does not fit it is cut, and a tooltip has all of it.
 void quiet_words(const std::string& text);
 // Begins an ImGui window that fills `area`. Call ImGui::End afterwards.

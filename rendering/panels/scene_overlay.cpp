@@ -15,6 +15,19 @@ constexpr auto kFloating = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMo
                            ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_AlwaysAutoResize |
                            ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
+// Height of the buttons, and of the bar of a replay above them.
+float buttons_height(const UiStyle& style) {
+  return std::max(ImGui::GetFrameHeight() + 2.0F * ImGui::GetStyle().WindowPadding.y,
+                  2.4F * height_of(style.fonts().body));
+}
+float replay_height(const LiveSession& session, const UiStyle& style) {
+  if (session.replay() == nullptr) return 0.0F;
+  return (session.test().found_m() != 0.0 ? 4.1F : 2.4F) * height_of(style.fonts().body);
+}
+float big_number_height(const UiStyle& style, float lift) {
+  return lift + height_of(style.fonts().big) + 1.9F * height_of(style.fonts().body);
+}
+
 // The overlay of a frame. `lift` in its functions: height of other parts at the lower edge of the area.
 struct Overlay {
   LiveSession& session;
@@ -46,9 +59,9 @@ struct Overlay {
     return at.y + text_size(font, text, room).y;
   }
 
-  // Draws the sliders that scale the rendered force.
-  void draw_feel() const {
-    ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.4F * height_of(fonts().heading)});
+  // Draws the sliders that scale the rendered force. Returns the y below them.
+  float draw_feel(float top_px) const {
+    ImGui::SetNextWindowPos({area.at.x + 2.0F, top_px});
     ImGui::Begin("feel", nullptr, kFloating);
     auto stiffness = static_cast<float>(session.controls().scale.stiffness);
     auto damping = static_cast<float>(session.controls().scale.damping_Ns_per_m);
@@ -61,8 +74,10 @@ struct Overlay {
             moved;
     ImGui::PopItemWidth();
     tip("Changes only the rendered force. Curves and figures show the unchanged models. J ends it.");
+    const float below_px = top_px + ImGui::GetWindowHeight();
     ImGui::End();
     if (moved) session.controls().scale = {static_cast<double>(stiffness), static_cast<double>(damping)};
+    return below_px;
   }
 
   // Draws the title of the scene, and any exaggeration of force or picture.
@@ -104,14 +119,16 @@ struct Overlay {
     return y + 0.3F * line();
   }
 
-  void draw_data_warning(float top_px) const {
+  // Returns the y below it.
+  float draw_data_warning(float top_px) const {
     const std::string text = data_warning(models());
-    if (text.empty()) return;
+    if (text.empty()) return top_px;
     const float wrap = 0.8F * area.size.x, pad = 0.4F * line();
     const ImVec2 size = text_size(fonts().body, text, wrap);
     const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), top_px + pad);
     draw_plate(list(), at, size, {2.0F * pad, pad}, ink(colours().raised), ink(colours().raised));
     text_at(fonts().body, at, text_ink(false), text, wrap);
+    return at.y + size.y + 2.0F * pad;
   }
 
   // Draws the hint how to press, until the user has pressed with half a newton. Returns the y below it.
@@ -127,75 +144,58 @@ struct Overlay {
                         area.size.x - 1.8F * line());
   }
 
-  // Position in the area of a point relative to the middle of the top of block `index`.
-  glm::vec2 on_screen(std::size_t index, const glm::vec3& point) const {
-    return blocks.on_screen(index, shown.blocks.size(), point, {area.size.x, area.size.y});
+  // The error and the time of a model, as in the table.
+  std::string figures_of(const ModelView& model) const {
+    std::string text;
+    if (model.errors.samples > 0) text = jnd_text(model.errors.p99_error_over_jnd) + " JND";
+    if (model.tick_ns() > 0.0) text += (text.empty() ? "" : ", ") + fixed(model.tick_ns(), 0) + " ns";
+    return text;
   }
 
-  // Top left corner of the label of block `index`. It is at the foot of the block, above the tool of a block in the
-  // rear row, and in the upper right corner of the picture for a single block.
-  ImVec2 label_place(std::size_t index, const ImVec2& size, float lift) const {
-    const std::size_t count = shown.blocks.size();
-    if (count == 1) return {area.at.x + area.size.x - 1.15F * size.x - size.y, area.at.y + 2.6F * size.y};
-    if (count > 2 && index < 2) {  // in the rear row
-      // The length of the tool with a margin, because the tool is lifted between presses.
-      const auto above = 16.0F * static_cast<float>(blocks.geometry().tool_radius_m);
-      const glm::vec2 top = on_screen(index, {0.0F, above, 0.0F});
-      // The two labels of the row share the width if it is small.
-      const glm::vec2 other = on_screen(1 - index, {0.0F, above, 0.0F});
-      const float middle = 0.5F * (top.x + other.x), gap = 0.5F * size.y;
-      const float low = top.x > other.x ? middle + gap : 4.0F;
-      const float high = (top.x > other.x ? area.size.x - 4.0F : middle - gap) - size.x;
-      const float x = std::clamp(top.x - 0.5F * size.x, std::min(low, high), std::max(low, high));
-      return {area.at.x + x, area.at.y + std::max(3.0F * size.y, top.y - 1.9F * size.y)};
-    }
-    const auto half = 0.5F * static_cast<float>(blocks.geometry().length_m);
-    const auto height = static_cast<float>(blocks.geometry().height_m);
-    const glm::vec2 front = on_screen(index, {0.35F * half, -1.02F * height, half});  // before the block, on the table
-    const float x = std::clamp(front.x - 0.5F * size.x, 4.0F, area.size.x - size.x - 4.0F);
-    const float y = std::clamp(front.y + 0.25F * size.y, 4.0F, area.size.y - lift - 1.2F * size.y);
-    return {area.at.x + x, area.at.y + y};
-  }
-
-  // Draws the names of the blocks.
-  void draw_labels(float lift) const {
+  // Draws the name, the 99 % error and the time of each model below its block.
+  void draw_labels() const {
     const std::vector<std::size_t>& slots = shown.blocks;
-    const float pad = 0.25F * height_of(fonts().heading);
+    const glm::vec2 picture(area.size.x, area.size.y);
+    const float pad = 0.22F * line();
     for (std::size_t i = 0; i < slots.size(); ++i) {
       const bool reference = slots[i] == kReferenceBlock;
-      const std::string text =
-          reference ? shown.reference_block
-                    : std::to_string(models().number_of(slots[i])) + "  " + models().slots[slots[i]].name;
-      const ImVec2 size = text_size(fonts().heading, text), at = label_place(i, size, lift);
-      const bool active = slots[i] == models().selected, best = models().verdict.chosen == slots[i];
-      const ImU32 colour =
-          ink(reference ? reference_colour(style.theme()) : slot_colour(models(), slots[i], style.theme()));
-      draw_plate(list(), at, size, {2.0F * pad, 0.5F * pad}, ink(colours().panel, 0.88F), colour);
-      if (slots.size() > 1 && active) {
-        list().AddRect({at.x - 2.0F * pad, at.y - 0.5F * pad}, {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},
-                       colour, 6.0F, 0, 2.0F);
+      const ModelView* model = reference ? nullptr : &models().slots[slots[i]];
+      const std::string name =
+          reference ? shown.reference_block : std::to_string(models().number_of(slots[i])) + "  " + model->name;
+      const std::string figures = reference ? "what all are compared with" : figures_of(*model);
+      const glm::vec2 foot = blocks.foot(i, slots.size(), picture);
+      const float room = std::min(blocks.width_of_one(slots.size(), picture), area.size.x) - 6.0F * pad;
+      ImFont* font = text_size(fonts().heading, name).x < room ? fonts().heading : fonts().body;
+      const ImVec2 above = text_size(font, name), below = text_size(fonts().body, figures);
+      const ImVec2 size(std::max(above.x, below.x), above.y + (figures.empty() ? 0.0F : below.y));
+      const ImVec2 at(area.at.x + std::clamp(foot.x - 0.5F * size.x, 3.0F * pad, area.size.x - size.x - 3.0F * pad),
+                      area.at.y + foot.y + 2.5F * pad);
+      const Rgb colour = reference ? reference_colour(style.theme()) : slot_colour(models(), slots[i], style.theme());
+      const bool active = slots[i] == models().selected && slots.size() > 1;
+      draw_plate(list(), at, size, {2.5F * pad, pad}, ink(colours().panel, 0.9F), ink(colour));
+      if (active) {
+        list().AddRect({at.x - 2.5F * pad, at.y - pad}, {at.x + size.x + 2.5F * pad, at.y + size.y + pad}, ink(colour),
+                       6.0F, 0, 2.0F);
       }
-      text_at(fonts().heading, at, text_ink(!active && !best), text);
-      if (!active && !best) continue;
-      const std::string mark = best && active ? "best, and active" : best ? "best" : slots.size() > 1 ? "active" : "";
-      text_at(fonts().body, {at.x + 0.5F * (size.x - text_size(fonts().body, mark).x), at.y + size.y + 0.6F * pad},
-              text_ink(false), mark);
+      text_at(font, at, text_ink(false), name);
+      const bool above_jnd = !reference && model->errors.samples > 0 && model->errors.p99_error_over_jnd > 1.0;
+      const ImU32 shade = above_jnd ? ink(text_colour(kAboveJndColour, style.theme())) : text_ink(true);
+      text_at(fonts().body, {at.x, at.y + above.y}, shade, figures);
     }
   }
 
-  float big_number_height(float lift) const { return lift + height_of(fonts().big) + 1.9F * line(); }
-
-  // Draws the error of the active model as a large number with its description, and the colour scale of errors.
+  // Draws the error of the model in the headline as a large number with its description, and the colour scale of
+  // errors.
   void draw_big_number(float lift) const {
     const ImVec2 corner(area.at.x + 1.1F * line(), area.at.y + area.size.y - lift);
-    const BigNumber big = big_number(models(), shown.reference_block == "the true material");
+    const BigNumber big = big_number(models());
     const Rgb colour = big.error_over_jnd > 1.0 ? text_colour(kAboveJndColour, style.theme()) : colours().text;
-    const float y = area.at.y + area.size.y - big_number_height(lift);
+    const float y = area.at.y + area.size.y - big_number_height(style, lift);
     text_at(fonts().big, {corner.x, y}, ink(colour), big.number);
     if (ImGui::IsMouseHoveringRect({corner.x, y}, {area.at.x + area.size.x, corner.y})) {
       ImGui::SetTooltip(
-          "99 %% of the samples in contact are off by at most this, in just noticeable differences (JND):\n"
-          "the active row of the table, over %s",
+          "99 %% of the samples in contact are off by at most this, in just noticeable differences (JND), over %s.\n"
+          "Your press: the same of what was pressed here since the last reset (C), with the active model.",
           models().counted.c_str());
     }
     const ImVec2 usual = text_size(fonts().big, "0.00");
@@ -268,10 +268,10 @@ struct Overlay {
     tip("Speed of the replay");
     ImGui::SameLine();
     ImGui::Text("%.2f x", replay.speed());
-    if (session.replay_test().found_m() != 0.0) {
-      bool moved = session.replay_test().moved();
+    if (session.test().found_m() != 0.0) {
+      bool moved = session.test().moved();
       const std::string label =
-          "surface " + fixed(1e3 * session.replay_test().found_m(), 2) + " mm from that of the models; move it there";
+          "surface " + fixed(1e3 * session.test().found_m(), 2) + " mm from that of the models; move it there";
       if (ImGui::Checkbox(label.c_str(), &moved)) session.move_surface(moved);
       tip("On: the surface is moved to where the models fit the recording best. Off: the positions are as recorded.");
     }
@@ -326,19 +326,17 @@ struct Overlay {
 
   void draw() const {
     const bool exhibit = view.exhibit.on;  // has its own texts
-    const float buttons =
-        exhibit ? 0.0F : std::max(ImGui::GetFrameHeight() + 2.0F * ImGui::GetStyle().WindowPadding.y, 2.4F * line());
-    const float surface = session.replay_test().found_m() != 0.0 ? 1.7F * line() : 0.0F;
-    const float bars = buttons + (session.replay() != nullptr ? 2.4F * line() + surface : 0.0F);
+    const float buttons = exhibit ? 0.0F : buttons_height(style);
+    const float bars = buttons + replay_height(session, style);
     float top_px = area.at.y + 2.0F * line();
     if (!exhibit) {
-      draw_labels(big_number_height(bars));
+      draw_labels();
       if (!models().slots.empty()) draw_big_number(bars);
       draw_title();
       top_px = draw_headline();
-      draw_data_warning(top_px);
+      top_px = draw_data_warning(top_px);
       if (view.scales_force) {
-        draw_feel();
+        top_px = draw_feel(top_px);
       } else if (data_warning(models()).empty()) {
         top_px = draw_hint(top_px);
       }
@@ -352,6 +350,14 @@ struct Overlay {
 };
 
 }  // namespace
+
+SceneArea stage_of(const LiveSession& session, const ViewState& view, const UiStyle& style, const SceneArea& area) {
+  if (view.exhibit.on) return area;
+  // Room for a title, a headline of two lines, and its detail.
+  const float above = 3.3F * height_of(style.fonts().body) + 2.0F * height_of(style.fonts().heading);
+  const float below = big_number_height(style, buttons_height(style) + replay_height(session, style));
+  return {{area.at.x, area.at.y + above}, {area.size.x, std::max(1.0F, area.size.y - above - below)}};
+}
 
 std::string scale_words(const ForceScale& scale) {
   return "in the hand: stiffness x " + fixed(scale.stiffness, 2) + ", damping + " + fixed(scale.damping_Ns_per_m, 1);

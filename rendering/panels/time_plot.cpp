@@ -37,23 +37,13 @@ std::vector<std::vector<TimePlot::ColumnPixels>> TimePlot::runs(const ColumnRang
 
 void TimePlot::curve(ImU32 colour, float thickness, const ColumnRange& range) const {
   std::vector<ImVec2> points;
-  // A level part needs its two ends only.
-  const auto add = [&points](float x, float y) {
-    constexpr float kLevel_px = 0.2F;
-    const std::size_t n = points.size();
-    if (n > 1 && std::abs(points[n - 1].y - y) < kLevel_px && std::abs(points[n - 2].y - y) < kLevel_px) {
-      points[n - 1].x = x;
-    } else {
-      points.emplace_back(x, y);
-    }
-  };
   for (const std::vector<ColumnPixels>& run : runs(range)) {
     points.clear();
     for (const auto& [x, low, high] : run) {
       // The nearer end first, because a polyline that reverses its direction has no width there.
       const bool falling = !points.empty() && low - points.back().y > points.back().y - high;
-      add(x, falling ? high : low);
-      if (low - high > 1.5F) add(x, falling ? low : high);
+      points.emplace_back(x, falling ? high : low);
+      if (low - high > 1.5F) points.emplace_back(x, falling ? low : high);
     }
     line(points, colour, thickness);
   }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/live/time_histogram.h"
-#include "rendering/picture/camera.h"
+#include "rendering/picture/block_view.h"
 #include "rendering/ui/colours.h"
 #include "scenes/live/live_session.h"
 
@@ -18,6 +18,8 @@ namespace palpate {
 
 inline constexpr double kShown_s = 10.0;       // time span of the curves without zoom
 inline constexpr double kLeastShown_s = 0.02;  // smallest time span of the curves
+
+inline constexpr std::size_t kAllBlocks = BlockView::kMostBlocks;  // a block of each model and of the reference
 
 inline constexpr float kSmallestText = 0.8F;  // factor on the size of text
 inline constexpr float kLargestText = 1.6F;
@@ -84,11 +86,11 @@ struct FilePicker {
 // Settings that are kept between runs.
 struct Settings {
   Theme theme = Theme::light;
-  std::size_t block_count = 4;      // 1, 2 or 4
-  bool difference = true;           // the lower curves show the difference of every tick; else its mean over 50 ms
-  float text_size = 1.0F;           // factor
-  std::string line_up;              // empty: the default
-  std::vector<std::string> recent;  // files that were opened, the newest first
+  std::size_t block_count = kAllBlocks;  // 1, 2 or all
+  bool difference = true;                // the lower curves show the difference of every tick; else its mean over 50 ms
+  float text_size = 1.0F;                // factor
+  std::string line_up;                   // empty: the default
+  std::vector<std::string> recent;       // files that were opened, the newest first
   CameraTurn camera;
   bool operator==(const Settings&) const = default;
 };
@@ -139,8 +141,7 @@ struct ViewState {
   std::vector<Toast> toasts;
   bool scales_force = false;                           // shows the sliders that scale the rendered force
   bool exaggerated = false;                            // arrows show ten times the difference
-  bool centres_together = true;                        // the slider of centres refits all models that have centres
-  int requested_centres = 0;                           // last value of that slider
+  int requested_centres = 0;                           // last value of the slider of centres
   bool details = false;                                // shows the figures and faults of the loop
   bool has_pressed = false;                            // the user has pressed a block, so that the hint is hidden
   std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse; its curves are labelled

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/live/pacer.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
 
@@ -30,23 +31,15 @@ std::vector<std::size_t> slots_of_blocks(const ModelsView& models, bool referenc
   return slots;
 }
 
-// The samples that the errors cover, since when, and which are excluded.
+// The samples that the errors cover.
 std::string counted_words(const LiveSession& session) {
-  const Comparison& comparison = session.comparison();
-  const std::size_t active = session.models().selected();
-  if (!session.has_reference(comparison.reference())) return session.reference_words(true);
-  if (active >= session.models().size()) return {};
-  if (session.models().info(active).other_material)
-    return "no truth to compare " + session.models().info(active).name + " with";
-  if (session.tests_recording()) {
-    return with_thousands(std::to_string(session.figures(active).errors.samples)) + " samples in contact, all of " +
-           session.replay()->recording().name;
+  if (!session.test().has_recording()) {
+    return session.has_reference() ? fixed(session.comparison().counted_s(), 1) + " s of contact"
+                                   : session.reference_words(true);
   }
-  std::string words = fixed(comparison.counted_s(), 1) + " s of contact since " + comparison.counted_since();
-  const double left_out_s = comparison.contact_s() - comparison.counted_s();
-  if (left_out_s > 0.05) words += "; " + fixed(left_out_s, 1) + " s left out";
-  if (comparison.outside_s() > 0.05) words += ", deeper or faster than recorded";
-  return words;
+  const auto models = session.models().ready_slots();
+  const std::uint64_t samples = models.empty() ? 0 : session.figures(models.front()).errors.samples;
+  return (samples > 0 ? with_thousands(std::to_string(samples)) + " samples in contact of " : "") + session.test_name();
 }
 
 // While a replay is paused, the history gets no ticks. Shows the forces at its playhead of models that became ready
@@ -65,11 +58,11 @@ ModelsView models_view(const LiveSession& session, double until_s) {
   view.selected = session.models().selected();
   view.in_contact = session.newest().tick.in_contact;
   const Comparison& comparison = session.comparison();
-  view.compared = session.has_reference(comparison.reference());
-  if (comparison.reference() == ReferenceKind::direct && view.compared) view.reference = *session.models().reference();
+  view.compared = session.has_reference();
+  if (comparison.reference() == ReferenceKind::model && view.compared) view.reference = *session.models().reference();
   view.reference_name = session.reference_words(true);
   view.counted = counted_words(session);
-  view.replays_training = session.replay() != nullptr && session.replays_training();
+  view.replays_training = session.replay() != nullptr && session.tests_training();
   view.jnd = session.jnd();
   view.verdict = session.verdict();
   const ForceHistory& history = comparison.history();
@@ -92,7 +85,7 @@ std::string reference_block(const LiveSession& session) {
 std::vector<std::size_t> ModelsView::listed() const {
   std::vector<std::size_t> list;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (slots[i].state != SlotState::hidden) list.push_back(i);
+    if (slots[i].state != SlotState::hidden && slots[i].state != SlotState::equal) list.push_back(i);
   }
   return list;
 }
@@ -124,32 +117,21 @@ std::string data_warning(const ModelsView& models) {
   return "No such motion was recorded: here " + models.active()->name + " renders only its trend";
 }
 
-BigNumber big_number(const ModelsView& models, bool has_truth) {
-  const ModelView* active = models.active();
-  if (active == nullptr) {
-    const auto fitting = std::find_if(models.slots.begin(), models.slots.end(),
-                                      [](const ModelView& slot) { return slot.state == SlotState::fitting; });
-    if (fitting == models.slots.end()) return {};
-    return {fixed(100.0 * fitting->progress, 0) + " %", "of the first model, " + fitting->name,
-            has_truth ? "until then only the true material has a force" : "until then there is no force", 0.0};
-  }
+BigNumber big_number(const ModelsView& models) {
   BigNumber big;
-  const std::string& name = active->name;
-  if (active->other_material) {
-    big.below = models.counted;
-  } else if (!models.compared) {
-    const double guess = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
-    if (!std::isnan(guess)) big.number = jnd_text(guess);
-    big.below = name + ": 95 % bound of its error; " + models.reference_name;
-    big.error_over_jnd = guess;
-  } else if (models.selected == models.reference) {
-    big.below = name + " is what the others are compared with";
-  } else if (active->errors.samples == 0) {
-    big.below = "the error of " + name + " from " + models.reference_name + ", from the next touch on";
-  } else {
-    big.error_over_jnd = active->errors.p99_error_over_jnd;
+  const ModelView* active = models.active();
+  if (models.verdict.chosen) {
+    const ModelView& chosen = models.slots[*models.verdict.chosen];
+    big.error_over_jnd = chosen.errors.p99_error_over_jnd;
     big.number = jnd_text(big.error_over_jnd);
-    big.below = "99 % of the time the error of " + name + " is below this";
+    big.what = "of what a hand can notice: the error of " + chosen.name;
+    if (active != nullptr && active->press_samples > 0 && models.selected != models.reference)
+      big.below = "your press: " + jnd_text(active->press_p99_over_jnd) + " with " + active->name;
+  } else if (active != nullptr && !models.compared) {
+    big.error_over_jnd = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
+    big.number = std::isnan(big.error_over_jnd) ? "–" : jnd_text(big.error_over_jnd);
+    big.what = "of what a hand can notice: 95 % bound of the error of " + active->name;
+    big.below = models.reference_name;
   }
   return big;
 }
@@ -166,15 +148,16 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
                   .faults = session.faults().events(),
                   .alarms = session.alarms(),
                   .device_name = session.device_name()};
-  const ReferenceKind kind = session.comparison().reference();
   const std::size_t blocks = view.settings.block_count;
-  const bool reference = blocks > 1 && kind != ReferenceKind::direct && session.has_reference(kind);
+  const bool reference = blocks > 1 && session.comparison().reference() != ReferenceKind::model;
   shown.blocks = slots_of_blocks(shown.models, reference, blocks);
   shown.reference_block = reference_block(session);
   shown.reference_words = session.reference_words();
   shown.usual_force_N = kUsualOverStrongest * session.scene().strongest_press_N;
   shown.usual_depth_m = session.models().trained_depth_m();
   shown.history = &session.comparison().history();
+  const bool stands = session.replay() != nullptr && session.replay()->paused() && shown.history->size() > 0;
+  shown.now_s = stands ? (*shown.history)[shown.history->size() - 1].loop_time_s : steady_now_s();
   return shown;
 }
 

@@ -71,6 +71,7 @@ struct WindowView {
   std::vector<std::size_t> blocks;
   std::string reference_block;  // name of the block of the reference
   std::string reference_words;
+  double now_s = 0.0;          // loop time at the right edge of running curves: now; of a paused replay its last tick
   double usual_force_N = 0.0;  // the axes extend at least to this force and this depth
   double usual_depth_m = 0.0;
   const ForceHistory* history = nullptr;  // of the session; not null in a result of window_view
@@ -81,14 +82,15 @@ WindowView window_view(const LiveSession& session, const ViewState& view);
 // A warning that the active model is outside its training domain; else empty.
 std::string data_warning(const ModelsView& models);
 
-// The big number and its description: the 99 % error of the active model in JND, over the same samples as the table;
-// without a reference its predicted error; before the first model is ready the progress of its fit.
+// The big number and its description: the 99 % error of the model in the headline, which is that of the table, and the
+// error of the active model in the user's own presses. Without a reference it is the predicted error of the active
+// model.
 struct BigNumber {
-  std::string number = "–";
-  std::string what = "times the smallest difference a hand can feel:";
-  std::string below = "the error of the active model";
+  std::string number{};  // empty: there is none
+  std::string what{};
+  std::string below{};
   double error_over_jnd = 0.0;  // above 1 it is drawn in kAboveJndColour
 };
-BigNumber big_number(const ModelsView& models, bool has_truth);
+BigNumber big_number(const ModelsView& models);
 
 }  // namespace palpate

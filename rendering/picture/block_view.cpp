@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
-#include <iterator>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "scenes/scene/folders.h"
@@ -15,150 +16,185 @@
 namespace palpate {
 namespace {
 
-constexpr float kBetween = 1.32F;        // distance of neighbouring blocks, in widths
-constexpr float kStrongestArrow = 0.3F;  // for the scene's strongest press, in sizes of a block
-constexpr float kLongestArrow = 0.6F;
-constexpr float kUsualSize_m = 0.1F;
-constexpr float kArrowTip_m = 0.0085F, kArrowRadius_m = 0.0038F;
+constexpr float kYaw_rad = 0.16F, kPitch_rad = 0.30F;
+constexpr float kLift_m = 0.012F;         // room above the tool between presses
+constexpr float kLabel = 0.075F;          // height of the text below a block, in heights of the picture
+constexpr float kStrongestArrow = 0.85F;  // for the scene's strongest press, in lengths of the tool
+constexpr float kLongestArrow = 1.3F;
 constexpr float kShortestArrow_N = 0.03F;
+// In radii of the tool as drawn: the places of the arrows of the truth and of the model, and their half widths.
+constexpr float kTrueArrow = 1.75F, kModelArrow = 2.75F, kTrueArrowWidth = 0.13F, kModelArrowWidth = 0.25F;
 constexpr float kOutline = 0.0019F, kLeastOutline_px = 0.75F;  // width of outlines, in heights of the picture
-constexpr float kFrameWidth_m = 0.0022F;                       // of the frame on the active block
+constexpr float kLine = 0.0055F, kLeastLine_px = 2.5F;         // of the surface in the cut
+// The depth of a dent decreases to 0 up to this share of the distance to the nearest side (dent.glsl).
+constexpr float kMoves = 0.9F;
 // Rise and radius of a dome, in radii of the tool: the rise of the virtual button (scenes/material/button_block.h),
-// exaggerated like a dent, and a visible width.
-constexpr float kDomeRise = 0.5F * kDeeperDents, kDomeRadius = 2.0F;
+// and a visible width.
+constexpr float kDomeRise = 0.5F, kDomeRadius = 2.0F;
 // Share of transmitted light, gloss, pores and lines of the grid, in the order of Finish.
 struct Material {
   float translucent, gloss, pores, grid;
 };
-constexpr Material kMaterials[] = {{0.75F, 0.55F, 0.0F, 0.20F}, {0.25F, 0.06F, 0.30F, 0.10F},
-                                   {1.00F, 1.00F, 0.0F, 0.12F}, {0.05F, 0.45F, 0.0F, 0.25F},
-                                   {0.90F, 0.20F, 0.0F, 0.12F}, {0.30F, 0.50F, 0.0F, 0.14F}};
-// Only the parts of the block's shader that the material needs: a software renderer computes both sides of a branch.
-std::string definitions_of(Finish finish) {
-  std::string lines;
-  if (kMaterials[static_cast<std::size_t>(finish)].pores > 0.0F) lines += "#define PORES\n";
-  if (finish == Finish::dome) lines += "#define DOME\n";
-  return lines;
-}
+constexpr Material kMaterials[] = {{0.75F, 0.55F, 0.0F, 0.16F}, {0.25F, 0.06F, 0.30F, 0.08F},
+                                   {1.00F, 1.00F, 0.0F, 0.10F}, {0.05F, 0.45F, 0.0F, 0.22F},
+                                   {0.90F, 0.20F, 0.0F, 0.10F}, {0.30F, 0.50F, 0.0F, 0.12F}};
 
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
 
 // The tool, in units of the ball's radius, with the tip at y = 0: a polished ball on a stem, the disc of a force
-// sensor, and a dull handle.
-constexpr float kToolLength = 15.2F, kToolWidth = 1.44F;
-std::vector<glm::vec2> ball_profile(const Detail& detail) {
+// sensor, and a dull handle. The two points of a corner of a profile differ slightly, because equal points have no
+// normal.
+constexpr float kToolLength = 6.4F, kToolWidth = 1.16F;
+std::vector<glm::vec2> ball_profile() {
+  constexpr int kSteps = 30;
   std::vector<glm::vec2> profile;
-  const int steps = 2 * detail.around / 3;
-  for (int i = 0; i <= steps; ++i) {
-    const float share = static_cast<float>(i) / static_cast<float>(steps);
-    const float angle = std::numbers::pi_v<float> * (share * 0.89F - 0.5F);
+  for (int i = 0; i <= kSteps; ++i) {
+    const float angle = std::numbers::pi_v<float> * (static_cast<float>(i) / static_cast<float>(kSteps) * 0.88F - 0.5F);
     profile.emplace_back(std::max(1e-4F, std::cos(angle)), 1.0F + std::sin(angle));
   }
-  for (const glm::vec2 point : {glm::vec2(0.30F, 2.02F), glm::vec2(0.30F, 5.0F), glm::vec2(0.33F, 5.2F),
-                                glm::vec2(0.80F, 5.9F), glm::vec2(0.86F, 6.1F)}) {
+  for (const glm::vec2 point : {glm::vec2(0.36F, 2.03F), glm::vec2(0.36F, 2.7F), glm::vec2(0.42F, 2.8F),
+                                glm::vec2(0.80F, 3.1F), glm::vec2(0.84F, 3.2F)}) {
     profile.push_back(point);
   }
   return profile;
 }
+const std::vector<glm::vec2> kSensor{{0.80F, 3.2F},       {1.10F, 3.201F}, {kToolWidth, 3.27F},
+                                     {kToolWidth, 3.72F}, {1.10F, 3.8F},   {0.8F, 3.801F}};
 std::vector<glm::vec2> handle_profile() {
-  std::vector<glm::vec2> profile{{0.9F, 7.0F}, {1.02F, 7.3F}, {1.04F, 8.0F}, {0.98F, 9.4F}, {1.10F, 12.6F}};
+  std::vector<glm::vec2> profile{{0.78F, 3.8F}, {0.84F, 4.0F}, {0.80F, 4.5F}, {0.86F, 5.6F}};
   for (int i = 0; i <= 8; ++i) {
     const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / 8.0F;
-    profile.emplace_back(std::max(1e-4F, 1.12F * std::cos(angle)), kToolLength - 1.12F + 1.12F * std::sin(angle));
+    profile.emplace_back(std::max(1e-4F, 0.86F * std::cos(angle)), kToolLength - 0.7F + 0.7F * std::sin(angle));
   }
   return profile;
 }
 
-}  // namespace
+glm::vec2 size_of(const BlockGeometry& block) { return {block.width_m, block.length_m}; }
+float rim_of(const BlockGeometry& block) { return 0.5F * static_cast<float>(std::min(block.width_m, block.length_m)); }
 
-// The two points of a corner of a profile differ slightly, because equal points have no normal.
-
-BlockView::Bodies::Bodies(const BlockGeometry& block, float dome_m, const Detail& detail)
-    : top(block_top(glm::vec2(block.width_m, block.length_m), detail)),
-      sides(block_sides(glm::vec2(block.width_m, block.length_m), static_cast<float>(block.height_m) - dome_m, detail)),
-      ball(lathe_mesh(ball_profile(detail), detail.around)),
-      sensor(lathe_mesh(
-          {{0.80F, 6.0F}, {1.36F, 6.001F}, {kToolWidth, 6.1F}, {kToolWidth, 6.9F}, {1.36F, 7.0F}, {0.9F, 7.001F}},
-          detail.around)),
-      handle(lathe_mesh(handle_profile(), detail.around)),
-      shaft(lathe_mesh({{1e-4F, 0.0F}, {0.0014F, 1e-5F}, {0.0014F, 1.0F}}, detail.around / 2)),
-      tip(lathe_mesh({{1e-4F, 0.0F}, {kArrowRadius_m, 1e-5F}, {0.0037F, 2e-4F}, {1e-4F, kArrowTip_m}}, detail.around)) {
+Viewport grown(const glm::vec2& low, const glm::vec2& high, const glm::vec2& most) {
+  constexpr float kMargin_px = 2.0F;  // of antialiasing
+  const glm::vec2 from = glm::clamp(glm::floor(low - kMargin_px), glm::vec2(0.0F), most);
+  const glm::vec2 to = glm::clamp(glm::ceil(high + kMargin_px), from, most);
+  return {static_cast<int>(from.x), static_cast<int>(from.y), static_cast<int>(to.x - from.x),
+          static_cast<int>(to.y - from.y)};
 }
 
-Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene, std::optional<Smoothing> smoothing) {
+}  // namespace
+
+Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene, float magnified) {
   const auto assets = find_assets();
   if (!assets) return assets.error();
-  if (!smoothing) smoothing = smoothing_for(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+  // Only the parts of the block's shader that the material needs: a software renderer computes both sides of a branch.
+  std::string material;
+  if (kMaterials[static_cast<std::size_t>(scene.finish)].pores > 0.0F) material += "#define PORES\n";
+  if (scene.finish == Finish::dome) material += "#define DOME\n";
+  const std::vector<std::string> body{"common"}, surface{"common", "dent"}, soft{"common", "dent", "material"};
   struct Program {
     const char *vertex, *fragment;
-    std::vector<std::string> parts = {"common"};
+    std::vector<std::string> parts;
     std::string definitions = {};
   };
-  std::vector<Program> programs = {
-      {"block", "block", {"common", "dent"}, definitions_of(scene.finish)}, {"solid", "solid"}, {"table", "table"}};
-  if (*smoothing == Smoothing::filter) {
-    programs.push_back({"whole_view", "find_edges"});
-    programs.push_back({"whole_view", "edges"});
-  }
-  std::vector<Shader> shaders;
+  const std::vector<Program> programs = {{"block", "block", soft, material + "#define TOP\n"},
+                                         {"section", "section", soft, material},
+                                         {"block", "block", soft, material},
+                                         {"solid", "solid", body},
+                                         {"table", "table", body},
+                                         {"line", "line", surface, material},
+                                         {"flat", "arrow", {}},
+                                         {"flat", "halo", {}},
+                                         {"flat", "sprite", {}}};
+  std::vector<Shader> made;
   for (const auto& [vertex, fragment, parts, definitions] : programs) {
     auto shader = Shader::load(*assets + "/shaders", vertex, fragment, parts, definitions);
     if (!shader) return shader.error();
-    shaders.push_back(std::move(*shader));
+    made.push_back(std::move(*shader));
   }
-  return std::unique_ptr<BlockView>(new BlockView(scene, std::move(shaders)));
+  Shaders shaders{std::move(made[0]), std::move(made[1]), std::move(made[2]), std::move(made[3]), std::move(made[4]),
+                  std::move(made[5]), std::move(made[6]), std::move(made[7]), std::move(made[8])};
+  return std::unique_ptr<BlockView>(new BlockView(scene, magnified, std::move(shaders)));
 }
 
-// `shaders`: of the blocks, of other bodies, of the table, and with the edge filter two for it.
-BlockView::BlockView(const Scene& scene, std::vector<Shader> shaders)
+BlockView::BlockView(const Scene& scene, float magnified, Shaders shaders)
     : geometry_(scene.block),
-      dome_m_(scene.finish == Finish::dome ? kDomeRise * static_cast<float>(scene.block.tool_radius_m) : 0.0F),
+      magnified_(magnified),
+      radius_m_(magnified * static_cast<float>(scene.block.tool_radius_m)),
+      dome_m_(scene.finish == Finish::dome ? kDomeRise * radius_m_ : 0.0F),
+      middle_m_(std::min(kMoves * rim_of(geometry_), rim_of(geometry_) - kEdge_m)),
       finish_(scene.finish),
       block_colour_(hex(scene.block_colour)),
-      tool_colour_(hex(0x9BA1A7)),
-      size_m_(std::max(static_cast<float>(scene.block.width_m),
-                       1.3F * kToolLength * static_cast<float>(scene.block.tool_radius_m))),
-      arrow_m_per_N_(kStrongestArrow * size_m_ / static_cast<float>(scene.strongest_press_N)),
-      arrow_width_(size_m_ / kUsualSize_m),
-      block_shader_(std::move(shaders[0])),
-      solid_shader_(std::move(shaders[1])),
-      table_shader_(std::move(shaders[2])),
-      fine_(scene.block, dome_m_, kFine),
-      coarse_(scene.block, dome_m_, kCoarse),
+      arrow_m_per_N_(kStrongestArrow * kToolLength * radius_m_ / static_cast<float>(scene.strongest_press_N)),
+      shaders_(std::move(shaders)),
+      top_(block_top(size_of(geometry_), 96, finish_ == Finish::dome ? 48 : 24)),
+      sides_(block_sides(size_of(geometry_), static_cast<float>(geometry_.height_m), -dome_m_, 96)),
+      section_(block_section(0.5F * size_of(geometry_).x, 0.5F * size_of(geometry_).x,
+                             static_cast<float>(geometry_.height_m), 0.0F, 160)),
       square_(square_mesh()),
-      smooth_(shaders.size() > 3 ? std::optional(EdgeFilter{std::move(shaders[3]), std::move(shaders[4])})
-                                 : std::nullopt) {
-  show(1, true);
+      ball_(lathe_mesh(ball_profile(), 40)),
+      sensor_(lathe_mesh(kSensor, 40)),
+      handle_(lathe_mesh(handle_profile(), 40)),
+      middle_(block_middle(middle_m_, 14, finish_ == Finish::dome ? 16 : 11)),
+      moving_section_(block_section(middle_m_, 0.5F * size_of(geometry_).x,
+                                    0.97F * static_cast<float>(geometry_.height_m), 0.0F, 40)),
+      line_(line_mesh(middle_m_, 40)) {
+  show(1, glm::vec2(1.0F), true);
 }
 
-void BlockView::show(std::size_t count, bool at_once) {
-  // With several blocks the camera is nearer to the front, so that no block hides another.
-  if (count == 1) {
-    camera_.frame(0.92F * size_m_, 0.5F, at_once);
-  } else {
-    camera_.frame((count == 2 ? 1.42F : 1.78F) * size_m_, 0.3F, at_once);
+// The arrangement in which the blocks are largest.
+BlockView::Cells BlockView::cells(std::size_t count, const glm::vec2& size) const {
+  const float height = size.y * (1.0F - above_ - below_);
+  const float high_m = kToolLength * radius_m_ + kLift_m + static_cast<float>(geometry_.height_m);
+  Cells best;
+  float largest = 0.0F;
+  for (std::size_t columns = 1; columns <= count; ++columns) {
+    const std::size_t rows = (count + columns - 1) / columns;
+    const glm::vec2 one =
+        glm::floor(glm::vec2(size.x / static_cast<float>(columns), height / static_cast<float>(rows)));
+    const float label = kLabel * size.y;
+    const float scale = std::min(one.x / static_cast<float>(geometry_.width_m), (one.y - label) / high_m);
+    if (scale <= largest) continue;
+    largest = scale;
+    best = {columns, rows, one, std::round(size.y * above_), label};
   }
+  return best;
 }
 
-float BlockView::outline_px() const {
-  return std::max(kLeastOutline_px, kOutline * static_cast<float>(smooth_.height()));
+// The upper left corner of a cell. A row with fewer blocks is in the middle.
+glm::vec2 BlockView::corner(std::size_t index, std::size_t count, const Cells& cells, const glm::vec2& size) const {
+  const std::size_t row = index / cells.columns;
+  const std::size_t in_row = std::min(cells.columns, count - row * cells.columns);
+  const float left = 0.5F * (size.x - static_cast<float>(in_row) * cells.size.x);
+  return glm::floor(glm::vec2(left + static_cast<float>(index % cells.columns) * cells.size.x,
+                              cells.top + static_cast<float>(row) * cells.size.y));
 }
 
-float BlockView::arrow_length_m(const BlockPose& pose) const {
-  return std::min(arrow_m_per_N_ * pose.force_N, kLongestArrow * size_m_);
-}
-
-glm::vec3 BlockView::place(std::size_t index, std::size_t count) const {
-  const auto step = kBetween * static_cast<float>(geometry_.width_m);
-  const float column = count == 1 ? 0.0F : index % 2 == 0 ? -0.5F : 0.5F;
-  const float row = count < 3 ? 0.0F : index < 2 ? -0.5F : 0.5F;
-  return {column * step, 0.0F, row * step};
+void BlockView::show(std::size_t count, const glm::vec2& size, bool at_once) {
+  const Cells grid = cells(count, size);
+  const auto half_x = 0.5F * static_cast<float>(geometry_.width_m),
+             half_z = 0.5F * static_cast<float>(geometry_.length_m);
+  // The extent seen from the camera, without perspective; the margins are for it.
+  const float high =
+      std::max((kToolLength * radius_m_ + kLift_m) * std::cos(kPitch_rad), half_z * std::sin(kPitch_rad));
+  const float low = -static_cast<float>(geometry_.height_m) * std::cos(kPitch_rad);
+  const float wide = 2.0F * (half_x * std::cos(kYaw_rad) + 0.5F * half_z * std::sin(kYaw_rad));
+  const float px_per_m = std::min((grid.size.y - grid.label) / (1.06F * (high - low)), grid.size.x / (1.12F * wide));
+  const float radius_m = 0.5F * std::min(grid.size.x, grid.size.y) / px_per_m;
+  const float height_m = (0.5F * (high + low) - 0.5F * grid.label / px_per_m) / std::cos(kPitch_rad);
+  camera_.frame(radius_m, height_m, kYaw_rad, kPitch_rad, at_once);
 }
 
 glm::vec2 BlockView::on_screen(std::size_t index, std::size_t count, const glm::vec3& point,
                                const glm::vec2& size) const {
-  return project(camera_.view_projection(size.x / size.y), place(index, count) + point, size);
+  const Cells grid = cells(count, size);
+  return corner(index, count, grid, size) +
+         project(camera_.view_projection(grid.size.x / grid.size.y), point, grid.size);
 }
+
+glm::vec2 BlockView::foot(std::size_t index, std::size_t count, const glm::vec2& size) const {
+  return on_screen(index, count, {0.0F, -static_cast<float>(geometry_.height_m), 0.0F}, size);
+}
+
+float BlockView::width_of_one(std::size_t count, const glm::vec2& size) const { return cells(count, size).size.x; }
 
 float BlockView::depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const {
   constexpr float kProbe_m = 0.01F;
@@ -167,215 +203,355 @@ float BlockView::depth_per_pixel(std::size_t index, std::size_t count, const glm
   return kProbe_m / std::max(pixels, 1.0F);
 }
 
+// A depth as drawn. It ends above the bottom of the block.
+float BlockView::drawn_m(float depth_m) const {
+  const float deepest_m = 0.7F * static_cast<float>(geometry_.height_m);
+  return depth_m > 0.0F ? std::min(magnified_ * depth_m, std::max(depth_m, deepest_m)) : depth_m;
+}
+
+float BlockView::outline_px() const { return std::max(kLeastOutline_px, kOutline * static_cast<float>(still_.height)); }
+
+float BlockView::arrow_px(float force_N) const {
+  return px_per_m_ * std::min(arrow_m_per_N_ * force_N, kLongestArrow * kToolLength * radius_m_);
+}
+
+float BlockView::opacity_of_error(const BlockPose& pose) const {
+  // Shallow dents have no colour, because there is no error to show.
+  return pose.shows_error ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, drawn_m(pose.dent_m)) : 0.0F;
+}
+
+// Radius of the halo in pixels, which grows with the error; 0: none.
+float BlockView::halo_px(const BlockPose& pose) const {
+  if (!(pose.error_over_jnd > 1.0F) || opacity_of_error(pose) <= 0.0F) return 0.0F;
+  return radius_m_ * px_per_m_ * (1.45F + 0.8F * std::min(pose.error_over_jnd - 1.0F, 2.5F));
+}
+
+glm::vec2 BlockView::in_cell(const glm::vec3& point) const {
+  const glm::vec2 flipped = project(view_projection_, point, cell_);
+  return {flipped.x, cell_.y - flipped.y};
+}
+
+// The part of a cell that contains a box.
+Viewport BlockView::part_around(const glm::vec3& low, const glm::vec3& high) const {
+  glm::vec2 least = cell_, most(0.0F);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec2 pixel = in_cell(
+        {(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y, (corner & 4) != 0 ? high.z : low.z});
+    least = glm::min(least, pixel);
+    most = glm::max(most, pixel);
+  }
+  return grown(least, most, cell_);
+}
+
+// The parts of a cell that are drawn in each frame: the block without its rim, and the tool with arrows and halo.
+std::vector<Viewport> BlockView::moving_parts(const BlockPose& pose) const {
+  const glm::vec2 tip = in_cell({0.0F, -drawn_m(pose.tool_m), 0.0F});
+  const float arrows = std::max(pose.force_N, pose.shows_truth ? pose.true_force_N : 0.0F);
+  const glm::vec2 surface = in_cell({0.0F, 0.0F, 0.0F});
+  const float line = 0.5F * kLine * cell_.y + kLeastLine_px;
+  glm::vec2 low = tip + tool_low_, high = tip + tool_high_;
+  if (arrows > kShortestArrow_N) {
+    low = glm::min(low, surface - glm::vec2(0.0F, arrow_px(arrows) + line));
+    high = glm::max(high, surface + glm::vec2(radius_m_ * px_per_m_ * (kModelArrow + 3.0F * kModelArrowWidth), line));
+  }
+  const float halo = halo_px(pose);
+  const glm::vec2 ball = in_cell({0.0F, radius_m_ - drawn_m(pose.dent_m), 0.0F});
+  Viewport block =
+      part_around({-middle_m_, -static_cast<float>(geometry_.height_m), -middle_m_}, {middle_m_, 0.0F, 0.0F});
+  block = around_both(block, grown(surface - line, surface + line, cell_));
+  std::vector<Viewport> parts{block, grown(low, high, cell_)};
+  if (halo > 0.0F) parts.push_back(grown(ball - halo - line, ball + halo + line, cell_));
+  return parts;
+}
+
+// From pixels of the picture to the window, whose origin is at the lower left.
+Viewport BlockView::in_window(const Viewport& part) const {
+  const int wide = viewport_.width, high = viewport_.height, width = pixels_.width(), height = pixels_.height();
+  const int left = part.x * wide / width, right = ((part.x + part.width) * wide + width - 1) / width;
+  const int top = part.y * high / height, low = ((part.y + part.height) * high + height - 1) / height;
+  // With a margin of the pixels into which the outermost ones are interpolated.
+  const int margin = width != wide || height != high ? 2 : 0;
+  return common_part(viewport_, {viewport_.x + left - margin, viewport_.y + high - low - margin,
+                                 right - left + 2 * margin, low - top + 2 * margin});
+}
+
+void BlockView::copy_to_window(const Viewport& part) const {
+  const int wide = viewport_.width, high = viewport_.height;
+  if (wide < 1 || high < 1) return;
+  const Viewport whole{0, 0, pixels_.width(), pixels_.height()};
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(part.x, part.y, part.width, part.height);
+  if (whole.width == wide && whole.height == high) {
+    const Viewport from{part.x - viewport_.x, high - (part.y - viewport_.y) - part.height, part.width, part.height};
+    pixels_.copy_to(nullptr, from, part);
+  } else {
+    pixels_.copy_to(nullptr, whole, viewport_);
+  }
+  glDisable(GL_SCISSOR_TEST);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+std::vector<Viewport> BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme,
+                                      float scale, bool all) {
+  if (viewport.width < 1 || viewport.height < 1 || blocks.empty()) return {};
+  const auto scaled = [scale](int size) {
+    return std::max(1, static_cast<int>(std::round(scale * static_cast<float>(size))));
+  };
+  const int width = scaled(viewport.width), height = scaled(viewport.height);
+  all = all || viewport != viewport_;
+  viewport_ = viewport;
+  const glm::vec2 size(width, height);
+  const Cells grid = cells(blocks.size(), size);
+  cell_ = grid.size;
+  view_projection_ =
+      glm::scale(glm::mat4(1.0F), glm::vec3(1.0F, -1.0F, 1.0F)) * camera_.view_projection(cell_.x / cell_.y);
+  px_per_m_ = glm::length(in_cell({0.0F, 0.01F, 0.0F}) - in_cell(glm::vec3(0.0F))) / 0.01F;
+  glFrontFace(GL_CW);  // the first row is the upper one
+  const Still now{view_projection_, width, height, blocks.size(), theme, above_, below_};
+  if (now != still_) {
+    still_ = now;
+    all = true;
+    pixels_.draw_into(width, height);
+    draw_still(blocks.size(), theme);
+  }
+  pixels_.draw_into(width, height);
+  std::vector<Viewport> changed;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (i < drawn_.size() && drawn_[i] == blocks[i]) continue;
+    const glm::vec2 at = corner(i, blocks.size(), grid, size);
+    const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
+    const std::vector<Viewport> parts = moving_parts(blocks[i]);
+    std::vector<Viewport> drawn = parts;
+    if (i < drawn_parts_.size()) {
+      for (std::size_t k = 0; k < drawn_parts_[i].size(); ++k) {
+        if (k < drawn.size()) {
+          drawn[k] = around_both(drawn[k], drawn_parts_[i][k]);
+        } else {
+          drawn.push_back(drawn_parts_[i][k]);
+        }
+      }
+    }
+    drawn_parts_.resize(blocks.size());
+    drawn_parts_[i] = parts;
+    for (Viewport& part : drawn) {
+      part.x += x;
+      part.y += y;
+      still_pixels_.copy_to(&pixels_, part, part);
+      changed.push_back(in_window(part));
+    }
+    pixels_.draw_into(width, height);
+    glViewport(x, y, static_cast<int>(cell_.x), static_cast<int>(cell_.y));
+    draw_moving(blocks[i]);
+  }
+  drawn_ = blocks;
+  glFrontFace(GL_CCW);
+  glBindVertexArray(0);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  if (all) changed = {viewport};
+  for (const Viewport& part : changed) copy_to_window(part);
+  return changed;
+}
+
 void BlockView::begin(const Shader& shader) const {
   shader.use();
   shader.set("view_projection", view_projection_);
   shader.set("eye", camera_.eye());
   shader.set("light", kLight);
+}
+
+// Sets the common values of the shaders for the parts of a block.
+void BlockView::begin_block(const Shader& shader) const {
+  const Material& material = kMaterials[static_cast<std::size_t>(finish_)];
+  begin(shader);
+  shader.set("half_size", glm::vec3(0.5 * geometry_.width_m, geometry_.height_m, 0.5 * geometry_.length_m));
+  shader.set("colour", block_colour_);
+  shader.set("translucent", material.translucent);
+  shader.set("gloss", material.gloss);
+  shader.set("pores", material.pores);
+  shader.set("grid", material.grid);
+  shader.set("mark", 0.0F);
+  shader.set("tip", -1.0F);  // the tip is far above
+  set_dent(shader, 0.0F);
+}
+
+void BlockView::set_dent(const Shader& shader, float depth_m) const {
+  const DentShape dent = dent_under_ball(drawn_m(depth_m), radius_m_);
+  shader.set("dent", dent.depth_m);
+  shader.set("contact", dent.contact_m);
+  shader.set("edge", dent.edge_m);
+  shader.set("tool_radius", radius_m_);
+  shader.set("rim", rim_of(geometry_));
+  shader.set("dome", dome_m_);
+  shader.set("dome_radius", kDomeRadius * radius_m_);
+}
+
+void BlockView::set_error(const Shader& shader, const BlockPose& pose) const {
+  begin_block(shader);
+  set_dent(shader, pose.dent_m);
+  shader.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
+  shader.set("mark", opacity_of_error(pose));
+  shader.set("mark_radius", 1.5F * radius_m_ + 2.4F * drawn_m(std::max(0.0F, pose.dent_m)));
+  shader.set("tip", drawn_m(pose.tool_m));
+  shader.set("outline_colour", outline_on(block_colour_));
   shader.set("outline_width", outline_px());
 }
 
-const BlockView::Bodies& BlockView::bodies(std::size_t count, const Viewport& viewport) const {
-  constexpr float kFineFrom_px = 420.0F;
-  const glm::vec2 size(viewport.width, viewport.height);
-  const glm::vec3 side(0.5F * static_cast<float>(geometry_.width_m), 0.0F, 0.0F);
-  const float width_px = glm::length(on_screen(0, count, side, size) - on_screen(0, count, -side, size));
-  return width_px < kFineFrom_px ? coarse_ : fine_;
+void BlockView::draw_still(std::size_t count, Theme theme) {
+  const Rgb& background = palette(theme).background;
+  const auto clear = [&] {
+    glClearColor(background.r, background.g, background.b, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  };
+  const int width = static_cast<int>(cell_.x), height = static_cast<int>(cell_.y);
+  fine_.draw_into(2 * width, 2 * height);
+  clear();
+  draw_cell(theme);
+  draw_tool(theme);
+  still_pixels_.draw_into(still_.width, still_.height);
+  clear();
+  const glm::vec2 size(still_.width, still_.height);
+  const Cells grid = cells(count, size);
+  std::optional<Viewport> first;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec2 at = corner(i, count, grid, size);
+    const Viewport part{static_cast<int>(at.x), static_cast<int>(at.y), width, height};
+    if (first) {
+      still_pixels_.copy_to(&still_pixels_, *first, part);
+    } else {
+      fine_.copy_to(&still_pixels_, {0, 0, 2 * width, 2 * height}, part);
+      first = part;
+    }
+  }
+  const Viewport whole{0, 0, still_.width, still_.height};
+  still_pixels_.copy_to(&pixels_, whole, whole);
+  drawn_.clear();
+  drawn_parts_.clear();
 }
 
-void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme, float scale) {
-  if (viewport.width < 1 || viewport.height < 1) return;
-  view_projection_ = camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
-  const Bodies& shown = bodies(blocks.size(), viewport);
-  glDisable(GL_BLEND);
-  glEnable(GL_CULL_FACE);
-  smooth_.begin(viewport, scale);
-  if (smooth_.filters()) {
-    // The picture of the static parts is kept until something changes that it depends on.
-    const Still now{view_projection_, smooth_.width(), smooth_.height(), blocks.size(), theme};
-    if (now != still_) {
-      smooth_.begin_still();
-      draw_still(blocks.size(), shown, theme);
-      smooth_.end_still();
-      still_ = now;
-    }
-    smooth_.use_still(moving_parts(blocks));
-  } else {
-    draw_still(blocks.size(), shown, theme);
-  }
+// The static parts of a block, with its surface at rest.
+void BlockView::draw_cell(Theme theme) {
+  // The table is behind and below everything else, so it needs no depth test.
+  const auto width = static_cast<float>(geometry_.width_m), length = static_cast<float>(geometry_.length_m);
+  begin(shaders_.table);
+  shaders_.table.set("table_y", -static_cast<float>(geometry_.height_m));
+  shaders_.table.set("reach", std::min(0.8F * std::max(width, length), 0.5F * cell_.x / px_per_m_));
+  shaders_.table.set("table_colour", palette(theme).table);
+  shaders_.table.set("background", palette(theme).background);
+  shaders_.table.set("half_size", 0.5F * glm::vec2(width, length));
+  square_.draw();
   glEnable(GL_DEPTH_TEST);
-  for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()), shown, theme);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    draw_top(blocks[i], place(i, blocks.size()), shown, blocks[i].chosen && blocks.size() > 1);
-  }
+  glEnable(GL_CULL_FACE);
+  begin_block(shaders_.sides);
+  sides_.draw();
+  begin_block(shaders_.top);
+  top_.draw();
+  begin_block(shaders_.section);
+  section_.draw();
   glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);
-  glBindVertexArray(0);
-  smooth_.end();
 }
 
-// The parts of the picture that are drawn in each frame: the top of each block, and each tool with its arrow.
-std::vector<Viewport> BlockView::moving_parts(const std::vector<BlockPose>& blocks) const {
-  const auto half_x = 0.5F * static_cast<float>(geometry_.width_m),
-             half_z = 0.5F * static_cast<float>(geometry_.length_m);
-  const auto radius = static_cast<float>(geometry_.tool_radius_m);
-  std::vector<Viewport> parts;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const BlockPose& pose = blocks[i];
-    const glm::vec3 at = place(i, blocks.size());
-    const float lowest = std::min(-pose.dent_m, -dome_m_);
-    parts.push_back(part_around(at + glm::vec3(-half_x, lowest, -half_z), at + glm::vec3(half_x, 0.0F, half_z)));
-    const float thick = kToolWidth * radius;
-    parts.push_back(part_around(at + glm::vec3(-thick, -pose.tool_m, -thick),
-                                at + glm::vec3(thick, kToolLength * radius - pose.tool_m, thick)));
-    if (pose.force_N < kShortestArrow_N) continue;
-    const glm::vec3 foot = at + arrow_foot(), head(arrow_width_ * kArrowRadius_m, 0.0F, arrow_width_ * kArrowRadius_m);
-    parts.push_back(
-        part_around(foot - head - glm::vec3(0.0F, dome_m_, 0.0F),
-                    foot + head + glm::vec3(0.0F, arrow_length_m(pose) + arrow_width_ * kArrowTip_m, 0.0F)));
-  }
-  return parts;
-}
-
-// The part of the picture that contains a box and the pixels around it that the edge filter changes with it.
-Viewport BlockView::part_around(const glm::vec3& low, const glm::vec3& high) const {
-  const glm::vec2 size(smooth_.width(), smooth_.height());
-  glm::vec2 least = size, most(0.0F);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 point((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
-                          (corner & 4) != 0 ? high.z : low.z);
-    const glm::vec2 pixel = project(view_projection_, point, size);
-    least = glm::min(least, pixel);
-    most = glm::max(most, pixel);
-  }
-  least = glm::clamp(glm::floor(least) - SmoothTarget::kReach_px, glm::vec2(0.0F), size);
-  most = glm::clamp(glm::ceil(most) + SmoothTarget::kReach_px, least, size);
-  return {static_cast<int>(least.x), static_cast<int>(size.y - most.y), static_cast<int>(most.x - least.x),
-          static_cast<int>(most.y - least.y)};
-}
-
-void BlockView::draw_still(std::size_t count, const Bodies& bodies, Theme theme) const {
-  const Rgb& background = palette(theme).background;
-  glClearColor(background.r, background.g, background.b, 1.0F);
+// Draws the tool, with its tip at the undisturbed surface, into a picture of its own: it moves up and down only.
+void BlockView::draw_tool(Theme theme) {
+  const float wide = kToolWidth * radius_m_;
+  const Viewport part = part_around({-wide, 0.0F, -wide}, {wide, kToolLength * radius_m_, wide});
+  const glm::vec2 tip = in_cell(glm::vec3(0.0F));
+  tool_low_ = glm::vec2(part.x, part.y) - tip;
+  tool_high_ = tool_low_ + glm::vec2(part.width, part.height);
+  tool_.draw_into(2 * part.width, 2 * part.height);
+  glViewport(-2 * part.x, -2 * part.y, 2 * static_cast<int>(cell_.x), 2 * static_cast<int>(cell_.y));
+  glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  draw_table(count, theme);
   glEnable(GL_DEPTH_TEST);
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3 at = place(i, count) - glm::vec3(0.0F, dome_m_, 0.0F);
-    begin_block({}, at);
-    bodies.sides.draw();
-    draw_outline(at, bodies, theme);
-  }
+  const Shader& shader = shaders_.solid;
+  begin(shader);
+  shader.set("stretch", radius_m_);
+  shader.set("outline_colour", outline_on(block_colour_));
+  shader.set("outline_width", 2.0F * outline_px());
+  shader.set("glow", palette(theme).glow);
+  const Rgb steel = hex(0xB4BAC0);
+  const auto body = [&](const GpuMesh& mesh, const Rgb& colour, float shininess) {
+    shader.set("colour", colour);
+    shader.set("shininess", shininess);
+    mesh.draw();
+  };
+  body(ball_, steel, 1.0F);
+  body(sensor_, glm::mix(steel, palette(theme).rubber, 0.4F), 0.8F);
+  body(handle_, palette(theme).rubber, 0.1F);
   glDisable(GL_DEPTH_TEST);
 }
 
-// The inner faces of a slightly larger block, which are visible around the block.
-void BlockView::draw_outline(const glm::vec3& at, const Bodies& bodies, Theme theme) const {
-  const float pixel_m = 2.0F * glm::length(camera_.eye() - at) * std::tan(0.5F * Camera::kFieldOfView_rad) /
-                        static_cast<float>(std::min(smooth_.width(), smooth_.height()));
-  begin(solid_shader_);
-  solid_shader_.set("offset", at);
-  solid_shader_.set("stretch", glm::vec3(1.0F));
-  solid_shader_.set("grown", outline_px() * pixel_m);
-  solid_shader_.set("colour", palette(theme).edge);
-  solid_shader_.set("shininess", 0.0F);
-  solid_shader_.set("shaded", 0.0F);
-  solid_shader_.set("outline_width", -1.0F);
-  glCullFace(GL_FRONT);
-  bodies.sides.draw();
-  glCullFace(GL_BACK);
+// From behind to the front: the top, the cut face, the line, the halo, the arrows, the tool.
+void BlockView::draw_moving(const BlockPose& pose) const {
+  glEnable(GL_CULL_FACE);
+  set_error(shaders_.top, pose);
+  middle_.draw();
+  set_error(shaders_.section, pose);
+  moving_section_.draw();
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  draw_line(pose);
+  const glm::vec2 tip = in_cell({0.0F, -drawn_m(pose.tool_m), 0.0F});
+  if (const float radius = halo_px(pose); radius > 0.0F) {
+    const float rim = std::max(2.0F, 0.12F * radius_m_ * px_per_m_);
+    shaders_.halo.use();
+    shaders_.halo.set("colour", kAboveJndColour);
+    shaders_.halo.set("opacity", opacity_of_error(pose));
+    shaders_.halo.set("radius", radius);
+    shaders_.halo.set("rim_width", rim);
+    shaders_.halo.set("outline_colour", outline_on(block_colour_));
+    shaders_.halo.set("outline_width", outline_px());
+    const glm::vec2 half(radius + rim + outline_px());
+    draw_flat(shaders_.halo, in_cell({0.0F, radius_m_ - drawn_m(pose.dent_m), 0.0F}), -half, half);
+  }
+  if (pose.shows_truth) draw_arrow(kTrueArrow, pose.true_force_N, kTrueArrowWidth, pose.truth);
+  draw_arrow(kModelArrow, pose.force_N, kModelArrowWidth, pose.arrow);
+  glBindTexture(GL_TEXTURE_2D, tool_.colour());
+  shaders_.sprite.use();
+  draw_flat(shaders_.sprite, tip, tool_low_, tool_high_);
+  glDisable(GL_BLEND);
 }
 
-// The table is behind and below everything else, so it needs no depth test.
-void BlockView::draw_table(std::size_t count, Theme theme) const {
-  begin(table_shader_);
-  table_shader_.set("table_y", -static_cast<float>(geometry_.height_m));
-  table_shader_.set("reach", static_cast<float>(geometry_.width_m) * (count <= 1 ? 2.3F : 3.2F));
-  table_shader_.set("table_colour", palette(theme).table);
-  table_shader_.set("background", palette(theme).background);
-  table_shader_.set("half_size", 0.5F * glm::vec2(geometry_.width_m, geometry_.length_m));
-  glm::vec2 places[4];
-  const std::size_t drawn = std::min<std::size_t>(count, std::size(places));
-  for (std::size_t i = 0; i < drawn; ++i) places[i] = {place(i, count).x, place(i, count).z};
-  table_shader_.set("block_count", static_cast<int>(drawn));
-  table_shader_.set("blocks", places, static_cast<int>(drawn));
+// The surface in the cut: that of the true material where it is known, else the bright edge of this one.
+void BlockView::draw_line(const BlockPose& pose) const {
+  const auto height = static_cast<float>(still_.height);
+  const float width = std::max(kLeastLine_px, kLine * height), rim = std::max(0.8F, 0.25F * width);
+  const Shader& shader = shaders_.line;
+  begin(shader);
+  set_dent(shader, pose.shows_truth ? pose.true_dent_m : pose.dent_m);
+  shader.set("cell", cell_);
+  shader.set("width", pose.shows_truth ? width + 2.0F * rim : kLeastLine_px);
+  shader.set("outline_width", pose.shows_truth ? rim : 0.0F);
+  shader.set("outline_colour", Rgb(1.0F));
+  shader.set("colour", pose.shows_truth ? pose.truth : glm::mix(block_colour_, Rgb(1.0F), 0.55F));
+  line_.draw();
+}
+
+void BlockView::draw_arrow(float from_middle, float force_N, float half_width, const Rgb& colour) const {
+  if (force_N < kShortestArrow_N) return;
+  const float radius = radius_m_ * px_per_m_, height = arrow_px(force_N);
+  const float outline = outline_px();
+  const float half = std::max(1.2F, half_width * radius);
+  const Shader& shader = shaders_.arrow;
+  shader.use();
+  shader.set("colour", colour);
+  shader.set("outline_colour", outline_on(block_colour_));
+  shader.set("outline_width", outline);
+  shader.set("half_width", half);
+  shader.set("height", height);
+  const float wide = 2.6F * half + outline + 1.0F;
+  draw_flat(shader, in_cell({0.0F, -dome_m_, 0.0F}) + glm::vec2(from_middle * radius, 0.0F),
+            {-wide, -height - outline - 2.0F}, {wide, outline + 1.0F});
+}
+
+void BlockView::draw_flat(const Shader& shader, const glm::vec2& origin, const glm::vec2& low,
+                          const glm::vec2& high) const {
+  shader.set("cell", cell_);
+  shader.set("origin", origin);
+  shader.set("low", low);
+  shader.set("high", high);
   square_.draw();
-}
-
-// Sets the common values of the shader for the top and the sides of a block.
-void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
-  const Material& material = kMaterials[static_cast<std::size_t>(finish_)];
-  begin(block_shader_);
-  block_shader_.set("offset", at);
-  block_shader_.set("dent", dent.depth_m);
-  block_shader_.set("contact", dent.contact_m);
-  block_shader_.set("edge", dent.edge_m);
-  block_shader_.set("tool_radius", static_cast<float>(geometry_.tool_radius_m));
-  block_shader_.set("rim", 0.5F * static_cast<float>(std::min(geometry_.width_m, geometry_.length_m)));
-  block_shader_.set("dome", 0.0F);
-  block_shader_.set("dome_radius", kDomeRadius * static_cast<float>(geometry_.tool_radius_m));
-  block_shader_.set("half_size", glm::vec3(0.5 * geometry_.width_m, geometry_.height_m, 0.5 * geometry_.length_m));
-  block_shader_.set("colour", block_colour_);
-  block_shader_.set("translucent", material.translucent);
-  block_shader_.set("gloss", material.gloss);
-  block_shader_.set("pores", material.pores);
-  block_shader_.set("grid", material.grid);
-  block_shader_.set("outline_colour", outline_on(block_colour_));
-  block_shader_.set("mark", 0.0F);
-  block_shader_.set("frame", 0.0F);
-  block_shader_.set("tip", -1.0F);  // the tip is far above
-  block_shader_.set("arrow", glm::vec3(0.0F));
-}
-
-void BlockView::draw_top(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies, bool framed) const {
-  begin_block(dent_under_ball(pose.dent_m, static_cast<float>(geometry_.tool_radius_m)), at);
-  block_shader_.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
-  // Shallow dents have no colour, because there is no error to show.
-  block_shader_.set("mark", pose.shows_error ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
-  block_shader_.set("frame", framed ? kFrameWidth_m : 0.0F);
-  block_shader_.set("frame_colour", pose.arrow);
-  block_shader_.set("dome", dome_m_);
-  block_shader_.set("tip", pose.tool_m);
-  const glm::vec3 foot = arrow_foot();
-  block_shader_.set("arrow", glm::vec3(foot.x, pose.force_N < kShortestArrow_N ? 0.0F : arrow_length_m(pose), foot.z));
-  bodies.top.draw();
-}
-
-void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies, Theme theme) const {
-  begin(solid_shader_);
-  solid_shader_.set("offset", at - glm::vec3(0.0F, pose.tool_m, 0.0F));
-  solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
-  solid_shader_.set("grown", 0.0F);
-  solid_shader_.set("outline_colour", outline_on(block_colour_));
-  solid_shader_.set("glow", palette(theme).glow);
-  solid_shader_.set("shaded", 1.0F);
-  const auto part = [&](const GpuMesh& mesh, const Rgb& colour, float shininess) {
-    solid_shader_.set("colour", colour);
-    solid_shader_.set("shininess", shininess);
-    mesh.draw();
-  };
-  part(bodies.ball, tool_colour_, 1.0F);
-  part(bodies.sensor, glm::mix(tool_colour_, palette(theme).rubber, 0.5F), 0.6F);
-  part(bodies.handle, palette(theme).rubber, 0.25F);
-  if (pose.force_N < kShortestArrow_N) return;
-  const glm::vec3 foot = at + arrow_foot() + glm::vec3(0.0F, 0.001F - dome_m_, 0.0F);
-  const float length_m = arrow_length_m(pose);
-  solid_shader_.set("colour", pose.arrow);
-  solid_shader_.set("shininess", 0.0F);
-  solid_shader_.set("shaded", 0.35F);
-  solid_shader_.set("offset", foot);
-  solid_shader_.set("stretch", glm::vec3(arrow_width_, length_m, arrow_width_));
-  bodies.shaft.draw();
-  solid_shader_.set("offset", foot + glm::vec3(0.0F, length_m, 0.0F));
-  solid_shader_.set("stretch", glm::vec3(arrow_width_));
-  bodies.tip.draw();
-}
-
-// The arrow is beside the tool in the view of the camera, so that neither hides the other.
-glm::vec3 BlockView::arrow_foot() const {
-  const glm::vec3 eye = camera_.eye();
-  const glm::vec3 right = glm::normalize(glm::vec3(eye.z, 0.0F, -eye.x));
-  return 3.2F * static_cast<float>(geometry_.tool_radius_m) * right;
 }
 
 }  // namespace palpate

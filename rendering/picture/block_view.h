@@ -1,20 +1,20 @@
-// The 3-D view: one to four blocks on a table, each with a probe. It depends on neither models nor session.
-// Thread guarantee: the thread of the OpenGL context.
+// The 3-D view: blocks, each in a picture of its own and cut open at the front, with a probe in the cut. All are seen
+// by the same camera, so that equal presses look equal. It depends on neither models nor session. Thread guarantee: the
+// thread of the OpenGL context.
 #pragma once
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "engine/base/result.h"
 #include "rendering/picture/camera.h"
 #include "rendering/picture/dent.h"
 #include "rendering/picture/mesh.h"
+#include "rendering/picture/pixels.h"
 #include "rendering/picture/shader.h"
-#include "rendering/picture/smooth_target.h"
 #include "rendering/ui/colours.h"
 #include "scenes/scene/scene.h"
 
@@ -25,80 +25,118 @@ struct BlockPose {
   float tool_m = 0.0F;  // position of the tip, positive inside
   float dent_m = 0.0F;  // depth of the dent
   float error_over_jnd = 0.0F;
-  float force_N = 0.0F;     // length of the arrow
-  Rgb arrow{0.0F};          // its colour
-  bool chosen = false;      // the active model, marked by a frame on the block
-  bool shows_error = true;  // the dent has the colour of the error
+  float force_N = 0.0F;       // length of the arrow
+  Rgb arrow{0.0F};            // its colour
+  bool shows_error = true;    // the dent has the colour of the error
+  bool shows_truth = false;   // the two below are shown
+  float true_dent_m = 0.0F;   // of the true material, a line in the cut
+  float true_force_N = 0.0F;  // a second arrow
+  Rgb truth{0.0F};            // colour of both
+  bool operator==(const BlockPose&) const = default;
 };
-// Factor by which depths are exaggerated; the title over the picture says so unless the force is scaled.
+// Factor by which the contact is magnified: the depth, and the tool with it, so that the dent keeps its shape. The
+// title over the picture says so.
 inline constexpr float kDeeperDents = 2.0F;
 
 class BlockView {
  public:
-  // `smoothing` empty: as suits the renderer of the OpenGL context. Errors: a shader is missing or does not compile.
-  static Result<std::unique_ptr<BlockView>> create(const Scene& scene, std::optional<Smoothing> smoothing = {});
+  static constexpr std::size_t kMostBlocks = 6;
 
-  // Draws 1 to 4 blocks into the viewport. `scale`: see SmoothTarget::begin.
-  void draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme, float scale = 1.0F);
-  bool filters_edges() const noexcept { return smooth_.filters(); }
+  // `magnified`: see kDeeperDents. Errors: a shader is missing or does not compile.
+  static Result<std::unique_ptr<BlockView>> create(const Scene& scene, float magnified = kDeeperDents);
+
+  // Leaves these shares of the height of the picture free at its upper and lower edge.
+  void leave_free(float above, float below) noexcept { above_ = above, below_ = below; }
+  // Arranges `count` blocks in a picture of `size` and turns the camera to them, with a transition unless `at_once`.
+  void show(std::size_t count, const glm::vec2& size, bool at_once);
+  // Draws 1 to kMostBlocks blocks into a part of the window, with `scale` (0..1) times its pixels per side. Returns the
+  // parts of the window, with the origin at its lower left corner, that have changed since the last call; only they are
+  // drawn, unless `all`.
+  std::vector<Viewport> draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme,
+                             float scale = 1.0F, bool all = true);
+  // Copies a part of the window of the last `draw` to the window.
+  void copy_to_window(const Viewport& part) const;
 
   Camera& camera() noexcept { return camera_; }
-  // Turns the camera to `count` blocks, with a transition unless `at_once`.
-  void show(std::size_t count, bool at_once);
 
-  // Middle of the top of block `index` of `count`, at y = 0.
-  glm::vec3 place(std::size_t index, std::size_t count) const;
-  // Pixel position (y down) in a viewport of `size` of a point relative to the middle of the top of block `index`.
+  // Pixel position (y down) in a picture of `size` of a point relative to the middle of the top of block `index`.
   glm::vec2 on_screen(std::size_t index, std::size_t count, const glm::vec3& point, const glm::vec2& size) const;
+  // The point below the middle of the block, and the width of the picture of a block.
+  glm::vec2 foot(std::size_t index, std::size_t count, const glm::vec2& size) const;
+  float width_of_one(std::size_t count, const glm::vec2& size) const;
   // Motion of the tool inwards per pixel downwards, m.
   float depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const;
   const BlockGeometry& geometry() const noexcept { return geometry_; }
 
  private:
-  // The meshes of one block and its probe, at one level of detail.
-  struct Bodies {
-    Bodies(const BlockGeometry& block, float dome_m, const Detail& detail);
-    GpuMesh top, sides, ball, sensor, handle, shaft, tip;
-  };
-  // The picture of the static parts is drawn again when one of these changes.
+  // What the picture of the static parts depends on.
   struct Still {
     glm::mat4 view_projection{0.0F};
     int width = 0, height = 0;
     std::size_t blocks = 0;
     Theme theme = Theme::light;
+    float above = 0.0F, below = 0.0F;
     bool operator==(const Still&) const = default;
   };
+  struct Cells {
+    std::size_t columns = 1, rows = 1;
+    glm::vec2 size{1.0F};  // of one
+    float top = 0.0F;      // of the first row
+    float label = 0.0F;    // height of the text below a block
+  };
+  struct Shaders {
+    Shader top, section, sides, solid, table, line, arrow, halo, sprite;
+  };
 
-  BlockView(const Scene& scene, std::vector<Shader> shaders);
+  BlockView(const Scene& scene, float magnified, Shaders shaders);
+  Cells cells(std::size_t count, const glm::vec2& size) const;
+  glm::vec2 corner(std::size_t index, std::size_t count, const Cells& cells, const glm::vec2& size) const;
+  float drawn_m(float depth_m) const;
   float outline_px() const;
-  float arrow_length_m(const BlockPose& pose) const;
-  glm::vec3 arrow_foot() const;  // relative to the middle of a block's top
-  const Bodies& bodies(std::size_t count, const Viewport& viewport) const;
-  std::vector<Viewport> moving_parts(const std::vector<BlockPose>& blocks) const;
+  float arrow_px(float force_N) const;
+  glm::vec2 in_cell(const glm::vec3& point) const;
+  float halo_px(const BlockPose& pose) const;
+  float opacity_of_error(const BlockPose& pose) const;
   Viewport part_around(const glm::vec3& low, const glm::vec3& high) const;
-  void draw_still(std::size_t count, const Bodies& bodies, Theme theme) const;
-  void draw_outline(const glm::vec3& place, const Bodies& bodies, Theme theme) const;
-  void draw_table(std::size_t count, Theme theme) const;
-  void draw_top(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies, bool framed) const;
-  void draw_tool(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies, Theme theme) const;
+  std::vector<Viewport> moving_parts(const BlockPose& pose) const;
   void begin(const Shader& shader) const;
-  void begin_block(const DentShape& dent, const glm::vec3& place) const;
+  void begin_block(const Shader& shader) const;
+  void set_dent(const Shader& shader, float depth_m) const;
+  void set_error(const Shader& shader, const BlockPose& pose) const;
+  void draw_still(std::size_t count, Theme theme);
+  void draw_cell(Theme theme);
+  void draw_tool(Theme theme);
+  void draw_moving(const BlockPose& pose) const;
+  void draw_line(const BlockPose& pose) const;
+  void draw_arrow(float from_middle, float force_N, float half_width, const Rgb& colour) const;
+  void draw_flat(const Shader& shader, const glm::vec2& origin, const glm::vec2& low, const glm::vec2& high) const;
+  Viewport in_window(const Viewport& part) const;
 
   BlockGeometry geometry_;
-  float dome_m_;  // height of a dome over its block, whose flat top is lower by it
+  float magnified_;
+  float radius_m_;  // of the tool as drawn
+  float dome_m_;    // height of a dome over its block, whose flat top is lower by it
+  float middle_m_;  // radius of what moves of the top
   Finish finish_;
   Rgb block_colour_;
-  Rgb tool_colour_;
-  float size_m_;  // size of one block with its probe, for the camera
   float arrow_m_per_N_;
-  float arrow_width_;  // factor
-  Shader block_shader_, solid_shader_, table_shader_;
-  Bodies fine_, coarse_;
-  GpuMesh square_;
+  float above_ = 0.0F, below_ = 0.0F;
+  Shaders shaders_;
+  // Static parts.
+  GpuMesh top_, sides_, section_, square_, ball_, sensor_, handle_;
+  // Moving parts.
+  GpuMesh middle_, moving_section_, line_;
   Camera camera_;
-  SmoothTarget smooth_;
+  // A cell with twice the pixels per side; the static parts of all cells; the picture; the tool, also twice.
+  Pixels fine_{true}, still_pixels_{false}, pixels_{false}, tool_{true};
   Still still_;
+  Viewport viewport_;
   glm::mat4 view_projection_{1.0F};
+  glm::vec2 cell_{1.0F};  // pixels
+  float px_per_m_ = 1.0F;
+  glm::vec2 tool_low_{0.0F}, tool_high_{0.0F};  // of the picture of the tool, relative to the tip's, pixels
+  std::vector<BlockPose> drawn_;
+  std::vector<std::vector<Viewport>> drawn_parts_;  // of each block
 };
 
 }  // namespace palpate

@@ -9,18 +9,19 @@
 namespace palpate {
 namespace {
 
-// The camera is never below the table and never looks straight down, where left and right would swap.
+// The camera is never below the table, and stays before the front of the blocks, where they are cut open.
 constexpr float kLowest_rad = 0.06F;
-constexpr float kHighest_rad = 1.35F;
+constexpr float kHighest_rad = 0.95F;
+constexpr float kWidest_rad = 0.7F;
 constexpr float kEasing_s = 0.12F;
 constexpr float kNear_m = 0.02F;
 constexpr float kFar_m = 6.0F;
 
 }  // namespace
 
-void Camera::frame(float radius_m, float yaw_rad, bool at_once) {
+void Camera::frame(float radius_m, float height_m, float yaw_rad, float pitch_rad, bool at_once) {
   radius_m_ = radius_m;
-  framed_ = {yaw_rad, Pose{}.pitch_rad, 1.12F * radius_m / std::tan(0.5F * kFieldOfView_rad)};
+  framed_ = {yaw_rad, pitch_rad, radius_m / std::tan(0.5F * kFieldOfView_rad), height_m};
   aim();
   if (at_once) now_ = target_;
 }
@@ -32,9 +33,11 @@ void Camera::turn(const CameraTurn& turn) {
 
 // Limits the turn as well, so that a turn back has an effect at once.
 void Camera::aim() {
-  target_.yaw_rad = framed_.yaw_rad + turn_.yaw_rad;
+  target_.height_m = framed_.height_m;
+  target_.yaw_rad = std::clamp(framed_.yaw_rad + turn_.yaw_rad, -kWidest_rad, kWidest_rad);
   target_.pitch_rad = std::clamp(framed_.pitch_rad + turn_.pitch_rad, kLowest_rad, kHighest_rad);
   target_.distance_m = std::clamp(framed_.distance_m * turn_.distance, 1.6F * radius_m_, 12.0F * radius_m_);
+  turn_.yaw_rad = target_.yaw_rad - framed_.yaw_rad;
   turn_.pitch_rad = target_.pitch_rad - framed_.pitch_rad;
   turn_.distance = target_.distance_m / framed_.distance_m;
 }
@@ -50,11 +53,13 @@ void Camera::advance(float seconds) {
   now_.yaw_rad += share * (target_.yaw_rad - now_.yaw_rad);
   now_.pitch_rad += share * (target_.pitch_rad - now_.pitch_rad);
   now_.distance_m += share * (target_.distance_m - now_.distance_m);
+  now_.height_m += share * (target_.height_m - now_.height_m);
 }
 
 glm::vec3 Camera::eye() const {
   const float flat = now_.distance_m * std::cos(now_.pitch_rad);
-  return {flat * std::sin(now_.yaw_rad), now_.distance_m * std::sin(now_.pitch_rad), flat * std::cos(now_.yaw_rad)};
+  return {flat * std::sin(now_.yaw_rad), now_.height_m + now_.distance_m * std::sin(now_.pitch_rad),
+          flat * std::cos(now_.yaw_rad)};
 }
 
 glm::mat4 Camera::view_projection(float aspect) const {
@@ -62,7 +67,7 @@ glm::mat4 Camera::view_projection(float aspect) const {
   const float vertical =
       aspect >= 1.0F ? kFieldOfView_rad : 2.0F * std::atan(std::tan(0.5F * kFieldOfView_rad) / aspect);
   return glm::perspective(vertical, aspect, kNear_m, kFar_m) *
-         glm::lookAt(eye(), glm::vec3(0.0F, 0.004F, 0.0F), glm::vec3(0.0F, 1.0F, 0.0F));
+         glm::lookAt(eye(), glm::vec3(0.0F, now_.height_m, 0.0F), glm::vec3(0.0F, 1.0F, 0.0F));
 }
 
 glm::vec2 project(const glm::mat4& view_projection, const glm::vec3& world, const glm::vec2& size) {

@@ -20,9 +20,9 @@ class Camera {
  public:
   static constexpr float kFieldOfView_rad = 0.55F;  // of the smaller side of the picture
 
-  // Sets the basic view: the blocks within `radius_m` of the middle fill the picture, seen from `yaw_rad` to the right
-  // of the front. `at_once`: without a transition.
-  void frame(float radius_m, float yaw_rad, bool at_once);
+  // Sets the basic view: what is within `radius_m` of the point at `height_m` above the middle fills the picture, seen
+  // from `yaw_rad` to the right of the front and `pitch_rad` above it. `at_once`: without a transition.
+  void frame(float radius_m, float height_m, float yaw_rad, float pitch_rad, bool at_once);
   void orbit(float yaw_rad, float pitch_rad);
   // Multiplies the distance by `factor`.
   void zoom(float factor);
@@ -38,9 +38,10 @@ class Camera {
 
  private:
   struct Pose {
-    float yaw_rad = 0.5F;
-    float pitch_rad = 0.42F;
+    float yaw_rad = 0.0F;
+    float pitch_rad = 0.3F;
     float distance_m = 0.4F;
+    float height_m = 0.0F;
   };
   void aim();  // computes `target_` from `framed_` and `turn_`
   Pose now_;

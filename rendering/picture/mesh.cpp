@@ -13,46 +13,50 @@ namespace palpate {
 namespace {
 
 constexpr float kCorner_m = 0.012F;
-constexpr float kEdge_m = 0.004F;
+
+constexpr float kHalfTurn = std::numbers::pi_v<float>;
 
 using Outline = std::vector<Vertex>;  // position on the rim, normal outward, both at y = 0
 
-// The outline from the corner at +x, +z on. Round corners have many points, straight sides few. The points of a side
-// have equal angles as seen from the middle.
-Outline outline(const glm::vec2& half, const Detail& detail) {
-  constexpr float kQuarter = 0.5F * std::numbers::pi_v<float>;
-  const glm::vec2 core = half - kCorner_m;
+// Distance of a point from the rim of a rectangle with rounded corners; negative inside.
+float rim_distance(const glm::vec2& point, const glm::vec2& half) {
+  const glm::vec2 q = glm::abs(point) - (half - kCorner_m);
+  return glm::length(glm::max(q, 0.0F)) + std::min(std::max(q.x, q.y), 0.0F) - kCorner_m;
+}
+
+// The direction of step `i` of `around` behind the cut, from -x over -z to +x.
+glm::vec2 direction(int i, int around) {
+  const float angle = kHalfTurn * (1.0F + static_cast<float>(i) / static_cast<float>(around));
+  return {std::cos(angle), std::sin(angle)};
+}
+
+// The rim behind the cut, at equal angles as seen from the middle.
+Outline outline(const glm::vec2& half, int around) {
+  constexpr float kStep_m = 1e-4F;  // of the slope, which is the normal
   Outline points;
-  for (int corner = 0; corner < 4; ++corner) {
-    const float sign_x = corner == 0 || corner == 3 ? 1.0F : -1.0F;
-    const float sign_z = corner < 2 ? 1.0F : -1.0F;
-    for (int i = 0; i <= detail.corner; ++i) {
-      const float angle =
-          kQuarter * (static_cast<float>(corner) + static_cast<float>(i) / static_cast<float>(detail.corner));
-      const glm::vec3 normal(std::cos(angle), 0.0F, std::sin(angle));
-      points.push_back({glm::vec3(sign_x * core.x, 0.0F, sign_z * core.y) + kCorner_m * normal, normal});
+  for (int i = 0; i <= around; ++i) {
+    const glm::vec2 onward = direction(i, around);
+    float low = 0.0F, high = half.x + half.y;
+    for (int k = 0; k < 30; ++k) {
+      const float middle = 0.5F * (low + high);
+      (rim_distance(middle * onward, half) < 0.0F ? low : high) = middle;
     }
-    // The side after the corner: +z, -x, -z, +x.
-    const bool along_x = corner % 2 == 0;
-    const float away = along_x ? half.y : half.x;
-    const float reach = std::atan2(along_x ? core.x : core.y, away);
-    const float turn = kQuarter * static_cast<float>(corner + 1);
-    const glm::vec3 normal(std::cos(turn), 0.0F, std::sin(turn));
-    const glm::vec3 onward(-std::sin(turn), 0.0F, std::cos(turn));
-    for (int i = 1; i <= detail.side; ++i) {
-      const float angle = reach * (2.0F * static_cast<float>(i) / static_cast<float>(detail.side + 1) - 1.0F);
-      points.push_back({away * normal + away * std::tan(angle) * onward, normal});
-    }
+    const glm::vec2 at = low * onward;
+    const glm::vec2 normal = glm::normalize(glm::vec2(
+        rim_distance(at + glm::vec2(kStep_m, 0.0F), half) - rim_distance(at - glm::vec2(kStep_m, 0.0F), half),
+        rim_distance(at + glm::vec2(0.0F, kStep_m), half) - rim_distance(at - glm::vec2(0.0F, kStep_m), half)));
+    points.push_back({{at.x, 0.0F, at.y}, {normal.x, 0.0F, normal.y}});
   }
   return points;
 }
 
-// Joins the last ring with the one before it. The last ring is outside or below.
-void join_rings(Mesh& mesh, std::size_t around) {
-  const auto points = static_cast<std::uint32_t>(around);
+// Joins the last row of `row` points with the one before it. The last row is outside or below; a closed row ends at its
+// first point.
+void join_rows(Mesh& mesh, std::size_t row, bool closed) {
+  const auto points = static_cast<std::uint32_t>(row);
   const auto outer = static_cast<std::uint32_t>(mesh.vertices.size()) - points;
   const std::uint32_t inner = outer - points;
-  for (std::uint32_t i = 0; i < points; ++i) {
+  for (std::uint32_t i = 0; i + (closed ? 0 : 1) < points; ++i) {
     const std::uint32_t next = (i + 1) % points;
     for (const std::uint32_t index : {inner + i, inner + next, outer + i, outer + i, inner + next, outer + next}) {
       mesh.triangles.push_back(index);
@@ -60,47 +64,88 @@ void join_rings(Mesh& mesh, std::size_t around) {
   }
 }
 
-void add_shifted(Mesh& mesh, const Outline& rim, float outward_m, float down_m, float tilt_rad) {
+void add_shifted(Mesh& mesh, const Outline& rim, float outward_m, float y_m, float tilt_rad) {
   for (const Vertex& point : rim) {
-    const glm::vec3 place = point.position + outward_m * point.normal - glm::vec3(0.0F, down_m, 0.0F);
+    const glm::vec3 place = point.position + outward_m * point.normal + glm::vec3(0.0F, y_m, 0.0F);
     const glm::vec3 normal = std::cos(tilt_rad) * point.normal + glm::vec3(0.0F, std::sin(tilt_rad), 0.0F);
     mesh.vertices.push_back({place, normal});
   }
-  join_rings(mesh, rim.size());
+  join_rows(mesh, rim.size(), false);
 }
 
-}  // namespace
-
-// Rings from the middle outward, whose shape changes from a circle to that of the rim.
-Mesh block_top(const glm::vec2& size_m, const Detail& detail) {
+// Rings from the middle outward. `dense`: share by which they are closer together in the middle.
+Mesh rings_to(const Outline& rim, int rings, float dense) {
   Mesh mesh;
-  const Outline rim = outline(0.5F * size_m - kEdge_m, detail);
-  const glm::vec3 up(0.0F, 1.0F, 0.0F);
-  float nearest = 1e9F;
-  for (const Vertex& point : rim) nearest = std::min(nearest, glm::length(point.position));
-  for (int k = 0; k <= detail.rings; ++k) {
-    const float t = static_cast<float>(k) / static_cast<float>(detail.rings);
-    const float size = 1e-4F + (1.0F - 1e-4F) * t * (0.22F + 0.78F * t * t);
-    const float square = glm::smoothstep(0.4F, 1.0F, size);
-    for (const Vertex& point : rim) {
-      const glm::vec3 round = nearest * glm::normalize(point.position);
-      mesh.vertices.push_back({size * glm::mix(round, point.position, square), up});
-    }
-    if (k > 0) join_rings(mesh, rim.size());
+  for (int k = 0; k <= rings; ++k) {
+    const float t = static_cast<float>(k) / static_cast<float>(rings);
+    const float size = std::max(1e-4F, t * (1.0F - dense + dense * t));
+    for (const Vertex& point : rim) mesh.vertices.push_back({size * point.position, {0.0F, 1.0F, 0.0F}});
+    if (k > 0) join_rows(mesh, rim.size(), false);
   }
   return mesh;
 }
 
-Mesh block_sides(const glm::vec2& size_m, float height_m, const Detail& detail) {
-  Mesh mesh;
-  const Outline rim = outline(0.5F * size_m - kEdge_m, detail);
-  for (const Vertex& point : rim) mesh.vertices.push_back({point.position, {0.0F, 1.0F, 0.0F}});
-  for (int i = 1; i <= detail.fillet; ++i) {
-    const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(detail.fillet);
-    add_shifted(mesh, rim, kEdge_m * std::sin(angle), kEdge_m * (1.0F - std::cos(angle)),
-                0.5F * std::numbers::pi_v<float> - angle);
+// Depth of the rounded edge at a distance from the middle, for a half width of `half_m`.
+float edge_depth_m(float from_m, float half_m) {
+  const float over_m = std::clamp(from_m - (half_m - kEdge_m), 0.0F, kEdge_m);
+  return kEdge_m - std::sqrt(kEdge_m * kEdge_m - over_m * over_m);
+}
+
+// The x of a column, from half_m to -half_m, denser in the middle.
+float column_m(int i, int columns, float half_m) {
+  const float t = 1.0F - 2.0F * static_cast<float>(i) / static_cast<float>(columns);
+  return half_m * t * (0.35F + 0.65F * std::abs(t));
+}
+
+}  // namespace
+
+Mesh block_top(const glm::vec2& size_m, int around, int rings) {
+  return rings_to(outline(0.5F * size_m - kEdge_m, around), rings, 0.0F);
+}
+
+Mesh block_middle(float radius_m, int around, int rings) {
+  Outline rim;
+  for (int i = 0; i <= around; ++i) {
+    const glm::vec2 onward = radius_m * direction(i, around);
+    rim.push_back({{onward.x, 0.0F, onward.y}, {}});
   }
-  add_shifted(mesh, rim, kEdge_m, height_m, 0.0F);
+  return rings_to(rim, rings, 0.65F);
+}
+
+Mesh block_sides(const glm::vec2& size_m, float height_m, float top_m, int around) {
+  constexpr int kFillet = 6;
+  Mesh mesh;
+  const Outline rim = outline(0.5F * size_m - kEdge_m, around);
+  for (const Vertex& point : rim) mesh.vertices.push_back({point.position + glm::vec3(0, top_m, 0), {0, 1, 0}});
+  for (int i = 1; i <= kFillet; ++i) {
+    const float angle = 0.5F * kHalfTurn * static_cast<float>(i) / static_cast<float>(kFillet);
+    add_shifted(mesh, rim, kEdge_m * std::sin(angle), top_m - kEdge_m * (1.0F - std::cos(angle)),
+                0.5F * kHalfTurn - angle);
+  }
+  add_shifted(mesh, rim, kEdge_m, -height_m, 0.0F);
+  return mesh;
+}
+
+Mesh block_section(float half_m, float block_half_m, float height_m, float top_m, int columns) {
+  Mesh mesh;
+  for (const bool lower : {false, true}) {
+    for (int i = 0; i <= columns; ++i) {
+      const float x_m = column_m(i, columns, half_m);
+      const float y_m = lower ? -height_m : top_m - edge_depth_m(std::abs(x_m), block_half_m);
+      mesh.vertices.push_back({{x_m, y_m, 0.0F}, {0.0F, 0.0F, 1.0F}});
+    }
+  }
+  join_rows(mesh, static_cast<std::size_t>(columns) + 1, false);
+  return mesh;
+}
+
+Mesh line_mesh(float half_m, int columns) {
+  Mesh mesh;
+  for (const float side : {1.0F, -1.0F}) {
+    for (int i = 0; i <= columns; ++i)
+      mesh.vertices.push_back({{column_m(i, columns, half_m), side, 0.0F}, {0.0F, 0.0F, 1.0F}});
+  }
+  join_rows(mesh, static_cast<std::size_t>(columns) + 1, false);
   return mesh;
 }
 
@@ -117,7 +162,7 @@ Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides) {
       mesh.vertices.push_back(
           {{profile[k].x * c, profile[k].y, profile[k].x * s}, {along.y * c, -along.x, along.y * s}});
     }
-    if (k + 1 < profile.size()) join_rings(mesh, static_cast<std::size_t>(sides));
+    if (k + 1 < profile.size()) join_rows(mesh, static_cast<std::size_t>(sides), true);
   }
   return mesh;
 }

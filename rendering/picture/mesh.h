@@ -19,23 +19,21 @@ struct Mesh {
   std::vector<std::uint32_t> triangles;  // three indices each, counter-clockwise from outside
 };
 
-// Level of detail. Small bodies have few triangles, because a triangle costs a software renderer as much as a hundred
-// pixels.
-struct Detail {
-  int corner;  // steps around each corner of a block
-  int side;    // points on each of its sides, between the corners
-  int rings;   // on its top
-  int fillet;  // steps over its rounded edge
-  int around;  // sides of a body of revolution
-};
-inline constexpr Detail kFine{10, 6, 24, 6, 28};
-inline constexpr Detail kCoarse{5, 4, 14, 3, 16};
-
-// The flat top of a block with rounded corners and edges, at y = 0 around the y axis. Its rings are denser towards the
-// middle, where it is pressed.
-Mesh block_top(const glm::vec2& size_m, const Detail& detail);
-// The rounded edge and the sides of that block.
-Mesh block_sides(const glm::vec2& size_m, float height_m, const Detail& detail);
+// A block with rounded corners and edges around the y axis is cut open at z = 0, and its front half is taken away. Its
+// flat top is at y = 0.
+// The top. `around`: steps along its rim.
+Mesh block_top(const glm::vec2& size_m, int around, int rings);
+// The part of the top within `radius_m` of the middle, with more rings in the middle, where it is pressed. It has few
+// triangles, because one costs a software renderer as much as a hundred pixels.
+Mesh block_middle(float radius_m, int around, int rings);
+// The rounded edge and the sides, whose upper end is at `top_m`.
+Mesh block_sides(const glm::vec2& size_m, float height_m, float top_m, int around);
+// The cut face from -half_m to half_m, from the surface at `top_m` down to -height_m. The edges are rounded at
+// block_half_m from the middle.
+Mesh block_section(float half_m, float block_half_m, float height_m, float top_m, int columns);
+inline constexpr float kEdge_m = 0.004F;  // radius of the rounded edges
+// Pairs of points at the same x, from -half_m to half_m, whose y is -1 and 1.
+Mesh line_mesh(float half_m, int columns);
 
 // A body of revolution around y: `profile` has (radius, y) from bottom to top.
 Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides);

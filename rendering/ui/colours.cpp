@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/common.hpp>
+#include <vector>
 
 #include "scenes/scene/scene.h"
 
@@ -30,8 +31,20 @@ double luminance(const Rgb& colour) noexcept {
   return static_cast<double>(0.2126F * linear(colour.r) + 0.7152F * linear(colour.g) + 0.0722F * linear(colour.b));
 }
 
-// Mixes the colour with `end` until its contrast to all surfaces is at least `least`.
+// Mixes the colour with `end` until its contrast to all surfaces is at least `least`. Drawing asks for the same few
+// colours several hundred times a frame, so the results are kept.
 Rgb mixed_until(const Rgb& colour, const Rgb& end, double least, Theme theme) noexcept {
+  struct Mixed {
+    Rgb colour, end;
+    double least;
+    Theme theme;
+    Rgb result;
+  };
+  thread_local std::vector<Mixed> known;
+  const auto found = std::ranges::find_if(known, [&](const Mixed& one) {
+    return one.colour == colour && one.end == end && one.least == least && one.theme == theme;
+  });
+  if (found != known.end()) return found->result;
   constexpr float kStep = 0.02F;
   const Palette& p = palette(theme);
   const auto enough = [&](const Rgb& shade) {
@@ -40,7 +53,8 @@ Rgb mixed_until(const Rgb& colour, const Rgb& end, double least, Theme theme) no
   };
   float share = 0.0F;
   while (!enough(glm::mix(colour, end, share)) && share < 1.0F) share += kStep;
-  return glm::mix(colour, end, share);
+  known.push_back({colour, end, least, theme, glm::mix(colour, end, share)});
+  return known.back().result;
 }
 
 // With white in the dark theme, and with dark green in the light one: black would turn orange into vermilion.

@@ -25,6 +25,30 @@ double round_up(double value) noexcept {
   return 10.0 * decade;
 }
 
+std::vector<ImVec2> simplified(const std::vector<ImVec2>& points) {
+  constexpr float kNear_px = 0.35F;
+  constexpr std::size_t kMost = 32;  // points that one line replaces
+  std::vector<ImVec2> kept;
+  const auto is_near = [&](std::size_t from, std::size_t to) {
+    const ImVec2 along(points[to].x - points[from].x, points[to].y - points[from].y);
+    const float length = std::hypot(along.x, along.y);
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const ImVec2 off(points[i].x - points[from].x, points[i].y - points[from].y);
+      const float onward = off.x * along.x + off.y * along.y;
+      if (onward < 0.0F || onward > length * length) return false;
+      if (std::abs(off.x * along.y - off.y * along.x) > kNear_px * length) return false;
+    }
+    return true;
+  };
+  for (std::size_t i = 0, from = 0; i < points.size(); ++i) {
+    if (i == 0 || i + 1 == points.size() || i + 1 - from > kMost || !is_near(from, i + 1)) {
+      kept.push_back(points[i]);
+      from = i;
+    }
+  }
+  return kept;
+}
+
 LivePlot::LivePlot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes)
     : style_(style), list_(ImGui::GetWindowDrawList()), axes_(axes) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -97,7 +121,8 @@ void LivePlot::draw_x_axis() const {
   }
 }
 
-void LivePlot::line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const {
+void LivePlot::line(const std::vector<ImVec2>& all, ImU32 colour, float thickness) const {
+  const std::vector<ImVec2> points = simplified(all);
   // For a whole thickness ImGui draws one textured strip, else three strips.
   const float whole = std::max(1.0F, std::round(thickness));
   if (points.size() > 1) list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, whole);

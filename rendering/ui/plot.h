@@ -20,6 +20,10 @@ double tick_step(double span, int most) noexcept;
 // Rounds up to the next 1, 1.5, 2, 3, 4, 5, 6, 8 or 10 times a power of ten; 1 for values <= 0.
 double round_up(double value) noexcept;
 
+// The same line with fewer points: those within a third of a pixel of it are left out. A software renderer needs as
+// much time for the two triangles of a piece of a line as for two hundred pixels.
+std::vector<ImVec2> simplified(const std::vector<ImVec2>& points);
+
 struct PlotAxes {
   Range x, y;
   const char* x_unit = "";  // appended to the last label

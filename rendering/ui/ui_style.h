@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rendering/ui/colours.h"
+#include "rendering/ui/viewport.h"
 
 struct GLFWwindow;
 
@@ -60,9 +61,18 @@ class UiContext {
   void begin_frame(const std::vector<int>& tapped = {});
   // Draws all widgets since `begin_frame`.
   void end_frame();
+  // Draws the widgets of the last frame again where they are in these parts of the window (pixels, with the origin at
+  // the lower left corner), which were drawn over.
+  void draw_again(const std::vector<Viewport>& parts) const;
 
  private:
+  void note_tiles();
+  Viewport drawn_part(const Viewport& part) const;
+
   GLFWwindow* window_;
+  // Whether a widget is in a square of the window, by rows from the top.
+  std::vector<bool> tiles_;
+  int columns_ = 0, rows_ = 0;
 };
 
 class UiStyle {

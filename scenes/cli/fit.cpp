@@ -86,64 +86,55 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
                   : "where the model is in contact; the other forces were measured outside of it");
 }
 
-std::string relaxation_text(const std::vector<FeatureSpec>& features) {
-  std::vector<std::string> texts;
-  for (const double time_s : relaxation_times_s(features)) texts.push_back(general(time_s, 3) + " s");
-  return texts.empty() ? "none" : joined(texts);
-}
-
-// One row for each feature: the cross-validated error of the trend with it and without it.
+// One row for each term of the trend's dictionary: whether the regression uses it, and the cross-validated error of the
+// trend with it and without it.
 void print_gains(const std::vector<PartGain>& gains) {
   if (gains.empty()) return;
-  std::printf("%-32s %-5s %12s %12s   cross-validated error [JND]\n", "FEATURE", "TAKEN", "WITH", "WITHOUT");
-  for (const PartGain& one : gains) {
-    std::printf("%-32s %-5s %12.3f %12.3f\n", one.name.c_str(), one.taken ? "yes" : "no", one.error_with,
-                one.error_without);
-  }
-  std::printf(
-      "A feature is taken if the non-negative regression gives it a weight; surface lag and depth-dependent\n"
-      "relaxation if they lower the error by more than two standard errors over the folds.\n");
-  std::fflush(stdout);
+  std::vector<std::vector<std::string>> rows{
+      {"FEATURE OF THE TREND", "WEIGHT ABOVE 0", "ERROR WITH IT [JND]", "WITHOUT"}};
+  for (const PartGain& one : gains)
+    rows.push_back({one.name, one.taken ? "yes" : "no", fixed(one.error_with, 3), fixed(one.error_without, 3)});
+  print_table(rows, true);
+  std::printf("\n");
 }
 
+void print_line(const char* label, const std::string& text) { std::printf("%-17s %s\n", label, text.c_str()); }
+
 std::string correction_text(const CorrectionChoice& choice) {
-  if (!choice.used) return "off: it does not lower the cross-validated error, so the model is the trend alone";
+  if (!choice.used) return "none: it does not lower the cross-validated error, so the model is the trend alone";
   return "cross-validated error " + fixed(choice.error_over_jnd, 3) + " JND, trend alone " +
          fixed(choice.trend_error_over_jnd, 3) + " JND";
 }
 
-void print_surfaces(const Provenance& provenance) {
-  for (const RecordingOffset& surface : provenance.offsets) {
-    const std::string error = std::isfinite(surface.standard_error_m)
-                                  ? " +- " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
-                                  : std::string(" mm (not identified)");
-    std::cout << "surface             " << fixed(1e3 * surface.offset_m, 3) << error << ", force zero "
-              << fixed(1e3 * surface.force_zero_N, 1) << " mN"
-              << ": " << surface.name << "\n";
-  }
+std::string surface_text(const RecordingOffset& surface) {
+  return surface.name + " at " + fixed(1e3 * surface.offset_m, 3) +
+         (std::isfinite(surface.standard_error_m) ? " +- " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
+                                                  : std::string(" mm (not identified)")) +
+         ", force zero " + fixed(1e3 * surface.force_zero_N, 1) + " mN";
 }
 
 // `out`: the file that was written.
 void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::string& out) {
   const auto& [gains, correction, fit, seconds] = fitted;
-  print_gains(gains);
   const Provenance& provenance = fit.data.provenance;
-  std::cout << "model               " << fit.data.name << "\n"
-            << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
-            << "after thinning      " << provenance.samples_after_reduction << "\n";
-  print_surfaces(provenance);
+  print_gains(gains);
+  print_line("model", fit.data.name + ", fitted in " + fixed(seconds, 2) + " s");
+  print_line("samples", std::to_string(provenance.samples) + ", " + std::to_string(provenance.contact_samples) +
+                            " in contact, " + std::to_string(provenance.samples_after_reduction) + " after thinning");
+  for (const RecordingOffset& surface : provenance.offsets) print_line("surface", surface_text(surface));
   // The depth is the first feature.
   if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
-    std::cout << "depth starts        at " << fixed(1e3 * begins_m, 3)
-              << " mm, where the force of the recordings begins\n";
-  std::cout << "relaxation times    " << relaxation_text(fit.data.features) << "\n"
-            << "correction          "
-            << (correction ? correction_text(*correction) : "none: the method is fitted to the measured force") << "\n"
-            << "fit time            " << fixed(seconds, 2) << " s\n"
-            << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %"
-            << (accelerometer ? " (with the accelerometer)" : " (from positions alone)") << "\n";
-  for (const std::string& note : fit.notes) std::cout << "note                " << note << "\n";
-  std::cout << "written             " << out << "\n";
+    print_line("depth starts", "at " + fixed(1e3 * begins_m, 3) + " mm, where the force of the recordings begins");
+  std::vector<std::string> times;
+  for (const double time_s : relaxation_times_s(fit.data.features)) times.push_back(general(time_s, 3));
+  if (!times.empty()) print_line("relaxation times", joined(times) + " s");
+  if (correction) print_line("correction", correction_text(*correction));
+  for (const std::string& note : fit.notes)
+    print_line(fit.choices && note == choices_text(*fit.choices) ? "selected" : "note", note);
+  print_line("training <= JND", fixed(100.0 * provenance.training_within_jnd, 2) + " %" +
+                                    (accelerometer ? " (with the accelerometer)" : " (from positions alone)"));
+  print_line("written", out);
+  print_line("next", "palpate replay --recording TEST.csv --model " + out);
 }
 
 Status run_fit(const FitArguments& arguments) {

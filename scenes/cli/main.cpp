@@ -40,6 +40,7 @@ constexpr Verb kVerbs[] = {
     {add_export, "palpate export model.json --c model.c"},
     {add_report, "palpate report --train rec.csv --test test.csv --out report"},
     {add_paper, "palpate paper --quick --out paper"},
+    {add_hard, "palpate hard --out hard"},
     {add_record, "palpate record --device bridge:/dev/ttyACM0 --guide --out rec.csv"},
     {add_scenes, "palpate scenes"},
     {add_devices, "palpate devices"},

@@ -26,6 +26,7 @@ struct Options {
   std::vector<std::string> names;
   std::string out;
   std::string plot;
+  bool all = false;
   bool json = false;
   bool force = false;
 };
@@ -37,7 +38,7 @@ struct ReplayedModel {
   LoadedModel loaded;
   ErrorSummary as_recorded;
   ErrorSummary surface_moved;
-  BoundCoverage predicted;
+  BoundFigures bound, bound_moved;  // as recorded, with the surface moved
   OffsetEstimate surface;
   ModelTiming time;
 };
@@ -52,15 +53,17 @@ struct ReplayedRecording {
 // A figure of merit; null in JSON if there are no samples in contact.
 struct Figure {
   const char* key;
+  const char* title;
   double ErrorSummary::*value;
   double scale;  // factor in the table
   int decimals;
+  bool decides;  // shown without --all
 };
-constexpr Figure kFigures[] = {{"rms_error_N", &ErrorSummary::rms_error_N, 1e3, 1},
-                               {"max_error_N", &ErrorSummary::max_error_N, 1e3, 1},
-                               {"within_jnd", &ErrorSummary::within_jnd, 1e2, 2},
-                               {"p99_error_over_jnd", &ErrorSummary::p99_error_over_jnd, 1.0, 2},
-                               {"max_error_over_jnd", &ErrorSummary::max_error_over_jnd, 1.0, 2}};
+constexpr Figure kFigures[] = {{"rms_error_N", "RMS mN", &ErrorSummary::rms_error_N, 1e3, 1, true},
+                               {"max_error_N", "MAX mN", &ErrorSummary::max_error_N, 1e3, 1, false},
+                               {"within_jnd", "WITHIN JND %", &ErrorSummary::within_jnd, 1e2, 2, true},
+                               {"p99_error_over_jnd", "P99 JND", &ErrorSummary::p99_error_over_jnd, 1.0, 2, true},
+                               {"max_error_over_jnd", "MAX JND", &ErrorSummary::max_error_over_jnd, 1.0, 2, true}};
 
 // The output file of each recording: `path` for one, NAME_RECORDING.csv for several; empty if `path` is empty.
 std::vector<std::string> outputs(const std::string& path, const std::vector<std::string>& recordings) {
@@ -109,8 +112,10 @@ OrderedJson model_json(const ReplayedModel& replayed) {
   object["surface_offset_m"] = replayed.surface.at;
   object["surface_identified"] = replayed.surface.identified;
   // JSON has null for NaN.
-  object["predicted_error"] = {{"bound_95_held", replayed.predicted.coverage},
-                               {"median_bound_N", replayed.predicted.median_N}};
+  object["predicted_error"] = {{"bound_95_held", replayed.bound.coverage},
+                               {"bound_95_held_moved", replayed.bound_moved.coverage},
+                               {"median_bound_N", replayed.bound.median_N},
+                               {"median_bound_over_jnd", replayed.bound.median_over_jnd}};
   object["bins"] = bins_json(replayed.as_recorded.bins);
   return object;
 }
@@ -125,23 +130,33 @@ OrderedJson recording_json(const ReplayedRecording& replayed) {
           {"models", list}};
 }
 
-std::vector<std::string> table_row(const ReplayedModel& model) {
-  std::vector<std::string> row{model.loaded.name, std::to_string(model.loaded.model->centre_count())};
-  const auto add = [&](const ErrorSummary& errors) {
+// Titles and cells of the table's row of a model.
+std::vector<std::pair<std::string, std::string>> table_cells(const ReplayedModel& model, bool all) {
+  std::vector<std::pair<std::string, std::string>> cells{{"MODEL", model.loaded.name}};
+  const auto add = [&](const std::string& title, bool known, double value, int decimals) {
+    cells.emplace_back(title, known ? fixed(value, decimals) : "-");
+  };
+  const auto add_errors = [&](const std::string& before, const ErrorSummary& errors) {
     for (const Figure& figure : kFigures) {
-      row.push_back(errors.samples > 0 ? fixed(figure.scale * (errors.*figure.value), figure.decimals) : "-");
+      if (all || figure.decides)
+        add(before + figure.title, errors.samples > 0, figure.scale * (errors.*figure.value), figure.decimals);
     }
   };
-  add(model.as_recorded);
-  row.push_back(std::to_string(model.as_recorded.out_of_domain_samples));
-  row.push_back(model.surface.identified
-                    ? fixed(1e3 * model.surface.at, 3) + " +- " + fixed(1e3 * model.surface.standard_error, 3)
-                    : "not identified");
-  add(model.surface_moved);
-  for (const double time_ns : {model.time.tick.median_ns, model.time.tick.p99_ns}) {
-    row.push_back(model.time.measured ? fixed(time_ns, 0) : "-");
-  }
-  return row;
+  add_errors("", model.as_recorded);
+  add("TICK ns", model.time.measured, model.time.tick.median_ns, 0);
+  if (!all) return cells;
+  add("TICK P99 ns", model.time.measured, model.time.tick.p99_ns, 0);
+  cells.emplace_back("CENTRES", std::to_string(model.loaded.model->centre_count()));
+  cells.emplace_back("OUT OF DOMAIN", std::to_string(model.as_recorded.out_of_domain_samples));
+  cells.emplace_back("SURFACE mm", model.surface.identified ? fixed(1e3 * model.surface.at, 3) + " +- " +
+                                                                  fixed(1e3 * model.surface.standard_error, 3)
+                                                            : "not identified");
+  add_errors("ALIGNED ", model.surface_moved);
+  add("WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound.coverage, 1);
+  add("ALIGNED WITHIN BOUND %", model.bound.has_bounds(), 1e2 * model.bound_moved.coverage, 1);
+  const bool unknown = model.bound.has_bounds() && !std::isfinite(model.bound.median_over_jnd);
+  cells.emplace_back("BOUND JND", unknown ? "not known" : at_most_three_decimals(model.bound.median_over_jnd));
+  return cells;
 }
 
 // Says, for the first such model, that the recording does not distinguish an offset of the surface and of the force.
@@ -170,21 +185,26 @@ std::string surface_remark(const ReplayedRecording& replayed) {
   char text[320];
   std::snprintf(text, sizeof text,
                 "the surface of this recording is at %+.3f mm for %s, which changes the figures: "
-                "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface moved; the "
-                "surface is estimated from these same forces",
+                "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface aligned; "
+                "that is estimated from these same forces",
                 1e3 * most.surface.at, most.loaded.name.substr(0, 64).c_str(), 1e2 * plain.within_jnd,
                 1e3 * plain.rms_error_N, 1e2 * moved.within_jnd, 1e3 * moved.rms_error_N);
   return text;
 }
 
-void print_recording(const ReplayedRecording& replayed) {
+void print_recording(const ReplayedRecording& replayed, bool all) {
   std::printf("%s: %llu samples, %llu in contact\n", replayed.path.c_str(),
               static_cast<unsigned long long>(replayed.samples),
               static_cast<unsigned long long>(replayed.contact_samples));
-  std::vector<std::vector<std::string>> rows = {{"MODEL", "CENTRES", "RMS mN", "MAX mN", "WITHIN JND %", "P99 JND",
-                                                 "MAX JND", "OUT OF DOMAIN", "SURFACE mm", "MOVED: RMS mN", "MAX mN",
-                                                 "WITHIN JND %", "P99 JND", "MAX JND", "TICK ns", "P99 ns"}};
-  for (const ReplayedModel& one : replayed.models) rows.push_back(table_row(one));
+  std::vector<std::vector<std::string>> rows(1);
+  for (const ReplayedModel& one : replayed.models) {
+    const bool first = rows.size() == 1;
+    rows.emplace_back();
+    for (auto& [title, cell] : table_cells(one, all)) {
+      if (first) rows.front().push_back(std::move(title));
+      rows.back().push_back(std::move(cell));
+    }
+  }
   print_table(rows, true);
   for (const std::string& remark : {surface_remark(replayed), ambiguity_remark(replayed)}) {
     if (!remark.empty()) std::printf("note: %s\n", remark.c_str());
@@ -222,8 +242,8 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vect
   for (std::size_t i = 0; i < models.size(); ++i) {
     const ModelEvaluation& one = evaluation->models[i];
     errors.push_back(one.as_recorded.summary());
-    replayed.models.push_back(
-        {models[i], errors.back(), one.surface_moved.summary(), one.predicted, one.surface, times[i]});
+    replayed.models.push_back({models[i], errors.back(), one.surface_moved.summary(), one.bound_as_recorded.figures(),
+                               one.bound_surface_moved.figures(), one.surface, times[i]});
   }
   if (plot_path.empty()) return replayed;
   const Status drawn = plot.draw(plot_path, fs::path(checked.path).filename().string(), errors, overwrite);
@@ -260,7 +280,12 @@ Status run(const Options& options) {
     for (const ReplayedRecording& replayed : all) list.push_back(recording_json(replayed));
     print_json(list.size() == 1 ? list.front() : list);
   } else {
-    for (const ReplayedRecording& replayed : all) print_recording(replayed);
+    for (const ReplayedRecording& replayed : all) print_recording(replayed, options.all);
+    for (const auto* paths : {&forces, &plots}) {
+      for (const std::string& path : *paths) {
+        if (!path.empty()) std::printf("written  %s\n", path.c_str());
+      }
+    }
   }
   return {};
 }
@@ -281,6 +306,7 @@ void add_replay(CLI::App& app, Verbs& verbs) {
                       "recordings PLOT_RECORDING");
   command->add_option("--out", options->out,
                       "File to write (CSV): features and forces of every row; for several recordings OUT_RECORDING");
+  command->add_flag("--all", options->all, "Print all figures, also with the surface aligned to this recording");
   command->add_flag("--json", options->json, "Print one JSON object instead of a table");
   command->add_flag("--force", options->force, "Replace an existing file");
   verbs.emplace_back(command, [options] { return run(*options); });

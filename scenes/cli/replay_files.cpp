@@ -14,9 +14,21 @@ namespace palpate::cli {
 namespace {
 
 bool same_rows(const Series& one, const Series& other) {
-  return std::equal(one.rows.begin(), one.rows.end(), other.rows.begin(), [](const PlotRow& a, const PlotRow& b) {
+  return std::ranges::equal(one.rows, other.rows, [](const PlotRow& a, const PlotRow& b) {
     return a.y == b.y || (std::isnan(a.y) && std::isnan(b.y));
   });
+}
+
+// Merges curves that are equal, because only one of them would be visible. Areas stay.
+void merge_equal(std::vector<Series>& series) {
+  for (std::size_t i = series.size(); i-- > 0;) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (series[k].mark == Mark::area || !same_rows(series[i], series[k])) continue;
+      series[k].name += ", " + series[i].name;
+      series.erase(series.begin() + static_cast<std::ptrdiff_t>(i));
+      break;
+    }
+  }
 }
 
 constexpr std::size_t kMostMoments = 3000;
@@ -141,15 +153,7 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
       difference.series[i + 1].rows.push_back({shown.time_s, shown.in_contact ? over : kNoValue});
     }
   }
-  // Merges curves that are equal, because only one of them would be visible.
-  for (std::size_t i = difference.series.size(); i-- > 2;) {
-    for (std::size_t k = 1; k < i; ++k) {
-      if (!same_rows(difference.series[i], difference.series[k])) continue;
-      difference.series[k].name += ", " + difference.series[i].name;
-      difference.series.erase(difference.series.begin() + static_cast<std::ptrdiff_t>(i));
-      break;
-    }
-  }
+  merge_equal(difference.series);
   difference.y.high = std::min(largest, kMostScale_jnd);
   difference.y.low = -difference.y.high;
   difference.x.title = "Time [s]";
@@ -159,7 +163,7 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
   against.names_at_ends = true;
   Series jnd{"JND", kMutedColour, Mark::dashed, {}};
   for (std::size_t i = 0; i < models_.size(); ++i) {
-    Series series{"", method_rgb(models_[i].model->method()), Mark::curve, {}};
+    Series series{models_[i].name, method_rgb(models_[i].model->method()), Mark::curve, {}};
     for (const ForceBin& bin : errors[i].bins) {
       if (bin.force_N.count() > 0)
         series.rows.push_back({bin.force_N.mean(), bin.error_N.mean() + bin.error_N.deviation()});
@@ -167,6 +171,7 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
     }
     against.series.push_back(std::move(series));
   }
+  merge_equal(against.series);
   against.series.push_back(std::move(jnd));
   plot.panels = {std::move(force), std::move(difference), std::move(against)};
   return draw_plot(plot, path, overwrite);

@@ -1,9 +1,8 @@
-// palpate report: compares all methods on the user's recordings, as a page. palpate paper: runs the protocol of Hoever
-// & Harders (2009) on virtual material.
+// palpate report: compares all methods on the user's recordings, as a table and a page. palpate paper: runs the
+// protocol of Hoever & Harders (2009) on virtual material.
 #include "scenes/report/report.h"
 
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,16 +37,10 @@ std::string command_line(const Arguments& arguments) {
   return text;
 }
 
-// Makes the folder `out` by `make`, with the progress on stderr, and prints its answer.
-Status write_folder(const char* label, const std::string& out,
-                    const std::function<Result<std::string>(const FitControl&)>& make) {
-  const Result<std::string> answer = [&] {
-    ProgressLine line(label);
-    return make({[&](double fraction) { return line.update(fraction); }});
-  }();
-  if (!answer) return answer.error();
-  std::printf("%s\nwritten  %s/index.html, with its tables and figures\n", answer->c_str(), out.c_str());
-  return {};
+// Calls `make` with the progress on stderr.
+auto with_progress(const char* label, const auto& make) {
+  ProgressLine line(label);
+  return make(FitControl{[&](double fraction) { return line.update(fraction); }});
 }
 
 Status run_report(Arguments arguments) {
@@ -67,15 +60,23 @@ Status run_report(Arguments arguments) {
   for (std::size_t i = 0; i < checked->size(); ++i) {
     (i < arguments.train.size() ? request.train : request.test).push_back((*checked)[i].prepared);
   }
-  return write_folder("reporting", request.out,
-                      [&](const FitControl& control) { return make_report(request, control); });
+  const auto answer =
+      with_progress("reporting", [&](const FitControl& control) { return make_report(request, control); });
+  if (!answer) return answer.error();
+  print_table(answer->table, true);
+  std::printf("\n%s\n\nspeed against error  %s/figures/speed_error.png, .svg\nreport               %s/index.html\n",
+              answer->sentence.c_str(), request.out.c_str(), request.out.c_str());
+  return {};
 }
 
 Status run_paper(PaperRequest request) {
   request.origin =
       "palpate paper --out " + request.out + (request.quick ? " --quick" : "") + " · palpate " PALPATE_VERSION;
-  return write_folder("measuring", request.out,
-                      [&](const FitControl& control) { return make_paper(request, control); });
+  const auto answer =
+      with_progress("measuring", [&](const FitControl& control) { return make_paper(request, control); });
+  if (!answer) return answer.error();
+  std::printf("%s\nwritten  %s/index.html, with its tables and figures\n", answer->c_str(), request.out.c_str());
+  return {};
 }
 
 }  // namespace
@@ -91,7 +92,7 @@ void add_report(CLI::App& app, Verbs& verbs) {
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
       ->capture_default_str();
   verb->add_option("--out", arguments->request.out, "Folder to create")->required()->type_name("DIR");
-  verb->add_flag("--quick", arguments->request.quick, "Fit fewer models: about 10 s instead of a minute");
+  verb->add_flag("--quick", arguments->request.quick, "Fit the paper's methods and the default only, with 100 centres");
   verb->add_flag("--force", arguments->request.force, "Replace an earlier report");
   verbs.emplace_back(verb, [arguments] { return run_report(*arguments); });
 }

@@ -23,8 +23,8 @@ struct StudyOptions {
   std::vector<std::string> files;  // for `analyse`
   int subjects = 12;               // for `simulate`
   std::uint64_t seed = 1;
-  SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N, as in the paper
-  std::optional<std::string> discriminate;         // the recording; empty: a virtual one
+  SubjectTraits traits = kSubjectOf2009;
+  std::optional<std::string> discriminate;  // the recording; empty: a virtual one
   std::string strokes_scene = "silicone_block";
   std::vector<std::string> models;
 };

@@ -25,6 +25,7 @@ void add_scenes(CLI::App& app, Verbs& verbs);
 void add_devices(CLI::App& app, Verbs& verbs);
 void add_report(CLI::App& app, Verbs& verbs);
 void add_paper(CLI::App& app, Verbs& verbs);
+void add_hard(CLI::App& app, Verbs& verbs);
 void add_study(CLI::App& app, Verbs& verbs);
 
 }  // namespace palpate::cli

@@ -11,33 +11,25 @@ namespace {
 
 using Models = std::vector<EvaluatedModel>;
 
-// The predicted bounds of one model, and the number of errors within them.
-struct Bounds {
-  std::vector<float> bound_N;
-  std::size_t covered = 0;
-
-  BoundCoverage predicted() const {
-    if (bound_N.empty()) return {};
-    std::vector<float> all = bound_N;
-    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    return {static_cast<double>(covered) / static_cast<double>(all.size()), static_cast<double>(*middle)};
-  }
-};
+double median_of(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return static_cast<double>(*middle);
+}
 
 // The results of all models over all rows.
 struct Passed {
   ReplaySummary summary;
   ModelErrors no_force;
   std::vector<ModelErrors> errors;
-  std::vector<Bounds> bounds;
+  std::vector<BoundErrors> bounds;
 };
 
 // Replays the rows with up to kMaxModels models at a time. `also` is called for every row with the first of these
 // groups. `from`: progress of the evaluation at the beginning.
 Result<Passed> pass_over(const RowSource& rows, const Models& models, double surface_offset_m,
                          const EvaluationRequest& request, double from, const ReplayVisitor& also) {
-  Passed passed{{}, ModelErrors(models.front().jnd), {}, std::vector<Bounds>(models.size())};
+  Passed passed{{}, ModelErrors(models.front().jnd), {}, std::vector<BoundErrors>(models.size())};
   for (const EvaluatedModel& one : models) passed.errors.emplace_back(one.jnd);
   // Contact of each row, from the first group of models, so that all models have the same samples.
   std::vector<bool> contact;
@@ -63,10 +55,7 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
       for (std::size_t i = first; i < end; ++i) {
         const double model_N = snapshot.force_N[i - first];
         add(passed.errors[i], model_N, (snapshot.out_of_domain_mask >> (i - first) & 1U) != 0);
-        const double bound_N = snapshot.predicted_error_N[i - first];
-        if (std::isnan(bound_N)) continue;
-        passed.bounds[i].bound_N.push_back(static_cast<float>(bound_N));
-        if (std::abs(model_N - row.force_N) <= bound_N) ++passed.bounds[i].covered;
+        passed.bounds[i].add(snapshot.predicted_error_N[i - first], model_N, row.force_N, models[i].jnd);
       }
     };
     const auto summary = rows(batch, visitor, surface_offset_m);
@@ -77,6 +66,28 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
 }
 
 }  // namespace
+
+void BoundErrors::add(double bound_N, double model_N, double measured_N, const JndLine& jnd) {
+  if (std::isnan(bound_N)) return;
+  bound_N_.push_back(static_cast<float>(bound_N));
+  over_jnd_.push_back(static_cast<float>(bound_N / jnd.at(measured_N)));
+  if (std::abs(model_N - measured_N) <= bound_N) ++covered_;
+  largest_force_N_ = std::max(largest_force_N_, std::abs(measured_N));
+}
+
+void BoundErrors::append(const BoundErrors& other) {
+  bound_N_.insert(bound_N_.end(), other.bound_N_.begin(), other.bound_N_.end());
+  over_jnd_.insert(over_jnd_.end(), other.over_jnd_.begin(), other.over_jnd_.end());
+  covered_ += other.covered_;
+  largest_force_N_ = std::max(largest_force_N_, other.largest_force_N_);
+}
+
+BoundFigures BoundErrors::figures() const {
+  if (bound_N_.empty()) return {};
+  const double median_N = median_of(bound_N_);
+  return {static_cast<double>(covered_) / static_cast<double>(bound_N_.size()), median_N,
+          median_N <= largest_force_N_ ? median_of(over_jnd_) : kUnknown};
+}
 
 RowSource rows_of(const Recording& recording) {
   return [&recording](const ForceModels& models, const ReplayVisitor& visitor, double surface_offset_m) {
@@ -109,7 +120,7 @@ Result<RecordingEvaluation> evaluate(const RowSource& rows, const Models& models
   result.timing.sensor = recorded->summary.sensor;
   result.no_force = recorded->no_force;
   for (std::size_t i = 0; i < models.size(); ++i) {
-    result.models.push_back({recorded->errors[i], recorded->errors[i], recorded->bounds[i].predicted(), {}});
+    result.models.push_back({recorded->errors[i], recorded->errors[i], recorded->bounds[i], recorded->bounds[i], {}});
   }
   if (!request.move_surface) return result;
   const std::vector<Sample> searched = thinned_rows(surface_rows.rows(), kSearchRows);
@@ -128,7 +139,7 @@ Result<RecordingEvaluation> evaluate(const RowSource& rows, const Models& models
     if (!moved) return moved.error();
     for (std::size_t i = 0; i < which.size(); ++i) {
       result.models[which[i]].surface_moved = moved->errors[i];
-      result.models[which[i]].predicted = moved->bounds[i].predicted();
+      result.models[which[i]].bound_surface_moved = moved->bounds[i];
     }
   }
   return result;

@@ -39,23 +39,42 @@ struct EvaluationRequest {
   ReplayVisitor also;
   // Errors count from this time of the recording on. Earlier rows are replayed because the features have memory.
   double counted_from_s = -std::numeric_limits<double>::infinity();
-  bool move_surface = true;  // false: `surface_moved` equals `as_recorded`
+  bool move_surface = true;  // false: the figures with the surface moved equal those as recorded
   // The models from which one common surface offset is estimated. Empty: each model has its own estimate.
   std::vector<ModelPointer> surface_models;
   FitControl control;
 };
 
-// Coverage and median of a model's 95 % error bounds; NaN for a model without bounds.
-struct BoundCoverage {
-  double coverage = std::numeric_limits<double>::quiet_NaN();  // share of the errors within the bound
-  double median_N = std::numeric_limits<double>::quiet_NaN();
+// A model's predicted 95 % error bounds. All figures are NaN for a model without bounds.
+struct BoundFigures {
+  double coverage = kUnknown;         // share of the errors within the bound
+  double median_N = kUnknown;         // of the bounds
+  double median_over_jnd = kUnknown;  // of bound / JND; NaN where `median_N` exceeds the largest force: it says nothing
+
+  bool has_bounds() const { return std::isfinite(coverage); }
+};
+
+// Collects the bounds of one model at the samples in contact. It stores 8 bytes per sample.
+class BoundErrors {
+ public:
+  // `bound_N`: NaN for a model without bounds.
+  void add(double bound_N, double model_N, double measured_N, const JndLine& jnd);
+  // Adds the samples of another recording.
+  void append(const BoundErrors& other);
+  BoundFigures figures() const;
+
+ private:
+  std::vector<float> bound_N_, over_jnd_;
+  std::size_t covered_ = 0;
+  double largest_force_N_ = 0.0;
 };
 
 struct ModelEvaluation {
   ModelErrors as_recorded;
   ModelErrors surface_moved;
-  BoundCoverage predicted;  // with the surface moved
-  OffsetEstimate surface;   // its offset is 0 if not identified
+  BoundErrors bound_as_recorded;
+  BoundErrors bound_surface_moved;
+  OffsetEstimate surface;  // its offset is 0 if not identified
 };
 
 struct RecordingEvaluation {

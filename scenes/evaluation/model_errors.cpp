@@ -1,10 +1,12 @@
 #include "scenes/evaluation/model_errors.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
+
+#include "engine/base/random_stream.h"
 
 namespace palpate {
 namespace {
@@ -34,34 +36,20 @@ double central_probability(double t, std::size_t degrees) {
   return odd ? 2.0 / std::numbers::pi * (angle + std::sin(angle) * sum) : std::sin(angle) * sum;
 }
 
-// With more degrees of freedom Student's t is that of kMostDegrees, which is larger by less than 0.7 %: its bounds are
-// slightly too wide, and the sum above stays short.
-constexpr std::size_t kMostDegrees = 200;
-
-// The values that Student's t exceeds with the probability `above`, 0 to 0.5, by its degrees of freedom. Each is
-// computed once, because a window compares all models in every frame.
-class StudentT {
- public:
-  explicit StudentT(double above) {
-    for (std::size_t degrees = 1; degrees <= kMostDegrees; ++degrees) {
-      double low = 0.0;
-      double& high = values_[degrees] = 1e6;
-      for (int i = 0; i < 100; ++i) {
-        const double middle = 0.5 * (low + high);
-        (central_probability(middle, degrees) < 1.0 - 2.0 * above ? low : high) = middle;
-      }
-    }
+// The value that Student's t exceeds with the probability `above`, 0 to 0.5. With more than 200 degrees of freedom it
+// is that of 200, which is larger by less than 0.7 %: the sum above stays short.
+double student_t(double above, std::size_t degrees) {
+  double low = 0.0, high = 1e6;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (central_probability(middle, std::min<std::size_t>(degrees, 200)) < 1.0 - 2.0 * above ? low : high) = middle;
   }
-  double at(std::size_t degrees) const { return values_[std::min(degrees, kMostDegrees)]; }
+  return high;
+}
 
- private:
-  std::array<double, kMostDegrees + 1> values_{};
-};
-
-// Standard error of sum(numerators) / sum(denominators), with one of each per unit; NaN with fewer than kLeastUnits.
+// Standard error of sum(numerators) / sum(denominators), with one of each per unit; at least two units.
 double ratio_standard_error(const std::vector<double>& numerators, const std::vector<double>& denominators) {
   const std::size_t n = numerators.size();
-  if (n < kLeastUnits) return kUnknown;
   const double whole = std::accumulate(denominators.begin(), denominators.end(), 0.0);
   const double ratio = std::accumulate(numerators.begin(), numerators.end(), 0.0) / whole;
   double squares = 0.0;
@@ -70,46 +58,61 @@ double ratio_standard_error(const std::vector<double>& numerators, const std::ve
   return std::sqrt(count / (count - 1.0) * squares) / whole;
 }
 
-// Standard error of the mean of `values`.
-double standard_error(const std::vector<double>& values) {
-  return ratio_standard_error(values, std::vector<double>(values.size(), 1.0));
+// The 99 % error of every draw of units. `bounds`: the first sample of each unit in `ratios`, then their number.
+std::vector<float> resample(const std::vector<float>& ratios, const std::vector<std::size_t>& bounds) {
+  const std::size_t units = bounds.size() - 1;
+  if (units < kLeastUnits) return {};
+  std::vector<std::pair<float, std::size_t>> samples;  // error and unit, in descending order
+  for (std::size_t unit = 0; unit < units; ++unit) {
+    for (std::size_t i = bounds[unit]; i < bounds[unit + 1]; ++i) samples.emplace_back(ratios[i], unit);
+  }
+  std::ranges::sort(samples, std::ranges::greater{}, &std::pair<float, std::size_t>::first);
+  RandomStream random(1, 0);
+  std::vector<float> errors;
+  for (std::size_t draw = 0; draw < kResamples; ++draw) {
+    std::vector<std::size_t> times(units, 0);
+    std::size_t drawn = 0;  // samples
+    for (std::size_t k = 0; k < units; ++k) {
+      const auto unit = static_cast<std::size_t>(random.index(units));
+      ++times[unit];
+      drawn += bounds[unit + 1] - bounds[unit];
+    }
+    const std::size_t beyond = drawn / 100;  // number of samples that may exceed the 99 % error
+    std::size_t count = 0;
+    auto one = samples.begin();
+    while ((count += times[one->second]) <= beyond) ++one;
+    errors.push_back(one->first);
+  }
+  return errors;
 }
 
-// One-sided 95 % bound: estimate + t error; a negative error gives the lower bound. NaN with fewer than kLeastUnits.
-double bound(double estimate, double error, std::size_t units) {
-  static const StudentT one_sided(kOneSided);
-  return units < kLeastUnits ? kUnknown : estimate + one_sided.at(units - 1) * error;
-}
-
-Interval interval_95(double estimate, double error, std::size_t units) {
-  static const StudentT two_sided(0.5 * kOneSided);
-  if (units < kLeastUnits) return {kUnknown, kUnknown};
-  const double width = two_sided.at(units - 1) * error;
-  return {estimate - width, estimate + width};
+// The expanded percentile interval of a bootstrap with this number of units.
+Interval interval_95(std::vector<float> resampled, std::size_t units) {
+  if (resampled.empty()) return {kUnknown, kUnknown};
+  const auto n = static_cast<double>(units);
+  const double below =
+      0.5 * std::erfc(std::sqrt(n / (n - 1.0)) * student_t(0.5 * kOneSided, units - 1) / std::numbers::sqrt2);
+  const auto rank = static_cast<std::size_t>(below * static_cast<double>(resampled.size()));
+  std::ranges::sort(resampled);
+  return {static_cast<double>(resampled[rank]), static_cast<double>(resampled[resampled.size() - 1 - rank])};
 }
 
 }  // namespace
 
-Interval UnitErrors::p99_interval() const {
-  Interval interval = interval_95(p99_error_over_jnd, standard_error(unit_p99), units());
-  interval.low = std::max(interval.low, 0.0);  // keeps a NaN
-  return interval;
-}
-
-double UnitErrors::p99_at_most() const { return bound(p99_error_over_jnd, standard_error(unit_p99), units()); }
+Interval UnitErrors::p99_interval() const { return interval_95(resampled_p99, units()); }
 
 double UnitErrors::within_at_least() const {
-  if (has_intervals() && units_above_jnd == 0) return std::pow(kOneSided, 1.0 / static_cast<double>(units()));
-  return std::max(bound(within_jnd, -ratio_standard_error(unit_within, unit_samples), units()), 0.0);
+  if (!has_intervals()) return kUnknown;
+  if (units_above_jnd == 0) return std::pow(kOneSided, 1.0 / static_cast<double>(units()));
+  return std::max(0.0,
+                  within_jnd - student_t(kOneSided, units() - 1) * ratio_standard_error(unit_within, unit_samples));
 }
 
 PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other) {
-  std::vector<double> differences;
-  for (std::size_t i = 0; i < std::min(one.unit_p99.size(), other.unit_p99.size()); ++i)
-    differences.push_back(one.unit_p99[i] - other.unit_p99[i]);
-  const double error = standard_error(differences);
-  const double difference = one.p99_error_over_jnd - other.p99_error_over_jnd;
-  return {difference, interval_95(difference, error, differences.size()), bound(difference, error, differences.size())};
+  std::vector<float> differences;
+  for (std::size_t i = 0; i < std::min(one.resampled_p99.size(), other.resampled_p99.size()); ++i)
+    differences.push_back(one.resampled_p99[i] - other.resampled_p99[i]);
+  return {one.p99_error_over_jnd - other.p99_error_over_jnd, interval_95(std::move(differences), one.units())};
 }
 
 bool StrokeCounter::begins_stroke(double time_s, bool in_contact) {
@@ -150,16 +153,17 @@ UnitErrors ModelErrors::unit_errors() const {
   unit_errors.units_are_recordings = recordings_.size() > 1;
   std::vector<std::size_t> bounds = unit_errors.units_are_recordings ? recordings_ : strokes_;
   bounds.push_back(ratios_.size());
+  // A stroke that ended before the counted time has no samples.
+  bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
-    if (bounds[i] == bounds[i + 1]) continue;  // a stroke that ended before the counted time
     const auto begin = ratios_.begin() + static_cast<std::ptrdiff_t>(bounds[i]);
     const auto end = ratios_.begin() + static_cast<std::ptrdiff_t>(bounds[i + 1]);
     const auto within = std::count_if(begin, end, [](float ratio) { return ratio <= 1.0F; });
     unit_errors.unit_samples.push_back(static_cast<double>(end - begin));
     unit_errors.unit_within.push_back(static_cast<double>(within));
-    unit_errors.unit_p99.push_back(percentile_99(begin, end));
     unit_errors.units_above_jnd += within < end - begin ? 1 : 0;
   }
+  unit_errors.resampled_p99 = resample(ratios_, bounds);
   return unit_errors;
 }
 

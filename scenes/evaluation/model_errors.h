@@ -6,12 +6,17 @@
 //                    (nearest rank)
 //   RMS, maximum     of |model - measured|
 // Neighbouring samples are correlated, so intervals come from independent units: whole recordings where there are
-// several, else strokes (from touch to release). A mean over n units has the standard error s / sqrt(n) and Student's t
-// with n - 1 degrees of freedom; with fewer than kLeastUnits units there is no interval. The share has the standard
-// error of a ratio of means. The 99 % error has the standard error of the mean of the units' 99 % errors. If no unit
-// has an error above one JND, the exact binomial bound applies: at the 95 % level at most 1 - 0.05^(1/n) of all units
-// have one. Two models are compared by paired differences of the same units.
-// Source: Cochran (1977), Sampling Techniques, 2.7 and 6.4; Clopper & Pearson (1934).
+// several, else strokes (from touch to release). With fewer than kLeastUnits units there is no interval.
+//   99 % error       cluster bootstrap: kResamples times, as many whole units as there are are drawn with replacement,
+//                    and the 99 % error of their samples is taken. The interval is the expanded percentile interval:
+//                    between the quantiles of these 99 % errors at Phi(-sqrt(n / (n - 1)) t) and at 1 minus this, with
+//                    t the 97.5 % quantile of Student's t with n - 1 degrees of freedom.
+//   within the JND   the standard error of a ratio of means, and Student's t. If no unit has an error above one JND,
+//   the
+//                    exact binomial bound applies: at the 95 % level at most 1 - 0.05^(1/n) of all units have one.
+// All models draw the same units, so the 99 % errors of two models are compared draw by draw.
+// Sources: Davison & Hinkley (1997), Bootstrap Methods and their Application, 2.4 and 3.8; Hesterberg (2015), The
+// American Statistician 69; Cochran (1977), Sampling Techniques, 6.4; Clopper & Pearson (1934).
 // Thread guarantee: slow side; one thread per object.
 #pragma once
 
@@ -36,6 +41,7 @@ inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // With two units t is 12.7, and the interval would be useless.
 inline constexpr std::size_t kLeastUnits = 3;
+inline constexpr std::size_t kResamples = 2000;
 
 // A loss of contact of at most this time does not end a stroke: noise at the surface causes it.
 inline constexpr double kStrokePause_s = 0.05;
@@ -45,14 +51,13 @@ struct UnitErrors : ErrorSummary {
   bool units_are_recordings = false;  // false: units are strokes
   std::uint64_t units_above_jnd = 0;  // number of units with an error above one JND
   std::vector<double> unit_samples;
-  std::vector<double> unit_within;  // samples within the JND
-  std::vector<double> unit_p99;     // 99 % error over the JND
+  std::vector<double> unit_within;   // samples within the JND
+  std::vector<float> resampled_p99;  // 99 % errors of the draws of units; empty with fewer than kLeastUnits units
 
   std::size_t units() const { return unit_samples.size(); }
   bool has_intervals() const { return units() >= kLeastUnits; }
   // The following are NaN with fewer than kLeastUnits units.
   Interval p99_interval() const;  // 95 %, two-sided
-  double p99_at_most() const;     // 95 %, one-sided
   // 95 % lower bound of the share of samples within the JND; if units_above_jnd is 0, of the share of such units.
   double within_at_least() const;
 };
@@ -60,8 +65,7 @@ struct UnitErrors : ErrorSummary {
 // The 99 % error of one model minus that of another, in JND, over the same samples.
 struct PairedDifference {
   double p99 = 0.0;
-  Interval interval;          // 95 %, two-sided; NaN with fewer than kLeastUnits units
-  double at_most = kUnknown;  // one-sided 95 % bound; NaN with fewer than kLeastUnits units
+  Interval interval;  // 95 %, two-sided; NaN with fewer than kLeastUnits units
 };
 PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other);
 

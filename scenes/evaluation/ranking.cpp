@@ -1,47 +1,40 @@
 #include "scenes/evaluation/ranking.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
+#include <tuple>
 
 namespace palpate {
 namespace {
 
-bool faster(const Timing& one, const Timing& other) { return one.high_ns < other.low_ns; }
-
-bool smaller_error(const Candidate& one, const Candidate& other) {
-  return one.errors.p99_error_over_jnd < other.errors.p99_error_over_jnd;
-}
-
-bool is_non_inferior(const Candidate& one, const Candidate& best) {
-  const PairedDifference difference = paired_difference(one.errors, best.errors);
-  return (std::isfinite(difference.at_most) ? difference.at_most : difference.p99) <= kMargin_jnd;
+// The place of the method in the order of simplicity; one that is not listed is the least simple.
+std::ptrdiff_t complexity(std::string_view method) {
+  constexpr std::array<std::string_view, 6> kSimplestFirst{"trend", "greedy", "kdtree", "random", "voxel", "direct"};
+  const std::string_view corrects = method.substr(method.rfind('+') + 1);
+  return std::ranges::find(kSimplestFirst, corrects) - kSimplestFirst.begin();
 }
 
 }  // namespace
 
-bool dominates(const Candidate& one, const Candidate& other) {
-  return smaller_error(one, other) && faster(one.tick, other.tick);
-}
-
 Ranking rank(const std::vector<Candidate>& candidates) {
   Ranking ranking;
-  const auto best = std::min_element(candidates.begin(), candidates.end(), smaller_error);
+  const auto best = std::ranges::min_element(candidates, {}, &Candidate::p99_error_over_jnd);
   ranking.best = static_cast<std::size_t>(best - candidates.begin());
-  std::size_t fastest = ranking.best;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    ranking.qualified.push_back(i == ranking.best || is_non_inferior(candidates[i], *best));
-    if (ranking.qualified[i] && candidates[i].tick.median_ns < candidates[fastest].tick.median_ns) fastest = i;
+  double shortest_ns = best->tick_ns;
+  for (const Candidate& one : candidates) {
+    ranking.near_best.push_back(one.p99_error_over_jnd <= best->p99_error_over_jnd + kMargin_jnd);
+    if (ranking.near_best.back()) shortest_ns = std::min(shortest_ns, one.tick_ns);
   }
-  ranking.recommended = fastest;
+  ranking.recommended = ranking.best;
+  const auto order = [&](std::size_t i) {
+    const Candidate& one = candidates[i];
+    const bool fast = ranking.near_best[i] && one.tick_ns <= (1.0 + kEqualTime) * shortest_ns;
+    return std::tuple(!fast, complexity(one.method), one.p99_error_over_jnd);
+  };
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const bool equal = ranking.qualified[i] && !faster(candidates[fastest].tick, candidates[i].tick);
-    if (equal && smaller_error(candidates[i], candidates[ranking.recommended])) ranking.recommended = i;
+    if (order(i) < order(ranking.recommended)) ranking.recommended = i;
   }
-  // A model whose error is uncertain may fail the test of non-inferiority and yet dominate the recommended one. One
-  // pass is enough, because dominance is transitive.
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (dominates(candidates[i], candidates[ranking.recommended])) ranking.recommended = i;
-  }
-  ranking.qualified[ranking.recommended] = true;
   return ranking;
 }
 

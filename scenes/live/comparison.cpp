@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace palpate {
 namespace {
@@ -13,26 +12,15 @@ constexpr double kLongestStep_s = 0.1;
 constexpr double kBeginning_s = 0.05;
 // After 5 time constants a first-order filter has less than 1 % of its initial error.
 constexpr double kSettled_memories = 5.0;
-constexpr double kUnitErrorsInterval_s = 2.0;  // between two updates of the errors by stroke
 
 }  // namespace
 
-Comparison::Comparison(const SessionModels& models, const JndLine& jnd) : models_(models), jnd_(jnd) {}
+Comparison::Comparison(const SessionModels& models, ReferenceKind reference, const JndLine& jnd)
+    : models_(models), jnd_(jnd), reference_(reference) {}
 
-void Comparison::use_reference(ReferenceKind kind) {
-  if (kind != reference_) forget_errors("the reference changed");
-  reference_ = kind;
-}
-
-void Comparison::forget_errors(std::string why) {
-  since_ = std::move(why);
-  contact_s_ = counted_s_ = outside_s_ = unit_errors_s_ = 0.0;
-  stroke_pending_ = true;
-  for (Slot& slot : slots_) {
-    slot.errors = {};
-    slot.unit_errors = {};
-    slot.outside_s = 0.0;
-  }
+void Comparison::forget_errors() {
+  counted_s_ = 0.0;
+  for (Slot& slot : slots_) slot.errors = {};
 }
 
 void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_.model(slot)->features()); }
@@ -42,14 +30,12 @@ void Comparison::forget_slot(std::size_t slot) {
   history_.forget(slot);
 }
 
-std::size_t Comparison::mostly_outside() const noexcept {
-  return static_cast<std::size_t>(std::ranges::max_element(slots_, {}, &Slot::outside_s) - slots_.begin());
-}
-
 ModelFigures Comparison::figures(std::size_t slot) const {
   const Slot& one = slots_[slot];
   ModelFigures figures = one.newest;
   figures.errors = one.errors.summary(jnd_);
+  figures.press_samples = figures.errors.samples;
+  figures.press_p99_over_jnd = figures.errors.p99_error_over_jnd;
   figures.dent_m = one.dent.depth_m();
   figures.recent_error_over_jnd = one.dent.error_over_jnd();
   return figures;
@@ -60,11 +46,9 @@ void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
   const double step_s = std::clamp(snapshot.loop_time_s - last_loop_time_s_, 0.0, kLongestStep_s);
   last_loop_time_s_ = snapshot.loop_time_s;
   const double time_s = snapshot.tick.time_s;
-  if (snapshot.restarted || set == nullptr) {
-    settled_ = set != nullptr && time_s < begins_at_s_ + kBeginning_s;
-    stream_began_s_ = last_time_s_ = time_s;
-    strokes_ = {};
-  }
+  // Models that join in a stream are initialised with its motion from its first sample on (HapticsTick::recall).
+  if (snapshot.restarted) settled_ = time_s < begins_at_s_ + kBeginning_s;
+  if (snapshot.restarted || (set == nullptr && !settled_)) stream_began_s_ = last_time_s_ = time_s;
   if (set != nullptr &&
       (!snapshot.tick.in_contact || time_s > stream_began_s_ + kSettled_memories * models_.longest_memory_s()))
     settled_ = true;
@@ -90,7 +74,6 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
   point.time_s = snapshot.tick.time_s;
   point.position_m = static_cast<float>(snapshot.tick.position_m);
   point.depth_m = static_cast<float>(snapshot.tick.depth_m);
-  point.reference = static_cast<std::uint8_t>(reference_);
   point.reference_N = static_cast<float>(reference_in(snapshot, set));
   point.rendered_N = static_cast<float>(snapshot.rendered_N);
   point.in_contact = snapshot.tick.in_contact;
@@ -117,41 +100,23 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
   // Where one model is outside its training domain, the sample counts for no model.
   bool outside = false;
   for (const auto& [slot, i] : set.models) {
-    if (!models_.info(slot).other_material && (snapshot.tick.out_of_domain_mask >> i & 1U) != 0) {
-      outside = true;
-      slots_[slot].outside_s += step_s;
-    }
+    if (!models_.info(slot).other_material && (snapshot.tick.out_of_domain_mask >> i & 1U) != 0) outside = true;
     const double difference = point.difference_over_jnd(slot, jnd_);
     slots_[slot].sustained_over_jnd =
         slots_[slot].sustained.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
   }
-  if (strokes_.begins_stroke(point.time_s, point.in_contact)) stroke_pending_ = true;
   // A snapshot of an earlier set lacks the models that joined since.
-  if (&set != models_.newest_set() || std::isnan(point.reference_N) || !point.in_contact) return;
-  contact_s_ += step_s;
-  if (outside) outside_s_ += step_s;
-  if (outside || !point.counts) return;
+  if (&set != models_.newest_set() || std::isnan(point.reference_N) || outside || !point.counts) return;
   counted_s_ += step_s;
-  count_errors(point, set);
-}
-
-void Comparison::count_errors(const HistoryPoint& point, const PublishedSet& set) {
-  const bool begins = std::exchange(stroke_pending_, false);
   for (const auto& [slot, i] : set.models) {
-    if (std::isnan(point.difference_over_jnd(slot, jnd_))) continue;
-    StreamErrors& errors = slots_[slot].errors;
-    if (begins) errors.begin_stroke();
-    errors.add(static_cast<double>(point.force_N[slot]), static_cast<double>(point.reference_N), jnd_);
+    if (!std::isnan(point.difference_over_jnd(slot, jnd_)))
+      slots_[slot].errors.add(static_cast<double>(point.force_N[slot]), static_cast<double>(point.reference_N), jnd_);
   }
 }
 
 void Comparison::show(const LoopSnapshot& newest) {
   const PublishedSet* set = models_.set_of(newest);
   reference_N_ = reference_in(newest, set);
-  if (newest.loop_time_s >= unit_errors_s_ && counted_s_ >= kLeastContact_s) {
-    unit_errors_s_ = newest.loop_time_s + kUnitErrorsInterval_s;
-    for (Slot& slot : slots_) slot.unit_errors = slot.errors.unit_errors(jnd_);
-  }
   if (set == nullptr) return;
   for (const auto& [slot, i] : set->models) {
     ModelFigures& figures = slots_[slot].newest;

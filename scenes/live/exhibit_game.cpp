@@ -9,12 +9,6 @@ namespace {
 
 constexpr double kLongest_s = 60.0;  // of a trace
 
-const ExhibitModel* find_model(const std::vector<ExhibitModel>& models, const std::string& method, bool paper) {
-  const auto found = std::ranges::find_if(
-      models, [&](const ExhibitModel& model) { return model.paper == paper && (paper || model.method == method); });
-  return found != models.end() ? &*found : nullptr;
-}
-
 }  // namespace
 
 void ExhibitTrace::clear() {
@@ -22,6 +16,7 @@ void ExhibitTrace::clear() {
   columns_.reserve(static_cast<std::size_t>(kLongest_s / kColumn_s));
   began_s_ = -1.0;
   seconds_ = largest_ = 0.0;
+  strong_ = false;
   largest_at_ = 0;
 }
 
@@ -38,7 +33,10 @@ void ExhibitTrace::add(const ExhibitTick& tick) {
   column.first_N += share * (tick.first_N - column.first_N);
   column.position_m += share * (tick.position_m - column.position_m);
   if (column.ticks == 1 || std::abs(tick.over_jnd) > std::abs(column.over_jnd)) column.over_jnd = tick.over_jnd;
-  if (std::abs(tick.over_jnd) > largest_) {
+  const bool strong = std::max(tick.first_N, tick.second_N) >= kStrong_N;
+  if (strong && !strong_) largest_ = 0.0;
+  strong_ = strong_ || strong;
+  if (strong == strong_ && std::abs(tick.over_jnd) > largest_) {
     largest_ = std::abs(tick.over_jnd);
     largest_at_ = at;
   }
@@ -46,21 +44,17 @@ void ExhibitTrace::add(const ExhibitTick& tick) {
 
 std::vector<ExhibitRound> ExhibitGame::rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference,
                                                  bool has_force) {
-  const ExhibitModel* best = find_model(ready, "greedy", false);
-  if (best == nullptr) best = find_model(ready, "direct", false);
-  if (best == nullptr && !ready.empty()) best = &ready.front();
-  const ExhibitModel* first = has_force ? best : has_reference || ready.empty() ? nullptr : &ready.front();
-  std::vector<const ExhibitModel*> others{find_model(ready, "position", false), find_model(ready, "", true), best};
-  for (const ExhibitModel& model : ready) others.push_back(&model);
-  std::vector<ExhibitRound> rounds;
-  const auto is_there = [&](const ExhibitModel* model) {
-    return model == nullptr || model == first ||
-           std::ranges::any_of(rounds, [&](const auto& round) { return round.second.slot == model->slot; });
-  };
-  for (const ExhibitModel* model : others) {
-    if (is_there(model) || rounds.size() == kMostRounds) continue;
-    rounds.push_back({first != nullptr ? std::optional<ExhibitModel>(*first) : std::nullopt, *model});
+  std::vector<ExhibitModel> models = ready;
+  std::ranges::stable_sort(
+      models, {}, [](const ExhibitModel& one) { return one.paper ? one.centres : std::numeric_limits<int>::max(); });
+  while (models.size() > kMostRounds) models.erase(models.end() - 2);
+  std::optional<ExhibitModel> first;
+  if (!models.empty() && (has_force || !has_reference)) {
+    first = models.back();
+    models.pop_back();
   }
+  std::vector<ExhibitRound> rounds;
+  for (const ExhibitModel& model : models) rounds.push_back({first, model});
   return rounds;
 }
 

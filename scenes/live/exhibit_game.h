@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "engine/base/random_stream.h"
@@ -33,10 +32,12 @@ struct ExhibitTick {
   double position_m = 0.0;
 };
 
-// Both forces in the first minute from the first contact on, averaged over intervals of 25 ms (columns).
+// Both forces in the first minute from the first contact on, averaged over intervals of 25 ms (columns). Once a force
+// has reached kStrong_N, the largest difference is that of such forces: a smaller one cannot be shown.
 class ExhibitTrace {
  public:
   static constexpr double kColumn_s = 0.025;
+  static constexpr double kStrong_N = 1.0;
   struct Column {
     double first_N = 0.0;                                        // mean
     double position_m = 0.0;                                     // mean
@@ -50,20 +51,22 @@ class ExhibitTrace {
   const std::vector<Column>& columns() const noexcept { return columns_; }
   // The largest magnitude so far, and its column.
   double largest_over_jnd() const noexcept { return largest_; }
+  bool strong() const noexcept { return strong_; }
   std::size_t largest_at() const noexcept { return largest_at_; }
 
  private:
   std::vector<Column> columns_;
   double began_s_ = -1.0;  // loop time of the first contact; below 0: none yet
   double seconds_ = 0.0;
+  bool strong_ = false;  // a force has reached kStrong_N
   double largest_ = 0.0;
   std::size_t largest_at_ = 0;
 };
 
 struct ExhibitModel {
   std::size_t slot = 0;
-  std::string method;  // "position": a model with the depth as its only feature
-  bool paper = false;  // fitted by the recipe of the paper (2009)
+  int centres = 0;
+  bool paper = false;  // a method on the measured force, as in the paper (2009)
 };
 
 struct ExhibitRound {
@@ -88,9 +91,9 @@ class ExhibitGame {
 
   explicit ExhibitGame(std::uint64_t seed) : random_(seed, kStream) {}
 
-  // The rounds in order of rising difficulty, at most kMostRounds: the model of depth alone, a model of the paper's
-  // recipe, the best model (greedy, else direct, else the first), then the others of `ready`. The other side is the
-  // best model when `has_force`, else the reference, and without a reference the first model.
+  // The rounds in order of rising difficulty, at most kMostRounds: the paper's models by their number of centres, then
+  // those with a trend, of which the last is the best and always takes part. The other side is the best model when
+  // `has_force` or without a reference, else the reference.
   static std::vector<ExhibitRound> rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference,
                                              bool has_force);
   // Starts a game. Returns false and changes nothing when there are no two forces to compare. `press_s`: duration of

@@ -21,10 +21,8 @@ inline constexpr double kHistory_s = 120.0;
 enum class ReferenceKind : std::uint8_t {
   measured,  // of the device's force sensor, or of the recording that is replayed
   truth,     // of the scene's virtual material under the same tool
-  direct,    // of the model SessionModels::reference
+  model,     // of the model SessionModels::reference: there is no true force
 };
-inline constexpr std::array<ReferenceKind, 3> kReferenceKinds{ReferenceKind::measured, ReferenceKind::truth,
-                                                              ReferenceKind::direct};
 
 struct HistoryPoint {
   double loop_time_s = 0.0;  // steady clock
@@ -34,7 +32,6 @@ struct HistoryPoint {
   float reference_N = 0.0F;  // NaN: none
   float rendered_N = 0.0F;
   float predicted_error_N = 0.0F;  // 95 %, of the active model; NaN: none
-  std::uint8_t reference = 0;      // a ReferenceKind
   bool in_contact = false;
   bool counts = true;          // in contact, valid sample, filters settled; see comparison.h for the rest
   bool out_of_domain = false;  // of the active model

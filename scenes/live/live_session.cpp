@@ -5,10 +5,14 @@
 #include <filesystem>
 #include <string_view>
 
+#include "devices/virtual/replay_device.h"
 #include "engine/base/text.h"
+#include "engine/live/pacer.h"
 #include "models/model/fitted_model.h"
 #include "models/samples/recording_faults.h"
+#include "scenes/live/test_part.h"
 #include "scenes/live/true_force.h"
+#include "scenes/material/rig.h"
 #include "scenes/scene/folders.h"
 
 namespace palpate {
@@ -18,6 +22,8 @@ constexpr std::size_t kSnapshotsAtOnce = 256;
 // Time before a tick in which the loop rehearses it: a real-time thread wakes up about 30 us late, and a rehearsal of
 // seven models takes 15 us.
 constexpr std::int64_t kRehearse_ns = 100'000;
+constexpr double kLeastContact_s = 1.0;  // for a verdict on the user's own presses
+constexpr double kJudged_s = 2.0;        // between two such verdicts
 // The number is limited, so that a device that fails all day does not fill the disk.
 constexpr int kMostFaultFiles = 50;
 
@@ -58,15 +64,16 @@ bool limit_hand(const std::vector<Recording>& recordings, HandSettings& hand) {
 }
 
 // Replaces the scene's material by the named recordings, or by the replayed one: no true force is known for them.
-Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings& hand) {
+// Returns the recordings.
+Result<std::vector<Recording>> take_recordings(const SessionRequest& request, Scene& scene, HandSettings& hand) {
   const std::string replayed = replayed_file(request.device);
+  std::vector<Recording> recordings;
   scene.recordings = request.recordings;
   if (scene.recordings.empty() && !replayed.empty() && request.refits) scene.recordings = {replayed};
-  if (scene.recordings.empty() && replayed.empty()) return {};
+  if (scene.recordings.empty() && replayed.empty()) return recordings;
   scene.material.reset();
   scene.title.clear();
   scene.description = "Models are fitted to";
-  std::vector<Recording> recordings;
   for (const std::string& path : scene.recordings) {
     Result<Recording> recording = read_usable_recording(path);
     if (!recording) return recording.error();
@@ -76,7 +83,14 @@ Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings
   }
   if (recordings.empty()) scene.title = std::filesystem::path(replayed).stem().string();
   if (limit_hand(recordings, hand)) scene.strongest_press_N = hand.strongest_press_N;
-  return {};
+  return recordings;
+}
+
+// The file of SessionRequest::test.
+std::string test_file_of(const SessionRequest& request, const Scene& scene) {
+  if (!request.test.empty()) return request.test;
+  const std::string replayed = replayed_file(request.device);
+  return replayed.empty() && !scene.recordings.empty() ? scene.recordings.back() : replayed;
 }
 
 // If no scene was named and all models are files, takes the scene from the first file's provenance, without its
@@ -99,25 +113,45 @@ std::vector<DeviceDescription> device_choices() {
   return choices;
 }
 
-LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device)
+LiveSession::LiveSession(const SessionRequest& request, Parts parts)
     : request_(request),
-      scene_(std::move(scene)),
-      device_(std::move(device)),
-      models_(scene_, request.seed, notices_),
-      comparison_(models_, scene_.jnd),
-      test_(device_->replay(), scene_.jnd),
+      scene_(std::move(parts.scene)),
+      device_(std::move(parts.device)),
+      set_apart_(parts.test_part.has_value()),
+      models_(scene_, request.seed, notices_, std::move(parts.training)),
+      comparison_(models_,
+                  device_->measures_force() ? ReferenceKind::measured
+                  : scene_.material         ? ReferenceKind::truth
+                                            : ReferenceKind::model,
+                  scene_.jnd),
+      test_(device_->replay(), make_test(std::move(parts.test_part)), scene_.jnd),
       buffer_(kSnapshotsAtOnce) {}
 
+// The recording to test on where none is replayed.
+ModelTest::MakeRecording LiveSession::make_test(std::optional<Recording> part) const {
+  if (part) return [part = std::move(*part)](const auto&) -> Result<Recording> { return part; };
+  const std::string file = test_file();
+  if (!file.empty()) return [file](const auto&) { return read_recording(file); };
+  // The seed is another one than that of the training recording.
+  if (comparison_.reference() == ReferenceKind::truth) {
+    return [settings = RigSettings{*scene_.material, request_.seed + 1}](const auto& progress) {
+      return record_sensors(settings, progress);
+    };
+  }
+  return {};
+}
+
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
+  const double began_s = steady_now_s();
   Result<Scene> scene = load_scene(request.scene.empty() ? "silicone_block" : request.scene);
   if (!scene) return scene.error();
   DeviceRequest device_request{.calibrations = calibrations_folder(), .bus = request.bus};
   device_request.hand.strongest_press_N = scene->strongest_press_N;
-  if (const Status status = take_recordings(request, *scene, device_request.hand); !status) return status.error();
+  auto training = take_recordings(request, *scene, device_request.hand);
+  if (!training) return training.error();
   const LineUp* line_up = request.models.empty() && scene->has_material() ? find_line_up(request.line_up) : nullptr;
   Result<std::vector<ModelRequest>> plans = std::vector<ModelRequest>();
-  if (request.refits)
-    plans = requested_models(*scene, line_up != nullptr ? line_up->models : request.models, request.position_only);
+  if (request.refits) plans = requested_models(*scene, line_up != nullptr ? line_up->models : request.models);
   if (!plans) return plans.error();
   for (const ModelRequest& plan : request.kept) {
     // A plan without a model needs a material to fit to.
@@ -125,23 +159,37 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   }
   if (request.scene.empty() && !request.models.empty() && scene->recordings.empty())
     take_provenance(*plans, request.models.size(), *scene);
+  // A training recording that is the test as well keeps its last part for it, unless its models exist already.
+  std::optional<Recording> part;
+  const std::string test = test_file_of(request, *scene);
+  const auto shared = std::ranges::find(scene->recordings, test);
+  const bool set_apart = std::ranges::any_of(*plans, [&](const ModelRequest& plan) {
+    return !plan.is_file() && (plan.loaded == nullptr || request.test == test);
+  });
+  if (shared != scene->recordings.end() && set_apart)
+    part = take_test_part((*training)[static_cast<std::size_t>(shared - scene->recordings.begin())]);
   device_request.seed = request.seed + 1;  // so that the gestures differ from those of the training recording
-  Result<std::unique_ptr<Device>> device = open_device(request.device, device_request);
+  Result<std::unique_ptr<Device>> device = std::unique_ptr<Device>();
+  if (part && replayed_file(request.device) == test) {
+    *device = std::make_unique<ReplayDevice>(*part);
+  } else {
+    device = open_device(request.device, device_request);
+  }
   if (!device) return device.error();
-  std::unique_ptr<LiveSession> session(new LiveSession(request, std::move(*scene), std::move(*device)));
+  std::unique_ptr<LiveSession> session(
+      new LiveSession(request, {std::move(*scene), std::move(*device), std::move(*training), std::move(part)}));
+  session->began_s_ = began_s;
   if (line_up == nullptr) session->request_.line_up.clear();
   if (const Status status = session->begin(*plans); !status) return status.error();
   return session;
 }
 
 Status LiveSession::begin(const std::vector<ModelRequest>& plans) {
-  if (scene_.material && !device_->measures_force()) {
+  if (comparison_.reference() == ReferenceKind::truth) {
     const Result<Material> material = find_material(*scene_.material);
     if (!material) return material.error();
     truth_ = std::make_shared<TrueForce>(*material);
   }
-  comparison_.use_reference(*std::find_if(kReferenceKinds.begin(), kReferenceKinds.end() - 1,
-                                          [&](ReferenceKind kind) { return has_reference(kind); }));
   if (replay() != nullptr) comparison_.begins_at(replay()->recording().rows.front().time_s);
   LoopSettings settings;
   settings.jnd = scene_.jnd;
@@ -150,18 +198,19 @@ Status LiveSession::begin(const std::vector<ModelRequest>& plans) {
   loop_ = std::make_unique<HapticsLoop>(*device_, settings);
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
   if (std::string note = device_->note(); !note.empty()) notices_.push_back({std::move(note), false});
+  if (set_apart_)
+    notices_.push_back(
+        {"The end of " + test_file() + " is set apart: models are fitted to the rest and tested on it.", false});
   if (Status status = models_.start(plans, !request_.scene.empty()); !status) return status;
   // The first set has the true force only, so that the material is rendered before any model is ready.
-  if (truth_ != nullptr) publish("the start");
+  if (truth_ != nullptr) publish();
   return loop_->start();
 }
 
-LiveSession::~LiveSession() {
-  models_.cancel();
-  close();
-}
+LiveSession::~LiveSession() { close(); }
 
 void LiveSession::close() {
+  models_.cancel();
   recorder_.reset();  // completes a recording
   if (loop_ != nullptr) loop_->stop();
   device_->close();
@@ -171,10 +220,11 @@ void LiveSession::update() {
   // The snapshots come first, because new models are initialised with the motion up to now.
   read_snapshots();
   update_models();
-  if (test_.update(models_)) comparison_.forget_errors("the surface was found");
+  if (test_.update(models_) && test_.move(test_.moved())) comparison_.forget_errors();
   loop_->collect_models();
   newest_ = loop_->newest();
   comparison_.show(newest_);
+  update_verdict();
   const LoopStatistics statistics = loop_->statistics();
   faults_.update_window(statistics.dropped_snapshots, statistics.age_s, steady_now_s());
   if (std::optional<Notice> outcome = recorder_->read_outcome())
@@ -186,38 +236,40 @@ void LiveSession::update() {
 
 void LiveSession::update_models() {
   const std::vector<std::size_t> ready = models_.update();
-  for (const std::size_t slot : models_.read_freed()) comparison_.forget_slot(slot);
+  for (const std::size_t slot : models_.read_freed()) {
+    comparison_.forget_slot(slot);
+    paths_.erase(slot);
+  }
   if (ready.empty()) return;
   for (const std::size_t slot : ready) comparison_.begin_slot(slot);
-  const std::string& name = models_.info(ready.back()).name;
-  publish(name.substr(0, name.size() > 16 ? name.find('-') : name.size()) + " joined");
+  publish();
 }
 
 // Clears all errors, so that all models are compared over the same samples.
-void LiveSession::publish(std::string why) {
-  comparison_.forget_errors(std::move(why));
+void LiveSession::publish() {
+  comparison_.forget_errors();
   auto set = models_.make_set(device_->sensor(), truth_);
   set->tick.recall(history_);
   loop_->publish_models(std::move(set));
 }
 
 void LiveSession::remove(std::size_t slot) {
-  if (models_.remove(slot)) publish(models_.info(slot).name + " was removed");
+  if (models_.remove(slot)) publish();
 }
 
 void LiveSession::treat_as_this_material(std::size_t slot) {
   models_.treat_as_this_material(slot);
-  comparison_.forget_errors(models_.info(slot).name + " joined");
+  comparison_.forget_errors();
 }
 
 void LiveSession::use_line_up(const std::string& name) {
   const LineUp* line_up = find_line_up(name);
   if (line_up == nullptr || !scene_.has_material()) return;
-  const auto plans = requested_models(scene_, line_up->models, false);
+  const auto plans = requested_models(scene_, line_up->models);
   if (!plans) return;
   request_.line_up = name;
   models_.use_requests(*plans);
-  publish("other models are shown");
+  publish();
 }
 
 void LiveSession::read_snapshots() {
@@ -243,61 +295,92 @@ void LiveSession::save_fault_ticks() {
   notices_.push_back({status ? "the last second before the fault is in " + path : status.error().message, !status});
 }
 
-bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
-  return kind == ReferenceKind::measured ? device_->measures_force()
-         : kind == ReferenceKind::truth  ? truth_ != nullptr
-                                         : models_.reference().has_value();
+bool LiveSession::has_reference() const {
+  return comparison_.reference() != ReferenceKind::model || models_.reference().has_value();
 }
 
-void LiveSession::use_reference(ReferenceKind kind) {
-  if (has_reference(kind)) comparison_.use_reference(kind);
+bool LiveSession::tests_training() const {
+  return !set_apart_ && models_.fits() && std::ranges::count(scene_.recordings, test_file()) > 0;
 }
 
-bool LiveSession::replays_training() const noexcept {
-  return models_.fits() && std::ranges::count(scene_.recordings, replayed_file(request_.device)) > 0;
-}
+std::string LiveSession::test_file() const { return test_file_of(request_, scene_); }
 
-bool LiveSession::tests_recording() const noexcept {
-  return replay() != nullptr && comparison_.reference() == ReferenceKind::measured && test_.rounds() > 0;
+const ModelTest::Tested* LiveSession::tested(std::size_t slot) const {
+  return test_.has_recording() && !models_.info(slot).other_material ? test_.find(models_.model(slot).get()) : nullptr;
 }
 
 ModelFigures LiveSession::figures(std::size_t slot) const {
   ModelFigures figures = comparison_.figures(slot);
-  if (!tests_recording()) return figures;
-  const UnitErrors* tested = test_.errors(models_.model(slot).get());
-  figures.errors = tested != nullptr ? static_cast<const ErrorSummary&>(*tested) : ErrorSummary{};
+  if (const auto* timed = test_.find(models_.model(slot).get())) figures.tick = timed->tick;
+  if (!test_.has_recording()) return figures;
+  figures.errors = {};
+  if (const ModelTest::Tested* one = tested(slot)) {
+    const UnitErrors& errors = test_.errors(*one);
+    figures.errors = errors;
+    figures.p99_interval = errors.p99_interval();
+  }
+  if (const auto path = paths_.find(slot); path != paths_.end()) figures.path = path->second;
   return figures;
 }
 
-Verdict LiveSession::verdict() const {
-  const bool of_model = comparison_.reference() == ReferenceKind::direct;
-  std::vector<EvaluatedSlot> evaluated;
-  for (const std::size_t slot : models_.ready_slots()) {
-    if (of_model && models_.reference() == slot) continue;
-    const UnitErrors* errors =
-        tests_recording() ? test_.as_recorded(models_.model(slot).get()) : &comparison_.unit_errors(slot);
-    if (errors == nullptr || errors->samples == 0) continue;
-    evaluated.push_back({slot, errors, figures(slot).errors.p99_error_over_jnd});
+void LiveSession::update_verdict() {
+  const std::vector<std::size_t> ready = models_.ready_slots();
+  const double now_s = steady_now_s() - began_s_;
+  const auto note = [&](double& time_s, bool reached) {
+    if (reached && std::isnan(time_s)) time_s = now_s;
+  };
+  note(start_.first_model_s, !ready.empty());
+  note(start_.all_models_s, !ready.empty() && models_.all_settled());
+  if (verdict_.chosen && std::ranges::count(ready, *verdict_.chosen) == 0) verdict_ = {};
+  const bool live = !test_.has_recording();
+  if (!test_.complete() || (live && comparison_.counted_s() < kLeastContact_s)) return;
+  // The errors of the ticks change with each tick; the sentence does not flicker.
+  if (live ? now_s < judged_s_ + kJudged_s : judged_ == test_.results()) return;
+  judged_s_ = now_s;
+  judged_ = test_.results();
+  const bool of_model = live && comparison_.reference() == ReferenceKind::model;
+  std::vector<JudgedModel> judged;
+  for (const std::size_t slot : ready) {
+    const ModelFigures its = figures(slot);
+    const ModelInfo& info = models_.info(slot);
+    if (its.errors.samples == 0 || its.tick.median_ns <= 0.0 || (of_model && models_.reference() == slot)) continue;
+    judged.push_back({slot, info.name, info.method, info.paper, its.errors.p99_error_over_jnd, its.tick});
+    if (info.takes_centres) paths_[slot][info.centres] = {its.tick.median_ns, its.errors.p99_error_over_jnd};
   }
-  if (evaluated.empty()) return {{}, false, why_no_verdict(), {}};
-  Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");
-  if (of_model && verdict.detail.empty())
-    verdict.detail = "There is no true force here: test on a second recording (M).";
-  if (replay() != nullptr && replays_training()) verdict.detail += " This is its training recording.";
-  if (!models_.all_settled()) verdict.detail = "Preliminary: other models are still being fitted. " + verdict.detail;
+  if (judged.empty()) return;
+  verdict_ = judge(judged, of_model ? models_.info(*models_.reference()).name : "");
+  note(start_.verdict_s, true);
+  models_.propose(*verdict_.chosen);
+  verdict_.detail = of_model           ? "There is no true force here: open a second recording to test on (M)."
+                    : live             ? "Of the presses so far, against " + reference_words(true) + "."
+                    : tests_training() ? "Of " + test_name() + ", to which the models were fitted."
+                                       : "99 % of the errors over " + test_name() +
+                                             ", which no model was fitted to. This test chose the model.";
+}
+
+Verdict LiveSession::verdict() const {
+  Verdict verdict = verdict_;
+  const std::size_t unfinished = models_.unfinished();
+  const std::string fitting = "Fitting " + std::to_string(unfinished) + (unfinished == 1 ? " model" : " models") +
+                              ", about " + fixed(std::max(1.0, std::ceil(models_.left_s())), 0) + " s left";
+  if (!verdict.chosen) {
+    verdict.headline = models_.size() == 0             ? ""
+                       : unfinished > 0                ? fitting
+                       : !has_reference()              ? "There is nothing to compare this model with"
+                       : models_.ready_slots().empty() ? "No model could be fitted"
+                       : test_.has_recording()         ? "Testing the models ..."
+                                                       : "Press the block for a second: the models are compared";
+  } else if (unfinished > 0) {
+    verdict.detail = fitting + ". " + verdict.detail;
+  }
   return verdict;
 }
 
-std::string LiveSession::why_no_verdict() const {
-  if (models_.size() == 0) return {};
-  if (!has_reference(comparison_.reference())) return reference_words();
-  if (replay() != nullptr && comparison_.reference() == ReferenceKind::measured)
-    return "Testing the models on " + replay()->recording().name + " ...";
-  if (comparison_.outside_s() > Comparison::kLeastContact_s) {
-    const std::string& name = models_.info(comparison_.mostly_outside()).name;
-    return "No verdict yet: these presses are deeper or faster than what " + name + " was trained on";
-  }
-  return models_.ready_slots().empty() ? "The models are being fitted ..." : "Press for one second to get a verdict.";
+std::string LiveSession::test_name() const {
+  if (replay() != nullptr) return replay()->recording().name;
+  const std::string file = test_file();
+  if (!file.empty()) return (set_apart_ ? "the end of " : "") + std::filesystem::path(file).stem().string();
+  return *scene_.material + "_" + std::to_string(request_.seed + 1);
 }
 
 std::string LiveSession::reference_words(bool brief) const {
@@ -306,18 +389,15 @@ std::string LiveSession::reference_words(bool brief) const {
   if (comparison_.reference() == ReferenceKind::measured) {
     if (replay() == nullptr) return brief ? "the real block" : "measured force of the real block";
     return brief ? "the recording"
-                 : "as recorded in " + replay()->recording().name + (replays_training() ? ", fitted to it" : "");
+                 : "as recorded in " + replay()->recording().name + (tests_training() ? ", fitted to it" : "");
   }
   if (!models_.reference()) return "no truth to compare with";
   const std::string& model = models_.info(*models_.reference()).name;
-  if (brief) return model;
-  if (scene_.material) return "direct interpolant";
-  return (scene_.recordings.empty() ? "no truth to compare with: difference from " : "best model of the recording, ") +
-         model;
+  return brief ? model : "no truth to compare with: difference from " + model;
 }
 
 void LiveSession::reset_figures() {
-  comparison_.forget_errors("they were cleared");
+  comparison_.forget_errors();
   faults_.acknowledge();
   ++controls_.acknowledged;
 }
@@ -336,12 +416,13 @@ std::string LiveSession::device_words() const {
 }
 
 void LiveSession::move_surface(bool moved) {
-  if (test_.move(moved)) comparison_.forget_errors("the surface moved");
+  if (test_.move(moved)) comparison_.forget_errors();
+  judged_ = 0;
 }
 
 Status LiveSession::start_recording(const std::string& path) {
-  if (!has_reference(comparison_.reference())) {
-    return Error{"there is no force to record yet: no reference is ready; wait for one or choose another"};
+  if (!has_reference()) {
+    return Error{"there is no force to record yet: no reference is ready; wait for one"};
   }
   RecorderRequest request;
   request.path = path;

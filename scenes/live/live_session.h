@@ -1,11 +1,14 @@
 // A live session without a window: a scene, a device, the haptics loop, the models (SessionModels), their errors
-// against a reference (Comparison; over a whole recording ReplayTest), the verdict, the recorder and the fault log.
-// Thread guarantee: one thread (the window's). While the session runs, neither it nor the haptics thread waits for
-// the other; `open` and the destructor block.
+// against a reference tick by tick (Comparison) and over a test recording (ModelTest), the verdict, the recorder and
+// the fault log. The reference is the measured force, else the true force of the scene's virtual material, else a
+// model. Thread guarantee: one thread (the window's). While the session runs, neither it nor the haptics thread waits
+// for the other; `open` and the destructor block.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,8 +20,8 @@
 #include "engine/tick/jnd.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
+#include "scenes/live/model_test.h"
 #include "scenes/live/notices.h"
-#include "scenes/live/replay_test.h"
 #include "scenes/live/session_models.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/live/verdict.h"
@@ -31,17 +34,20 @@ struct SessionRequest {
   std::string scene;  // empty: silicone_block, or with model files only the scene that the first was fitted for
   // Training set of the models. Empty: the recording that the device replays, else the scene's virtual material.
   std::vector<std::string> recordings;
+  // The recording that models are tested on. Empty: the one that the device replays, else the last training recording,
+  // else that of the scene's virtual material with another seed. The last part of a recording that is in the training
+  // set as well is set apart for the test, if models are fitted to the rest or were (this names it).
+  std::string test{};
   std::string device = "auto";
   std::vector<std::string> models;  // methods or model files; empty: those of `line_up`
   std::string line_up;  // a name of line_ups() (model_request.h); empty or unknown: the scene's default models
   // Additional models, of an earlier session (SessionModels::requests). `refits` false: the session has only these.
   std::vector<ModelRequest> kept;
   bool refits = true;
-  std::uint64_t seed = 1;      // of the training recording and the fits; the simulated hand has seed + 1
-  bool position_only = false;  // adds a model with the depth as its only feature
-  bool realtime = true;        // asks for real-time scheduling
-  std::string data_folder;     // for fault files; empty: the working directory
-  DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
+  std::uint64_t seed = 1;    // of the training recording and the fits; the hand and the test have seed + 1
+  bool realtime = true;      // asks for real-time scheduling
+  std::string data_folder;   // for fault files; empty: the working directory
+  DeviceBus* bus = nullptr;  // outlives the session; null: the bus of this machine
 };
 
 // The devices that need no argument after their name, for code that may not include devices/. Blocks: opens and
@@ -56,10 +62,10 @@ class LiveSession {
   static Result<std::unique_ptr<LiveSession>> open(const SessionRequest& request);
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
-  // `close`, and interrupts fits.
+  // Calls `close`, and waits for the fits that it interrupts.
   ~LiveSession();
-  // Ends a recording and waits until it is on the disk; ramps the force to zero; closes the device. Only the destructor
-  // may follow.
+  // Ends a recording and waits until it is on the disk; ramps the force to zero; closes the device; interrupts fits and
+  // does not wait for them. Then only the destructor may be called.
   void close();
 
   // Call it once a frame: processes all ticks since the last call and the models that became ready.
@@ -81,20 +87,28 @@ class LiveSession {
 
   // The reference, and the errors against it.
   const Comparison& comparison() const noexcept { return comparison_; }
-  // With tests_recording() the errors are those over the whole recording, else those of the ticks so far.
+  bool has_reference() const;
+  // Errors over the test recording; where there is none, those of the ticks so far.
   ModelFigures figures(std::size_t slot) const;
-  // Whether a recording is replayed, its force is the reference, and ReplayTest has a result.
-  bool tests_recording() const noexcept;
-  // With tests_recording() the errors as recorded rank the models, as in a report. The text has those of `figures`.
+  // The test whose errors and times rank the models. Its surface offset is that of the replay.
+  const ModelTest& test() const noexcept { return test_; }
+  // The file of the test recording; empty: there is none, or it is that of the virtual material.
+  std::string test_file() const;
+  std::string test_name() const;
   Verdict verdict() const;
-  // Whether the recording that is replayed belongs to the training set.
-  bool replays_training() const noexcept;
-  bool has_reference(ReferenceKind kind) const noexcept;
-  void use_reference(ReferenceKind kind);  // clears the errors; ignored where has_reference is false
+  // Whether models were fitted to the test recording.
+  bool tests_training() const;
   // "true force of the virtual material, silicone"; `brief`: "the material".
   std::string reference_words(bool brief = false) const;
-  // Clears the errors so far and acknowledges the alarms; the history stays.
+  // Clears the errors of the ticks so far and acknowledges the alarms; the history stays.
   void reset_figures();
+  // Times since the session was opened; NaN: not yet.
+  struct StartTimes {
+    double first_model_s = kUnknown;
+    double all_models_s = kUnknown;
+    double verdict_s = kUnknown;
+  };
+  const StartTimes& start_times() const noexcept { return start_; }
 
   const FaultLog& faults() const noexcept { return faults_; }
   std::vector<std::string> alarms() const { return faults_.alarms(newest_); }  // see FaultLog::alarms
@@ -107,9 +121,7 @@ class LiveSession {
   // Null where the device has none.
   ToolInput* tool_input() const noexcept { return device_->tool_input(); }
   ReplayControl* replay() const noexcept { return device_->replay(); }
-  // The estimated surface offset of the replayed recording. Every change of the offset clears the errors.
-  const ReplayTest& replay_test() const noexcept { return test_; }
-  void move_surface(bool moved);
+  void move_surface(bool moved);  // of the replay (ModelTest::move); clears the errors
   // The user's settings of the loop, which the next `update` hands to it: the force scale, the dead-man switch, and the
   // time when its key was last held. The session sets the other fields.
   LoopControls& controls() noexcept { return controls_; }
@@ -125,30 +137,45 @@ class LiveSession {
   Notices read_notices() { return std::exchange(notices_, {}); }
 
  private:
-  LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);
+  struct Parts {
+    Scene scene;
+    std::unique_ptr<Device> device;
+    std::vector<Recording> training;
+    std::optional<Recording> test_part;  // that was set apart from them
+  };
+  LiveSession(const SessionRequest& request, Parts parts);
+  ModelTest::MakeRecording make_test(std::optional<Recording> part) const;
   Status begin(const std::vector<ModelRequest>& plans);
   void update_models();
-  void publish(std::string why);
+  void publish();
   void read_snapshots();
   void save_fault_ticks();
-  std::string why_no_verdict() const;
+  void update_verdict();
+  const ModelTest::Tested* tested(std::size_t slot) const;  // null: not tested, or not compared
 
   SessionRequest request_;
   Scene scene_;
   Notices notices_;
   // Members depend on those above them; destruction is in reverse order.
   std::unique_ptr<Device> device_;
+  bool set_apart_ = false;                 // the test is a part of a training recording
   std::shared_ptr<ReferenceForce> truth_;  // null: none for this scene and device
   std::unique_ptr<HapticsLoop> loop_;
   SessionModels models_;
   Comparison comparison_;
   MotionHistory history_;
-  ReplayTest test_;
+  ModelTest test_;
   FaultLog faults_;
   FaultRecorder fault_recorder_;
   std::unique_ptr<SessionRecorder> recorder_;
   LoopControls controls_;
   int fault_files_ = 0;
+  double began_s_ = 0.0;  // steady clock
+  StartTimes start_;
+  Verdict verdict_;
+  std::uint64_t judged_ = 0;  // ModelTest::results of the verdict
+  double judged_s_ = 0.0;     // time of the verdict since the start
+  std::map<std::size_t, CentresPath> paths_;
   LoopSnapshot newest_;
   std::vector<LoopSnapshot> buffer_;
 };

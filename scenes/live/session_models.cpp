@@ -1,32 +1,62 @@
 #include "scenes/live/session_models.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/tick/haptics_tick.h"
 #include "models/model/file/model_io.h"
 #include "models/trend/trend_columns.h"
 
 namespace palpate {
-SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices)
-    : scene_(scene), notices_(notices), worker_(scene_, seed) {}
+namespace {
+
+std::vector<double> forces_over_strokes(const std::shared_ptr<const FittedModel>& model) {
+  std::size_t feature = 0;
+  const TimedSamples strokes = test_strokes(deepest_in_domain_m(model->data(), feature));
+  HapticsTick tick(strokes.sensor, {model});
+  std::vector<double> forces_N;
+  for (const ToolSample& sample : strokes.samples) forces_N.push_back(tick.step(sample).force_N[0]);
+  return forces_N;
+}
+
+}  // namespace
+
+TimedSamples test_strokes(double depth_m) {
+  constexpr double kInside = 0.8, kDeepest_m = 0.01;
+  const double middle_m = 0.5 * std::min(kInside * depth_m, kDeepest_m);
+  TimedSamples strokes;
+  strokes.sensor.has_velocity = true;
+  for (int i = 0; i < 1024; ++i) {
+    const double phase = 0.01 * i;
+    ToolSample tool;
+    tool.time_s = 1e-3 * i;
+    tool.position_m = middle_m * (1.02 - std::cos(phase));
+    tool.velocity_m_per_s = 10.0 * middle_m * std::sin(phase);
+    strokes.samples.push_back(tool);
+  }
+  return strokes;
+}
+
+SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training)
+    : scene_(scene), notices_(notices), worker_(scene_, seed, std::move(training)) {}
 
 Status SessionModels::start(const std::vector<ModelRequest>& requests, bool claimed) {
   for (const ModelRequest& request : requests) {
     Slot& slot = slots_[add_slot(request)];
     slot.claimed = claimed;
-    worker_.add_job(slot.job, request, slots_.size() == 1);
+    worker_.add_job(slot.job, request);
   }
   return worker_.start();
 }
 
 // The slot for a new model: that of a removed model, else a new one, else that of a hidden model; empty: there is none.
-// The reference keeps its slot.
 std::optional<std::size_t> SessionModels::room() const noexcept {
   for (const bool removed : {true, false}) {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
-      if (reference_ != i && (removed ? slots_[i].removed : slots_[i].hidden())) return i;
+      if (removed ? slots_[i].removed : slots_[i].hidden()) return i;
     }
     if (slots_.size() < kMaxModels) return slots_.size();
   }
@@ -43,9 +73,8 @@ std::size_t SessionModels::add_slot(const ModelRequest& request) {
   Slot& slot = slots_[index] = Slot{};
   slot.job = next_job_++;
   slot.info.name = distinct_name(request_name(request), &slot);
-  slot.info.method = request_family(request);
-  slot.info.takes_centres =
-      !request.is_file() && request.plan != position_plan() && request.plan.selects_centres() && scene_.has_material();
+  if (!request.is_file()) slot.info.method = family_name(request.plan);
+  slot.info.takes_centres = !request.is_file() && request.plan.selects_centres() && scene_.has_material();
   slot.info.paper = !request.is_file() && request.plan.base == Base::force;
   slot.request = request;
   slot.asked_centres = request.plan.centres;
@@ -53,8 +82,9 @@ std::size_t SessionModels::add_slot(const ModelRequest& request) {
 }
 
 std::vector<std::size_t> SessionModels::update() {
-  const ModelWorker::Progress progress = worker_.progress();
-  if (const auto index = progress.working ? slot_of_job(progress.job_id) : std::nullopt) {
+  for (const ModelWorker::Progress& progress : worker_.progress()) {
+    const auto index = slot_of_job(progress.job_id);
+    if (!index) continue;
     ModelInfo& info = slots_[*index].info;
     if (info.state == SlotState::waiting) info.state = SlotState::fitting;
     if (info.state == SlotState::fitting) info.progress = progress.share;
@@ -69,7 +99,33 @@ std::vector<std::size_t> SessionModels::update() {
     if (join(*index, finished)) ready.push_back(*index);
     slot.info.refitting = old;
   }
+  if (!ready.empty()) unite_equal();
   return ready;
+}
+
+// Of several models with the same forces one is listed: the simplest, else the first.
+void SessionModels::unite_equal() {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[i];
+    slot.info.equals.clear();
+    if (slot.info.state == SlotState::equal) slot.info.state = SlotState::ready;
+    if (slot.takes_part()) order.push_back(i);
+  }
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return slots_[i].model->centre_count(); });
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    Slot& slot = slots_[order[k]];
+    const auto same = std::ranges::find_if(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(k),
+                                           [&](std::size_t i) { return slots_[i].forces_N == slot.forces_N; });
+    Slot& listed = slots_[*same];
+    if (*same != order[k]) slot.info.state = SlotState::equal;
+    const std::string asked = request_name(slot.request);
+    if (!slot.request.is_file() && asked != listed.model->name()) listed.info.equals.push_back(asked);
+  }
+  for (Slot& slot : slots_) {
+    if (slot.takes_part() && !slot.renamed) slot.info.name = distinct_name(slot.model->name(), &slot);
+  }
+  select_what_is_there();
 }
 
 std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noexcept {
@@ -100,18 +156,17 @@ bool SessionModels::fits() const noexcept {
   return std::ranges::any_of(slots_, [](const Slot& slot) { return !slot.request.is_file(); });
 }
 
-std::optional<std::size_t> SessionModels::reference() const noexcept {
-  if (reference_) return reference_;
-  if (fits()) return std::nullopt;
+std::optional<std::size_t> SessionModels::reference() const {
   const auto shown = ready_slots();
   return shown.size() > 1 ? std::optional<std::size_t>(shown.front()) : std::nullopt;
 }
 
-bool SessionModels::all_settled() const noexcept {
-  return std::ranges::none_of(slots_, [](const Slot& slot) {
+std::size_t SessionModels::unfinished() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(slots_, [](const Slot& slot) {
     const SlotState state = slot.info.state;
-    return slot.info.refitting || state == SlotState::waiting || state == SlotState::fitting;
-  });
+    return (slot.info.refitting && state == SlotState::ready) || state == SlotState::waiting ||
+           state == SlotState::fitting;
+  }));
 }
 
 std::vector<std::size_t> SessionModels::ready_slots() const {
@@ -120,6 +175,12 @@ std::vector<std::size_t> SessionModels::ready_slots() const {
     if (slots_[i].takes_part()) shown.push_back(i);
   }
   return shown;
+}
+
+std::vector<std::shared_ptr<const ForceModel>> SessionModels::ready_models() const {
+  std::vector<std::shared_ptr<const ForceModel>> models;
+  for (const std::size_t slot : ready_slots()) models.push_back(slots_[slot].model);
+  return models;
 }
 
 bool SessionModels::join(std::size_t index, const FinishedModel& finished) {
@@ -135,16 +196,12 @@ bool SessionModels::join(std::size_t index, const FinishedModel& finished) {
   if (!slot.hidden()) slot.show();
   slot.info.progress = 1.0;
   slot.info.centres = slot.model->centre_count();
-  slot.info.tick = finished.tick;
+  slot.forces_N = forces_over_strokes(slot.model);
   slot.info.other_material = is_of_other_material(slot);
-  if (slot.request.is_file() || slot.request.plan != position_plan()) {
-    slot.info.method = slot.model->method();
-    slot.info.name = distinct_name(slot.model->name(), &slot);
-  }
+  slot.info.method = slot.model->method();
   const auto plan = parse_plan(slot.info.method);
   slot.info.paper = plan && plan->base == Base::force;
-  if (!reference_ && !slot.request.is_file() && !slot.info.paper) reference_ = index;
-  if (!slot.hidden() && (first || (index == 0 && !user_chose_))) selected_ = index;
+  if (!slot.hidden() && first) selected_ = index;
   return true;
 }
 
@@ -159,13 +216,13 @@ void SessionModels::use_requests(const std::vector<ModelRequest>& requests) {
     if (same == slots_.end()) {
       if (!has_room("show " + request_name(request))) continue;
       index = add_slot(request);
-      worker_.add_job(slots_[index].job, request, !first);
+      worker_.add_job(slots_[index].job, request);
     }
     slots_[index].show();
     if (!first) first = index;
   }
   if (slots_[selected_].hidden() && first) selected_ = *first;
-  select_what_is_there();
+  unite_equal();
 }
 
 // If the active model is not shown, selects the first shown model, if there is one.
@@ -183,8 +240,8 @@ bool SessionModels::remove(std::size_t index) {
   }
   slot.removed = true;
   slot.info.state = SlotState::hidden;
-  if (reference_ != index) free(index);  // the reference keeps its slot
-  select_what_is_there();
+  free(index);
+  unite_equal();
   return true;
 }
 
@@ -197,7 +254,9 @@ void SessionModels::free(std::size_t index) {
 std::vector<std::size_t> SessionModels::read_freed() { return std::exchange(freed_, {}); }
 
 void SessionModels::rename(std::size_t slot, const std::string& name) {
-  if (slot < slots_.size() && !name.empty()) slots_[slot].info.name = distinct_name(name, &slots_[slot]);
+  if (slot >= slots_.size() || name.empty()) return;
+  slots_[slot].info.name = distinct_name(name, &slots_[slot]);
+  slots_[slot].renamed = true;
 }
 
 void SessionModels::refit(std::size_t index, int centres) {
@@ -207,7 +266,7 @@ void SessionModels::refit(std::size_t index, int centres) {
   slot.request.plan.centres = centres;
   slot.request.loaded = nullptr;
   slot.info.refitting = true;
-  worker_.add_job(slot.job, slot.request);
+  worker_.add_job(slot.job, slot.request, true);
 }
 
 double SessionModels::trained_depth_m() const noexcept {
@@ -245,8 +304,7 @@ std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
   set.id = sets_.empty() ? 1 : sets_.back().id + 1;
   std::vector<std::shared_ptr<const ForceModel>> models;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    // The reference is in every set, even when it is hidden.
-    if (!slots_[i].takes_part() && !(reference_ == i && slots_[i].model != nullptr)) continue;
+    if (!slots_[i].takes_part()) continue;
     set.models[i] = models.size();
     models.push_back(slots_[i].model);
   }
@@ -287,6 +345,10 @@ bool SessionModels::select(std::size_t slot) {
   return true;
 }
 
+void SessionModels::propose(std::size_t slot) {
+  if (!user_chose_ && slot < slots_.size() && slots_[slot].takes_part()) selected_ = slot;
+}
+
 bool SessionModels::load_file(const std::string& path) {
   if (!has_room("load " + path)) return false;
   auto model = load_model(path);
@@ -298,18 +360,22 @@ bool SessionModels::load_file(const std::string& path) {
   const std::size_t index = add_slot(request);
   const Slot& slot = slots_[index];
   loaded_.push_back(index);
-  join(index, {slot.job, 0, request.loaded, time_of_tick(request.loaded)});
+  join(index, {slot.job, 0, request.loaded});
+  unite_equal();
   notices_.push_back({"loaded " + slot.info.name + " from " + path +
-                          (slot.info.other_material ? ": of " + joined(slot.model->data().provenance.recordings) +
-                                                          ", without a reference force here"
-                                                    : ""),
+                          (slot.info.state == SlotState::equal ? ", whose forces are those of a model that is there"
+                           : slot.info.other_material ? ": of " + joined(slot.model->data().provenance.recordings) +
+                                                            ", without a reference force here"
+                                                      : ""),
                       false});
   return true;
 }
 
 std::string SessionModels::distinct_name(const std::string& name, const Slot* but) const {
   std::string candidate = name;
-  const auto is_taken = [&](const Slot& slot) { return &slot != but && slot.info.name == candidate; };
+  const auto is_taken = [&](const Slot& slot) {
+    return &slot != but && slot.info.state != SlotState::equal && slot.info.name == candidate;
+  };
   for (int i = 2; std::ranges::any_of(slots_, is_taken); ++i) candidate = name + "-" + std::to_string(i);
   return candidate;
 }

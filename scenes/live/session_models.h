@@ -26,24 +26,27 @@ enum class SlotState : std::uint8_t {
   fitting,
   ready,
   failed,
+  equal,   // it gives the same forces as another model, which is listed instead of it
   hidden,  // of a line-up that is not shown, or removed: neither evaluated nor listed
 };
 
 // Identity and state of a slot's model. Its errors are in Comparison.
 struct ModelInfo {
-  std::string name;    // unique among the slots
-  std::string method;  // family of its plan: "trend+greedy"; "position": the depth is the only feature
-  int centres = 0;     // nodes for a grid; 0 until ready
+  std::string name;                 // unique among the slots
+  std::string method;               // family of its plan: "trend+greedy"
+  std::vector<std::string> equals;  // plans of the same forces, this one's where cross-validation took no correction
+  int centres = 0;                  // nodes for a grid; 0 until ready
   SlotState state = SlotState::waiting;
   double progress = 0.0;        // of the fit, 0..1
   std::string problem;          // when failed
   bool other_material = false;  // fitted to another material than the virtual one: it is not compared
-  Timing tick;                  // a whole tick with this model alone
-  double tick_ns() const noexcept { return tick.low_ns; }  // the minimum, because other programs only add time
-  bool refitting = false;      // with another number of centres; the present model stays until then
-  bool takes_centres = false;  // the number of centres can be changed
-  bool paper = false;          // a method on the measured force, as in the paper (2009)
+  bool refitting = false;       // with another number of centres; the present model stays until then
+  bool takes_centres = false;   // the number of centres can be changed
+  bool paper = false;           // a method on the measured force, as in the paper (2009)
 };
+
+// One second of strokes up to a depth.
+TimedSamples test_strokes(double depth_m);
 
 // A published set of models. Snapshots of a set may still arrive after the next set was published.
 struct PublishedSet {
@@ -59,8 +62,9 @@ struct PublishedSet {
 
 class SessionModels {
  public:
-  // `scene` and `notices` outlive this. `seed` is that of the training recording and the fits.
-  SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices);
+  // `scene` and `notices` outlive this. `seed` is that of the training recording and the fits. `training`: see
+  // ModelWorker.
+  SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training = {});
   SessionModels(const SessionModels&) = delete;
   SessionModels& operator=(const SessionModels&) = delete;
 
@@ -80,8 +84,9 @@ class SessionModels {
   // Writes the active model of the newest set into `controls`.
   void write_selection(LoopControls& controls) const;
 
-  // The slots whose models are ready and not hidden.
+  // The slots whose models are ready and listed, and these models.
   std::vector<std::size_t> ready_slots() const;
+  std::vector<std::shared_ptr<const ForceModel>> ready_models() const;
   // Null until ready.
   const std::shared_ptr<const FittedModel>& model(std::size_t slot) const noexcept { return slots_[slot].model; }
   // The requests of all slots that are neither removed nor failed, each with its model where it is ready. A next
@@ -94,9 +99,14 @@ class SessionModels {
   // The slot of the active model. The rendered force may still fade to it.
   std::size_t selected() const noexcept { return selected_; }
   bool select(std::size_t slot);  // returns false and changes nothing unless the model is ready
-  // The model that is the reference where no true force is known: the first one with a trend, or if all models are from
-  // files the first of at least two. Empty: there is none.
-  std::optional<std::size_t> reference() const noexcept;
+  // Selects the model unless the user has selected one.
+  void propose(std::size_t slot);
+  // The model that is the reference where no true force is known: the first of at least two ready ones. Empty: there is
+  // none.
+  std::optional<std::size_t> reference() const;
+  // Number of models that are not fitted yet, and the estimated time until they are.
+  std::size_t unfinished() const noexcept;
+  double left_s() const { return worker_.left_s(); }
   // Whether any model is fitted in this session, not read from a file.
   bool fits() const noexcept;
   // Treats the model as one of this material, whatever its provenance.
@@ -112,7 +122,7 @@ class SessionModels {
   bool remove(std::size_t slot);
   // The slots whose models were removed or replaced since the last call. Discard all results of theirs.
   std::vector<std::size_t> read_freed();
-  // Appends a number where another slot has the name.
+  // Appends a number where another listed slot has the name.
   void rename(std::size_t slot, const std::string& name);
   // Fits a ready model again with this number of centres, in the background. Ignored unless `takes_centres`.
   void refit(std::size_t slot, int centres);
@@ -127,7 +137,7 @@ class SessionModels {
   // with a notice, on failure.
   bool load_file(const std::string& path);
   // Whether no shown model is still to be fitted.
-  bool all_settled() const noexcept;
+  bool all_settled() const noexcept { return unfinished() == 0; }
 
  private:
   struct Slot {
@@ -136,11 +146,13 @@ class SessionModels {
     std::size_t job = 0;                       // id of the worker's job
     int asked_centres = 0;                     // of the plan, before the user changed the number
     std::shared_ptr<const FittedModel> model;  // null until ready
+    std::vector<double> forces_N;              // of the model, over its test_strokes
     bool removed = false;
+    bool renamed = false;
     bool claimed = false;  // see `start`
 
     bool hidden() const { return info.state == SlotState::hidden; }
-    bool takes_part() const { return model != nullptr && !hidden(); }
+    bool takes_part() const { return model != nullptr && info.state == SlotState::ready; }
     void show() {
       info.state = model != nullptr ? SlotState::ready : info.problem.empty() ? SlotState::waiting : SlotState::failed;
     }
@@ -154,6 +166,7 @@ class SessionModels {
   std::size_t add_slot(const ModelRequest& request);
   bool is_of_other_material(const Slot& slot) const;
   bool join(std::size_t index, const FinishedModel& finished);
+  void unite_equal();
   std::optional<std::size_t> room() const noexcept;
   bool has_room(const std::string& what);
   void select_what_is_there();
@@ -166,7 +179,6 @@ class SessionModels {
   ModelWorker worker_;
   std::vector<Slot> slots_;
   std::vector<PublishedSet> sets_;  // newest last
-  std::optional<std::size_t> reference_;
   std::size_t selected_ = 0;
   bool user_chose_ = false;
   std::size_t next_job_ = 0;

@@ -8,7 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scenes/evaluation/model_errors.h"
+#include "engine/tick/jnd.h"
+#include "scenes/evaluation/error_figures.h"
 
 namespace palpate {
 
@@ -40,57 +41,23 @@ class ErrorQuantile {
   std::uint64_t samples_ = 0;
 };
 
-// The errors of one model in total and by stroke. (ModelErrors is exact, but stores every sample.)
-// Stroke number kMostStrokes never ends, so that a session of days needs no more memory or time. All models
-// of a comparison begin their strokes together, so their units stay paired.
+// The errors of one model.
 class StreamErrors {
  public:
-  static constexpr std::size_t kMostStrokes = 600;  // the standard error of a mean over them is 4 % of their scatter
-
-  void begin_stroke() {
-    if (strokes_.units() + 1 == kMostStrokes) return;
-    append_stroke(strokes_);
-    stroke_ = {};
-    stroke_within_ = stroke_samples_ = 0.0;
-  }
-  // Adds one sample in contact to the stroke that began last. Both forces are finite.
+  // Adds one sample in contact. Both forces are finite.
   void add(double model_N, double reference_N, const JndLine& jnd) {
-    const double over_jnd = jnd.error_over_jnd(model_N, reference_N);
     figures_.add(model_N, reference_N, false, jnd);
-    quantile_.add(over_jnd);
-    stroke_.add(over_jnd);
-    stroke_samples_ += 1.0;
-    stroke_within_ += over_jnd <= 1.0 ? 1.0 : 0.0;
+    quantile_.add(jnd.error_over_jnd(model_N, reference_N));
   }
-
   ErrorSummary summary(const JndLine& jnd) const {
     ErrorSummary summary = figures_.summary(jnd);
     summary.p99_error_over_jnd = quantile_.p99();
     return summary;
   }
-  UnitErrors unit_errors(const JndLine& jnd) const {
-    UnitErrors errors = strokes_;
-    append_stroke(errors);
-    static_cast<ErrorSummary&>(errors) = summary(jnd);
-    return errors;
-  }
 
  private:
-  // Appends the stroke that goes on, if it has samples.
-  void append_stroke(UnitErrors& strokes) const {
-    if (stroke_samples_ == 0.0) return;
-    strokes.unit_samples.push_back(stroke_samples_);
-    strokes.unit_within.push_back(stroke_within_);
-    strokes.unit_p99.push_back(stroke_.p99());
-    strokes.units_above_jnd += stroke_within_ < stroke_samples_ ? 1 : 0;
-  }
-
   ErrorFigures figures_;
   ErrorQuantile quantile_;
-  UnitErrors strokes_;  // those that ended, without the figures in total
-  ErrorQuantile stroke_;
-  double stroke_samples_ = 0.0;
-  double stroke_within_ = 0.0;
 };
 
 // The perceivable error: the mean of (model - reference) / JND over the last 50 ms. A difference of a single

@@ -1,68 +1,72 @@
 #include "scenes/live/verdict.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
-#include "scenes/live/session_models.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kTick_ns = 1e6;
 
-// Whether a model is the trend alone: it has no centres, and the user has not renamed it. Any method can fit it.
-bool is_trend(const ModelInfo& info) {
-  return info.centres == 0 && info.method != "position" && info.name.rfind(info.method, 0) == 0;
+// The most accurate of the models that `matches`, except `but`; null: there is none.
+template <typename Matches>
+const JudgedModel* most_accurate(const std::vector<JudgedModel>& judged, const JudgedModel& but, Matches matches) {
+  const JudgedModel* best = nullptr;
+  for (const JudgedModel& one : judged) {
+    if (&one == &but || !matches(one)) continue;
+    if (best == nullptr || one.p99_error_over_jnd < best->p99_error_over_jnd) best = &one;
+  }
+  return best;
 }
 
-// Whether a model of another method is the trend in slot `trend`, of the same recordings: their errors are equal.
-bool copies(const EvaluatedSlot& one, const EvaluatedSlot& trend, const SessionModels& models) {
-  return models.info(trend.slot).method == "trend" && models.info(one.slot).method != "trend" &&
-         is_trend(models.info(one.slot)) &&
-         one.unit_errors->p99_error_over_jnd == trend.unit_errors->p99_error_over_jnd;
+bool is_noticeable(const JudgedModel& one) { return one.p99_error_over_jnd > 1.0; }
+
+std::string quality(const JudgedModel& one, const std::string& reference) {
+  if (!reference.empty()) return " differs from " + reference + " by " + jnd_text(one.p99_error_over_jnd) + " JND";
+  if (!is_noticeable(one)) return " feels like the block";
+  return " differs by " + jnd_text(one.p99_error_over_jnd) + " of what a hand can notice";
 }
 
 }  // namespace
+
+std::string jnd_text(double error_over_jnd) {
+  return fixed(error_over_jnd, error_over_jnd < 0.995 ? 2 : error_over_jnd < 9.95 ? 1 : 0);
+}
 
 std::string tick_share(double tick_ns) {
   const double percent = 100.0 * tick_ns / kTick_ns;
   return general(percent, percent < 1.0 ? 1 : 2) + " %";
 }
 
-Verdict judge(std::vector<EvaluatedSlot> evaluated, const SessionModels& models, const std::string& reference_name) {
-  // A correction without centres adds nothing: the trend stands for it.
-  std::erase_if(evaluated, [&, all = evaluated](const EvaluatedSlot& one) {
-    return std::ranges::any_of(all, [&](const EvaluatedSlot& other) { return copies(one, other, models); });
-  });
+std::string time_words(const Timing& one, const Timing& other) {
+  const double ratio = one.median_ns / other.median_ns;
+  const bool overlap = one.low_ns <= other.high_ns && other.low_ns <= one.high_ns;
+  if (overlap || std::abs(ratio - 1.0) <= kEqualTime) return "as fast (" + fixed(one.median_ns, 0) + " ns)";
+  return "in " + general(ratio, 2) + (ratio < 1.0 ? " of the time (" : " times the time (") + fixed(one.median_ns, 0) +
+         " against " + fixed(other.median_ns, 0) + " ns)";
+}
+
+Verdict judge(const std::vector<JudgedModel>& judged, const std::string& reference) {
   std::vector<Candidate> candidates;
-  for (const EvaluatedSlot& one : evaluated) candidates.push_back({*one.unit_errors, models.info(one.slot).tick});
-  const Ranking ranking = rank(candidates);
+  for (const JudgedModel& one : judged) candidates.push_back({one.method, one.p99_error_over_jnd, one.tick.median_ns});
+  const JudgedModel& chosen = judged[rank(candidates).recommended];
   Verdict verdict;
-  const EvaluatedSlot& chosen = evaluated[ranking.recommended];
   verdict.chosen = chosen.slot;
-  verdict.noticeable = chosen.p99_error_over_jnd > 1.0;
-  std::vector<std::string> as_good, noticed;  // names
-  for (std::size_t i = 0; i < evaluated.size(); ++i) {
-    const EvaluatedSlot& one = evaluated[i];
-    if (i == ranking.recommended) continue;
-    if (ranking.qualified[i]) {
-      as_good.push_back(models.info(one.slot).name);
-    } else if (one.p99_error_over_jnd > 1.0) {
-      noticed.push_back(models.info(one.slot).name);
-    }
+  verdict.noticeable = is_noticeable(chosen);
+  verdict.headline = chosen.name + quality(chosen, reference) + ".";
+  const auto other_kind = [&](const JudgedModel& one) { return one.paper != chosen.paper; };
+  const JudgedModel* rival = most_accurate(judged, chosen, other_kind);
+  if (rival == nullptr) rival = most_accurate(judged, chosen, [](const JudgedModel&) { return true; });
+  if (rival == nullptr) {
+    verdict.headline += " It uses " + tick_share(chosen.tick.median_ns) + " of the 1 ms of a tick.";
+    return verdict;
   }
-  const ModelInfo& info = models.info(chosen.slot);
-  const std::string from = reference_name.empty() ? "" : " from " + reference_name;
-  verdict.headline =
-      info.name +
-      (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +
-      from + "; uses " + tick_share(info.tick_ns()) + " of the 1 ms of a tick";
-  if (verdict.noticeable)
-    verdict.detail =
-        "99 % of its errors are at most " + fixed(chosen.p99_error_over_jnd, 1) + " times what a hand can feel. ";
-  if (!as_good.empty()) verdict.detail += "Equally good, but not faster: " + joined(as_good) + ". ";
-  if (!noticed.empty()) verdict.detail += "You can feel the difference of " + joined(noticed) + ".";
+  const bool both = reference.empty() && !is_noticeable(chosen) && !is_noticeable(*rival);
+  verdict.headline += (both ? " So does " + rival->name : " " + rival->name + quality(*rival, reference)) + ", " +
+                      time_words(rival->tick, chosen.tick) + ".";
   return verdict;
 }
 

@@ -1,5 +1,5 @@
-// The verdict of a session: the recommended model (scenes/evaluation/ranking.h), whether a hand can notice its
-// error, and its computation time.
+// The verdict of a session: the recommended model (scenes/evaluation/ranking.h) in one sentence with its rival: the
+// most accurate model of the other kind, of this program or of the paper (2009), else the most accurate other model.
 // Thread guarantee: pure functions.
 #pragma once
 
@@ -8,32 +8,35 @@
 #include <string>
 #include <vector>
 
-#include "scenes/evaluation/model_errors.h"
+#include "scenes/evaluation/model_timing.h"
 
 namespace palpate {
 
-class SessionModels;
-
-// The errors of one model; those of all are over the same samples.
-struct EvaluatedSlot {
+// A model with its errors and times; those of all are over the same samples.
+struct JudgedModel {
   std::size_t slot = 0;
-  const UnitErrors* unit_errors = nullptr;  // for the ranking; not null
-  // The 99 % error in the list of models, which the text of the verdict uses.
+  std::string name;
+  std::string method;  // family of its plan
+  bool paper = false;  // a method on the measured force
   double p99_error_over_jnd = 0.0;
+  Timing tick;
 };
 
 struct Verdict {
   std::optional<std::size_t> chosen;  // slot of the recommended model; empty: `headline` says why there is none yet
   bool noticeable = false;            // the 99 % error of the chosen model exceeds one JND
-  std::string headline;               // one line
+  std::string headline;               // what is compared, in one or two sentences
   std::string detail;                 // a second line; may be empty
 };
 
-// `reference_name`: name of the reference model; empty: the true force is known.
-// `models`: for names and times. `evaluated`: at least one, each with samples.
-Verdict judge(std::vector<EvaluatedSlot> evaluated, const SessionModels& models, const std::string& reference_name);
+// `judged`: at least one. `reference`: name of the model that is the reference; empty: the true force is known.
+Verdict judge(const std::vector<JudgedModel>& judged, const std::string& reference);
 
+// "in 0.6 of the time (240 against 390 ns)"; where the medians differ by less than their spread or a tenth, "as fast".
+std::string time_words(const Timing& one, const Timing& other);
 // The share of the period of 1 ms that a tick takes, as "0.04 %".
 std::string tick_share(double tick_ns);
+// An error over the JND with two digits: a quantile of a stream is rounded up by at most 1.1 % (stream_errors.h).
+std::string jnd_text(double error_over_jnd);
 
 }  // namespace palpate

@@ -23,9 +23,6 @@ std::vector<double> decade_tics(const AxisRange& range, const std::vector<double
   return tics;
 }
 
-// A name that begins further right would leave the panel. Fraction of the panel.
-constexpr double kRightmostName = 0.7;
-
 // The position of `value` on the axis: 0 at its low end, 1 at its high end.
 double fraction_of(const Axis& axis, const AxisRange& range, double value) {
   if (!axis.logarithmic) return (value - range.low) / (range.high - range.low);
@@ -37,6 +34,40 @@ const PlotRow* last_point(const Series& series) {
     if (std::isfinite(row->y)) return &*row;
   }
   return nullptr;
+}
+
+// Moves names from their points into one of the quadrants between the bars, to the right or left of the point and above
+// or below it: where a name covers the fewest other names and points.
+void place_beside(std::vector<NameTag>& names, double line, double character) {
+  const std::vector<NameTag> points = names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double width = character * static_cast<double>(names[i].text.size() + 1);
+    double least = std::numeric_limits<double>::infinity();
+    for (const double lines : {0.7, -0.7, 1.6, -1.6}) {
+      for (const bool right : {true, false}) {
+        NameTag trial = points[i];
+        trial.y += lines * line;
+        trial.begins_here = right;
+        const double begin = right ? trial.x : trial.x - width;
+        double cost = 0.1 * std::abs(lines);
+        if (begin < 0.0 || begin + width > 1.0 || trial.y < 0.5 * line || trial.y > 1.0 - 0.5 * line) cost += 10.0;
+        for (std::size_t k = 0; k < names.size(); ++k) {
+          if (k == i) continue;
+          const bool covers = points[k].x > begin && points[k].x < begin + width;
+          if (covers && std::abs(points[k].y - trial.y) < 0.6 * line) cost += 1.0;
+          if (k > i) continue;
+          const double other = character * static_cast<double>(names[k].text.size() + 1);
+          const double other_begin = names[k].begins_here ? names[k].x : names[k].x - other;
+          const bool overlaps = other_begin < begin + width && begin < other_begin + other;
+          if (overlaps && std::abs(names[k].y - trial.y) < line) cost += 2.0;
+        }
+        if (cost >= least) continue;
+        least = cost;
+        names[i].y = trial.y;
+        names[i].begins_here = right;
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -93,36 +124,22 @@ std::vector<NameTag> name_tags(const Panel& panel, double line, double character
   for (const Level& level : panel.levels) {
     if (!level.vertical) tags.push_back({level.text, kMutedColour, 1.0, fraction_of(panel.y, y, level.value), true});
   }
+  std::vector<NameTag> points;
   for (const Series& series : panel.series) {
     const PlotRow* last = last_point(series);
     if (!panel.names_at_ends || series.name.empty() || series.mark == Mark::area || last == nullptr) continue;
     const bool ends = series.rows.size() > 1;
-    NameTag tag{series.name, series.colour, 1.0, std::clamp(fraction_of(panel.y, y, last->y), 0.0, 1.0), ends};
-    if (!ends) {
-      tag.x = fraction_of(panel.x, x, std::isfinite(last->right) ? last->right : last->x);
-      tag.begins_here = tag.x < kRightmostName;
-      if (!tag.begins_here) tag.x = fraction_of(panel.x, x, std::isfinite(last->left) ? last->left : last->x);
-    }
-    tags.push_back(std::move(tag));
+    (ends ? tags : points)
+        .push_back({series.name, series.colour, ends ? 1.0 : fraction_of(panel.x, x, last->x),
+                    std::clamp(fraction_of(panel.y, y, last->y), 0.0, 1.0), ends});
   }
-  std::stable_sort(tags.begin(), tags.end(), [](const NameTag& a, const NameTag& b) { return a.y < b.y; });
-  const auto meets = [&](const NameTag& a, const NameTag& b) {
-    if (a.beside_panel != b.beside_panel) return false;
-    const double width = character * static_cast<double>(std::max(a.text.size(), b.text.size()));
-    return a.y - b.y < line && (a.beside_panel || std::abs(a.x - b.x) < width);
-  };
-  for (std::size_t i = 0; i < tags.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (meets(tags[i], tags[k])) tags[i].y = std::max(tags[i].y, tags[k].y + line);
-    }
-  }
+  std::ranges::stable_sort(tags, {}, &NameTag::y);
+  for (std::size_t i = 1; i < tags.size(); ++i) tags[i].y = std::max(tags[i].y, tags[i - 1].y + line);
   // Names that were pushed above the panel move down again, and push down those below them.
-  for (std::size_t i = tags.size(); i-- > 0;) {
-    tags[i].y = std::min(tags[i].y, 1.0);
-    for (std::size_t k = i + 1; k < tags.size(); ++k) {
-      if (meets(tags[k], tags[i])) tags[i].y = std::min(tags[i].y, tags[k].y - line);
-    }
-  }
+  for (std::size_t i = tags.size(); i-- > 0;)
+    tags[i].y = std::min(tags[i].y, i + 1 == tags.size() ? 1.0 : tags[i + 1].y - line);
+  place_beside(points, line, character);
+  tags.insert(tags.end(), points.begin(), points.end());
   return tags;
 }
 

@@ -32,8 +32,8 @@ struct NameTag {
   bool begins_here = true;  // the text begins at x; false: it ends there
 };
 
-// The names of horizontal levels and, with `names_at_ends`, of the series: of a series of one point beside the point
-// and its bar, of all others beside the panel. They are moved up and down so that they do not overlap. `line`: height
+// The names of horizontal levels and, with `names_at_ends`, of the series: of a series of one point at the point, between
+// its bars, of all others beside the panel, where they are moved up and down so that they do not overlap. `line`: height
 // of a line of text, `character`: width of a letter, both as fractions of the panel.
 std::vector<NameTag> name_tags(const Panel& panel, double line, double character);
 

@@ -18,25 +18,13 @@ constexpr std::uint64_t kFewSamples = 20;
 // The colour of the model's method, which the window uses as well; grey for no force.
 Hue model_colour(const ModelResult& model) { return model.plan ? Hue(colour_of(*model.plan)) : kMutedColour; }
 
-// The models of each family, in order of their size.
-std::vector<std::vector<const ModelResult*>> kinds_of(const ReportData& data) {
-  std::vector<std::vector<const ModelResult*>> kinds;
-  for (const ModelResult& one : data.models) {
-    if (!one.model) continue;
-    const auto is_same = [&](const std::vector<const ModelResult*>& kind) {
-      return family_name(*kind.front()->plan) == family_name(*one.plan);
-    };
-    auto kind = std::ranges::find_if(kinds, is_same);
-    if (kind == kinds.end()) kind = kinds.emplace(kinds.end());
-    kind->push_back(&one);
-  }
-  for (auto& kind : kinds) std::ranges::sort(kind, {}, &ModelResult::size);
-  return kinds;
+Mark mark_of(const ModelResult& model, Mark on_force, Mark on_trend) {
+  return model.plan && model.plan->base == Base::force ? on_force : on_trend;
 }
 
 using BinFigure = double (*)(const ForceBin&);
 
-// Error against force of the methods of one recipe; the panel of this program's recipe includes the trend.
+// Error against force of the headline models with this base.
 Panel force_panel(const ReportData& data, const std::string& title, Base base, BinFigure figure) {
   Panel panel;
   panel.title = title + (base == Base::force ? ", on the force" : ", on the trend");
@@ -44,11 +32,10 @@ Panel force_panel(const ReportData& data, const std::string& title, Base base, B
   panel.y = {"Error [JND]", "", true};
   panel.names_at_ends = true;
   panel.levels.push_back({1.0, "1 JND"});
-  for (const std::size_t i : data.choice.candidates) {
+  for (const std::size_t i : headline_models(data)) {
     const ModelResult& one = data.models[i];
     if (!one.plan || one.plan->base != base) continue;
-    Series series{
-        one.plan->method->label, model_colour(one), base == Base::force ? Mark::hollow_curve : Mark::curve, {}};
+    Series series{one.name, model_colour(one), mark_of(one, Mark::hollow_curve, Mark::curve), {}};
     for (const ForceBin& bin : one.errors.bins) {
       if (bin.force_N.count() >= kFewSamples) series.rows.push_back({bin.force_N.mean(), figure(bin)});
     }
@@ -57,7 +44,22 @@ Panel force_panel(const ReportData& data, const std::string& title, Base base, B
   return panel;
 }
 
-// Gives the panels of both recipes the same scale, because they are side by side.
+// The bins that the curves omit; all models have the same samples.
+std::string omitted_bins(const ReportData& data) {
+  std::size_t bins = 0, omitted = 0;
+  std::uint64_t samples = 0;
+  for (const ForceBin& bin : data.models.front().errors.bins) {
+    const std::uint64_t count = bin.force_N.count();
+    bins += count > 0 ? 1 : 0;
+    if (count == 0 || count >= kFewSamples) continue;
+    ++omitted;
+    samples += count;
+  }
+  return std::to_string(omitted) + " of " + std::to_string(bins) + " bins have fewer than " +
+         std::to_string(kFewSamples) + " samples, " + std::to_string(samples) + " in all, and are not drawn";
+}
+
+// Gives both panels the same scale, because they are side by side.
 void share_scale(Panel& one, Panel& other) {
   const AxisRange first = range_of(one, true);
   const AxisRange second = range_of(other, true);
@@ -75,27 +77,26 @@ Figure speed_figure(const ReportData& data) {
   panel.names_at_ends = true;
   double slowest_s = 0.0;
   double least = 1e300;
-  for (const auto& kind : kinds_of(data)) {
-    Series curve{"", kInkColour, Mark::line, {}};
-    for (const ModelResult* one : kind) {
-      if (!one->time.measured) continue;
-      slowest_s = std::max(slowest_s, 1e-9 * one->time.tick.high_ns);
-      least = std::min(least, std::max(one->errors.p99_error_over_jnd, 1e-6));
-      curve.colour = model_colour(*one);
-      curve.rows.push_back({1e-9 * one->time.tick.median_ns, one->errors.p99_error_over_jnd});
-    }
-    if (curve.rows.size() > 1) panel.series.push_back(std::move(curve));
-  }
-  for (const std::size_t i : headline_models(data)) {
-    const ModelResult& one = data.models[i];
+  const std::vector<std::size_t> shown = headline_models(data);
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const ModelResult& one = data.models[shown[k]];
     if (!one.time.measured) continue;
     const Interval interval = one.errors.p99_interval();
     const Timing& tick = one.time.tick;
-    panel.series.push_back({one.name,
-                            model_colour(one),
-                            one.plan && one.plan->base == Base::force ? Mark::hollow_bars : Mark::bars,
-                            {{1e-9 * tick.median_ns, one.errors.p99_error_over_jnd, interval.low, interval.high,
-                              1e-9 * tick.low_ns, 1e-9 * tick.high_ns}}});
+    slowest_s = std::max(slowest_s, 1e-9 * tick.high_ns);
+    least = std::min(least, std::max(one.errors.p99_error_over_jnd, 1e-6));
+    const PlotRow point{1e-9 * tick.median_ns, one.errors.p99_error_over_jnd,
+                        interval.low,          interval.high,
+                        1e-9 * tick.low_ns,    1e-9 * tick.high_ns};
+    // The two sizes of a method follow each other.
+    const ModelResult& next = data.models[shown[std::min(k + 1, shown.size() - 1)]];
+    if (next.time.measured && &next != &one && family_name(*next.plan) == family_name(*one.plan)) {
+      panel.series.push_back({"",
+                              model_colour(one),
+                              Mark::line,
+                              {{point.x, point.y}, {1e-9 * next.time.tick.median_ns, next.errors.p99_error_over_jnd}}});
+    }
+    panel.series.push_back({one.name, model_colour(one), mark_of(one, Mark::hollow_bars, Mark::bars), {point}});
   }
   panel.levels.push_back({1.0, "1 JND"});
   if (data.floor.p99_error_over_jnd > 0.3 * least) panel.levels.push_back({data.floor.p99_error_over_jnd, "noise"});
@@ -109,10 +110,10 @@ Figure speed_figure(const ReportData& data) {
   figure.plot.height = 1.9;
   figure.plot.panels = {std::move(panel)};
   figure.caption =
-      "Lower is more accurate, further left is faster; a hand does not notice errors below 1 JND; noise: that of the "
-      "force sensor. Dots: the models of the table; hollow: the recipe of 2009. Bars: six rounds of timing, and the "
-      "95 % interval of the error where there is one; models are compared by their paired differences. Lines: one "
-      "method with increasing numbers of centres.";
+      "Lower is more accurate, further left is faster; noise: that of the force sensor. Hollow: methods on the "
+      "measured "
+      "force, as in the paper; filled: the trend and its correction. Bars: six rounds of timing, and the 95 % interval "
+      "of the error where there is one. A line joins two numbers of centres of one method.";
   return figure;
 }
 
@@ -131,7 +132,7 @@ Figure worst_figure(const ReportData& data) {
   // The recommended model, the first one, is drawn last, on top of the others.
   for (std::size_t i = worst.models.size(); i-- > 0;) {
     const ModelResult& model = data.models[worst.models[i]];
-    const Mark mark = model.plan->base == Base::force ? Mark::dashed : Mark::line;
+    const Mark mark = mark_of(model, Mark::dashed, Mark::line);
     for (Panel* panel : {&force, &difference}) panel->series.push_back({model.name, model_colour(model), mark, {}});
   }
   double largest = 1.2;
@@ -162,7 +163,7 @@ Figure worst_figure(const ReportData& data) {
       "The worst " + three_digits(worst.rows.empty() ? 0.0 : worst.rows.back().time_s - worst.rows.front().time_s) +
       " s of " + data.models[data.choice.recommended].name + " (largest mean squared error over the JND): RMS " +
       three_digits(std::sqrt(std::max(0.0, worst.score))) +
-      " JND. Below: model minus measurement; grey: differences that a hand cannot notice.";
+      " JND. Below: model minus measurement; grey: below the just noticeable difference.";
   return figure;
 }
 
@@ -181,8 +182,8 @@ Figure force_figure(const ReportData& data) {
   figure.plot.name = "error_by_force";
   figure.plot.columns = 2;
   figure.caption =
-      "Error divided by the JND against force, 100 centres, in bins two JND wide with at least 20 samples. Figures 5 "
-      "and 7 of Hoever & Harders (2009) show the error divided by the force (drawn by palpate paper).";
+      "Error divided by the JND against force, in bins two JND wide; " + omitted_bins(data) +
+      ". Figures 5 and 7 of Hoever & Harders (2009) show the error divided by the force (drawn by palpate paper).";
   return figure;
 }
 

@@ -1,6 +1,7 @@
 #include "scenes/report/measure.h"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 #include "models/correction/methods.h"
@@ -10,7 +11,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kPrepareSeconds = 1.0;   // estimate for one recipe
+constexpr double kPrepareSeconds = 1.0;   // estimate for one base
 constexpr double kEvaluateSeconds = 0.1;  // estimate for one model
 
 // Combines the progress of parts of different lengths, which are given in expected seconds.
@@ -33,6 +34,14 @@ class Progress {
   double part_ = 0.0;
 };
 
+// One fit of one fold. Several rows have the same where they ask for the same.
+struct Fitted {
+  ModelPlan plan;
+  std::shared_ptr<const FittedModel> model;
+  double error_over_jnd = 0.0;  // cross-validated in the training recordings
+  double seconds = 0.0;
+};
+
 class Measurement {
  public:
   Measurement(ReportData& data, bool quick, const FitControl& control)
@@ -44,12 +53,16 @@ class Measurement {
     }
     for (ModelResult& one : models_) finish(one);
     data_.floor = noise_floor(tested_, data_.scene.jnd);
-    time_all();
+    merge_seeds();
     merge_equal();
+    time_all();
     data_.choice = choose(models_);
     find_worst();
     // Frees the samples, hundreds of MB for long recordings: the figures are computed.
-    for (ModelResult& one : models_) one.recorded_samples = one.moved_samples = ModelErrors(data_.scene.jnd);
+    for (ModelResult& one : models_) {
+      one.recorded_samples = one.moved_samples = ModelErrors(data_.scene.jnd);
+      one.recorded_bounds = one.moved_bounds = {};
+    }
     return progress_.next(0.0).may_continue(1.0) ? Status{} : Status{interrupted()};
   }
 
@@ -58,26 +71,74 @@ class Measurement {
   double plan_models(bool quick) {
     double total = 2.0 * kPrepareSeconds;
     models_.emplace_back();
-    for (const ModelPlan& plan : report_plans(quick, data_.scene.features.size())) {
-      ModelResult& model = models_.emplace_back();
-      model.plan = plan;
-      model.name = plan_name(plan);
-      total += plan.method->expected_seconds + kEvaluateSeconds;
+    for (const ModelPlan& plan : all_plans()) {
+      if (quick && !is_main(plan)) continue;
+      for (const bool selects : {false, true}) {
+        if (selects && (quick || !plan.selects_centres())) continue;
+        for (std::uint64_t seed = 1; seed <= (plan.method->can_take(kTakesSeed) ? kSeeds : 1); ++seed) {
+          ModelResult& model = models_.emplace_back();
+          model.plan = plan;
+          model.plan->seed = seed;
+          model.selects_size = selects;
+          total += plan.method->expected_seconds + kEvaluateSeconds;
+        }
+      }
     }
     for (ModelResult& model : models_) model.recorded_samples = model.moved_samples = ModelErrors(data_.scene.jnd);
     return static_cast<double>(data_.recordings.folds.size()) * total;
   }
 
-  // Fits all planned models of one fold.
-  Status fit(ModelFits& fits) {
+  bool first_fold() const { return data_.tested.empty(); }
+
+  Result<Fitted> fit_once(ModelFits& fits, const ModelPlan& plan) {
+    for (const Fitted& one : fitted_) {
+      if (one.plan == plan) return one;
+    }
+    const double expected_s = plan.method->expected_seconds;
+    auto one = fits.fit(plan, progress_.next(expected_s));
+    if (!one && !progress_.next(0.0).may_continue(0.0)) return interrupted();
+    if (!one) return Error{plan_name(plan) + ": " + one.error().message};
+    if (first_fold() && one->choices)
+      data_.choices.try_emplace(plan.selects_centres() ? plan.centres : 0, *one->choices);
+    return fitted_.emplace_back(
+        Fitted{plan, std::make_shared<const FittedModel>(std::move(one->data)), one->error_over_jnd, one->seconds});
+  }
+
+  // The number of centres of this fold, from the cross-validated errors of random centres.
+  Result<int> select_size(ModelFits& fits, Base base) {
+    ErrorBySize errors;
+    for (const int size : kSizes) {
+      const auto one = fit_once(fits, {.base = base, .method = &kRandomMethod, .centres = size});
+      if (!one) return one.error();
+      errors.emplace_back(size, one->error_over_jnd);
+    }
+    if (first_fold()) data_.by_size[base] = errors;
+    return std::ranges::min_element(errors, {}, &std::pair<int, double>::second)->first;
+  }
+
+  // Fits all planned models of one fold. Without a correction every model of Base::trend is the trend.
+  Status fit(ModelFits& fits, bool corrects) {
+    fitted_.clear();
+    std::map<Base, int> sizes;
     for (ModelResult& result : models_) {
       if (!result.plan) continue;
-      auto one = fits.fit(*result.plan, progress_.next(result.plan->method->expected_seconds));
-      if (!one && !progress_.next(0.0).may_continue(0.0)) return interrupted();
-      if (!one) return Error{result.name + ": " + one.error().message};
+      ModelPlan plan = *result.plan;
+      if (plan.base == Base::trend && !corrects) plan = {.method = &kTrendMethod};
+      if (result.selects_size && plan.selects_centres()) {
+        if (sizes.count(plan.base) == 0) {
+          const auto size = select_size(fits, plan.base);
+          if (!size) return size.error();
+          sizes[plan.base] = *size;
+        }
+        plan.centres = sizes[plan.base];
+      }
+      const auto one = fit_once(fits, plan);
+      if (!one) return one.error();
       result.fit_seconds += one->seconds / static_cast<double>(data_.recordings.folds.size());
-      result.model = std::make_shared<const FittedModel>(std::move(one->data));
-      result.size = std::max(result.size, result.model->centre_count());
+      result.model = one->model;
+      const int size = result.model->centre_count();
+      result.least_size = result.fits.empty() ? size : std::min(result.least_size, size);
+      result.size = std::max(result.size, size);
       result.fits.push_back(result.model);
     }
     return {};
@@ -89,8 +150,8 @@ class Measurement {
     if (!paper) return paper.error();
     const auto palpate = fits.prepare({}, progress_.next(kPrepareSeconds));
     if (!palpate) return palpate.error();
-    if (data_.gains.empty()) remember(**paper, **palpate);
-    if (const Status fitted = fit(fits); !fitted) return fitted;
+    if (first_fold()) remember(**paper, **palpate);
+    if (const Status done = fit(fits, (*palpate)->corrects()); !done) return done;
     for (const PreparedRecordingPointer& recording : fold.tested) {
       if (const Status status = evaluate_test(recording, fold.counted_from_s); !status) return status;
     }
@@ -100,37 +161,51 @@ class Measurement {
   static void finish(ModelResult& result) {
     result.errors = result.recorded_samples.unit_errors();
     result.moved = result.moved_samples.summary();
+    result.bound = result.recorded_bounds.figures();
+    result.bound_moved = result.moved_bounds.figures();
+    if (!result.plan) return;
+    result.name = plan_name(*result.plan);
+    if (!result.plan->selects_centres() || result.size == 0) return;
     // A fit has at most as many centres as sites; the name has the actual number.
-    if (!result.model || !result.plan->selects_centres() || result.size == 0) return;
     ModelPlan actual = *result.plan;
     actual.centres = result.size;
     result.name = plan_name(actual);
+    if (!result.selects_size || result.least_size == result.size) return;
+    actual.centres = result.least_size;
+    result.name = plan_name(actual) + "-to-" + std::to_string(result.size);
   }
 
   void remember(const PreparedTraining& paper, const PreparedTraining& palpate) {
     data_.surfaces = palpate.common.provenance.offsets;
     data_.gains = palpate.gains;
-    if (palpate.correction) data_.corrects = palpate.correction->used;
+    data_.corrects = palpate.corrects();
     data_.papers_times_s = relaxation_times_s(paper.common.features);
   }
 
   Status evaluate_test(const PreparedRecordingPointer& tested, double counted_from_s) {
-    std::vector<EvaluatedModel> models;
+    std::vector<EvaluatedModel> models;  // no two are the same
     EvaluationRequest request;
     request.counted_from_s = counted_from_s;
     for (const ModelResult& one : models_) {
-      if (!one.model) continue;
+      if (!one.model || std::ranges::count(models, one.model, &EvaluatedModel::model) > 0) continue;
       models.push_back({one.model, data_.scene.jnd});
-      if (is_main(*one.plan) && one.plan->base == Base::trend) request.surface_models.push_back(one.model);
+      if (one.plan->base == Base::trend && is_main(*one.plan)) request.surface_models.push_back(one.model);
     }
     request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
     const auto result = evaluate(rows_of(tested->recording), models, request);
     if (!result) return result.error();
-    auto errors = result->models.begin();
     for (ModelResult& one : models_) {
-      one.recorded_samples.append(one.model ? errors->as_recorded : result->no_force);
-      one.moved_samples.append(one.model ? errors->surface_moved : result->no_force);
-      if (one.model) ++errors;
+      if (!one.model) {
+        one.recorded_samples.append(result->no_force);
+        one.moved_samples.append(result->no_force);
+        continue;
+      }
+      const auto at = std::ranges::find(models, one.model, &EvaluatedModel::model) - models.begin();
+      const ModelEvaluation& errors = result->models[static_cast<std::size_t>(at)];
+      one.recorded_samples.append(errors.as_recorded);
+      one.moved_samples.append(errors.surface_moved);
+      one.recorded_bounds.append(errors.bound_as_recorded);
+      one.moved_bounds.append(errors.bound_surface_moved);
     }
     timing_.push_back(result->timing);
     data_.tested.push_back({tested->recording.name, result->models.front().surface.at});
@@ -151,6 +226,27 @@ class Measurement {
     }
   }
 
+  // Keeps of each model that was fitted with several seeds the one with the median 99 % error.
+  void merge_seeds() {
+    const auto p99 = [](const ModelResult& one) { return one.errors.p99_error_over_jnd; };
+    const auto within = [](const ModelResult& one) { return one.errors.within_jnd; };
+    std::vector<ModelResult> kept;
+    for (auto first = models_.begin(); first != models_.end();) {
+      const auto last = std::find_if(first + 1, models_.end(),
+                                     [](const ModelResult& one) { return !one.plan || one.plan->seed == 1; });
+      const auto [fewest, most] =
+          std::ranges::minmax(std::ranges::subrange(first, last) | std::views::transform(within));
+      std::ranges::stable_sort(first, last, {}, p99);
+      ModelResult& median = *(first + (last - first) / 2);
+      median.seeds = static_cast<std::uint64_t>(last - first);
+      median.within_range = {fewest, most};
+      median.p99_range = {p99(*first), p99(*(last - 1))};
+      kept.push_back(std::move(median));
+      first = last;
+    }
+    models_ = std::move(kept);
+  }
+
   // Merges models with equal forces into the first of them: without a correction every method equals the trend, and
   // with fewer sites than centres two sizes are equal.
   void merge_equal() {
@@ -161,19 +257,21 @@ class Measurement {
       });
       if (first == kept.end()) {
         kept.push_back(std::move(one));
-      } else if (first->name != one.name) {
+      } else if (first->name != one.name && std::ranges::count(first->same, one.name) == 0) {
         first->same.push_back(one.name);
       }
     }
     models_ = std::move(kept);
   }
 
-  // Finds the worst stretch of the recommended model. Shows it with the greedy models of 2009 and the best model.
+  // Finds the worst stretch of the recommended model. Shows it with the greedy method of the paper and the best model.
   void find_worst() {
     const Choice& choice = data_.choice;
     std::vector<std::size_t> shown{choice.recommended};
     for (const std::size_t i : choice.candidates) {
-      if (i != choice.recommended && (i == choice.best || is_papers_greedy(*models_[i].plan))) shown.push_back(i);
+      const ModelResult& one = models_[i];
+      const bool papers = one.plan->base == Base::force && one.plan->method == &kGreedyMethod && !one.selects_size;
+      if (i != choice.recommended && (i == choice.best || papers)) shown.push_back(i);
     }
     for (std::size_t fold = 0; fold < data_.recordings.folds.size(); ++fold) {
       std::vector<ModelPointer> models;
@@ -190,6 +288,7 @@ class Measurement {
   ReportData& data_;
   std::vector<ModelResult>& models_;
   Progress progress_;
+  std::vector<Fitted> fitted_;  // of the current fold
   std::vector<const PreparedRecording*> tested_;
   std::vector<TimedSamples> timing_;  // one per test recording
 };
@@ -240,38 +339,34 @@ Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, b
   return data;
 }
 
+bool is_main(const ModelPlan& plan) {
+  return plan.method == &kGreedyMethod ||
+         (plan.base == Base::force ? plan.method != &kDirectMethod : plan.method == &kTrendMethod);
+}
+
 Choice choose(const std::vector<ModelResult>& models) {
   Choice choice;
-  bool corrected = false;
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const ModelResult& one = models[i];
-    corrected = corrected || (one.model && one.plan->base == Base::trend && one.plan->method != &kTrendMethod);
-    if (!one.model || !is_main(*one.plan)) continue;
+    if (!one.model) continue;
     choice.candidates.push_back(i);
-    candidates.push_back({one.errors, one.time.tick});
+    candidates.push_back({family_name(*one.plan), one.errors.p99_error_over_jnd, one.time.tick.median_ns});
   }
   const Ranking ranking = rank(candidates);
-  choice.correction_off = !corrected;
   choice.best = choice.candidates[ranking.best];
   choice.recommended = choice.candidates[ranking.recommended];
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (ranking.qualified[i]) choice.qualified.push_back(choice.candidates[i]);
-  }
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    if (!models[i].model || is_main(*models[i].plan)) continue;
-    const UnitErrors& errors = models[i].errors;
-    if (!dominates({errors, models[i].time.tick}, candidates[ranking.recommended])) continue;
-    if (choice.dominating && errors.p99_error_over_jnd >= models[*choice.dominating].errors.p99_error_over_jnd)
-      continue;
-    choice.dominating = i;
+    if (ranking.near_best[i]) choice.near_best.push_back(choice.candidates[i]);
   }
   return choice;
 }
 
 std::vector<std::size_t> headline_models(const ReportData& data) {
   std::vector<std::size_t> rows{0};
-  rows.insert(rows.end(), data.choice.candidates.begin(), data.choice.candidates.end());
+  for (const std::size_t i : data.choice.candidates) {
+    if (is_main(*data.models[i].plan) || i == data.choice.best || i == data.choice.recommended) rows.push_back(i);
+  }
   return rows;
 }
 

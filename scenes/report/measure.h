@@ -2,6 +2,7 @@
 // Thread guarantee: slow side; the fits start threads.
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "engine/base/fit_control.h"
@@ -10,7 +11,6 @@
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/evaluation/model_timing.h"
-#include "scenes/report/plan.h"
 #include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
 
@@ -38,20 +38,37 @@ struct WorstStretch {
 WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
                            double from_s = -1e300);
 
-// The results of a planned model over all folds. The errors of all models are over the same samples.
+// Whether the model is one of the comparison that everybody sees: voxel, random, kdtree and greedy as in the paper, the
+// trend, and the trend corrected by greedy.
+bool is_main(const ModelPlan& plan);
+
+// Methods that draw random numbers are fitted with this number of seeds.
+inline constexpr std::uint64_t kSeeds = 5;
+// A method that selects centres is fitted with the number in its plan, 100, and with that of these numbers that
+// cross-validation of the training recordings selects: the one with the lowest error of random centres.
+inline constexpr int kSizes[] = {10, 20, 50, 100, 200};
+using ErrorBySize = std::vector<std::pair<int, double>>;  // number of centres, cross-validated error over the JND
+
+// The results of a planned model over all folds. The errors of all models are over the same samples. Of a method that
+// draws random numbers they are those of the seed with the median 99 % error.
 struct ModelResult {
   std::string name = "no force";
-  std::optional<ModelPlan> plan;             // none: 0 N
-  int size = 0;                              // centres, or nodes of the grid; the largest of all folds
-  UnitErrors errors;                         // positions as recorded
-  ErrorSummary moved;                        // with the surface offset of every test recording subtracted
+  std::optional<ModelPlan> plan;  // none: 0 N
+  bool selects_size = false;      // its number of centres is selected in each fold
+  int size = 0;                   // centres, or nodes of the grid; the largest of all folds
+  int least_size = 0;             // the smallest of all folds
+  UnitErrors errors;              // positions as recorded
+  ErrorSummary moved;             // with the surface offset of every test recording subtracted
+  BoundFigures bound, bound_moved;
+  std::uint64_t seeds = 1;                   // number of fits with different seeds
+  Interval within_range, p99_range;          // least and greatest of them
   double fit_seconds = 0.0;                  // mean over the folds, without the preparation
   ModelTiming time;                          // of the last fold's model, on all test recordings
   std::shared_ptr<const FittedModel> model;  // of the last fold; null: no force
   std::vector<ModelPointer> fits;            // of each fold; empty: no force
-  // The errors of every sample during `measure`, which computes `errors` and `moved` from them; empty in its result.
-  ModelErrors recorded_samples{JndLine{}};
-  ModelErrors moved_samples{JndLine{}};
+  // Every sample during `measure`, which computes the figures above from them; empty in its result.
+  ModelErrors recorded_samples{JndLine{}}, moved_samples{JndLine{}};
+  BoundErrors recorded_bounds, moved_bounds;
   std::vector<std::string> same;  // names of further planned models with the same forces
 };
 
@@ -61,16 +78,12 @@ struct MovedSurface {
   double offset_m = 0.0;
 };
 
-// The choice of a model. All numbers are indices of ReportData::models.
+// The choice of a model by rank(). All numbers are indices of ReportData::models.
 struct Choice {
-  std::vector<std::size_t> candidates;  // one per family
-  std::vector<std::size_t> qualified;   // non-inferior candidates
-  std::size_t best = 0;                 // the candidate with the smallest 99 % error
+  std::vector<std::size_t> candidates;  // all models
+  std::vector<std::size_t> near_best;
+  std::size_t best = 0;  // the candidate with the lowest 99 % error
   std::size_t recommended = 0;
-  // The most accurate model of another size that dominates the recommended one. It is no candidate, because that would
-  // choose its size by the test.
-  std::optional<std::size_t> dominating;
-  bool correction_off = false;  // the correction is 0, so that all of this program's methods equal the trend
 };
 
 struct ReportData {
@@ -80,20 +93,22 @@ struct ReportData {
   NoiseFloor floor;                  // of all test recordings together
   std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces
   Choice choice;
-  WorstStretch worst;                     // of the recommended model
+  WorstStretch worst;                      // of the recommended model
   std::vector<RecordingOffset> surfaces;  // of the training recordings; this and the following: of the first fold
-  std::vector<double> papers_times_s;     // relaxation times identified for the methods on the measured force
-  std::optional<bool> corrects;           // whether cross-validation selected the correction
-  std::vector<PartGain> gains;            // of each part of the trend
+  std::vector<double> papers_times_s;      // relaxation times identified for the methods on the measured force
+  bool corrects = true;                    // whether cross-validation selected the correction
+  std::vector<PartGain> gains;             // of each part of the trend
+  std::map<int, OpenChoices> choices;   // of the methods on the measured force, by their number of centres; 0: direct
+  std::map<Base, ErrorBySize> by_size;  // empty in a quick report
 };
 
-// Fits every planned model once per fold and pools its errors over the folds. All results but times are
-// deterministic. Errors: those of the recordings and the fits, with the recordings' names; interrupted.
+// Fits every planned model once per fold and pools its errors over the folds. `quick`: the main models with 100
+// centres. All results but times are deterministic. Errors: those of the recordings and the fits, with the recordings'
+// names; interrupted.
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control);
 
-// The candidates are the main models of the plan; rank() recommends one of them by the test errors and times.
 Choice choose(const std::vector<ModelResult>& models);
-// The models of the page's first table: no force and the candidates.
+// The models of the page's first table: no force, the main models, the best and the recommended one.
 std::vector<std::size_t> headline_models(const ReportData& data);
 
 }  // namespace palpate

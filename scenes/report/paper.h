@@ -5,7 +5,9 @@
 //               times and with times fitted to the recording; rows scaled by 1/f
 //   methods     interpolation of all sites on an even 25x11x11x11 grid; 100 centres: random, kD-tree, greedy with 20
 //               and with 100 candidates per step
+//   open        kernel, normalisation and truncation: selected by cross-validation on the training recording
 //   errors      of the samples in contact of the test, through the tick
+//   study       twelve simulated subjects, whose JND is that of the paper at 2.5 N
 // Thread guarantee: slow side.
 #pragma once
 
@@ -18,6 +20,7 @@
 #include "engine/tick/jnd.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/evaluation/model_timing.h"
+#include "scenes/study/study_analysis.h"
 
 namespace palpate {
 
@@ -37,7 +40,10 @@ struct PaperRun {
   std::uint64_t trained = 0;    // number of training samples
   std::uint64_t tested = 0;     // number of test samples
   std::uint64_t sites = 0;
-  std::vector<PaperModel> models;  // in the order of PaperMethod
+  std::string choices{};                // kernel, normalisation and truncation of the centres, in words
+  std::vector<PaperModel> models{};     // in the order of PaperMethod
+  std::vector<PaperModel> repeated{};   // greedy-100 with other seeds
+  std::vector<PaperModel> exchanged{};  // as `models`, trained on the test recording and tested on the other
 };
 enum PaperMethod : std::size_t { kGridOfAll, kRandomCentres, kTreeCentres, kGreedy20, kGreedy100, kPaperMethods };
 
@@ -45,6 +51,7 @@ enum PaperMethod : std::size_t { kGridOfAll, kRandomCentres, kTreeCentres, kGree
 struct FitTimes {
   std::size_t sites = 0;
   std::vector<double> seconds;  // in the order of PaperMethod
+  double solve_s = 0.0;         // of the interpolation, without its grid
 };
 // Time of the interpolant by the dimension of the domain; figure 2.
 struct DimensionTimes {
@@ -55,23 +62,41 @@ struct DimensionTimes {
 
 struct PaperData {
   JndLine jnd;
+  bool quick = false;
   std::vector<PaperRun> runs;
   std::vector<FitTimes> by_sites;
   std::vector<DimensionTimes> by_dimension;
+  // The largest ratio of the slowest to the fastest round of one measurement. Times are those of the fastest.
+  double slowest_round = 1.0;
+  std::vector<JndPoint> points;  // of the study, and of Pang, Tan & Durlach (1991)
+  JndLines lines;                // through the points
 };
 
 // `quick`: fewer samples, sites and dimensions, and only the paper's relaxation times. Errors: the reduction needed
 // steps above 50 mN; those of the fits; interrupted.
 Result<PaperData> measure_paper(bool quick, const FitControl& control);
 
+enum class Verdict {
+  none,  // not measured in that run
+  reproduced,
+  different,
+  undecided,  // by a quick run
+  // Not comparable: a figure that depends on what the paper had.
+  other_machine,
+  other_recording,
+  other_subjects,
+};
+const char* verdict_name(Verdict verdict);  // "reproduced", "another machine", ...; empty for none
+
 // A claim of the paper, compared with the results.
 struct Claim {
   struct Result {
-    std::string text;  // empty: not measured in that run
-    bool reproduced = false;
+    std::string text;
+    Verdict verdict = Verdict::none;
   };
   std::string claim;
   std::string there;           // the result in the paper
+  std::string tolerance{};     // what counts as reproduced, and why
   std::string why{};           // a reason for a difference
   std::vector<Result> here{};  // the result of each run
 };

@@ -37,19 +37,12 @@ constexpr const char* kCompiler = "clang " __clang_version__;
 constexpr const char* kCompiler = "g++ " __VERSION__;
 #endif
 
-constexpr double kBudget_ns = 1e6;
 // No model is recommended if less than this share of the test samples is within the JND.
 constexpr double kGoodShare = 0.9;
 // The answer mentions the surface only if moving it changes the share within the JND by more.
 constexpr double kShareThatMatters = 0.005;
 
-// A model's name, or a number with its model and figure of merit, so that tests/scenes/report/check_report.py can
-// recompute it.
-struct SentencePart {
-  std::string text;
-  std::string model{};
-  std::string figure{};  // "within_jnd"; empty: `text` is the name
-};
+constexpr double kStudiedUpTo_N = 2.5;  // Hoever & Harders (2009), section 4.1
 
 // The answer of a report in words, which page, report.json and terminal show.
 class Sentence {
@@ -59,16 +52,20 @@ class Sentence {
     html_ += escape_html(text);
     return *this;
   }
-  Sentence& operator<<(const SentencePart& part) {
-    plain_ += part.text;
-    const std::string begin = part.figure.empty() ? "<b>"
-                                                  : "<span data-model=\"" + escape_html(part.model) +
-                                                        "\" data-figure=\"" + part.figure + "\">";
-    html_ += begin + escape_html(part.text) + (part.figure.empty() ? "</b>" : "</span>");
+  Sentence& name(const ModelResult& model) {
+    plain_ += model.name;
+    html_ += "<b>" + escape_html(model.name) + "</b>";
+    return *this;
+  }
+  // A number with its model and figure of merit, so that tests/scenes/report/check_report.py can recompute it.
+  Sentence& number(const ModelResult& model, const char* figure, const std::string& text) {
+    plain_ += text;
+    html_ += "<span data-model=\"" + escape_html(model.name) + "\" data-figure=\"" + figure + "\">" +
+             escape_html(text) + "</span>";
     return *this;
   }
   const std::string& html() const { return html_; }
-  std::string plain_text() const { return plain_.substr(0, plain_.find_last_not_of(' ') + 1); }
+  const std::string& plain() const { return plain_; }
 
  private:
   std::string html_, plain_;
@@ -77,55 +74,26 @@ class Sentence {
 // Two decimals, rounded down: 99.996 % is "99.99 %".
 std::string percent(double share) { return share >= 1.0 ? "100 %" : fixed(std::floor(1e4 * share) / 100.0, 2) + " %"; }
 
-SentencePart number(const ModelResult& model, const char* figure, const std::string& text) {
-  return {text, model.name, figure};
+std::string nanoseconds(const ModelResult& model) {
+  return with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns";
 }
 
-SentencePart name(const ModelResult& model) { return {model.name}; }
-
-SentencePart tick(const ModelResult& model) {
-  return number(model, "tick_ns", with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns");
+std::string seeds_text(const ModelResult& model) {
+  return model.seeds > 1 ? " (the median of " + std::to_string(model.seeds) + " seeds)" : "";
 }
 
-std::string unit_words(const UnitErrors& errors) {
-  return std::to_string(errors.units()) + " " + unit_name(errors) + (errors.units() == 1 ? "" : "s");
-}
-
-void add_errors(Sentence& sentence, const ModelResult& model) {
-  const UnitErrors& errors = model.errors;
-  const SentencePart beyond = number(
-      model, "beyond_units", std::to_string(errors.units_above_jnd) + " of " + unit_words(errors) + " exceed it");
-  sentence << number(model, "within_jnd", percent(errors.within_jnd))
-           << " of the test has an error of at most one JND, which a hand cannot notice (";
-  if (!errors.has_intervals()) {
-    sentence << beyond << ", too few for an interval";
-  } else if (errors.units_above_jnd == 0) {
-    sentence << beyond << "; 95 %: at most " << number(model, "units_at_most", percent(1.0 - errors.within_at_least()))
-             << " do";
-  } else {
-    sentence << "95 %: at least " << number(model, "within_at_least", percent(errors.within_at_least())) << "; "
-             << beyond;
-  }
-  sentence << "), and 99 % of the errors are below "
-           << number(model, "p99_error_over_jnd", three_digits(errors.p99_error_over_jnd)) << " JND";
-  if (errors.has_intervals())
-    sentence << " (95 %: " << number(model, "p99_at_most", three_digits(errors.p99_at_most())) << ")";
-  sentence << ". ";
-}
-
-std::string changed(double jnd) { return three_digits(std::abs(jnd)) + (jnd < 0.0 ? " smaller" : " larger"); }
-
-// Compares time and error of `other` with the recommended model.
-void add_comparison(Sentence& sentence, const ModelResult& other, const ModelResult& recommended) {
-  const PairedDifference difference = paired_difference(other.errors, recommended.errors);
-  const double time_ratio = other.time.tick.median_ns / recommended.time.tick.median_ns;
-  sentence << name(other) << " takes " << number(other, "time_ratio", three_digits(time_ratio)) << " times the time ("
-           << tick(other) << "), and its 99 % error is "
-           << number(other, "difference", three_digits(std::abs(difference.p99)))
-           << (difference.p99 < 0.0 ? " JND smaller" : " JND larger");
+// Says by how much the model with the lowest 99 % error is better, and how much longer it takes.
+void add_best(Sentence& sentence, const ModelResult& best, const ModelResult& use) {
+  const PairedDifference difference = paired_difference(use.errors, best.errors);
+  sentence << "; the lowest 99 % error, ";
+  sentence.number(best, "difference", three_digits(difference.p99)) << " JND less";
   if (difference.interval.known())
-    sentence << " (95 %: " + changed(difference.interval.low) + " to " + changed(difference.interval.high) + ")";
-  sentence << ". ";
+    sentence << " (95 %: " + three_digits(difference.interval.low) + " to " + three_digits(difference.interval.high) +
+                    ")";
+  sentence << ", is that of ";
+  sentence.name(best) << ", which takes ";
+  sentence.number(best, "time_ratio", three_digits(best.time.tick.median_ns / use.time.tick.median_ns))
+      << " times as long";
 }
 
 // Names the test recording whose surface is farthest from the models'.
@@ -133,33 +101,31 @@ void add_surface(Sentence& sentence, const ReportData& data, const ModelResult& 
   if (model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return;
   const MovedSurface& surface =
       *std::ranges::max_element(data.tested, {}, [](const MovedSurface& one) { return std::abs(one.offset_m); });
-  sentence << "The surface of " + surface.name + " is at " + three_digits(1e3 * surface.offset_m) +
+  sentence << " The surface of " + surface.name + " is at " + three_digits(1e3 * surface.offset_m) +
                   " mm for these models; with it moved, which uses the forces of the test, " +
-                  percent(model.moved.within_jnd) + " of the test is within the JND. ";
+                  percent(model.moved.within_jnd) + " of the test is within the JND.";
 }
 
 Sentence answer(const ReportData& data) {
   const ModelResult& use = data.models[data.choice.recommended];
-  const bool good = use.errors.within_jnd >= kGoodShare;
-  Sentence sentence;
-  sentence << (good ? "Use " : "No model is good enough as recorded. The best choice is ") << name(use)
-           << ": a whole tick takes " << tick(use) << ", "
-           << number(use, "tick_share", three_digits(100.0 * use.time.tick.median_ns / kBudget_ns)) << " % of 1 ms; ";
-  add_errors(sentence, use);
-  add_surface(sentence, data, use);
-  if (data.choice.correction_off)
-    sentence << "The RBF correction is off on this material: all methods equal the trend. ";
   const ModelResult& best = data.models[data.choice.best];
-  if (&best != &use) add_comparison(sentence, best, use);
-  if (data.choice.dominating) {
-    sentence << "Another size was faster and had a smaller 99 % error in this test: ";
-    add_comparison(sentence, data.models[*data.choice.dominating], use);
-    sentence << "A size that is chosen by a test has to be tested on another recording. ";
+  const UnitErrors& errors = use.errors;
+  const Interval interval = errors.p99_interval();
+  Sentence sentence;
+  sentence << (errors.within_jnd >= kGoodShare ? "Use " : "No model is good enough as recorded; the best choice is ");
+  sentence.name(use) << seeds_text(use) + ": a whole tick takes ";
+  sentence.number(use, "tick_ns", nanoseconds(use)) << ", the error is below the just noticeable difference in ";
+  sentence.number(use, "within_jnd", percent(errors.within_jnd)) << " of the test, and 99 % of the errors are below ";
+  sentence.number(use, "p99_error_over_jnd", three_digits(errors.p99_error_over_jnd)) << " JND";
+  if (interval.known()) {
+    sentence << " (95 %: ";
+    sentence.number(use, "p99_low", three_digits(interval.low)) << " to ";
+    sentence.number(use, "p99_high", three_digits(interval.high)) << ")";
   }
-  for (const std::size_t i : data.choice.candidates) {
-    const ModelResult& one = data.models[i];
-    if (one.plan && is_papers_greedy(*one.plan) && &one != &use && &one != &best) add_comparison(sentence, one, use);
-  }
+  if (&best != &use) add_best(sentence, best, use);
+  sentence << "; this test chose it among " + std::to_string(data.choice.candidates.size()) +
+                  " models, so another recording has to confirm these figures.";
+  add_surface(sentence, data, use);
   return sentence;
 }
 
@@ -191,36 +157,68 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
             {"within_jnd", data.floor.within_jnd},
             {"p99_error_over_jnd", data.floor.p99_error_over_jnd}}},
           {"surface_offset_m", offsets},
-          {"correction_off", data.choice.correction_off},
+          {"correction_used", data.corrects},
           {"relaxation_papers_times_s", data.papers_times_s},
           {"tables", numbers},
           {"figures", list},
           {"timings",
            {{"machine", machine},
             {"seconds", seconds},
-            {"answer", answer.plain_text()},
+            {"answer", answer.plain()},
             {"recommended", data.models[data.choice.recommended].name},
             {"candidates", named(data.choice.candidates)},
-            {"qualified", named(data.choice.qualified)},
+            {"near_best", named(data.choice.near_best)},
             {"tables", times}}},
           {"program", {{"version", request.version}, {"compiler", kCompiler}}},
           {"command_line", request.command_line}};
 }
 
-constexpr double kStudiedUpTo_N = 2.5;  // Hoever & Harders (2009), section 4.1
+// Describes methods whose 99 % error is larger with more centres, by more than the margin of the ranking.
+std::vector<std::string> rising_errors(const ReportData& data) {
+  std::vector<std::string> notes;
+  for (const ModelResult& few : data.models) {
+    for (const ModelResult& many : data.models) {
+      if (!few.model || !many.model || few.size >= many.size || !few.plan->selects_centres()) continue;
+      const double rise = many.errors.p99_error_over_jnd - few.errors.p99_error_over_jnd;
+      if (family_name(*few.plan) != family_name(*many.plan) || rise <= kMargin_jnd) continue;
+      notes.push_back("More centres are worse here: " + many.name + " has a 99 % error of " +
+                      three_digits(many.errors.p99_error_over_jnd) + " JND, " + few.name + " of " +
+                      three_digits(few.errors.p99_error_over_jnd) + " JND.");
+    }
+  }
+  return notes;
+}
+
+// How far the 95 % bound of the recommended model holds.
+std::string bound_note(const ModelResult& use) {
+  if (!use.bound.has_bounds()) return {};
+  return "The 95 % bound of " + use.name + " holds for " + percent(use.bound.coverage) +
+         " of the samples as recorded, " + percent(use.bound_moved.coverage) +
+         " with the surface moved; its median is " +
+         (std::isfinite(use.bound.median_over_jnd) ? three_digits(use.bound.median_over_jnd) + " JND"
+                                                   : "not known: it exceeds the largest force") +
+         ".";
+}
 
 // Notes on how the numbers of the first screen were obtained.
 std::string notes_html(const ReportData& data) {
   std::vector<std::string> notes;
+  notes.push_back("Recommended: of the models whose 99 % error is at most " + at_most_three_decimals(kMargin_jnd) +
+                  " JND above the lowest (" + std::to_string(data.choice.near_best.size()) + " of " +
+                  std::to_string(data.choice.candidates.size()) +
+                  "), the one with the shortest tick, or the simplest that takes at most " +
+                  at_most_three_decimals(100.0 * kEqualTime) + " % longer. In a choice between two forces " +
+                  at_most_three_decimals(kMargin_jnd) +
+                  " JND apart 57 % of the answers are correct; guessing gives 50 %.");
   notes.push_back(
-      "Recommended: the fastest of the models whose 99 % error is at most " + three_digits(kMargin_jnd) +
-      " JND above the smallest, at 95 % and one-sided (qualified: " + std::to_string(data.choice.qualified.size()) +
-      " of " + std::to_string(data.choice.candidates.size()) + "). In a choice between two forces " +
-      three_digits(kMargin_jnd) + " JND apart 57 % of the answers are correct; guessing gives 50 %.");
+      "The lowest error was found, and the models are compared, on the same test. Intervals are those of one "
+      "model or one pair and do not include this choice.");
   for (const ModelResult& one : data.models) {
-    if (one.same.empty()) continue;
-    notes.push_back("The same forces as " + one.name + ": " + joined(one.same) + ".");
+    if (!one.same.empty()) notes.push_back("The same forces as " + one.name + ": " + joined(one.same) + ".");
   }
+  for (std::string& one : rising_errors(data)) notes.push_back(std::move(one));
+  if (std::string bound = bound_note(data.models[data.choice.recommended]); !bound.empty())
+    notes.push_back(std::move(bound));
   const std::string& tested_on = data.recordings.folds.front().words;
   if (!tested_on.empty()) notes.push_back("No test recording: " + tested_on + ".");
   double largest_N = 0.0;
@@ -260,12 +258,23 @@ std::string learnt_html(const ReportData& data) {
            "</td></tr>\n";
   };
   std::string html = "<table class=\"learnt\">" + row("Features", joined(features));
-  if (data.corrects)
-    html += row("Correction by centres", *data.corrects ? "used: it lowers the cross-validated error"
-                                                        : "not used: it does not lower the cross-validated error");
+  html += row("Correction by centres", data.corrects ? "used: it lowers the cross-validated error"
+                                                     : "not used: it does not lower the cross-validated error");
   if (!times.empty())
     html += row("Relaxation times of the methods on the force",
                 joined(times, " and ") + " s, fitted to the training recordings");
+  for (const auto& [centres, choices] : data.choices) {
+    html += row(("On the force, " + (centres > 0 ? std::to_string(centres) + " centres" : "direct and voxel")).c_str(),
+                choices_text(choices));
+  }
+  for (const auto& [base, errors] : data.by_size) {
+    std::vector<std::string> sizes;
+    for (const auto& [size, error] : errors)
+      sizes.push_back(std::to_string(size) + ": " + three_digits(error) + " JND");
+    html += row(base == Base::force ? "Cross-validated by number of centres, on the force"
+                                    : "Cross-validated by number of centres, on the trend",
+                joined(sizes));
+  }
   for (const RecordingOffset& surface : data.surfaces) {
     html += row(("Surface of " + escape_html(surface.name)).c_str(),
                 fixed(1e3 * surface.offset_m, 3) + " mm" +
@@ -293,7 +302,7 @@ std::map<std::string, std::string> page_parts(const ReportData& data, const Sent
 
 }  // namespace
 
-Result<std::string> make_report(const ReportRequest& request, const FitControl& control) {
+Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl& control) {
   const auto start = std::chrono::steady_clock::now();
   if (const Status gnuplot = find_gnuplot(); !gnuplot) return gnuplot.error();
   // The folder is created before the fits, so that an error of it is reported at once.
@@ -317,7 +326,7 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
   const Status written =
       write_report(*folder, "page.html", tables, figures, page_parts(*data, words, origin), json, control);
   if (!written) return written.error();
-  return words.plain_text();
+  return ReportAnswer{table_text(headline_table(*data)), words.plain()};
 }
 
 }  // namespace palpate

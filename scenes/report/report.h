@@ -22,9 +22,15 @@ struct ReportRequest {
   std::string version;
 };
 
+// What the terminal shows.
+struct ReportAnswer {
+  std::vector<std::vector<std::string>> table;  // the first table of the page; titles first
+  std::string sentence;                         // the recommendation
+};
+
 // Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into `request.out`, which appears only when
-// it is complete. Returns the recommendation as plain text. Errors: gnuplot is missing; those of ReportFolder::create,
+// it is complete. Errors: gnuplot is missing; those of ReportFolder::create,
 // split_recordings and measure; interrupted.
-Result<std::string> make_report(const ReportRequest& request, const FitControl& control = {});
+Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl& control = {});
 
 }  // namespace palpate

@@ -30,7 +30,7 @@ std::string csv_cell(const TableCell& cell) {
 }
 
 std::string shown(const TableCell& cell, const TableColumn& column) {
-  if (cell.is_string()) return escape_html(cell.get<std::string>());
+  if (cell.is_string()) return cell.get<std::string>();
   if (cell.is_number_integer()) return with_thousands(cell.dump());
   const double value = cell.get<double>() * column.scale;
   if (!std::isfinite(value)) return kNothing;
@@ -44,7 +44,7 @@ std::string under_html(const std::vector<TableCell>& row, std::size_t first, con
   const std::string low = shown(row[first], column);
   const std::string high = column.under == 2 ? shown(row[first + 1], column) : "";
   if (low == kNothing || high == kNothing) return {};
-  return "<small>" + low + (high.empty() ? "" : "–" + high) + "</small>";
+  return "<small>" + escape_html(low) + (high.empty() ? "" : "–" + escape_html(high)) + "</small>";
 }
 
 bool is_text(const Table& table, std::size_t column) {
@@ -56,6 +56,9 @@ TableCell any(const ErrorSummary& errors, double value) { return errors.samples 
 
 const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 
+// A figure over the seeds of a method that draws random numbers.
+TableCell of_seeds(const ModelResult& one, double value) { return one.seeds > 1 ? value : kNoNumber; }
+
 Table models_table(const ReportData& data) {
   Table table{"models"};
   for (const ModelResult& one : data.models) {
@@ -65,13 +68,21 @@ Table models_table(const ReportData& data) {
     table.begin_row();
     table.add({"model", "model"}, one.name);
     table.add({"size", "size"}, one.size);
+    table.add({"seeds", "seeds"}, one.seeds);
+    table.add({"seed", ""}, one.plan ? one.plan->seed : 0);
     table.add({"contact_samples", "samples"}, errors.samples);
-    table.add({"within_jnd", "≤ JND [%]", kInPercent, 2}, errors.within_jnd);
+    table.add({"within_jnd", "≤ JND [%], seeds", kInPercent, 2, 2}, errors.within_jnd);
+    table.add({"within_jnd_least", "", kInPercent, 2}, of_seeds(one, one.within_range.low));
+    table.add({"within_jnd_greatest", "", kInPercent, 2}, of_seeds(one, one.within_range.high));
     table.add({"within_at_least", "at least [%]", kInPercent, 2}, errors.within_at_least());
-    table.add({"p99_error_over_jnd", "99 % error [JND]", 1.0, kThree, 2}, errors.p99_error_over_jnd);
+    table.add({"p99_error_over_jnd", "99 % error [JND], 95 %", 1.0, kThree, 2}, errors.p99_error_over_jnd);
     table.add({"p99_error_over_jnd_low", ""}, p99.low);
     table.add({"p99_error_over_jnd_high", ""}, p99.high);
-    table.add({"p99_at_most", ""}, errors.p99_at_most());
+    table.add({"p99_least", "seeds from"}, of_seeds(one, one.p99_range.low));
+    table.add({"p99_greatest", "to"}, of_seeds(one, one.p99_range.high));
+    table.add({"difference_p99", "minus the lowest, 95 %", 1.0, kThree, 2}, difference.p99);
+    table.add({"difference_p99_low", ""}, difference.interval.low);
+    table.add({"difference_p99_high", ""}, difference.interval.high);
     table.add({"rms_error_N", "RMS [mN]", kInMilli}, errors.rms_error_N);
     table.add({"max_error_N", "worst [mN]", kInMilli}, errors.max_error_N);
     table.add({"max_error_over_jnd", "worst [JND]"}, errors.max_error_over_jnd);
@@ -81,9 +92,12 @@ Table models_table(const ReportData& data) {
     table.add({"moved_within_jnd", "moved: ≤ JND [%]", kInPercent, 2}, any(one.moved, one.moved.within_jnd));
     table.add({"moved_p99_error_over_jnd", "99 % [JND]"}, any(one.moved, one.moved.p99_error_over_jnd));
     table.add({"moved_rms_error_N", "RMS [mN]", kInMilli}, any(one.moved, one.moved.rms_error_N));
-    table.add({"difference_p99", "minus the smallest [JND]", 1.0, kThree, 2}, difference.p99);
-    table.add({"difference_p99_low", ""}, difference.interval.low);
-    table.add({"difference_p99_high", ""}, difference.interval.high);
+    table.add({"bound_95_held", "≤ bound [%], moved", kInPercent, 1, 1}, one.bound.coverage);
+    table.add({"bound_95_held_moved", "", kInPercent, 1}, one.bound_moved.coverage);
+    table.add({"median_bound_N", ""}, one.bound.median_N);
+    const bool known = one.bound.has_bounds() && !std::isfinite(one.bound.median_over_jnd);
+    table.add({"median_bound_over_jnd", "bound [JND]"},
+              known ? TableCell("not known") : TableCell(one.bound.median_over_jnd));
   }
   return table;
 }
@@ -134,7 +148,7 @@ Table bins_table(const ReportData& data) {
   Table table{"force_bins"};
   for (const ModelResult& one : data.models) {
     for (const ForceBin& bin : one.errors.bins) {
-      if (!one.plan || !is_main(*one.plan) || bin.force_N.count() == 0) continue;
+      if (!one.plan || bin.force_N.count() == 0) continue;
       table.begin_row();
       table.add({"model", ""}, one.name);
       table.add({"force_from_N", ""}, bin.force_from_N);
@@ -153,18 +167,24 @@ Table gains_table(const ReportData& data) {
   for (const PartGain& one : data.gains) {
     table.begin_row();
     table.add({"feature", "feature"}, one.name);
-    table.add({"taken", "taken"}, yes_or_no(one.taken));
+    table.add({"weight_above_0", "weight above 0"}, yes_or_no(one.taken));
     table.add({"error_over_jnd_with", "cross-validated error with it [JND]"}, one.error_with);
     table.add({"error_over_jnd_without", "without"}, one.error_without);
   }
   return table;
 }
 
-std::string verdict(const Choice& choice, std::size_t model, const PairedDifference& difference) {
-  if (model == choice.recommended) return "recommended";
-  const bool qualified = std::ranges::count(choice.qualified, model) > 0;
-  return (difference.p99 >= 0.0 ? "+" : "−") + three_digits(std::abs(difference.p99)) +
-         (qualified ? ", qualified" : "");
+std::string verdict(const Choice& choice, std::size_t model, double above_lowest) {
+  return model == choice.recommended ? "recommended" : "+" + three_digits(above_lowest);
+}
+
+// The name, and those of the other main models with the same forces.
+std::string name_with_same(const ModelResult& model) {
+  std::string name = model.name;
+  for (const std::string& other : model.same) {
+    if (const auto plan = parse_plan(other); plan && is_main(*plan)) name += " = " + other;
+  }
+  return name;
 }
 
 }  // namespace
@@ -198,6 +218,17 @@ nlohmann::ordered_json table_json(const Table& table) {
   return list;
 }
 
+std::vector<std::vector<std::string>> table_text(const Table& table) {
+  std::vector<std::vector<std::string>> lines(table.rows.size() + 1);
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (table.columns[i].title.empty()) continue;
+    lines[0].push_back(table.columns[i].title);
+    for (std::size_t row = 0; row < table.rows.size(); ++row)
+      lines[row + 1].push_back(shown(table.rows[row][i], table.columns[i]));
+  }
+  return lines;
+}
+
 std::string table_html(const Table& table) {
   std::string html = "<div class=\"table\"><table>\n<thead><tr>";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -212,7 +243,7 @@ std::string table_html(const Table& table) {
       const TableColumn& column = table.columns[i];
       if (column.title.empty()) continue;
       html += is_text(table, i) ? "<td class=\"text\">" : "<td>";
-      html += shown(row[i], column) + under_html(row, i + 1, column) + "</td>";
+      html += escape_html(shown(row[i], column)) + under_html(row, i + 1, column) + "</td>";
     }
     html += "</tr>\n";
   }
@@ -227,19 +258,22 @@ Table headline_table(const ReportData& data) {
     const Interval interval = errors.p99_interval();
     const auto time = [&](double time_ns) { return one.time.measured ? time_ns : kNoNumber; };
     table.begin_row();
-    table.add({"", "model"}, one.name);
-    table.add({"", "tick [ns]", 1.0, 0, 2}, time(one.time.tick.median_ns));
-    table.add({}, time(one.time.tick.low_ns));
-    table.add({}, time(one.time.tick.high_ns));
-    table.add({"", std::string("≤ JND [%], ") + unit_name(errors) + "s beyond", kInPercent, 2, 1},
-              std::floor(1e4 * errors.within_jnd) / 1e4);
-    table.add({}, std::to_string(errors.units_above_jnd) + " of " + std::to_string(errors.units()));
-    table.add({"", "99 % error [JND], 95 %", 1.0, kThree, 2}, errors.p99_error_over_jnd);
+    table.add({"", "model"}, name_with_same(one));
+    table.add({"", "centres"}, one.size);
+    table.add({"", "RMS [mN]", kInMilli}, errors.rms_error_N);
+    table.add({"", "within JND [%]", kInPercent, 2, 2}, std::floor(1e4 * errors.within_jnd) / 1e4);
+    table.add({"", "", kInPercent, 2}, of_seeds(one, one.within_range.low));
+    table.add({"", "", kInPercent, 2}, of_seeds(one, one.within_range.high));
+    table.add({"", "99 % error [JND]", 1.0, kThree, 2}, errors.p99_error_over_jnd);
     table.add({}, interval.low);
     table.add({}, interval.high);
     table.add({"", "worst [JND]"}, errors.max_error_over_jnd);
-    table.add({"", "99 % error minus the smallest [JND]"},
-              verdict(data.choice, i, paired_difference(errors, data.models[data.choice.best].errors)));
+    table.add({"", "tick [ns]", 1.0, 0, 2}, time(one.time.tick.median_ns));
+    table.add({"", "", 1.0, 0}, time(one.time.tick.low_ns));
+    table.add({"", "", 1.0, 0}, time(one.time.tick.high_ns));
+    table.add(
+        {"", "above lowest [JND]"},
+        verdict(data.choice, i, errors.p99_error_over_jnd - data.models[data.choice.best].errors.p99_error_over_jnd));
   }
   return table;
 }

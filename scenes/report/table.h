@@ -55,13 +55,16 @@ std::string table_csv(const Table& table);
 // A list of objects, one per row.
 nlohmann::ordered_json table_json(const Table& table);
 
+// The cells as on the page, the titles first.
+std::vector<std::vector<std::string>> table_text(const Table& table);
+
 // <div><table>...</table></div> with all text escaped.
 std::string table_html(const Table& table);
 
 // The independent units of the confidence intervals: "recording" or "stroke".
 const char* unit_name(const UnitErrors& errors);
 
-// The page's first table: the models of headline_models with time, errors and the verdict of the ranking.
+// The first table of the page, which the terminal shows too: the models of headline_models.
 Table headline_table(const ReportData& data);
 
 // All numbers of a report: the tables models, recordings, force_bins, features and times.

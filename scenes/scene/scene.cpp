@@ -231,8 +231,6 @@ std::string describe_features(const Scene& scene) {
 TrainingScene training_scene(const Scene& scene) { return {scene.name, scene.features, scene.jnd}; }
 
 std::uint32_t method_rgb(std::string_view name) {
-  constexpr std::uint32_t kPositionColour = 0xF0E442;  // from the palette of Okabe & Ito; grey is the JND band
-  if (name == "position") return kPositionColour;
   const auto plan = parse_plan(name);
   return plan ? colour_of(*plan) : kNeutralColour;
 }

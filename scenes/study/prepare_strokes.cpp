@@ -148,7 +148,7 @@ Result<std::shared_ptr<const StrokePair>> prepare_strokes(const std::string& sce
                  " models, expected one, to compare with the recorded force, or two; leave some out"};
   }
   const std::vector<std::string> wanted = models.empty() ? std::vector<std::string>{plan_name(ModelPlan{})} : models;
-  const Result<std::vector<ModelRequest>> plans = requested_models(*loaded, wanted, false);
+  const Result<std::vector<ModelRequest>> plans = requested_models(*loaded, wanted);
   if (!plans) return plans.error();
   const Result<Recording> rendered = test_recording(*loaded, recording);
   if (!rendered) return rendered.error();

@@ -25,6 +25,9 @@ struct SubjectTraits {
   double lapse_rate = 0.0;      // 0 .. 0.5; the subject guesses in a share of 2 x this, half of it wrong
 };
 
+// A subject with the paper's JND at 2.5 N, 13.3 %.
+inline constexpr SubjectTraits kSubjectOf2009{{0.05, 0.113}, 0.0, 0.01};
+
 // Whether the second of two forces is perceived as the larger. Draws the same number of random numbers for every trial,
 // so that an answer does not change later trials.
 bool second_feels_larger(const SubjectTraits& traits, double first_N, double second_N, RandomStream& random) noexcept;

@@ -31,16 +31,8 @@ Result<ModelRequest> request_of(const Scene& scene, const std::string& asked) {
 
 }  // namespace
 
-ModelPlan position_plan() { return {.features = FeatureChoice::given}; }
-
 std::string request_name(const ModelRequest& request) {
-  if (request.is_file()) return std::filesystem::path(request.path).stem().string();
-  return request.plan == position_plan() ? "position only" : plan_name(request.plan);
-}
-
-std::string request_family(const ModelRequest& request) {
-  if (request.is_file()) return {};
-  return request.plan == position_plan() ? "position" : family_name(request.plan);
+  return request.is_file() ? std::filesystem::path(request.path).stem().string() : plan_name(request.plan);
 }
 
 const std::vector<LineUp>& line_ups() {
@@ -63,8 +55,7 @@ const LineUp* find_line_up(const std::string& name) {
   return found == line_ups().end() ? nullptr : &*found;
 }
 
-Result<std::vector<ModelRequest>> requested_models(const Scene& scene, const std::vector<std::string>& models,
-                                                   bool position_only) {
+Result<std::vector<ModelRequest>> requested_models(const Scene& scene, const std::vector<std::string>& models) {
   std::vector<ModelRequest> requests;
   // Without a material and without named models, the session waits for a file.
   if (models.empty() && !scene.has_material()) return requests;
@@ -73,7 +64,6 @@ Result<std::vector<ModelRequest>> requested_models(const Scene& scene, const std
     if (!request) return request.error();
     requests.push_back(std::move(*request));
   }
-  if (position_only && scene.has_material()) requests.push_back({position_plan()});
   if (requests.size() <= kMaxModels) return requests;
   return Error{"found " + std::to_string(requests.size()) + " models, expected at most " + std::to_string(kMaxModels) +
                "; leave some out"};

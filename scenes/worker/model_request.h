@@ -1,6 +1,6 @@
-// The models that a session is asked for: plans that are fitted to the scene's material, and model files. A session keeps
-// each of its models in a numbered slot (scenes/live/session_models.h).
-// Thread guarantee: slow side (reads files).
+// The models that a session is asked for: plans that are fitted to the scene's material, and model files. A session
+// keeps each of its models in a numbered slot (scenes/live/session_models.h). Thread guarantee: slow side (reads
+// files).
 #pragma once
 
 #include <memory>
@@ -37,17 +37,12 @@ const std::vector<LineUp>& line_ups();
 // Null when the name is unknown.
 const LineUp* find_line_up(const std::string& name);
 
-// A model with the depth as its only feature, for comparison.
-ModelPlan position_plan();
-
-// The name of a model until it is ready, and the name of its family (family_name), "position", or empty for a file.
+// The name of a model until it is ready.
 std::string request_name(const ModelRequest& request);
-std::string request_family(const ModelRequest& request);
 
 // Makes requests from `models`, names of models or model files; empty: the first line-up. Model files are read.
-// `position_only` adds position_plan() where the scene has a material. Errors: neither a model nor a file, a file that
-// load_model refuses, a plan in a scene without a material, more than kMaxModels models.
-Result<std::vector<ModelRequest>> requested_models(const Scene& scene, const std::vector<std::string>& models,
-                                                   bool position_only);
+// Errors: neither a model nor a file, a file that load_model refuses, a plan in a scene without a material, more than
+// kMaxModels models.
+Result<std::vector<ModelRequest>> requested_models(const Scene& scene, const std::vector<std::string>& models);
 
 }  // namespace palpate

@@ -5,13 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <system_error>
 #include <utility>
 
+#include "engine/live/pacer.h"
 #include "models/linear/lapack.h"
 #include "models/samples/recording_faults.h"
-#include "scenes/evaluation/model_timing.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/scene.h"
 
@@ -19,43 +18,27 @@ namespace palpate {
 namespace {
 
 // Niceness of fits, so that graphics and haptics have priority where there are few cores.
-constexpr int kNice = 10;
+constexpr int kNice = 5;
 // Progress of a fit when the recording, and when the preparation is done; both are done once.
-constexpr double kRecorded = 0.3;
+constexpr double kRecorded = 0.2;
 constexpr double kPrepared = 0.7;
 
-// Additional time of the trend, with its selection of features, so that the methods on the force come first.
-constexpr double kTrend_s = 1.0;
+// Additional time of the first fit of a Base.
+constexpr double kPreparation_s = 1.0;
 
 // Approximate time to make a model; only the order matters. It puts a method after its base, from which it starts.
 double expected_cost_s(const ModelRequest& request) {
   if (request.loaded != nullptr) return 0.0;
-  return expected_seconds(*request.plan.method) + (request.plan.base == Base::trend ? kTrend_s : 0.0);
+  return expected_seconds(*request.plan.method);
 }
 
 }  // namespace
 
-Timing time_of_tick(const std::shared_ptr<const FittedModel>& model) {
-  std::size_t feature = 0;
-  const double depth_m = std::min(0.8 * deepest_in_domain_m(model->data(), feature), 0.01);
-  SensorSpec sensor;
-  sensor.has_velocity = true;
-  std::vector<ToolSample> samples;
-  for (int i = 0; i < 1024; ++i) {
-    const double phase = 0.01 * i;
-    ToolSample tool;
-    tool.time_s = 1e-3 * i;
-    tool.position_m = 0.5 * depth_m * (1.02 - std::cos(phase));
-    tool.velocity_m_per_s = 5.0 * depth_m * std::sin(phase);
-    samples.push_back(tool);
-  }
-  return time_models({model}, {{sensor, std::move(samples)}}).front().tick;
-}
-
 // On Linux, the niceness of one thread is set by its thread id.
 void lower_thread_priority() noexcept { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }
 
-ModelWorker::ModelWorker(Scene scene, std::uint64_t seed) : scene_(std::move(scene)), seed_(seed) {}
+ModelWorker::ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training)
+    : scene_(std::move(scene)), seed_(seed), training_(std::move(training)) {}
 
 ModelWorker::~ModelWorker() {
   cancel();
@@ -63,22 +46,25 @@ ModelWorker::~ModelWorker() {
     const std::lock_guard lock(mutex_);
     wake_.notify_all();
   }
-  if (thread_.joinable()) thread_.join();
+  for (Lane& lane : lanes_) {
+    if (lane.thread.joinable()) lane.thread.join();
+  }
 }
 
 Status ModelWorker::start() {
   try {
-    thread_ = std::thread([this] { work(); });
+    for (Lane& lane : lanes_) lane.thread = std::thread([this, &lane] { work(lane); });
   } catch (const std::system_error& error) {
-    return Error{std::string("cannot start the thread that fits models: ") + error.what() + "; close other programs"};
+    return Error{std::string("cannot start a thread that fits models: ") + error.what() + "; close other programs"};
   }
   return {};
 }
 
 void ModelWorker::add_job(std::size_t job_id, const ModelRequest& request, bool at_once) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(jobs_, [&](const auto& other) { return other.second.job_id == job_id; });
-  jobs_.emplace(at_once ? -1.0 : expected_cost_s(request), Job{job_id, request});
+  Lane& lane = lane_of(request);
+  std::erase_if(lane.jobs, [&](const auto& other) { return other.second.job_id == job_id; });
+  lane.jobs.emplace(at_once ? -1.0 : expected_cost_s(request), Job{job_id, request});
   wake_.notify_all();
 }
 
@@ -87,69 +73,88 @@ std::vector<FinishedModel> ModelWorker::read_finished() {
   return std::exchange(finished_, {});
 }
 
-ModelWorker::Progress ModelWorker::progress() const {
+std::vector<ModelWorker::Progress> ModelWorker::progress() const {
   const std::lock_guard lock(mutex_);
-  return {working_on_.has_value(), working_on_.value_or(0), share_.load(std::memory_order_relaxed)};
+  std::vector<Progress> running;
+  for (const Lane& lane : lanes_) {
+    if (lane.working_on) running.push_back({*lane.working_on, lane.share.load(std::memory_order_relaxed)});
+  }
+  return running;
 }
 
-void ModelWorker::work() {
+double ModelWorker::left_s() const {
+  const std::lock_guard lock(mutex_);
+  double left_s = 0.0;
+  for (const Lane& lane : lanes_) {
+    double expected_s = 0.0;
+    for (const auto& [key, job] : lane.jobs) expected_s += expected_cost_s(job.request);
+    if (lane.working_on) expected_s += (1.0 - lane.share.load(std::memory_order_relaxed)) * lane.expected_s;
+    // The pace of the jobs before, beside other programs.
+    const double pace = lane.done_expected_s > 0.0 ? std::max(1.0, lane.done_s / lane.done_expected_s) : 1.0;
+    left_s = std::max(left_s, pace * expected_s);
+  }
+  return left_s;
+}
+
+void ModelWorker::work(Lane& lane) {
   lower_thread_priority();
   for (std::unique_lock lock(mutex_);;) {
-    working_on_.reset();
-    wake_.wait(lock, [&] { return !jobs_.empty() || cancelled_.load(std::memory_order_relaxed); });
+    lane.working_on.reset();
+    wake_.wait(lock, [&] { return !lane.jobs.empty() || cancelled_.load(std::memory_order_relaxed); });
     if (cancelled_.load(std::memory_order_relaxed)) return;
-    const Job job = std::move(jobs_.extract(jobs_.begin()).mapped());
-    working_on_ = job.job_id;
-    share_.store(0.0, std::memory_order_relaxed);
+    const Job job = std::move(lane.jobs.extract(lane.jobs.begin()).mapped());
+    lane.working_on = job.job_id;
+    lane.began_s = steady_now_s();
+    lane.expected_s = expected_cost_s(job.request) + (lane.fits ? 0.0 : kPreparation_s);
+    lane.share.store(0.0, std::memory_order_relaxed);
     lock.unlock();
-    FinishedModel made{job.job_id, job.request.plan.centres, make(job.request), {}};
-    if (made.model) made.tick = time_of_tick(*made.model);
+    FinishedModel made{job.job_id, job.request.plan.centres, make(job.request)};
     lock.lock();
+    lane.done_s += steady_now_s() - lane.began_s;
+    lane.done_expected_s += lane.expected_s;
     finished_.push_back(std::move(made));
   }
 }
 
 Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const ModelRequest& request) {
   if (request.loaded != nullptr) return request.loaded;
-  Result<ModelData> data = fit(request.plan);
+  Result<ModelData> data = fit(lane_of(request), request.plan);
   if (!data) return data.error();
   return std::make_shared<const FittedModel>(std::move(*data));
 }
 
-FitControl ModelWorker::control(double from, double to) {
-  return {[this, from, to](double fraction) {
-    share_.store(from + (to - from) * fraction, std::memory_order_relaxed);
+FitControl ModelWorker::control(Lane& lane, double from, double to) {
+  return {[this, &lane, from, to](double fraction) {
+    lane.share.store(from + (to - from) * fraction, std::memory_order_relaxed);
     return !cancelled_.load(std::memory_order_relaxed);
   }};
 }
 
-Status ModelWorker::prepare_recordings() {
-  if (fits_) return {};
+Status ModelWorker::prepare_recordings(Lane& lane) {
+  if (lane.fits) return {};
   if (!scene_.has_material())
     return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
-  std::vector<PreparedRecordingPointer> recordings;
-  for (const std::string& path : scene_.recordings) {
-    Result<Recording> recording = read_usable_recording(path);
+  const std::lock_guard lock(recordings_mutex_);
+  for (Recording& recording : training_) recordings_.push_back(prepare_recording(std::move(recording)));
+  training_.clear();
+  if (recordings_.empty()) {
+    Result<Recording> recording = record_sensors({*scene_.material, seed_}, control(lane, 0.0, kRecorded).progress);
     if (!recording) return recording.error();
-    recordings.push_back(prepare_recording(std::move(*recording)));
+    recordings_.push_back(prepare_recording(std::move(*recording)));
   }
-  if (recordings.empty()) {
-    Result<Recording> recording = record_sensors({*scene_.material, seed_}, control(0.0, kRecorded).progress);
-    if (!recording) return recording.error();
-    recordings.push_back(prepare_recording(std::move(*recording)));
-  }
-  fits_.emplace(std::move(recordings), training_scene(scene_));
+  lane.fits.emplace(recordings_, training_scene(scene_));
   return {};
 }
 
-Result<ModelData> ModelWorker::fit(const ModelPlan& asked) {
-  if (const Status status = prepare_recordings(); !status) return status.error();
+Result<ModelData> ModelWorker::fit(Lane& lane, const ModelPlan& asked) {
+  if (const Status status = prepare_recordings(lane); !status) return status.error();
   ModelPlan plan = asked;
   plan.seed = seed_;
-  if (const auto prepared = fits_->prepare(plan, control(kRecorded, kPrepared)); !prepared) return prepared.error();
+  if (const auto prepared = lane.fits->prepare(plan, control(lane, kRecorded, kPrepared)); !prepared)
+    return prepared.error();
   // The progress of the preparation, or 0 if it was done before.
-  const double done = share_.load(std::memory_order_relaxed);
-  auto fitted = fits_->fit(plan, control(done, 1.0));
+  const double done = lane.share.load(std::memory_order_relaxed);
+  auto fitted = lane.fits->fit(plan, control(lane, done, 1.0));
   if (!fitted) return fitted.error();
   return std::move(fitted->data);
 }

@@ -10,7 +10,7 @@
 #include "engine/tick/replay.h"
 #include "scenes/material/material.h"
 #include "tests/support/fitting.h"
-#include "tests/support/press.h"
+#include "scenes/hard/press.h"
 
 namespace palpate::test {
 namespace {

@@ -9,7 +9,6 @@
 #include "tests/support/closed_loop_measures.h"
 #include "tests/support/example_model.h"
 #include "tests/support/live_doubles.h"
-#include "tests/support/rt_guard.h"
 
 namespace palpate::test {
 namespace {
@@ -35,7 +34,7 @@ double largest_change_jnd(const std::vector<ForcePtr>& models, double most_N, co
   for (const ForcePtr& model : models) own.push_back(model.use_count());
   double largest = 0.0;
   {
-    ClosedLoop loop({grip, encoder_m, kOneTick_s, Ticking::gaps});
+    GuardedLoop loop({grip, encoder_m, kOneTick_s, Ticking::gaps});
     loop.publish(models.front());
     std::vector<double> time_s, force_N;
     std::size_t published = 0;

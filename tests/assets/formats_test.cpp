@@ -42,7 +42,7 @@ TEST(Formats, TheSchemaRefusesWhatTheReaderRefuses) {
       {"\"kernel\"", "\"kernels\""},
       {"\"largest_force_N\": ", "\"largest_force_N\": -"},
       {"\"kind\": \"depth\"", "\"kind\": \"colour\""},
-      {"\"corrects_trend\": true", "\"corrects_trend\": 1"}};
+      {"\"thinning\": \"coverage\"", "\"thinning\": 1"}};
   for (const auto& [from, to] : changes) {
     const std::string changed = std::regex_replace(text, std::regex(from), to, std::regex_constants::format_first_only);
     ASSERT_NE(changed, text) << from;

@@ -108,7 +108,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", nargs="+")
     parser.add_argument("--models", nargs="*", default=[], help="files or methods in place of the scene's own")
-    parser.add_argument("--blocks", type=int, nargs="*", default=[4, 1])
+    parser.add_argument("--blocks", type=int, nargs="*", default=[5, 1],
+                        help="1, 2, or more: a block of each model and of the truth")
     parser.add_argument("--size", default="1280x720", help="of the window")
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--rounds", type=int, default=2)

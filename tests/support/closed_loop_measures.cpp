@@ -62,7 +62,7 @@ void Rest::keep_worse(const Rest& other) {
 }
 
 Rest hold(const ForcePtr& model, const LoopSettings& settings, const HandPress& press, double seconds, double still_s) {
-  ClosedLoop loop(settings);
+  GuardedLoop loop(settings);
   loop.publish(model);
   const Grip& grip = settings.grip;
   Rest rest;

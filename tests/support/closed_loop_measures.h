@@ -6,12 +6,29 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/closed_loop.h"
+#include "scenes/hard/closed_loop.h"
 #include "tests/support/fitting.h"
+#include "tests/support/rt_guard.h"
 
 namespace palpate::test {
 
 using ForcePtr = std::shared_ptr<const ForceModel>;
+
+// Counts the offences of all ticks; 0 if rt_guard_works() is false.
+class GuardedLoop final : public ClosedLoop {
+ public:
+  using ClosedLoop::ClosedLoop;
+  int offences() const { return offences_; }
+
+ private:
+  const LoopSnapshot& tick() override {
+    RtGuard guard;
+    const LoopSnapshot& snapshot = ClosedLoop::tick();
+    offences_ += guard.stop().total();
+    return snapshot;
+  }
+  int offences_ = 0;
+};
 
 inline constexpr double kOneTick_s = 1e-3;
 inline constexpr double kEncoders_m[] = {30e-6, 5e-6};

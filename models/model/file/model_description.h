@@ -134,6 +134,7 @@ void describe_rest(auto& file, ModelData& data) {
     file.number("outer_radius", data.cover.outer_radius, {data.cover.inner_radius, kLargestNumber, true});
     file.points("points", data.cover.points, dimension);
   });
+  describe_unless_0(file, "surface_step_N", data.surface_step_N, kNotNegative);
   describe_unless_0(file, "lowest_force_N", data.lowest_force_N, {-kMaximumForce_N, 0.0});
   if (file.has("sensor", data.sensor.has_value())) {
     SensorSpec& sensor = data.sensor ? *data.sensor : data.sensor.emplace();

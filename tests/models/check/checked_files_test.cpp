@@ -37,20 +37,24 @@ Recording strokes(double stiffness_N_per_m) {
   return made;
 }
 
+std::optional<double> contradiction_N(const Recording& first, const Recording& second) {
+  return find_contradiction_N(*prepare_recording(first), *prepare_recording(second), JndLine{});
+}
+
 TEST(Contradiction, RecordingsOfOneMaterialHaveNone) {
   for (const char* material : {"silicone", "foam", "friction"}) {
     const Recording first = press(material, 1);
-    EXPECT_FALSE(find_contradiction_N(first, press(material, 2), JndLine{})) << material;
-    EXPECT_FALSE(find_contradiction_N(first, changed(press(material, 2), 1e-3, 0.0), JndLine{})) << material;
+    EXPECT_FALSE(contradiction_N(first, press(material, 2))) << material;
+    EXPECT_FALSE(contradiction_N(first, changed(press(material, 2), 1e-3, 0.0))) << material;
   }
 }
 
 TEST(Contradiction, NamesTheDifferenceOfTheForces) {
-  const auto offset_N = find_contradiction_N(strokes(1000.0), changed(strokes(1000.0), 0.0, 2.8), JndLine{});
+  const auto offset_N = contradiction_N(strokes(1000.0), changed(strokes(1000.0), 0.0, 2.8));
   ASSERT_TRUE(offset_N);
   EXPECT_NEAR(*offset_N, 2.8, 0.2);
-  EXPECT_TRUE(find_contradiction_N(strokes(1000.0), strokes(3000.0), JndLine{}));
-  EXPECT_FALSE(find_contradiction_N(strokes(1000.0), changed(strokes(1000.0), 0.0, 0.05), JndLine{}));
+  EXPECT_TRUE(contradiction_N(strokes(1000.0), strokes(3000.0)));
+  EXPECT_FALSE(contradiction_N(strokes(1000.0), changed(strokes(1000.0), 0.0, 0.05)));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ TEST(NoiseFloor, ContactCountsFromTheSurface) {
         {1e-3 * i, position_m, 0.2 + 2000.0 * std::max(0.0, position_m - 1e-3) + 0.05 * random.normal()});
   }
   const PreparedRecordingPointer prepared = prepare_recording(recording);
-  ASSERT_NEAR(prepared->offsets.surface.offset_m, 1e-3, 0.1e-3);
+  ASSERT_NEAR(prepared->surface.offset_m, 1e-3, 0.1e-3);
   const JndLine jnd;
   double sum = 0.0;
   int count = 0;

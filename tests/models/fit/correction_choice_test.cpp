@@ -17,10 +17,10 @@ constexpr int kFolds = 5;
 
 // `shared`: size of the residual common to all strokes. `own`: size of the residual that differs
 // between strokes. `first`: additional share of the rows in the first stroke.
-CrossValidationRows make_rows(double shared, double own, double first = 0.0) {
+ResidualRows make_rows(double shared, double own, double first = 0.0) {
   test::Numbers numbers(3);
   constexpr Eigen::Index kRows = 1000;
-  CrossValidationRows rows;
+  ResidualRows rows;
   rows.points.resize(2, kRows);
   rows.force_N.resize(kRows);
   rows.depth_m = Eigen::VectorXd::Constant(kRows, 1e-3);
@@ -39,7 +39,7 @@ CrossValidationRows make_rows(double shared, double own, double first = 0.0) {
   return rows;
 }
 
-CorrectionChoice choose(const CrossValidationRows& rows) {
+CorrectionChoice choose(const ResidualRows& rows) {
   ModelData common;
   common.correction_limit_N = 1.0;
   common.cover = {{}, 0.1, 0.3};

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/correction/methods.h"
 #include "models/model/file/model_io.h"
+#include "models/model/grid/voxel_grid.h"
+#include "models/model/rbf/rbf_evaluate.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"
@@ -17,19 +20,33 @@ namespace {
 
 using Recordings = std::vector<Recording>;
 
-TrainingRequest request_for(const std::vector<FeatureSpec>& features) {
-  TrainingRequest request;
-  request.scene = "test";
-  request.features = features;
-  return request;
+// What a fit is asked for.
+struct Asked {
+  TrainingScene scene;
+  ModelPlan plan;
+};
+
+Asked asked_for(const std::vector<FeatureSpec>& features, Base base = Base::trend) {
+  return {{"test", features, {}}, {.base = base, .features = FeatureChoice::scene}};
 }
 
-Result<PreparedTraining> prepare(const Recordings& recordings, const TrainingRequest& request,
-                                 const FitControl& control = {}) {
+Result<PreparedTraining> prepare(const Recordings& recordings, const Asked& asked, const FitControl& control = {}) {
   std::vector<PreparedRecordingPointer> prepared;
   for (const Recording& recording : recordings) prepared.push_back(prepare_recording(recording));
-  MotionSource source(std::move(prepared));
-  return prepare_training(source, request, control);
+  auto samples = make_samples(std::move(prepared), asked.scene.jnd, control);
+  if (!samples) return samples.error();
+  return prepare_training(std::make_shared<const Samples>(std::move(*samples)), asked.scene, asked.plan, control);
+}
+
+// The plans of all methods with this base that have the same preparation as `plan`.
+std::vector<ModelPlan> plans_like(const ModelPlan& plan) {
+  std::vector<ModelPlan> plans;
+  for (const ModelPlan& known : all_plans()) {
+    if (known.base != plan.base) continue;
+    plans.push_back(plan);
+    plans.back().method = known.method;
+  }
+  return plans;
 }
 
 // Inside, near and far outside the domain of `data`, forces are finite, negative only if those of
@@ -50,20 +67,17 @@ void expect_safe(const ModelData& data) {
   }
 }
 
-// Fits every method. Each model must have at least the share `least_within` of the
-// training samples within the JND.
-void expect_all_methods(const Recordings& recordings, const TrainingRequest& request, double least_within) {
-  const auto prepared = prepare(recordings, request);
+// Fits every method. Each model must have at least the share `least_within` of the training samples within the JND.
+void expect_all_methods(const Recordings& recordings, Asked asked, double least_within) {
+  const auto prepared = prepare(recordings, asked);
   ASSERT_TRUE(prepared.ok()) << prepared.error().message;
-  for (const Method* method : methods()) {
-    MethodRequest asked;
-    asked.method = method;
-    asked.centres = 40;
-    asked.grid.assign(prepared->common.features.size(), 5);
-    const auto fit = fit_method(*prepared, asked);
-    ASSERT_TRUE(fit.ok()) << method->name << ": " << fit.error().message;
+  asked.plan.centres = 40;
+  asked.plan.grid.assign(prepared->common.features.size(), 5);
+  for (const ModelPlan& plan : plans_like(asked.plan)) {
+    const auto fit = fit_method(*prepared, plan);
+    ASSERT_TRUE(fit.ok()) << plan_name(plan) << ": " << fit.error().message;
     expect_safe(fit->data);
-    EXPECT_GE(fit->data.provenance.training_within_jnd, least_within) << method->name;
+    EXPECT_GE(fit->data.provenance.training_within_jnd, least_within) << plan_name(plan);
   }
 }
 
@@ -110,14 +124,16 @@ TEST(Fit, EveryMethodFitsEveryRecording) {
   for (const Row& row : rows) {
     SCOPED_TRACE(row.name);
     const auto features = row.position_alone ? test::position_features() : test::paper_features();
-    expect_all_methods({row.recording}, request_for(features), row.least_within);
+    expect_all_methods({row.recording}, asked_for(features), row.least_within);
+    // The paper's methods promise no share; the model must be safe.
+    expect_all_methods({row.recording}, asked_for(features, Base::force), 0.0);
   }
 }
 
 TEST(Fit, TwentyKilohertz) {
-  TrainingRequest request = request_for(test::paper_features());
-  request.reduction = Reduction::force;  // 50 mN steps: few sites, so that the direct fit is quick
-  expect_all_methods({test::example_recording(40000, 20000.0)}, request, 0.5);
+  Asked asked = asked_for(test::paper_features());
+  asked.plan.thinning = Thinning::force;  // 50 mN steps: few sites, so that the direct fit is quick
+  expect_all_methods({test::example_recording(40000, 20000.0)}, asked, 0.5);
 }
 
 TEST(Fit, JitteredTime) {
@@ -128,51 +144,53 @@ TEST(Fit, JitteredTime) {
     const double shift = 4.0 * numbers.next();  // in rows of `fine`, 10 for each row
     recording.rows[i] = fine.rows[10 * i + static_cast<std::size_t>(5.0 + shift) - 5];
   }
-  expect_all_methods({recording}, request_for(test::paper_features()), 0.9);
+  expect_all_methods({recording}, asked_for(test::paper_features()), 0.9);
 }
 
 TEST(Fit, SeveralRecordingsAndOneTwice) {
   const Recording a = test::example_recording(1000, 250.0);
   const Recording b = test::example_recording(600, 500.0);
-  const auto prepared = prepare({a, b, a}, request_for(test::paper_features()));
+  const auto prepared = prepare({a, b, a}, asked_for(test::paper_features()));
   ASSERT_TRUE(prepared.ok());
   EXPECT_EQ(prepared->common.provenance.samples, 2600u);
   EXPECT_EQ(prepared->common.provenance.recordings.size(), 3u);
-  expect_all_methods({a, b, a}, request_for(test::paper_features()), 0.8);
+  expect_all_methods({a, b, a}, asked_for(test::paper_features()), 0.8);
 }
 
 TEST(Fit, MoreCentresThanSites) {
   const auto prepared = prepare({test::example_recording(60, 1000.0), test::example_recording(900, 1000.0)},
-                                request_for(test::position_features()));
+                                asked_for(test::position_features()));
   ASSERT_TRUE(prepared.ok());
-  for (const Method* method : methods()) {
-    MethodRequest asked;
-    asked.method = method;
-    asked.centres = 100000;
-    const auto fit = fit_method(*prepared, asked);
-    ASSERT_TRUE(fit.ok()) << method->name << ": " << fit.error().message;
+  for (ModelPlan plan : plans_like(asked_for(test::position_features()).plan)) {
+    plan.centres = 100000;
+    const auto fit = fit_method(*prepared, plan);
+    ASSERT_TRUE(fit.ok()) << plan_name(plan) << ": " << fit.error().message;
     expect_safe(fit->data);
     if (const RbfFunction* rbf = rbf_of(fit->data.correction)) {
-      EXPECT_LE(rbf->centre_count(), prepared->sites.count()) << method->name;
+      EXPECT_LE(rbf->centre_count(), prepared->sites.count()) << plan_name(plan);
     }
   }
 }
 
-TEST(Fit, EveryKernelWeightingAndReduction) {
+TEST(Fit, EveryKernelWeightingAndThinning) {
   const Recording recording = test::example_recording(800, 250.0);
   for (const Weighting weighting : {Weighting::jnd, Weighting::relative, Weighting::none}) {
-    for (const Reduction reduction : {Reduction::coverage, Reduction::force, Reduction::none}) {
-      TrainingRequest request = request_for(test::paper_features());
-      request.weighting = weighting;
-      request.reduction = reduction;
+    for (const Thinning thinning : {Thinning::coverage, Thinning::force, Thinning::none}) {
+      Asked asked = asked_for(test::paper_features());
+      asked.plan.weighting = weighting;
+      asked.plan.thinning = thinning;
+      asked.plan.centres = 30;
       for (const KernelKind kernel : kKernelKinds) {
-        request.kernel = kernel;
-        auto prepared = prepare({recording}, request);
+        asked.plan.kernel = kernel;
+        auto prepared = prepare({recording}, asked);
         ASSERT_TRUE(prepared.ok());
         prepared->correction->used = true;  // a correction regardless of cross-validation
-        const auto fit = fit_method(*prepared, {.centres = 30});
+        const auto fit = fit_method(*prepared, asked.plan);
         ASSERT_TRUE(fit.ok()) << fit.error().message;
         EXPECT_EQ(rbf_of(fit->data.correction)->kernel, kernel);
+        EXPECT_EQ(fit->kernel, kernel);
+        EXPECT_GT(fit->rank, 1);
+        EXPECT_GE(fit->condition_number, 1.0);
         expect_safe(fit->data);
       }
     }
@@ -181,73 +199,126 @@ TEST(Fit, EveryKernelWeightingAndReduction) {
 
 TEST(Fit, EachRefusalSaysWhy) {
   const Recording recording = test::example_recording(1000, 1000.0);
-  EXPECT_TRUE(test::has_parts(prepare({constant(50, -1e-3, 0.0)}, request_for(test::paper_features())).error().message,
+  EXPECT_TRUE(test::has_parts(prepare({constant(50, -1e-3, 0.0)}, asked_for(test::paper_features())).error().message,
                               {"in contact (position_m > 0)", "; ", "palpate import FILE --origin contact"}));
-  TrainingRequest timed = request_for(test::position_features());
-  timed.relaxation = Relaxation::automatic;
+  Asked timed = asked_for(test::position_features());
+  timed.plan.relaxation = Relaxation::automatic;
   EXPECT_TRUE(test::has_parts(prepare({recording}, timed).error().message,
                               {"\"test\"", "relaxation features", "--relaxation", "palpate scenes"}));
-  auto prepared = prepare({recording}, request_for(test::paper_features()));
+  Asked voxel = asked_for(test::paper_features());
+  auto prepared = prepare({recording}, voxel);
   ASSERT_TRUE(prepared.ok());
   prepared->correction->used = true;
-  MethodRequest voxel;
-  voxel.method = &kVoxelMethod;
-  voxel.grid = {5, 5};
-  EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel).error().message, {"2", "4", "--grid 25x11x11x11"}));
-  voxel.grid = {5, 5, 1, 5};
-  EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel).error().message, {"2", "1"}));
-  voxel.grid = {1000, 1000, 1000, 1000};
-  EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel).error().message, {"1e+12", "1e7", "; "}));
+  voxel.plan.method = &kVoxelMethod;
+  voxel.plan.grid = {5, 5};
+  EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel.plan).error().message, {"2", "4", "--grid 25x11x11x11"}));
+  voxel.plan.grid = {5, 5, 1, 5};
+  EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel.plan).error().message, {"2", "1"}));
+  voxel.plan.grid = {1000, 1000, 1000, 1000};
+  EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel.plan).error().message, {"1e+12", "1e7", "; "}));
 }
 
 TEST(Fit, GivenTimesReplaceTheScenes) {
-  TrainingRequest request = request_for(test::paper_features());
-  request.relaxation = Relaxation::given;
-  request.relaxation_times_s = {0.1, 0.5, 2.0};
-  const auto prepared = prepare({test::example_recording(1000, 250.0)}, request);
+  Asked asked = asked_for(test::paper_features());
+  asked.plan.relaxation = Relaxation::given;
+  asked.plan.relaxation_times_s = {0.1, 0.5, 2.0};
+  const auto prepared = prepare({test::example_recording(1000, 250.0)}, asked);
   ASSERT_TRUE(prepared.ok());
   ASSERT_EQ(prepared->common.features.size(), 5u);
   EXPECT_EQ(prepared->common.features[4].parts[0].relaxation_time_s, 2.0);
   EXPECT_EQ(relaxation_times_s(prepared->common.features).size(), 3u);
+  EXPECT_EQ(prepared->common.provenance.relaxation, "given");
 }
 
 // Returning false from any progress call interrupts the fit.
 TEST(Fit, StopsWhereverItIsAsked) {
   const Recording recording = test::example_recording(70000, 5000.0);
-  const TrainingRequest request = request_for(test::paper_features());
-  int questions = 0;
-  const auto prepared = prepare({recording}, request, {[&](double) { return ++questions > 0; }});
-  ASSERT_TRUE(prepared.ok());
-  ASSERT_GE(questions, 9);  // includes calls within the passes over 70,000 rows
-  for (int stop = 1; stop <= questions; ++stop) {
-    int asked = 0;
-    const auto stopped = prepare({recording}, request, {[&](double) { return ++asked < stop; }});
-    ASSERT_FALSE(stopped.ok());
-    EXPECT_EQ(stopped.error().message, "interrupted");
-  }
-  for (const Method* method : methods()) {
-    MethodRequest asked;
-    asked.method = method;
-    const auto stopped = fit_method(*prepared, asked, {[](double) { return false; }});
-    ASSERT_FALSE(stopped.ok()) << method->name;
-    EXPECT_EQ(stopped.error().message, "interrupted");
+  for (const Base base : {Base::trend, Base::force}) {
+    Asked asked = asked_for(test::paper_features(), base);
+    int questions = 0;
+    const auto prepared = prepare({recording}, asked, {[&](double) { return ++questions > 0; }});
+    ASSERT_TRUE(prepared.ok());
+    // Two in each pass over 70,000 rows, of which the trend has two more, and two after them.
+    ASSERT_EQ(questions, base == Base::trend ? 8 : 6);
+    for (int stop = 1; stop <= questions; ++stop) {
+      int count = 0;
+      const auto stopped = prepare({recording}, asked, {[&](double) { return ++count < stop; }});
+      EXPECT_EQ(test::message_of(stopped), "interrupted") << stop;
+    }
+    for (const ModelPlan& plan : plans_like(asked.plan))
+      EXPECT_EQ(test::message_of(fit_method(*prepared, plan, {[](double) { return false; }})), "interrupted")
+          << plan_name(plan);
+    asked.plan.method = &kRandomMethod;
+    questions = 0;
+    ASSERT_TRUE(fit_method(*prepared, asked.plan, {[&](double) { return ++questions > 0; }}).ok());
+    for (int stop = 1; stop <= questions; ++stop) {
+      int count = 0;
+      const auto stopped = fit_method(*prepared, asked.plan, {[&](double) { return ++count < stop; }});
+      EXPECT_EQ(test::message_of(stopped), "interrupted") << stop;
+    }
   }
 }
 
 TEST(Fit, AVoxelGridFromADirectFitIsTheSame) {
-  const auto prepared = prepare({test::example_recording(1500, 500.0)}, request_for(test::paper_features()));
-  ASSERT_TRUE(prepared.ok()) << prepared.error().message;
-  MethodRequest request;
-  request.method = &kDirectMethod;
-  const auto direct = fit_method(*prepared, request);
-  ASSERT_TRUE(direct.ok()) << direct.error().message;
-  request.method = &kVoxelMethod;
-  request.grid.assign(4, 5);
-  const auto alone = fit_method(*prepared, request);
-  const auto shared = fit_method(*prepared, request, {}, &*direct);
-  ASSERT_TRUE(alone.ok() && shared.ok());
-  EXPECT_EQ(grid_of(shared->data.correction)->nodes, grid_of(alone->data.correction)->nodes);
-  EXPECT_EQ(grid_of(shared->data.correction)->values_N, grid_of(alone->data.correction)->values_N);
+  for (const Base base : {Base::trend, Base::force}) {
+    ModelPlan plan = asked_for({}, base).plan;
+    const auto prepared = prepare({test::example_recording(1500, 500.0)}, asked_for(test::paper_features(), base));
+    ASSERT_TRUE(prepared.ok()) << prepared.error().message;
+    plan.method = &kDirectMethod;
+    const auto direct = fit_method(*prepared, plan);
+    ASSERT_TRUE(direct.ok()) << direct.error().message;
+    plan.method = &kVoxelMethod;
+    plan.grid.assign(4, 5);
+    const auto alone = fit_method(*prepared, plan);
+    const auto shared = fit_method(*prepared, plan, {}, &*direct, direct->choices ? &*direct->choices : nullptr);
+    ASSERT_TRUE(alone.ok() && shared.ok());
+    EXPECT_EQ(grid_of(shared->data.correction)->nodes, grid_of(alone->data.correction)->nodes);
+    EXPECT_EQ(grid_of(shared->data.correction)->values_N, grid_of(alone->data.correction)->values_N);
+  }
+}
+
+TEST(Fit, ACorrectionThatIsRejectedLeavesTheTrend) {
+  Asked asked = asked_for(test::paper_features());
+  auto prepared = prepare({test::example_recording(1000, 250.0)}, asked);
+  ASSERT_TRUE(prepared.ok());
+  prepared->correction->used = false;
+  for (const ModelPlan& plan : plans_like(asked.plan)) {
+    const auto fit = fit_method(*prepared, plan);
+    ASSERT_TRUE(fit.ok());
+    EXPECT_EQ(fit->data.name, "trend");
+    EXPECT_EQ(fit->data.method, "trend");
+    EXPECT_EQ(fit->data.correction, nullptr);
+  }
+}
+
+// The model has the normalisation, kernel and truncation that were selected, and its notes say so.
+TEST(Fit, OnTheForceUsesWhatIsSelected) {
+  Asked asked = asked_for(test::paper_features(), Base::force);
+  const auto prepared = prepare({test::example_recording(1500, 250.0)}, asked);
+  ASSERT_TRUE(prepared.ok());
+  asked.plan.method = &kRandomMethod;
+  asked.plan.centres = 30;
+  OpenChoices choices{KernelKind::linear, 1.0, 1e-6, 0.0, 0.5};
+  const auto fit = fit_method(*prepared, asked.plan, {}, nullptr, &choices);
+  ASSERT_TRUE(fit.ok()) << fit.error().message;
+  EXPECT_EQ(fit->data.name, "random-30");
+  EXPECT_EQ(fit->data.scale, prepared->normalisation.scale_of(1.0));
+  EXPECT_EQ(fit->kernel, KernelKind::linear);
+  EXPECT_LT(fit->condition_number, 1e6);
+  ASSERT_EQ(fit->notes.size(), 1u);
+  EXPECT_EQ(fit->notes[0], choices_text(choices));
+  expect_safe(fit->data);
+  // Centres are sites in the new normalisation.
+  const Eigen::MatrixXd& centres = rbf_of(fit->data.correction)->centres;
+  const Eigen::MatrixXd sites = prepared->common.scale.cwiseQuotient(fit->data.scale).asDiagonal() *
+                                prepared->sites.points;
+  for (Eigen::Index j = 0; j < centres.cols(); ++j)
+    EXPECT_EQ((sites.colwise() - centres.col(j)).colwise().norm().minCoeff(), 0.0);
+  const auto selected = fit_method(*prepared, asked.plan);
+  ASSERT_TRUE(selected.ok());
+  ASSERT_TRUE(selected->choices.has_value());
+  EXPECT_EQ(selected->data.scale, prepared->normalisation.scale_of(selected->choices->range_exponent));
+  EXPECT_EQ(rbf_of(selected->data.correction)->kernel, selected->choices->kernel);
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ TEST_F(ExhibitTest, TheRevealIsTheVisitorsOwnPressInSlowMotion) {
   double deepest_m = 0.0;
   for (const auto& column : trace.columns()) deepest_m = std::max(deepest_m, column.position_m);
   ASSERT_GT(deepest_m, 0.001);
-  const auto poses = [&] { return app_->exhibit().reveal_poses(app_->session(), Theme::dark); };
+  const auto poses = [&] { return app_->exhibit().shown_poses(app_->session(), app_->shown(), Theme::dark); };
   const double began_s = app_->session().newest().loop_time_s;
   double shown_m = 0.0;
   ASSERT_TRUE(until([&] {
@@ -194,13 +194,26 @@ TEST_F(ExhibitTest, TheRevealIsTheVisitorsOwnPressInSlowMotion) {
   EXPECT_EQ(poses()[second].force_N, last[second].force_N) << "it stands still";
 }
 
+// After a stroke with the best model, the same stroke is shown with the worst one, and then the next stroke.
+TEST_F(ExhibitTest, TheInvitationShowsTheSameStrokeWithAWorseModel) {
+  open_exhibit({});
+  EXPECT_TRUE(says("the best computer"));
+  ASSERT_TRUE(until([&] { return app_->exhibit().shows_worst(); }));
+  frames(1);
+  EXPECT_TRUE(says("a worse computer"));
+  EXPECT_EQ(app_->exhibit().shown_poses(app_->session(), app_->shown(), Theme::dark).size(), 2u);
+  EXPECT_TRUE(app_->exhibit().attract_trace().strong()) << "arrows that can be seen";
+  ASSERT_TRUE(until([&] { return !app_->exhibit().shows_worst(); }));
+  EXPECT_TRUE(app_->exhibit().shown_poses(app_->session(), app_->shown(), Theme::dark).empty());
+}
+
 TEST_F(ExhibitTest, TheRoundsDifferInColour) {
   for (const Theme theme : {Theme::light, Theme::dark}) {
-    const Rgb depth = exhibit_colour("position", false, theme), paper = exhibit_colour("greedy", true, theme),
-              best = exhibit_colour("greedy", false, theme);
-    EXPECT_GT(glm::distance(depth, paper), 0.3F);
-    EXPECT_GT(glm::distance(paper, best), 0.3F);
-    EXPECT_GT(glm::distance(depth, best), 0.3F);
+    const Rgb first = method_colour("random", theme), second = method_colour("kdtree", theme),
+              best = method_colour("trend+greedy", theme);
+    EXPECT_GT(glm::distance(first, second), 0.3F);
+    EXPECT_GT(glm::distance(second, best), 0.3F);
+    EXPECT_GT(glm::distance(first, best), 0.2F);
   }
 }
 

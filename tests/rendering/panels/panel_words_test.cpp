@@ -3,11 +3,13 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <utility>
 
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel_speed.h"
 #include "rendering/panels/scene_overlay.h"
 #include "rendering/panels/window_command.h"
 #include "tests/support/message_parts.h"
@@ -35,32 +37,33 @@ TEST(PanelWords, AStallComesBeforeAFaultAndAFaultBeforeAlarmsThatAreOver) {
   health.loop.age_s = 0.3;
   health.newest.device.faults = device_fault::kUnplugged;
   health.alarms = {"the encoder jumped", "a tick was late"};
-  const HealthWords stalled = health_words(health, 60.0);
+  const HealthWords stalled = health_words(health, 60.0, true);
   EXPECT_TRUE(test::has_parts(stalled.text, {"last tick 0.3 s"}));
   EXPECT_TRUE(stalled.problem && !stalled.past);
   health.loop.age_s = 0.0;
-  const HealthWords unplugged = health_words(health, 60.0);
+  const HealthWords unplugged = health_words(health, 60.0, true);
   EXPECT_TRUE(test::has_parts(unplugged.text, {device_fault_words(device_fault::kUnplugged).front()}));
   EXPECT_TRUE(unplugged.problem && !unplugged.past);
   health.newest.device.faults = 0;
-  const HealthWords over = health_words(health, 60.0);
+  const HealthWords over = health_words(health, 60.0, true);
   EXPECT_TRUE(test::has_parts(over.text, {"the encoder jumped", "1 more"}));
   EXPECT_TRUE(over.problem && over.past);
 }
 
 TEST(PanelWords, MissedDeadlinesAndSlowPicturesAreNamed) {
   HealthView health;
-  EXPECT_FALSE(health_words(health, 20.0).problem) << "nothing that is felt is late";
-  EXPECT_TRUE(test::has_parts(health_words(health, 20.0).text, {"20 frames"}));
+  EXPECT_FALSE(health_words(health, 20.0, true).problem) << "nothing that is felt is late";
+  EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"20 frames"}));
   health.loop.ticks = 5000;
   health.loop.missed_deadlines = 41;
-  EXPECT_TRUE(test::has_parts(health_words(health, 20.0).text, {"20 frames", "41 deadlines"}));
+  EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"20 frames", "41 deadlines"}));
   health.missed_of_late = 0.025;
-  EXPECT_TRUE(test::has_parts(health_words(health, 20.0).text, {"2.5 %", "real-time priority"}));
+  EXPECT_FALSE(health_words(health, 20.0, false).problem) << "a visitor cannot change it";
+  EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"2.5 %", "real-time priority"}));
   health.scheduling.realtime = true;
-  EXPECT_EQ(health_words(health, 20.0).text.find("real-time priority"), std::string::npos);
+  EXPECT_EQ(health_words(health, 20.0, true).text.find("real-time priority"), std::string::npos);
   health.missed_of_late = 0.0;
-  EXPECT_FALSE(health_words(health, 0.0).problem);
+  EXPECT_FALSE(health_words(health, 0.0, true).problem);
 }
 
 TEST(PanelWords, OnlyAZeroedDeviceHasALine) {
@@ -89,19 +92,23 @@ TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
   EXPECT_EQ(data_warning(models), "");
 }
 
-// The big number is that of the table, and the text names its model.
-TEST(PanelWords, TheBigNumberIsThatOfTheTable) {
-  ModelsView models = view_of({ready_slot("greedy-100")}, true);
-  EXPECT_EQ(big_number(models, true).number, "–");
-  models.slots[0].errors.samples = 1000;
-  models.slots[0].errors.p99_error_over_jnd = 3.83;
-  EXPECT_EQ(big_number(models, true).number, jnd_text(3.83));
+// The big number is that of the headline and of the table; the user's own press has a smaller one.
+TEST(PanelWords, TheBigNumberIsThatOfTheHeadline) {
+  ModelsView models = view_of({ready_slot("greedy-100"), ready_slot("trend")}, true);
+  EXPECT_EQ(big_number(models).number, "") << "there is no verdict yet";
+  models.slots[1].errors.p99_error_over_jnd = 3.83;
+  models.verdict.chosen = 1;
+  EXPECT_EQ(big_number(models).number, jnd_text(3.83));
   EXPECT_EQ(jnd_text(3.83), "3.8") << "as many digits as a quantile has";
-  EXPECT_NE(big_number(models, true).below.find("greedy-100 is below"), std::string::npos);
+  EXPECT_TRUE(test::has_parts(big_number(models).what, {"trend", "notice"}));
+  EXPECT_EQ(big_number(models).below, "") << "nothing was pressed";
+  models.slots[0].press_samples = 100;
+  models.slots[0].press_p99_over_jnd = 0.42;
+  EXPECT_EQ(big_number(models).below, "your press: 0.42 with greedy-100");
   models.in_contact = false;
-  EXPECT_EQ(big_number(models, true).number, "3.8") << "in the air it says the same";
+  EXPECT_EQ(big_number(models).number, "3.8") << "in the air it says the same";
   models.reference = 0;
-  EXPECT_EQ(big_number(models, true).number, "–") << "it is the reference";
+  EXPECT_EQ(big_number(models).below, "") << "it is the reference";
 }
 
 TEST(PanelWords, WithoutATruthTheBigNumberIsThePrediction) {
@@ -110,25 +117,50 @@ TEST(PanelWords, WithoutATruthTheBigNumberIsThePrediction) {
   // The error that the model predicts, relative to a JND of 0.13 N at 1 N.
   models.compared = false;
   models.reference_name = "no truth to compare with";
-  EXPECT_EQ(big_number(models, false).number, "–") << "it does not know";
+  EXPECT_EQ(big_number(models).number, "–") << "it does not know";
   greedy.force_N = 1.0;
   greedy.predicted_error_N = 0.5 * JndLine{}.at(1.0);
-  EXPECT_EQ(big_number(models, false).number, "0.50");
-  EXPECT_NE(big_number(models, false).below.find("no truth to compare with"), std::string::npos);
+  EXPECT_EQ(big_number(models).number, "0.50");
+  EXPECT_EQ(big_number(models).below, "no truth to compare with");
   models.in_contact = false;
-  EXPECT_EQ(big_number(models, false).number, "–");
-  EXPECT_EQ(big_number({}, false).number, "–");
+  EXPECT_EQ(big_number(models).number, "–");
+  EXPECT_EQ(big_number({}).number, "");
 }
 
-TEST(PanelWords, BeforeTheFirstModelTheFitIsTheNumber) {
-  ModelView trend;
-  trend.name = "trend";
-  trend.state = SlotState::fitting;
-  trend.progress = 0.34;
-  const ModelsView models = view_of({trend}, true);
-  EXPECT_EQ(big_number(models, true).number, "34 %");
-  EXPECT_NE(big_number(models, true).below.find("true material"), std::string::npos);
-  EXPECT_EQ(big_number(models, false).below.find("true material"), std::string::npos) << "there is none";
+TEST(PanelWords, ARowSaysWhichModelsHaveItsForcesAndWhy) {
+  ModelInfo info;
+  EXPECT_EQ(equal_words(info), "");
+  info.method = "trend";
+  info.equals = {"trend+voxel", "trend+greedy-100"};
+  EXPECT_TRUE(test::has_parts(equal_words(info), {"trend+voxel", "trend+greedy-100", "no correction"}));
+  info.method = "greedy";
+  EXPECT_EQ(equal_words(info).find("no correction"), std::string::npos);
+}
+
+// All dots, their intervals and paths are inside, with the JND.
+TEST(PanelWords, ThePlotOfErrorAgainstTimeShowsAllDots) {
+  ModelsView models = view_of({ready_slot("greedy-100"), ready_slot("trend")}, true);
+  const SpeedRanges empty = speed_ranges(models);
+  EXPECT_LT(empty.error.from, 0.0);
+  const auto set = [](ModelView& one, double ns, double over_jnd) {
+    one.errors.samples = 100;
+    one.errors.p99_error_over_jnd = over_jnd;
+    one.tick = {ns, 0.9 * ns, 1.1 * ns, ns};
+  };
+  set(models.slots[0], 390.0, 0.04);
+  set(models.slots[1], 240.0, 0.05);
+  models.slots[0].p99_interval = {0.02, 0.08};
+  models.slots[0].path[3] = {150.0, 7.0};
+  const SpeedRanges ranges = speed_ranges(models);
+  for (const double ns : {150.0, 240.0, 429.0}) {
+    EXPECT_LT(ranges.time.from, std::log10(ns));
+    EXPECT_GT(ranges.time.to, std::log10(ns));
+  }
+  for (const double over_jnd : {0.02, 0.08, 1.0, 7.0}) {
+    EXPECT_LT(ranges.error.from, std::log10(over_jnd));
+    EXPECT_GT(ranges.error.to, std::log10(over_jnd));
+  }
+  EXPECT_LT(ranges.time.to, 3.0) << "the budget of 1 ms is not in the plot";
 }
 
 // GLFW numbers them from 256 on, and 256 + 'V' is not V.

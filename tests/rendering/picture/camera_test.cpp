@@ -11,7 +11,7 @@ namespace {
 
 TEST(Camera, SeesWhatItFrames) {
   Camera camera;
-  camera.frame(0.1F, 0.5F, true);
+  camera.frame(0.1F, 0.0F, 0.2F, 0.3F, true);
   const glm::vec2 size(768.0F, 720.0F);
   const glm::mat4 view = camera.view_projection(size.x / size.y);
   for (const glm::vec3 point :
@@ -25,15 +25,17 @@ TEST(Camera, SeesWhatItFrames) {
   EXPECT_LT(project(view, {0.0F, 0.05F, 0.0F}, size).y, project(view, {0.0F, 0.0F, 0.0F}, size).y) << "up is up";
 }
 
-TEST(Camera, StaysAboveTheTableAndWithinItsDistances) {
+// The blocks are cut open at the front.
+TEST(Camera, StaysAboveTheTableBeforeTheCutAndWithinItsDistances) {
   Camera camera;
-  camera.frame(0.1F, 0.5F, true);
+  camera.frame(0.1F, 0.0F, 0.2F, 0.3F, true);
   for (const auto& [pitch_rad, factor] : {std::pair{-50.0F, 1e-3F}, std::pair{50.0F, 1e3F}}) {
-    camera.orbit(0.0F, pitch_rad);
+    camera.orbit(pitch_rad, pitch_rad);
     camera.zoom(factor);
     for (int i = 0; i < 300; ++i) camera.advance(0.016F);
     const glm::vec3 eye = camera.eye();
     EXPECT_GT(eye.y, 0.0F);
+    EXPECT_GT(eye.z, std::abs(eye.x));
     EXPECT_GT(std::hypot(eye.x, eye.z), 0.1F * eye.y) << "left stays left";
     EXPECT_GE(glm::length(eye), 0.15F);
     EXPECT_LE(glm::length(eye), 1.21F);
@@ -42,7 +44,7 @@ TEST(Camera, StaysAboveTheTableAndWithinItsDistances) {
 
 TEST(Camera, EasesInsteadOfJumping) {
   Camera camera;
-  camera.frame(0.1F, 0.5F, true);
+  camera.frame(0.1F, 0.0F, 0.2F, 0.3F, true);
   const glm::vec3 before = camera.eye();
   camera.orbit(1.0F, 0.0F);
   EXPECT_EQ(camera.eye(), before);
@@ -55,7 +57,7 @@ TEST(Camera, EasesInsteadOfJumping) {
 
 TEST(Camera, PutsWhatIsBehindItFarOutside) {
   Camera camera;
-  camera.frame(0.1F, 0.0F, true);
+  camera.frame(0.1F, 0.0F, 0.0F, 0.3F, true);
   EXPECT_LT(project(camera.view_projection(1.0F), 3.0F * camera.eye(), {100.0F, 100.0F}).x, -1e5F);
 }
 

@@ -21,41 +21,45 @@ void expect_consistent(const Mesh& mesh) {
   for (const Vertex& vertex : mesh.vertices) ASSERT_NEAR(glm::length(vertex.normal), 1.0F, 1e-4F);
 }
 
-TEST(Mesh, TheBlockHasItsSizeAndFacesOutwards) {
-  for (const Detail& detail : {kFine, kCoarse}) {
-    const Mesh top = block_top({0.10F, 0.08F}, detail);
-    const Mesh sides = block_sides({0.10F, 0.08F}, 0.04F, detail);
-    glm::vec3 low(1.0F);
-    glm::vec3 high(-1.0F);
-    for (const Mesh* mesh : {&top, &sides}) {
-      expect_consistent(*mesh);
-      for (const Vertex& vertex : mesh->vertices) {
-        low = glm::min(low, vertex.position);
-        high = glm::max(high, vertex.position);
-      }
+// Width, length, height.
+glm::vec3 extent(const std::vector<Mesh>& parts) {
+  glm::vec3 low(1.0F), high(-1.0F);
+  for (const Mesh& mesh : parts) {
+    expect_consistent(mesh);
+    for (const Vertex& vertex : mesh.vertices) {
+      low = glm::min(low, vertex.position);
+      high = glm::max(high, vertex.position);
     }
-    EXPECT_NEAR(high.x - low.x, 0.10F, 1e-5F);
-    EXPECT_NEAR(high.z - low.z, 0.08F, 1e-5F);
-    EXPECT_NEAR(high.y, 0.0F, 1e-7F);
-    EXPECT_NEAR(low.y, -0.04F, 1e-6F);
   }
+  EXPECT_NEAR(high.y, 0.0F, 1e-7F);
+  EXPECT_NEAR(high.z, 0.0F, 1e-6F) << "the front half is taken away";
+  return high - low;
+}
+
+TEST(Mesh, TheBlockHasItsSizeAndFacesOutwards) {
+  const glm::vec2 size(0.10F, 0.08F);
+  const glm::vec3 all = extent(
+      {block_top(size, 96, 6), block_sides(size, 0.04F, 0.0F, 96), block_section(0.05F, 0.05F, 0.04F, 0.0F, 80)});
+  EXPECT_LT(glm::distance(all, glm::vec3(0.10F, 0.04F, 0.04F)), 1e-5F);
 }
 
 TEST(Mesh, TopAndSidesMeetWithoutAGap) {
-  const Mesh top = block_top({0.10F, 0.08F}, kCoarse);
-  const Mesh sides = block_sides({0.10F, 0.08F}, 0.04F, kCoarse);
-  for (std::size_t i = 0; i < 40; ++i) {
-    const glm::vec3 rim = top.vertices[top.vertices.size() - 40 + i].position;
+  const Mesh top = block_top({0.10F, 0.08F}, 40, 6), sides = block_sides({0.10F, 0.08F}, 0.04F, 0.0F, 40);
+  for (std::size_t i = 0; i <= 40; ++i) {
+    const glm::vec3 rim = top.vertices[top.vertices.size() - 41 + i].position;
     EXPECT_LT(glm::distance(rim, sides.vertices[i].position), 1e-6F) << i;
   }
 }
 
-// A slow computer draws the coarse block.
-TEST(Mesh, ACoarseBlockHasFarFewerTriangles) {
-  const auto count = [](const Detail& detail) {
-    return block_top({0.1F, 0.1F}, detail).triangles.size() + block_sides({0.1F, 0.1F}, 0.04F, detail).triangles.size();
-  };
-  EXPECT_LT(5 * count(kCoarse), 2 * count(kFine));
+// What moves is drawn in each frame, and a triangle costs a software renderer as much as a hundred pixels.
+TEST(Mesh, WhatMovesHasFewTriangles) {
+  const Mesh middle = block_middle(0.045F, 14, 11), section = block_section(0.045F, 0.05F, 0.04F, 0.0F, 40);
+  extent({middle, section});
+  EXPECT_LT(middle.triangles.size() + section.triangles.size(), 3u * 420u);
+  const Mesh line = line_mesh(0.045F, 40);
+  expect_consistent(line);
+  EXPECT_EQ(line.vertices.front().position, glm::vec3(0.045F, 1.0F, 0.0F));
+  EXPECT_EQ(line.vertices.back().position, glm::vec3(-0.045F, -1.0F, 0.0F));
 }
 
 TEST(Mesh, ALatheFacesOutwards) {

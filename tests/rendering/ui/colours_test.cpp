@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::array kMethods{"trend", "direct", "voxel", "random", "kdtree", "greedy", "position"};
+constexpr std::array kMethods{"trend", "direct", "voxel", "random", "kdtree", "greedy"};
 
 // What texts, curves and marks are drawn on.
 std::array<Rgb, 4> surfaces(Theme theme) {

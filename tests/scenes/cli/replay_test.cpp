@@ -81,6 +81,8 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
                                         "surface_identified", "predicted_error", "bins"}));
     EXPECT_EQ(keys(model["surface_moved"]), (std::vector<std::string>{"rms_error_N", "max_error_N", "within_jnd",
                                                                       "p99_error_over_jnd", "max_error_over_jnd"}));
+    EXPECT_EQ(keys(model["predicted_error"]), (std::vector<std::string>{"bound_95_held", "bound_95_held_moved",
+                                                                        "median_bound_N", "median_bound_over_jnd"}));
     EXPECT_EQ(keys(model["evaluation_ns"]), (std::vector<std::string>{"median", "p99"}));
     EXPECT_GT(model["evaluation_ns"]["median"], 0.0);
     EXPECT_GE(model["evaluation_ns"]["p99"], model["evaluation_ns"]["median"]);
@@ -141,18 +143,31 @@ TEST_F(ReplayVerb, FiguresFollowFromTheForcesFile) {
 }
 
 TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
-  const auto ran = run({models_[0], models_[5]});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  std::istringstream lines(ran.out);
-  std::vector<std::string> rows;
-  for (std::string line; std::getline(lines, line);) rows.push_back(line);
-  ASSERT_GE(rows.size(), 4u) << ran.out;  // a note about the surface may follow
-  EXPECT_TRUE(test::has_parts(rows[0], {"3000 samples"}));
-  for (const char* title : {"MODEL", "RMS mN", "WITHIN JND %", "TICK ns"}) {
-    EXPECT_TRUE(test::has_parts(rows[1], {title})) << title;
+  const std::regex narrow("MODEL +RMS mN +WITHIN JND % +P99 JND +MAX JND +TICK ns");
+  const std::regex wide("MODEL +RMS mN +MAX mN .*TICK P99 ns .*SURFACE mm .*ALIGNED RMS mN .*BOUND JND");
+  for (const bool all : {false, true}) {
+    const auto ran =
+        run({models_[0], models_[5]}, all ? std::vector<std::string>{"--all"} : std::vector<std::string>{});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    std::istringstream lines(ran.out);
+    std::vector<std::string> rows;
+    for (std::string line; std::getline(lines, line);) rows.push_back(line);
+    ASSERT_GE(rows.size(), 4u) << ran.out;  // a note about the surface may follow
+    EXPECT_TRUE(test::has_parts(rows[0], {"3000 samples"}));
+    EXPECT_TRUE(std::regex_match(rows[1], all ? wide : narrow)) << rows[1];
+    EXPECT_EQ(rows[1].size(), rows[2].size());
+    EXPECT_EQ(rows[1].size(), rows[3].size());
   }
-  EXPECT_EQ(rows[1].size(), rows[2].size());
-  EXPECT_EQ(rows[1].size(), rows[3].size());
+}
+
+TEST_F(ReplayVerb, NamesTheFilesThatItWrote) {
+  const std::string out = folder_.file("forces.csv"), plot = folder_.file("replay.svg");
+  EXPECT_TRUE(test::has_parts(run({models_[0]}, {"--out", out, "--plot", plot}).out, {"written  " + out, plot}));
+  // Every curve has the name of its model: beside the differences, and beside the errors against force.
+  const std::string svg = test::read_text(plot);
+  const std::size_t first = svg.find("direct-cubic-1");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_NE(svg.find("direct-cubic-1", first + 1), std::string::npos);
 }
 
 // Replays the training recording with positions moved by 0.3 mm.

@@ -79,5 +79,23 @@ TEST(Evaluate, NoForceErrsByTheWholeForce) {
   EXPECT_EQ(result.no_force.summary().max_error_N, largest_N);
 }
 
+TEST(BoundErrors, CountErrorsWithinTheBoundAndKnowWhenItSaysNothing) {
+  const JndLine jnd{0.1, 0.0};
+  BoundErrors bounds;
+  EXPECT_FALSE(bounds.figures().has_bounds());
+  bounds.add(kUnknown, 1.0, 1.0, jnd);
+  EXPECT_FALSE(bounds.figures().has_bounds()) << "a model without bounds";
+  for (const double error_N : {0.0, 0.1, 0.2, 0.3}) bounds.add(0.25, 1.0 + error_N, 1.0, jnd);
+  EXPECT_EQ(bounds.figures().coverage, 0.75);
+  EXPECT_NEAR(bounds.figures().median_N, 0.25, 1e-7);
+  EXPECT_NEAR(bounds.figures().median_over_jnd, 2.5, 1e-6);
+  BoundErrors wide;
+  for (int i = 0; i < 7; ++i) wide.add(2.0, 1.0, -1.5, jnd);
+  bounds.append(wide);
+  EXPECT_EQ(bounds.figures().coverage, 3.0 / 11.0);
+  EXPECT_EQ(bounds.figures().median_N, 2.0);
+  EXPECT_TRUE(std::isnan(bounds.figures().median_over_jnd)) << "wider than the largest force, 1.5 N";
+}
+
 }  // namespace
 }  // namespace palpate

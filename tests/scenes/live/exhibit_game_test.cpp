@@ -9,8 +9,7 @@ namespace palpate {
 namespace {
 
 using State = ExhibitGame::State;
-const std::vector<ExhibitModel> kAll = {
-    {0, "greedy", false}, {1, "greedy", true}, {2, "position", false}, {3, "direct", false}};
+const std::vector<ExhibitModel> kAll = {{0, 100, false}, {1, 40, true}, {2, 5, true}};
 
 // A press of `seconds` at 2 N. The second force is larger by `over_jnd` JNDs of 0.1 N.
 void press(ExhibitGame& game, double from_s, double seconds, double over_jnd) {
@@ -21,18 +20,24 @@ void press(ExhibitGame& game, double from_s, double seconds, double over_jnd) {
 TEST(ExhibitGame, GoesFromObviousToImpossible) {
   const auto rounds = ExhibitGame::rounds_of(kAll, true, false);
   ASSERT_EQ(rounds.size(), 3u);
-  EXPECT_EQ(rounds[0].second.slot, 2u) << "depth only";
-  EXPECT_EQ(rounds[1].second.slot, 1u) << "the paper's recipe";
+  EXPECT_EQ(rounds[0].second.slot, 2u) << "of the paper with few centres";
+  EXPECT_EQ(rounds[1].second.slot, 1u) << "with more";
   EXPECT_EQ(rounds[2].second.slot, 0u) << "the best";
   for (const ExhibitRound& round : rounds) EXPECT_FALSE(round.first) << "the reference";
+  // Of more models the obvious ones and the best are left.
+  const auto many = ExhibitGame::rounds_of({{0, 9, true}, {1, 5, true}, {2, 7, true}, {3, 0, false}}, true, false);
+  ASSERT_EQ(many.size(), 3u);
+  EXPECT_EQ(many[0].second.slot, 1u);
+  EXPECT_EQ(many[1].second.slot, 2u);
+  EXPECT_EQ(many[2].second.slot, 3u);
 }
 
 TEST(ExhibitGame, WithoutAReferenceModelsAreComparedWithTheBest) {
-  const auto rounds = ExhibitGame::rounds_of({{4, "voxel", false}, {5, "voxel", false}}, false, false);
+  const auto rounds = ExhibitGame::rounds_of({{4, 10, true}, {5, 90, true}}, false, false);
   ASSERT_EQ(rounds.size(), 1u);
-  EXPECT_EQ(rounds[0].first->slot, 4u);
-  EXPECT_EQ(rounds[0].second.slot, 5u);
-  EXPECT_TRUE(ExhibitGame::rounds_of({{4, "voxel", false}}, false, false).empty());
+  EXPECT_EQ(rounds[0].first->slot, 5u);
+  EXPECT_EQ(rounds[0].second.slot, 4u);
+  EXPECT_TRUE(ExhibitGame::rounds_of({{4, 10, true}}, false, false).empty());
   EXPECT_TRUE(ExhibitGame::rounds_of({}, true, false).empty());
   EXPECT_FALSE(ExhibitGame(1).begin({}, true, false));
 }
@@ -134,6 +139,19 @@ TEST(ExhibitTrace, KeepsTheLargestWithinWhatWasTrainedFor) {
   trace.clear();
   EXPECT_TRUE(trace.columns().empty());
   EXPECT_EQ(trace.largest_over_jnd(), 0.0);
+}
+
+// The arrows of a difference at a fraction of a newton are too short to be seen.
+TEST(ExhibitTrace, TheLargestIsOfAStrongPressIfThereIsOne) {
+  ExhibitTrace trace;
+  for (int i = 0; i < 100; ++i) trace.add({1e-3 * i, 0.3, 0.6, 4.0, true, false});
+  EXPECT_FALSE(trace.strong());
+  EXPECT_EQ(trace.largest_over_jnd(), 4.0) << "there is no stronger one yet";
+  for (int i = 100; i < 200; ++i) trace.add({1e-3 * i, 1.5, 1.6, 1.2, true, false});
+  for (int i = 200; i < 300; ++i) trace.add({1e-3 * i, 0.3, 0.6, 4.0, true, false});
+  EXPECT_TRUE(trace.strong());
+  EXPECT_EQ(trace.largest_over_jnd(), 1.2);
+  EXPECT_EQ(trace.largest_at(), 4u);
 }
 
 TEST(ExhibitTrace, KeepsTheFirstMinute) {

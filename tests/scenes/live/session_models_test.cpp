@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "scenes/live/live_session.h"
-#include "tests/support/fitting.h"
+#include "scenes/material/rig.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/session_frames.h"
 #include "tests/support/temporary_folder.h"
@@ -21,90 +21,131 @@ using test::TemporaryFolder;
 
 using Session = std::unique_ptr<LiveSession>;
 
-// A session with fits: error figures relative to the material's true force, then a
-// recording of the session that a fit accepts.
+// A session with fits: error figures relative to the material's true force, then a recording of the session that can be
+// fitted.
 TEST(SessionModels, ItsRecordingCanBeFitted) {
   const TemporaryFolder folder;
-  SessionRequest request = session_request("elastic_block", "hand", {"greedy", "random"});
+  SessionRequest request = session_request("elastic_block", "hand", {"greedy-20", "random-20"});
   const Session session = must(LiveSession::open(request));
-  ASSERT_EQ(session->models().size(), 3u);
-  EXPECT_EQ(session->models().info(2).name, "direct") << "the reference, always";
+  ASSERT_EQ(session->models().size(), 2u);
   EXPECT_TRUE(test::has_parts(session->reference_words(), {"true force", "elastic"}));
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().info(0).state == SlotState::ready; }));
-  EXPECT_EQ(session->models().selected(), 0u) << "the first asked for";
-  EXPECT_EQ(session->models().info(0).name, "greedy-100");
-  EXPECT_EQ(session->models().info(0).centres, 100);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->verdict().chosen.has_value(); }));
+  EXPECT_EQ(session->models().info(0).name, "greedy-20");
+  EXPECT_EQ(session->models().info(0).centres, 20);
+  EXPECT_TRUE(session->models().info(0).paper);
+  EXPECT_EQ(session->models().selected(), *session->verdict().chosen) << "the model of the headline";
+  const LiveSession::StartTimes times = session->start_times();
+  EXPECT_LE(times.first_model_s, times.all_models_s);
+  EXPECT_LE(times.all_models_s, times.verdict_s);
   ASSERT_TRUE(session->start_recording(folder.file("live.csv")).ok());
   ASSERT_TRUE(frames_until(
-      *session, [&] { return session->figures(0).errors.samples > 500 && session->recording().seconds > 2.0; }));
+      *session, [&] { return session->figures(0).press_samples > 500 && session->recording().seconds > 2.0; }));
   EXPECT_GT(session->figures(0).errors.within_jnd, 0.9);
-  EXPECT_GT(session->figures(1).errors.samples, 500u);
+  EXPECT_EQ(session->figures(0).errors.samples, session->figures(1).errors.samples);
   session->stop_recording();
   ASSERT_TRUE(frames_until(*session, [&] { return !session->recording().saving && !session->recording().active; }));
   const std::vector<Notice> notices = session->read_notices();
   ASSERT_EQ(notices.size(), 1u);
   EXPECT_FALSE(notices[0].problem) << notices[0].text;
-  const auto recording = std::make_shared<const Recording>(must(read_recording(folder.file("live.csv"))));
-  EXPECT_TRUE(recording->columns.velocity);
-  const PreparedTraining prepared = test::prepare({recording}, test::scene_request("elastic_block"));
-  EXPECT_GT(test::judge(*recording, test::fit(prepared, &kRandomMethod)).within_jnd, 0.95);
+  const Recording recording = must(read_recording(folder.file("live.csv")));
+  EXPECT_TRUE(recording.columns.velocity);
+  ModelWorker worker(session->scene(), 1, {recording});
+  EXPECT_TRUE(worker.make({must(parse_plan("random-20"))}).ok());
 }
 
-// Several requests in sequence, as when a slider is dragged: the last one counts.
+// The verdict is that of fixed strokes: a hand that holds still, or presses otherwise, does not turn it.
+TEST(SessionModels, TheVerdictDoesNotDependOnWhatIsPressed) {
+  const Session session = must(LiveSession::open(session_request("elastic_block", "mouse", {"random-3", "trend"})));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->verdict().chosen.has_value(); }));
+  const std::string headline = session->verdict().headline;
+  const std::uint64_t samples = session->figures(0).errors.samples;
+  EXPECT_GT(samples, 1000u) << "nobody has pressed";
+  session->tool_input()->set_target(0.004, session->newest().loop_time_s);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).press_samples > 300; }));
+  session->reset_figures();
+  EXPECT_EQ(session->figures(0).press_samples, 0u);
+  EXPECT_EQ(session->figures(0).errors.samples, samples);
+  EXPECT_EQ(session->verdict().headline, headline);
+}
+
+// Several requests in sequence, as when a slider is dragged: the last one counts. The tested sizes make a path.
 TEST(SessionModels, ModelsAreFittedAnewWithOtherCentres) {
-  SessionRequest request = session_request("elastic_block", "hand", {"random-10"});
-  const Session session = must(LiveSession::open(request));
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  const Session session = must(LiveSession::open(session_request("elastic_block", "hand", {"random-10"})));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).path.contains(10); }));
   EXPECT_EQ(session->models().info(0).centres, 10);
   for (const int centres : {12, 14, 20}) session->models().refit(0, centres);
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().info(0).centres == 20; }));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_FALSE(session->models().info(0).refitting);
   EXPECT_EQ(session->models().info(0).name, "random-20");
+  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).path.contains(20); }));
 }
 
-// A recording of another material than that of the scene: errors are relative to the recording's material.
-TEST(SessionModels, ARecordingIsTheMaterialThatIsFittedAndPressed) {
+// A single recording: its end is set apart, and replayed if the recording is. Back in the hand the test stays.
+TEST(SessionModels, TheEndOfASingleRecordingIsTheTest) {
   const TemporaryFolder folder;
   const std::string path = folder.file("mine.csv");
-  ASSERT_TRUE(write_recording(path, *test::rig_recording(test::train_settings("elastic")), {}, false).ok());
-  SessionRequest request = session_request("silicone_block", "hand", {"greedy", "trend"});
-  request.recordings = {path};
-  const Session session = must(LiveSession::open(request));
-  EXPECT_EQ(session->scene().title, "mine");
-  EXPECT_FALSE(session->has_reference(ReferenceKind::truth)) << "silicone is none of it";
-  EXPECT_EQ(session->reference_words(), "no truth to compare with");
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
-  EXPECT_TRUE(test::has_parts(session->reference_words(), {"direct"}));
-  EXPECT_EQ(session->models().selected(), 0u) << "the winner";
-  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).errors.samples > 1000; }));
-  EXPECT_LT(session->figures(0).errors.p99_error_over_jnd, 1.0);
-
-  request.recordings.clear();
-  request.device = "replay:" + path;
+  const Recording mine = must(record_sensors({.material = "elastic", .seed = 3, .seconds = 20.0}));
+  ASSERT_TRUE(write_recording(path, mine, {}, false).ok());
+  SessionRequest request = session_request("silicone_block", "replay:" + path, {"random-20", "trend"});
   const Session replayed = must(LiveSession::open(request));
   EXPECT_EQ(replayed->scene().title, "mine");
-  EXPECT_TRUE(test::has_parts(replayed->reference_words(), {"mine"}));
-  ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->models().all_settled(); }));
-  ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->figures(0).errors.samples > 1000; }));
-  EXPECT_LT(replayed->figures(0).errors.p99_error_over_jnd, 1.0);
+  EXPECT_LT(replayed->replay()->duration_s(), 0.41 * 20.0);
+  EXPECT_FALSE(replayed->tests_training());
+  EXPECT_EQ(replayed->read_notices().size(), 1u) << "it says so";
+  ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->verdict().chosen.has_value(); }));
+  EXPECT_TRUE(test::has_parts(replayed->verdict().detail, {"mine, last", "no model was fitted to"}));
+  EXPECT_LT(replayed->figures(1).errors.p99_error_over_jnd, 1.0);
+
+  SessionRequest hand = request;
+  hand.device = "hand";
+  hand.recordings = replayed->scene().recordings;
+  hand.test = replayed->test_file();
+  hand.kept = replayed->models().requests();
+  hand.refits = false;
+  hand.models.clear();
+  const Session pressed = must(LiveSession::open(hand));
+  EXPECT_EQ(pressed->comparison().reference(), ReferenceKind::model) << "silicone is none of it";
+  ASSERT_TRUE(frames_until(*pressed, [&] { return pressed->verdict().chosen.has_value(); }));
+  EXPECT_EQ(pressed->figures(1).errors.samples, replayed->figures(1).errors.samples);
+}
+
+// Without a correction, a correction by any method is the trend: one row, which says so.
+TEST(SessionModels, ModelsOfEqualForcesAreOneRow) {
+  const TemporaryFolder folder;
+  const Session session =
+      must(LiveSession::open(session_request("silicone_block", "hand", {"trend+random-20", "trend", "random-20"})));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  std::vector<std::string> names;
+  for (const std::size_t slot : session->models().ready_slots()) names.push_back(session->models().info(slot).name);
+  if (session->models().model(0)->centre_count() > 0) GTEST_SKIP() << "a correction was taken";
+  EXPECT_EQ(names, (std::vector<std::string>{"trend", "random-20"}));
+  const ModelInfo& row = session->models().info(session->models().ready_slots().front());
+  EXPECT_EQ(row.equals, std::vector<std::string>{"trend+random-20"});
+  // A saved model comes back as what it is, and is not a second row.
+  ASSERT_TRUE(session->models().save(2, folder.file("own.json")).ok());
+  EXPECT_TRUE(session->models().load_file(folder.file("own.json")));
+  session->update();
+  EXPECT_EQ(session->models().info(3).state, SlotState::equal);
+  EXPECT_EQ(session->models().info(3).method, "random");
+  EXPECT_TRUE(session->models().info(3).paper);
+  EXPECT_EQ(session->models().ready_slots().size(), 2u);
 }
 
 TEST(SessionModels, LineUpsShareTheModelsThatBothHave) {
   SessionRequest request = session_request("elastic_block", "hand", {});
-  request.line_up = "Palpate";
+  request.line_up = "Sizes";
   const Session session = must(LiveSession::open(request));
-  EXPECT_EQ(session->line_up(), "Palpate");
+  EXPECT_EQ(session->line_up(), "Sizes");
   const std::size_t before = session->models().size();
-  session->use_line_up("Ladder");
-  // Three models by the paper's recipe are new; direct, voxel, greedy and trend exist already.
-  EXPECT_EQ(session->models().size(), before + 3);
+  session->use_line_up("Comparison");
+  EXPECT_EQ(session->models().size(), before + 4) << "greedy-100 exists already";
   std::size_t hidden = 0;
   for (std::size_t i = 0; i < session->models().size(); ++i)
     hidden += session->models().info(i).state == SlotState::hidden ? 1 : 0;
-  EXPECT_EQ(hidden, 2u) << "random and kdtree";
+  EXPECT_EQ(hidden, 4u);
   session->use_line_up("no such");
-  EXPECT_EQ(session->line_up(), "Ladder");
+  EXPECT_EQ(session->line_up(), "Comparison");
 }
 
 }  // namespace

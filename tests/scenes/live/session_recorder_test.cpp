@@ -101,7 +101,7 @@ TEST(SessionRecorder, WritesTheForceOfAReferenceModel) {
   const TemporaryFolder folder;
   PathDevice device(test::strokes);
   Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::direct).ok());
+  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::model).ok());
   rig.run(1000);
   EXPECT_FALSE(rig.finish().problem);
   const Recording recording = read_recording(folder.file("a.csv")).value();

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
+
+#include "scenes/evaluation/model_errors.h"
 
 namespace palpate {
 namespace {
@@ -25,47 +26,20 @@ TEST(ErrorQuantile, IsExactBesideOneJnd) {
   EXPECT_GT(errors.p99(), 1.0);
 }
 
-TEST(StreamErrors, AreThoseOfAllSamplesInTotalAndByStroke) {
+TEST(StreamErrors, AreThoseOfAllSamples) {
   const JndLine jnd;
   StreamErrors stream;
   ModelErrors all(jnd);
-  for (int stroke = 1; stroke <= 4; ++stroke) {
-    stream.begin_stroke();
-    all.begin_stroke();
-    for (int i = 0; i < 100 * stroke; ++i) {
-      const double model_N = 1.0 + 0.13 * stroke * std::sin(0.1 * i);
-      stream.add(model_N, 1.0, jnd);
-      all.add(model_N, 1.0, false);
-    }
+  all.begin_stroke();
+  for (int i = 0; i < 1000; ++i) {
+    const double model_N = 1.0 + 5e-4 * i * std::sin(0.1 * i);
+    stream.add(model_N, 1.0, jnd);
+    all.add(model_N, 1.0, false);
   }
-  const UnitErrors errors = stream.unit_errors(jnd), exact = all.unit_errors();
+  const ErrorSummary errors = stream.summary(jnd), exact = all.summary();
   EXPECT_EQ(errors.samples, 1000u);
   EXPECT_EQ(errors.within_jnd, exact.within_jnd);
   EXPECT_NEAR(errors.p99_error_over_jnd, exact.p99_error_over_jnd, 0.011 * exact.p99_error_over_jnd);
-  EXPECT_EQ(errors.unit_samples, exact.unit_samples);
-  EXPECT_EQ(errors.unit_within, exact.unit_within);
-  EXPECT_EQ(errors.units_above_jnd, exact.units_above_jnd);
-  ASSERT_EQ(errors.unit_p99.size(), 4u);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(errors.unit_p99[i], exact.unit_p99[i], 0.011 * exact.unit_p99[i]);
-}
-
-// A session that runs for days. Two models keep the same units, and no sample is lost.
-TEST(StreamErrors, HaveABoundedNumberOfStrokes) {
-  const JndLine jnd;
-  StreamErrors one, other;
-  for (int stroke = 0; stroke < 5000; ++stroke) {
-    for (StreamErrors* errors : {&one, &other}) errors->begin_stroke();
-    for (int i = 0; i < 3; ++i) {
-      one.add(1.0, 1.0, jnd);
-      other.add(stroke == 4999 ? 2.0 : 1.0, 1.0, jnd);
-    }
-  }
-  const UnitErrors of_one = one.unit_errors(jnd), of_other = other.unit_errors(jnd);
-  EXPECT_EQ(of_one.units(), StreamErrors::kMostStrokes);
-  EXPECT_EQ(of_one.unit_samples, of_other.unit_samples);
-  EXPECT_EQ(std::accumulate(of_one.unit_samples.begin(), of_one.unit_samples.end(), 0.0), 15000.0);
-  EXPECT_EQ(of_one.units_above_jnd, 0u);
-  EXPECT_EQ(of_other.units_above_jnd, 1u) << "the newest stroke counts";
 }
 
 TEST(SustainedError, IsTheSignedMeanOfTheLast50Milliseconds) {

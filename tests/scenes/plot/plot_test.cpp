@@ -96,18 +96,42 @@ TEST(Layout, NamesAtTheEndsOfCurvesDoNotOverlap) {
   EXPECT_LE(tags.back().y, 1.0);
 }
 
-TEST(Layout, ANameBesideAPointStandsBesideItsBar) {
+TEST(Layout, ANameStandsAtItsPointBetweenTheBars) {
   Panel panel;
   panel.names_at_ends = true;
   panel.x = {"", "", false, 0.0, 10.0};
+  panel.y = {"", "", false, 0.0, 1.0};
   panel.series = {{"left", 0, Mark::bars, {{2.0, 0.2, 0.1, 0.3, 1.0, 5.0}}},
-                  {"right", 0, Mark::bars, {{8.0, 0.8, 0.7, 0.9, 7.5, 9.0}}}};
+                  {"at the edge", 0, Mark::bars, {{9.5, 0.99, 0.7, 0.9, 7.5, 9.9}}}};
   const std::vector<NameTag> tags = name_tags(panel, 0.1, 0.01);
   ASSERT_EQ(tags.size(), 2u);
   EXPECT_TRUE(tags[0].begins_here);
-  EXPECT_DOUBLE_EQ(tags[0].x, 0.5);
+  EXPECT_DOUBLE_EQ(tags[0].x, 0.2);
+  EXPECT_DOUBLE_EQ(tags[0].y, 0.27);
   EXPECT_FALSE(tags[1].begins_here);
-  EXPECT_DOUBLE_EQ(tags[1].x, 0.75);
+  EXPECT_DOUBLE_EQ(tags[1].x, 0.95);
+  EXPECT_DOUBLE_EQ(tags[1].y, 0.92);
+}
+
+// Eight points of which some are close together: no name covers another name.
+TEST(Layout, NamesOfNeighbouringPointsDoNotOverlap) {
+  Panel panel;
+  panel.names_at_ends = true;
+  panel.x = {"", "", false, 0.0, 10.0};
+  panel.y = {"", "", false, 0.0, 1.0};
+  const std::pair<double, double> points[] = {{3.0, 0.5}, {3.1, 0.52}, {3.05, 0.47}, {7.0, 0.5},
+                                              {2.9, 0.6}, {7.1, 0.5},  {3.0, 0.4},   {9.9, 0.01}};
+  for (const auto& [x, y] : points) panel.series.push_back({"greedy-100", 0, Mark::bars, {{x, y}}});
+  const std::vector<NameTag> tags = name_tags(panel, 0.05, 0.012);
+  const auto begin_of = [](const NameTag& tag) { return tag.begins_here ? tag.x : tag.x - 0.132; };
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    EXPECT_NEAR(tags[i].x, 0.1 * points[i].first, 1e-12);
+    EXPECT_NEAR(tags[i].y, points[i].second, 1.6 * 0.05 + 1e-12);
+    for (std::size_t k = 0; k < i; ++k) {
+      const bool beside = std::abs(begin_of(tags[i]) - begin_of(tags[k])) > 0.13;
+      EXPECT_TRUE(beside || std::abs(tags[i].y - tags[k].y) > 0.0499) << i << " and " << k;
+    }
+  }
 }
 
 TEST(Layout, MarksEachPeakBeyondTheAxisOnce) {

@@ -2,110 +2,52 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
+#include <map>
+#include <set>
 
-#include "models/model/fitted_model.h"
-#include "models/samples/recording_faults.h"
-#include "scenes/evaluation/ranking.h"
+#include "models/correction/methods.h"
 #include "scenes/material/rig.h"
-#include "scenes/report/plan.h"
 #include "tests/support/example_model.h"
-#include "tests/support/fitting.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {
 namespace {
 
-TEST(Plan, BeginsWithNoForceAndHasBothRecipesInEverySize) {
-  for (const bool quick : {true, false}) {
-    const std::vector<PlannedModel> plan = make_plan(quick, 4);
-    EXPECT_EQ(plan[0].recipe, Recipe::no_force);
-    EXPECT_EQ(plan[1].name, "trend");
-    std::size_t paper = 0;
-    std::size_t slow = 0;
-    for (const PlannedModel& model : plan) {
-      paper += model.recipe == Recipe::paper ? 1 : 0;
-      slow += model.request.method == find_method("direct") ? 1 : 0;
-      const Method* base = model.request.method->base;
-      if (base == nullptr || model.recipe == Recipe::paper) continue;
-      EXPECT_TRUE(
-          std::any_of(plan.begin(), plan.end(), [&](const PlannedModel& one) { return one.request.method == base; }));
-    }
-    EXPECT_GE(paper, 9u);
-    EXPECT_EQ(slow, quick ? 0u : 2u);
-  }
-}
-
-ModelResult result(const char* name, Recipe recipe, double p99, double tick_ns, bool main = true) {
+ModelResult result(const char* name, double p99, double tick_ns) {
   ModelResult one;
-  one.plan.name = name;
-  one.plan.recipe = recipe;
-  one.plan.main = main;
+  one.name = name;
+  one.plan = test::must(parse_plan(name));
   one.model = std::make_shared<const FittedModel>(test::example_models().front());
   one.errors.p99_error_over_jnd = p99;
-  one.time.tick = {tick_ns, tick_ns, tick_ns, tick_ns};
+  one.time = {{tick_ns, tick_ns, tick_ns, tick_ns}, {}, true};
   return one;
 }
 
-ModelResult trend(double p99, double tick_ns) {
-  ModelResult one = result("trend", Recipe::palpate, p99, tick_ns);
-  one.plan.request.method = &kTrendMethod;
-  return one;
+TEST(Choose, EveryModelIsACandidateAndTheFastestNearTheBestIsTaken) {
+  const Choice choice = choose({ModelResult{}, result("trend", 2.0, 100.0), result("trend+greedy-100", 0.5, 300.0),
+                                result("trend+greedy-20", 0.6, 150.0), result("voxel", 0.4, 200.0)});
+  EXPECT_EQ(choice.candidates, (std::vector<std::size_t>{1, 2, 3, 4}));
+  EXPECT_EQ(choice.near_best, (std::vector<std::size_t>{2, 3, 4}));
+  EXPECT_EQ(choice.best, 4u);
+  EXPECT_EQ(choice.recommended, 3u);
 }
 
-TEST(Choose, TakesOneSizeOfEachMethodAndTheFastestThatQualifies) {
-  const Choice choice =
-      choose({ModelResult{}, trend(2.0, 100.0), result("greedy-100", Recipe::palpate, 0.5, 300.0),
-              result("greedy-200", Recipe::palpate, 0.1, 310.0, false), result("voxel", Recipe::palpate, 0.6, 200.0)});
-  EXPECT_EQ(choice.candidates, (std::vector<std::size_t>{1, 2, 4}));
-  EXPECT_EQ(choice.recommended, 4u);
-  EXPECT_EQ(choice.best, 2u);
-  EXPECT_FALSE(choice.correction_off);
-  EXPECT_TRUE(choose({ModelResult{}, trend(2.0, 100.0)}).correction_off);
-}
-
-TEST(Choose, NamesAnotherSizeThatIsFasterAndMoreAccurate) {
-  const Choice choice = choose({ModelResult{}, result("greedy-100", Recipe::palpate, 0.5, 300.0),
-                                result("greedy-10", Recipe::palpate, 0.4, 100.0, false),
-                                result("greedy-20", Recipe::palpate, 0.3, 110.0, false),
-                                result("greedy-200", Recipe::palpate, 0.1, 310.0, false)});
-  EXPECT_EQ(choice.recommended, 1u) << "a size is not chosen by the test";
-  EXPECT_EQ(choice.dominating, 3u);
-}
-
-TEST(Choose, OnEveryRecordedSetNoMethodDominatesTheRecommendedOne) {
-  int sets = 0;
-  for (const std::filesystem::path& folder : {test::real_data(), test::real_data() / "../labs"}) {
-    if (!std::filesystem::exists(folder)) continue;
-    for (const auto& set : std::filesystem::directory_iterator(folder)) {
-      std::vector<PreparedRecordingPointer> recordings[2];
-      if (!set.is_directory()) continue;
-      for (const auto& file : std::filesystem::directory_iterator(set.path())) {
-        const std::string name = file.path().filename().string();
-        const bool tested = name.find("test") != std::string::npos;
-        if (file.path().extension() != ".csv" || (!tested && name.find("train") == std::string::npos)) continue;
-        recordings[tested].push_back(prepare_recording(*read_usable_recording(file.path().string())));
-      }
-      const auto split = split_recordings(recordings[0], recordings[1]);
-      if (recordings[0].empty() || recordings[1].empty() || !split.ok()) continue;  // no test, or one trained on
-      const auto data = measure(*split, *load_scene("silicone_block"), true, {});
-      ASSERT_TRUE(data.ok()) << set.path() << data.error().message;
-      ++sets;
-      const auto entry = [&](std::size_t i) { return Candidate{data->models[i].errors, data->models[i].time.tick}; };
-      for (std::size_t i = 1; i < data->models.size(); ++i) {
-        if (!data->models[i].plan.main && dominates(entry(i), entry(data->choice.recommended))) {
-          EXPECT_TRUE(data->choice.dominating.has_value()) << set.path() << ": the answer names no other size";
-        }
-      }
-      for (const std::size_t i : data->choice.candidates) {
-        EXPECT_FALSE(dominates(entry(i), entry(data->choice.recommended)))
-            << set.path() << ": " << data->models[i].plan.name << " dominates "
-            << data->models[data->choice.recommended].plan.name;
-      }
-    }
-  }
-  if (sets == 0) GTEST_SKIP() << "skipped: the recordings are not there";
-  EXPECT_GE(sets, 10);
+TEST(HeadlineModels, AreThoseOfThePaperTheTrendAndWhatIsRecommended) {
+  ReportData data;
+  data.models = {ModelResult{}};
+  for (const ModelPlan& plan : all_plans()) data.models.push_back(result(plan_name(plan).c_str(), 0.5, 100.0));
+  const auto named = [&] {
+    std::vector<std::string> names;
+    for (const std::size_t i : headline_models(data)) names.push_back(data.models[i].name);
+    return names;
+  };
+  data.choice = choose(data.models);
+  data.choice.recommended = data.choice.best = 6;
+  const std::vector<std::string> main{"no force",   "voxel", "random-100",      "kdtree-100",
+                                      "greedy-100", "trend", "trend+greedy-100"};
+  EXPECT_EQ(named(), main);
+  data.choice.recommended = 1;
+  EXPECT_EQ(named()[1], "direct");
 }
 
 TEST(WorstStretch, IsWhereTheFirstModelErrs) {
@@ -132,8 +74,8 @@ TEST(WorstStretch, OfAShortRecordingIsTheWhole) {
   EXPECT_EQ(worst_stretch(recording, {model}, JndLine{}).rows.size(), 500u);
 }
 
-// In one fold the recipe of 2009 has fewer sites than centres, in the other more.
-TEST(Measure, ANameHasTheNumberOfCentresInEveryOrderOfTheFolds) {
+// Two recordings without a test, in both orders: two folds, of which one has few sites.
+TEST(Measure, HasTheMainModelsWithFiveSeedsAndNamesWithTheNumberOfCentres) {
   const auto scene = test::must(load_scene("silicone_block"));
   for (const bool long_first : {false, true}) {
     std::vector<PreparedRecordingPointer> recordings;
@@ -144,11 +86,43 @@ TEST(Measure, ANameHasTheNumberOfCentresInEveryOrderOfTheFolds) {
     }
     const auto set = test::must(split_recordings(recordings, {}));
     const auto data = test::must(measure(set, scene, true, {}));
+    EXPECT_EQ(data.models.front().name, "no force");
+    std::set<std::string> families;
     for (const ModelResult& one : data.models) {
-      if (!one.model || !one.plan.request.method->can_take(kTakesCentres)) continue;
-      EXPECT_EQ(one.plan.name, model_name(one.plan.recipe, *one.plan.request.method, one.size));
+      EXPECT_EQ(one.errors.samples, data.models.front().errors.samples);
+      if (!one.plan) continue;
+      EXPECT_TRUE(is_main(*one.plan)) << one.name;
+      EXPECT_TRUE(families.insert(family_name(*one.plan)).second) << one.name;
+      EXPECT_EQ(one.seeds, one.plan->method->can_take(kTakesSeed) ? kSeeds : 1) << one.name;
+      EXPECT_LE(one.p99_range.low, one.errors.p99_error_over_jnd);
+      EXPECT_GE(one.p99_range.high, one.errors.p99_error_over_jnd);
+      EXPECT_EQ(one.bound.has_bounds(), one.plan->base == Base::trend) << one.name;
+      if (one.size == 0 || !one.plan->selects_centres()) continue;
+      EXPECT_EQ(one.name, family_name(*one.plan) + "-" + std::to_string(one.size));
     }
+    for (const char* family : {"voxel", "random", "kdtree", "greedy", "trend"}) EXPECT_EQ(families.count(family), 1u);
+    EXPECT_TRUE(families.count("trend+greedy") == 1 || !data.models.back().same.empty());
   }
+}
+
+// Of one method there are 100 centres and the number that the training recordings select.
+TEST(Measure, AMethodHasAtMostTwoNumbersOfCentres) {
+  std::vector<PreparedRecordingPointer> recordings;
+  for (const unsigned seed : {1U, 2U})
+    recordings.push_back(prepare_recording(*record_sensors({"layered", seed, 8.0, 250.0})));
+  const auto set = test::must(split_recordings({recordings[0]}, {recordings[1]}));
+  const auto data = test::must(measure(set, test::must(load_scene("silicone_block")), false, {}));
+  std::map<std::string, int> rows;
+  for (const ModelResult& one : data.models) {
+    if (one.plan) ++rows[family_name(*one.plan)];
+  }
+  const ErrorBySize& errors = data.by_size.at(Base::force);
+  ASSERT_EQ(errors.size(), std::size(kSizes));
+  const int selected = std::ranges::min_element(errors, {}, &std::pair<int, double>::second)->first;
+  for (const char* family : {"random", "kdtree", "greedy"}) EXPECT_EQ(rows[family], selected == 100 ? 1 : 2) << family;
+  for (const char* family : {"direct", "voxel", "trend"}) EXPECT_EQ(rows[family], 1) << family;
+  EXPECT_EQ(data.choices.count(0), 1u);
+  EXPECT_EQ(data.choices.count(selected), 1u);
 }
 
 }  // namespace

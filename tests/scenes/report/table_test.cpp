@@ -35,6 +35,12 @@ TEST(Table, HtmlShowsUnitsEscapesTextAndAlignsNumbers) {
                                      "&lt;i&gt;</td><td>0</td><td>–</td><td>100.00</td>"}));
 }
 
+TEST(Table, TextIsThatOfThePageWithoutMarks) {
+  EXPECT_EQ(table_text(example()), (std::vector<std::vector<std::string>>{{"model", "count", "RMS [mN]", "share [%]"},
+                                                                          {"a,\"b\"", "12,345", "100", "99.95"},
+                                                                          {"<i>", "0", "–", "100.00"}}));
+}
+
 TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
   const Table table{"example",
                     false,

@@ -16,8 +16,8 @@ using Json = nlohmann::json;
 
 TEST(Scene, EveryShippedSceneReads) {
   const auto names = test::must(scene_names());
-  EXPECT_EQ(names, (std::vector<std::string>{"button", "elastic_block", "foam_block", "jnd_study", "silicone_block",
-                                             "skin", "stiff_block"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"button", "elastic_block", "foam_block", "jnd_study", "layered_block",
+                                             "silicone_block", "skin", "stiff_block"}));
   for (const std::string& name : names) {
     const auto scene = test::must(load_scene(name));
     EXPECT_EQ(scene.name, name);

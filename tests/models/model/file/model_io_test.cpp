@@ -133,19 +133,12 @@ TEST(ModelIo, AwkwardNumbersRoundTripBitForBit) {
   }
 }
 
-// Older files contain the seconds of the fit and a copy of the relaxation times.
 TEST(ModelIo, StoresNeitherTimesNorFolders) {
   ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
   const std::string text = text_of(data);
   data.provenance.recordings[0].insert(0, "/home/someone/rec/");  // folders are not stored, either
   EXPECT_EQ(text_of(data), text);
   EXPECT_EQ(text.find("seconds"), std::string::npos);
-  std::string older = text;
-  older.insert(older.find("\"weighting\""),
-               R"("fit_seconds": 5, "relaxation_times": [{"time_s": 0.17, "standard_error_s": 0}], )");
-  const Result<ModelData> back = read_model_text(older, "m.json");
-  ASSERT_TRUE(back.ok()) << back.error().message;
-  EXPECT_EQ(text_of(*back), text);
 }
 
 TEST(ModelIo, WhatCannotBeReadIsNotWritten) {

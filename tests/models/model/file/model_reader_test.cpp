@@ -110,15 +110,6 @@ TEST(ModelReader, RefusesWrongNamesAndFeatures) {
              });
 }
 
-TEST(ModelReader, ReadsTheSingleBranchOfEarlierFiles) {
-  const std::string text = small_text();
-  const std::string earlier = test::replaced(
-      test::replaced(text, "\"maxwell_spectrum\", \"parts\": [{", "\"maxwell_branch\", "), "]}}]}", "]}}");
-  const Result<ModelData> data = read_model_text(earlier, "m.json");
-  ASSERT_TRUE(data.ok()) << data.error().message;
-  EXPECT_EQ(text_of(*data), text);
-}
-
 TEST(ModelReader, RefusesWrongNumbersAndSizes) {
   expect_all(
       small_text(),
@@ -143,7 +134,6 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
            {"m.json:13:14:", "normalisation.scale", "found 1", "expected 3", "; "}},
           {"\"offset_N\": 0.065", "\"offset_N\": 0", {"m.json:27:17:", "jnd.offset_N", "found 0", "above 1e-12", "; "}},
           {"\"jnd\": {", "\"jnd\": 3, \"was\": {", {"m.json:26:10:", "jnd", "found 3", "\"offset_N\"", "; "}},
-          {"\"corrects_trend\": true", "\"corrects_trend\": 1", {"m.json:23:21:", "corrects_trend", "found 1", "; "}},
           {"\"largest_force_N\": 2.5",
            "\"largest_force_N\": 1.7e308",
            {"m.json:25:22:", "largest_force_N", "1.7e+308", "from 0 up to 1e+06", "; "}},
@@ -203,7 +193,7 @@ TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
              {
                  {"\"tail\"",
                   "\"tails\": 3,\n\"tail\"",
-                  {"m.json:50:12:", "tails", "unknown field", "format", "corrects_trend", "correction_limit_N",
+                  {"m.json:50:12:", "tails", "unknown field", "format", "correction_limit_N",
                    "largest_force_N", "lowest_force_N", "error_bound", "; "}},
                  {"{\"kind\": \"depth\"}",
                   "{\"kind\": \"depth\", \"time\": 1}",

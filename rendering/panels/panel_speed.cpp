@@ -1,0 +1,224 @@
+#include "rendering/panels/panel_speed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/base/text.h"
+#include "rendering/panels/panel_parts.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kBudget_ns = 1e6;
+// The shortest ranges, so that equal models do not seem to differ.
+constexpr double kLeastTime = 0.3, kLeastError = 0.5;
+constexpr double kMargin = 0.08;          // of a range, at each end
+constexpr double kNameMargin = 0.2;       // the same at the side of the names
+constexpr double kSmallestError = 0.003;  // far below what can be drawn beside 1
+
+double log_error(double error_over_jnd) { return std::log10(std::max(error_over_jnd, kSmallestError)); }
+
+bool has_dot(const ModelsView& models, std::size_t slot) {
+  const ModelView& one = models.slots[slot];
+  return one.state == SlotState::ready && one.errors.samples > 0 && one.tick_ns() > 0.0 && slot != models.reference;
+}
+
+struct Extent {
+  double from = 1e9, to = -1e9;
+  void add(double value) {
+    from = std::min(from, value);
+    to = std::max(to, value);
+  }
+  Range range(double least, double upper_margin) const {
+    const double widen = std::max(0.0, 0.5 * (least - (to - from)));
+    const double low = from - widen, high = to + widen;
+    return {low - kMargin * (high - low), high + upper_margin * (high - low)};
+  }
+};
+
+// The gridlines of 2 and 5 times a power of ten; in less than half a decade, of 3 and 7 as well.
+std::vector<double> between_decades(const Range& range) {
+  std::vector<double> marks{2.0, 5.0};
+  if (range.to - range.from < 0.6) marks = {1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};
+  std::vector<double> values;
+  for (double decade = std::floor(range.from); decade <= range.to; decade += 1.0) {
+    for (const double mark : marks) {
+      const double at = decade + std::log10(mark);
+      if (at > range.from && at < range.to) values.push_back(at);
+    }
+  }
+  return values;
+}
+
+struct SpeedPlot {
+  const ModelsView& models;
+  const UiStyle& style;
+  const LivePlot& plot;
+  const SpeedRanges& ranges;
+  std::vector<ImVec4> placed{};  // rectangles of dots and names
+
+  float line() const { return ImGui::GetFontSize(); }
+  ImDrawList& list() const { return plot.list(); }
+  ImU32 colour(std::size_t slot, float alpha = 1.0F) const {
+    return ink(slot_colour(models, slot, style.theme()), alpha);
+  }
+  ImVec2 at(double time_ns, double error_over_jnd) const {
+    return {plot.x_px(std::log10(time_ns)), plot.y_px(log_error(error_over_jnd))};
+  }
+
+  // Axes have labels at decades only; draws lines and labels between them. The labels are outside of the frame.
+  void draw_grid() const {
+    const ImU32 grid = ink(style.colours().grid), quiet = ink(style.colours().quiet);
+    for (const double time : between_decades(ranges.time))
+      list().AddLine({plot.x_px(time), plot.top()}, {plot.x_px(time), plot.bottom()}, grid);
+    for (const double error : between_decades(ranges.error)) plot.level(error, grid, 1.0F);
+    list().PushClipRectFullScreen();
+    float free_px = plot.left() - line();
+    for (const double time : between_decades(ranges.time)) {
+      const std::string text = fixed(std::pow(10.0, time), 0);
+      const float width = ImGui::CalcTextSize(text.c_str()).x, x = plot.x_px(time) - 0.5F * width;
+      if (x < free_px || x + width > plot.right() - 2.0F * line()) continue;
+      list().AddText({x, plot.bottom() + 0.15F * line()}, quiet, text.c_str());
+      free_px = x + width + 0.6F * line();
+    }
+    float above_px = plot.bottom() + line();
+    for (const double error : between_decades(ranges.error)) {
+      const std::string text = general(std::pow(10.0, error), 2);
+      const float y = plot.y_px(error);
+      if (above_px - y < 1.1F * line() || std::abs(y - plot.y_px(0.0)) < 1.1F * line()) continue;
+      list().AddText({plot.left() - ImGui::CalcTextSize(text.c_str()).x - 0.3F * line(), y - 0.55F * line()}, quiet,
+                     text.c_str());
+      above_px = y;
+    }
+    list().PopClipRect();
+  }
+
+  // Draws the intervals, the path over the number of centres, and the dot of a model.
+  void draw_dot(std::size_t slot) {
+    const ModelView& one = models.slots[slot];
+    const float size = style.scale();
+    const ImVec2 dot = at(one.tick_ns(), one.errors.p99_error_over_jnd);
+    std::vector<ImVec2> path;
+    for (const auto& [centres, point] : one.path) {
+      path.push_back(at(point.first, point.second));
+      list().AddCircleFilled(path.back(), 2.0F * size, colour(slot, 0.6F));
+    }
+    plot.line(path, colour(slot, 0.6F), size);
+    if (one.path.size() > 1) {
+      for (const auto* end : {&*one.path.begin(), &*one.path.rbegin()}) {
+        if (end->first == one.centres) continue;
+        const ImVec2 by = at(end->second.first, end->second.second);
+        list().AddText({by.x + 3.0F * size, by.y - line()}, ink(style.colours().quiet),
+                       std::to_string(end->first).c_str());
+      }
+    }
+    if (one.p99_interval.known()) {
+      list().AddLine({dot.x, plot.y_px(log_error(one.p99_interval.low))},
+                     {dot.x, plot.y_px(log_error(one.p99_interval.high))}, colour(slot), 1.5F * size);
+    }
+    list().AddLine({plot.x_px(std::log10(one.tick.low_ns)), dot.y}, {plot.x_px(std::log10(one.tick.high_ns)), dot.y},
+                   colour(slot), 1.5F * size);
+    const float radius = (slot == models.verdict.chosen ? 7.0F : 5.0F) * size;
+    draw_mark(list(), dot, radius, one.paper, colour(slot), style);
+    placed.push_back({dot.x - radius, dot.y - radius, dot.x + radius, dot.y + radius});
+  }
+
+  bool is_free(const ImVec4& box) const {
+    if (box.x < plot.left() || box.z > plot.right() || box.y < plot.top() || box.w > plot.bottom()) return false;
+    return std::none_of(placed.begin(), placed.end(), [&](const ImVec4& other) {
+      return box.x < other.z && other.x < box.z && box.y < other.w && other.y < box.w;
+    });
+  }
+
+  // Draws the name beside its dot, on the side and at the height that are free; else joined to it by a line.
+  void draw_name(std::size_t slot) {
+    const ModelView& one = models.slots[slot];
+    const ImVec2 dot = at(one.tick_ns(), one.errors.p99_error_over_jnd);
+    const ImVec2 size = ImGui::CalcTextSize(one.name.c_str());
+    const float gap = 0.6F * line();
+    ImVec4 box(dot.x + gap, dot.y - 0.5F * size.y, dot.x + gap + size.x, dot.y + 0.5F * size.y);
+    for (int step = 0; step < 24; ++step) {
+      const float shift = static_cast<float>((step / 4 + 1) / 2) * (step / 4 % 2 == 0 ? 0.7F : -0.7F) * size.y;
+      const float left = step % 2 == 0 ? dot.x + gap : dot.x - gap - size.x;
+      const ImVec4 tried(left, dot.y - 0.5F * size.y + shift, left + size.x, dot.y + 0.5F * size.y + shift);
+      if (!is_free(tried)) continue;
+      box = tried;
+      break;
+    }
+    placed.push_back(box);
+    const float edge = box.x > dot.x ? box.x : box.z, middle = 0.5F * (box.y + box.w);
+    if (std::abs(middle - dot.y) > 0.5F * size.y) list().AddLine(dot, {edge, middle}, colour(slot, 0.5F));
+    list().AddText({box.x, box.y}, ink(text_colour(slot_colour(models, slot, style.theme()), style.theme())),
+                   one.name.c_str());
+  }
+};
+
+// Draws the 1 ms of a tick as a bar, and in it the time of the model.
+void draw_budget(const ModelView& one, const ImU32 colour, const UiStyle& style) {
+  const std::string text = fixed(one.tick_ns(), 0) + " ns = " + tick_share(one.tick_ns()) + " of 1 ms";
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float line = ImGui::GetTextLineHeight(), all = ImGui::GetContentRegionAvail().x;
+  const float left = at.x + 2.6F * ImGui::GetFontSize();
+  const float right = at.x + all - ImGui::CalcTextSize(text.c_str()).x - line;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled({left, at.y + 0.3F * line}, {right, at.y + 0.7F * line}, ink(style.colours().band));
+  list.AddRect({left, at.y + 0.3F * line}, {right, at.y + 0.7F * line}, ink(style.colours().edge));
+  const float used = std::max(1.5F, (right - left) * static_cast<float>(one.tick_ns() / kBudget_ns));
+  list.AddRectFilled({left, at.y + 0.2F * line}, {left + used, at.y + 0.8F * line}, colour);
+  list.AddText({right + 0.5F * line, at.y}, ink(style.colours().quiet), text.c_str());
+  ImGui::Dummy({all, line});
+  tip("The bar is the 1 ms of a tick; the mark at its left is the time that this model takes of it.");
+}
+
+}  // namespace
+
+SpeedRanges speed_ranges(const ModelsView& models) {
+  Extent time, error;
+  error.add(0.0);  // the JND
+  for (const std::size_t slot : models.listed()) {
+    if (!has_dot(models, slot)) continue;
+    const ModelView& one = models.slots[slot];
+    for (const double ns : {one.tick_ns(), one.tick.low_ns, one.tick.high_ns}) time.add(std::log10(ns));
+    error.add(log_error(one.errors.p99_error_over_jnd));
+    if (one.p99_interval.known()) {
+      error.add(log_error(one.p99_interval.low));
+      error.add(log_error(one.p99_interval.high));
+    }
+    for (const auto& [centres, point] : one.path) {
+      time.add(std::log10(point.first));
+      error.add(log_error(point.second));
+    }
+  }
+  if (time.from > time.to) return {{2.0, 3.0}, {-1.0, 1.0}};
+  return {time.range(kLeastTime, kNameMargin), error.range(kLeastError, kMargin)};
+}
+
+void draw_speed(const ModelsView& models, const UiStyle& style, float height) {
+  const SpeedRanges ranges = speed_ranges(models);
+  const float budget = ImGui::GetTextLineHeightWithSpacing();
+  {
+    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height - budget},
+                        {ranges.time, ranges.error, "ns", "", true});
+    plot.jnd_band(ranges.error.from, 0.0);
+    SpeedPlot drawing{models, style, plot, ranges};
+    drawing.draw_grid();
+    plot.level(0.0, ink(style.colours().text), 1.5F * style.scale());
+    plot.caption("a hand could tell", plot.y_px(0.0) - 1.1F * ImGui::GetFontSize());
+    std::vector<std::size_t> dots = models.drawn();
+    std::erase_if(dots, [&](std::size_t slot) { return !has_dot(models, slot); });
+    for (const std::size_t slot : dots) drawing.draw_dot(slot);
+    std::ranges::sort(dots, {}, [&](std::size_t slot) { return models.slots[slot].errors.p99_error_over_jnd; });
+    for (const std::size_t slot : dots) drawing.draw_name(slot);
+  }
+  tip("For each model: the time of a whole tick, and the error that 99 % of the samples do not exceed.\n"
+      "Left and low is better. Filled: this program's; hollow: as in the paper of 2009. Lines: 95 % interval of the\n"
+      "error, spread of the time. The thin line is the path over the numbers of centres that were tried.\n"
+      "Both values are columns of the table. E shows the error against the force instead.");
+  const std::size_t named = models.verdict.chosen.value_or(models.selected);
+  if (named < models.slots.size() && has_dot(models, named))
+    draw_budget(models.slots[named], ink(slot_colour(models, named, style.theme())), style);
+}
+
+}  // namespace palpate

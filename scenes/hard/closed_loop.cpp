@@ -1,0 +1,127 @@
+#include "scenes/hard/closed_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr int kStepsPerSecond = 20000;
+constexpr double kStep_s = 1.0 / kStepsPerSecond;
+constexpr std::int64_t kPeriod = kStepsPerSecond / 1000;  // of the tick, in steps
+constexpr std::uint64_t kLatest = 10;                     // steps; jitter below this
+constexpr std::uint64_t kOneLeftOutIn = 30;
+constexpr std::int64_t kGapEvery = 100 * kPeriod;
+constexpr std::int64_t kGap = 5 * kPeriod;
+
+}  // namespace
+
+const std::array<Grip, 4>& grips() {
+  static const std::array<Grip, 4> all{{{"relaxed", 0.08, 150.0, 3.5},
+                                        {"braced", 0.12, 800.0, 14.0},
+                                        {"clenched", 0.3, 2000.0, 30.0},
+                                        {"mass alone", 0.1, 0.0, 0.0}}};
+  return all;
+}
+
+double SimulatedTool::time_s() const noexcept { return kStep_s * static_cast<double>(step_); }
+
+bool SimulatedTool::read(double now_s, DeviceSample& sample) noexcept {
+  if (read_step_ == step_) return false;
+  read_step_ = step_;
+  // If samples are more frequent than ticks, this is the newest one.
+  if (step_ < sample_step_) return false;
+  sample_step_ = step_ + std::llround(settings_.sample_s * kStepsPerSecond) -
+                 (settings_.sample_s > 1e-3 ? static_cast<std::int64_t>(kLatest) : 0);
+  sample = {};
+  sample.tool.time_s = now_s;
+  const double quantum_m = settings_.encoder_step_m;
+  sample.tool.position_m = quantum_m > 0.0 ? quantum_m * std::round(position_m_ / quantum_m) : position_m_;
+  return true;
+}
+
+DeviceHealth SimulatedTool::health(double) noexcept {
+  DeviceHealth health;
+  health.sample_age_s = 0.0;
+  health.interval_s = settings_.sample_s;
+  health.lag_s = settings_.delay_s + 0.5 * std::max(1e-3, settings_.sample_s);
+  return health;
+}
+
+void SimulatedTool::write(double force_N) noexcept {
+  if (count_ == written_.size()) return;  // a delay of 10 ms fills less than half
+  written_[(first_ + count_++) % written_.size()] = {force_N,
+                                                     step_ + std::llround(settings_.delay_s * kStepsPerSecond)};
+}
+
+// Acceleration is constant within a step, so that the work of the held force is exact
+// and the integration adds no energy to a free mass.
+void SimulatedTool::advance(double aim_m, double aim_m_per_s, double push_N) noexcept {
+  while (count_ > 0 && written_[first_].due <= step_) {
+    force_N_ = written_[first_].force_N;
+    first_ = (first_ + 1) % written_.size();
+    --count_;
+  }
+  const Grip& grip = settings_.grip;
+  const double drive_N = grip.stiffness_N_per_m * (aim_m - position_m_) +
+                         grip.damping_Ns_per_m * (aim_m_per_s - velocity_m_per_s_) + push_N;
+  const double before_m_per_s = velocity_m_per_s_;
+  velocity_m_per_s_ += kStep_s * (drive_N - force_N_) / grip.mass_kg;
+  const double way_m = 0.5 * kStep_s * (before_m_per_s + velocity_m_per_s_);
+  position_m_ += way_m;
+  const double work_J = force_N_ * way_m;
+  (work_J > 0.0 ? energy_.put_in_J : energy_.got_out_J) += std::abs(work_J);
+  ++step_;
+}
+
+void SimulatedTool::place(double position_m, double velocity_m_per_s) noexcept {
+  position_m_ = position_m;
+  velocity_m_per_s_ = velocity_m_per_s;
+}
+
+ClosedLoop::ClosedLoop(const LoopSettings& settings)
+    : tool_(settings),
+      live_(tool_, slot_, LiveTickSettings{{}, nullptr, settings.passivity}),
+      ticking_(settings.ticking) {
+  controls_.scale = settings.scale;
+}
+
+void ClosedLoop::publish(std::shared_ptr<const ForceModel> model) {
+  slot_.publish(std::make_unique<LiveModels>(++id_, tool_.sensor(), std::vector{std::move(model)}));
+}
+
+// The step of the next tick.
+std::int64_t ClosedLoop::next_tick() {
+  deadline_ += kPeriod;
+  if (ticking_ == Ticking::even) return deadline_;
+  if (ticking_ == Ticking::gaps) {
+    if (random_.index(kOneLeftOutIn) == 0) deadline_ += kPeriod;
+    if (deadline_ / kGapEvery != (deadline_ - kPeriod) / kGapEvery) deadline_ += kGap - kPeriod;
+  }
+  return deadline_ + static_cast<std::int64_t>(random_.index(kLatest));
+}
+
+void ClosedLoop::run(double seconds, const Path& path, const AfterTick& after_tick) {
+  const std::int64_t from = step_;
+  const std::int64_t end = step_ + std::llround(seconds * kStepsPerSecond);
+  for (; step_ < end; ++step_) {
+    if (step_ == due_) {
+      const LoopSnapshot& snapshot = tick();
+      faults_ |= snapshot.faults;
+      due_ = next_tick();
+      if (after_tick) after_tick(snapshot);
+    }
+    const Drive drive = path(kStep_s * static_cast<double>(step_ - from));
+    tool_.advance(drive.aim_m, drive.aim_m_per_s, drive.push_N);
+  }
+}
+
+ClosedLoop::Drive minimum_jerk(double from_m, double to_m, double duration_s, double time_s) {
+  const double u = std::clamp(time_s / duration_s, 0.0, 1.0);
+  const double way_m = to_m - from_m;
+  return {from_m + way_m * u * u * u * (10.0 + u * (6.0 * u - 15.0)),
+          way_m * 30.0 * u * u * (1.0 - u) * (1.0 - u) / duration_s, 0.0};
+}
+
+}  // namespace palpate

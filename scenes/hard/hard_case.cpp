@@ -1,0 +1,83 @@
+#include "scenes/hard/hard_case.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace palpate {
+
+const char* kind_name(HardKind kind) {
+  constexpr const char* kNames[] = {"sites", "recording", "motion", "loop"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+Result<HardTraining::Fit> HardTraining::fit(const ModelPlan& plan, const FitControl& control) {
+  const std::string name = plan_name(plan);
+  for (const auto& [other, made] : made_) {
+    if (other == name) return made;
+  }
+  ModelPlan asked = common_;
+  asked.base = plan.base;
+  asked.method = plan.method;
+  const auto start = std::chrono::steady_clock::now();
+  auto fitted = fits_.fit(asked, control);
+  Fit fit;
+  fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (fitted) {
+    fit.model = std::make_shared<const FittedModel>(std::move(fitted->data));
+    fit.rank = fitted->rank;
+    fit.condition_number = fitted->condition_number;
+  } else if (fitted.error().message == interrupted().message) {
+    return interrupted();
+  } else {
+    fit.refusal = fitted.error().message;
+  }
+  made_.emplace_back(name, fit);
+  return fit;
+}
+
+const HardExpectation& HardCase::expectation_of(const std::string& plan) const {
+  const auto found = std::ranges::find(exceptions, plan, &std::pair<std::string, HardExpectation>::first);
+  return found == exceptions.end() ? expected : found->second;
+}
+
+void HardMeasure::add(double force_N, double true_N, bool counts) {
+  // A force that is not finite is never within the JND, and an infinite error.
+  const double error_N = std::isfinite(force_N) ? std::abs(force_N - true_N) : HardExpectation::kAny;
+  if (counts) {
+    ++counted_;
+    if (error_N <= JndLine{}.at(true_N)) ++within_;
+    worst_N_ = std::max(worst_N_, error_N);
+  }
+  const double step_N = std::abs(force_N - last_N_);
+  if (ticks_ > 0) step_N_ = std::max(step_N_, std::isfinite(step_N) ? step_N : HardExpectation::kAny);
+  last_N_ = force_N;
+  ++ticks_;
+}
+
+void HardMeasure::add(double force_N, double true_N, bool counts, double position_m) {
+  if (has_energy_) {
+    // The trapezoidal rule. A force that pushes the tool out (towards smaller positions) gives out energy.
+    const double way_m = position_m - last_m_;
+    given_J_ -= 0.5 * (force_N + last_N_) * way_m;
+    truly_given_J_ -= 0.5 * (true_N + last_true_N_) * way_m;
+    energy_J_ = std::max(energy_J_, given_J_ - std::max(0.0, truly_given_J_));
+  }
+  has_energy_ = true;
+  last_m_ = position_m;
+  last_true_N_ = true_N;
+  add(force_N, true_N, counts);
+}
+
+HardFigures HardMeasure::figures() const {
+  HardFigures figures;
+  if (counted_ > 0) {
+    figures.within_jnd = static_cast<double>(within_) / static_cast<double>(counted_);
+    figures.worst_error_N = worst_N_;
+  }
+  if (ticks_ > 1) figures.worst_step_N = step_N_;
+  if (has_energy_) figures.energy_J = energy_J_;
+  return figures;
+}
+
+}  // namespace palpate

@@ -1,0 +1,107 @@
+// The hard cases of `palpate hard`: numerically hard sites, faulty recordings, motions unlike the training, and a hand
+// in closed loop. Each case has one training, a trial whose true force is known, and an expectation. hard_table.h runs
+// every method on every case.
+//
+// Everything is virtual and deterministic. Thread guarantee: slow side.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "models/fit/model_fits.h"
+
+namespace palpate {
+
+enum class HardKind : std::uint8_t { sites, recording, motion, loop };
+const char* kind_name(HardKind kind);  // "sites", ...
+
+// The figures of one model in one trial; NaN: does not apply.
+struct HardFigures {
+  double within_jnd = kNotMeasured;     // share of the ticks in contact with an error within the JND of the true force
+  double worst_error_N = kNotMeasured;  // of these ticks
+  double worst_step_N = kNotMeasured;   // largest change of the force between neighbouring ticks
+  // Energy that the force gave out beyond what the tool had put in, largest over time and beyond that of the material.
+  double energy_J = kNotMeasured;
+
+  static constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+};
+
+// What must hold for every figure that applies. A refusal counts only where it is expected.
+struct HardExpectation {
+  const char* refusal = nullptr;  // part of the reason; null: the fit must be accepted
+  double within_jnd = 0.0;        // at least
+  double worst_error_N = kAny;    // at most, and so on
+  double worst_step_N = kAny;
+  double energy_J = kAny;
+
+  static constexpr double kAny = std::numeric_limits<double>::infinity();
+};
+
+// The fits to one training, each made when it is first asked for.
+class HardTraining {
+ public:
+  // `common`: what all plans have in common beside base and method.
+  HardTraining(ModelFits fits, ModelPlan common) : fits_(std::move(fits)), common_(std::move(common)) {}
+
+  struct Fit {
+    std::shared_ptr<const FittedModel> model;  // null: refused
+    std::string refusal;
+    Eigen::Index rank = 0;  // as MethodFit
+    double condition_number = 0.0;
+    double seconds = 0.0;  // with the preparation, if this fit was the first to need it
+  };
+  // The method of `plan` with default options. Errors: interrupted.
+  Result<Fit> fit(const ModelPlan& plan, const FitControl& control);
+
+ private:
+  ModelFits fits_;
+  ModelPlan common_;
+  std::vector<std::pair<std::string, Fit>> made_;  // by the name of the plan
+};
+
+struct HardTrial {
+  std::shared_ptr<HardTraining> training;
+  // Pure, any thread.
+  std::function<HardFigures(const std::shared_ptr<const FittedModel>&)> measure;
+};
+
+struct HardCase {
+  std::string name;
+  HardKind kind = HardKind::sites;
+  std::string why;  // what is hard, and where the expectation comes from
+  HardExpectation expected;
+  std::vector<std::pair<std::string, HardExpectation>> exceptions;  // by the name of the plan
+  std::function<HardTrial()> build;
+
+  const HardExpectation& expectation_of(const std::string& plan) const;
+};
+
+// Collects the figures of one model, tick by tick.
+class HardMeasure {
+ public:
+  // `counts`: the tick is in contact.
+  void add(double force_N, double true_N, bool counts);
+  // The same with the position of the tool, for the energy.
+  void add(double force_N, double true_N, bool counts, double position_m);
+  HardFigures figures() const;
+
+ private:
+  std::size_t ticks_ = 0, counted_ = 0, within_ = 0;
+  double worst_N_ = 0.0, step_N_ = 0.0, last_N_ = 0.0;
+  bool has_energy_ = false;
+  double last_m_ = 0.0, last_true_N_ = 0.0;
+  double given_J_ = 0.0, truly_given_J_ = 0.0, energy_J_ = 0.0;
+};
+
+// The cases of each kind, in the order of the table.
+std::vector<HardCase> site_cases();
+std::vector<HardCase> recording_cases();
+// Motions and hands share the fits to each material.
+std::vector<HardCase> material_cases();
+
+}  // namespace palpate

@@ -1,0 +1,85 @@
+#include <array>
+#include <cmath>
+
+#include "engine/base/text.h"
+#include "scenes/hard/hard_table.h"
+#include "scenes/plot/inline_svg.h"
+#include "scenes/report/publish.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::array kKinds{HardKind::sites, HardKind::recording, HardKind::motion, HardKind::loop};
+
+// Rank and condition number of the fit.
+std::string numerics_text(const HardCell& cell) {
+  if (cell.rank == 0) return "–";
+  return std::to_string(cell.rank) + " · " + general(cell.condition_number, 1);
+}
+
+// The cases of one kind: a row for each, a column for each method, its rank and condition number below.
+Table marks_table(const std::vector<HardRow>& rows, HardKind kind) {
+  Table table{kind_name(kind)};
+  const std::vector<ModelPlan> plans = hard_plans();
+  for (const HardRow& row : rows) {
+    if (row.of.kind != kind) continue;
+    table.begin_row();
+    table.add({"case", "case", 1.0, TableColumn::kThreeDigits, 1}, row.of.name);
+    table.add({"why", ""}, row.of.why);
+    table.add({"expectation", "expected, % within the JND"}, expectation_text(row.of.expected));
+    for (std::size_t k = 0; k < plans.size(); ++k) {
+      table.add({plan_name(plans[k]), plan_name(plans[k]), 1.0, TableColumn::kThreeDigits, 1}, cell_text(row.cells[k]));
+      table.add({plan_name(plans[k]) + " rank and condition", ""}, numerics_text(row.cells[k]));
+    }
+  }
+  return table;
+}
+
+// The share within the JND against the condition number: one point for each fit.
+Figure condition_figure(const std::vector<HardRow>& rows) {
+  Figure figure;
+  figure.plot.name = "condition";
+  figure.caption =
+      "Share of the samples within the JND of the true force against the condition number of the equations, after the "
+      "truncation or with the smoothing. Hard sites and faulty recordings; one point for each fit.";
+  Panel& panel = figure.plot.panels.emplace_back();
+  panel.x = {"Condition number", "", true};
+  panel.y = {"Within the JND [%]", "", false, 0.0, 100.0};
+  const std::vector<ModelPlan> plans = hard_plans();
+  for (std::size_t k = 0; k < plans.size(); ++k) {
+    Series series{plan_name(plans[k]), colour_of(plans[k]), Mark::bars, {}};
+    for (const HardRow& row : rows) {
+      const HardCell& cell = row.cells[k];
+      if (row.of.kind != HardKind::sites && row.of.kind != HardKind::recording) continue;
+      if (cell.rank > 0 && std::isfinite(cell.condition_number) && !std::isnan(cell.figures.within_jnd))
+        series.rows.push_back({cell.condition_number, 100.0 * cell.figures.within_jnd});
+    }
+    if (!series.rows.empty()) panel.series.push_back(std::move(series));
+  }
+  return figure;
+}
+
+std::string list_html(const std::vector<std::string>& lines) {
+  std::string html;
+  for (const std::string& line : lines) html += "<li>" + escape_html(line) + "</li>\n";
+  return html.empty() ? "" : "<h2>Not as expected</h2>\n<ul>\n" + html + "</ul>\n";
+}
+
+}  // namespace
+
+Status write_hard_page(const std::vector<HardRow>& rows, const HardPage& page, const FitControl& control) {
+  auto folder = ReportFolder::create(page.out, page.force);
+  if (!folder) return folder.error();
+  std::vector<Table> tables;
+  for (const HardKind kind : kKinds) tables.push_back(marks_table(rows, kind));
+  tables.push_back(cells_table(rows));
+  nlohmann::ordered_json report{{"format", "palpate-hard"}, {"version", 1}, {"answer", hard_answer(rows)}};
+  report.update(hard_json(rows));
+  return write_report(*folder, "hard.html", tables, {condition_figure(rows)},
+                      {{"answer", escape_html(hard_answer(rows))},
+                       {"missed", list_html(missed_cells(rows))},
+                       {"origin", escape_html(page.origin)}},
+                      report, control);
+}
+
+}  // namespace palpate

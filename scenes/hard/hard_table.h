@@ -1,0 +1,60 @@
+// Runs every method of the comparison on every hard case, and compares each cell with its expectation.
+// Thread guarantee: slow side; fits start threads.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/base/fit_control.h"
+#include "engine/base/result.h"
+#include "scenes/hard/hard_case.h"
+#include "scenes/report/table.h"
+
+namespace palpate {
+
+// The methods: those of the paper on the measured force, the trend, and the default.
+std::vector<ModelPlan> hard_plans();
+
+struct HardCell {
+  HardFigures figures;
+  std::string refusal;  // empty: fitted
+  Eigen::Index rank = 0;
+  double condition_number = 0.0;
+  double seconds = 0.0;  // of the fit
+  std::string missed;    // what the expectation does not allow; empty: as expected
+};
+
+struct HardRow {
+  HardCase of;
+  std::vector<HardCell> cells;  // in the order of hard_plans()
+};
+
+// What `cell` misses of an expectation; empty: nothing.
+std::string missed_by(const HardCell& cell, const HardExpectation& expected);
+// "at least 99 % within the JND, error at most 0.3 N, ..."
+std::string expectation_text(const HardExpectation& expected);
+
+// Errors: interrupted.
+Result<std::vector<HardRow>> run_hard(const FitControl& control = {});
+
+// "voxel, repeated sites: ..." for each missed cell.
+std::vector<std::string> missed_cells(const std::vector<HardRow>& rows);
+// One sentence.
+std::string hard_answer(const std::vector<HardRow>& rows);
+
+// One row for each cell, with every figure.
+Table cells_table(const std::vector<HardRow>& rows);
+// The same as JSON (`palpate hard --json`).
+nlohmann::ordered_json hard_json(const std::vector<HardRow>& rows);
+// "✓ 99.8": whether the cell is as expected, and the percentage within the JND, or "refused".
+std::string cell_text(const HardCell& cell);
+
+// Writes the page, its tables and report.json into the folder `out`. Errors: those of ReportFolder and write_report.
+struct HardPage {
+  std::string out;
+  bool force = false;
+  std::string origin;  // command line and version
+};
+Status write_hard_page(const std::vector<HardRow>& rows, const HardPage& page, const FitControl& control = {});
+
+}  // namespace palpate

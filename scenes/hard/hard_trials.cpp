@@ -1,0 +1,91 @@
+#include "scenes/hard/hard_trials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/tick/replay.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kPress_s = 0.3, kPulse_s = 0.6, kStill_s = 1.0, kReturn_s = 1.5, kEnd_s = 2.2;
+constexpr double kTick_s = 1e-3;
+
+}  // namespace
+
+Path training_path(int variant) {
+  return [variant](double time_s) {
+    // Two tones whose sum does not repeat within a minute, compressed so that the tool pauses at the turning points.
+    const double pace = variant == 0 ? 1.0 : 0.93;
+    const double slow = std::sin(2.0 * std::numbers::pi * 0.41 * pace * time_s + 0.4 * variant);
+    const double fast = std::sin(2.0 * std::numbers::pi * 1.37 * pace * time_s);
+    const double strokes_m = 0.0025 + 0.0035 * std::tanh(1.4 * (0.75 * slow + 0.45 * fast));
+    const double begun = minimum_jerk(0.0, 1.0, 0.4, time_s).aim_m;
+    return kInAir_m + begun * (strokes_m - kInAir_m);
+  };
+}
+
+Path scaled(const Path& path, double factor, double offset_m) {
+  return [=](double time_s) { return offset_m + factor * path(time_s); };
+}
+
+HardFigures measure_press(const Press& press, const std::shared_ptr<const FittedModel>& model) {
+  const bool from_air = press.true_N.front() == 0.0;
+  HardMeasure measured;
+  std::size_t row = 0;
+  (void)replay(press.recording, {model}, [&](const RecordingRow& at, const TickSnapshot& snapshot, const HapticsTick&) {
+    const double true_N = press.true_N[row++];
+    // In contact, for the model or in truth.
+    const bool counts = snapshot.in_contact || true_N > 0.0;
+    if (from_air) {
+      measured.add(snapshot.force_N[0], true_N, counts, at.position_m);
+    } else {
+      measured.add(snapshot.force_N[0], true_N, counts);
+    }
+  });
+  return measured.figures();
+}
+
+HardFigures measure_hand(const HandTrial& trial, Block& block, const std::shared_ptr<const FittedModel>& model) {
+  ClosedLoop loop(trial.settings);
+  loop.publish(model);
+  const Grip& grip = trial.settings.grip;
+  const double aim_m = trial.depth_m + (held(grip) ? trial.force_N / grip.stiffness_N_per_m : 0.0);
+  const auto path = [&](double time_s) {
+    ClosedLoop::Drive drive;
+    if (!held(grip)) {
+      drive.push_N = time_s < kReturn_s ? minimum_jerk(0.0, trial.force_N, kPress_s, time_s).aim_m : 0.0;
+    } else if (time_s < kReturn_s) {
+      drive = minimum_jerk(kInAir_m, aim_m, kPress_s, time_s);
+    } else {
+      drive = minimum_jerk(aim_m, kInAir_m, kPress_s, time_s - kReturn_s);
+    }
+    if (time_s >= kPulse_s && time_s < kPulse_s + 0.02) drive.push_N += 1.0;
+    return drive;
+  };
+  HardMeasure measured;
+  double still_J = 0.0, given_J = 0.0, exchanged_s = kPress_s;
+  bool other = false;
+  block.reset(loop.tool().position_m());
+  loop.run(kEnd_s, path, [&](const LoopSnapshot& snapshot) {
+    const SimulatedTool& tool = loop.tool();
+    const double now_s = snapshot.loop_time_s;
+    const double true_N = block.step(tool.position_m(), tool.velocity_m_per_s(), kTick_s);
+    measured.add(snapshot.rendered_N, true_N, snapshot.tick.in_contact && now_s > kPress_s);
+    const double balance_J = tool.energy().balance_J();
+    given_J = std::max(given_J, -balance_J);
+    if (now_s <= kStill_s) still_J = balance_J;
+    if (now_s > kStill_s && now_s <= kReturn_s) given_J = std::max(given_J, still_J - balance_J);
+    if (trial.exchange_s > 0.0 && now_s >= exchanged_s + trial.exchange_s) {
+      exchanged_s = now_s;
+      other = !other;
+      loop.publish(other ? trial.other : model);
+    }
+  });
+  HardFigures figures = measured.figures();
+  figures.energy_J = (loop.faults() & loop_fault::kStops) == 0 ? given_J : HardExpectation::kAny;
+  return figures;
+}
+
+}  // namespace palpate

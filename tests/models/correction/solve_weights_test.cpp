@@ -1,0 +1,229 @@
+#include "models/correction/solve_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "models/correction/fit_direct.h"
+#include "models/correction/projected_kernel.h"
+#include "tests/support/plain_rbf.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using test::random_points;
+using test::smooth_sites;
+
+Eigen::MatrixXd naive_matrix(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  Eigen::MatrixXd matrix(sites.count(), centres.cols());
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+      matrix(i, j) = kernel_value(kernel, (sites.points.col(i) - centres.col(j)).norm());
+  Eigen::MatrixXd whole(sites.count(), matrix.cols() + tail_size(tail_degree(kernel), sites.dimension()));
+  whole << matrix, tail_matrix(tail_degree(kernel), sites.points);
+  return whole.array().colwise() * sites.row_scale.array();
+}
+
+RbfFunction solved(const Sites& sites, const Eigen::MatrixXd& centres) {
+  return solve_weights(sites, centres).function;
+}
+
+double worst_error(const RbfFunction& function, const Sites& sites) {
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < sites.count(); ++i)
+    worst = std::max(worst, std::abs(rbf_value(function, sites.points.col(i).data()) - sites.target_N[i]));
+  return worst;
+}
+
+TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
+  for (const KernelKind kernel : kKernelKinds) {
+    Sites sites = smooth_sites(2, 200, 0.0, 1);
+    const Eigen::VectorXd tail = random_points(1, tail_size(tail_degree(kernel), 2), 3).transpose();
+    sites.target_N = tail_matrix(tail_degree(kernel), sites.points) * tail;
+    sites.kernel = kernel;
+    const RbfFunction fitted = solved(sites, sites.points.leftCols(20));
+    EXPECT_LE((fitted.tail - tail).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
+    EXPECT_LE(fitted.weights.cwiseAbs().maxCoeff(), 1e-10);
+  }
+}
+
+// With as few sites as unknowns, signal and noise cannot be separated reliably.
+TEST(SolveWeights, FollowsAsManySitesAsUnknownsToWithinTheSmoothing) {
+  const Sites sites = smooth_sites(3, 40, 0.0, 2);
+  const RbfFunction fitted = solved(sites, sites.points);
+  EXPECT_LE(worst_error(fitted, sites), 0.1);
+}
+
+TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
+  const Sites sites = smooth_sites(2, 300, 0.0, 2);
+  Eigen::MatrixXd centres(2, 16);
+  centres << sites.points.leftCols(8), sites.points.leftCols(8);
+  const RbfFunction fitted = solved(sites, centres);
+  const auto alone = solved(sites, sites.points.leftCols(8));
+  const auto& weights = fitted.weights;
+  EXPECT_LT(weights.cwiseAbs().maxCoeff(), 2.0 * alone.weights.cwiseAbs().maxCoeff());
+  EXPECT_LT((weights.head(8) - weights.tail(8)).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((weights.head(8) + weights.tail(8) - alone.weights).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST(SolveWeights, OneSiteGivesItsForce) {
+  const Sites sites = smooth_sites(4, 1, 0.0, 2);
+  const RbfFunction fitted = solved(sites, sites.points);
+  EXPECT_NEAR(rbf_value(fitted, sites.points.data()), sites.target_N[0], 1e-13);
+}
+
+TEST(SolveWeights, ZeroForcesGiveAZeroFunction) {
+  Sites sites = smooth_sites(4, 100, 0.0, 2);
+  sites.target_N.setZero();
+  const RbfFunction fitted = solved(sites, sites.points.leftCols(10));
+  EXPECT_EQ(fitted.weights.norm(), 0.0);
+  EXPECT_EQ(fitted.tail.norm(), 0.0);
+}
+
+TEST(SolveWeights, ASiteWithScaleZeroDoesNotCount) {
+  Sites sites = smooth_sites(2, 200, 0.0, 2);
+  const RbfFunction before = solved(sites, sites.points.leftCols(10));
+  sites.row_scale[150] = 0.0;
+  const RbfFunction without = solved(sites, sites.points.leftCols(10));
+  sites.target_N[150] = 1e6;
+  const RbfFunction wild = solved(sites, sites.points.leftCols(10));
+  EXPECT_EQ(without.weights, wild.weights);
+}
+
+TEST(ProjectedKernel, ProjectsTheTailOutAndIsFactorised) {
+  const Sites sites = smooth_sites(2, 60, 0.1, 7);
+  const Eigen::MatrixXd tail = sites.row_scale.asDiagonal() * tail_matrix(1, sites.points);
+  for (const KernelKind kind : kKernelKinds) {
+    const ProjectedKernel projected(kind, sites.points, sites.row_scale);
+    Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(60, 60);
+    projected.project_rows(basis);
+    if (kind != KernelKind::linear) {
+      EXPECT_LT((basis * tail).cwiseAbs().maxCoeff(), 1e-12 * tail.norm());
+    }
+    EXPECT_LT((basis * basis - basis).cwiseAbs().maxCoeff(), 1e-13);
+    EXPECT_LT((basis.col(7) - projected.project(Eigen::VectorXd::Unit(60, 7))).norm(), 1e-13);
+    const Eigen::MatrixXd kernel =
+        definiteness_sign(kind) * naive_matrix(sites, kind, sites.points).leftCols(60) * sites.row_scale.asDiagonal();
+    const double fill = projected.mean_eigenvalue();
+    Eigen::MatrixXd expected = basis * kernel * basis + fill * (Eigen::MatrixXd::Identity(60, 60) - basis);
+    expected.diagonal().array() += 0.1;
+    EXPECT_NEAR(fill, (basis * kernel * basis).trace() / 60.0, 1e-12 * fill) << kernel_name(kind);
+    const auto factor = projected.cholesky(0.1);
+    ASSERT_TRUE(factor);
+    const Eigen::MatrixXd lower = factor->triangularView<Eigen::Lower>();
+    EXPECT_LT((lower * lower.transpose() - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.norm());
+  }
+}
+
+TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
+  Sites sites = smooth_sites(2, 120, 0.1, 7);
+  for (const KernelKind kernel : {KernelKind::cubic, KernelKind::linear, KernelKind::thin_plate}) {
+    for (const double smoothing : {1e-2, 1.0}) {
+      sites.kernel = kernel;
+      sites.smoothing = smoothing;
+      const auto some = solved(sites, sites.points);
+      const auto all = fit_direct(sites);
+      ASSERT_TRUE(all.ok());
+      // Two algorithms for systems with condition numbers up to some 1e6.
+      EXPECT_LT(test::largest_difference(some, all->function, sites.points), 1e-7) << kernel_name(kernel);
+    }
+  }
+}
+
+TEST(PenalisedWeights, MuchSmoothingLeavesTheTail) {
+  Sites sites = smooth_sites(2, 200, 0.1, 7);
+  sites.smoothing = 1e14;
+  const auto fitted = solved(sites, sites.points.leftCols(30));
+  EXPECT_LT(fitted.weights.cwiseAbs().maxCoeff(), 1e-9);
+}
+
+// Eq. 8 and the rows of the side condition (eq. 3), literally.
+struct PseudoInverse {
+  Eigen::VectorXd weights_and_tail;
+  Eigen::Index rank = 0;
+  double condition_number = 0.0;
+};
+PseudoInverse pseudo_inverse(const Sites& sites, const Eigen::MatrixXd& centres) {
+  const Eigen::MatrixXd tail = tail_matrix(tail_degree(sites.kernel), centres);
+  const Eigen::MatrixXd rows = naive_matrix(sites, sites.kernel, centres);
+  Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(rows.rows() + tail.cols(), rows.cols());
+  stack.topRows(rows.rows()) = rows;
+  stack.bottomLeftCorner(tail.cols(), centres.cols()) = tail.transpose();
+  Eigen::VectorXd data = Eigen::VectorXd::Zero(stack.rows());
+  data.head(rows.rows()) = sites.target_N.cwiseProduct(sites.row_scale);
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(stack, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXd values = svd.singularValues();
+  PseudoInverse result{Eigen::VectorXd::Zero(stack.cols())};
+  for (; result.rank < values.size() && values(result.rank) > sites.truncation * values(0); ++result.rank) {
+    const double share = svd.matrixU().col(result.rank).dot(data) / values(result.rank);
+    result.weights_and_tail += share * svd.matrixV().col(result.rank);
+  }
+  result.condition_number = values(0) / values(result.rank - 1);
+  return result;
+}
+
+TEST(TruncatedWeights, AreThoseOfThePapersPseudoInverse) {
+  for (const KernelKind kernel : kKernelKinds) {
+    Sites sites = smooth_sites(2, 300, 0.01, 3);
+    sites.kernel = kernel;
+    Eigen::MatrixXd centres = sites.points.leftCols(30);
+    centres.col(29) = centres.col(0);
+    Eigen::Index rank_before = 0;
+    for (const double truncation : {1e-2, 1e-4, 1e-9}) {
+      sites.truncation = truncation;
+      const SolvedWeights solved = solve_weights(sites, centres);
+      const PseudoInverse expected = pseudo_inverse(sites, centres);
+      SCOPED_TRACE(std::string(kernel_name(kernel)) + " " + std::to_string(truncation));
+      EXPECT_EQ(solved.rank, expected.rank);
+      EXPECT_GT(solved.rank, rank_before) << "a smaller cut keeps more";
+      rank_before = solved.rank;
+      EXPECT_NEAR(solved.condition_number, expected.condition_number, 1e-8 * expected.condition_number);
+      EXPECT_LT(solved.condition_number, 1.0 / truncation);
+      // Rounding of the largest value over the smallest that is kept.
+      const double tolerance = 1e-13 * expected.condition_number * expected.weights_and_tail.norm();
+      EXPECT_LT((solved.function.weights - expected.weights_and_tail.head(30)).norm(), tolerance);
+      EXPECT_LT((solved.function.tail - expected.weights_and_tail.tail(solved.function.tail.size())).norm(), tolerance);
+    }
+    // 30 centres of which two coincide.
+    EXPECT_EQ(rank_before, 29 + tail_size(tail_degree(kernel), 2)) << kernel_name(kernel);
+  }
+}
+
+TEST(TruncatedWeights, CoincidingCentresShareTheirWeight) {
+  Sites sites = smooth_sites(2, 300, 0.0, 3);
+  sites.row_scale = sites.target_N.cwiseInverse();
+  sites.truncation = 1e-12;
+  Eigen::MatrixXd centres = sites.points.leftCols(40);
+  centres.col(39) = centres.col(0);
+  const RbfFunction fitted = solved(sites, centres);
+  const RbfFunction once = solved(sites, centres.leftCols(39));
+  EXPECT_NEAR(fitted.weights(0), fitted.weights(39), 1e-6 * fitted.weights.cwiseAbs().maxCoeff());
+  // The same least squares error as without the duplicate.
+  EXPECT_NEAR(worst_error(fitted, sites), worst_error(once, sites), 1e-6);
+}
+
+TEST(PenalisedWeights, TellRankAndConditionNumber) {
+  const Sites sites = smooth_sites(2, 300, 0.0, 2);
+  Eigen::MatrixXd centres(2, 16);
+  centres << sites.points.leftCols(8), sites.points.leftCols(8);
+  const SolvedWeights twice = solve_weights(sites, centres);
+  const SolvedWeights once = solve_weights(sites, centres.leftCols(8));
+  // Without a penalty eight weights with three side conditions, and a tail of three.
+  EXPECT_EQ(once.rank, 8 - 3 + 3);
+  EXPECT_EQ(twice.rank, once.rank);
+  EXPECT_GT(once.condition_number, 1.0);
+  EXPECT_LT(once.condition_number, 1e6) << "of columns of length 1";
+}
+
+TEST(DistinctSites, KeepsTheFirstOfEachPoint) {
+  Sites sites;
+  sites.points.resize(2, 5);
+  sites.points << 1, 0, 1, 0, 2,  //
+      3, 5, 3, 4, 0;
+  EXPECT_EQ(distinct_sites(sites), (std::vector<Eigen::Index>{0, 1, 3, 4}));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,191 @@
+#include "models/correction/thinning.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+// A recording at 1 kHz with given positions and forces.
+template <typename Function>
+Recording recording_of(int rows, Function position_and_force) {
+  Recording recording;
+  recording.name = "made";
+  for (int i = 0; i < rows; ++i) {
+    const auto [position_m, force_N] = position_and_force(i);
+    recording.rows.push_back({1e-3 * i, position_m, force_N, 0.0, 0.0});
+  }
+  return recording;
+}
+
+Samples samples_of(const Recording& recording) {
+  return test::must(make_samples({prepare_recording(recording)}, JndLine{}));
+}
+
+struct Thinned {
+  Normalisation normalisation;
+  Sites sites;
+  double step_N = 0.0;
+
+  double force_N(Eigen::Index site) const { return sites.force_N(site); }
+  Eigen::VectorXd features(Eigen::Index site) const {
+    return normalisation.offset + normalisation.scale.cwiseProduct(sites.points.col(site));
+  }
+};
+
+Thinned thinned_by(Thinning thinning, const Samples& samples, const std::vector<FeatureSpec>& specs) {
+  const Eigen::MatrixXd features = test::must(features_at(samples, specs, samples.contact));
+  Thinned result{normalisation_of(features), {}};
+  result.sites = thin(samples, features, result.normalisation, thinning, result.step_N);
+  EXPECT_EQ(result.sites.points.rows(), static_cast<Eigen::Index>(specs.size()));
+  EXPECT_EQ(result.sites.force_N.size(), result.sites.count());
+  EXPECT_EQ(result.sites.fold.size(), static_cast<std::size_t>(result.sites.count()));
+  return result;
+}
+
+// Noise fills the four dimensions, so that without the cap almost every sample would be a site.
+TEST(Thinning, CoverageNeverLeavesMoreThanItsCap) {
+  test::Numbers noise(1);
+  const Samples samples = samples_of(recording_of(80000, [&](int i) {
+    const double position_m = 3e-3 + 2e-3 * std::sin(0.02 * i) * std::sin(0.0013 * i) + 5e-4 * noise.next();
+    return std::pair{position_m, 0.5 + 300.0 * position_m + 0.1 * noise.next()};
+  }));
+  const Thinned thinned = thinned_by(Thinning::coverage, samples, test::paper_features());
+  EXPECT_LE(static_cast<std::size_t>(thinned.sites.count()), kCoverageSites);
+  EXPECT_GT(static_cast<std::size_t>(thinned.sites.count()), kCoverageSites / 10);
+  EXPECT_EQ(thinned.sites.samples.sum(), static_cast<double>(samples.contact.size()));
+}
+
+// The tool rests at ten positions, and the only feature is depth: ten sites, each with the mean of its
+// samples. The positions are unevenly spaced, because equal spaces would look like encoder steps.
+TEST(Thinning, ASiteIsTheMeanOfItsCube) {
+  const Samples samples = samples_of(recording_of(5000, [](int i) {
+    const int place = i / 500;
+    return std::pair{1e-3 * (1 + place) + 2e-4 * std::sin(place), 1.0 + i / 500 + (i % 2 == 0 ? 0.1 : -0.1)};
+  }));
+  const Thinned thinned = thinned_by(Thinning::coverage, samples, test::position_features());
+  const Eigen::VectorXd& counts = thinned.sites.samples;
+  EXPECT_EQ(counts.sum(), 5000.0);
+  EXPECT_NEAR(counts.dot(thinned.sites.force_N) / 5000.0, 5.5, 1e-9);  // mean of 1 to 10; rounding of running means
+  EXPECT_NEAR(thinned.sites.points.row(0).dot(counts) / 5000.0, 0.0, 1e-9);
+  int large = 0;
+  for (Eigen::Index i = 0; i < counts.size(); ++i) {
+    if (counts(i) < 300.0) continue;  // samples during the transient of the motion estimator
+    ++large;
+    EXPECT_NEAR(thinned.force_N(i), std::round(thinned.force_N(i)), 2e-3);
+  }
+  EXPECT_GE(large, 8);  // a rest position may be on the boundary of a cube
+}
+
+TEST(Thinning, SamplesWithoutForceShareNoSite) {
+  Samples samples = samples_of(recording_of(2000, [](int i) {
+    return std::pair{2e-3, i % 2 == 0 ? 0.0 : 1.0};  // the same place, with and without
+  }));
+  samples.force_noise_N = 1e-3;  // identified as noise, the difference would be larger than the force
+  const Thinned thinned = thinned_by(Thinning::coverage, samples, test::position_features());
+  ASSERT_EQ(thinned.sites.samples.sum(), 2000.0);
+  for (Eigen::Index i = 0; i < thinned.sites.count(); ++i)
+    EXPECT_TRUE(thinned.force_N(i) == 0.0 || thinned.force_N(i) == 1.0) << thinned.force_N(i);
+}
+
+// Twenty presses of one path, of which every fifth has other forces.
+TEST(Thinning, ASiteHasSamplesOfOneFoldOnly) {
+  const Samples samples = samples_of(recording_of(10000, [](int i) {
+    const double position_m = 3e-3 * std::sin(2.0 * M_PI * i / 500.0);
+    const bool first_fold = i / 500 % 5 == 0;
+    return std::pair{position_m, position_m > 0.0 ? (first_fold ? 2.0 : 1.0) : 0.0};
+  }));
+  ASSERT_EQ(samples.strokes, 20u);
+  const Thinned thinned = thinned_by(Thinning::coverage, samples, test::position_features());
+  for (Eigen::Index i = 0; i < thinned.sites.count(); ++i) {
+    const bool first_fold = thinned.sites.fold[static_cast<std::size_t>(i)] == 0;
+    EXPECT_NEAR(thinned.force_N(i), first_fold ? 2.0 : 1.0, 1e-12) << "a mean of equal numbers";
+  }
+}
+
+TEST(Thinning, ForceReductionKeepsThePapersSamples) {
+  const Recording recording = recording_of(3000, [](int i) {
+    return std::pair{3e-3 + 1e-3 * std::sin(0.01 * i), 2.0 + std::sin(0.01 * i) + 0.02 * std::sin(0.7 * i)};
+  });
+  const Thinned thinned = thinned_by(Thinning::force, samples_of(recording), test::position_features());
+  std::vector<double> expected_N;
+  for (const RecordingRow& row : recording.rows) {
+    if (expected_N.empty() || std::abs(row.force_N - expected_N.back()) >= 0.05) expected_N.push_back(row.force_N);
+  }
+  EXPECT_EQ(std::vector<double>(thinned.sites.force_N.begin(), thinned.sites.force_N.end()), expected_N);
+  EXPECT_EQ(thinned.sites.samples, Eigen::VectorXd::Ones(thinned.sites.count()));
+  EXPECT_EQ(thinned.step_N, 0.05);
+}
+
+TEST(Thinning, ForceReductionBeginsAnewWithEachRecording) {
+  const auto constant = [](int rows) { return recording_of(rows, [](int) { return std::pair{2e-3, 1.0}; }); };
+  const Samples samples =
+      test::must(make_samples({prepare_recording(constant(50)), prepare_recording(constant(60))}, JndLine{}));
+  EXPECT_EQ(thinned_by(Thinning::force, samples, test::position_features()).sites.count(), 2);
+}
+
+TEST(Thinning, ForceReductionOfNoiseStaysBelowItsCap) {
+  test::Numbers noise(2);
+  const Samples samples =
+      samples_of(recording_of(60000, [&](int) { return std::pair{3e-3, 5.0 + 2.0 * noise.next()}; }));
+  const Thinned thinned = thinned_by(Thinning::force, samples, test::position_features());
+  EXPECT_LE(static_cast<std::size_t>(thinned.sites.count()), kMaximumSites);
+  EXPECT_GT(thinned.step_N, 0.05);
+}
+
+TEST(Thinning, NoneKeepsEverySampleInContact) {
+  const Recording recording = test::example_recording(5000, 1000.0);
+  const Thinned thinned = thinned_by(Thinning::none, samples_of(recording), test::paper_features());
+  std::vector<double> expected_N;
+  for (const RecordingRow& row : recording.rows) {
+    if (row.position_m > 0.0) expected_N.push_back(row.force_N);
+  }
+  EXPECT_EQ(std::vector<double>(thinned.sites.force_N.begin(), thinned.sites.force_N.end()), expected_N);
+}
+
+// u = (x - mean) / sqrt(range 4 sigma).
+TEST(Normalisation, IsByRangeAndDeviation) {
+  const Samples samples = samples_of(test::example_recording(5000, 1000.0));
+  const Eigen::ArrayXXd x = test::must(features_at(samples, test::paper_features(), samples.contact));
+  const Normalisation normalisation = normalisation_of(x);
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    const double mean = x.row(k).mean();
+    const double low = x.row(k).minCoeff();
+    const double high = x.row(k).maxCoeff();
+    const double deviation = std::sqrt((x.row(k) - mean).square().mean());
+    const double scale = std::sqrt((high - low) * 4.0 * deviation);
+    EXPECT_NEAR(normalisation.offset(k), mean, 1e-9 * scale);  // rounding of 5,000 terms
+    EXPECT_NEAR(normalisation.scale(k), scale, 1e-9 * scale);
+    EXPECT_EQ(normalisation.lower(k), low);
+    EXPECT_EQ(normalisation.upper(k), high);
+    // range^a (4 sigma)^(1 - a)
+    EXPECT_NEAR(normalisation.scale_of(0.0)(k), 4.0 * deviation, 1e-9 * scale);
+    EXPECT_NEAR(normalisation.scale_of(0.5)(k), scale, 1e-9 * scale);
+    EXPECT_NEAR(normalisation.scale_of(1.0)(k), high - low, 1e-9 * scale);
+  }
+}
+
+TEST(Normalisation, AConstantFeatureHasTheScaleOne) {
+  Eigen::MatrixXd features(2, 100);
+  features.row(0).setConstant(2e-3);
+  features.row(1) = Eigen::RowVectorXd::LinSpaced(100, 0.0, 1.0);
+  const Normalisation normalisation = normalisation_of(features);
+  EXPECT_NEAR(normalisation.offset(0), 2e-3, 1e-15);
+  for (const double exponent : {0.0, 0.5, 1.0}) EXPECT_EQ(normalisation.scale_of(exponent)(0), 1.0) << exponent;
+}
+
+// A spread of rounding, which no exponent makes a scale of.
+TEST(Normalisation, ASpreadOfRoundingIsNone) {
+  Eigen::MatrixXd features = Eigen::MatrixXd::Constant(1, 100, 2e-3);
+  features(0, 50) = std::nextafter(2e-3, 1.0);
+  for (const double exponent : {0.0, 0.5, 1.0}) EXPECT_EQ(normalisation_of(features).scale_of(exponent)(0), 1.0);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,230 @@
+#include "models/fit/model_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/message_parts.h"
+
+namespace palpate {
+namespace {
+
+using test::message_of;
+using test::must;
+
+std::vector<std::string> names_of_all() {
+  std::vector<std::string> names;
+  for (const ModelPlan& plan : all_plans()) names.push_back(plan_name(plan));
+  return names;
+}
+
+TEST(ModelPlan, HasElevenNames) {
+  EXPECT_EQ(names_of_all(),
+            (std::vector<std::string>{"direct", "voxel", "random-100", "kdtree-100", "greedy-100", "trend",
+                                      "trend+direct", "trend+voxel", "trend+random-100", "trend+kdtree-100",
+                                      "trend+greedy-100"}));
+  EXPECT_EQ(family_names(),
+            "direct, voxel, random, kdtree, greedy, trend, trend+direct, trend+voxel, trend+random, trend+kdtree, "
+            "trend+greedy");
+  EXPECT_EQ(family_names(kTakesGrid), "voxel, trend+voxel");
+  EXPECT_EQ(family_names(kTakesCandidates), "greedy, trend+greedy");
+  EXPECT_EQ(plan_name({}), "trend+greedy-100") << "the default";
+}
+
+TEST(ModelPlan, IsReadFromItsNames) {
+  for (const ModelPlan& plan : all_plans()) {
+    EXPECT_EQ(must(parse_plan(plan_name(plan))), plan) << plan_name(plan);
+    EXPECT_EQ(must(parse_plan(family_name(plan))), plan) << family_name(plan);
+  }
+  for (const char* name : {"greedy-1", "greedy-40", "trend+kdtree-2000"}) EXPECT_EQ(plan_name(must(parse_plan(name))), name);
+}
+
+TEST(ModelPlan, NamesWhatItDoesNotKnow) {
+  const std::string known = ", expected one of " + family_names() + ", where a number of centres may follow: greedy-40";
+  for (const char* name : {"", "nothing", "trend+", "trend+trend", "greedy+trend", "Greedy", "direct-40", "trend-40",
+                           "trend+voxel-5", "-40", "position"})
+    EXPECT_EQ(message_of(parse_plan(name)), "found \"" + std::string(name) + "\"" + known);
+  for (const char* name : {"greedy-", "greedy-0", "greedy-2001", "greedy-4x", "trend+random-1e2"})
+    EXPECT_EQ(message_of(parse_plan(name)),
+              "found \"" + std::string(name) + "\", expected a number of centres of 1 to 2000");
+}
+
+// The trend and the default, which corrects it, have one colour, every other method its own.
+TEST(ModelPlan, HasTheColourOfItsMethod) {
+  std::set<std::uint32_t> colours;
+  for (const ModelPlan& plan : all_plans()) {
+    if (plan.base == Base::trend && plan.method != &kTrendMethod) continue;
+    EXPECT_TRUE(colours.insert(colour_of(plan)).second) << plan_name(plan);
+  }
+  EXPECT_EQ(colour_of({}), colour_of(must(parse_plan("trend"))));
+  EXPECT_EQ(colour_of(must(parse_plan("trend+random-7"))), colour_of(must(parse_plan("random"))));
+}
+
+TEST(ModelPlan, DefaultsFollowTheBase) {
+  const ModelPlan trend = must(parse_plan("trend"));
+  const ModelPlan force = must(parse_plan("greedy"));
+  EXPECT_EQ(trend.weights(), Weighting::jnd);
+  EXPECT_EQ(trend.thins(), Thinning::coverage);
+  EXPECT_EQ(force.weights(), Weighting::relative);
+  EXPECT_EQ(force.thins(), Thinning::force);
+  ModelPlan given = force;
+  given.weighting = Weighting::none;
+  given.thinning = Thinning::none;
+  EXPECT_EQ(given.weights(), Weighting::none);
+  EXPECT_EQ(given.thins(), Thinning::none);
+}
+
+TEST(ModelPlan, SharesItsPreparationWithPlansOfOtherMethods) {
+  const auto same = [](const char* one, const char* other) {
+    return same_preparation(must(parse_plan_options(one)), must(parse_plan_options(other)));
+  };
+  EXPECT_TRUE(same("method=trend", "method=trend+voxel grid=5x5"));
+  EXPECT_TRUE(same("method=random centres=7", "method=greedy candidates=all"));
+  EXPECT_TRUE(same("method=greedy", "method=greedy kernel=linear weighting=relative thinning=force"));
+  EXPECT_FALSE(same("method=greedy", "method=trend+greedy"));
+  EXPECT_FALSE(same("method=greedy", "method=greedy weighting=jnd"));
+  EXPECT_FALSE(same("method=greedy", "method=greedy thinning=none"));
+  EXPECT_FALSE(same("", "kernel=linear"));
+  EXPECT_FALSE(same("", "features=scene"));
+  EXPECT_FALSE(same("features=depth", "features=depth,velocity"));
+  EXPECT_FALSE(same("features=scene", "relaxation=auto"));
+  EXPECT_FALSE(same("relaxation=0.1", "relaxation=0.2"));
+}
+
+TEST(PlanOptions, AreReadInAnyOrder) {
+  const ModelPlan plan =
+      must(parse_plan_options(" seed=7 candidates=all centres=40   method=greedy features=depth,velocity "
+                              "kernel=thin-plate weighting=none thinning=coverage "));
+  EXPECT_EQ(plan_name(plan), "greedy-40");
+  EXPECT_EQ(plan.candidates, 0);
+  EXPECT_EQ(plan.seed, 7u);
+  EXPECT_EQ(plan.kernel, KernelKind::thin_plate);
+  EXPECT_EQ(plan.weights(), Weighting::none);
+  EXPECT_EQ(plan.thins(), Thinning::coverage);
+  EXPECT_EQ(plan.features, FeatureChoice::given);
+  EXPECT_EQ(plan.list.features.size(), 2u);
+  const ModelPlan grid = must(parse_plan_options("grid=25x11x11x11 method=trend+voxel relaxation=0.17,1.27"));
+  EXPECT_EQ(grid.grid, (std::vector{25, 11, 11, 11}));
+  EXPECT_EQ(grid.relaxation, Relaxation::given);
+  EXPECT_EQ(grid.relaxation_times_s, (std::vector{0.17, 1.27}));
+  EXPECT_EQ(grid.features, FeatureChoice::scene) << "relaxation times are of the scene's features";
+  EXPECT_EQ(must(parse_plan_options("")), ModelPlan{});
+  EXPECT_EQ(must(parse_plan_options("kernel=auto features=auto")), ModelPlan{});
+  EXPECT_EQ(must(parse_plan_options("seed=18446744073709551615")).seed, 18446744073709551615u);
+}
+
+// The defaults that --help shows are those of a plan.
+TEST(PlanOptions, HaveTheDefaultsThatTheyName) {
+  for (const PlanOption& option : plan_options()) {
+    EXPECT_NE(option.help, "") << option.name;
+    const std::string text = option.default_text;
+    if (text.empty()) continue;
+    ModelPlan plan;
+    ASSERT_TRUE(option.set(plan, text)) << option.name;
+    EXPECT_EQ(plan, ModelPlan{}) << option.name;
+  }
+}
+
+TEST(PlanOptions, NameEachWrongOne) {
+  const std::pair<const char*, std::string> wrong[] = {
+      {"method=nothing", "method: found \"nothing\", expected one of " + family_names() +
+                             ", where a number of centres may follow: greedy-40"},
+      {"method=greedy-0", "method: found \"greedy-0\", expected a number of centres of 1 to 2000"},
+      {"centres=2001", "centres: found \"2001\", expected 1 to 2000; direct uses every site"},
+      {"centres=0", "centres: found \"0\", expected 1 to 2000; direct uses every site"},
+      {"centres=", "centres: found \"\", expected 1 to 2000; direct uses every site"},
+      {"candidates=0", "candidates: found \"0\", expected a whole number of at least 1, or all"},
+      {"kernel=gauss", "kernel: found \"gauss\", expected auto, or one of cubic, linear, thin-plate"},
+      {"method=voxel grid=1x2", "grid: found \"1x2\", expected sizes such as 25x11x11x11"},
+      {"method=voxel grid=5x", "grid: found \"5x\", expected sizes such as 25x11x11x11"},
+      {"method=voxel grid=2.5x3", "grid: found \"2.5x3\", expected sizes such as 25x11x11x11"},
+      {"weighting=force", "weighting: found \"force\", expected one of jnd, relative, none"},
+      {"thinning=all", "thinning: found \"all\", expected one of coverage, force, none"},
+      {"method=random seed=-1", "seed: found \"-1\", expected a whole number"},
+      {"method=random seed=18446744073709551616", "seed: found \"18446744073709551616\", expected a whole number"},
+      {"relaxation=", "relaxation: found \"\", expected scene, auto, or one to six times in seconds such as 0.17,1.27"},
+      {"relaxation=0.1,0",
+       "relaxation: found \"0.1,0\", expected scene, auto, or one to six times in seconds such as 0.17,1.27"},
+      {"relaxation=1,2,3,4,5,6,7",
+       "relaxation: found \"1,2,3,4,5,6,7\", expected scene, auto, or one to six times in seconds such as 0.17,1.27"},
+      {"features=speed",
+       "features: found \"speed\", expected depth, velocity, maxwell:, stops: and creep:, where only maxwell: may be "
+       "repeated; or auto, or scene"},
+      {"speed=1",
+       "found \"speed\", expected NAME=VALUE with a name of method, centres, candidates, features, relaxation, kernel, "
+       "grid, weighting, thinning, seed"},
+      {"method",
+       "method: found \"\", expected one of " + family_names() + ", where a number of centres may follow: greedy-40"},
+  };
+  for (const auto& [text, message] : wrong) EXPECT_EQ(message_of(parse_plan_options(text)), message);
+}
+
+TEST(PlanOptions, RefuseThoseThatExcludeEachOther) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"method=greedy-40 centres=50",
+       "centres: found \"50\", expected 40, the number in the name of the method"},
+      {"features=depth relaxation=0.1",
+       "relaxation: found the features \"depth\", expected the scene's features; leave one of the two out"},
+      {"relaxation=scene features=auto",
+       "relaxation: found the features \"auto\", expected the scene's features; leave one of the two out"},
+      {"method=greedy features=depth,stops:0.1mm",
+       "features: found stops or creep, expected depth, velocity and maxwell: with a method on the measured force; use "
+       "trend+greedy"},
+      {"method=direct features=creep:1",
+       "features: found stops or creep, expected depth, velocity and maxwell: with a method on the measured force; use "
+       "trend+direct"},
+  };
+  for (const auto& [text, message] : wrong) EXPECT_EQ(message_of(parse_plan_options(text)), message);
+  // These agree.
+  EXPECT_EQ(plan_name(must(parse_plan_options("method=greedy-40 centres=40"))), "greedy-40");
+  EXPECT_EQ(must(parse_plan_options("features=scene relaxation=0.1")).relaxation_times_s, std::vector{0.1});
+  EXPECT_TRUE(parse_plan_options("method=trend features=depth,stops:0.1mm").ok());
+}
+
+TEST(PlanOptions, RefuseWhatTheMethodDoesNotTake) {
+  const std::string centres = "random, kdtree, greedy, trend+random, trend+kdtree, trend+greedy";
+  const std::pair<const char*, std::string> wrong[] = {
+      {"method=direct centres=5", "centres: direct does not take this option, only " + centres + "; leave it out"},
+      {"centres=5 method=trend", "centres: trend does not take this option, only " + centres + "; leave it out"},
+      {"method=kdtree candidates=5",
+       "candidates: kdtree does not take this option, only greedy, trend+greedy; leave it out"},
+      {"grid=5x5", "grid: trend+greedy does not take this option, only voxel, trend+voxel; leave it out"},
+      {"method=trend kernel=cubic",
+       "kernel: trend does not take this option, only direct, voxel, random, kdtree, greedy, trend+direct, "
+       "trend+voxel, trend+random, trend+kdtree, trend+greedy; leave it out"},
+      {"method=direct seed=3", "seed: direct does not take this option, only random, greedy, trend+random, "
+                               "trend+greedy; leave it out"},
+  };
+  for (const auto& [text, message] : wrong) EXPECT_EQ(message_of(parse_plan_options(text)), message);
+}
+
+TEST(PlanOptions, CheckOneByItself) {
+  EXPECT_EQ(option_error("centres", "40"), "");
+  EXPECT_EQ(option_error("grid", "5x5"), "") << "whatever the method";
+  EXPECT_EQ(option_error("centres", "many"), "found \"many\", expected 1 to 2000; direct uses every site");
+}
+
+TEST(FeatureListText, ReadsItsOwnExample) {
+  const FeatureList list = must(parse_feature_list(kFeatureListExample));
+  std::vector<FeatureKind> kinds;
+  for (const FeatureSpec& spec : list.features) kinds.push_back(spec.kind);
+  EXPECT_EQ(kinds, (std::vector{FeatureKind::depth, FeatureKind::velocity, FeatureKind::maxwell_spectrum,
+                                FeatureKind::maxwell_spectrum, FeatureKind::stops, FeatureKind::creep}));
+  EXPECT_EQ(constants_of(list.features[2]), std::vector{0.17});
+  EXPECT_EQ(constants_of(list.features[3]), (std::vector{0.4, 1.27}));
+  ASSERT_EQ(list.features[4].part_count, 1U);
+  EXPECT_DOUBLE_EQ(list.features[4].parts[0].threshold_m, 1e-4);
+  EXPECT_EQ(constants_of(list.features[5]), (std::vector{0.1, 1.0}));
+}
+
+TEST(FeatureListText, SaysWhatIsWrong) {
+  for (const char* text : {"", "depth,", "speed", "velocity,velocity", "maxwell", "maxwell:", "maxwell:-1",
+                           "maxwell:0.1+", "stops:0.1", "stops:0mm", "creep:", "creep:nan", "maxwell:1e999"})
+    EXPECT_TRUE(test::has_parts(parse_feature_list(text), {"found \"", "expected "})) << text;
+  EXPECT_EQ(message_of(parse_feature_list(
+                "velocity,maxwell:1,maxwell:2,maxwell:3,maxwell:4,maxwell:5,maxwell:6,creep:1")),
+            "found 9 features, expected at most 8; join relaxation times with +");
+}
+
+}  // namespace
+}  // namespace palpate

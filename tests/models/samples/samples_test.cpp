@@ -1,0 +1,351 @@
+#include "models/samples/samples.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "tests/support/example_model.h"
+#include "tests/support/feature_specs.h"
+#include "tests/support/message_parts.h"
+
+namespace palpate {
+namespace {
+
+using test::must;
+
+Samples samples_of(const std::vector<Recording>& recordings, std::size_t most_rows = kMaximumRows) {
+  std::vector<PreparedRecordingPointer> prepared;
+  for (const Recording& recording : recordings) prepared.push_back(prepare_recording(recording));
+  return must(make_samples(std::move(prepared), JndLine{}, {}, most_rows));
+}
+
+// Presses of a spring of 500 N/m from 3 mm outside to 5 mm inside and back within 0.8 s, 0.2 s apart, at 1 kHz. The
+// surface is at `surface_m` and the force zero at `zero_N`.
+Recording presses(int count, double surface_m = 0.0, double zero_N = 0.0) {
+  Recording recording;
+  recording.name = std::to_string(count) + " presses";
+  for (int i = 0; i < 1000 * count; ++i) {
+    const double depth_m = std::max(-3e-3, 5e-3 - 20e-3 * std::abs(1e-3 * (i % 1000) - 0.4));
+    recording.rows.push_back({1e-3 * i, depth_m + surface_m, 500.0 * std::max(0.0, depth_m) + zero_N, 0.0, 0.0});
+  }
+  return recording;
+}
+
+// The same without free air: from 1 to 5 mm.
+Recording strokes_in_contact(int count) {
+  Recording recording;
+  recording.name = "in contact";
+  for (int i = 0; i < 1000 * count; ++i) {
+    const double depth_m = 3e-3 - 2e-3 * std::cos(2e-3 * M_PI * i);
+    recording.rows.push_back({1e-3 * i, depth_m, 500.0 * depth_m, 0.0, 0.0});
+  }
+  return recording;
+}
+
+// The accuracy of a surface estimate: a step of the positions of 0.02 mm (kLeastOffset_m).
+constexpr double kSurface_m = 0.02e-3;
+
+void expect_depths_and_forces(const Samples& samples) {
+  EXPECT_NEAR(samples.depth_m, 5e-3, 0.1e-3);  // the error of the motion estimate at a turn
+  for (const std::size_t i : samples.contact) {
+    // The stiffness times the accuracy of the surface.
+    ASSERT_NEAR(samples.rows[i].force_N, 500.0 * samples.rows[i].tool.position_m, 500.0 * kSurface_m) << i;
+  }
+}
+
+TEST(Samples, TheSurfaceOfOneRecordingIsThatOfTheTable) {
+  for (const double surface_m : {-12e-3, 0.4e-3, 12e-3}) {
+    const Samples samples = samples_of({presses(4, surface_m)});
+    EXPECT_NEAR(samples.surface_m, surface_m, kSurface_m);
+    EXPECT_EQ(samples.offsets[0].offset_m, 0.0);
+    EXPECT_TRUE(std::isfinite(samples.offsets[0].standard_error_m));
+    EXPECT_EQ(samples.strokes, 4u) << surface_m;
+    expect_depths_and_forces(samples);
+  }
+}
+
+TEST(Samples, ASurfaceThatIsHardlyMovedIsAtZero) {
+  EXPECT_EQ(samples_of({presses(4, 0.9 * kLeastSurface_m)}).surface_m, 0.0);
+  EXPECT_NE(samples_of({presses(4, 1.2 * kLeastSurface_m)}).surface_m, 0.0);
+}
+
+TEST(Samples, OneRecordingOfThreeIsMoved) {
+  for (const double surface_m : {-12e-3, 12e-3}) {
+    const Samples samples = samples_of({presses(5), presses(4, surface_m), presses(3)});
+    EXPECT_EQ(samples.surface_m, 0.0);
+    ASSERT_EQ(samples.offsets.size(), 3u);
+    EXPECT_EQ(samples.offsets[0].offset_m, 0.0);
+    EXPECT_NEAR(samples.offsets[1].offset_m, surface_m, kSurface_m);
+    EXPECT_EQ(samples.offsets[2].offset_m, 0.0);
+    EXPECT_EQ(samples.strokes, 12u);
+    expect_depths_and_forces(samples);
+  }
+}
+
+TEST(Samples, WhereAllAreMovedTheTableIs) {
+  for (const double surface_m : {-12e-3, 12e-3}) {
+    const Samples samples = samples_of({presses(5, surface_m), presses(4, surface_m), presses(3, surface_m)});
+    EXPECT_NEAR(samples.surface_m, surface_m, kSurface_m);
+    for (const RecordingOffset& one : samples.offsets) EXPECT_EQ(one.offset_m, 0.0) << one.name;
+    expect_depths_and_forces(samples);
+  }
+}
+
+// Its forces cannot be told from those of another depth, whatever the other recordings show.
+TEST(Samples, ARecordingWithoutFreeAirHasNoOffsetOfItsOwn) {
+  const Samples samples = samples_of({strokes_in_contact(6), presses(5), presses(4, 2e-3)});
+  EXPECT_NEAR(samples.surface_m, 2e-3, kSurface_m) << "the upper one of two";
+  EXPECT_EQ(samples.offsets[0].offset_m, 0.0);
+  EXPECT_TRUE(std::isinf(samples.offsets[0].standard_error_m));
+  EXPECT_NEAR(samples.offsets[1].offset_m, -2e-3, kSurface_m);
+  const Samples alone = samples_of({strokes_in_contact(6)});
+  EXPECT_EQ(alone.surface_m, 0.0);
+  EXPECT_EQ(alone.contact.size(), 6000u);
+}
+
+TEST(Samples, TheForceZeroOfEachRecordingIsSubtracted) {
+  const Samples samples = samples_of({presses(5), presses(4, 0.0, 0.3), presses(3, 0.0, -0.05)});
+  const double zeros_N[] = {0.0, 0.3, -0.05};
+  // Without noise it is exact to rounding.
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(samples.offsets[k].force_zero_N, zeros_N[k], 1e-9);
+  EXPECT_EQ(samples.surface_m, 0.0);
+  expect_depths_and_forces(samples);
+}
+
+TEST(Samples, TheOrderOfRecordingsIsIrrelevant) {
+  const Recording a = presses(3);
+  Recording b = presses(3, 1e-3);
+  b.name = a.name;
+  const Recording c = presses(4, 0.5e-3);
+  const Samples one = samples_of({a, b, c});
+  const Samples other = samples_of({c, b, a});
+  EXPECT_EQ(one.offsets[0].name, "4 presses");
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(one.offsets[k].content_hash, other.offsets[k].content_hash);
+    EXPECT_EQ(one.offsets[k].offset_m, other.offsets[k].offset_m);
+  }
+  EXPECT_EQ(one.recording, other.recording);
+  EXPECT_EQ(one.stroke, other.stroke);
+  EXPECT_EQ(one.fold, other.fold);
+  EXPECT_EQ(one.contact, other.contact);
+  ASSERT_EQ(one.rows.size(), other.rows.size());
+  for (std::size_t i = 0; i < one.rows.size(); ++i) {
+    ASSERT_EQ(one.rows[i].motion.position_m, other.rows[i].motion.position_m);
+    ASSERT_EQ(one.rows[i].force_N, other.rows[i].force_N);
+  }
+}
+
+TEST(Samples, CountStrokesAndRecordings) {
+  Recording recording;
+  for (int i = 0; i < 40; ++i) {
+    const bool pressed = i % 10 < 3 || i >= 38;  // five presses, the first from the beginning and the last to the end
+    recording.rows.push_back({1e-3 * i, pressed ? 1e-3 : -1e-3, pressed ? 1.0 : 0.0, 0.0, 0.0});
+  }
+  const Samples samples = samples_of({recording, recording});
+  ASSERT_EQ(samples.rows.size(), 80u);
+  EXPECT_EQ(samples.stroke[0], 1);
+  EXPECT_EQ(samples.stroke[39], 5);
+  EXPECT_EQ(samples.stroke[40], 6) << "a stroke does not continue in the next recording";
+  EXPECT_EQ(samples.stroke[79], 10);
+  EXPECT_EQ(samples.strokes, 10u);
+  for (std::size_t i = 0; i < 80; ++i) {
+    EXPECT_EQ(samples.begins_recording(i), i % 40 == 0);
+    EXPECT_EQ(samples.recording[i], i < 40 ? 0 : 1);
+  }
+}
+
+TEST(Samples, MeasureTheirRanges) {
+  const Samples samples = samples_of({presses(4), presses(2)});
+  EXPECT_NEAR(samples.force_N, 2.5, 1e-9);
+  EXPECT_EQ(samples.lowest_force_N, 0.0);
+  EXPECT_EQ(samples.recorded_rows, 6000u);
+  // 0.25 s in, 0.25 s out.
+  EXPECT_NEAR(static_cast<double>(samples.contact.size()), 6 * 500.0, 12.0);
+  EXPECT_NEAR(samples.sample_s, 1e-3, 1e-9);
+  EXPECT_NEAR(samples.longest_recording_s, 3.999, 1e-9);
+  EXPECT_NEAR(samples.rms_velocity_m_per_s, 20e-3, 1e-3);  // the motion estimate lags at each turn
+  EXPECT_GT(samples.no_force_N(), 0.0);
+}
+
+// Pulls of 0.2 N, above the JND of 0.065 N at 0 N: in one sample of a hundred, or in nine samples.
+TEST(Samples, AMaterialThatPullsHasNegativeForces) {
+  const auto pulled = [](int samples_that_pull) {
+    Recording recording = presses(4);
+    for (std::size_t i = 0; samples_that_pull > 0; i += 20) {
+      if (!(recording.rows[i].position_m > 0.0)) continue;
+      recording.rows[i].force_N = -0.2;
+      --samples_that_pull;
+    }
+    std::vector<PreparedRecordingPointer> prepared{prepare_recording(recording)};
+    const Samples samples = must(make_samples(prepared, JndLine{}));
+    EXPECT_EQ(std::isinf(samples.no_force_N()), samples.lowest_force_N < 0.0);
+    return samples.lowest_force_N;
+  };
+  EXPECT_NEAR(pulled(20), -0.2, 1e-6);
+  EXPECT_EQ(pulled(9), 0.0);
+}
+
+TEST(Samples, ThreeRecordingsOrMoreFormFoldsOfWholeRecordings) {
+  for (const int count : {3, 6, 8}) {
+    std::vector<Recording> recordings;
+    for (int k = 0; k < count; ++k) recordings.push_back(presses(2 + k));
+    const Samples samples = samples_of(recordings);
+    EXPECT_EQ(samples.folds, std::min(count, 6));
+    for (std::size_t i = 0; i < samples.rows.size(); ++i) ASSERT_EQ(samples.fold[i], samples.recording[i] % 6);
+  }
+}
+
+TEST(Samples, FewerRecordingsFormFoldsOfWholeStrokes) {
+  for (const std::vector<Recording>& recordings :
+       {std::vector{presses(20)}, std::vector{presses(12), presses(8)}}) {
+    const Samples samples = samples_of(recordings);
+    EXPECT_EQ(samples.folds, 5);
+    for (const std::size_t i : samples.contact) ASSERT_EQ(samples.fold[i], (samples.stroke[i] - 1) % 5) << i;
+  }
+}
+
+// A recording of one stroke: the folds and the number of pieces.
+std::pair<std::size_t, int> pieces_of(const Samples& samples) {
+  std::set<int> folds;
+  int pieces = 1;
+  for (std::size_t k = 0; k < samples.contact.size(); ++k) {
+    folds.insert(samples.fold[samples.contact[k]]);
+    pieces += k > 0 && samples.fold[samples.contact[k]] != samples.fold[samples.contact[k - 1]] ? 1 : 0;
+  }
+  return {folds.size(), pieces};
+}
+
+TEST(Samples, ALongStrokeIsCutIntoPiecesOfEveryFold) {
+  EXPECT_EQ(pieces_of(samples_of({strokes_in_contact(5)})), std::pair(std::size_t{5}, 10));
+  Recording inwards;
+  for (int i = 0; i < 5000; ++i) inwards.rows.push_back({1e-3 * i, 1e-6 * (i + 1), 5e-4 * i, 0.0, 0.0});
+  EXPECT_EQ(pieces_of(samples_of({inwards})), std::pair(std::size_t{5}, 50)) << "without unloading";
+}
+
+// Air between the strokes, of any length, does not change the folds.
+TEST(Samples, FreeAirDoesNotChangeTheFolds) {
+  Recording longer = presses(8);
+  for (RecordingRow& row : longer.rows) row.time_s += 3.0 * std::floor(row.time_s + 0.1);
+  const Samples one = samples_of({presses(8)});
+  const Samples other = samples_of({longer});
+  ASSERT_EQ(one.contact, other.contact);
+  EXPECT_EQ(one.fold, other.fold);
+}
+
+// Every `nth` row, with the motion that was estimated from all rows.
+TEST(Samples, OfLongRecordingsEveryNthRowIsKept) {
+  const std::vector<Recording> recordings{test::example_recording(60000, 1000.0, 30e-6),
+                                          test::example_recording(30000, 1000.0)};
+  const Samples whole = samples_of(recordings);
+  const Samples few = samples_of(recordings, 8000);
+  EXPECT_EQ(few.recorded_rows, 90000u);
+  EXPECT_EQ(few.force_noise_N, whole.force_noise_N);
+  EXPECT_EQ(few.sensor.encoder_step_m, whole.sensor.encoder_step_m);
+  EXPECT_EQ(few.surface_m, whole.surface_m);
+  ASSERT_EQ(few.rows.size(), 7500u);  // every 12th
+  for (std::size_t i = 0; i < few.rows.size(); ++i) {
+    ASSERT_EQ(few.rows[i].tool.position_m, whole.rows[12 * i].tool.position_m);
+    ASSERT_EQ(few.rows[i].motion.velocity_m_per_s, whole.rows[12 * i].motion.velocity_m_per_s);
+    ASSERT_EQ(few.rows[i].force_N, whole.rows[12 * i].force_N);
+    ASSERT_EQ(few.recording[i], whole.recording[12 * i]);
+  }
+}
+
+TEST(Samples, StopWheneverTheyAreAsked) {
+  const std::vector<PreparedRecordingPointer> recordings{
+      prepare_recording(test::example_recording(150000, 1000.0)),
+      prepare_recording(test::example_recording(1000, 1000.0))};
+  int questions = 0;
+  ASSERT_TRUE(make_samples(recordings, JndLine{}, {[&](double) { return ++questions > 0; }}).ok());
+  ASSERT_EQ(questions, 4) << "three within 150,000 rows and one";
+  for (int stop = 1; stop <= questions; ++stop) {
+    int asked = 0;
+    const auto stopped = make_samples(recordings, JndLine{}, {[&](double) { return ++asked < stop; }});
+    EXPECT_EQ(test::message_of(stopped), "interrupted") << stop;
+  }
+}
+
+TEST(Samples, WithoutContactThereAreNone) {
+  Recording recording = presses(2);
+  for (RecordingRow& row : recording.rows) row.position_m -= 50e-3;
+  // No force either, so that no surface is found.
+  for (RecordingRow& row : recording.rows) row.force_N = 0.0;
+  EXPECT_EQ(
+      test::message_of(make_samples({prepare_recording(recording)}, JndLine{})),
+      "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; record a press, "
+      "check the sign of position_m, or set its origin (palpate import FILE --origin contact)");
+}
+
+TEST(Thinned, KeepsRowsThatAreFarEnoughApart) {
+  const Samples samples = samples_of({presses(4), presses(3)});
+  const Samples few = thinned(samples, 3.9e-3);
+  ASSERT_EQ(few.rows.size(), 1750u);
+  for (std::size_t i = 0; i < few.rows.size(); ++i) {
+    ASSERT_EQ(few.rows[i].tool.position_m, samples.rows[4 * i].tool.position_m);
+    ASSERT_EQ(few.recording[i], samples.recording[4 * i]);
+    ASSERT_EQ(few.stroke[i], samples.stroke[4 * i]);
+    ASSERT_EQ(few.fold[i], samples.fold[4 * i]);
+  }
+  for (const std::size_t i : few.contact) ASSERT_GT(few.rows[i].tool.position_m, 0.0);
+  EXPECT_EQ(few.contact.size(), static_cast<std::size_t>(std::ranges::count_if(
+                                    few.rows, [](const Sample& row) { return row.tool.position_m > 0.0; })));
+  EXPECT_EQ(few.depth_m, samples.depth_m);
+  EXPECT_EQ(few.sample_s, samples.sample_s);
+  EXPECT_EQ(few.strokes, samples.strokes);
+  EXPECT_EQ(thinned(samples, 0.0).rows.size(), samples.rows.size());
+}
+
+// Twelve features, in two filters of eight and four.
+std::vector<FeatureSpec> many_features() {
+  std::vector<FeatureSpec> features = test::memory_features();
+  for (const double time_s : {0.01, 0.03, 0.1, 0.3, 1.0}) features.push_back(test::lowpass(time_s));
+  features.push_back(test::spectrum({0.05}, test::stiffening()));
+  features.push_back(test::stops({1e-4}, test::stiffening()));
+  return features;
+}
+
+TEST(FeaturesAt, AreThoseOfAFilterOneByOne) {
+  const Samples samples = samples_of({presses(3), presses(2, 1e-3)});
+  const std::vector<FeatureSpec> features = many_features();
+  ASSERT_GT(features.size(), kMaxFeatures);
+  for (const std::size_t stride : {1u, 7u}) {
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < samples.contact.size(); i += stride) rows.push_back(samples.contact[i]);
+    const Eigen::MatrixXd values = must(features_at(samples, features, rows));
+    ASSERT_EQ(values.rows(), static_cast<Eigen::Index>(features.size()));
+    ASSERT_EQ(values.cols(), static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t f = 0; f < features.size(); ++f) {
+      std::size_t column = 0;
+      FeatureFilter filter({features[f]});
+      for (std::size_t i = 0; i < samples.rows.size(); ++i) {
+        if (i == 3000) filter.reset();  // the memory does not reach into the next recording
+        const double value = filter.update(samples.rows[i].tool, samples.rows[i].motion).values[0];
+        if (column == rows.size() || rows[column] != i) continue;
+        // Sums over lanes may be added in another order: rounding of forces of some newtons.
+        ASSERT_NEAR(values(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(column)), value, 1e-13) << f;
+        ++column;
+      }
+      EXPECT_EQ(column, rows.size());
+    }
+  }
+  EXPECT_EQ(must(features_at(samples, features, {})).cols(), 0);
+  EXPECT_EQ(must(features_at(samples, {}, {samples.contact[0]})).rows(), 0);
+}
+
+TEST(FeaturesAt, CanBeInterrupted) {
+  const Samples samples = samples_of({test::example_recording(150000, 1000.0)});
+  int questions = 0;
+  ASSERT_TRUE(features_at(samples, many_features(), samples.contact, {[&](double) { return ++questions > 0; }}).ok());
+  EXPECT_EQ(questions, 3);
+  for (int stop = 1; stop <= questions; ++stop) {
+    int asked = 0;
+    const FitControl control{[&](double) { return ++asked < stop; }};
+    EXPECT_EQ(test::message_of(features_at(samples, many_features(), samples.contact, control)), "interrupted");
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,284 @@
+#include "models/trend/trend_columns.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "models/model/trend.h"
+#include "tests/support/exact_samples.h"
+#include "tests/support/feature_specs.h"
+#include "tests/support/message_parts.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kDepth_m = 5e-3;
+constexpr double kThinning_m_per_s = 0.02;
+constexpr std::size_t kAll = 1000000;
+
+// Two strokes of a second and a half, half of the time outside.
+Samples strokes() {
+  Samples samples = test::exact_samples(3000, kDepth_m, [](std::size_t i) {
+    const double time_s = 1e-3 * static_cast<double>(i);
+    const double angle = 2.0 * std::numbers::pi * time_s / 1.5;
+    const double velocity_m_per_s = kDepth_m * std::cos(angle) * 2.0 * std::numbers::pi / 1.5;
+    return test::ExactRow{time_s, kDepth_m * std::sin(angle), velocity_m_per_s, 0.5};
+  });
+  samples.rms_velocity_m_per_s = kThinning_m_per_s;
+  return samples;
+}
+
+TrendColumns columns_of(const Samples& samples, const FeatureList& list, std::size_t most_rows = kAll) {
+  return test::must(TrendColumns::make(samples, list, most_rows));
+}
+
+// The drive curves int_0^u of (1 - u)^2, 2 u (1 - u) and u^2.
+std::vector<DriveCurve> drives() {
+  return {{kDepth_m, {1.0, -1.0, 1.0 / 3.0, 0.0}},
+          {kDepth_m, {0.0, 1.0, -2.0 / 3.0, 0.0}},
+          {kDepth_m, {0.0, 0.0, 1.0 / 3.0, 0.0}}};
+}
+// The friction curves 1 - (1 - u)^4, u and u^2.
+std::vector<DriveCurve> frictions() {
+  return {{kDepth_m, {4.0, -6.0, 4.0, -1.0}}, {kDepth_m, {1.0, 0.0, 0.0, 0.0}}, {kDepth_m, {0.0, 1.0, 0.0, 0.0}}};
+}
+
+// One filter for the features made by `spec_of` from each of these curves.
+template <typename SpecOf>
+FeatureFilter filter_of(const std::vector<DriveCurve>& curves, const SpecOf& spec_of) {
+  std::vector<FeatureSpec> specs;
+  for (const DriveCurve& curve : curves) specs.push_back(spec_of(curve));
+  return FeatureFilter(specs);
+}
+FeatureFilter branches(double time_s, double slowing = 0.0) {
+  return filter_of(drives(), [&](const DriveCurve& curve) {
+    FeatureSpec spec = test::spectrum({time_s}, curve);
+    spec.slowing = slowing;
+    return spec;
+  });
+}
+
+TEST(TrendColumns, AreTheTermsOfTheTrend) {
+  const Samples samples = strokes();
+  FeatureList list;
+  list.add(FeatureKind::velocity);
+  list.add(FeatureKind::maxwell_spectrum, {0.17});
+  list.add(FeatureKind::maxwell_spectrum, {1.27});
+  list.add(FeatureKind::stops, {2e-4});
+  list.add(FeatureKind::creep, {0.1});
+  const TrendColumns columns = columns_of(samples, list);
+  const std::vector<ElasticSpline> elastic = spline_basis();
+  ASSERT_EQ(columns.columns(), kElasticTerms + 2 * kViscosityCoefficients + 4 * kCurveTerms);
+  ASSERT_EQ(columns.rows(), samples.contact);
+  ASSERT_GT(columns.count(), 1000u);
+  EXPECT_EQ(columns.stride(), 1u);
+  FeatureFilter memory[] = {
+      branches(0.17), branches(1.27),
+      filter_of(frictions(), [](const DriveCurve& curve) { return test::stops({2e-4}, curve); }),
+      filter_of(frictions(), [](const DriveCurve& curve) { return test::creep({0.1}, curve); })};
+  std::size_t contact = 0;
+  for (std::size_t i = 0; i < samples.rows.size(); ++i) {
+    const Sample& sample = samples.rows[i];
+    for (FeatureFilter& filter : memory) filter.update(sample.tool, sample.motion);
+    if (!(sample.tool.position_m > 0.0)) continue;
+    const double* value = columns.terms().row(static_cast<Eigen::Index>(contact)).data();
+    const double u = sample.motion.position_m / kDepth_m;
+    const double v = sample.motion.velocity_m_per_s;
+    for (const ElasticSpline& curve : elastic) ASSERT_EQ(*value++, curve.at(std::min(u, 1.0)));
+    for (const double factor : {v, v / (1 + std::abs(v) / kThinning_m_per_s)}) {
+      for (const double basis : {(1 - u) * (1 - u), 2 * u * (1 - u), u * u}) ASSERT_NEAR(*value++, factor * basis, 1e-15);
+    }
+    for (FeatureFilter& filter : memory) {
+      // Other filters add up the same numbers of up to 1 in another order.
+      for (std::size_t k = 0; k < kCurveTerms; ++k) ASSERT_NEAR(*value++, filter.vector().values[k], 1e-13) << i;
+    }
+    ASSERT_EQ(columns.force_N(contact), 0.5);
+    ASSERT_EQ(columns.depth_m(contact), sample.motion.position_m);
+    ++contact;
+  }
+}
+
+TEST(TrendColumns, RelaxationThatDependsOnDepthIsThatOfTheFeatures) {
+  const Samples samples = strokes();
+  FeatureList list;
+  list.add(FeatureKind::maxwell_spectrum, {0.02, 0.3});
+  list.features.back().slowing = 2.0;
+  const TrendColumns columns = columns_of(samples, list);
+  FeatureFilter slowed = branches(0.3, 2.0);
+  FeatureFilter plain = branches(0.3);
+  Eigen::Index row = 0;
+  double largest = 0.0;
+  for (const Sample& sample : samples.rows) {
+    const FeatureVector& vector = slowed.update(sample.tool, sample.motion);
+    plain.update(sample.tool, sample.motion);
+    if (!vector.in_contact) continue;
+    const auto terms = columns.terms().row(row++).tail<kCurveTerms>();
+    for (std::size_t k = 0; k < kCurveTerms; ++k) {
+      ASSERT_NEAR(terms(static_cast<Eigen::Index>(k)), vector.values[k], 1e-13);
+      largest = std::max(largest, std::abs(vector.values[k] - plain.vector().values[k]));
+    }
+  }
+  EXPECT_GT(largest, 0.1) << "the slowing matters";
+}
+
+// The trend of a list with a surface is that of the model whose features it becomes: its branches follow the surface,
+// its bristles and its viscosity the tool.
+TEST(TrendColumns, OfALaggingSurfaceAreThoseOfTheModel) {
+  const Samples samples = strokes();
+  FeatureList list;
+  list.add(FeatureKind::velocity);
+  list.add(FeatureKind::maxwell_spectrum, {0.05, 0.3});
+  list.add(FeatureKind::stops, {2e-4});
+  const TrendColumns without = columns_of(samples, list);
+  Eigen::VectorXd x = Eigen::VectorXd::Constant(without.columns(), 0.7);
+  x.head(kElasticTerms).setConstant(1.5);
+  const FittedTrend fitted = fitted_trend(without, x, true);
+  list.surface = {surface_lag_of(fitted.trend.elastic, kDepth_m), fitted.features[2]};
+  const TrendColumns columns = columns_of(samples, list);
+  const FittedTrend model = fitted_trend(columns, x, true);
+  ASSERT_EQ(model.features.size(), 5u);
+  ASSERT_EQ(model.features[1], list.surface[0]) << "of the elastic response of the same weights";
+  FeatureFilter filter(model.features);
+  const Eigen::VectorXd force_N = columns.terms() * x;
+  const Eigen::VectorXd of_the_tool_N = without.terms() * x;
+  Eigen::Index row = 0;
+  for (const Sample& sample : samples.rows) {
+    const FeatureVector& vector = filter.update(sample.tool, sample.motion);
+    if (!vector.in_contact) continue;
+    // Rounding of sums of forces of some newtons.
+    ASSERT_NEAR(force_N(row), model.trend.at(vector.values.data(), model.features), 1e-11) << row;
+    ++row;
+  }
+  EXPECT_EQ(row, force_N.size());
+  EXPECT_GT((force_N - of_the_tool_N).cwiseAbs().maxCoeff(), 0.1) << "the surface matters";
+}
+
+// A weighted sum of branch features is one branch with the combined drive: the filter is linear in it.
+TEST(TrendColumns, CombinedDriveIsTheWeightedSumOfTheBasis) {
+  const double weights[] = {0.5, 2.0, 0.25};
+  FeatureFilter basis = branches(0.3);
+  FeatureFilter one({test::spectrum({0.3}, combined_curve(FeatureKind::maxwell_spectrum, weights, kDepth_m))});
+  for (const Sample& sample : strokes().rows) {
+    const FeatureVector& parts = basis.update(sample.tool, sample.motion);
+    const double sum = 0.5 * parts.values[0] + 2.0 * parts.values[1] + 0.25 * parts.values[2];
+    ASSERT_NEAR(one.update(sample.tool, sample.motion).values[0], sum, 1e-12);  // rounding of 3,000 steps
+  }
+}
+
+// The coarse curve locates the surface. It must reproduce a line and stay monotonic.
+TEST(TrendColumns, TheCoarseCurveIsTheSplineAndRises) {
+  const std::vector<ElasticSpline> basis = spline_basis();
+  const std::vector<double> ones(kElasticTerms, 1.0);
+  const DriveCurve straight = surface_lag_of(combined_spline(basis, ones.data()), kDepth_m).drive;
+  std::vector<double> stiffening(kElasticTerms);
+  for (std::size_t i = 0; i < kElasticTerms; ++i) stiffening[i] = 1.0 + static_cast<double>(i);
+  const ElasticSpline elastic = combined_spline(basis, stiffening.data());
+  const DriveCurve coarse = surface_lag_of(elastic, kDepth_m).drive;
+  const DriveCurve bend = surface_lag_of(basis[16], kDepth_m).drive;
+  for (int i = 1; i <= 240; ++i) {
+    const double u = i / 200.0;
+    EXPECT_NEAR(straight.at(u * kDepth_m), u, 1e-12);
+    // The error of Schoenberg's approximation is E'' h^2 / 6, with h = 1/8 and E'' at most 34 here.
+    EXPECT_NEAR(coarse.at(std::min(u, 1.0) * kDepth_m), elastic.at(std::min(u, 1.0)), 34.0 / 64.0 / 6.0);
+    EXPECT_GE(bend.at(u * kDepth_m), bend.at((u - 0.005) * kDepth_m) - 1e-13);
+  }
+}
+
+TEST(TrendColumns, WithoutVelocityOrTimesOnlyTheElasticColumnsAreLeft) {
+  EXPECT_EQ(columns_of(strokes(), {}).columns(), kElasticTerms);
+}
+
+TEST(TrendColumns, AListIsSortedByKind) {
+  FeatureList list;
+  list.add(FeatureKind::creep, {1.0});
+  list.add(FeatureKind::maxwell_spectrum, {0.1, 0.3});
+  list.add(FeatureKind::velocity);
+  list.add(FeatureKind::maxwell_spectrum, {0.02});
+  list.add(FeatureKind::stops, {});  // nothing
+  EXPECT_EQ(relaxation_times_s(list.features), (std::vector{0.1, 0.3, 0.02}));
+  const TrendColumns columns = columns_of(strokes(), list);
+  const std::size_t counts[] = {kElasticTerms, 2 * kViscosityCoefficients, 2 * kCurveTerms, kCurveTerms, kCurveTerms};
+  ASSERT_EQ(columns.feature_columns().size(), std::size(counts));
+  Eigen::Index next = 0;
+  for (std::size_t f = 0; f < std::size(counts); ++f) {
+    ASSERT_EQ(columns.feature_columns()[f].size(), counts[f]) << f;
+    for (const Eigen::Index column : columns.feature_columns()[f]) EXPECT_EQ(column, next++);
+  }
+  const ColumnList some = columns.columns_of([](std::size_t f) { return f == 1 || f == 4; });
+  EXPECT_EQ(some.size(), counts[1] + counts[4]);
+  EXPECT_EQ(some.front(), columns.feature_columns()[1].front());
+  EXPECT_EQ(some.back(), next - 1);
+}
+
+TEST(TrendColumns, HaveEveryNthSampleInContact) {
+  const Samples samples = test::exact_samples(4800, 1.0, [](std::size_t i) {
+    return test::ExactRow{1e-3 * static_cast<double>(i), 0.5, 0.0, static_cast<double>(i), static_cast<int>(i)};
+  });
+  const TrendColumns columns = columns_of(samples, {}, 640);  // 4800 / 640 = 7.5
+  EXPECT_EQ(columns.stride(), 8u);
+  ASSERT_EQ(columns.count(), 600u);
+  for (std::size_t i = 0; i < columns.count(); ++i) {
+    ASSERT_EQ(columns.force_N(i), 8.0 * static_cast<double>(i));
+    ASSERT_EQ(columns.fold(i), 8 * static_cast<int>(i));
+  }
+}
+
+TEST(TrendColumns, CanBeInterrupted) {
+  FeatureList list;
+  list.add(FeatureKind::maxwell_spectrum, {0.1});
+  const FitControl stop{[](double) { return false; }};
+  EXPECT_EQ(test::message_of(TrendColumns::make(strokes(), list, kAll, stop)), "interrupted");
+}
+
+// Parts without weight are left out, unless all are asked for.
+TEST(FittedTrend, HasTheFeaturesWithWeights) {
+  const Samples samples = strokes();
+  FeatureList list;
+  list.add(FeatureKind::velocity);
+  list.add(FeatureKind::maxwell_spectrum, {0.05, 0.3});
+  list.add(FeatureKind::stops, {2e-4});
+  const TrendColumns columns = columns_of(samples, list);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(columns.columns());
+  x(columns.feature_columns()[2][4]) = 2.0;  // the second basis function of 0.3 s
+  const FittedTrend fitted = fitted_trend(columns, x, false);
+  ASSERT_EQ(fitted.features.size(), 3u);
+  EXPECT_EQ(constants_of(fitted.features[2]), std::vector{0.3});
+  const DriveCurve& drive = fitted.features[2].parts[0].drive;
+  EXPECT_EQ(drive.reference_depth_m, kDepth_m);
+  EXPECT_EQ(drive.coefficient_N, (std::array{0.0, 2.0, -4.0 / 3.0, 0.0}));
+  EXPECT_EQ(fitted.trend.reference_depth_m, kDepth_m);
+  EXPECT_EQ(fitted.trend.thinning_velocity_m_per_s, kThinning_m_per_s);
+  // 1.5 times the greatest velocity.
+  EXPECT_NEAR(fitted.trend.velocity_limit_m_per_s, 1.5 * kDepth_m * 2.0 * std::numbers::pi / 1.5, 1e-6);
+  EXPECT_EQ(fitted_trend(columns, x, true).features.size(), 4u);
+}
+
+// 60 s at 1 kHz: four times a decade from 2 samples to a third of the recording.
+TEST(Dictionary, HasWhatARecordingCanIdentify) {
+  Samples samples = strokes();
+  samples.sample_s = 1e-3;
+  samples.longest_recording_s = 60.0;
+  samples.sensor.encoder_step_m = 30e-6;
+  const std::vector<double> times_s = dictionary_times_s(samples);
+  ASSERT_EQ(times_s.size(), 17u);
+  EXPECT_DOUBLE_EQ(times_s.front(), 2e-3);
+  EXPECT_NEAR(times_s.back(), 20.0, 1e-9);
+  const FeatureList list = dictionary(samples);
+  ASSERT_EQ(list.features.size(), 7u);  // depth, velocity, three bands, stops, creep
+  EXPECT_EQ(relaxation_times_s(list.features), times_s);
+  // Halves of 2.5 mm, not below 30 um.
+  const std::vector<double> thresholds_m = constants_of(list.features[5]);
+  ASSERT_EQ(thresholds_m.size(), 7u);
+  EXPECT_DOUBLE_EQ(thresholds_m.back(), 2.5e-3);
+  EXPECT_DOUBLE_EQ(thresholds_m.front(), 2.5e-3 / 64.0);
+  EXPECT_EQ(constants_of(list.features[6]).size(), 5u);  // 1 ms to 10 s
+  EXPECT_EQ(term_name(list.features[1]), "velocity");
+  EXPECT_EQ(term_name(list.features[5]), "stops 0.0391-2.5 mm");
+  EXPECT_EQ(term_name(list.features[6]), "creep 0.001-10 s");
+  samples.longest_recording_s = 3e-3;
+  EXPECT_TRUE(dictionary_times_s(samples).empty());
+}
+
+}  // namespace
+}  // namespace palpate

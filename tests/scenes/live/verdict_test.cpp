@@ -1,0 +1,60 @@
+#include "scenes/live/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/message_parts.h"
+
+namespace palpate {
+namespace {
+
+JudgedModel model(std::size_t slot, const char* name, bool paper, double over_jnd, double ns) {
+  return {slot, name, name, paper, over_jnd, {ns, 0.99 * ns, 1.01 * ns, ns}};
+}
+
+// The sentence of the issue: ours against the most accurate one of the paper.
+TEST(Verdict, ComparesTheRecommendedModelWithTheBestOfTheOtherKind) {
+  const Verdict verdict = judge(
+      {model(0, "voxel", true, 2.5, 200.0), model(1, "greedy", true, 1.8, 240.0), model(2, "trend", false, 0.4, 390.0)},
+      "");
+  EXPECT_EQ(verdict.chosen, 2u);
+  EXPECT_FALSE(verdict.noticeable);
+  EXPECT_EQ(verdict.headline,
+            "trend feels like the block. greedy differs by 1.8 of what a hand can notice, in 0.62 of the time (240 "
+            "against 390 ns).");
+}
+
+TEST(Verdict, OfEquallyGoodModelsTheFasterOneComesFirst) {
+  const Verdict verdict = judge({model(4, "greedy", true, 0.6, 240.0), model(7, "trend", false, 0.4, 390.0)}, "");
+  EXPECT_EQ(verdict.chosen, 4u);
+  EXPECT_EQ(verdict.headline,
+            "greedy feels like the block. So does trend, in 1.6 times the time (390 against 240 ns).");
+}
+
+TEST(Verdict, WhereNoneIsGoodEnoughBothErrorsAreNamed) {
+  const Verdict verdict = judge({model(0, "greedy", true, 3.1, 390.0), model(1, "trend", false, 1.4, 395.0)}, "");
+  EXPECT_TRUE(verdict.noticeable);
+  EXPECT_EQ(verdict.headline,
+            "trend differs by 1.4 of what a hand can notice. greedy differs by 3.1 of what a hand can notice, as fast "
+            "(390 ns).");
+}
+
+TEST(Verdict, WithoutATrueForceTheReferenceIsNamed) {
+  const Verdict verdict = judge({model(1, "mine", true, 0.4, 300.0)}, "voxel");
+  EXPECT_TRUE(test::has_parts(verdict.headline, {"mine differs from voxel by 0.40 JND", "0.03 %"}));
+  EXPECT_EQ(verdict.headline.find("feels like"), std::string::npos);
+}
+
+// Two starts of the program measure times that differ by their spread; the sentence stays the same.
+TEST(Verdict, TimesWithinTheirSpreadOrATenthAreEqual) {
+  const auto words = [](double one_ns, double other_ns, double spread) {
+    return time_words({one_ns, (1.0 - spread) * one_ns, (1.0 + spread) * one_ns, 0.0},
+                      {other_ns, (1.0 - spread) * other_ns, (1.0 + spread) * other_ns, 0.0});
+  };
+  EXPECT_EQ(words(300.0, 325.0, 0.0), "as fast (300 ns)");
+  EXPECT_EQ(words(300.0, 400.0, 0.2), "as fast (300 ns)");
+  EXPECT_EQ(words(300.0, 400.0, 0.02), "in 0.75 of the time (300 against 400 ns)");
+  EXPECT_EQ(tick_share(391.0), "0.04 %");
+}
+
+}  // namespace
+}  // namespace palpate
