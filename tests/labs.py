@@ -214,8 +214,13 @@ def front_page(options, folder, rows, summary):
     run(options.palpate, "report", "--train", folder / f"{SHOWN}_1.csv", "--test", folder / f"{SHOWN}_2.csv", "--out", report)
     answer = json.loads((report / "report.json").read_text())["timings"]["answer"]
     shutil.copyfile(report / "figures" / "speed_error.png", ROOT / FIGURE)
-    text = "\n".join(["| sets | model | as recorded | surface moved | tests |", "|---|---|---:|---:|---:|",
-                      *("| " + " | ".join(row[:-1]) + " |" for row in summary), "", *textwrap.wrap(f"The report on the virtual {SHOWN} block: " + answer, 110), "",
+    kinds = list(dict.fromkeys(row[0] for row in summary))
+    shares = {row[:2]: row[2:4] for row in summary}
+    tests = {row[0]: row[4] for row in summary}
+    text = "\n".join(["| model | " + " | ".join(f"{kind} ({tests[kind]} tests): as recorded | surface moved" for kind in kinds) + " |",
+                      "|---|" + "---:|" * 2 * len(kinds),
+                      *("| " + " | ".join([model, *(cell for kind in kinds for cell in shares.get((kind, model), ("", "")))]) + " |"
+                        for model in dict.fromkeys(row[1] for row in summary)), "", *textwrap.wrap(f"The report on the virtual {SHOWN} block: " + answer, 110), "",
                       f"![Time of a whole tick against error on the virtual {SHOWN} block: the methods of 2009 hollow, this program filled]({FIGURE})"])
     readme = ROOT / "README.md"
     before, rest = readme.read_text().split(BEGIN)

@@ -27,5 +27,7 @@ if(help MATCHES "\nSubcommands:\n(.*)")
     string(APPEND page ".SH ${heading}\n${text}")
   endforeach()
 endif()
+string(APPEND page ".SH EXIT STATUS\n0: done. 1: it could not be done, and one line on standard error that begins with \"error:\" \
+says what and what to do. 2: wrong usage. 130, 143: stopped by Ctrl\\-C or SIGTERM.\n")
 file(WRITE ${PAGE} "${page}")
 execute_process(COMMAND ${GZIP} -9nf ${PAGE} COMMAND_ERROR_IS_FATAL ANY)

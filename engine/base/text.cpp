@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 
 namespace palpate {
 namespace {
@@ -92,6 +93,37 @@ std::string position_prefix(const std::string& path, std::string_view text, std:
   const std::size_t line_start = preceding.rfind('\n') + 1;  // 0 in the first line
   const auto lines = std::count(preceding.begin(), preceding.end(), '\n') + 1;
   return path + ":" + std::to_string(lines) + ":" + std::to_string(preceding.size() - line_start + 1) + ": ";
+}
+
+std::string nearest_name(std::string_view word, const std::vector<std::string>& names) {
+  std::string nearest;
+  std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& name : names) {
+    // edits[j]: from the letters of `word` so far to the first j of `name`.
+    std::vector<std::size_t> edits(name.size() + 1);
+    std::iota(edits.begin(), edits.end(), std::size_t{0});
+    for (const char letter : word) {
+      std::size_t diagonal = edits[0]++;
+      for (std::size_t j = 0; j < name.size(); ++j) {
+        const std::size_t replaced = diagonal + (letter == name[j] ? 0 : 1);
+        diagonal = edits[j + 1];
+        edits[j + 1] = std::min({replaced, diagonal + 1, edits[j] + 1});
+      }
+    }
+    if (edits.back() >= fewest) continue;
+    fewest = edits.back();
+    nearest = name;
+  }
+  return nearest;
+}
+
+std::string shell_word(const std::string& text) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+=:,@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char letter : text) letter == '\'' ? quoted += "'\\''" : quoted += letter;
+  return quoted + "'";
 }
 
 const char* parse_number(const char* begin, const char* end, double& value) {

@@ -52,7 +52,8 @@ RowFault RowRules::explain(const RecordingRow& row) const {
   if (std::abs(row.position_m) > kMaximumPosition_m) {
     return fault(
         ColumnRole::kPosition, row.position_m,
-        ", expected metres from the surface, at most 1 either way; if it is in millimetres, divide it by 1000");
+        ", expected metres from the surface, at most 1 either way; it looks like millimetres: palpate import FILE "
+        "--units mm,N --out REC.csv");
   }
   return fault(ColumnRole::kForce, row.force_N,
                ", expected newtons, at most 1000000 either way; check the unit of the column");

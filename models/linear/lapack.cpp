@@ -83,6 +83,10 @@ void prepare_blas() {
   blas_thread_shutdown_();  // starts them again when more are asked for
 }
 
+std::string blas_name() {
+  return openblas_get_corename == nullptr ? "BLAS" : std::string("OpenBLAS ") + openblas_get_corename();
+}
+
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
               double beta, MatrixRef c) {
   const int m = to_int(c.rows());

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <mutex>
+#include <string>
 
 #include "engine/base/fit_control.h"
 
@@ -35,6 +36,9 @@ class BlasThreads {
 // settings. Ends the threads that OpenBLAS starts with the program, because they occupy the other cores for some 30 ms.
 // From then on products use one thread, except within BlasThreads.
 void prepare_blas();
+
+// "OpenBLAS SkylakeX", with the processor type that it selected; "BLAS" where it does not say.
+std::string blas_name();
 
 // The number of rows in a block that several products use, so that it stays in the second-level cache.
 inline constexpr Eigen::Index kBlockRows = 512;

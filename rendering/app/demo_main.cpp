@@ -67,8 +67,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->excludes("--device");
   app.add_option_function<std::string>(
          "--discriminate", [&arguments](const std::string& recording) { arguments.discriminate = recording; },
-         "Ask a hand which is which: a stroke of this recording [a virtual one], rendered by two models, or by "
-         "one and as recorded")
+         "Blind test: can a person tell model from recording? A stroke of this recording [a virtual one], rendered by "
+         "two models, or by one and as recorded")
       ->type_name("[REC.csv]")
       ->expected(0, 1);
   app.add_option("--seconds", arguments.seconds, "Exit after this many seconds")->check(CLI::Range(0.1, 1e6));
@@ -79,7 +79,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("JSON");
   app.add_flag("--fullscreen", arguments.demo.window.fullscreen, "Fill the screen");
   app.add_flag("--kiosk", arguments.demo.exhibit,
-               "An exhibit: full screen, a game; Ctrl+Shift+T is the host's, Ctrl+Shift+Q ends it");
+               "Full-screen game for visitors. Ctrl+Shift+T: the host's figures; Ctrl+Shift+Q: quit");
   app.add_flag("--force", arguments.force, "Replace existing files");
 }
 

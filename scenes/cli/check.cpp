@@ -48,6 +48,7 @@ Status run_check(const CheckOptions& options) {
     print_check_json(*files);
   } else {
     for (const CheckedFile& file : *files) std::cout << check_text(file);
+    if (refuse_unusable(*files)) std::cout << next_fit(options.recordings);
   }
   return refuse_unusable(*files);
 }

@@ -4,8 +4,9 @@
 #include <string>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/text.h"
 #include "models/export/export_c.h"
-#include "models/model/file/model_io.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 
@@ -26,7 +27,7 @@ void print_summary(const ExportArguments& arguments, const ModelData& data, cons
               arguments.single_precision ? "single" : "double", bytes);
   std::printf(
       "expects positions in steps of %g um with an additional noise of %g um (%s);\n"
-      "for a recording of such positions alone, it gives the forces of palpate replay\n",
+      "gives the forces of palpate replay without an accelerometer\n",
       1e6 * sensor.encoder_step_m, 1e6 * sensor.position_noise_m,
       arguments.encoder_step_m > 0.0 ? "from --encoder-step"
       : data.sensor                  ? "from the model's recordings"
@@ -35,7 +36,9 @@ void print_summary(const ExportArguments& arguments, const ModelData& data, cons
 
 Status run_export(const ExportArguments& arguments) {
   if (const Status status = refuse_input_as_output(arguments.out, {arguments.model}, "--c"); !status) return status;
-  const auto model = load_model(arguments.model);
+  const auto model =
+      load_model_file(arguments.model, "fit a model: palpate fit --recording " + shell_word(arguments.model) +
+                                           " --out model.json");
   if (!model) return model.error();
   const ModelData& data = (*model)->data();
   const SensorSpec sensor = sensor_with_step(data, arguments.encoder_step_m);

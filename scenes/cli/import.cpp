@@ -26,7 +26,7 @@ struct ImportOptions {
   double rate_Hz = 0.0;
   double gain_N_per_V = 0.0;
   std::uint64_t skip_bad_rows = 0;
-  std::string zero;
+  std::string origin;
   bool json = false;
   bool force = false;
 };
@@ -73,30 +73,30 @@ ImportRequest import_request(const ImportOptions& options) {
   return request;
 }
 
-// Applies --zero: "contact", "first" or a position in metres.
-Status move_zero(const std::string& zero, Recording& recording) {
+// Applies --origin: "contact", "first" or a position in metres.
+Status move_origin(const std::string& origin, Recording& recording) {
   double at_m = recording.rows.front().position_m;
-  if (zero == "contact") {
+  if (origin == "contact") {
     const SurfaceEstimate surface = estimate_surface(recording);
     if (!surface.identified()) {
       return Error{std::string("the position where the force begins cannot be identified") +
                    (surface.air.found ? "" : ", because there is no free air") +
-                   "; give --zero first or a position in metres"};
+                   "; give --origin first or a position in metres"};
     }
     at_m = surface.raw_offset_m;
-  } else if (zero != "first") {
-    at_m = std::stod(zero);
+  } else if (origin != "first") {
+    at_m = std::stod(origin);
   }
   for (RecordingRow& row : recording.rows) row.position_m -= at_m;
   return {};
 }
 
-std::string check_zero(const std::string& zero) {
+std::string check_origin(const std::string& origin) {
   char* end = nullptr;
-  const double value = std::strtod(zero.c_str(), &end);
-  const bool number = !zero.empty() && *end == '\0' && std::isfinite(value);
-  return zero == "contact" || zero == "first" || number ? ""
-                                                        : "found \"" + zero + "\", expected contact, first or metres";
+  const double value = std::strtod(origin.c_str(), &end);
+  const bool number = !origin.empty() && *end == '\0' && std::isfinite(value);
+  return origin == "contact" || origin == "first" || number ? ""
+                                                        : "found \"" + origin + "\", expected contact, first or metres";
 }
 
 double seconds_of(const ImportedTable& table) {
@@ -112,7 +112,7 @@ void print_text(const ImportOptions& options, const ImportRequest& request, cons
   for (const std::string& flip : flipped_roles(request)) std::cout << "flipped    " << flip << "\n";
   for (const std::string& note : table.notes) std::cout << "note       " << note << "\n";
   std::cout << "written    " << options.out << ": " << table.recording.rows.size() << " rows, " << seconds_of(table)
-            << " s\n";
+            << " s\nnext       palpate check " << shell_word(options.out) << "\n";
 }
 
 void print_import_json(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
@@ -151,9 +151,9 @@ Status run_import(const ImportOptions& options) {
   if (const auto trial = AtomicFile::create(options.out, options.force); !trial) return trial.error();
   auto table = import_table(options.file, request);
   if (!table) return table.error();
-  if (!options.zero.empty()) {
+  if (!options.origin.empty()) {
     const double before_m = table->recording.rows.front().position_m;
-    if (Status status = move_zero(options.zero, table->recording); !status) {
+    if (Status status = move_origin(options.origin, table->recording); !status) {
       return Error{options.file + ": " + status.error().message};
     }
     table->notes.push_back("position 0 was at " +
@@ -190,10 +190,10 @@ void add_import(CLI::App& app, Verbs& verbs) {
   verb->add_option("--flip", options->flips, "Reverse the sign of position, force or both")
       ->delimiter(',')
       ->check(CLI::IsMember({"position", "force", "both"}));
-  verb->add_option("--zero", options->zero,
+  verb->add_option("--origin", options->origin,
                    "Position that becomes 0: contact (where the force begins), first (the first row), or a value in m "
                    "[unchanged]")
-      ->check(CLI::Validator(check_zero, "contact|first|M"));
+      ->check(CLI::Validator(check_origin, "contact|first|M"));
   verb->add_option("--gain", options->gain_N_per_V, "Newtons per volt, for a force recorded in volts")
       ->type_name("N_PER_V");
   verb->add_option("--skip-bad-rows", options->skip_bad_rows, "Largest number of unreadable rows to leave out [0]")

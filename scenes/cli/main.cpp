@@ -6,6 +6,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #if defined(__GLIBC__)
@@ -13,7 +14,9 @@
 #endif
 
 #include "engine/base/signals.h"
+#include "engine/base/text.h"
 #include "models/linear/lapack.h"
+#include "models/model/vector_loops.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -23,10 +26,26 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 
+struct Verb {
+  void (*add)(CLI::App&, Verbs&);
+  const char* example;  // for its --help and the manual page
+};
 // In the order of --help.
-constexpr void (*kVerbs[])(CLI::App&, Verbs&) = {add_synth,  add_import,  add_check, add_fit,  add_replay,
-                                                 add_export, add_report,  add_paper, add_hard, add_record,
-                                                 add_scenes, add_devices, add_study};
+constexpr Verb kVerbs[] = {
+    {add_synth, "palpate synth --material silicone --seed 1 --seconds 60 --out rec.csv"},
+    {add_import, "palpate import rig.csv --units mm,N --origin contact --out rec.csv"},
+    {add_check, "palpate check rec.csv"},
+    {add_fit, "palpate fit --recording rec.csv --out model.json"},
+    {add_replay, "palpate replay --recording test.csv --model model.json --plot errors.svg"},
+    {add_export, "palpate export model.json --c model.c"},
+    {add_report, "palpate report --train rec.csv --test test.csv --out report"},
+    {add_paper, "palpate paper --quick --out paper"},
+    {add_hard, "palpate hard --out hard"},
+    {add_record, "palpate record --device bridge:/dev/ttyACM0 --guide --out rec.csv"},
+    {add_scenes, "palpate scenes"},
+    {add_devices, "palpate devices"},
+    {add_study, "palpate study simulate --discriminate --out simulated"},
+};
 
 int fail(const std::string& message, int exit_code) {
   const std::string block = "error: " + message + "\n";
@@ -70,11 +89,42 @@ bool names_unknown_verb(const Verbs& verbs, int argc, char** argv) {
   return std::none_of(verbs.begin(), verbs.end(), [&](const auto& verb) { return verb.first->get_name() == argv[1]; });
 }
 
+// Reports the first unknown option with the nearest known one; CLI11 would report a missing option instead.
+std::string unknown_option(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* verb = &app;
+  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string word = argv[i];
+    if (word.rfind("--", 0) != 0) {
+      for (const CLI::App* sub : verb->get_subcommands([](const CLI::App*) { return true; })) {
+        if (sub->get_name() == word) verb = sub;
+      }
+      continue;
+    }
+    const std::string name = word.substr(2, word.find('=') - 2);
+    std::vector<std::string> known;
+    for (const CLI::Option* option : verb->get_options()) {
+      known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
+    }
+    if (std::ranges::find(known, name) != known.end()) continue;
+    const std::string nearest = nearest_name(name, known);
+    return "unknown option --" + printable(name) + (nearest.empty() ? "" : "; did you mean --" + nearest + "?");
+  }
+  return {};
+}
+
+std::string version_text() {
+  return "palpate " PALPATE_VERSION " (commit " PALPATE_COMMIT ", " + blas_name() + ", vectors " + simd::target_name() +
+         ")";
+}
+
 int run_program(int argc, char** argv) {
   CLI::App app("Palpate: data-driven haptic rendering, without a window", "palpate");
-  app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+  app.set_version_flag("--version", version_text);
   Verbs verbs;
-  for (const auto& add : kVerbs) add(app, verbs);
+  for (const Verb& one : kVerbs) {
+    one.add(app, verbs);
+    verbs.back().first->footer(std::string("Example:\n  ") + one.example);
+  }
   try {
     if (argc < 2) return fail_usage(app, verbs, "no verb given");
     if (names_unknown_verb(verbs, argc, argv)) {
@@ -91,7 +141,8 @@ int run_program(int argc, char** argv) {
       app.exit(error);  // --help, --version and the lists that end a verb
       return std::cout.flush() ? kDone : fail("cannot write to standard output", kFailed);
     }
-    return fail_usage(app, verbs, error.what());
+    const std::string unknown = unknown_option(app, argc, argv);
+    return fail_usage(app, verbs, unknown.empty() ? error.what() : unknown);
   }
 }
 

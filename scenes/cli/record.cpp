@@ -155,6 +155,7 @@ Status run_record(const RecordOptions& options) {
   const auto file = check_recording_file(options.out, check_request(*scene));
   if (!file) return file.error();
   std::printf("%s", check_text(*file).c_str());
+  if (refuse_unusable({*file})) std::printf("%s", next_fit({options.out}).c_str());
   return {};
 }
 

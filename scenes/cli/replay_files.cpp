@@ -5,9 +5,8 @@
 #include <filesystem>
 
 #include "engine/base/text.h"
-#include "engine/recording/recording_reader.h"
 #include "engine/tick/haptics_tick.h"
-#include "models/model/file/model_io.h"
+#include "scenes/cli/shared.h"
 #include "scenes/plot/draw.h"
 #include "scenes/scene/scene.h"
 
@@ -95,10 +94,7 @@ Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& pat
   }
   std::vector<LoadedModel> models;
   for (const std::string& path : paths) {
-    auto model = load_model(path);
-    if (!model && RecordingReader::open(path))
-      return Error{path +
-                   " is a recording, expected a model file (JSON, made by palpate fit); give it with --recording"};
+    auto model = load_model_file(path, "give it with --recording");
     if (!model) return model.error();
     models.push_back({(*model)->name(), *model});
   }

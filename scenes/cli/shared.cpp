@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "engine/base/text.h"
+#include "engine/recording/recording_reader.h"
+#include "models/model/file/model_io.h"
 
 namespace palpate::cli {
 
@@ -36,6 +38,18 @@ std::string check_text(const CheckedFile& file) {
   text << "  the noise of the force sensor alone leaves " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
        << " % of the contact samples within the JND; this says nothing about a model\n";
   return text.str();
+}
+
+std::string next_fit(const std::vector<std::string>& recordings) {
+  std::string text = "next: palpate fit --recording";
+  for (const std::string& one : recordings) text += " " + shell_word(one);
+  return text + " --out model.json\n";
+}
+
+Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& path, const std::string& advice) {
+  auto model = load_model(path);
+  if (model || !RecordingReader::open(path)) return model;
+  return Error{path + " is a recording, expected a model file (JSON, made by palpate fit); " + advice};
 }
 
 Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,

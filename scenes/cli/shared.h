@@ -2,12 +2,14 @@
 // Thread guarantee: slow side (does I/O).
 #pragma once
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
 #include "models/check/check_recording.h"
+#include "models/model/fitted_model.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate::cli {
@@ -20,6 +22,12 @@ Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>
 
 // The output of `palpate check` for one recording.
 std::string check_text(const CheckedFile& file);
+
+// The command that fits these usable recordings, ready to copy: "next: palpate fit ..." and a line break.
+std::string next_fit(const std::vector<std::string>& recordings);
+
+// Loads a model file. Errors: as load_model; for a recording, that it is one, and `advice`.
+Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& path, const std::string& advice);
 
 // Errors: `out` is one of the files that are read. `option`: the option that named it, for the message.
 Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "engine/base/text.h"
 #include "engine/recording/recording.h"
 #include "models/fit/model_plan.h"
 #include "scenes/cli/progress.h"
@@ -39,11 +40,17 @@ void list_materials() {
 Status run_synth(const SynthOptions& options) {
   const Result<Material> material = find_material(options.rig.material);
   if (!material) return material.error();
-  ProgressLine line("recording " + options.rig.material);
-  const Result<Recording> recording = record_sensors(options.rig, [&](double share) { return line.update(share); });
+  const Result<Recording> recording = [&] {
+    ProgressLine line("recording " + options.rig.material);
+    return record_sensors(options.rig, [&](double share) { return line.update(share); });
+  }();
   if (!recording) return recording.error();
-  return write_recording(options.out, *recording, describe_recording(options.rig, *material, recording->rows.size()),
-                         options.force);
+  const Status written = write_recording(
+      options.out, *recording, describe_recording(options.rig, *material, recording->rows.size()), options.force);
+  if (!written) return written;
+  std::cout << "written  " << options.out << ": " << recording->rows.size() << " rows, "
+            << general(recording->rows.back().time_s - recording->rows.front().time_s, 6) << " s\n";
+  return {};
 }
 
 }  // namespace
