@@ -14,8 +14,6 @@ constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kTrendRows = 8000;
 // A dwell of many samples counts as at most this many.
 constexpr double kMaximumSiteCount = 16.0;
-// The radius of a trust that is 1 everywhere: normalised features are about 1.
-constexpr double kEverywhere = 1e6;
 // The number of relaxation times of the paper.
 constexpr std::size_t kPapersTimes = 2;
 

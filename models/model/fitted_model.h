@@ -105,6 +105,8 @@ struct ModelData {
 };
 
 inline constexpr double kForceMargin = 1.2;
+// The inner radius of a trust that is 1 everywhere: normalised features are about 1.
+inline constexpr double kEverywhere = 1e6;
 
 // Checks the forces at the points of the cover. Errors: a part of the force is not finite or far above the limits of
 // the model.
@@ -144,6 +146,7 @@ class FittedModel final : public ForceModel {
   std::size_t depth_ = 0;   // index of the depth feature
   double deepest_m_ = 0.0;  // deepest_in_domain_m
   double shallowest_m_ = 0.0;
+  bool trusts_everywhere_ = false;  // no distance to the data is needed
   std::array<double, kMaxFeatures> offset_{};
   std::array<double, kMaxFeatures> inverse_scale_{};
 };
