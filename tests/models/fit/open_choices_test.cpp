@@ -1,0 +1,141 @@
+#include "models/fit/open_choices.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "models/correction/solve_weights.h"
+#include "tests/support/exact_samples.h"
+#include "tests/support/message_parts.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kPlaces = 300;
+constexpr int kRepeats = 4;
+constexpr Eigen::Index kRows = kPlaces * kRepeats;
+
+// A force of two normalised coordinates, 2 to 4 N, with details that take some hundred centres.
+double true_force_N(const Eigen::VectorXd& u) { return 3.0 + std::sin(9.0 * u(0)) * std::cos(7.0 * u(1)); }
+
+// Samples at random places in depth and velocity, each of which comes back four times: in other folds, almost at the
+// same point, with other noise.
+struct Repeated {
+  Samples samples;
+  Eigen::MatrixXd features;
+  Normalisation normalisation;
+  Sites sites;
+  ModelData common;
+};
+
+Repeated repeated_places() {
+  Repeated made;
+  test::Numbers numbers(5);
+  const Eigen::MatrixXd places = test::random_points(2, kPlaces, 3);
+  const Eigen::Vector2d middle(3e-3, 0.0), size(2e-3, 0.05);
+  made.features.resize(2, kRows);
+  made.samples = test::exact_samples(static_cast<std::size_t>(kRows), 5e-3, [&](std::size_t i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Vector2d u = places.col(row % kPlaces);
+    const Eigen::Vector2d moved = u + 1e-9 * Eigen::Vector2d(numbers.next(), numbers.next());
+    made.features.col(row) = middle + size.cwiseProduct(moved);
+    const double force_N = true_force_N(u) + 0.2 * numbers.next();
+    return test::ExactRow{1e-3 * static_cast<double>(i), made.features(0, row), made.features(1, row), force_N,
+                          static_cast<int>(5 * row / kRows)};
+  });
+  made.normalisation = normalisation_of(made.features);
+  double step_N = 0.0;
+  made.sites = thin(made.samples, made.features, made.normalisation, Thinning::none, step_N);
+  made.sites.target_N = made.sites.force_N;
+  made.sites.row_scale = made.sites.force_N.cwiseInverse();
+  made.common.largest_force_N = made.samples.force_N;
+  return made;
+}
+
+OpenChoices select(const Repeated& from, int centres, std::optional<KernelKind> kernel = {}) {
+  return test::must(select_open_choices(from.samples, from.features, from.normalisation, from.sites, from.common,
+                                        centres, kernel, {}));
+}
+
+// The RMS error of the true force between the places, of a fit to all sites with 300 centres.
+double error_N(const Repeated& from, const OpenChoices& choices, double truncation) {
+  Sites sites = from.sites;
+  const Eigen::VectorXd factor = from.normalisation.scale.cwiseQuotient(from.normalisation.scale_of(choices.range_exponent));
+  sites.points = factor.asDiagonal() * sites.points;
+  sites.kernel = choices.kernel;
+  sites.truncation = truncation;
+  // Evenly over the repeats, so that some centres almost coincide.
+  std::vector<Eigen::Index> centres;
+  for (Eigen::Index i = 0; i < kRows; i += kRepeats) centres.push_back(i);
+  const RbfCorrection fitted(solve_weights(sites, sites.points(Eigen::all, centres)).function);
+  const Eigen::MatrixXd u = 0.9 * test::random_points(2, 500, 99);
+  const Eigen::Vector2d middle(3e-3, 0.0), size(2e-3, 0.05);
+  double squares = 0.0;
+  for (Eigen::Index i = 0; i < u.cols(); ++i) {
+    const Eigen::VectorXd x = (middle + size.cwiseProduct(u.col(i)) - from.normalisation.offset)
+                                  .cwiseQuotient(from.normalisation.scale_of(choices.range_exponent));
+    squares += std::pow(fitted.evaluate(x.data()) - true_force_N(u.col(i)), 2);
+  }
+  return std::sqrt(squares / static_cast<double>(u.cols()));
+}
+
+TEST(OpenChoices, TheTruncationSeparatesTheCentresThatAlmostCoincide) {
+  const Repeated from = repeated_places();
+  const OpenChoices choices = select(from, 300);
+  EXPECT_EQ(choices.smoothing, 0.0);
+  for (int d = -14; d <= -5; ++d) std::printf("%d %g\n", d, error_N(from, choices, std::pow(10.0, d)));
+  std::printf("%s\n", choices_text(choices).c_str());
+  const double selected_N = error_N(from, choices, choices.truncation);
+  EXPECT_LT(selected_N, error_N(from, choices, 1e-14));
+  EXPECT_LT(selected_N, error_N(from, choices, 1e-5));
+}
+
+TEST(OpenChoices, AKernelThatIsGivenIsKept) {
+  const Repeated from = repeated_places();
+  for (const KernelKind kernel : kKernelKinds) EXPECT_EQ(select(from, 50, kernel).kernel, kernel);
+}
+
+TEST(OpenChoices, TheBestOfAllKernelsIsSelected) {
+  const Repeated from = repeated_places();
+  const OpenChoices best = select(from, 50);
+  double least = HUGE_VAL;
+  for (const KernelKind kernel : kKernelKinds) least = std::min(least, select(from, 50, kernel).error_over_jnd);
+  EXPECT_EQ(best.error_over_jnd, least);
+}
+
+// A rare fast poke, ten times as fast as all else, and a force that varies with slow motion: the range compresses it.
+TEST(OpenChoices, TheNormalisationIsSelected) {
+  Repeated from = repeated_places();
+  const OpenChoices choices = select(from, 100, KernelKind::cubic);
+  EXPECT_TRUE(choices.range_exponent == 0.5 || choices.range_exponent == 1.0);
+}
+
+TEST(OpenChoices, TheDirectInterpolationIsSmoothed) {
+  const OpenChoices choices = select(repeated_places(), 0, KernelKind::cubic);
+  EXPECT_EQ(choices.truncation, 0.0);
+  EXPECT_GT(choices.smoothing, 0.0);
+}
+
+TEST(OpenChoices, SayWhatWasSelected) {
+  EXPECT_EQ(choices_text({KernelKind::cubic, 0.5, 1e-7, 0.0, 0.4321}),
+            "cubic kernel, each feature divided by the geometric mean of its range and deviation, truncation 1e-07: "
+            "cross-validated error 0.432 JND");
+  EXPECT_EQ(choices_text({KernelKind::thin_plate, 1.0, 0.0, 0.25, 1.0}),
+            "thin-plate kernel, each feature divided by its range, smoothing 0.25: cross-validated error 1.000 JND");
+}
+
+TEST(OpenChoices, CanBeInterruptedBeforeEachSetting) {
+  const Repeated from = repeated_places();
+  for (int stop = 1; stop <= 6; ++stop) {
+    int asked = 0;
+    const FitControl control{[&](double) { return ++asked < stop; }};
+    EXPECT_EQ(test::message_of(select_open_choices(from.samples, from.features, from.normalisation, from.sites,
+                                                   from.common, 20, {}, control)),
+              "interrupted");
+    EXPECT_EQ(asked, stop);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
