@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 
+#include "engine/tick/features.h"
 #include "models/correction/sites.h"
 
 namespace palpate::bench {

@@ -45,14 +45,6 @@ VoxelGrid random_grid(std::size_t dimension, std::uint64_t seed) {
   return grid;
 }
 
-// About 1.8 N at the greatest depth, twice as stiff there as at the surface.
-ElasticSpline stiffening_spline() {
-  std::vector<double> weights;
-  for (std::size_t i = 0; i < kElasticTerms; ++i)
-    weights.push_back(1.2 + 1.2 * static_cast<double>(i) / kElasticTerms);
-  return combined_spline(spline_basis(), weights.data());
-}
-
 Provenance example_provenance() {
   Provenance from;
   from.recordings = {"press-1", "press-2"};
@@ -117,6 +109,13 @@ std::vector<FeatureSpec> lagging_features() {
   return {FeatureSpec{}, lag, {FeatureKind::velocity, 0.0, {}}, slowed};
 }
 
+ElasticSpline even_spline(double at_surface_N, double at_depth_N) {
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < kElasticTerms; ++i)
+    weights.push_back(std::lerp(at_surface_N, at_depth_N, static_cast<double>(i) / (kElasticTerms - 1)));
+  return combined_spline(spline_basis(), weights.data());
+}
+
 ModelData example_model(const std::string& method, KernelKind kernel, std::vector<FeatureSpec> features,
                         std::uint64_t seed) {
   ModelData data;
@@ -135,7 +134,7 @@ ModelData example_model(const std::string& method, KernelKind kernel, std::vecto
   data.lower = data.offset - data.scale;
   data.upper = data.offset + data.scale;
   data.trend.reference_depth_m = kDepth_m;
-  data.trend.elastic = stiffening_spline();
+  data.trend.elastic = even_spline(1.2, 2.4);
   data.trend.viscosity_Ns_per_m = {1.0, 0.5, -0.0};
   data.trend.thinning_Ns_per_m = {0.5, 0.0, 0.25};
   data.trend.thinning_velocity_m_per_s = 0.05;
@@ -170,7 +169,8 @@ std::vector<ModelData> example_models() {
       example_model("trend", KernelKind::cubic, maxwell_features(), 9),
       example_model("greedy", KernelKind::cubic, paper_features(), 8),
   };
-  models.back().trend = Trend{.reference_depth_m = kDepth_m};
+  models.back().trend = Trend{};
+  models.back().trend.reference_depth_m = kDepth_m;
   models.back().name = "on-the-force";
   models.push_back(example_model("greedy", KernelKind::cubic, memory_features(), 21));
   models.push_back(example_model("greedy", KernelKind::cubic, lagging_features(), 22));

@@ -13,6 +13,9 @@
 
 namespace palpate::test {
 
+// An elastic response whose slope, in N, grows evenly from `at_surface_N` to `at_depth_N` over the reference depth.
+ElasticSpline even_spline(double at_surface_N, double at_depth_N);
+
 // A model of a soft block, about 2 N at 6 mm, with a random correction: a grid for
 // the `method` "voxel", none for "trend", else radial basis functions.
 // The same arguments give the same model.

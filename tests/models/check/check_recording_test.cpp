@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "engine/base/text.h"
-#include "models/recordings/recording_faults.h"
+#include "models/samples/recording_faults.h"
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"
 

@@ -38,7 +38,7 @@ TEST(FittedModel, ANumberFarBeyondTheLimitsOfTheFileIsRefused) {
     EXPECT_NE(message.find("largest_force_N"), std::string::npos) << message;
   }
   EXPECT_TRUE(test::has_parts(message_after([](ModelData& d) {
-                                d.trend.elastic = spline_from_powers({1e5, 0.0, 0.0}, {});
+                                d.trend.elastic = test::even_spline(1e5, 1e5);
                               }),
                               {"7.03e+04 N", "domain.points[0]", "306.5 N", "largest_force_N", "correction_limit_N"}));
 }
@@ -55,7 +55,7 @@ TEST(FittedModel, IsItsEquation) {
       const double trend_N = data.trend.at(x.data(), data.features);
       const double h_N = data.correction ? data.correction->evaluate(u.data()) : 0.0;
       const double correction_N =
-          std::clamp(h_N - (data.corrects_trend ? 0.0 : trend_N), -data.correction_limit_N, data.correction_limit_N);
+          std::clamp(h_N, -data.correction_limit_N, data.correction_limit_N);
       const double expected_N =
           std::clamp(trend_N + guard.trust(u.data()) * correction_N, 0.0, 1.2 * data.largest_force_N);
       const ForceEstimate estimate = model.evaluate(x.data());
