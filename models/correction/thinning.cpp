@@ -84,18 +84,20 @@ Normalisation normalisation_of(const Eigen::MatrixXd& features) {
                        features.rowwise().maxCoeff()};
   for (Eigen::Index i = 0; i < mean.size(); ++i) {
     const double variance = (features.row(i).array() - mean(i)).square().mean();
-    const double scale = std::sqrt((result.upper(i) - result.lower(i)) * 4.0 * std::sqrt(variance));
-    // A spread at the level of rounding counts as 0; the scale stays 1.
-    if (scale > 1e-12 * std::max(std::abs(result.lower(i)), std::abs(result.upper(i)))) result.scale(i) = scale;
+    if (result.range(i) > 0.0) result.scale(i) = std::sqrt(result.range(i) * 4.0 * std::sqrt(variance));
   }
   return result;
+}
+
+double Normalisation::range(Eigen::Index feature) const {
+  const double low = lower(feature), high = upper(feature);
+  return high - low > 1e-12 * std::max(std::abs(low), std::abs(high)) ? high - low : 0.0;
 }
 
 Eigen::VectorXd Normalisation::scale_of(double range_exponent) const {
   Eigen::VectorXd other = scale;
   for (Eigen::Index k = 0; k < other.size(); ++k) {
-    const double range = upper(k) - lower(k);
-    if (range > 0.0) other(k) = range * std::pow(scale(k) / range, 2.0 * (1.0 - range_exponent));
+    if (range(k) > 0.0) other(k) = range(k) * std::pow(scale(k) / range(k), 2.0 * (1.0 - range_exponent));
   }
   return other;
 }

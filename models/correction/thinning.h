@@ -40,6 +40,8 @@ struct Normalisation {
   Eigen::VectorXd lower;   // bounds in contact, SI
   Eigen::VectorXd upper;
 
+  // Upper minus lower bound; 0 at the level of rounding.
+  double range(Eigen::Index feature) const;
   // The scale range^a (4 sigma)^(1 - a) of each feature; a = 1/2 gives `scale`.
   Eigen::VectorXd scale_of(double range_exponent) const;
 };

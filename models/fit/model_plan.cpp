@@ -273,6 +273,7 @@ Result<ModelPlan> plan_of(std::vector<OptionText> texts) {
   const auto& options = plan_options();
   const auto option_of = [&](const OptionText& one) { return std::ranges::find(options, one.name, &PlanOption::name); };
   std::ranges::stable_sort(texts, {}, option_of);
+  bool numbered = false;  // the name of the method has a number of centres
   const auto given = [&](std::string_view name) { return std::ranges::count(texts, name, &OptionText::name) > 0; };
   for (const OptionText& one : texts) {
     const auto option = option_of(one);
@@ -288,7 +289,8 @@ Result<ModelPlan> plan_of(std::vector<OptionText> texts) {
     const int named = plan.centres;
     if (const Status status = option->set(plan, one.value); !status)
       return Error{one.name + ": " + status.error().message};
-    if (one.name == "centres" && named != ModelPlan{}.centres && named != plan.centres)
+    if (one.name == "method") numbered = one.value != family_name(plan);
+    if (one.name == "centres" && numbered && named != plan.centres)
       return Error{"centres: " + found(one.value, std::to_string(named) + ", the number in the name of the method")};
   }
   if (given("relaxation") && given("features")) {

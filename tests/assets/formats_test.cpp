@@ -36,13 +36,12 @@ TEST(Formats, TheSchemaRefusesWhatTheReaderRefuses) {
   const std::string path = folder.file("model.json");
   ASSERT_TRUE(save_model(path, test::example_models().front(), false).ok());
   const std::string text = test::read_text(path);
-  const std::vector<std::pair<const char*, const char*>> changes = {
-      {"palpate-model", "another-model"},
-      {"\"version\": 1", "\"version\": 2"},
-      {"\"kernel\"", "\"kernels\""},
-      {"\"largest_force_N\": ", "\"largest_force_N\": -"},
-      {"\"kind\": \"depth\"", "\"kind\": \"colour\""},
-      {"\"thinning\": \"coverage\"", "\"thinning\": 1"}};
+  const std::vector<std::pair<const char*, const char*>> changes = {{"palpate-model", "another-model"},
+                                                                    {"\"version\": 1", "\"version\": 2"},
+                                                                    {"\"kernel\"", "\"kernels\""},
+                                                                    {"\"largest_force_N\": ", "\"largest_force_N\": -"},
+                                                                    {"\"kind\": \"depth\"", "\"kind\": \"colour\""},
+                                                                    {"\"thinning\": \"coverage\"", "\"thinning\": 1"}};
   for (const auto& [from, to] : changes) {
     const std::string changed = std::regex_replace(text, std::regex(from), to, std::regex_constants::format_first_only);
     ASSERT_NE(changed, text) << from;

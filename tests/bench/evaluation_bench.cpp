@@ -54,15 +54,10 @@ void voxel(benchmark::State& state) {
 }
 
 void whole_model(benchmark::State& state, const Method* method) {
-  MethodRequest request;
-  request.method = method;
-  const Result<MethodFit> fit = fit_method(recorded(), request);
+  const Result<MethodFit> fit = fit_method(recorded(), {.method = method, .features = FeatureChoice::scene});
   if (!fit) return state.SkipWithError(fit.error().message.c_str());
   const FittedModel model(fit->data);
-  const auto& samples = recorded().set.evaluation_features;
-  const Eigen::Map<const Eigen::MatrixXd> points(samples.front().data(), kMaxFeatures,
-                                                 static_cast<Eigen::Index>(samples.size()));
-  run_queries(state, points, [&](const double* x) { return model.evaluate(x).force_N; });
+  run_queries(state, recorded().features, [&](const double* x) { return model.evaluate(x).force_N; });
 }
 
 void prepare(benchmark::internal::Benchmark* one) {

@@ -30,11 +30,10 @@ struct Fitted {
 
 // Palpate's methods as peers: the correction function alone, without trend, trust and limits.
 Result<Function> fit(const PreparedTraining& prepared, const Method* method) {
-  MethodRequest request;
-  request.method = method;
-  Result<MethodFit> fitted = fit_method(prepared, request);
+  const Eigen::VectorXd jnd_N = site_thresholds(prepared);
+  Result<FittedCorrection> fitted = fit_correction(*method, {prepared.sites, jnd_N});
   if (!fitted) return fitted.error();
-  return Function([correction = fitted->data.correction](const double* x) { return correction->evaluate(x); });
+  return Function([correction = fitted->correction](const double* x) { return correction->evaluate(x); });
 }
 
 std::vector<Peer> palpate_peers() {

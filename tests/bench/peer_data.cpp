@@ -13,22 +13,15 @@ namespace {
 
 constexpr int kLeaveOut = 5;  // every fifth fold is left out
 
-PreparedTraining with_targets(const PreparedTraining& prepared, bool forces) {
-  PreparedTraining other = prepared;
-  if (forces) {
-    for (std::size_t i = 0; i < other.set.sites.size(); ++i)
-      other.sites.target_N[static_cast<Eigen::Index>(i)] = other.set.sites[i].force_N;
-  }
-  // Skips the share within the JND on the training data, which takes time.
-  other.set.evaluation_features.resize(1);
-  other.set.evaluation_force_N.resize(1);
-  return other;
+PreparedTraining with_forces(PreparedTraining prepared) {
+  prepared.sites.target_N = prepared.sites.force_N;
+  return prepared;
 }
 
 PeerData make_data() {
   const PreparedTraining prepared =
       test::prepare({test::train_recording("silicone")}, test::scene_request("silicone_block"));
-  PeerData data{with_targets(prepared, true), with_targets(prepared, false), {}, {}, {}, {}};
+  PeerData data{with_forces(prepared), prepared, {}, {}, {}, {}};
   const ModelData& common = prepared.common;
   const auto d = static_cast<Eigen::Index>(common.features.size());
   const DomainGuard guard(common.cover);
@@ -70,10 +63,14 @@ Sites some_sites(const Sites& all, const Wanted& wanted) {
   std::vector<Eigen::Index> chosen;
   for (Eigen::Index i = 0; i < all.count(); ++i)
     if (wanted(i)) chosen.push_back(i);
-  Sites some;
+  Sites some = all;
   some.points = all.points(Eigen::all, chosen);
   some.target_N = all.target_N(chosen);
   some.row_scale = all.row_scale(chosen);
+  some.force_N = all.force_N(chosen);
+  some.samples = all.samples(chosen);
+  some.fold.clear();
+  for (const Eigen::Index i : chosen) some.fold.push_back(all.fold[static_cast<std::size_t>(i)]);
   return some;
 }
 
@@ -105,20 +102,15 @@ PreparedTraining with_some_sites(const PreparedTraining& prepared, Eigen::Index 
   if (count <= 0 || count >= all) return some;
   const auto wanted = [&](Eigen::Index i) { return (i + 1) * count / all != i * count / all; };
   some.sites = some_sites(prepared.sites, wanted);
-  some.set.sites.clear();
-  for (Eigen::Index i = 0; i < all; ++i) {
-    if (wanted(i)) some.set.sites.push_back(prepared.set.sites[static_cast<std::size_t>(i)]);
-  }
   return some;
 }
 
 std::vector<bool> left_out_sites(const PreparedTraining& prepared) {
-  std::set<int> folds;
-  for (const TrainingSite& site : prepared.set.sites) folds.insert(site.fold);
+  const std::set<int> folds(prepared.sites.fold.begin(), prepared.sites.fold.end());
   const int every = std::min(kLeaveOut, static_cast<int>(folds.size()));
   std::vector<bool> left_out;
-  for (const TrainingSite& site : prepared.set.sites) {
-    const auto rank = static_cast<int>(std::distance(folds.begin(), folds.find(site.fold)));
+  for (const int fold : prepared.sites.fold) {
+    const auto rank = static_cast<int>(std::distance(folds.begin(), folds.find(fold)));
     // The middle one of each five, so that the hardest of three presses is not left out.
     left_out.push_back(rank % every == every / 2);
   }

@@ -132,8 +132,9 @@ TEST(Thinning, ForceReductionBeginsAnewWithEachRecording) {
 
 TEST(Thinning, ForceReductionOfNoiseStaysBelowItsCap) {
   test::Numbers noise(2);
-  const Samples samples =
-      samples_of(recording_of(60000, [&](int) { return std::pair{3e-3, 5.0 + 2.0 * noise.next()}; }));
+  const Samples samples = samples_of(recording_of(60000, [&](int) {
+    return std::pair{3e-3, 5.0 + 2.0 * noise.next()};
+  }));
   const Thinned thinned = thinned_by(Thinning::force, samples, test::position_features());
   EXPECT_LE(static_cast<std::size_t>(thinned.sites.count()), kMaximumSites);
   EXPECT_GT(thinned.step_N, 0.05);

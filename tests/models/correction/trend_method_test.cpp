@@ -11,10 +11,8 @@ namespace {
 Result<MethodFit> fit_trend_alone(Weighting weighting, Thinning thinning) {
   auto samples = make_samples({prepare_recording(test::example_recording(1500, 250.0))}, JndLine{});
   if (!samples) return samples.error();
-  const ModelPlan plan{.method = &kTrendMethod,
-                       .weighting = weighting,
-                       .thinning = thinning,
-                       .features = FeatureChoice::scene};
+  const ModelPlan plan{
+      .method = &kTrendMethod, .weighting = weighting, .thinning = thinning, .features = FeatureChoice::scene};
   const auto prepared = prepare_training(std::make_shared<const Samples>(std::move(*samples)),
                                          {"test", test::paper_features(), {}}, plan);
   if (!prepared) return prepared.error();

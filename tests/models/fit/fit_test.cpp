@@ -310,8 +310,8 @@ TEST(Fit, OnTheForceUsesWhatIsSelected) {
   expect_safe(fit->data);
   // Centres are sites in the new normalisation.
   const Eigen::MatrixXd& centres = rbf_of(fit->data.correction)->centres;
-  const Eigen::MatrixXd sites = prepared->common.scale.cwiseQuotient(fit->data.scale).asDiagonal() *
-                                prepared->sites.points;
+  const Eigen::MatrixXd sites =
+      prepared->common.scale.cwiseQuotient(fit->data.scale).asDiagonal() * prepared->sites.points;
   for (Eigen::Index j = 0; j < centres.cols(); ++j)
     EXPECT_EQ((sites.colwise() - centres.col(j)).colwise().norm().minCoeff(), 0.0);
   const auto selected = fit_method(*prepared, asked.plan);

@@ -19,10 +19,9 @@ std::vector<std::string> names_of_all() {
 }
 
 TEST(ModelPlan, HasElevenNames) {
-  EXPECT_EQ(names_of_all(),
-            (std::vector<std::string>{"direct", "voxel", "random-100", "kdtree-100", "greedy-100", "trend",
-                                      "trend+direct", "trend+voxel", "trend+random-100", "trend+kdtree-100",
-                                      "trend+greedy-100"}));
+  EXPECT_EQ(names_of_all(), (std::vector<std::string>{"direct", "voxel", "random-100", "kdtree-100", "greedy-100",
+                                                      "trend", "trend+direct", "trend+voxel", "trend+random-100",
+                                                      "trend+kdtree-100", "trend+greedy-100"}));
   EXPECT_EQ(family_names(),
             "direct, voxel, random, kdtree, greedy, trend, trend+direct, trend+voxel, trend+random, trend+kdtree, "
             "trend+greedy");
@@ -36,7 +35,8 @@ TEST(ModelPlan, IsReadFromItsNames) {
     EXPECT_EQ(must(parse_plan(plan_name(plan))), plan) << plan_name(plan);
     EXPECT_EQ(must(parse_plan(family_name(plan))), plan) << family_name(plan);
   }
-  for (const char* name : {"greedy-1", "greedy-40", "trend+kdtree-2000"}) EXPECT_EQ(plan_name(must(parse_plan(name))), name);
+  for (const char* name : {"greedy-1", "greedy-40", "trend+kdtree-2000"})
+    EXPECT_EQ(plan_name(must(parse_plan(name))), name);
 }
 
 TEST(ModelPlan, NamesWhatItDoesNotKnow) {
@@ -161,8 +161,8 @@ TEST(PlanOptions, NameEachWrongOne) {
 
 TEST(PlanOptions, RefuseThoseThatExcludeEachOther) {
   const std::pair<const char*, const char*> wrong[] = {
-      {"method=greedy-40 centres=50",
-       "centres: found \"50\", expected 40, the number in the name of the method"},
+      {"method=greedy-40 centres=50", "centres: found \"50\", expected 40, the number in the name of the method"},
+      {"method=greedy-100 centres=50", "centres: found \"50\", expected 100, the number in the name of the method"},
       {"features=depth relaxation=0.1",
        "relaxation: found the features \"depth\", expected the scene's features; leave one of the two out"},
       {"relaxation=scene features=auto",
@@ -192,8 +192,9 @@ TEST(PlanOptions, RefuseWhatTheMethodDoesNotTake) {
       {"method=trend kernel=cubic",
        "kernel: trend does not take this option, only direct, voxel, random, kdtree, greedy, trend+direct, "
        "trend+voxel, trend+random, trend+kdtree, trend+greedy; leave it out"},
-      {"method=direct seed=3", "seed: direct does not take this option, only random, greedy, trend+random, "
-                               "trend+greedy; leave it out"},
+      {"method=direct seed=3",
+       "seed: direct does not take this option, only random, greedy, trend+random, "
+       "trend+greedy; leave it out"},
   };
   for (const auto& [text, message] : wrong) EXPECT_EQ(message_of(parse_plan_options(text)), message);
 }
@@ -221,9 +222,9 @@ TEST(FeatureListText, SaysWhatIsWrong) {
   for (const char* text : {"", "depth,", "speed", "velocity,velocity", "maxwell", "maxwell:", "maxwell:-1",
                            "maxwell:0.1+", "stops:0.1", "stops:0mm", "creep:", "creep:nan", "maxwell:1e999"})
     EXPECT_TRUE(test::has_parts(parse_feature_list(text), {"found \"", "expected "})) << text;
-  EXPECT_EQ(message_of(parse_feature_list(
-                "velocity,maxwell:1,maxwell:2,maxwell:3,maxwell:4,maxwell:5,maxwell:6,creep:1")),
-            "found 9 features, expected at most 8; join relaxation times with +");
+  EXPECT_EQ(
+      message_of(parse_feature_list("velocity,maxwell:1,maxwell:2,maxwell:3,maxwell:4,maxwell:5,maxwell:6,creep:1")),
+      "found 9 features, expected at most 8; join relaxation times with +");
 }
 
 }  // namespace

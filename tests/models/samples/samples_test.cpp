@@ -199,8 +199,7 @@ TEST(Samples, ThreeRecordingsOrMoreFormFoldsOfWholeRecordings) {
 }
 
 TEST(Samples, FewerRecordingsFormFoldsOfWholeStrokes) {
-  for (const std::vector<Recording>& recordings :
-       {std::vector{presses(20)}, std::vector{presses(12), presses(8)}}) {
+  for (const std::vector<Recording>& recordings : {std::vector{presses(20)}, std::vector{presses(12), presses(8)}}) {
     const Samples samples = samples_of(recordings);
     EXPECT_EQ(samples.folds, 5);
     for (const std::size_t i : samples.contact) ASSERT_EQ(samples.fold[i], (samples.stroke[i] - 1) % 5) << i;
@@ -255,9 +254,8 @@ TEST(Samples, OfLongRecordingsEveryNthRowIsKept) {
 }
 
 TEST(Samples, StopWheneverTheyAreAsked) {
-  const std::vector<PreparedRecordingPointer> recordings{
-      prepare_recording(test::example_recording(150000, 1000.0)),
-      prepare_recording(test::example_recording(1000, 1000.0))};
+  const std::vector<PreparedRecordingPointer> recordings{prepare_recording(test::example_recording(150000, 1000.0)),
+                                                         prepare_recording(test::example_recording(1000, 1000.0))};
   int questions = 0;
   ASSERT_TRUE(make_samples(recordings, JndLine{}, {[&](double) { return ++questions > 0; }}).ok());
   ASSERT_EQ(questions, 4) << "three within 150,000 rows and one";

@@ -73,10 +73,9 @@ TEST(TrendColumns, AreTheTermsOfTheTrend) {
   ASSERT_EQ(columns.rows(), samples.contact);
   ASSERT_GT(columns.count(), 1000u);
   EXPECT_EQ(columns.stride(), 1u);
-  FeatureFilter memory[] = {
-      branches(0.17), branches(1.27),
-      filter_of(frictions(), [](const DriveCurve& curve) { return test::stops({2e-4}, curve); }),
-      filter_of(frictions(), [](const DriveCurve& curve) { return test::creep({0.1}, curve); })};
+  FeatureFilter memory[] = {branches(0.17), branches(1.27),
+                            filter_of(frictions(), [](const DriveCurve& curve) { return test::stops({2e-4}, curve); }),
+                            filter_of(frictions(), [](const DriveCurve& curve) { return test::creep({0.1}, curve); })};
   std::size_t contact = 0;
   for (std::size_t i = 0; i < samples.rows.size(); ++i) {
     const Sample& sample = samples.rows[i];
@@ -87,7 +86,8 @@ TEST(TrendColumns, AreTheTermsOfTheTrend) {
     const double v = sample.motion.velocity_m_per_s;
     for (const ElasticSpline& curve : elastic) ASSERT_EQ(*value++, curve.at(std::min(u, 1.0)));
     for (const double factor : {v, v / (1 + std::abs(v) / kThinning_m_per_s)}) {
-      for (const double basis : {(1 - u) * (1 - u), 2 * u * (1 - u), u * u}) ASSERT_NEAR(*value++, factor * basis, 1e-15);
+      for (const double basis : {(1 - u) * (1 - u), 2 * u * (1 - u), u * u})
+        ASSERT_NEAR(*value++, factor * basis, 1e-15);
     }
     for (FeatureFilter& filter : memory) {
       // Other filters add up the same numbers of up to 1 in another order.
@@ -122,13 +122,14 @@ TEST(TrendColumns, RelaxationThatDependsOnDepthIsThatOfTheFeatures) {
   EXPECT_GT(largest, 0.1) << "the slowing matters";
 }
 
-// The trend of a list with a surface is that of the model whose features it becomes: its branches follow the surface,
-// its bristles and its viscosity the tool.
-TEST(TrendColumns, OfALaggingSurfaceAreThoseOfTheModel) {
+// The largest difference between the trend of a list with a surface and that of the model whose features it becomes:
+// its branches follow the surface, its bristles and its viscosity the tool.
+double difference_to_the_model_N(double slowing) {
   const Samples samples = strokes();
   FeatureList list;
   list.add(FeatureKind::velocity);
   list.add(FeatureKind::maxwell_spectrum, {0.05, 0.3});
+  list.features.back().slowing = slowing;
   list.add(FeatureKind::stops, {2e-4});
   const TrendColumns without = columns_of(samples, list);
   Eigen::VectorXd x = Eigen::VectorXd::Constant(without.columns(), 0.7);
@@ -137,21 +138,28 @@ TEST(TrendColumns, OfALaggingSurfaceAreThoseOfTheModel) {
   list.surface = {surface_lag_of(fitted.trend.elastic, kDepth_m), fitted.features[2]};
   const TrendColumns columns = columns_of(samples, list);
   const FittedTrend model = fitted_trend(columns, x, true);
-  ASSERT_EQ(model.features.size(), 5u);
-  ASSERT_EQ(model.features[1], list.surface[0]) << "of the elastic response of the same weights";
+  EXPECT_EQ(model.features.size(), 5u);
+  EXPECT_EQ(model.features[1], list.surface[0]) << "of the elastic response of the same weights";
   FeatureFilter filter(model.features);
   const Eigen::VectorXd force_N = columns.terms() * x;
-  const Eigen::VectorXd of_the_tool_N = without.terms() * x;
+  EXPECT_GT((force_N - without.terms() * x).cwiseAbs().maxCoeff(), 0.1) << "the surface matters";
   Eigen::Index row = 0;
+  double largest_N = 0.0;
   for (const Sample& sample : samples.rows) {
     const FeatureVector& vector = filter.update(sample.tool, sample.motion);
     if (!vector.in_contact) continue;
-    // Rounding of sums of forces of some newtons.
-    ASSERT_NEAR(force_N(row), model.trend.at(vector.values.data(), model.features), 1e-11) << row;
-    ++row;
+    const double model_N = model.trend.at(vector.values.data(), model.features);
+    largest_N = std::max(largest_N, std::abs(force_N(row++) - model_N));
   }
   EXPECT_EQ(row, force_N.size());
-  EXPECT_GT((force_N - of_the_tool_N).cwiseAbs().maxCoeff(), 0.1) << "the surface matters";
+  return largest_N;
+}
+
+TEST(TrendColumns, OfALaggingSurfaceAreThoseOfTheModel) {
+  EXPECT_LT(difference_to_the_model_N(0.0), 1e-11);  // rounding of sums of forces of some newtons
+  // While the surface is above the tool, the model has the relaxation times of the beginning of a step and the columns
+  // those of its middle: of steps of 1 ms, some thousandths of the surface's motion.
+  EXPECT_LT(difference_to_the_model_N(1.5), 5e-3);
 }
 
 // A weighted sum of branch features is one branch with the combined drive: the filter is linear in it.

@@ -187,8 +187,8 @@ TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
              {
                  {"\"tail\"",
                   "\"tails\": 3,\n\"tail\"",
-                  {"m.json:50:12:", "tails", "unknown field", "format", "correction_limit_N",
-                   "largest_force_N", "lowest_force_N", "error_bound", "; "}},
+                  {"m.json:50:12:", "tails", "unknown field", "format", "correction_limit_N", "largest_force_N",
+                   "lowest_force_N", "error_bound", "; "}},
                  {"{\"kind\": \"depth\"}",
                   "{\"kind\": \"depth\", \"time\": 1}",
                   {"m.json:7:31:", "features[0].time", "unknown field", "kind", "surface_position_m", "; "}},
