@@ -15,7 +15,7 @@ constexpr double kBudget_ns = 1e6;
 // The shortest ranges, so that equal models do not seem to differ.
 constexpr double kLeastTime = 0.3, kLeastError = 0.5;
 constexpr double kMargin = 0.08;          // of a range, at each end
-constexpr double kNameMargin = 0.2;       // the same at the side of the names
+constexpr double kNameMargin = 0.2;       // the same at the side of the names, and above the JND for its caption
 constexpr double kSmallestError = 0.003;  // far below what can be drawn beside 1
 
 // The upper end of the spread of the time as far as it is drawn; other programs may prolong a round at will.
@@ -197,7 +197,7 @@ SpeedRanges speed_ranges(const ModelsView& models) {
     }
   }
   if (time.from > time.to) return {{2.0, 3.0}, {-1.0, 1.0}};
-  return {time.range(kLeastTime, kNameMargin), error.range(kLeastError, kMargin)};
+  return {time.range(kLeastTime, kNameMargin), error.range(kLeastError, kNameMargin)};
 }
 
 void draw_speed(const ModelsView& models, const UiStyle& style, float height) {
