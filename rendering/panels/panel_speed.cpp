@@ -15,9 +15,11 @@ constexpr double kBudget_ns = 1e6;
 // The shortest ranges, so that equal models do not seem to differ.
 constexpr double kLeastTime = 0.3, kLeastError = 0.5;
 constexpr double kMargin = 0.08;          // of a range, at each end
-constexpr double kNameMargin = 0.2;       // the same at the side of the names
+constexpr double kNameMargin = 0.2;       // the same at the side of the names, and above the JND for its caption
 constexpr double kSmallestError = 0.003;  // far below what can be drawn beside 1
 
+// The upper end of the spread of the time as far as it is drawn; other programs may prolong a round at will.
+double drawn_high_ns(const Timing& tick) { return std::min(tick.high_ns, 1.2 * tick.median_ns); }
 double log_error(double error_over_jnd) { return std::log10(std::max(error_over_jnd, kSmallestError)); }
 
 bool has_dot(const ModelsView& models, std::size_t slot) {
@@ -118,8 +120,8 @@ struct SpeedPlot {
       list().AddLine({dot.x, plot.y_px(log_error(one.p99_interval.low))},
                      {dot.x, plot.y_px(log_error(one.p99_interval.high))}, colour(slot), 1.5F * size);
     }
-    list().AddLine({plot.x_px(std::log10(one.tick.low_ns)), dot.y}, {plot.x_px(std::log10(one.tick.high_ns)), dot.y},
-                   colour(slot), 1.5F * size);
+    list().AddLine({plot.x_px(std::log10(one.tick.low_ns)), dot.y},
+                   {plot.x_px(std::log10(drawn_high_ns(one.tick))), dot.y}, colour(slot), 1.5F * size);
     const float radius = (slot == models.verdict.chosen ? 7.0F : 5.0F) * size;
     draw_mark(list(), dot, radius, one.paper, colour(slot), style);
     placed.push_back({dot.x - radius, dot.y - radius, dot.x + radius, dot.y + radius});
@@ -139,7 +141,7 @@ struct SpeedPlot {
     const ImVec2 size = ImGui::CalcTextSize(one.name.c_str());
     // Beyond the ends of the spread of the time.
     const float gap = 0.6F * line();
-    const float right = std::max(dot.x, plot.x_px(std::log10(one.tick.high_ns)) - 0.3F * line()) + gap;
+    const float right = std::max(dot.x, plot.x_px(std::log10(drawn_high_ns(one.tick))) - 0.3F * line()) + gap;
     const float left_end = std::min(dot.x, plot.x_px(std::log10(one.tick.low_ns)) + 0.3F * line()) - gap;
     ImVec4 box(right, dot.y - 0.5F * size.y, right + size.x, dot.y + 0.5F * size.y);
     for (int step = 0; step < 24; ++step) {
@@ -183,7 +185,7 @@ SpeedRanges speed_ranges(const ModelsView& models) {
   for (const std::size_t slot : models.listed()) {
     if (!has_dot(models, slot)) continue;
     const ModelView& one = models.slots[slot];
-    for (const double ns : {one.tick_ns(), one.tick.low_ns, one.tick.high_ns}) time.add(std::log10(ns));
+    for (const double ns : {one.tick.low_ns, drawn_high_ns(one.tick)}) time.add(std::log10(ns));
     error.add(log_error(one.errors.p99_error_over_jnd));
     if (one.p99_interval.known()) {
       error.add(log_error(one.p99_interval.low));
@@ -195,7 +197,7 @@ SpeedRanges speed_ranges(const ModelsView& models) {
     }
   }
   if (time.from > time.to) return {{2.0, 3.0}, {-1.0, 1.0}};
-  return {time.range(kLeastTime, kNameMargin), error.range(kLeastError, kMargin)};
+  return {time.range(kLeastTime, kNameMargin), error.range(kLeastError, kNameMargin)};
 }
 
 void draw_speed(const ModelsView& models, const UiStyle& style, float height) {

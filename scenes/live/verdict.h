@@ -32,7 +32,8 @@ struct Verdict {
 // `judged`: at least one. `reference`: name of the model that is the reference; empty: the true force is known.
 Verdict judge(const std::vector<JudgedModel>& judged, const std::string& reference);
 
-// "in 0.6 of the time (240 against 390 ns)"; where the medians differ by less than their spread or a tenth, "as fast".
+// "in 0.6 of the time (240 against 390 ns)"; where the medians or the least times differ by at most kEqualTime
+// (scenes/evaluation/ranking.h), "as fast".
 std::string time_words(const Timing& one, const Timing& other);
 // The share of the period of 1 ms that a tick takes, as "0.04 %".
 std::string tick_share(double tick_ns);

@@ -100,7 +100,7 @@ TEST(PanelWords, TheBigNumberIsThatOfTheHeadline) {
   models.verdict.chosen = 1;
   EXPECT_EQ(big_number(models).number, jnd_text(3.83));
   EXPECT_EQ(jnd_text(3.83), "3.8") << "as many digits as a quantile has";
-  EXPECT_TRUE(test::has_parts(big_number(models).what, {"trend", "notice"}));
+  EXPECT_TRUE(test::has_parts(big_number(models).what, {"notice", "trend"}));
   EXPECT_EQ(big_number(models).below, "") << "nothing was pressed";
   models.slots[0].press_samples = 100;
   models.slots[0].press_p99_over_jnd = 0.42;
