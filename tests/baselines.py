@@ -23,7 +23,7 @@ def jnd(force):
 
 
 class Recording:
-    """Time, position and force of one file, and which samples are in contact (CONTRACT.md)."""
+    """Time, position and force of one file, and which samples are in contact (models/METHOD.md)."""
 
     def __init__(self, path):
         with open(path, newline="") as file:

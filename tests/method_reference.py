@@ -10,7 +10,7 @@ import tempfile
 import numpy as np
 
 TOLERANCE_N = 1e-6  # below the resolution of force sensors; rounding leaves some 1e-12
-MATERIALS = ("layered", "button")  # with a correction; with a surface that lags
+MATERIALS = ("layered", "sponge")  # with a correction; with a surface that lags and slowing
 METHODS = ("trend+greedy", "greedy", "voxel", "trend")
 
 

@@ -27,8 +27,8 @@ std::string printable(std::string_view text, std::size_t limit = 40);
 // "path:line:column: ", the beginning of a message about the byte at `offset` of `text`; columns count bytes from 1.
 std::string position_prefix(const std::string& path, std::string_view text, std::size_t offset);
 
-// The one of `names` that is nearest to `word`, by the number of letters to insert, delete or replace (Levenshtein 1966);
-// empty if every one needs more than a third of the letters of `word`, and more than 2.
+// The one of `names` that is nearest to `word`, by the number of letters to insert, delete or replace (Levenshtein
+// 1966); empty if every one needs more than a third of the letters of `word`, and more than 2.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& names);
 
 // `text` as one word of a shell, in quotes where it needs them.

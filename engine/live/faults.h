@@ -42,13 +42,7 @@ inline constexpr std::uint32_t kSlow = 2048;  // fewer than 100 samples a second
 inline constexpr std::uint32_t kLosesPosition = kUnplugged | kStuck | kJump | kReset;
 }  // namespace device_fault
 
-// Faults that the window detects.
-namespace window_fault {
-inline constexpr std::uint32_t kDropped = 1;  // snapshots were lost before they were shown
-inline constexpr std::uint32_t kStall = 2;    // no tick for more than 50 ms
-}  // namespace window_fault
-
-enum class FaultSource : std::uint8_t { device, loop, window };
+enum class FaultSource : std::uint8_t { device, loop };
 
 struct Fault {
   FaultSource source;
@@ -61,7 +55,7 @@ struct Fault {
 };
 
 // In the order of the reports.
-inline constexpr std::array<Fault, 24> kFaults = {{
+inline constexpr std::array<Fault, 22> kFaults = {{
     {FaultSource::device, device_fault::kUnplugged, "the device is disconnected: connect it again"},
     {FaultSource::device, device_fault::kLate, "reports come late: no force until they are on time again"},
     {FaultSource::device, device_fault::kSlow,
@@ -95,8 +89,6 @@ inline constexpr std::array<Fault, 24> kFaults = {{
     // Reported by the device's own rows.
     {FaultSource::loop, loop_fault::kDeviceFault, "", true, false},
     {FaultSource::loop, loop_fault::kDeadlineMissed, "a tick was late and missed its deadline", false, false},
-    {FaultSource::window, window_fault::kDropped, "the window was too slow to show every tick", false, false},
-    {FaultSource::window, window_fault::kStall, "the haptics loop stood still for more than 50 ms", false},
 }};
 
 // The bits of all rows of `source`, or only of those that stop the force.

@@ -55,16 +55,16 @@ double PassivityController::arrived_N(const Tool& tool, double lag_s, double wri
 double PassivityController::apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N,
                                   double step_s) noexcept {
   const double acted_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, loop.tick_s);
-  if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
+  if (!tool.in_contact || !std::isfinite(tool.position_m)) {
     begin_at(0.0);
     return reduced(commanded_N, 0.0);
   }
   if (tool.model_changing) {
-    begin_at(tool.depth_m);
+    begin_at(tool.position_m);
     return reduced(commanded_N, reduction_N_ * std::max(0.0, 1.0 - step_s / kLetGo_s));
   }
   const double half_play_m = 0.5 * play_m_;
-  const double depth_m = std::clamp(depth_m_, tool.depth_m - half_play_m, tool.depth_m + half_play_m);
+  const double depth_m = std::clamp(depth_m_, tool.position_m - half_play_m, tool.position_m + half_play_m);
   const double change_m = depth_m - depth_m_;
   const double before_J = energy_J_;
   energy_J_ += acted_N * change_m;

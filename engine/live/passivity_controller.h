@@ -1,18 +1,28 @@
-// Keeps the rendered force from returning more energy than it received. A force that is held for a period T and lags by
-// a transport t_d acts as negative damping -K (T / 2 + t_d) in addition to its stiffness K (Colgate & Schenkel 1997);
-// without enough damping in material and hand the tool gains energy.
+// Keeps the rendered force from returning more energy than it received.
 //
-// Observer: the energy that the tool has put in since contact, E += F dx. F is the force that acted during dx, which
-// was written t_d + T before; if samples come less often than ticks it is the mean of these (Ryu et al. 2004: the
-// observer includes the delay). A material that only stores and relaxes energy returns at most what it received: during
-// unloading, E at each depth is at least the E at which that depth was last passed during loading. A deficit is called
-// the debt. (The usual condition, E >= 0, detects a gain of energy only when all stored energy was returned.) Noise of
-// one encoder step is no motion: the observer follows the depth with a play (dead zone) of one step, so that at each
-// turn an energy of F times the step is not observed.
+//   force |        loading ___/
+//         |           ___/_/
+//         |     _____/_/ unloading
+//         |____/_/_________________ depth
 //
-// Controller: during unloading, v < 0, the force is reduced by min(b, debt / (v^2 T)) |v| until the debt is 0. Here b
-// is the damping limit of StabilityLimit minus the user's damping. Without a debt the force is unchanged. When the
-// active model changes, the observer is reset, because E of another material is not comparable.
+// A press to a depth and back. The tool puts in the area below the upper path and gets back the one below the lower. A
+// material returns at most what it received. A force that is held for T and late by t_d is that of an earlier depth:
+// too small on the way in, too large on the way out, so that the paths cross and the loop gains energy.
+//
+// Why: such a force acts as negative damping -K (T / 2 + t_d) beside its stiffness K (Colgate & Schenkel 1997). Without
+// enough damping in material and hand the tool swings.
+//
+// Observer: E, the energy that the tool has put in since contact, E += F dx. F is the force that acted during dx: the
+// one that was written t_d + T before; the mean of these where samples come less often than ticks (Ryu et al. 2004).
+// During loading E is stored with the depth. During unloading E at each depth must be at least the stored E at that
+// depth; the deficit is the debt. (The usual condition, E >= 0, shows a gain only after all stored energy was
+// returned.) Noise of one encoder step is no motion: the observer follows the position with a play (dead zone) of one
+// step, so that at each turn an energy of F times the step is not observed.
+//
+// Controller: while the tool moves out with v < 0 and there is a debt, the force is reduced by
+// min(b, debt / (v^2 T)) |v|. b is the damping limit of StabilityLimit minus the user's damping. Without a debt the
+// force is unchanged. When the active model changes, the observer begins again, because E of another material is not
+// comparable.
 // Sources: Hannaford & Ryu (2002), IEEE Trans. Robotics & Automation 18(1); Ryu et al. (2004) for a reference that
 // follows the depth.
 // Thread guarantee: one thread at a time; wait-free, allocates nothing, never throws.
@@ -21,9 +31,9 @@
 #include <array>
 #include <cstddef>
 
-namespace palpate {
+#include "engine/tick/tool_sample.h"
 
-inline constexpr double kHapticTick_s = 1e-3;
+namespace palpate {
 
 class PassivityController {
  public:
@@ -31,17 +41,17 @@ class PassivityController {
   explicit PassivityController(double encoder_step_m = 0.0) noexcept : play_m_(kPlay_steps * encoder_step_m) {}
 
   struct Tool {
-    double depth_m = 0.0;  // of the sample, quantised by the encoder
+    double position_m = 0.0;  // of the sample, quantised by the encoder, inwards
     double velocity_m_per_s = 0.0;
     bool in_contact = false;
     bool model_changing = false;  // the active model is changing
     bool fresh = true;            // a sample was read in this tick
   };
   struct Loop {
-    double transport_s = 1e-3;       // from a sample to its force; with hold_s at most 63 ms
-    double damping_Ns_per_m = 16.0;  // b
-    double hold_s = 1e-3;            // T, for which a force is held: one tick, or until the next sample
-    double tick_s = kHapticTick_s;   // between two calls
+    double transport_s = kHapticTick_s;  // from a sample to its force; with hold_s at most 63 ms
+    double damping_Ns_per_m = 16.0;      // b
+    double hold_s = kHapticTick_s;       // T, for which a force is held: one tick, or until the next sample
+    double tick_s = kHapticTick_s;       // between two calls
   };
 
   // Once a tick, before the limiter. `written_N`: the device's force in the last tick; `step_s`: since then, 0 in the

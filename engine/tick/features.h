@@ -1,5 +1,5 @@
 // The feature vector of a force model: one to eight features of the tool's motion, with their memory. Fit, replay and
-// live loop run this code.
+// live loop run this code. models/METHOD.md has the equations of a step.
 //
 //   depth             d = max(0, estimated position - surface)              [m]
 //   velocity          v = estimated velocity while d > 0, else 0            [m/s]
@@ -9,46 +9,10 @@
 //   creep             y = sum_p g_p(d) q_p / r_p, q_p a creeping bristle    [N]
 //   surface_lag       s - d, s the depth of the material's surface          [m]
 //
-// The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is this filter with a spring of stiffness
-// g'(d) in front; g = d / tau gives the low-pass. g is identified from recordings (models/trend/trend_estimator.h).
-// The input of both is the depth: in free air the material relaxes.
-//
-// The tool is in contact when its position is greater than the depth feature's `surface_position_m`. That is 0, or
-// another position, on either side of 0, if the training recordings had their surface there.
-//
-// With a surface_lag among the features, the branches follow the material's surface and not the tool: s = d while the
-// sum of elastic response E and all branches pushes the tool out; otherwise s >= d is the depth at which this sum, E(s)
-// + sum z, is zero. A tool that retreats faster than the material recovers thus loses contact, and regains it where the
-// surface then is (Johnson 1985, section 6.5: unloading of viscoelastic contacts). With a `slowing` b, every tau is
-// multiplied by exp(b s / reference depth): where a fluid is squeezed through closing pores, all relaxation times grow
-// with the strain by one factor (Lai & Mow 1980: permeability and strain).
-//
-// A branch is dissipative. With q = g(d) - z, dq/dt = z / tau, it dissipates the power (d - g^-1(q)) (g(d) - q) / tau,
-// which is >= 0 if g increases, for any current tau > 0. The rest of its power z dd/dt changes the stored energy
-// integral_0^d g ds - q d + integral_0^q g^-1 ds.
-//
-// A stop operator of threshold r is the deflection of a bristle that follows the depth, bends by at most r and then
-// slips: s' = clamp(s + d' - d, -r, r), and 0 out of contact. A weighted sum of stops is a Prandtl-Ishlinskii operator:
-// dry friction with presliding. With every g_p >= 0 a closed cycle of depth dissipates the energy
-//   sum_p closed integral G_p(d) dp_p / r_p >= 0,  G_p' = g_p, p_p = d - s_p,
-// because p_p increases only at d = p_p + r and decreases only at d = p_p - r. For a creeping bristle p_p increases
-// only at d > p_p and decreases only at d < p_p, which suffices.
-//
-// A creeping bristle slips at every deflection, by a power law,
-//   dq/dt = dd/dt - (q / tau) (q / r)^2.
-// Its creep rate grows with q^3, that of a Maxwell branch with q; a stop operator is the limit of an infinite power.
-// During a hold of duration t its force falls as t^-1/2, as in networks of rubber (Bergstrom & Boyce 1998); in steady
-// motion it rises with the cube root of the speed. In free air it continues to creep.
-//
-// Discretisation is exact for a depth that is linear between samples, with the measured time step h and
-// e = exp(-h / tau):
-//   y' = e y + (1 - e) (d' - d) / h
-//   z' = e z + tau (1 - e) (g(d') - g(d)) / h
-// so recordings of one motion at different rates give the same features. A creeping bristle creeps for half of the
-// step, exactly, q / sqrt(1 + (h / tau) (q / r)^2), follows the depth, and creeps for the other half (Strang 1968).
-// Sources: Visintin (1994), "Differential models of hysteresis" (stop and play operators); Dahl (1968) (friction with
-// presliding); Bergstrom & Boyce (1998), "Constitutive modeling of the large strain time-dependent behavior of
-// elastomers".
+// The tool is in contact beyond the depth feature's `surface_position_m`, 0 unless the training recordings had their
+// surface elsewhere. In free air the material relaxes. feature_lanes.h says why parts are passive.
+// Sources: Hoever & Harders (2009), eq. 1 (low-pass); Visintin (1994) (stops); Bergstrom & Boyce (1998) (creep);
+// Johnson (1985), 6.5 (the surface lags); Lai & Mow (1980) (slowing).
 // Thread guarantee: value types; `update` is wait-free, allocates nothing and never throws; one thread at a time.
 #pragma once
 

@@ -13,7 +13,6 @@ namespace {
 // The largest gap between the recalled motion and the exchange of models (a slow frame of the window, and the model
 // slot). In a longer gap the motion is unknown.
 constexpr double kLongestGap_s = 5.0;
-constexpr double kRehearsedStep_s = 1e-3;
 // The duration of an instantaneous press: a thousandth of the shortest relaxation time of a fit.
 constexpr double kInstant_s = 1e-6;
 
@@ -78,7 +77,7 @@ void HapticsTick::reset() noexcept {
 void HapticsTick::rehearse() noexcept {
   if (!started_) return;
   ToolSample next = sample_;
-  next.time_s += kRehearsedStep_s;
+  next.time_s += kHapticTick_s;
   MotionEstimator motion = motion_;
   const MotionEstimate estimate = motion.update(next);
   double sum_N = 0.0;

@@ -4,13 +4,12 @@
 // The order is: motion estimate (once), features (once per distinct feature list among the models), forces (every
 // model). Out of contact every force is 0.
 //
-// A stream that begins in contact begins with an unknown memory of the material. The forces then assume a material at
-// rest. Two other states are advanced with it until the tool leaves the material: the state after an instantaneous
-// press from rest in air, and the state after a rest at the greatest depth of the training and an instantaneous
-// retreat. Branches and bristles after any other history lie between the two. The larger difference of their forces
-// from the rendered one is added to the predicted error.
-// Thread guarantee: construction allocates (slow side); `step` is wait-free, allocates nothing, locks nothing, does no
-// I/O and never throws; one thread at a time.
+// A stream that begins in contact does not show what was pressed before, on which the force depends. The force assumes
+// that the material was at rest at this depth. Two extreme histories are simulated beside it until the tool leaves the
+// material: a sudden press from air, and a sudden retreat from a rest at the greatest depth of the training. Every
+// other history lies between them, so the larger difference of their forces is added to the predicted error. Thread
+// guarantee: construction allocates (slow side); `step` is wait-free, allocates nothing, locks nothing, does no I/O and
+// never throws; one thread at a time.
 #pragma once
 
 #include <array>

@@ -3,6 +3,9 @@
 
 namespace palpate {
 
+// The period of the haptics loop.
+inline constexpr double kHapticTick_s = 1e-3;
+
 // One sample. The position is along the inward surface normal, 0 at the undisturbed surface, positive inside the block.
 // Velocity and acceleration are used only if the sensor has them (SensorSpec).
 struct ToolSample {

@@ -59,7 +59,7 @@ void CandidateGains::update_group(std::span<const Eigen::Index> sites, const Eig
     lengths += (sites_.row_scale.segment(row, rows).asDiagonal() * block).colwise().squaredNorm().transpose();
   }
   for (Eigen::Index j = 0; j < count; ++j) {
-    Candidate& one = candidate(sites[static_cast<std::size_t>(j)]);
+    SiteGain& one = candidate(sites[static_cast<std::size_t>(j)]);
     if (one.known == 0) {
       one.length = one.outside = one.exact = lengths(j);
       one.correlation = shares(j, 0);
@@ -79,14 +79,14 @@ void CandidateGains::recompute_cancelled(std::span<const Eigen::Index> sites, co
   constexpr double kInsideBasis = 1e-20;  // relative to |c|^2
   std::vector<Eigen::Index> cancelled;
   std::copy_if(sites.begin(), sites.end(), std::back_inserter(cancelled), [&](Eigen::Index site) {
-    const Candidate& one = candidate(site);
+    const SiteGain& one = candidate(site);
     return one.exact > 0.0 && one.outside <= kCancelled * std::sqrt(one.exact * one.length);
   });
   if (cancelled.empty()) return;
   Eigen::MatrixXd parts = columns(cancelled);
   basis.project_out(parts);
   for (std::size_t j = 0; j < cancelled.size(); ++j) {
-    Candidate& one = candidate(cancelled[j]);
+    SiteGain& one = candidate(cancelled[j]);
     const auto part = parts.col(static_cast<Eigen::Index>(j));
     const double squared = part.squaredNorm();
     one.outside = one.exact = squared > kInsideBasis * one.length ? squared : 0.0;

@@ -32,19 +32,19 @@ class CandidateGains {
   void update(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis);
 
   double gain(Eigen::Index site) const {
-    const Candidate& one = candidates_[static_cast<std::size_t>(site)];
+    const SiteGain& one = candidates_[static_cast<std::size_t>(site)];
     return one.outside > 0.0 ? one.correlation * one.correlation / one.outside : 0.0;
   }
 
  private:
-  struct Candidate {
-    Eigen::Index known = 0;    // columns of data_and_columns() that are accounted for
+  struct SiteGain {
+    Eigen::Index known = 0;    // directions of the basis (columns of data_and_columns()) that the rest contains
     double length = 0.0;       // |c|^2
-    double outside = 0.0;      // |c'|^2, 0 for a column in the span of the basis
-    double exact = 0.0;        // last fully computed |c'|^2
+    double outside = 0.0;      // |c'|^2 by subtraction; 0 for a column in the span of the basis
+    double exact = 0.0;        // |c'|^2 when c' was last computed itself; tells when cancellation sets in
     double correlation = 0.0;  // c . r
   };
-  Candidate& candidate(Eigen::Index site) { return candidates_[static_cast<std::size_t>(site)]; }
+  SiteGain& candidate(Eigen::Index site) { return candidates_[static_cast<std::size_t>(site)]; }
   Eigen::Index least_known(std::span<const Eigen::Index> sites) const;
   // `directions`: the last columns of data_and_columns(), scaled: those that one of the sites lacks.
   void update_group(std::span<const Eigen::Index> sites, const Eigen::MatrixXd& directions,
@@ -53,7 +53,7 @@ class CandidateGains {
 
   const Sites& sites_;
   PointArrays points_;
-  std::vector<Candidate> candidates_;  // one for each site
+  std::vector<SiteGain> candidates_;  // one for each site
 };
 
 }  // namespace palpate

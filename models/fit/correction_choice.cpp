@@ -29,7 +29,7 @@ Eigen::MatrixXd random_centres(const Eigen::MatrixXd& points) {
   return points(Eigen::all, order);
 }
 
-struct Candidate : CorrectionChoice {
+struct ScoredCorrection : CorrectionChoice {
   FoldErrors errors;
 };
 
@@ -125,7 +125,7 @@ CorrectionChoice choose_correction(const ResidualRows& rows, const ModelData& co
   const std::vector<double> deepest_m =
       deepest_elsewhere_m(rows.fold, {rows.depth_m.data(), rows.fold.size()}, rows.folds());
   // Adds the errors of a candidate. `h`: its correction at every row.
-  const auto score = [&](Candidate& candidate, const Eigen::VectorXd& h) {
+  const auto score = [&](ScoredCorrection& candidate, const Eigen::VectorXd& h) {
     for (std::size_t i = 0; i < rows.fold.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       const auto fold = static_cast<std::size_t>(rows.fold[i]);
@@ -135,7 +135,7 @@ CorrectionChoice choose_correction(const ResidualRows& rows, const ModelData& co
       candidate.errors.add(fold, error * robust_scale(error));
     }
   };
-  std::vector<Candidate> candidates{{{false, fits.unit(), least_radius}, folds}};  // no correction
+  std::vector<ScoredCorrection> candidates{{{false, fits.unit(), least_radius}, folds}};  // no correction
   for (int decade = kHighestDecade; decade >= kLowestDecade; --decade) {
     for (const double factor : kRadiusFactors) {
       candidates.push_back({{true, fits.unit() * std::pow(10.0, decade), factor * least_radius}, folds});
@@ -147,7 +147,7 @@ CorrectionChoice choose_correction(const ResidualRows& rows, const ModelData& co
     const Eigen::VectorXd h = fits.predict(first->smoothing);
     for (std::size_t i = 0; i < kRadiusFactors.size(); ++i) score(first[static_cast<std::ptrdiff_t>(i)], h);
   });
-  const Candidate& chosen = candidates[best_score(errors_of(candidates))];
+  const ScoredCorrection& chosen = candidates[best_score(errors_of(candidates))];
   CorrectionChoice choice = chosen;
   choice.trend_error_over_jnd = candidates.front().errors.rms_at_mean_score();
   choice.error_over_jnd = chosen.errors.rms_at_mean_score();

@@ -1,14 +1,14 @@
-// Selects whether a model has a correction, its smoothing and its reach, by cross-validation.
+// Selects by cross-validation whether a model has a correction, how smooth it is, and how far from the data it is
+// trusted. A correction h of the residual of the trend helps only as far as other strokes have the same residual.
 //
-// A correction h of the residual of the trend helps only as far as other strokes have the same residual. For each fold
-// (models/samples/cross_validation.h), h is fitted to the rows of the others, by penalised least squares on up to 200
-// random centres,
-//   minimise sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,
-// where r is the residual of a trend fitted to the same rows. The rows of the fold are then predicted by
-//   f = max(lowest, T(x) + g(x) clamp(h(x), -limit, limit))
-// with g the trust around the rows of the other folds. The lowest score chooses smoothing and inner radius of the
-// trust; no correction is one of the candidates. One
-// smoothing serves every method: with more centres each approaches the smoothing spline through all sites.
+// Candidates: no correction; or a smoothing of 1e-9 to 10 (in units of the mean eigenvalue of the kernel) with an inner
+// radius of 1, 2, 4 or 8 times the smallest. Each predicts the rows of a fold (models/samples/cross_validation.h) from
+// those of the others:
+//   1. h minimises sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,  on up to 200 random centres;
+//      r is the residual of the trend that was fitted to the same rows.
+//   2. f = max(lowest, T(x) + g(x) clamp(h(x), -limit, limit)), g the trust around the rows of the other folds.
+// The lowest score wins. One smoothing serves every method: with more centres each approaches the smoothing spline
+// through all sites.
 // Sources: Wahba (1990) (smoothing splines; regression splines as subsets of the basis); Craven & Wahba (1979); Hastie,
 // Tibshirani & Friedman (2009), 7.10.
 // Thread guarantee: slow side, pure.

@@ -88,13 +88,13 @@ class Selection {
 
   int folds() const { return folds_; }
 
-  struct Candidate {
+  struct ScoredChoices {
     OpenChoices choices;
     FoldErrors errors;
   };
 
   // The candidates with this kernel and normalisation, one for each regularisation.
-  std::vector<Candidate> with(KernelKind kernel, double exponent) const {
+  std::vector<ScoredChoices> with(KernelKind kernel, double exponent) const {
     const Eigen::VectorXd scale = normalisation_.scale_of(exponent);
     Sites sites{normalised(train_.features, scale), train_.force_N, train_.row_scale, kernel};
     const Eigen::MatrixXd rows = normalised(tested_.features, scale);
@@ -108,7 +108,7 @@ class Selection {
     const ProjectedKernel projected(kernel, centres, Eigen::VectorXd::Ones(centres.cols()));
     const Eigen::MatrixXd penalty =
         truncates_ ? Eigen::MatrixXd() : projected.matrix(projected.mean_eigenvalue(), projected.smallest_smoothing());
-    std::vector<Candidate> candidates = regularised(kernel, exponent, projected.mean_eigenvalue());
+    std::vector<ScoredChoices> candidates = regularised(kernel, exponent, projected.mean_eigenvalue());
     Eigen::MatrixXd design(rows.cols(), tail + centres.cols());
     design.leftCols(tail) = tail_matrix(tail_degree(kernel), rows);
     kernel_matrix(kernel, PointArrays(rows), centres, design.rightCols(centres.cols()));
@@ -140,14 +140,14 @@ class Selection {
     return (features.colwise() - normalisation_.offset).array().colwise() / scale.array();
   }
 
-  std::vector<Candidate> regularised(KernelKind kernel, double exponent, double mean_eigenvalue) const {
-    std::vector<Candidate> candidates;
+  std::vector<ScoredChoices> regularised(KernelKind kernel, double exponent, double mean_eigenvalue) const {
+    std::vector<ScoredChoices> candidates;
     const int low = truncates_ ? kLowestCut : kLowestSmoothing, high = truncates_ ? kHighestCut : kHighestSmoothing;
     const double unit =
         truncates_ ? 1.0
                    : mean_eigenvalue * train_.row_scale.squaredNorm() / static_cast<double>(train_.row_scale.size());
     for (int decade = high; decade >= low; --decade) {
-      Candidate& one = candidates.emplace_back(Candidate{{kernel, exponent}, static_cast<std::size_t>(folds_)});
+      ScoredChoices& one = candidates.emplace_back(ScoredChoices{{kernel, exponent}, static_cast<std::size_t>(folds_)});
       (truncates_ ? one.choices.truncation : one.choices.smoothing) = unit * std::pow(10.0, decade);
     }
     return candidates;
@@ -155,7 +155,7 @@ class Selection {
 
   // One column of tail and weights for each candidate.
   static Eigen::MatrixXd truncated(const Eigen::MatrixXd& triangle, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                   const std::vector<Candidate>& candidates) {
+                                   const std::vector<ScoredChoices>& candidates) {
     const Eigen::Index n = centres.cols(), tail = triangle.cols() - 1 - n;
     Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(triangle.rows() + tail, tail + n);
     stack.topRows(triangle.rows()) = triangle.leftCols(tail + n);
@@ -170,7 +170,7 @@ class Selection {
   }
 
   static Eigen::MatrixXd smoothed(const Eigen::MatrixXd& triangle, const ProjectedKernel& projected,
-                                  const Eigen::MatrixXd& penalty, const std::vector<Candidate>& candidates) {
+                                  const Eigen::MatrixXd& penalty, const std::vector<ScoredChoices>& candidates) {
     const Eigen::Index n = penalty.rows(), tail = triangle.cols() - 1 - n;
     Eigen::MatrixXd rows = triangle.leftCols(tail + n);
     projected.project_rows(rows.rightCols(n));
@@ -230,12 +230,12 @@ Result<OpenChoices> select_open_choices(const Samples& samples, const Eigen::Mat
       if (!kernel || *kernel == kind) settings.emplace_back(kind, exponent);
     }
   }
-  std::vector<Selection::Candidate> candidates;
+  std::vector<Selection::ScoredChoices> candidates;
   for (std::size_t i = 0; i < settings.size(); ++i) {
     if (!control.may_continue(static_cast<double>(i) / static_cast<double>(settings.size()))) return interrupted();
     std::ranges::move(selection.with(settings[i].first, settings[i].second), std::back_inserter(candidates));
   }
-  const Selection::Candidate& best = candidates[best_score(errors_of(candidates))];
+  const Selection::ScoredChoices& best = candidates[best_score(errors_of(candidates))];
   OpenChoices choices = best.choices;
   choices.error_over_jnd = best.errors.rms_at_mean_score();
   return choices;

@@ -45,21 +45,21 @@ bool is_significantly_worse(const std::vector<double>& one, const std::vector<do
   return mean > 2.0 * std::sqrt(variance);
 }
 
-struct Candidate {
+struct ScannedOffset {
   double at = 0.0;
   BlockCosts costs;
 };
 
-Candidate candidate_at(const CostFunction& cost, double at) {
-  Candidate made{at, cost(at)};
+ScannedOffset candidate_at(const CostFunction& cost, double at) {
+  ScannedOffset made{at, cost(at)};
   for (double& one : made.costs) one = std::abs(one) < kWorstCost ? one : kWorstCost;
   return made;
 }
 
 // The minimum between `low` and `high` by golden sections.
-Candidate golden(const CostFunction& cost, double low, double high, double fine_step) {
-  Candidate a = candidate_at(cost, high - kGolden * (high - low));
-  Candidate b = candidate_at(cost, low + kGolden * (high - low));
+ScannedOffset golden(const CostFunction& cost, double low, double high, double fine_step) {
+  ScannedOffset a = candidate_at(cost, high - kGolden * (high - low));
+  ScannedOffset b = candidate_at(cost, low + kGolden * (high - low));
   for (int step = 0; step < kMostGoldenSteps && high - low > fine_step; ++step) {
     if (sum(a.costs) < sum(b.costs)) {
       high = b.at;
@@ -81,9 +81,9 @@ class Search {
   OffsetEstimate run() {
     if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans)) return {};
     scan();
-    const Candidate zero = candidate_at(cost_, 0.0);
+    const ScannedOffset zero = candidate_at(cost_, 0.0);
     const double effect = range_.systematic_effect;
-    const bool any_better = std::any_of(scanned_.begin(), scanned_.end(), [&](const Candidate& one) {
+    const bool any_better = std::any_of(scanned_.begin(), scanned_.end(), [&](const ScannedOffset& one) {
       return is_significantly_worse(zero.costs, one.costs);
     });
     if (effect > 0.0 && !any_better) return {};
@@ -126,16 +126,17 @@ class Search {
     std::sort(valleys.begin(), valleys.end(),
               [&](std::size_t a, std::size_t b) { return sum(scanned_[a].costs) < sum(scanned_[b].costs); });
     valleys.resize(std::min(valleys.size(), kMostValleys));
-    std::vector<Candidate> bottoms;
+    std::vector<ScannedOffset> bottoms;
     for (const std::size_t valley : valleys) {
       const double around = scanned_[valley].at;
       bottoms.push_back(golden(cost_, std::max(range_.low, around - range_.coarse_step),
                                std::min(range_.high, around + range_.coarse_step), range_.fine_step));
       scanned_.push_back(bottoms.back());
     }
-    best_ = *std::min_element(bottoms.begin(), bottoms.end(),
-                              [](const Candidate& a, const Candidate& b) { return sum(a.costs) < sum(b.costs); });
-    alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const Candidate& one) {
+    best_ = *std::min_element(bottoms.begin(), bottoms.end(), [](const ScannedOffset& a, const ScannedOffset& b) {
+      return sum(a.costs) < sum(b.costs);
+    });
+    alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const ScannedOffset& one) {
       return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_significantly_worse(one.costs, best_.costs);
     });
   }
@@ -147,7 +148,8 @@ class Search {
         if (at > range_.low && at < range_.high) scanned_.push_back(candidate_at(cost_, at));
       }
     }
-    std::sort(scanned_.begin(), scanned_.end(), [](const Candidate& a, const Candidate& b) { return a.at < b.at; });
+    std::sort(scanned_.begin(), scanned_.end(),
+              [](const ScannedOffset& a, const ScannedOffset& b) { return a.at < b.at; });
   }
 
   // The minimum of the cost without one block: a parabola through the best offset tried and its neighbours.
@@ -183,8 +185,8 @@ class Search {
 
   const CostFunction& cost_;
   SearchRange range_;
-  std::vector<Candidate> scanned_;
-  Candidate best_;
+  std::vector<ScannedOffset> scanned_;
+  ScannedOffset best_;
   bool alone_ = true;
 };
 
@@ -195,7 +197,7 @@ OffsetEstimate estimate_offset(const CostFunction& cost, const SearchRange& rang
 OffsetEstimate unless_force_offset(OffsetEstimate shift, const CostFunction& cost, double most_N) {
   if (!shift.identified || !shift.not_zero || !(most_N > 0.0)) return shift;
   // J, a sum of Huber's losses, has one minimum over the force offset.
-  const Candidate best = golden(cost, -most_N, most_N, kForceResolution * most_N);
+  const ScannedOffset best = golden(cost, -most_N, most_N, kForceResolution * most_N);
   if (!is_within_one_standard_error(best.costs, shift.minimum)) return shift;
   shift.identified = false;
   shift.at = 0.0;

@@ -1,20 +1,20 @@
 // Searches the offset (of a surface, a force lag, ...) with the lowest cost, gives its standard error, and tests
 // whether the data identify it.
 //
-// The cost is a sum over blocks, pieces of the recordings with independent errors. A scan of the range and golden
-// sections at its lowest minima find the best offset. Its standard error is the jackknife's, with one block left out
-// at a time (Quenouille 1956; Tukey 1958): sqrt((n - 1)/n sum_b (x_b - mean)^2). The offset is not identified if two
-// standard errors reach an end of the range or exceed `widest`, or if another minimum is not significantly worse.
-// Within two standard errors of 0 it is 0.
+// 1. Search: a scan of the range, and golden sections at its lowest minima. The cost is a sum over blocks, pieces of
+//    the recordings with independent errors.
+// 2. Standard error, by the jackknife (Quenouille 1956; Tukey 1958): the search without block b gives x_b, and the
+//    error is sqrt((n - 1)/n sum_b (x_b - mean)^2).
+// 3. Identified: two standard errors stay within the range and below `widest`, and every other minimum is significantly
+//    worse. An identified offset within two standard errors of 0 is 0.
 //
-// Two candidates, a and b, are compared by their costs a_k and b_k over the same n blocks. Block k gives the relative
-// difference r_k = (a_k - b_k) / (a_k + b_k + m / 10), where m is the mean of the b_k. Candidate a is significantly
-// worse if mean r > 2 s / sqrt(n), s the standard deviation of r: a paired t-test at two standard errors.
+// Significantly worse: a paired t-test at two standard errors. Offsets a and b have the costs a_k and b_k in block k,
+// r_k = (a_k - b_k) / (a_k + b_k + m / 10), m the mean of the b_k; a is worse if mean r > 2 s / sqrt(n), s the standard
+// deviation of r.
 //
-// An effect of the material that looks like an offset (viscosity looks like a lag) is the same in all blocks, so that
-// the jackknife does not show it. With such an effect of known size (`systematic_effect`) the offset is identified only
-// if the costs at 0 and at this distance on either side are significantly worse. It must exceed the effect plus two
-// standard errors to differ from 0.
+// An effect of the material may look like an offset: viscosity looks like a lag of the force. It is the same in all
+// blocks, so the jackknife does not show it. Where its size is known (`systematic_effect`), the costs at 0 and at this
+// distance on either side must be significantly worse, and the offset must exceed the effect plus two standard errors.
 // Thread guarantee: slow side, pure.
 #pragma once
 

@@ -79,14 +79,14 @@ Result<Law> scored(const Samples& samples, const TrendWeights& weights, FeatureL
   }
 }
 
-struct Choice {
+struct SelectedTimes {
   std::vector<int> times;  // indices of the candidates, ascending
   FoldErrors errors;
 };
 
 // Adds the time with the lowest RMS error, then moves single times to the next candidate while the error falls.
-Choice with_one_more(const TrendEstimator& estimator, const TrendColumns& rows, const Choice& last) {
-  Choice best;
+SelectedTimes with_one_more(const TrendEstimator& estimator, const TrendColumns& rows, const SelectedTimes& last) {
+  SelectedTimes best;
   const auto candidates = static_cast<int>(relaxation_times_s(rows.list().features).size());
   const int first = static_cast<int>(rows.list().features.size()) - candidates;
   const auto attempt = [&](std::vector<int> times) {
@@ -160,10 +160,10 @@ Result<std::vector<double>> identify_relaxation(const Samples& samples, const Tr
   const auto rows = TrendColumns::make(samples, single_times(velocity, candidates_s), kSearchRows, control);
   if (!rows) return rows.error();
   const TrendEstimator estimator(*rows, weights, TrendEstimator::Smoothness::fixed);
-  Choice best = with_one_more(estimator, *rows, {});
+  SelectedTimes best = with_one_more(estimator, *rows, {});
   while (best.times.size() < std::min(count > 0 ? count : kMostTimes, candidates_s.size())) {
     if (!control.may_continue()) return interrupted();
-    Choice more = with_one_more(estimator, *rows, best);
+    SelectedTimes more = with_one_more(estimator, *rows, best);
     if (count == 0 && simplest_adequate(std::vector{best.errors, more.errors}) == 0) break;
     best = std::move(more);
   }

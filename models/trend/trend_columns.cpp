@@ -12,8 +12,8 @@ namespace {
 
 // Neighbouring times differ by a factor of 1.8; a sum of two fits any time between them better than the data resolve.
 constexpr double kTimesPerDecade = 4.0;
-// 1 ms is the tick; no exploration shows what takes longer than 100 s.
-constexpr double kShortest_s = 1e-3;
+// A shorter time than a tick is not rendered; no exploration shows what takes longer than 100 s.
+constexpr double kShortest_s = kHapticTick_s;
 constexpr double kLongest_s = 100.0;
 constexpr std::size_t kBands = 3;
 // The trend limits velocities to this multiple of the greatest recorded one.

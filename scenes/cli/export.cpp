@@ -7,7 +7,6 @@
 #include "engine/base/text.h"
 #include "models/export/export_c.h"
 #include "scenes/cli/shared.h"
-#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -36,9 +35,8 @@ void print_summary(const ExportArguments& arguments, const ModelData& data, cons
 
 Status run_export(const ExportArguments& arguments) {
   if (const Status status = refuse_input_as_output(arguments.out, {arguments.model}, "--c"); !status) return status;
-  const auto model =
-      load_model_file(arguments.model, "fit a model: palpate fit --recording " + shell_word(arguments.model) +
-                                           " --out model.json");
+  const auto model = load_model_file(
+      arguments.model, "fit a model: palpate fit --recording " + shell_word(arguments.model) + " --out model.json");
   if (!model) return model.error();
   const ModelData& data = (*model)->data();
   const SensorSpec sensor = sensor_with_step(data, arguments.encoder_step_m);

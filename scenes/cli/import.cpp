@@ -95,8 +95,9 @@ std::string check_origin(const std::string& origin) {
   char* end = nullptr;
   const double value = std::strtod(origin.c_str(), &end);
   const bool number = !origin.empty() && *end == '\0' && std::isfinite(value);
-  return origin == "contact" || origin == "first" || number ? ""
-                                                        : "found \"" + origin + "\", expected contact, first or metres";
+  return origin == "contact" || origin == "first" || number
+             ? ""
+             : "found \"" + origin + "\", expected contact, first or metres";
 }
 
 double seconds_of(const ImportedTable& table) {

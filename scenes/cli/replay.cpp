@@ -51,7 +51,7 @@ struct ReplayedRecording {
 };
 
 // A figure of merit; null in JSON if there are no samples in contact.
-struct Figure {
+struct ErrorColumn {
   const char* key;
   const char* title;
   double ErrorSummary::*value;
@@ -59,7 +59,7 @@ struct Figure {
   int decimals;
   bool decides;  // shown without --all
 };
-constexpr Figure kFigures[] = {{"rms_error_N", "RMS mN", &ErrorSummary::rms_error_N, 1e3, 1, true},
+constexpr ErrorColumn kFigures[] = {{"rms_error_N", "RMS mN", &ErrorSummary::rms_error_N, 1e3, 1, true},
                                {"max_error_N", "MAX mN", &ErrorSummary::max_error_N, 1e3, 1, false},
                                {"within_jnd", "WITHIN JND %", &ErrorSummary::within_jnd, 1e2, 2, true},
                                {"p99_error_over_jnd", "P99 JND", &ErrorSummary::p99_error_over_jnd, 1.0, 2, true},
@@ -95,7 +95,7 @@ OrderedJson bins_json(const std::vector<ForceBin>& bins) {
 }
 
 void add_figures(OrderedJson& object, const ErrorSummary& errors) {
-  for (const Figure& figure : kFigures) object[figure.key] = number_or_null(errors.samples > 0, errors.*figure.value);
+  for (const ErrorColumn& figure : kFigures) object[figure.key] = number_or_null(errors.samples > 0, errors.*figure.value);
 }
 
 OrderedJson model_json(const ReplayedModel& replayed) {
@@ -137,7 +137,7 @@ std::vector<std::pair<std::string, std::string>> table_cells(const ReplayedModel
     cells.emplace_back(title, known ? fixed(value, decimals) : "-");
   };
   const auto add_errors = [&](const std::string& before, const ErrorSummary& errors) {
-    for (const Figure& figure : kFigures) {
+    for (const ErrorColumn& figure : kFigures) {
       if (all || figure.decides)
         add(before + figure.title, errors.samples > 0, figure.scale * (errors.*figure.value), figure.decimals);
     }

@@ -10,29 +10,29 @@ constexpr double kSameEvent_s = 1.0;
 constexpr double kRememberedDeadlines = 10'000.0;
 
 constexpr std::size_t kDeadlineMissed = fault_index(FaultSource::loop, loop_fault::kDeadlineMissed);
-constexpr std::size_t kDropped = fault_index(FaultSource::window, window_fault::kDropped);
-constexpr std::size_t kStall = fault_index(FaultSource::window, window_fault::kStall);
+// What only the reader of the snapshots notices.
+constexpr const char* kDropped = "the window was too slow to show every tick";
+constexpr const char* kStall = "the haptics loop stood still for more than 50 ms";
 
 }  // namespace
 
 TickFaultLevel FaultLog::update(const LoopSnapshot& snapshot) {
   TickFaultLevel fault_level = TickFaultLevel::none;
-  for (std::size_t i = 0; i < kFaults.size(); ++i) {
-    const Fault& fault = kFaults[i];
+  for (const Fault& fault : kFaults) {
     if (fault.source == FaultSource::loop && fault.alarm && (snapshot.faults & fault.bit) != 0) {
-      note(i, 1, snapshot.loop_time_s);
+      note(fault.sentence, 1, snapshot.loop_time_s);
       fault_level = TickFaultLevel::alarm;
     }
     // Each device fault is logged once, when it begins.
     const bool begins = (snapshot.device.faults & ~device_faults_ & fault.bit) != 0;
-    if (fault.source == FaultSource::device && begins) note(i, 1, snapshot.loop_time_s);
+    if (fault.source == FaultSource::device && begins) note(fault.sentence, 1, snapshot.loop_time_s);
   }
   device_faults_ = snapshot.device.faults;
   if (device_faults_ != 0) fault_level = TickFaultLevel::alarm;
   const auto missed = static_cast<double>(snapshot.missed_deadlines - missed_);
   missed_of_late_ += std::min(1.0, (missed + 1.0) / kRememberedDeadlines) * (missed / (missed + 1.0) - missed_of_late_);
   if (snapshot.missed_deadlines > missed_) {
-    note(kDeadlineMissed, snapshot.missed_deadlines - missed_, snapshot.loop_time_s);
+    note(kFaults[kDeadlineMissed].sentence, snapshot.missed_deadlines - missed_, snapshot.loop_time_s);
     missed_ = snapshot.missed_deadlines;
     if (fault_level == TickFaultLevel::none) fault_level = TickFaultLevel::late;
   }
@@ -51,12 +51,11 @@ void FaultLog::update_window(std::uint64_t dropped, double age_s, double now_s) 
 std::vector<std::string> FaultLog::alarms(const LoopSnapshot& newest) const {
   std::vector<std::string> words = device_fault_words(newest.device_faults_latched);
   for (std::string& alarm : alarm_words(FaultSource::loop, newest.faults_latched)) words.push_back(std::move(alarm));
-  if (stall_unseen_) words.emplace_back(kFaults[kStall].sentence);
+  if (stall_unseen_) words.emplace_back(kStall);
   return words;
 }
 
-void FaultLog::note(std::size_t kind, std::uint64_t count, double at_s) {
-  const char* const text = kFaults[kind].sentence;
+void FaultLog::note(const std::string& text, std::uint64_t count, double at_s) {
   const auto same =
       std::find_if(events_.rbegin(), events_.rend(), [&](const FaultEvent& event) { return event.text == text; });
   if (same != events_.rend() && at_s - same->last_s <= kSameEvent_s) {

@@ -50,7 +50,7 @@ class FaultLog {
   void acknowledge() noexcept { stall_unseen_ = false; }
 
  private:
-  void note(std::size_t kind, std::uint64_t count, double at_s);
+  void note(const std::string& text, std::uint64_t count, double at_s);
 
   std::vector<FaultEvent> events_;
   std::uint32_t device_faults_ = 0;

@@ -38,6 +38,23 @@ TEST(Trimmed, TakesBlanksAndTabsFromBothEnds) {
   EXPECT_EQ(trimmed(" \t"), "");
 }
 
+TEST(NearestName, IsWithinAThirdOfTheLetters) {
+  const std::vector<std::string> names{"method", "recording", "out", "force"};
+  EXPECT_EQ(nearest_name("metod", names), "method");
+  EXPECT_EQ(nearest_name("recodring", names), "recording");
+  EXPECT_EQ(nearest_name("ouput", names), "out");
+  EXPECT_EQ(nearest_name("dance", {"help", "json"}), "");
+  EXPECT_EQ(nearest_name("", names), "");
+  EXPECT_EQ(nearest_name("metod", {}), "");
+}
+
+TEST(ShellWord, IsReadBackByAShellAsOneWord) {
+  EXPECT_EQ(shell_word("a/b-1.csv"), "a/b-1.csv");
+  EXPECT_EQ(shell_word("a b"), "'a b'");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word(""), "''");
+}
+
 TEST(Text, FixedRoundsAsPrintfDoes) {
   for (const double value : {0.0, -0.0, 0.125, 2.5, 1.005, -1234.5678, 1e308, 5e-324}) {
     for (const int decimals : {0, 1, 3, 17}) {

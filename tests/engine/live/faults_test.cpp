@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 TEST(Faults, EveryBitHasOneRow) {
-  for (const FaultSource source : {FaultSource::device, FaultSource::loop, FaultSource::window}) {
+  for (const FaultSource source : {FaultSource::device, FaultSource::loop}) {
     std::uint32_t seen = 0;
     for (const Fault& fault : kFaults) {
       if (fault.source != source) continue;

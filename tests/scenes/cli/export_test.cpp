@@ -122,6 +122,12 @@ TEST_F(ExportVerb, TheEncoderStepIsThatOfTheOption) {
   EXPECT_TRUE(test::has_parts(printed_, {"steps of 1 um"}));
 }
 
+TEST_F(ExportVerb, SaysThatARecordingIsNoModel) {
+  ASSERT_TRUE(write_recording(folder_.file("rec.csv"), recording("maxwell", 1.0, 1), {}).ok());
+  EXPECT_TRUE(test::fails(1, {"export", folder_.file("rec.csv"), "--c", folder_.file("m.c")},
+                          {"rec.csv is a recording, expected a model file", "palpate fit --recording "}));
+}
+
 TEST_F(ExportVerb, NeverWritesOverTheModel) {
   const test::TemporaryFolder folder;
   const std::string model = folder.with_file("m.json", "mine\n");

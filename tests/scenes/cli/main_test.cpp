@@ -30,6 +30,22 @@ TEST(Main, UnknownOptionPointsToTheVerbsHelp) {
   EXPECT_TRUE(test::fails(2, {"scenes", "--dance"}, {"error: ", "--dance", "palpate scenes", "--help"}));
 }
 
+// CLI11 reports a missing option before an unknown one.
+TEST(Main, MistypedOptionIsNamedWithTheNearestOne) {
+  EXPECT_TRUE(
+      test::fails(2, {"fit", "--recoding", "a.csv"}, {"--recoding", "did you mean --recording?", "palpate fit"}));
+  EXPECT_TRUE(test::fails(2, {"study", "analyse", "a.csv", "--pagn"}, {"--pagn", "did you mean --pang?"}));
+  EXPECT_TRUE(test::fails(2, {"replay", "--modle=m.json"}, {"--modle", "did you mean --model?"}));
+}
+
+TEST(Main, EveryVerbHasAnExampleAndTheVersionSaysWhatComputes) {
+  for (const char* verb : {"synth", "import", "check", "fit", "replay", "export", "report", "paper", "hard", "record",
+                           "scenes", "devices", "study"}) {
+    EXPECT_TRUE(test::has_parts(test::must_run({verb, "--help"}).out, {"Example:\n  palpate " + std::string(verb)}));
+  }
+  EXPECT_TRUE(test::has_parts(run_palpate({"--version"}).out, {"palpate ", "commit ", "BLAS", "vectors "}));
+}
+
 TEST(Main, ScenesListsEveryScene) {
   const auto run = test::must_run({"scenes"});
   EXPECT_EQ(run.err, "");

@@ -24,7 +24,7 @@ TEST(Synth, WritesTheRecordingOfTheLibrary) {
   const std::string path = folder.file("gel.csv");
   const auto run =
       test::must_run({"synth", "--material", "gel", "--seed", "3", "--seconds", "2", "--rate", "500", "--out", path});
-  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(run.out, "written  " + path + ": 1000 rows, 1.998 s\n");
   EXPECT_EQ(run.err, "");
   const Recording read = test::must(read_recording(path));
   EXPECT_EQ(test::read_text(path).rfind("# virtual recording by palpate synth", 0), 0u);

@@ -21,9 +21,8 @@ positive when the material pushes the tool out. A just noticeable difference (JN
 error that a hand can notice. An invalid file, array or option raises `Error`. Arrays may be of any
 numeric type and need not be contiguous.
 
-The package loads ``libpalpate_fit``: the one named by the environment variable PALPATE_LIBRARY, else that
-of the source tree's ``build`` when it is imported from there (PYTHONPATH=models/library/python), else the
-installed one.
+The package loads ``libpalpate_fit``: the one named by the environment variable PALPATE_LIBRARY, else the one that pip
+put beside it, else that of the source tree's ``build`` when it is imported from there, else the installed one.
 """
 from ._library import Error, Sensor
 from ._models import Model, fit, load

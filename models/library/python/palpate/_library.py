@@ -125,10 +125,13 @@ _SIGNATURES = {
 
 @functools.lru_cache(maxsize=None)
 def library():
-    """The loaded library: PALPATE_LIBRARY, else that of the source tree's build, else the installed one."""
-    tree = pathlib.Path(__file__).resolve().parents[4]
+    """The loaded library: PALPATE_LIBRARY, else the one beside this file (pip), else that of the source tree's build,
+    else the installed one."""
+    here = pathlib.Path(__file__).resolve()
+    tree = here.parents[min(4, len(here.parents) - 1)]
+    beside = here.with_name(_NAME)
     in_tree = (tree / "models" / "library" / "palpate" / "palpate.h").is_file()
-    path = os.environ.get("PALPATE_LIBRARY") or (
+    path = os.environ.get("PALPATE_LIBRARY") or (str(beside) if beside.is_file() else
         str(tree / "build" / "models" / "library" / _NAME) if in_tree else "%s.%d" % (_NAME, ABI_VERSION))
     try:
         loaded = ctypes.CDLL(path)
