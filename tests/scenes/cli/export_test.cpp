@@ -123,7 +123,7 @@ TEST_F(ExportVerb, TheEncoderStepIsThatOfTheOption) {
 }
 
 TEST_F(ExportVerb, SaysThatARecordingIsNoModel) {
-  ASSERT_TRUE(write_recording(folder_.file("rec.csv"), recording("maxwell", 1.0, 1), {}).ok());
+  ASSERT_TRUE(write_recording(folder_.file("rec.csv"), recording("maxwell", 1.0, 1), {}, false).ok());
   EXPECT_TRUE(test::fails(1, {"export", folder_.file("rec.csv"), "--c", folder_.file("m.c")},
                           {"rec.csv is a recording, expected a model file", "palpate fit --recording "}));
 }
