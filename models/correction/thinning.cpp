@@ -85,8 +85,13 @@ Normalisation normalisation_of(const Eigen::MatrixXd& features) {
   for (Eigen::Index i = 0; i < mean.size(); ++i) {
     const double variance = (features.row(i).array() - mean(i)).square().mean();
     const double scale = std::sqrt((result.upper(i) - result.lower(i)) * 4.0 * std::sqrt(variance));
-    // A spread at the level of rounding counts as 0; the scale stays 1.
-    if (scale > 1e-12 * std::max(std::abs(result.lower(i)), std::abs(result.upper(i)))) result.scale(i) = scale;
+    // A spread at the level of rounding counts as 0: the scale stays 1, and the offset is the value itself, so that a
+    // constant feature is exactly 0. Rounding of the mean would be a direction of the polynomial tail.
+    if (scale > 1e-12 * std::max(std::abs(result.lower(i)), std::abs(result.upper(i)))) {
+      result.scale(i) = scale;
+    } else {
+      result.offset(i) = result.lower(i);
+    }
   }
   return result;
 }
