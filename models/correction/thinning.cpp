@@ -84,7 +84,12 @@ Normalisation normalisation_of(const Eigen::MatrixXd& features) {
                        features.rowwise().maxCoeff()};
   for (Eigen::Index i = 0; i < mean.size(); ++i) {
     const double variance = (features.row(i).array() - mean(i)).square().mean();
-    if (result.range(i) > 0.0) result.scale(i) = std::sqrt(result.range(i) * 4.0 * std::sqrt(variance));
+    if (result.range(i) > 0.0) {
+      result.scale(i) = std::sqrt(result.range(i) * 4.0 * std::sqrt(variance));
+    } else {
+      // A constant feature is exactly 0: rounding of the mean would be a direction of the polynomial tail.
+      result.offset(i) = result.lower(i);
+    }
   }
   return result;
 }

@@ -88,7 +88,9 @@ ClosedLoop::ClosedLoop(const LoopSettings& settings)
 }
 
 void ClosedLoop::publish(std::shared_ptr<const ForceModel> model) {
-  slot_.publish(std::make_unique<LiveModels>(++id_, tool_.sensor(), std::vector{std::move(model)}));
+  auto set = std::make_unique<LiveModels>(++id_, tool_.sensor(), std::vector{std::move(model)});
+  set->tick.recall(history_);
+  slot_.publish(std::move(set));
 }
 
 // The step of the next tick.
@@ -109,6 +111,7 @@ void ClosedLoop::run(double seconds, const Path& path, const AfterTick& after_ti
     if (step_ == due_) {
       const LoopSnapshot& snapshot = tick();
       faults_ |= snapshot.faults;
+      if (snapshot.samples > 0) history_.add(snapshot.tick, snapshot.restarted);
       due_ = next_tick();
       if (after_tick) after_tick(snapshot);
     }

@@ -114,7 +114,7 @@ class ClosedLoop {
   explicit ClosedLoop(const LoopSettings& settings);
   virtual ~ClosedLoop() = default;
 
-  // Publishes a set of one model, which the next tick takes.
+  // Publishes a set of one model, which the next tick takes, with the memory of the motion so far.
   void publish(std::shared_ptr<const ForceModel> model);
   // Runs for `seconds`. The time of `path` starts at 0 with each call. `after_tick` may be empty.
   void run(double seconds, const Path& path, const AfterTick& after_tick = {});
@@ -133,6 +133,7 @@ class ClosedLoop {
   SimulatedTool tool_;
   ModelSlot<LiveModels> slot_;
   LiveTick live_;
+  MotionHistory history_;
   Ticking ticking_;
   LoopControls controls_;
   RandomStream random_{1, 77};

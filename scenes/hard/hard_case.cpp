@@ -36,9 +36,10 @@ Result<HardTraining::Fit> HardTraining::fit(const ModelPlan& plan, const FitCont
   return fit;
 }
 
-const HardExpectation& HardCase::expectation_of(const std::string& plan) const {
-  const auto found = std::ranges::find(exceptions, plan, &std::pair<std::string, HardExpectation>::first);
-  return found == exceptions.end() ? expected : found->second;
+const HardExpectation& HardExpectations::of(const ModelPlan& plan) const {
+  const auto found = std::ranges::find(exceptions, plan_name(plan), &std::pair<std::string, HardExpectation>::first);
+  if (found != exceptions.end()) return found->second;
+  return plan.base == Base::force ? force : plan.method == &kTrendMethod ? trend : corrected;
 }
 
 void HardMeasure::add(double force_N, double true_N, bool counts) {

@@ -33,13 +33,24 @@ struct HardFigures {
 
 // What must hold for every figure that applies. A refusal counts only where it is expected.
 struct HardExpectation {
-  const char* refusal = nullptr;  // part of the reason; null: the fit must be accepted
-  double within_jnd = 0.0;        // at least
-  double worst_error_N = kAny;    // at most, and so on
+  double within_jnd = 0.0;      // at least
+  double worst_error_N = kAny;  // at most, and so on
   double worst_step_N = kAny;
   double energy_J = kAny;
+  const char* refusal = nullptr;  // part of the reason; null: the fit must be accepted
 
   static constexpr double kAny = std::numeric_limits<double>::infinity();
+};
+
+// The expectations of a case. Where the data determine the force they are requirements; elsewhere they are the measured
+// figures with a margin, so that a change is seen.
+struct HardExpectations {
+  HardExpectation force;                                              // of the methods on the measured force
+  HardExpectation trend;                                              // of the trend
+  HardExpectation corrected;                                          // of the trend with its correction
+  std::vector<std::pair<std::string, HardExpectation>> exceptions{};  // by the name of the plan
+
+  const HardExpectation& of(const ModelPlan& plan) const;
 };
 
 // The fits to one training, each made when it is first asked for.
@@ -74,11 +85,8 @@ struct HardCase {
   std::string name;
   HardKind kind = HardKind::sites;
   std::string why;  // what is hard, and where the expectation comes from
-  HardExpectation expected;
-  std::vector<std::pair<std::string, HardExpectation>> exceptions;  // by the name of the plan
+  HardExpectations expected;
   std::function<HardTrial()> build;
-
-  const HardExpectation& expectation_of(const std::string& plan) const;
 };
 
 // Collects the figures of one model, tick by tick.

@@ -26,7 +26,9 @@ Table marks_table(const std::vector<HardRow>& rows, HardKind kind) {
     table.begin_row();
     table.add({"case", "case", 1.0, TableColumn::kThreeDigits, 1}, row.of.name);
     table.add({"why", ""}, row.of.why);
-    table.add({"expectation", "expected, % within the JND"}, expectation_text(row.of.expected));
+    table.add({"force", "expected on the force, with the trend", 1.0, TableColumn::kThreeDigits, 1},
+              expectation_text(row.of.expected.force));
+    table.add({"corrected", ""}, expectation_text(row.of.expected.corrected));
     for (std::size_t k = 0; k < plans.size(); ++k) {
       table.add({plan_name(plans[k]), plan_name(plans[k]), 1.0, TableColumn::kThreeDigits, 1}, cell_text(row.cells[k]));
       table.add({plan_name(plans[k]) + " rank and condition", ""}, numerics_text(row.cells[k]));

@@ -42,7 +42,7 @@ Result<HardRow> run_case(HardCase one, const FitControl& control) {
     if (models[k]) row.cells[k].figures = trial.measure(models[k]);
   });
   for (std::size_t k = 0; k < models.size(); ++k)
-    row.cells[k].missed = missed_by(row.cells[k], row.of.expectation_of(plan_name(hard_plans()[k])));
+    row.cells[k].missed = missed_by(row.cells[k], row.of.expected.of(hard_plans()[k]));
   return row;
 }
 

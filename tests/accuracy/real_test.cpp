@@ -1,5 +1,5 @@
-// Errors of the methods on recordings of real materials. Skipped where the
-// recordings are not present beside the sources.
+// Errors of the methods on recordings of real materials, with the positions as recorded: a prediction. Skipped where
+// the recordings are not present beside the sources.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
   double within = 0.0;
   double samples = 0.0;
   for (const RecordingPtr& recording : skin_recordings("test", {"400", "800", "900"})) {
-    const ErrorSummary summary = judge_moved(*recording, greedy);
+    const ErrorSummary summary = judge(*recording, greedy);
     std::cout << figures(recording->name, summary) << "\n";
     const auto n = static_cast<double>(summary.samples);
     squares += n * summary.rms_error_N * summary.rms_error_N;
@@ -45,23 +45,25 @@ TEST_F(RealAccuracy, SiliconeUnderAnIndenterOnAnotherSpot) {
     training.push_back(real_recording(std::string("zwick_silicone/train_trial") + trial + ".csv"));
   }
   const ModelPtr greedy = fit(prepare(training, default_request("silicone_block")), &kGreedyMethod);
-  const ErrorSummary summary = judge_moved(*real_recording("zwick_silicone/test_trial9.csv"), greedy);
+  const ErrorSummary summary = judge(*real_recording("zwick_silicone/test_trial9.csv"), greedy);
   std::cout << figures("trial 9", summary) << "\n";
   EXPECT_GE(summary.within_jnd, 0.995);
   EXPECT_LE(summary.rms_error_N, 0.015);  // measured: 8.2 mN
 }
 
-// The second cycle leaves the domain of the first; the log has the share of samples
-// that are out of domain.
+// The second cycle leaves the domain of the first; the log has the share of samples that are out of domain. Every
+// method must predict it better than a model of depth alone.
 TEST_F(RealAccuracy, PressOnItsSecondCycle) {
-  const PreparedTraining prepared =
-      prepare({real_recording("ur3e_press_mit/train_cycle1.csv")}, default_request("silicone_block"));
+  const std::vector<RecordingPtr> training{real_recording("ur3e_press_mit/train_cycle1.csv")};
   const RecordingPtr recording = real_recording("ur3e_press_mit/test_cycle2.csv");
-  for (const ModelPtr& model : fit_all(prepared)) {
-    const ErrorSummary summary = judge_moved(*recording, model);
+  const ErrorSummary depth_alone = judge(*recording, fit(prepare(training, position_request()), &kTrendMethod));
+  std::cout << figures("depth alone", depth_alone) << "\n";
+  for (const ModelPtr& model : fit_all(prepare(training, default_request("silicone_block")))) {
+    const ErrorSummary summary = judge(*recording, model);
     std::cout << figures(model->name(), summary) << "\n";
-    EXPECT_LE(summary.rms_error_N, 0.5) << model->name();
-    EXPECT_GE(summary.within_jnd, 0.7) << model->name() << "; required of greedy only";
+    EXPECT_LT(summary.rms_error_N, depth_alone.rms_error_N) << model->name();
+    EXPECT_GT(summary.within_jnd, depth_alone.within_jnd) << model->name();
+    EXPECT_GE(summary.within_jnd, 0.95) << model->name();  // measured: 97.4 %
   }
 }
 
@@ -79,8 +81,7 @@ TEST_F(RealAccuracy, PressThatCountsDepthFromItsPreload) {
   const PreparedTraining prepared =
       prepare({from_preload("ur3e_press_mit/train_cycle1.csv")}, default_request("silicone_block"));
   EXPECT_LT(prepared.common.features.front().surface_position_m, -0.3e-3);
-  const ErrorSummary summary =
-      judge_moved(*from_preload("ur3e_press_mit/test_cycle2.csv"), fit(prepared, &kGreedyMethod));
+  const ErrorSummary summary = judge(*from_preload("ur3e_press_mit/test_cycle2.csv"), fit(prepared, &kGreedyMethod));
   std::cout << figures("cycle 2", summary) << "\n";
   EXPECT_GE(summary.within_jnd, 0.99);  // 0.92 if the trend started at the preload
 }
@@ -93,7 +94,7 @@ TEST_F(RealAccuracy, EcoflexFromPositionAlone) {
     double peak_N = 0.0;
     for (const RecordingRow& row : recording->rows) peak_N = std::max(peak_N, row.force_N);
     for (const ModelPtr& model : fit_all(prepared)) {
-      const ErrorSummary summary = judge_moved(*recording, model);
+      const ErrorSummary summary = judge(*recording, model);
       std::cout << figures(model->name(), summary) << ", " << 100.0 * summary.rms_error_N / peak_N
                 << " % of the peak\n";
       EXPECT_LT(summary.rms_error_N, 0.01 * peak_N) << model->name() << ", " << thinner;
