@@ -78,7 +78,7 @@ void place_beside(std::vector<NameTag>& names, double line, double character) {
         trial.y += lines * line;
         trial.begins_here = right;
         const double begin = right ? trial.x : trial.x - width;
-        double cost = 0.3 * std::abs(lines);
+        double cost = 0.6 * std::abs(lines);
         if (begin < 0.0 || begin + width > 1.0 || trial.y < 0.5 * line || trial.y > 1.0 - 0.5 * line) cost += 100.0;
         for (std::size_t k = 0; k < names.size(); ++k) {
           if (k == i) continue;

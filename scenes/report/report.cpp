@@ -163,13 +163,12 @@ std::string bound_note(const ModelResult& use) {
 // Notes on how the numbers of the first screen were obtained.
 std::string notes_html(const ReportData& data) {
   std::vector<std::string> notes;
-  notes.push_back("Recommended: of the models whose 99 % error is at most " + at_most_three_decimals(kMargin_jnd) +
+  notes.push_back("Recommended: of the models whose 99 % error is at most " + general(kMargin_jnd, 3) +
                   " JND above the lowest (" + std::to_string(data.choice.near_best.size()) + " of " +
                   std::to_string(data.choice.candidates.size()) +
                   "), the one with the shortest tick, or the simplest that takes at most " +
-                  at_most_three_decimals(100.0 * kEqualTime) + " % longer. In a choice between two forces " +
-                  at_most_three_decimals(kMargin_jnd) +
-                  " JND apart 57 % of the answers are correct; guessing gives 50 %.");
+                  general(100.0 * kEqualTime, 3) + " % longer. In a choice between two forces " +
+                  general(kMargin_jnd, 3) + " JND apart 57 % of the answers are correct; guessing gives 50 %.");
   notes.push_back(
       "The lowest error was found, and the models are compared, on the same test. Intervals are those of one "
       "model or one pair and do not include this choice.");
