@@ -177,7 +177,7 @@ TEST(TruncatedWeights, AreThoseOfThePapersPseudoInverse) {
       const PseudoInverse expected = pseudo_inverse(sites, centres);
       SCOPED_TRACE(std::string(kernel_name(kernel)) + " " + std::to_string(truncation));
       EXPECT_EQ(solved.rank, expected.rank);
-      EXPECT_GT(solved.rank, rank_before) << "a smaller cut keeps more";
+      EXPECT_GE(solved.rank, rank_before) << "a smaller cut keeps at least as much";
       rank_before = solved.rank;
       EXPECT_NEAR(solved.condition_number, expected.condition_number, 1e-8 * expected.condition_number);
       EXPECT_LT(solved.condition_number, 1.0 / truncation);

@@ -76,7 +76,8 @@ TEST(Thinning, ASiteIsTheMeanOfItsCube) {
   EXPECT_NEAR(thinned.sites.points.row(0).dot(counts) / 5000.0, 0.0, 1e-9);
   int large = 0;
   for (Eigen::Index i = 0; i < counts.size(); ++i) {
-    if (counts(i) < 300.0) continue;  // samples during the transient of the motion estimator
+    if (counts(i) < 60.0)
+      continue;  // during the transient of the motion estimator; a place has pieces of several folds
     ++large;
     EXPECT_NEAR(thinned.force_N(i), std::round(thinned.force_N(i)), 2e-3);
   }

@@ -37,9 +37,7 @@ TEST(FittedModel, ANumberFarBeyondTheLimitsOfTheFileIsRefused) {
     const std::string message = message_after(spoil);
     EXPECT_NE(message.find("largest_force_N"), std::string::npos) << message;
   }
-  EXPECT_TRUE(test::has_parts(message_after([](ModelData& d) {
-                                d.trend.elastic = test::even_spline(1e5, 1e5);
-                              }),
+  EXPECT_TRUE(test::has_parts(message_after([](ModelData& d) { d.trend.elastic = test::even_spline(1e5, 1e5); }),
                               {"7.03e+04 N", "domain.points[0]", "306.5 N", "largest_force_N", "correction_limit_N"}));
 }
 
@@ -54,8 +52,7 @@ TEST(FittedModel, IsItsEquation) {
       const Eigen::VectorXd x = data.offset + data.scale.cwiseProduct(u);
       const double trend_N = data.trend.at(x.data(), data.features);
       const double h_N = data.correction ? data.correction->evaluate(u.data()) : 0.0;
-      const double correction_N =
-          std::clamp(h_N, -data.correction_limit_N, data.correction_limit_N);
+      const double correction_N = std::clamp(h_N, -data.correction_limit_N, data.correction_limit_N);
       const double expected_N =
           std::clamp(trend_N + guard.trust(u.data()) * correction_N, 0.0, 1.2 * data.largest_force_N);
       const ForceEstimate estimate = model.evaluate(x.data());
@@ -84,7 +81,7 @@ TEST(FittedModel, NeverPullsNorExceedsItsLargestForce) {
       ASSERT_LE(force_N, kForceMargin * data.largest_force_N) << data.name;
       floor = floor || force_N == 0.0;
     }
-    EXPECT_TRUE(floor);
+    EXPECT_TRUE(floor) << data.name;
   }
 }
 

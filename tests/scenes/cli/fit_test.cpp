@@ -233,14 +233,13 @@ TEST_F(FitVerb, AnInterruptedRunLeavesNoFile) {
   EXPECT_EQ(folder_.entries(), Arguments{"press.csv"});
 }
 
-TEST(FitVerb, NeverWritesOverItsRecording) {
-  const test::TemporaryFolder folder;
-  const std::string recording = folder.with_file("rec.csv", "mine\n");
-  std::filesystem::create_hard_link(recording, folder.file("same.csv"));
-  std::filesystem::create_symlink(recording, folder.file("link.csv"));
+TEST_F(FitVerb, NeverWritesOverItsRecording) {
+  const std::string recording = folder_.with_file("rec.csv", "mine\n");
+  std::filesystem::create_hard_link(recording, folder_.file("same.csv"));
+  std::filesystem::create_symlink(recording, folder_.file("link.csv"));
   for (const char* out : {"rec.csv", "same.csv", "link.csv"}) {
     EXPECT_TRUE(
-        test::fails(1, {"fit", "--recording", recording, "--method", "greedy", "--out", folder.file(out), "--force"},
+        test::fails(1, {"fit", "--recording", recording, "--method", "greedy", "--out", folder_.file(out), "--force"},
                     {out, "the file to read from", "--out"}));
   }
   EXPECT_EQ(test::read_text(recording), "mine\n");

@@ -109,6 +109,7 @@ TEST_F(SessionDevice, UnpluggingReleasesTheForceAndKeepsTheRecording) {
   ASSERT_TRUE(frames_until([&] { return zeroed(); }));
   session_->reset_figures();  // clears alarms due to a slow start
   const std::string path = folder_.file("live.csv");
+  ASSERT_TRUE(frames_until([&] { return session_->has_reference(); }));
   ASSERT_TRUE(session_->start_recording(path).ok());
   move_to(0.002);
   ASSERT_TRUE(frames_until([&] { return session_->newest().rendered_N > 0.05 && session_->recording().rows > 200; }));
