@@ -60,10 +60,10 @@ struct ErrorColumn {
   bool decides;  // shown without --all
 };
 constexpr ErrorColumn kFigures[] = {{"rms_error_N", "RMS mN", &ErrorSummary::rms_error_N, 1e3, 1, true},
-                               {"max_error_N", "MAX mN", &ErrorSummary::max_error_N, 1e3, 1, false},
-                               {"within_jnd", "WITHIN JND %", &ErrorSummary::within_jnd, 1e2, 2, true},
-                               {"p99_error_over_jnd", "P99 JND", &ErrorSummary::p99_error_over_jnd, 1.0, 2, true},
-                               {"max_error_over_jnd", "MAX JND", &ErrorSummary::max_error_over_jnd, 1.0, 2, true}};
+                                    {"max_error_N", "MAX mN", &ErrorSummary::max_error_N, 1e3, 1, false},
+                                    {"within_jnd", "WITHIN JND %", &ErrorSummary::within_jnd, 1e2, 2, true},
+                                    {"p99_error_over_jnd", "P99 JND", &ErrorSummary::p99_error_over_jnd, 1.0, 2, true},
+                                    {"max_error_over_jnd", "MAX JND", &ErrorSummary::max_error_over_jnd, 1.0, 2, true}};
 
 // The output file of each recording: `path` for one, NAME_RECORDING.csv for several; empty if `path` is empty.
 std::vector<std::string> outputs(const std::string& path, const std::vector<std::string>& recordings) {
@@ -95,7 +95,8 @@ OrderedJson bins_json(const std::vector<ForceBin>& bins) {
 }
 
 void add_figures(OrderedJson& object, const ErrorSummary& errors) {
-  for (const ErrorColumn& figure : kFigures) object[figure.key] = number_or_null(errors.samples > 0, errors.*figure.value);
+  for (const ErrorColumn& figure : kFigures)
+    object[figure.key] = number_or_null(errors.samples > 0, errors.*figure.value);
 }
 
 OrderedJson model_json(const ReplayedModel& replayed) {

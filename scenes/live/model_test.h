@@ -18,9 +18,9 @@
 #include "engine/live/device.h"
 #include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
-#include "scenes/evaluation/surface_search.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/evaluation/model_timing.h"
+#include "scenes/evaluation/surface_search.h"
 
 namespace palpate {
 

@@ -32,9 +32,9 @@ struct NameTag {
   bool begins_here = true;  // the text begins at x; false: it ends there
 };
 
-// The names of horizontal levels and, with `names_at_ends`, of the series: of a series of one point at the point, between
-// its bars, of all others beside the panel, where they are moved up and down so that they do not overlap. `line`: height
-// of a line of text, `character`: width of a letter, both as fractions of the panel.
+// The names of horizontal levels and, with `names_at_ends`, of the series: of a series of one point at the point,
+// between its bars, of all others beside the panel, where they are moved up and down so that they do not overlap.
+// `line`: height of a line of text, `character`: width of a letter, both as fractions of the panel.
 std::vector<NameTag> name_tags(const Panel& panel, double line, double character);
 
 // Marks at the edge of the panel, one for each part of a line that is beyond a given limit of the y axis.

@@ -8,9 +8,9 @@
 #include <iostream>
 
 #include "engine/tick/replay.h"
+#include "scenes/hard/press.h"
 #include "scenes/material/material.h"
 #include "tests/support/fitting.h"
-#include "scenes/hard/press.h"
 
 namespace palpate::test {
 namespace {

@@ -18,7 +18,8 @@ namespace palpate::model_file {
 inline constexpr NumberRange kDriveForce_N{-1e9, 1e9};
 // Relaxation times that change by more than a factor of exp(20), or 5e8, with the depth indicate a damaged file.
 inline constexpr NumberRange kSlowing{-20.0, 20.0};
-// A divisor, in SI units: smaller than a motion or force of any sensor, and so large that quotients have finite squares.
+// A divisor, in SI units: smaller than a motion or force of any sensor, and so large that quotients have finite
+// squares.
 inline constexpr NumberRange kDivisor{1e-12, kLargestNumber, true};
 inline constexpr const char* kOnePerFeature = "numbers, one per feature";
 
