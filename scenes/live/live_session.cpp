@@ -10,6 +10,7 @@
 #include "engine/live/pacer.h"
 #include "models/model/fitted_model.h"
 #include "models/samples/recording_faults.h"
+#include "scenes/live/hand_limits.h"
 #include "scenes/live/test_part.h"
 #include "scenes/live/true_force.h"
 #include "scenes/material/rig.h"
@@ -31,36 +32,6 @@ constexpr std::string_view kReplay = "replay:";
 
 std::string replayed_file(const std::string& device) {
   return device.rfind(kReplay, 0) == 0 ? device.substr(kReplay.size()) : std::string();
-}
-
-// Limits the simulated hand to the forces, depths and speeds of the training data. Returns whether there is any force.
-// Where no position is positive (a surface at negative positions), only the force is limited.
-// Speeds are differences over at least 20 ms, to suppress encoder steps. The fastest 1 % are ignored as noise.
-// The rows of a recording are not empty (read_recording).
-bool limit_hand(const std::vector<Recording>& recordings, HandSettings& hand) {
-  constexpr double kInside = 0.8;  // of the largest values, because the simulated hand overshoots
-  constexpr double kSpan_s = 0.02;
-  double strongest_N = 0.0, deepest_m = 0.0;
-  std::vector<double> speeds_m_per_s;  // in contact
-  for (const Recording& recording : recordings) {
-    RecordingRow before = recording.rows.front();
-    for (const RecordingRow& row : recording.rows) {
-      strongest_N = std::max(strongest_N, row.force_N);
-      deepest_m = std::max(deepest_m, row.position_m);
-      const double span_s = row.time_s - before.time_s;
-      if (span_s < kSpan_s) continue;
-      if (row.position_m > 0.0) speeds_m_per_s.push_back(std::abs(row.position_m - before.position_m) / span_s);
-      before = row;
-    }
-  }
-  if (strongest_N <= 0.0) return false;
-  hand.strongest_press_N = kInside * strongest_N;
-  if (deepest_m > 0.0) hand.deepest_m = kInside * deepest_m;
-  if (speeds_m_per_s.empty()) return true;
-  const auto fast = speeds_m_per_s.begin() + static_cast<std::ptrdiff_t>(99 * (speeds_m_per_s.size() - 1) / 100);
-  std::nth_element(speeds_m_per_s.begin(), fast, speeds_m_per_s.end());
-  hand.fastest_m_per_s = kInside * *fast;
-  return true;
 }
 
 // Replaces the scene's material by the named recordings, or by the replayed one: no true force is known for them.
@@ -273,7 +244,7 @@ void LiveSession::use_line_up(const std::string& name) {
 }
 
 void LiveSession::read_snapshots() {
-  // Reads at most as many snapshots as the ring holds, so that a faster loop cannot keep this thread here.
+  // At most as many snapshots as the ring holds, so that a faster loop cannot keep this thread here.
   for (std::size_t round = 0; round <= kSnapshotRing / kSnapshotsAtOnce; ++round) {
     const std::size_t count = loop_->read_snapshots(buffer_.data(), buffer_.size());
     for (std::size_t i = 0; i < count; ++i) {
@@ -295,29 +266,19 @@ void LiveSession::save_fault_ticks() {
   notices_.push_back({status ? "the last second before the fault is in " + path : status.error().message, !status});
 }
 
-bool LiveSession::has_reference() const {
-  return comparison_.reference() != ReferenceKind::model || models_.reference().has_value();
-}
-
 bool LiveSession::tests_training() const {
   return !set_apart_ && models_.fits() && std::ranges::count(scene_.recordings, test_file()) > 0;
 }
 
-std::string LiveSession::test_file() const { return test_file_of(request_, scene_); }
-
-const ModelTest::Tested* LiveSession::tested(std::size_t slot) const {
-  return test_.has_recording() && !models_.info(slot).other_material ? test_.find(models_.model(slot).get()) : nullptr;
-}
-
 ModelFigures LiveSession::figures(std::size_t slot) const {
   ModelFigures figures = comparison_.figures(slot);
-  if (const auto* timed = test_.find(models_.model(slot).get())) figures.tick = timed->tick;
+  const ModelTest::Tested* tested = test_.find(models_.model(slot).get());
+  if (tested != nullptr) figures.tick = tested->tick;
   if (!test_.has_recording()) return figures;
   figures.errors = {};
-  if (const ModelTest::Tested* one = tested(slot)) {
-    const UnitErrors& errors = test_.errors(*one);
-    figures.errors = errors;
-    figures.p99_interval = errors.p99_interval();
+  if (tested != nullptr && !models_.info(slot).other_material) {
+    figures.errors = test_.errors(*tested);
+    figures.p99_interval = test_.errors(*tested).p99_interval();
   }
   if (const auto path = paths_.find(slot); path != paths_.end()) figures.path = path->second;
   return figures;
@@ -326,9 +287,7 @@ ModelFigures LiveSession::figures(std::size_t slot) const {
 void LiveSession::update_verdict() {
   const std::vector<std::size_t> ready = models_.ready_slots();
   const double now_s = steady_now_s() - began_s_;
-  const auto note = [&](double& time_s, bool reached) {
-    if (reached && std::isnan(time_s)) time_s = now_s;
-  };
+  const auto note = [&](double& time_s, bool reached) { time_s = reached && std::isnan(time_s) ? now_s : time_s; };
   note(start_.first_model_s, !ready.empty());
   note(start_.all_models_s, !ready.empty() && models_.all_settled());
   if (verdict_.chosen && std::ranges::count(ready, *verdict_.chosen) == 0) verdict_ = {};
@@ -376,6 +335,7 @@ Verdict LiveSession::verdict() const {
   return verdict;
 }
 
+std::string LiveSession::test_file() const { return test_file_of(request_, scene_); }
 std::string LiveSession::test_name() const {
   if (replay() != nullptr) return replay()->recording().name;
   const std::string file = test_file();

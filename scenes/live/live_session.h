@@ -87,7 +87,9 @@ class LiveSession {
 
   // The reference, and the errors against it.
   const Comparison& comparison() const noexcept { return comparison_; }
-  bool has_reference() const;
+  bool has_reference() const {
+    return comparison_.reference() != ReferenceKind::model || models_.reference().has_value();
+  }
   // Errors over the test recording; where there is none, those of the ticks so far.
   ModelFigures figures(std::size_t slot) const;
   // The test whose errors and times rank the models. Its surface offset is that of the replay.
@@ -151,7 +153,6 @@ class LiveSession {
   void read_snapshots();
   void save_fault_ticks();
   void update_verdict();
-  const ModelTest::Tested* tested(std::size_t slot) const;  // null: not tested, or not compared
 
   SessionRequest request_;
   Scene scene_;
