@@ -108,6 +108,31 @@ void measure(Samples& samples, const JndLine& jnd) {
   samples.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
 }
 
+// The surface of recordings that begin under a preload at position 0, m, <= 0; 0 if there is none. A straight line is
+// fitted to the samples above a hundredth of the greatest depth, a third of the first piece of the trend's elastic
+// response; the surface is where its force is 0. The line is used if its force at position 0 exceeds the JND and two
+// standard errors, its slope exceeds two standard errors, and the surface is nearer than the greatest depth.
+double preload_surface_m(const Samples& samples, const JndLine& jnd) {
+  constexpr double kShallow = 0.01;
+  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // sums, of depth x and force y
+  for (const std::size_t i : samples.contact) {
+    const double depth_m = samples.rows[i].motion.position_m;
+    const double force_N = samples.rows[i].force_N;
+    if (!(depth_m > 0.0) || depth_m > kShallow * samples.depth_m) continue;
+    n += 1.0, x += depth_m, y += force_N;
+    xx += depth_m * depth_m, xy += depth_m * force_N, yy += force_N * force_N;
+  }
+  const double spread = n * xx - x * x;
+  if (n < 3.0 || !(spread > 0.0)) return 0.0;
+  const double slope = (n * xy - x * y) / spread;
+  const double force_N = (y - slope * x) / n;
+  const double variance = std::max(0.0, yy - force_N * y - slope * xy) / (n - 2.0);
+  const double noticeable_N = std::max(jnd.at(0.0), 2.0 * std::sqrt(variance * xx / spread));
+  const bool identified = force_N > noticeable_N && slope > 2.0 * std::sqrt(variance * n / spread);
+  const double out_m = force_N / slope;
+  return identified && out_m < samples.depth_m ? -out_m : 0.0;
+}
+
 // The force that all rows but one in a thousand exceed.
 double exceeded_N(const Samples& samples) {
   std::vector<double> forces_N;
@@ -188,6 +213,17 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
     return Error{
         "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; record a press, "
         "check the sign of position_m, or set its origin (palpate import FILE --origin contact)"};
+  }
+  const bool clear = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.identified(); });
+  if (const double out_m = clear ? 0.0 : preload_surface_m(samples, jnd); out_m != 0.0) {
+    samples.surface_m += out_m;
+    for (Sample& row : samples.rows) {
+      row.tool.position_m -= out_m;
+      row.motion.position_m -= out_m;
+    }
+    samples.stroke.clear();
+    samples.contact.clear();
+    measure(samples, jnd);
   }
   samples.always_N = exceeded_N(samples);
   split_into_folds(samples);

@@ -4,7 +4,8 @@
 // Positions and forces are corrected by the offset of their recording. It comes from that recording alone, where its
 // free air and its first contact are clear (surface_estimate.h); otherwise the recording is used as it is. The surface
 // of the table is the median of the clear surfaces, because the next recording is as likely on one side of it as on the
-// other; a recording is moved to it only by more than kLeastSurface_m and two standard errors.
+// other; a recording is moved to it only by more than kLeastSurface_m and two standard errors. Without a clear surface,
+// recordings that begin under a preload have theirs where the line through their first forces is 0.
 //
 // Folds for cross-validation (cross_validation.h): neighbouring samples of a stroke have correlated errors, so a fold
 // never consists of single samples. Three recordings or more form up to six folds of whole recordings; fewer form five
