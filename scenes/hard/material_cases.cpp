@@ -295,7 +295,7 @@ void add_memory(std::vector<HardCase>& cases, const TrainingsPointer& trainings)
   };
   const Memory memories[] = {
       {"friction",
-       {{0.25, 2, 2, 0.0005}, {0.6, 1, 0.6, 0.0002}, {0.6, 1, 0.8, kNone_J}, {{"kdtree-100", {0, 1.5, 0.4, kNone_J}}}},
+       {{0.25, 2, 2, 0.00015}, {0.6, 1, 0.6, 0.0002}, {0.6, 1, 0.8, kNone_J}, {{"kdtree-100", {0, 1.5, 0.4, kNone_J}}}},
        {{0.35, 0.6, 0.2, kNone_J},
         {0.9, 0.25, 0.1, kNone_J},
         {0.8, 0.3, 0.1, kNone_J},
@@ -307,7 +307,7 @@ void add_memory(std::vector<HardCase>& cases, const TrainingsPointer& trainings)
         {0.4, 1.5, 0.25, kNone_J},
         {{"kdtree-100", {0.05, 2.5, 2.5, kNone_J}}}}},
       {"layered",
-       {{0.7, 2.5, 1.5, 0.0005}, {0.9, 4, 1.5, kNone_J}, {0.7, 4, 1.5, kNone_J}},
+       {{0.7, 2.5, 1.5, 0.00015}, {0.9, 4, 1.5, kNone_J}, {0.7, 4, 1.5, kNone_J}},
        {{0, 0.4, 0.15, kNone_J},
         {0.98, 0.06, 0.04, kNone_J},
         {0.98, 0.25, 0.1, kNone_J},

@@ -33,7 +33,7 @@ def setUpModule():
         program("synth", "--material", "silicone", "--seed", seed, "--seconds", 6, "--out", file)
     Case.recordings = [palpate.read_recording(file) for file in Case.files]
     Case.rec = Case.recordings[0]
-    Case.model = palpate.fit([Case.rec], method="random", centres=30, seed=4)
+    Case.model = palpate.fit([Case.rec], method="trend+random", centres=30, seed=4)
 
 
 class Case(unittest.TestCase):

@@ -29,7 +29,7 @@ TEST(HardCases, WhatACellMissesIsNamed) {
   cell.figures = {0.9, 0.2, 0.01, 1e-5};
   EXPECT_EQ(missed_by(cell, {}), "");
   EXPECT_EQ(missed_by(cell, {.within_jnd = 0.9, .worst_error_N = 0.2, .worst_step_N = 0.01, .energy_J = 1e-5}), "");
-  EXPECT_EQ(missed_by(cell, {.within_jnd = 0.91}), "90 % within the JND, expected at least 91 %");
+  EXPECT_EQ(missed_by(cell, {.within_jnd = 0.91}), "90.0 % within the JND, expected at least 91.0 %");
   EXPECT_EQ(missed_by(cell, {.worst_error_N = 0.1}), "an error of 0.200 N, expected at most 0.100 N");
   EXPECT_EQ(missed_by(cell, {.worst_step_N = 0.001}), "a step of 0.0100 N, expected at most 0.00100 N");
   EXPECT_EQ(missed_by(cell, {.energy_J = 1e-6}), "energy of 0.0100 mJ, expected at most 0.00100 mJ");
