@@ -120,7 +120,7 @@ const std::vector<MaterialMotions>& motion_materials() {
       // Dry friction.
       {"friction",
        {{
-           {{0.25, 4, 0.2, kNone_J}, {0.4, 4, 0.08, kNone_J}, {0.4, 4, 0.08, kNone_J}},  // half as deep again
+           {{0.25, 4, 0.25, kNone_J}, {0.4, 4, 0.25, kNone_J}, {0.4, 4, 0.25, kNone_J}},  // half as deep again
            {{0.65, 0.8, 0.1, kNone_J},
             {0.98, 0.2, 0.15, kNone_J},
             {0.98, 0.2, 0.15, kNone_J},
@@ -165,8 +165,11 @@ const std::vector<MaterialMotions>& motion_materials() {
            {{0, kAny, 1, kNone_J},
             {0, kAny, 0.6, kNone_J},
             {0, kAny, 0.6, kNone_J},
-            {{"kdtree-100", {0, kAny, 4, kNone_J}}}},                         // deeper without end
-           {{0, 8, 1, kNone_J}, {0, 4, 0.6, kNone_J}, {0, 4, 0.6, kNone_J}},  // small cycles at depth
+            {{"kdtree-100", {0, kAny, 4, kNone_J}}}},  // deeper without end
+           {{0, 8, 1, kNone_J},
+            {0, 4, 0.6, kNone_J},
+            {0, 4, 0.6, kNone_J},
+            {{"kdtree-100", {0, 8, 2.5, kNone_J}}}},  // small cycles at depth
        }}},
       // A stiff inclusion at 6 mm.
       {"layered",
@@ -330,7 +333,10 @@ void add_events(std::vector<HardCase>& cases, const TrainingsPointer& trainings)
   const Event events[] = {
       {"maxwell",
        {{0.9, 0.25, 0.25, 0.0004}, {0.98, 0.1, 0.2, kNone_J}, {0.98, 0.1, 0.2, kNone_J}},
-       {{0.2, 0.8, 0.2, kNone_J}, {0.98, 0.1, 0.15, kNone_J}, {0.98, 0.15, 0.15, kNone_J}}},
+       {{0.2, 0.8, 0.2, kNone_J},
+        {0.98, 0.1, 0.15, kNone_J},
+        {0.98, 0.15, 0.15, kNone_J},
+        {{"kdtree-100", {0.2, 0.8, 0.2, 0.00025}}}}},
       {"stiff",
        {{0, 4, 1.5, kNone_J}, {0, 4, 1.5, kNone_J}, {0, 4, 1.5, kNone_J}},
        {{0, 2, 0.4, kNone_J}, {0, 1.5, 0.4, kNone_J}, {0, 1.5, 0.4, kNone_J}}},
