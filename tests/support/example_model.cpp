@@ -172,9 +172,9 @@ std::vector<ModelData> example_models() {
   models.back().trend = Trend{};
   models.back().trend.reference_depth_m = kDepth_m;
   models.back().name = "on-the-force";
-  // Trusted everywhere: without a trend there is no force beyond the cover.
-  models.back().cover.inner_radius = 1e6;
-  models.back().cover.outer_radius = 2e6;
+  // All of the force is the correction: it reaches as far as the largest force, and most of it is positive.
+  models.back().correction_limit_N = models.back().largest_force_N;
+  change_rbf(models.back(), [](RbfFunction& function) { function.tail(0) += 1.0; });
   models.push_back(example_model("greedy", KernelKind::cubic, memory_features(), 21));
   models.push_back(example_model("greedy", KernelKind::cubic, lagging_features(), 22));
   models.back().features[0].surface_position_m = 0.4e-3;

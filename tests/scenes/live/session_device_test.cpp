@@ -45,10 +45,13 @@ class SessionDevice : public ::testing::Test {
     fs::current_path(folder_.path());
     write_assets(folder_);
     setenv("PALPATE_ASSETS", folder_.file("assets").c_str(), 1);
-    // A direct model, which is the reference for a recording.
+    // Where no true force is known, the first of two models is the reference of a recording.
     ModelData data = test::example_model("direct", KernelKind::cubic, test::paper_features(), 1);
     ASSERT_TRUE(save_model(folder_.file("model.json"), data, false).ok());
-    SessionRequest request = test::session_request("skin", "hid", {folder_.file("model.json")});
+    const ModelData other = test::example_model("voxel", KernelKind::cubic, test::paper_features(), 2);
+    ASSERT_TRUE(save_model(folder_.file("other.json"), other, false).ok());
+    SessionRequest request =
+        test::session_request("skin", "hid", {folder_.file("model.json"), folder_.file("other.json")});
     request.bus = &bus_;
     session_ = test::must(LiveSession::open(request));
     ASSERT_TRUE(frames_until([&] { return session_->models().all_settled(); }));
