@@ -112,7 +112,7 @@ TEST(ProjectedKernel, ProjectsTheTailOutAndIsFactorised) {
     EXPECT_NEAR(fill, (basis * kernel * basis).trace() / 60.0, 1e-12 * fill) << kernel_name(kind);
     const auto factor = projected.cholesky(0.1);
     ASSERT_TRUE(factor);
-    const Eigen::MatrixXd lower = factor->triangularView<Eigen::Lower>();
+    const Eigen::MatrixXd lower = factor->lower.triangularView<Eigen::Lower>();
     EXPECT_LT((lower * lower.transpose() - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.norm());
   }
 }

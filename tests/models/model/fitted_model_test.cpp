@@ -54,8 +54,7 @@ TEST(FittedModel, IsItsEquation) {
       const Eigen::VectorXd x = data.offset + data.scale.cwiseProduct(u);
       const double trend_N = data.trend.at(x.data(), data.features);
       const double h_N = data.correction ? data.correction->evaluate(u.data()) : 0.0;
-      const double correction_N =
-          std::clamp(h_N - (data.corrects_trend ? 0.0 : trend_N), -data.correction_limit_N, data.correction_limit_N);
+      const double correction_N = std::clamp(h_N, -data.correction_limit_N, data.correction_limit_N);
       const double expected_N =
           std::clamp(trend_N + guard.trust(u.data()) * correction_N, 0.0, 1.2 * data.largest_force_N);
       const ForceEstimate estimate = model.evaluate(x.data());
