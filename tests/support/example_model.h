@@ -33,8 +33,8 @@ std::vector<FeatureSpec> paper_features();
 std::vector<FeatureSpec> maxwell_features();
 std::vector<FeatureSpec> memory_features();
 
-// Covers each method, kernel, feature kind and term of the trend, and the recipe of
-// the paper, which corrects no trend. All names differ.
+// Covers each method, kernel, feature kind and term of the trend, and a fit to the
+// force, which has no trend. All names differ.
 std::vector<ModelData> example_models();
 ForceModels example_force_models();
 
