@@ -181,7 +181,14 @@ Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const HandPr
       move(-2e-3, aim_m, half_s);
       move(aim_m, -2e-3, half_s + 0.3);
     } else {
-      // The mass is thrown at the block from the air and bounces off. The aim of a mass alone has no effect.
+      // The mass is carried back, because no hand jumps, thrown at the block and bounces off. The aim of a mass alone
+      // has no effect.
+      const double from_m = loop.tool().position_m();
+      loop.run(0.3, [&](double time_s) {
+        const ClosedLoop::Drive carried = minimum_jerk(from_m, -1e-3, 0.2, time_s);
+        loop.tool().place(carried.aim_m, carried.aim_m_per_s);
+        return ClosedLoop::Drive{};
+      });
       loop.tool().place(-1e-3, press.depth_m / half_s);
       move(0.0, 0.0, 0.6);
     }
