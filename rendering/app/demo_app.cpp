@@ -43,8 +43,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   // Reports a missing display before anything else starts.
   if (Status status = Window::find_display(); !status) return status;
   request_ = request.session;
-  // Models with differences from obvious to unnoticeable.
-  if (request.exhibit && request_.models.empty()) request_.models = {"kdtree-3", "random-20", "trend+greedy-100"};
+  if (request.exhibit && request_.models.empty()) request_.models = exhibit_models();
   if (const auto folder = data_folder()) request_.data_folder = *folder;
   files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
   if (!view_.settings.line_up.empty() && request_.models.empty() && !request_.line_up.empty())

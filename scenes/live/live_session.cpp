@@ -89,7 +89,7 @@ LiveSession::LiveSession(const SessionRequest& request, Parts parts)
       scene_(std::move(parts.scene)),
       device_(std::move(parts.device)),
       set_apart_(parts.test_part.has_value()),
-      models_(scene_, request.seed, notices_, std::move(parts.training)),
+      models_(scene_, request.seed, notices_, std::move(parts.training), request.ready_models),
       comparison_(models_,
                   device_->measures_force() ? ReferenceKind::measured
                   : scene_.material         ? ReferenceKind::truth

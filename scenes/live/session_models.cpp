@@ -40,8 +40,9 @@ TimedSamples test_strokes(double depth_m) {
   return strokes;
 }
 
-SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training)
-    : scene_(scene), notices_(notices), worker_(scene_, seed, std::move(training)) {}
+SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training,
+                             const std::string& ready)
+    : scene_(scene), notices_(notices), worker_(scene_, seed, std::move(training), ready) {}
 
 Status SessionModels::start(const std::vector<ModelRequest>& requests, bool claimed) {
   for (const ModelRequest& request : requests) {

@@ -62,9 +62,10 @@ struct PublishedSet {
 
 class SessionModels {
  public:
-  // `scene` and `notices` outlive this. `seed` is that of the training recording and the fits. `training`: see
-  // ModelWorker.
-  SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training = {});
+  // `scene` and `notices` outlive this. `seed` is that of the training recording and the fits. `training`,
+  // `ready`: see ModelWorker.
+  SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training = {},
+                const std::string& ready = "");
   SessionModels(const SessionModels&) = delete;
   SessionModels& operator=(const SessionModels&) = delete;
 

@@ -55,6 +55,11 @@ const LineUp* find_line_up(const std::string& name) {
   return found == line_ups().end() ? nullptr : &*found;
 }
 
+const std::vector<std::string>& exhibit_models() {
+  static const std::vector<std::string> all{"kdtree-3", "random-20", "trend+greedy-100"};
+  return all;
+}
+
 Result<std::vector<ModelRequest>> requested_models(const Scene& scene, const std::vector<std::string>& models) {
   std::vector<ModelRequest> requests;
   // Without a material and without named models, the session waits for a file.

@@ -37,6 +37,9 @@ const std::vector<LineUp>& line_ups();
 // Null when the name is unknown.
 const LineUp* find_line_up(const std::string& name);
 
+// Models with differences from obvious to unnoticeable, for the game of the exhibit.
+const std::vector<std::string>& exhibit_models();
+
 // The name of a model until it is ready.
 std::string request_name(const ModelRequest& request);
 

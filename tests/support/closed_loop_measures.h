@@ -89,10 +89,11 @@ double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double enc
 double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, bool passivity = true);
 
 struct Strokes {
-  double worst_return = 0.0;      // largest ratio of energy returned to energy put in, of one stroke
-  double beyond_step_J = 0.0;     // largest surplus of returned energy beyond one encoder step times the largest force
-  double largest_cost_jnd = 0.0;  // of the force that the controller takes away, over the JND
-  double mean_cost_jnd = 0.0;     // its mean in contact
+  double worst_return = 0.0;   // largest ratio of energy returned to energy put in, of one stroke
+  double beyond_step_J = 0.0;  // largest surplus of returned energy beyond one encoder step times the largest force
+  double own_beyond_step_J = -1.0;  // the same of one stroke and its own largest force
+  double largest_cost_jnd = 0.0;    // of the force that the controller takes away, over the JND
+  double mean_cost_jnd = 0.0;       // its mean in contact
 
   void keep_worse(const Strokes& other);
 };
