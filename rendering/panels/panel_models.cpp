@@ -60,20 +60,20 @@ constexpr int kName = 0, kColumns = 7;
 constexpr Column kTable[kColumns] = {
     {"model", "Click, or press its number, to make a model the active one.", "      trend+greedy-100", 0, nullptr,
      nullptr},
-    {"N", "Force at the right edge of the curves, newtons", "12.34", 4, force_now_N, two_decimals},
-    {"mN off", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},
-    {"99 %",
+    {"N", "Force at the right edge of the curves, newtons", "12.34", 3, force_now_N, two_decimals},
+    {"error mN", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},
+    {"99 % error / JND",
      "99 % of the samples in contact are off by at most so many just noticeable differences (JND).\n"
      "Above 1 a hand could feel it. The headline, the big number and the plot below are this one.",
-     "12.34", 5, p99_over_jnd, jnd_text},
+     "12.34", 0, p99_over_jnd, jnd_text},
     {"% in JND",
      "Share of the samples in contact whose error a hand cannot feel, of the test that the line below names.\n"
      "With more centres it mostly grows, while the largest errors (99 %) may grow, too.",
-     "100.00", 0, percent_within, two_decimals},
+     "100.00", 4, percent_within, two_decimals},
     {"ns",
      "Time of a whole tick of this model alone (motion, features, force), nanoseconds: the median of six\n"
      "interleaved measurements. The report, the plot below and the headline have the same",
-     "12,345", 3, tick_ns, whole},
+     "12,345", 0, tick_ns, whole},
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2, centres, whole}};
 
 // Sorts by magnitude; missing values come first.

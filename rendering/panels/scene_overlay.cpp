@@ -88,7 +88,7 @@ struct Overlay {
     tip(session.scene().description.c_str());
     if (!view.scales_force) {
       ImGui::SameLine(0.0F, ImGui::GetFontSize());
-      ImGui::TextDisabled("dents x 2");
+      ImGui::TextDisabled("drawn twice as deep");
     }
     if (view.scales_force || view.exaggerated) {
       ImGui::SameLine(0.0F, ImGui::GetFontSize());
@@ -119,9 +119,8 @@ struct Overlay {
     return y + 0.3F * line();
   }
 
-  // Returns the y below it.
-  float draw_data_warning(float top_px) const {
-    const std::string text = data_warning(models());
+  // Draws a text in the middle on a plate, for it may lie over the blocks. Returns the y below it.
+  float draw_plated(const std::string& text, float top_px) const {
     if (text.empty()) return top_px;
     const float wrap = 0.8F * area.size.x, pad = 0.4F * line();
     const ImVec2 size = text_size(fonts().body, text, wrap);
@@ -140,8 +139,7 @@ struct Overlay {
     if (!alone && view.has_pressed) return top_px;
     const std::string hint = alone ? "The hand moves by itself. Move the mouse down over the block to press it."
                                    : "Move the mouse down over the block to press it. No button is needed.";
-    return draw_wrapped(fonts().body, {area.at.x + 0.9F * line(), top_px}, hint, text_ink(true),
-                        area.size.x - 1.8F * line());
+    return draw_plated(hint, top_px);
   }
 
   // The error and the time of a model, as in the table.
@@ -334,7 +332,7 @@ struct Overlay {
       if (!models().slots.empty()) draw_big_number(bars);
       draw_title();
       top_px = draw_headline();
-      top_px = draw_data_warning(top_px);
+      top_px = draw_plated(data_warning(models()), top_px);
       if (view.scales_force) {
         top_px = draw_feel(top_px);
       } else if (data_warning(models()).empty()) {
