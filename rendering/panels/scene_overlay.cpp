@@ -119,7 +119,7 @@ struct Overlay {
     return y + 0.3F * line();
   }
 
-  // Draws a text in the middle on a plate, for it may lie over the blocks. Returns the y below it.
+  // Draws a text in the middle on a plate, because it may cover the blocks. Returns the y below it.
   float draw_plated(const std::string& text, float top_px) const {
     if (text.empty()) return top_px;
     const float wrap = 0.8F * area.size.x, pad = 0.4F * line();

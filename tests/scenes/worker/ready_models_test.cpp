@@ -47,7 +47,7 @@ TEST(ReadyModels, AreThoseThatASessionWouldFitAndServeNoOtherSceneSeedOrPlan) {
   EXPECT_FALSE(models.has(test::must(parse_plan("random-99"))));
   EXPECT_FALSE(models.has(test::must(parse_plan_options("method=random seed=2"))));
 
-  // A file that is damaged is as good as none: the worker fits.
+  // Instead of a damaged file the worker makes the fit.
   std::filesystem::resize_file(ready + "/elastic_block/random-100.json", 1000);
   EXPECT_EQ(test::must(with.make({plan}))->name(), "random-100");
 }
