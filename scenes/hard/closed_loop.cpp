@@ -17,14 +17,6 @@ constexpr std::int64_t kGap = 5 * kPeriod;
 
 }  // namespace
 
-const std::array<Grip, 4>& grips() {
-  static const std::array<Grip, 4> all{{{"relaxed", 0.08, 150.0, 3.5},
-                                        {"braced", 0.12, 800.0, 14.0},
-                                        {"clenched", 0.3, 2000.0, 30.0},
-                                        {"mass alone", 0.1, 0.0, 0.0}}};
-  return all;
-}
-
 double SimulatedTool::time_s() const noexcept { return kStep_s * static_cast<double>(step_); }
 
 bool SimulatedTool::read(double now_s, DeviceSample& sample) noexcept {

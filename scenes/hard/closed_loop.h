@@ -28,8 +28,11 @@ struct Grip {
 // together with the grip (Hajian & Howe 1997; Hasser & Cutkosky 2002), the damping is
 // 0.5 to 0.7 of critical. `braced` is the hand of devices/virtual/hand_motion.h.
 // The last is a free mass without stiffness and damping.
-const std::array<Grip, 4>& grips();
-inline const Grip& mass_alone() { return grips().back(); }
+inline const std::array<Grip, 4> kGrips{{{"relaxed", 0.08, 150.0, 3.5},
+                                         {"braced", 0.12, 800.0, 14.0},
+                                         {"clenched", 0.3, 2000.0, 30.0},
+                                         {"mass alone", 0.1, 0.0, 0.0}}};
+inline const Grip& mass_alone() { return kGrips.back(); }
 inline bool held(const Grip& grip) { return grip.stiffness_N_per_m > 0.0; }
 // A grip so stiff that the tool follows the prescribed path.
 inline Grip lead() { return {"lead", 1.0, 4e5, 1200.0}; }

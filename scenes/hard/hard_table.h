@@ -12,16 +12,12 @@
 
 namespace palpate {
 
-// The methods: those of the paper on the measured force, the trend, and the default.
+// The plans of the table: all methods on the measured force, the trend, and the default.
 std::vector<ModelPlan> hard_plans();
 
-struct HardCell {
-  HardFigures figures;
-  std::string refusal;  // empty: fitted
-  Eigen::Index rank = 0;
-  double condition_number = 0.0;
-  double seconds = 0.0;  // of the fit
-  std::string missed;    // what the expectation does not allow; empty: as expected
+struct HardCell : HardTraining::Fit {
+  HardFigures figures{};
+  std::string missed{};  // what the expectation does not allow; empty: as expected
 };
 
 struct HardRow {

@@ -81,7 +81,7 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
     for (const ModelPtr& model : loop_models(limits.material)) {
       const std::string who = std::string(limits.material) + ", " + model->name();
       Strokes worst;
-      for (const Grip& grip : grips()) {
+      for (const Grip& grip : kGrips) {
         if (!held(grip)) continue;
         for (const double encoder_m : kEncoders_m) {
           for (const Ticking ticking : kTickings) {
@@ -98,7 +98,7 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
       EXPECT_LE(worst.largest_cost_jnd, limits.largest_cost_jnd) << who;
     }
   }
-  for (const Grip& grip : grips()) {
+  for (const Grip& grip : kGrips) {
     LoopSettings settings{grip, 5e-6, kOneTick_s, Ticking::even};
     settings.passivity = false;
     EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), settings, kFirm).worst_return, 1.2) << grip.name;

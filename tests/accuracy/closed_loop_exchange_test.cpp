@@ -101,7 +101,7 @@ TEST(ClosedLoop, AtAHundredExchangesASecondTheErrorIsBelowTheJnd) {
   for (const Exchange& exchange : exchanges) {
     for (const double encoder_m : kEncoders_m) {
       const double led = largest_change_jnd(exchange.models, exchange.most_N, lead(), encoder_m);
-      const double in_hand = largest_change_jnd(exchange.models, exchange.most_N, grips()[1], encoder_m);
+      const double in_hand = largest_change_jnd(exchange.models, exchange.most_N, kGrips[1], encoder_m);
       say("exchanges, " + exchange.name, "%.2f JND in 10 ms with the tool led, %.2f JND in a hand", led, in_hand);
       EXPECT_LE(led, exchange.led_jnd) << exchange.name;
       EXPECT_LE(in_hand, exchange.in_hand_jnd) << exchange.name;
