@@ -43,7 +43,7 @@ double encoded(double position_m, double step_m) {
 // Fills the settings that are not given with those of the material.
 RigSettings suited(RigSettings settings, const Material& material) {
   if (settings.sensors.force_range_N == 0.0) settings.sensors.force_range_N = material.force_range_N;
-  if (!settings.hand) settings.hand = material.hand;
+  if (!settings.hand) settings.hand = {.strongest_press_N = material.strongest_press_N};
   return settings;
 }
 
