@@ -1,13 +1,13 @@
 #include "scenes/hard/hard_case.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "engine/base/whole_file.h"
 #include "engine/json/json_fields.h"
+#include "engine/live/pacer.h"
 #include "scenes/scene/folders.h"
 
 namespace palpate {
@@ -60,10 +60,10 @@ Result<HardTraining::Fit> HardTraining::fit(const ModelPlan& plan, const FitCont
   ModelPlan asked = common_;
   asked.base = plan.base;
   asked.method = plan.method;
-  const auto start = std::chrono::steady_clock::now();
+  const double start_s = steady_now_s();
   auto fitted = fits_.fit(asked, control);
   Fit fit;
-  fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fit.seconds = steady_now_s() - start_s;
   if (fitted) {
     fit.model = std::make_shared<const FittedModel>(std::move(fitted->data));
     fit.rank = fitted->rank;

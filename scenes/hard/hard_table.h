@@ -40,7 +40,6 @@ std::string hard_answer(const std::vector<HardRow>& rows);
 
 // One row for each cell, with every figure.
 Table cells_table(const std::vector<HardRow>& rows);
-// The same as JSON (`palpate hard --json`).
 nlohmann::ordered_json hard_json(const std::vector<HardRow>& rows);
 // "✓ 99.8": whether the cell is as expected, and the percentage within the JND, or "refused".
 std::string cell_text(const HardCell& cell);

@@ -9,13 +9,10 @@
 #include "engine/tick/replay.h"
 
 namespace palpate {
-namespace {
 
 constexpr double kPress_s = 0.3, kPulse_s = 0.6, kStill_s = 1.0, kReturn_s = 1.5, kEnd_s = 2.2;
 constexpr double kTick_s = 1e-3;
 constexpr double kHalfSpan_s = 50e-6;  // half the span of a central difference of a path
-
-}  // namespace
 
 Path training_path(int variant) {
   return [variant](double time_s) {

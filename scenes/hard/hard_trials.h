@@ -23,7 +23,6 @@ inline constexpr double kInAir_m = -2e-3;
 // and speed, not their range.
 inline constexpr double kTrainingDepth_m = 6e-3;
 Path training_path(int variant);
-// offset + factor times the path.
 Path scaled(const Path& path, double factor, double offset_m);
 
 // Evenly spaced times from 0.

@@ -46,7 +46,6 @@ using TrainingsPointer = std::shared_ptr<Trainings>;
 
 constexpr double kSlow_m_per_s = 0.05;  // of the sudden stop and of the endless press, at the size of the training
 
-// A sine of this amplitude and rate.
 Path sine(double amplitude_m, double rate_Hz) {
   return [=](double t) { return amplitude_m * std::sin(2.0 * std::numbers::pi * rate_Hz * t); };
 }

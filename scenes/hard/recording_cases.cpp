@@ -1,10 +1,7 @@
 // What sensors and hands do wrong, on a soft block that the features describe: the true force of another press decides.
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "engine/base/random_stream.h"
-#include "engine/tick/replay.h"
 #include "scenes/hard/hard_trials.h"
 #include "scenes/material/maxwell_block.h"
 

@@ -5,11 +5,8 @@
 #include <utility>
 
 namespace palpate {
-namespace {
 
 constexpr double kLongest_s = 60.0;  // of a trace
-
-}  // namespace
 
 void ExhibitTrace::clear() {
   *this = {};

@@ -48,8 +48,8 @@ struct HistoryPoint {
   double difference_over_jnd(std::size_t slot, const JndLine& jnd) const noexcept {
     const bool none = std::isnan(reference_N) || std::isnan(force_N[slot]) || (other_material >> slot & 1U) != 0;
     if (none || (in_contact && !counts)) return std::numeric_limits<double>::quiet_NaN();
-    const auto from_N = static_cast<double>(reference_N);
-    return in_contact ? (static_cast<double>(force_N[slot]) - from_N) / jnd.at(from_N) : 0.0;
+    const double from_N = reference_N;
+    return in_contact ? (force_N[slot] - from_N) / jnd.at(from_N) : 0.0;
   }
 };
 
@@ -74,7 +74,6 @@ class ForceHistory {
     const std::size_t next = first_at(std::nextafter(loop_time_s, std::numeric_limits<double>::infinity()));
     return next > 0 ? &(*this)[next - 1] : nullptr;
   }
-  // Removes the forces of a slot from all points.
   void forget(std::size_t slot) noexcept {
     for (HistoryPoint& point : points_) point.force_N[slot] = point.sustained_over_jnd[slot] = std::nanf("");
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "engine/base/text.h"
 #include "engine/tick/haptics_tick.h"

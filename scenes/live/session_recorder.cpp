@@ -136,9 +136,8 @@ void SessionRecorder::write(const RecordedSample& sample) {
     return;
   }
   const ToolSample& tool = sample.tool;
-  if (!writer_->add({*time_s, tool.position_m, force_N, tool.velocity_m_per_s, tool.acceleration_m_per_s2})) {
+  if (!writer_->add({*time_s, tool.position_m, force_N, tool.velocity_m_per_s, tool.acceleration_m_per_s2}))
     ++unusable_;
-  }
 }
 
 Notice SessionRecorder::finish() {

@@ -86,7 +86,8 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
         for (const double encoder_m : kEncoders_m) {
           for (const Ticking ticking : kTickings) {
             if (ticking != Ticking::gaps && !limits.every_ticking) continue;
-            worst.keep_worse(stroke(model, {grip, encoder_m, kOneTick_s, ticking}, press_of(limits.material, model)));
+            worst.keep_worse(
+                stroke(model, {grip, encoder_m, kOneTick_s, ticks(ticking)}, press_of(limits.material, model)));
           }
         }
       }
@@ -99,7 +100,7 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
     }
   }
   for (const Grip& grip : kGrips) {
-    LoopSettings settings{grip, 5e-6, kOneTick_s, Ticking::even};
+    LoopSettings settings{grip, 5e-6, kOneTick_s, ticks(Ticking::even)};
     settings.passivity = false;
     EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), settings, kFirm).worst_return, 1.2) << grip.name;
   }
@@ -111,7 +112,8 @@ TEST(ClosedLoop, AMassThrownAtSiliconeReturnsLittleMoreEnergyThanItHad) {
   for (const ModelPtr& model : silicone_models()) {
     for (const double encoder_m : kEncoders_m) {
       for (const Ticking ticking : kTickings) {
-        const double returned = stroke(model, {mass_alone(), encoder_m, kOneTick_s, ticking}, kFirm).worst_return;
+        const double returned =
+            stroke(model, {mass_alone(), encoder_m, kOneTick_s, ticks(ticking)}, kFirm).worst_return;
         EXPECT_LE(returned, 1.15) << model->name() << ", " << encoder_m;
       }
     }

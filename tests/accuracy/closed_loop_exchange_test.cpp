@@ -34,7 +34,7 @@ double largest_change_jnd(const std::vector<ForcePtr>& models, double most_N, co
   for (const ForcePtr& model : models) own.push_back(model.use_count());
   double largest = 0.0;
   {
-    GuardedLoop loop({grip, encoder_m, kOneTick_s, Ticking::gaps});
+    GuardedLoop loop({grip, encoder_m, kOneTick_s, ticks(Ticking::gaps)});
     loop.publish(models.front());
     std::vector<double> time_s, force_N;
     std::size_t published = 0;
