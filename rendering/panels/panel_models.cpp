@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "engine/base/text.h"
 #include "rendering/panels/panel_models.h"
@@ -18,11 +16,11 @@ using Slot = std::size_t;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // The values of the columns; NaN: none. Forces are those of the last tick of the curves.
-double force_now_N(const ModelsView& models, Slot slot) { return static_cast<double>(models.now.force_N[slot]); }
+double force_now_N(const ModelsView& models, Slot slot) { return models.now.force_N[slot]; }
 
 double error_now_N(const ModelsView& models, Slot slot) {
   if (std::isnan(models.now.difference_over_jnd(slot, models.jnd))) return kNone;
-  return models.now.in_contact ? force_now_N(models, slot) - static_cast<double>(models.now.reference_N) : 0.0;
+  return models.now.in_contact ? force_now_N(models, slot) - models.now.reference_N : 0.0;
 }
 
 double p99_over_jnd(const ModelsView& models, Slot slot) {
@@ -129,7 +127,6 @@ void draw_heading(int column, TableState& sort) {
                                                 colour);
 }
 
-// The menu of the right mouse button.
 void draw_menu(LiveSession& session, const ModelsView& models, Slot slot, TableState& table) {
   if (!ImGui::BeginPopupContextItem()) return;
   if (ImGui::IsWindowAppearing()) {
@@ -174,7 +171,6 @@ void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewS
   draw_mark(list, middle, (index == models.selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
 }
 
-// Draws the progress of a fit in place of the figures.
 void draw_waiting(const ModelView& slot) {
   ImGui::TableNextColumn();
   const ImVec2 at = ImGui::GetCursorScreenPos();

@@ -5,13 +5,10 @@
 #include <sstream>
 
 namespace palpate {
-namespace {
 
 constexpr float kSceneShare = 0.6F;    // of the width
 constexpr float kSceneHeight = 0.45F;  // of the height, above the panel
 constexpr float kTall = 1.1F;          // ratio of width to height below which the panel is below the scene
-
-}  // namespace
 
 WindowLayout lay_out(const ImVec2& window) {
   WindowLayout layout;

@@ -173,7 +173,6 @@ struct SpeedPlot {
   }
 };
 
-// Draws the 1 ms of a tick as a bar, and in it the time of the model.
 void draw_budget(const ModelView& one, const ImU32 colour, const UiStyle& style) {
   const std::string text = fixed(one.tick_ns(), 0) + " ns = " + tick_share(one.tick_ns()) + " of 1 ms";
   const ImVec2 at = ImGui::GetCursorScreenPos();

@@ -54,20 +54,17 @@ int fail(const std::string& message, int exit_code) {
   return exit_code;
 }
 
-std::string known_verbs(const Verbs& verbs) {
-  std::string names;
-  for (const auto& [command, run] : verbs) names += (names.empty() ? "" : ", ") + command->get_name();
-  return names;
-}
-
 // Prints the usage error as one line that refers to the verbs or to the verb's help.
 int fail_usage(const CLI::App& app, const Verbs& verbs, std::string message) {
   for (char& letter : message) {
     if (letter == '\n' || letter == '\r') letter = ' ';
   }
   const std::vector<CLI::App*> chosen = app.get_subcommands();
-  if (chosen.empty())
-    return fail(message + "; known verbs: " + known_verbs(verbs) + " (palpate --help explains)", kUsage);
+  if (chosen.empty()) {
+    std::vector<std::string> names;
+    for (const auto& [command, run] : verbs) names.push_back(command->get_name());
+    return fail(message + "; known verbs: " + joined(names) + " (palpate --help explains)", kUsage);
+  }
   return fail(message + " (palpate " + chosen.front()->get_name() + " --help explains)", kUsage);
 }
 
@@ -77,9 +74,8 @@ Status run_chosen(const Verbs& verbs) {
     if (const Status status = run(); !status) return status;
   }
   std::cout.flush();
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout) {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout)
     return Error{"cannot write the results to standard output"};
-  }
   return {};
 }
 
@@ -102,9 +98,8 @@ std::string unknown_option(const CLI::App& app, int argc, char** argv) {
     }
     const std::string name = word.substr(2, word.find('=') - 2);
     std::vector<std::string> known;
-    for (const CLI::Option* option : verb->get_options()) {
+    for (const CLI::Option* option : verb->get_options())
       known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
-    }
     if (std::ranges::find(known, name) != known.end()) continue;
     const std::string nearest = nearest_name(name, known);
     return "unknown option --" + printable(name) + (nearest.empty() ? "" : "; did you mean --" + nearest + "?");
@@ -127,9 +122,8 @@ int run_program(int argc, char** argv) {
   }
   try {
     if (argc < 2) return fail_usage(app, verbs, "no verb given");
-    if (names_unknown_verb(verbs, argc, argv)) {
+    if (names_unknown_verb(verbs, argc, argv))
       return fail_usage(app, verbs, "unknown verb \"" + std::string(argv[1]) + "\"");
-    }
     app.require_subcommand(1);
     app.parse(argc, argv);
     const Status status = run_chosen(verbs);

@@ -12,7 +12,6 @@
 #include "models/linear/lapack.h"
 #include "models/samples/recording_faults.h"
 #include "scenes/material/rig.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

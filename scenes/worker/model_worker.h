@@ -61,7 +61,6 @@ class ModelWorker {
     std::size_t job_id = 0;
     double share = 0.0;  // of this job, 0..1
   };
-  // Of the jobs that run.
   std::vector<Progress> progress() const;
   // Estimated time until all jobs are done.
   double left_s() const;

@@ -81,12 +81,13 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
     for (const ModelPtr& model : loop_models(limits.material)) {
       const std::string who = std::string(limits.material) + ", " + model->name();
       Strokes worst;
-      for (const Grip& grip : grips()) {
+      for (const Grip& grip : kGrips) {
         if (!held(grip)) continue;
         for (const double encoder_m : kEncoders_m) {
           for (const Ticking ticking : kTickings) {
             if (ticking != Ticking::gaps && !limits.every_ticking) continue;
-            worst.keep_worse(stroke(model, {grip, encoder_m, kOneTick_s, ticking}, press_of(limits.material, model)));
+            worst.keep_worse(
+                stroke(model, {grip, encoder_m, kOneTick_s, ticks(ticking)}, press_of(limits.material, model)));
           }
         }
       }
@@ -98,8 +99,8 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
       EXPECT_LE(worst.largest_cost_jnd, limits.largest_cost_jnd) << who;
     }
   }
-  for (const Grip& grip : grips()) {
-    LoopSettings settings{grip, 5e-6, kOneTick_s, Ticking::even};
+  for (const Grip& grip : kGrips) {
+    LoopSettings settings{grip, 5e-6, kOneTick_s, ticks(Ticking::even)};
     settings.passivity = false;
     EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), settings, kFirm).worst_return, 1.2) << grip.name;
   }
@@ -112,7 +113,7 @@ TEST(ClosedLoop, AMassThrownAtSiliconeReturnsLittleMoreEnergyThanItHad) {
   for (const ModelPtr& model : silicone_models()) {
     for (const double encoder_m : kEncoders_m) {
       for (const Ticking ticking : kTickings) {
-        LoopSettings settings{mass_alone(), encoder_m, kOneTick_s, ticking};
+        LoopSettings settings{mass_alone(), encoder_m, kOneTick_s, ticks(ticking)};
         EXPECT_LE(stroke(model, settings, kFirm).own_beyond_step_J, 0.0) << model->name() << ", " << encoder_m;
         settings.passivity = false;
         const double without_J = stroke(model, settings, kFirm).own_beyond_step_J;

@@ -8,6 +8,8 @@
 #include <map>
 #include <numbers>
 
+#include "engine/base/random_stream.h"
+
 namespace palpate::test {
 namespace {
 
@@ -26,6 +28,18 @@ double ripple(const std::vector<double>& values) {
 }
 
 }  // namespace
+
+std::function<std::int64_t(std::int64_t& deadline)> ticks(Ticking ticking) {
+  if (ticking == Ticking::even) return {};
+  return [ticking, random = RandomStream(1, 77)](std::int64_t& deadline) mutable {
+    constexpr std::int64_t kGapEvery = 100 * kPeriodSteps;
+    if (ticking == Ticking::gaps) {
+      if (random.index(30) == 0) deadline += kPeriodSteps;
+      if (deadline / kGapEvery != (deadline - kPeriodSteps) / kGapEvery) deadline += 4 * kPeriodSteps;
+    }
+    return deadline + static_cast<std::int64_t>(random.index(10));
+  };
+}
 
 const std::vector<ModelPtr>& loop_models(const std::string& material) {
   static std::map<std::string, std::vector<ModelPtr>> fitted;
@@ -104,7 +118,7 @@ Rest worst_hold(const ForcePtr& model, const Grip& grip, const HandPress& press,
   Rest worst;
   for (const double encoder_m : kEncoders_m) {
     for (const Ticking ticking : kTickings) {
-      LoopSettings settings{grip, encoder_m, kOneTick_s, ticking};
+      LoopSettings settings{grip, encoder_m, kOneTick_s, ticks(ticking)};
       settings.passivity = passivity;
       worst.keep_worse(hold(model, settings, press, seconds));
     }
@@ -116,7 +130,7 @@ double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double enc
                               Ticking ticking, bool passivity) {
   double least = std::numeric_limits<double>::infinity();
   for (const double rate_Hz : {2.0, 5.0, 10.0, 20.0, 40.0}) {
-    LoopSettings settings{lead(), encoder_m, kOneTick_s, ticking};
+    LoopSettings settings{lead(), encoder_m, kOneTick_s, ticks(ticking)};
     settings.passivity = passivity;
     ClosedLoop loop(settings);
     loop.publish(model);
