@@ -35,10 +35,10 @@ struct PaperModel {
 // The results for one material and one pair of relaxation times.
 struct PaperRun {
   std::string material;
-  bool fitted_times = false;    // false: the paper's relaxation times
-  std::vector<double> times_s;  // relaxation times
-  std::uint64_t trained = 0;    // number of training samples
-  std::uint64_t tested = 0;     // number of test samples
+  bool fitted_times = false;      // false: the paper's relaxation times
+  std::vector<double> times_s{};  // relaxation times
+  std::uint64_t trained = 0;      // number of training samples
+  std::uint64_t tested = 0;       // number of test samples
   std::uint64_t sites = 0;
   std::string choices{};                // kernel, normalisation and truncation of the centres, in words
   std::vector<PaperModel> models{};     // in the order of PaperMethod
