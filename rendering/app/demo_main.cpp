@@ -13,6 +13,7 @@
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
 #include "rendering/app/study_app.h"
+#include "scenes/cli/unknown_word.h"
 #include "scenes/scene/folders.h"
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/worker/model_request.h"
@@ -170,13 +171,16 @@ int run_program(int argc, char** argv) {
   CLI::App app("Palpate: press a recorded block, and see which model differs from it by more than a hand can notice",
                "palpate-demo");
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+  app.footer("Example:\n  palpate-demo --train rec.csv --test test.csv");
   Arguments arguments;
   add_options(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    std::fprintf(stderr, "error: %s\nrun `palpate-demo --help`\n", error.what());
+    const std::string unknown = cli::unknown_word(app, argc, argv);
+    std::fprintf(stderr, "error: %s (palpate-demo --help explains)\n",
+                 unknown.empty() ? error.what() : unknown.c_str());
     return kWrongUsage;
   }
   const Status status = run_demo(arguments);

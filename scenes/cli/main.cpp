@@ -1,12 +1,10 @@
 // palpate: the headless program. Exit codes: 0 success; 1 error; 2 wrong usage; 130 stopped by Ctrl-C, 143 by SIGTERM,
 // as in a shell. No locale is set, so that numbers are read and printed with '.'.
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #if defined(__GLIBC__)
@@ -14,9 +12,9 @@
 #endif
 
 #include "engine/base/signals.h"
-#include "engine/base/text.h"
 #include "models/linear/lapack.h"
 #include "models/model/vector_loops.h"
+#include "scenes/cli/unknown_word.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -83,35 +81,6 @@ Status run_chosen(const Verbs& verbs) {
   return {};
 }
 
-// Reports an unknown verb, for which CLI11 has the message "not expected" only.
-bool names_unknown_verb(const Verbs& verbs, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return false;
-  return std::none_of(verbs.begin(), verbs.end(), [&](const auto& verb) { return verb.first->get_name() == argv[1]; });
-}
-
-// Reports the first unknown option with the nearest known one; CLI11 would report a missing option instead.
-std::string unknown_option(const CLI::App& app, int argc, char** argv) {
-  const CLI::App* verb = &app;
-  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
-    const std::string word = argv[i];
-    if (word.rfind("--", 0) != 0) {
-      for (const CLI::App* sub : verb->get_subcommands([](const CLI::App*) { return true; })) {
-        if (sub->get_name() == word) verb = sub;
-      }
-      continue;
-    }
-    const std::string name = word.substr(2, word.find('=') - 2);
-    std::vector<std::string> known;
-    for (const CLI::Option* option : verb->get_options()) {
-      known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
-    }
-    if (std::ranges::find(known, name) != known.end()) continue;
-    const std::string nearest = nearest_name(name, known);
-    return "unknown option --" + printable(name) + (nearest.empty() ? "" : "; did you mean --" + nearest + "?");
-  }
-  return {};
-}
-
 std::string version_text() {
   return "palpate " PALPATE_VERSION " (commit " PALPATE_COMMIT ", " + blas_name() + ", vectors " + simd::target_name() +
          ")";
@@ -127,9 +96,6 @@ int run_program(int argc, char** argv) {
   }
   try {
     if (argc < 2) return fail_usage(app, verbs, "no verb given");
-    if (names_unknown_verb(verbs, argc, argv)) {
-      return fail_usage(app, verbs, "unknown verb \"" + std::string(argv[1]) + "\"");
-    }
     app.require_subcommand(1);
     app.parse(argc, argv);
     const Status status = run_chosen(verbs);
@@ -141,7 +107,7 @@ int run_program(int argc, char** argv) {
       app.exit(error);  // --help, --version and the lists that end a verb
       return std::cout.flush() ? kDone : fail("cannot write to standard output", kFailed);
     }
-    const std::string unknown = unknown_option(app, argc, argv);
+    const std::string unknown = unknown_word(app, argc, argv);
     return fail_usage(app, verbs, unknown.empty() ? error.what() : unknown);
   }
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr double kPeriod_s = 2.0;
 constexpr double kRest = 10.0;  // pause after a check, as a multiple of its duration
 constexpr int kSmallStrokes = 10;
-constexpr const char* kFollowed[] = {"explored", "too_short", "no_hold"};
+constexpr const char* kFollowed[] = {"explored", "no_hold", "short_hold"};
 
 }  // namespace
 
