@@ -84,13 +84,13 @@ TEST(CheckRecording, AHoldIsInContact) {
   EXPECT_LT(found->value, 0.1);
 }
 
-// A press of 8 s to 5 mm; its force relaxes with `relaxation_s` by a third.
+// A press of 8 s to 5 mm; its force relaxes with `relaxation_s` by a half.
 Recording press_and_hold(double relaxation_s) {
   Recording recording;
   for (int i = 0; i < 1200; ++i) {
     const double time_s = 0.01 * i;
     const double position_m = std::clamp(5e-3 * std::min(time_s - 1.0, 11.0 - time_s), -1e-3, 5e-3);
-    const double relaxed = 2.0 / 3.0 + std::exp(-std::max(0.0, time_s - 2.0) / relaxation_s) / 3.0;
+    const double relaxed = 0.5 + 0.5 * std::exp(-std::max(0.0, time_s - 2.0) / relaxation_s);
     recording.rows.push_back(
         {.time_s = time_s, .position_m = position_m, .force_N = 600.0 * relaxed * std::max(0.0, position_m)});
   }
@@ -107,8 +107,8 @@ TEST(CheckRecording, AHoldLastsUntilTheForceStaysTheSame) {
   const RecordingCheck check = checked(press_and_hold(8.0), kSilicone);
   const Finding* found = find(check, "short_hold");
   ASSERT_NE(found, nullptr) << all_of(check);
-  // exp(-4 / 8) - exp(-8 / 8) = 0.239 of 1 N, and less by the mean over a tenth.
-  EXPECT_NEAR(check.measures.hold_change_N, -0.22, 0.03);
+  // 1.5 N of 10 (exp(-0.5) - exp(-0.6) - exp(-0.9) + exp(-1)), the means of exp(-t / 8) over 0.8 s; rows are 10 ms.
+  EXPECT_NEAR(check.measures.hold_change_N, -0.2855, 0.005);
   EXPECT_EQ(find(checked(press_and_hold(8.0), CheckRequest{}), "short_hold"), nullptr) << "no memory";
 }
 
