@@ -6,9 +6,9 @@
 
 Recorded sets come first: every folder with train*.csv and test*.csv in ../shared/data and ../shared/labs (if
 present) or in DIR. Virtual materials follow. All use positions only, without the accelerometer column of
-the virtual rig. Columns: the share [%] of the samples in contact within the JND, as recorded (surface
-moved), for 0 N and every model; then, for the last model, the 99 % quantile and the maximum of the error in
-JND as recorded, the coverage of the 95 % bound, and the seconds of the fit. "Surface moved" fits the surface
+the virtual rig. Columns: the share [%] of the samples in contact within the JND, as recorded
+(aligned), for 0 N and every model; then, for the last model, the 99 % quantile and the maximum of the error in
+JND as recorded, the coverage of the 95 % bound, and the seconds of the fit. "Aligned" fits the surface
 of the test (also force zero and lag) to the forces of the test. It shows the error after registration of the
 rig and is not a prediction. Recorded sets and virtual materials have separate means. Models are named as in
 palpate fit --list-methods; of methods that draw random numbers the medians of five seeds are shown. bins and ridge are
@@ -185,7 +185,7 @@ def number(value, digits):
 
 
 def means(kind, names, results, models):
-    """For every model with tests in these sets: kind, model, mean shares as recorded and with the surface moved, number
+    """For every model with tests in these sets: kind, model, mean shares as recorded and aligned, number
     of tests, and a sentence with the tests on which it differs from PAPERS."""
     for model in models:
         tests = {(name, index): one for name in names for index, one in enumerate(results[name, model].get("tests", []))}
@@ -202,7 +202,7 @@ def means(kind, names, results, models):
 
 
 def sentence(row):
-    return "%s, %s: mean %s %% as recorded, %s %% surface moved, %s tests%s." % row
+    return "%s, %s: mean %s %% as recorded, %s %% aligned, %s tests%s." % row
 
 
 def front_page(options, folder, rows, summary):
@@ -217,7 +217,7 @@ def front_page(options, folder, rows, summary):
     kinds = list(dict.fromkeys(row[0] for row in summary))
     shares = {row[:2]: row[2:4] for row in summary}
     tests = {row[0]: row[4] for row in summary}
-    text = "\n".join(["| model | " + " | ".join(f"{kind} ({tests[kind]} tests): as recorded | surface moved" for kind in kinds) + " |",
+    text = "\n".join(["| model | " + " | ".join(f"{kind} ({tests[kind]} tests): as recorded | aligned" for kind in kinds) + " |",
                       "|---|" + "---:|" * 2 * len(kinds),
                       *("| " + " | ".join([model, *(cell for kind in kinds for cell in shares.get((kind, model), ("", "")))]) + " |"
                         for model in dict.fromkeys(row[1] for row in summary)), "", *textwrap.wrap(f"The report on the virtual {SHOWN} block: " + answer, 110), "",

@@ -35,8 +35,8 @@ constexpr std::size_t kClippedRows = 5;
 constexpr double kClippedSteps = 3.0;
 // The share of the way in that the tool must move out to separate depth and memory.
 constexpr double kMonotonicShare = 0.1;
-// After three relaxation times 5 % of a relaxation are left, less than the Weber fraction of force.
-constexpr double kRelaxationsToSee = 3.0;
+// A shorter hold, as a share of a mean stroke, shows no more of the memory than the strokes.
+constexpr double kHoldOfStroke = 0.5;
 // Ten rows in a period of the fastest motion of a hand, 10 Hz.
 constexpr double kSlowRate_Hz = 100.0;
 // At 650 N/m this changes the force by the JND at 0 N.
@@ -338,26 +338,27 @@ class Checker {
         where.empty() ? "" : std::string("record next: ").append(where));
   }
 
-  // Checks whether the recording can show the scene's relaxation times.
+  // Checks whether the recording shows how its force relaxes, by its own strokes and holds.
   void check_memory() {
-    const double longest_s = request_.longest_relaxation_s;
-    if (longest_s == 0.0) return;
+    if (!request_.memory) return;
     if (measures_.outward_travel_m < kMonotonicShare * measures_.inward_travel_m) {
       add("monotonic", Severity::warning,
           measures_.outward_travel_m / std::max(measures_.inward_travel_m, kLeastTravel_m),
           "the tool moves in and hardly out, so the effects of depth and memory cannot be separated",
           "record releases and holds");
     }
-    if (measures_.duration_s < kRelaxationsToSee * longest_s) {
-      add("too_short", Severity::warning, measures_.duration_s,
-          words("the recording lasts %.3g s, which is too short for a relaxation time of %.3g s", measures_.duration_s,
-                longest_s),
-          words("record at least %.2g s", kRelaxationsToSee * longest_s));
-    } else if (measures_.longest_hold_s < longest_s) {
-      add("no_hold", Severity::note, measures_.longest_hold_s,
-          words("the longest hold in contact is %.2g s, and the scene's longest relaxation time is %.3g s",
-                measures_.longest_hold_s, longest_s),
-          words("hold still for %.2g s at two or three depths", 2.0 * longest_s));
+    const double hold_s = measures_.longest_hold_s;
+    const double stroke_s = static_cast<double>(measures_.contact_rows) * measures_.median_step_s /
+                            static_cast<double>(std::max(1, measures_.strokes));
+    if (hold_s < kHoldOfStroke * stroke_s) {
+      add("no_hold", Severity::note, hold_s,
+          words("the longest hold in contact is %.2g s, and a stroke lasts %.2g s on average", hold_s, stroke_s),
+          "hold still at two or three depths until the force stays the same");
+    } else if (std::abs(measures_.hold_change_N) > request_.jnd.at(measures_.hold_end_N)) {
+      add("short_hold", Severity::note, hold_s,
+          words("the force still changes by %+.2g N in the second half of the longest hold, which lasts %.2g s",
+                measures_.hold_change_N, hold_s),
+          words("hold still for %.2g s at two or three depths", 4.0 * hold_s));
     }
   }
 
@@ -383,10 +384,7 @@ std::string finding_text(const Finding& finding) {
 }
 
 CheckRequest check_request(const JndLine& jnd, const std::vector<FeatureSpec>& features) {
-  CheckRequest request{jnd};
-  for (const FeatureSpec& feature : features)
-    request.longest_relaxation_s = std::max(request.longest_relaxation_s, feature.relaxation_time_s);
-  return request;
+  return {jnd, std::ranges::any_of(features, [](const FeatureSpec& one) { return one.relaxation_time_s > 0.0; })};
 }
 
 const char* RecordingCheck::verdict() const {

@@ -36,7 +36,7 @@ std::string finding_text(const Finding& finding);
 // The intended use of the recording.
 struct CheckRequest {
   JndLine jnd;
-  double longest_relaxation_s = 0.0;  // of the scene; 0: no memory
+  bool memory = false;  // the force of the scene's material depends on the past
 };
 // `features`: of the scene.
 CheckRequest check_request(const JndLine& jnd, const std::vector<FeatureSpec>& features);

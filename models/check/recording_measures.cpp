@@ -96,14 +96,21 @@ struct Strokes {
   }
 };
 
+// The mean force of the `count` rows before row `end`.
+double mean_force_N(const std::vector<RecordingRow>& rows, std::size_t end, std::size_t count) {
+  double sum_N = 0.0;
+  for (std::size_t i = end - count; i < end; ++i) sum_N += rows[i].force_N;
+  return sum_N / static_cast<double>(count);
+}
+
 void measure_motion(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
   const double surface_m = measures.outermost_contact_m;
   const double deepest_m = std::max(0.0, measures.highest_position_m - surface_m);
   Strokes strokes{kStrokeShare * deepest_m, false};
   Strokes small_strokes{kSmallestStroke * deepest_m, true};  // in contact
   double hold_m = HUGE_VAL;
-  double hold_since_s = 0.0;
-  std::size_t before = 0;  // the first row of the window of the speed
+  std::size_t hold_first = 0, longest_first = 0, longest_last = 0;  // rows
+  std::size_t before = 0;                                           // the first row of the window of the speed
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const RecordingRow& row = rows[i];
     while (before + 1 < i && row.time_s - rows[before].time_s > kSpeedWindow_s) ++before;
@@ -127,10 +134,18 @@ void measure_motion(const std::vector<RecordingRow>& rows, RecordingMeasures& me
     if (length_m > kSmallestStroke * deepest_m && length_m < kLargestSmallStroke * deepest_m) ++measures.small_strokes;
     if (std::abs(row.position_m - hold_m) > kHoldShare * deepest_m) {
       hold_m = row.position_m;
-      hold_since_s = row.time_s;
+      hold_first = i;
     }
-    measures.longest_hold_s = std::max(measures.longest_hold_s, row.time_s - hold_since_s);
+    if (row.time_s - rows[hold_first].time_s > measures.longest_hold_s) {
+      measures.longest_hold_s = row.time_s - rows[hold_first].time_s;
+      longest_first = hold_first;
+      longest_last = i;
+    }
   }
+  const std::size_t held = longest_last - longest_first;
+  const std::size_t averaged = held / 10 + 1;
+  measures.hold_end_N = mean_force_N(rows, longest_last + 1, averaged);
+  measures.hold_change_N = measures.hold_end_N - mean_force_N(rows, longest_first + held / 2 + averaged, averaged);
 }
 
 }  // namespace

@@ -42,6 +42,8 @@ struct RecordingMeasures {
   double outward_travel_m = 0.0;
   int small_strokes = 0;        // in contact, with a length of 5 to 40 % of the greatest depth
   double longest_hold_s = 0.0;  // in contact, moving by less than 2 % of the depth
+  double hold_change_N = 0.0;   // of the force from the middle to the end of that hold, means of a tenth of its rows
+  double hold_end_N = 0.0;      // the force at its end
   std::array<std::array<double, kSpeedBands>, kDepthQuarters> seconds{};  // depth x speed
 };
 

@@ -1,5 +1,6 @@
 // palpate-demo: the window program's command line.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -7,9 +8,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/signals.h"
+#include "engine/base/text.h"
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
 #include "rendering/app/study_app.h"
@@ -167,17 +170,36 @@ Status run_demo(Arguments& arguments) {
   return status ? written : status;
 }
 
+// The first option that is not known, with the nearest one; empty if all are known.
+std::string unknown_option(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) {
+    known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
+  }
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const std::string name = word.rfind("--", 0) == 0 ? word.substr(2, word.find('=') - 2) : "";
+    if (name.empty() || std::ranges::find(known, name) != known.end()) continue;
+    const std::string nearest = nearest_name(name, known);
+    return "unknown option --" + printable(name) + (nearest.empty() ? "" : "; did you mean --" + nearest + "?");
+  }
+  return {};
+}
+
 int run_program(int argc, char** argv) {
   CLI::App app("Palpate: press a recorded block, and see which model differs from it by more than a hand can notice",
                "palpate-demo");
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+  app.footer("Example:\n  palpate-demo --train rec.csv --test test.csv");
   Arguments arguments;
   add_options(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    std::fprintf(stderr, "error: %s\nrun `palpate-demo --help`\n", error.what());
+    const std::string unknown = unknown_option(app, argc, argv);
+    std::fprintf(stderr, "error: %s (palpate-demo --help explains)\n",
+                 unknown.empty() ? error.what() : unknown.c_str());
     return kWrongUsage;
   }
   const Status status = run_demo(arguments);

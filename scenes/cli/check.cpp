@@ -16,29 +16,6 @@ struct CheckOptions {
   bool json = false;
 };
 
-void print_check_json(const std::vector<CheckedFile>& files) {
-  using Json = nlohmann::ordered_json;
-  Json list = Json::array();
-  for (const CheckedFile& file : files) {
-    Json findings = Json::array();
-    for (const Finding& finding : file.check.findings) {
-      findings.push_back({{"code", finding.code},
-                          {"severity", severity_name(finding.severity)},
-                          {"value", finding.value},
-                          {"text", finding.text},
-                          {"advice", finding.advice}});
-    }
-    list.push_back({{"file", file.path},
-                    {"verdict", file.check.verdict()},
-                    {"findings", findings},
-                    {"noise_floor_within_jnd", file.check.noise_floor_within_jnd},
-                    {"surface_identified", file.check.surface_identified},
-                    {"surface_offset_m", file.check.surface_offset_m},
-                    {"force_zero_N", file.check.force_zero_N}});
-  }
-  print_json({{"recordings", list}});
-}
-
 Status run_check(const CheckOptions& options) {
   const auto scene = load_scene(options.scene);
   if (!scene) return scene.error();
@@ -59,7 +36,7 @@ void add_check(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* verb = app.add_subcommand("check", "Check whether recordings are suitable for a fit");
   verb->add_option("recording", options->recordings, "Recordings to check (CSV)")->required()->type_name("REC.csv");
-  verb->add_option("--scene", options->scene, "Scene that gives the relaxation times and the JND line")
+  verb->add_option("--scene", options->scene, "Scene that gives the JND line, and whether the force has a memory")
       ->capture_default_str();
   verb->add_flag("--json", options->json, "Print one JSON object");
   verbs.emplace_back(verb, [options] { return run_check(*options); });

@@ -52,7 +52,7 @@ void add_plan_option(CLI::App& verb, const PlanOption& option, const std::shared
     arguments->options.push_back({name, text});
   };
   verb.add_option_function<std::string>("--" + option.name, keep, help)
-      ->check(CLI::Validator(check, option.values))
+      ->check(CLI::Validator(check, ""))
       ->type_name(option.values)
       ->default_str(option.default_text);
 }
@@ -77,8 +77,8 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
   const double as_recorded = errors.within_jnd();
   const double printed = data.provenance.training_within_jnd;
   if (!(std::abs(as_recorded - printed) > kContradiction)) return {};
-  return "in training, " + fixed(100.0 * as_recorded, 2) + " % within the JND as recorded, " +
-         fixed(100.0 * printed, 2) + " % with the offsets corrected and in the contact of the model";
+  return "in training, " + fixed(100.0 * as_recorded, 2) + " % within one JND as recorded, " +
+         fixed(100.0 * printed, 2) + " % after correction";
 }
 
 // One row for each term of the trend's dictionary: whether the regression uses it, and the cross-validated error of the
@@ -108,6 +108,21 @@ std::string surface_text(const RecordingOffset& surface) {
          ", force zero " + fixed(1e3 * surface.force_zero_N, 1) + " mN";
 }
 
+// "fast 0.002-0.02 s, middle 0.0356-0.356 s, slow 0.632-11.2 s"; names only where there are three; empty without
+// memory.
+std::string relaxation_bands(const std::vector<FeatureSpec>& features) {
+  std::vector<std::string> bands;
+  for (const FeatureSpec& feature : features) {
+    const std::vector<double> times_s = relaxation_times_s({feature});
+    if (times_s.empty()) continue;
+    const auto [first, last] = std::ranges::minmax_element(times_s);
+    bands.push_back(general(*first, 3) + (*first < *last ? "-" + general(*last, 3) : "") + " s");
+  }
+  constexpr const char* kNames[] = {"fast ", "middle ", "slow "};
+  for (std::size_t i = 0; i < bands.size() && bands.size() == std::size(kNames); ++i) bands[i] = kNames[i] + bands[i];
+  return joined(bands);
+}
+
 // `out`: the file that was written.
 void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::string& out) {
   const auto& [gains, correction, fit, seconds] = fitted;
@@ -120,9 +135,8 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
   // The depth is the first feature.
   if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
     print_line("depth starts", "at " + fixed(1e3 * begins_m, 3) + " mm, where the force of the recordings begins");
-  std::vector<std::string> times;
-  for (const double time_s : relaxation_times_s(fit.data.features)) times.push_back(general(time_s, 3));
-  if (!times.empty()) print_line("relaxation times", joined(times) + " s");
+  if (const std::string bands = relaxation_bands(fit.data.features); !bands.empty())
+    print_line("relaxation times", bands);
   if (correction) print_line("correction", correction_text(*correction));
   for (const std::string& note : fit.notes)
     print_line(fit.choices && note == choices_text(*fit.choices) ? "selected" : "note", note);

@@ -79,30 +79,33 @@ Status run_chosen(const Verbs& verbs) {
   return {};
 }
 
-// Reports an unknown verb, for which CLI11 has the message "not expected" only.
-bool names_unknown_verb(const Verbs& verbs, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return false;
-  return std::none_of(verbs.begin(), verbs.end(), [&](const auto& verb) { return verb.first->get_name() == argv[1]; });
-}
-
-// Reports the first unknown option with the nearest known one; CLI11 would report a missing option instead.
-std::string unknown_option(const CLI::App& app, int argc, char** argv) {
+// The first word that is not known, for which CLI11 would name a missing option or say "not expected":
+// "unknown option --metod; did you mean --method?", "unknown verb "fti"; did you mean fit?"; empty if all are known.
+std::string unknown_word(const CLI::App& app, int argc, char** argv) {
+  const auto unknown = [](const std::string& what, const std::string& word, const std::string& dashes,
+                          const std::vector<std::string>& known) {
+    const std::string nearest = nearest_name(word, known);
+    return "unknown " + what + (nearest.empty() ? "" : "; did you mean " + dashes + nearest + "?");
+  };
   const CLI::App* verb = &app;
   for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string word = argv[i];
-    if (word.rfind("--", 0) != 0) {
-      for (const CLI::App* sub : verb->get_subcommands([](const CLI::App*) { return true; })) {
-        if (sub->get_name() == word) verb = sub;
+    std::vector<std::string> known;
+    if (word.rfind("--", 0) == 0) {
+      const std::string name = word.substr(2, word.find('=') - 2);
+      for (const CLI::Option* option : verb->get_options()) {
+        known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
       }
+      if (std::ranges::find(known, name) == known.end())
+        return unknown("option --" + printable(name), name, "--", known);
       continue;
     }
-    const std::string name = word.substr(2, word.find('=') - 2);
-    std::vector<std::string> known;
-    for (const CLI::Option* option : verb->get_options())
-      known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
-    if (std::ranges::find(known, name) != known.end()) continue;
-    const std::string nearest = nearest_name(name, known);
-    return "unknown option --" + printable(name) + (nearest.empty() ? "" : "; did you mean --" + nearest + "?");
+    const auto subs = verb->get_subcommands([](const CLI::App*) { return true; });
+    if (subs.empty() || word.rfind('-', 0) == 0) continue;
+    for (const CLI::App* sub : subs) known.push_back(sub->get_name());
+    const auto found = std::ranges::find(known, word);
+    if (found == known.end()) return unknown("verb \"" + printable(word) + "\"", word, "", known);
+    verb = subs[static_cast<std::size_t>(found - known.begin())];
   }
   return {};
 }
@@ -122,8 +125,6 @@ int run_program(int argc, char** argv) {
   }
   try {
     if (argc < 2) return fail_usage(app, verbs, "no verb given");
-    if (names_unknown_verb(verbs, argc, argv))
-      return fail_usage(app, verbs, "unknown verb \"" + std::string(argv[1]) + "\"");
     app.require_subcommand(1);
     app.parse(argc, argv);
     const Status status = run_chosen(verbs);
@@ -135,7 +136,7 @@ int run_program(int argc, char** argv) {
       app.exit(error);  // --help, --version and the lists that end a verb
       return std::cout.flush() ? kDone : fail("cannot write to standard output", kFailed);
     }
-    const std::string unknown = unknown_option(app, argc, argv);
+    const std::string unknown = unknown_word(app, argc, argv);
     return fail_usage(app, verbs, unknown.empty() ? error.what() : unknown);
   }
 }

@@ -30,6 +30,7 @@ struct RecordOptions {
   std::string scene = "silicone_block";
   double seconds = 0.0;  // 0: until Ctrl-C
   bool guide = false;
+  bool json = false;
   bool force = false;
   bool bridge_remote = false;
 };
@@ -146,14 +147,22 @@ Status run_record(const RecordOptions& options) {
   const Result<std::string> recorded = record(options, check_request(*scene), **device);
   (*device)->close();
   if (!recorded) return recorded.error();
-  std::printf("%s\n", recorded->c_str());
+  std::fprintf(options.json ? stderr : stdout, "%s\n", recorded->c_str());
   if (!(*device)->measures_force()) {
-    std::printf("%s has no force: before a fit, add a column force_N with the force of a sensor\n",
-                options.out.c_str());
+    if (options.json) {
+      print_check_json({});
+    } else {
+      std::printf("%s has no force: before a fit, add a column force_N with the force of a sensor\n",
+                  options.out.c_str());
+    }
     return {};
   }
   const auto file = check_recording_file(options.out, check_request(*scene));
   if (!file) return file.error();
+  if (options.json) {
+    print_check_json({*file});
+    return {};
+  }
   std::printf("%s", check_text(*file).c_str());
   if (refuse_unusable({*file})) std::printf("%s", next_fit({options.out}).c_str());
   return {};
@@ -171,9 +180,10 @@ void add_record(CLI::App& app, Verbs& verbs) {
   verb->add_option("--seconds", options->seconds, "Length of the recording in s [until Ctrl-C]")
       ->check(CLI::Range(0.1, 1e6));
   verb->add_flag("--guide", options->guide, "Say what to press next, and show which depths and speeds are missing");
-  verb->add_option("--scene", options->scene, "Scene that gives the relaxation times and the JND line")
+  verb->add_option("--scene", options->scene, "Scene that gives the JND line, and whether the force has a memory")
       ->capture_default_str();
   verb->add_flag("--bridge-remote", options->bridge_remote, "Allow bridge:tcp: to name another computer");
+  verb->add_flag("--json", options->json, "Print one JSON object, that of palpate check");
   verb->add_flag("--force", options->force, "Replace an existing file");
   verbs.emplace_back(verb, [options] { return run_record(*options); });
 }

@@ -10,7 +10,7 @@ namespace palpate::cli {
 constexpr double kPeriod_s = 2.0;
 constexpr double kRest = 10.0;  // pause after a check, as a multiple of its duration
 constexpr int kSmallStrokes = 10;
-constexpr const char* kFollowed[] = {"explored", "too_short", "no_hold"};
+constexpr const char* kFollowed[] = {"explored", "no_hold", "short_hold"};
 
 RecordGuide::RecordGuide(std::string path, const CheckRequest& request) : path_(std::move(path)), request_(request) {}
 

@@ -19,6 +19,7 @@ struct Arguments {
   std::vector<std::string> train;
   std::vector<std::string> test;
   std::string scene = "silicone_block";
+  bool json = false;
   ReportRequest request;
 };
 
@@ -55,18 +56,20 @@ Status run_report(Arguments arguments) {
   const auto answer =
       with_progress("reporting", [&](const FitControl& control) { return make_report(request, control); });
   if (!answer) return answer.error();
+  if (arguments.json) return print_file(request.out + "/report.json");
   print_table(answer->table, true);
   std::printf("\n%s\n\nspeed against error  %s/figures/speed_error.png, .svg\nreport               %s/index.html\n",
               answer->sentence.c_str(), request.out.c_str(), request.out.c_str());
   return {};
 }
 
-Status run_paper(PaperRequest request) {
+Status run_paper(PaperRequest request, bool json) {
   request.origin =
       "palpate paper --out " + request.out + (request.quick ? " --quick" : "") + " · palpate " PALPATE_VERSION;
   const auto answer =
       with_progress("measuring", [&](const FitControl& control) { return make_paper(request, control); });
   if (!answer) return answer.error();
+  if (json) return print_file(request.out + "/report.json");
   std::printf("%s\nwritten  %s/index.html, with its tables and figures\n", answer->c_str(), request.out.c_str());
   return {};
 }
@@ -85,6 +88,7 @@ void add_report(CLI::App& app, Verbs& verbs) {
       ->capture_default_str();
   verb->add_option("--out", arguments->request.out, "Folder to create")->required()->type_name("DIR");
   verb->add_flag("--quick", arguments->request.quick, "Fit the paper's methods and the default only, with 100 centres");
+  verb->add_flag("--json", arguments->json, "Print report.json, which is also in the folder");
   verb->add_flag("--force", arguments->request.force, "Replace an earlier report");
   verbs.emplace_back(verb, [arguments] { return run_report(*arguments); });
 }
@@ -94,8 +98,10 @@ void add_paper(CLI::App& app, Verbs& verbs) {
   const auto request = std::make_shared<PaperRequest>();
   verb->add_option("--out", request->out, "Folder to create")->required()->type_name("DIR");
   verb->add_flag("--quick", request->quick, "Use a fifth of the recordings and fewer fits");
+  const auto json = std::make_shared<bool>(false);
+  verb->add_flag("--json", *json, "Print report.json, which is also in the folder");
   verb->add_flag("--force", request->force, "Replace an earlier result");
-  verbs.emplace_back(verb, [request] { return run_paper(*request); });
+  verbs.emplace_back(verb, [request, json] { return run_paper(*request, *json); });
 }
 
 }  // namespace palpate::cli

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "engine/base/text.h"
+#include "engine/base/whole_file.h"
 #include "engine/recording/recording_reader.h"
 #include "models/model/file/model_io.h"
 
@@ -40,6 +41,29 @@ std::string check_text(const CheckedFile& file) {
   return text.str();
 }
 
+void print_check_json(const std::vector<CheckedFile>& files) {
+  using Json = nlohmann::ordered_json;
+  Json list = Json::array();
+  for (const CheckedFile& file : files) {
+    Json findings = Json::array();
+    for (const Finding& finding : file.check.findings) {
+      findings.push_back({{"code", finding.code},
+                          {"severity", severity_name(finding.severity)},
+                          {"value", finding.value},
+                          {"text", finding.text},
+                          {"advice", finding.advice}});
+    }
+    list.push_back({{"file", file.path},
+                    {"verdict", file.check.verdict()},
+                    {"findings", findings},
+                    {"noise_floor_within_jnd", file.check.noise_floor_within_jnd},
+                    {"surface_identified", file.check.surface_identified},
+                    {"surface_offset_m", file.check.surface_offset_m},
+                    {"force_zero_N", file.check.force_zero_N}});
+  }
+  print_json({{"recordings", list}});
+}
+
 std::string next_fit(const std::vector<std::string>& recordings) {
   std::string text = "next: palpate fit --recording";
   for (const std::string& one : recordings) text += " " + shell_word(one);
@@ -64,6 +88,13 @@ Status refuse_input_as_output(const std::string& out, const std::vector<std::str
 
 void print_json(const nlohmann::ordered_json& json) {
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+Status print_file(const std::string& path) {
+  const Result<std::string> text = read_plain_file(path, "the results");
+  if (!text) return text.error();
+  std::fputs(text->c_str(), stdout);
+  return {};
 }
 
 namespace {

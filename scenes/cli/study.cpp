@@ -8,6 +8,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "scenes/cli/progress.h"
+#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/study/simulated_subject.h"
@@ -18,6 +19,7 @@ namespace {
 
 struct StudyOptions {
   bool with_published = false;
+  bool json = false;
   std::string out = ".";
   bool force = false;
   std::vector<std::string> files;  // for `analyse`
@@ -61,18 +63,45 @@ void print_analysis(const StudyAnalysis& analysis) {
   print_line("conservative", analysis.lines->conservative);
 }
 
+nlohmann::ordered_json discrimination_json(const std::vector<Discrimination>& results, const StrokePair& strokes) {
+  nlohmann::ordered_json subjects = nlohmann::ordered_json::array();
+  for (const Discrimination& one : results) {
+    const CorrectShare share = correct_share(one);
+    subjects.push_back({{"subject", one.subject},
+                        {"trials", one.trials},
+                        {"correct", one.correct},
+                        {"unusable", one.unusable},
+                        {"share", share.share},
+                        {"share_low", share.low},
+                        {"share_high", share.high}});
+  }
+  return {{"reference", strokes.reference},
+          {"comparison", strokes.comparison},
+          {"recording", strokes.recording},
+          {"mean_error_over_jnd", strokes.mean_over_jnd},
+          {"max_error_over_jnd", strokes.max_over_jnd},
+          {"verdict", discrimination_verdict(results.back(), strokes)},
+          {"subjects", subjects}};
+}
+
 Status analyse_strokes(const std::vector<StudyData>& files, const StudyOptions& options) {
   const auto results = analyse_discrimination(files);
   if (!results) return results.error();
   const StrokePair& strokes = *files.front().header.strokes;
   const Discrimination& all = results->back();
+  if (const Status written = write_result("results.csv", discrimination_table(*results, strokes), options); !written)
+    return written;
+  if (options.json) {
+    print_json(discrimination_json(*results, strokes));
+    return {};
+  }
   std::printf("reference    %s\ncomparison   %s\nstroke       %s, from %.2f s\n", strokes.reference.c_str(),
               strokes.comparison.c_str(), strokes.recording.c_str(), strokes.from_s);
   std::printf("error/JND    mean %.2f, max %.2f, as predicted (JND %.4g N + %.4g %%)\n", strokes.mean_over_jnd,
               strokes.max_over_jnd, strokes.jnd.offset_N, 100.0 * strokes.jnd.weber_fraction);
   print_left_out(all.subject, all.unusable);
   std::printf("%s\n", discrimination_verdict(all, strokes).c_str());
-  return write_result("results.csv", discrimination_table(*results, strokes), options);
+  return {};
 }
 
 // Analyses all files by the procedure of the first one. Writes the table and, for constant stimuli, the JND file.
@@ -81,10 +110,12 @@ Status analyse(const std::vector<StudyData>& files, const StudyOptions& options)
   if (files.front().header.strokes != nullptr) return analyse_strokes(files, options);
   const auto analysis = analyse_study(files, options.with_published);
   if (!analysis) return analysis.error();
-  print_analysis(*analysis);
+  if (!options.json) print_analysis(*analysis);
   if (Status written = write_result("results.csv", analysis_table(*analysis), options); !written) return written;
   if (!analysis->lines.ok()) return Error{"no JND file: " + analysis->lines.error().message};
-  return write_result("jnd.json", jnd_file_text(*analysis), options);
+  const std::string text = jnd_file_text(*analysis);
+  if (options.json) std::fputs(text.c_str(), stdout);
+  return write_result("jnd.json", text, options);
 }
 
 Status run_analyse(const StudyOptions& options) {
@@ -123,6 +154,7 @@ void add_output_options(CLI::App* verb, StudyOptions& options) {
   verb->add_flag("--pang", options.with_published,
                  "Fit the line to the point of Pang, Tan & Durlach (1991) as well: 9 % at 2.5 N");
   verb->add_option("--out", options.out, "Folder for results.csv and, for a JND, jnd.json")->required();
+  verb->add_flag("--json", options.json, "Print one JSON object");
   verb->add_flag("--force", options.force, "Replace files that exist");
 }
 
@@ -168,10 +200,12 @@ void add_study(CLI::App& app, Verbs& verbs) {
       "analyse", "Files of subjects to the JND line, its file, or to the share of correct discriminations");
   analyses->add_option("files", options->files, "Study files, one per subject (CSV)")->required();
   add_output_options(analyses, *options);
+  analyses->footer("Example:\n  palpate study analyse S01.csv S02.csv S03.csv --out results");
   CLI::App* simulates =
       study->add_subcommand("simulate", "A whole study with simulated subjects, from the first trial to the JND");
   add_simulate_options(simulates, *options);
   add_output_options(simulates, *options);
+  simulates->footer("Example:\n  palpate study simulate --subjects 12 --out simulated");
   verbs.emplace_back(study, [=] { return analyses->parsed() ? run_analyse(*options) : run_simulate(*options); });
 }
 

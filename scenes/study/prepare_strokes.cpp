@@ -56,8 +56,8 @@ Traces resampled(const Traces& rows) {
   const double from_s = rows.front().time_s;
   const double seconds = std::min(rows.back().time_s - from_s, kLongestRecording_s);
   std::size_t row = 0;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(seconds / kStudyTick_s); ++i) {
-    const double time_s = from_s + kStudyTick_s * static_cast<double>(i);
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(seconds / kHapticTick_s); ++i) {
+    const double time_s = from_s + kHapticTick_s * static_cast<double>(i);
     while (row + 2 < rows.size() && rows[row + 1].time_s <= time_s) ++row;
     const Trace &a = rows[row], &b = rows[row + 1];
     const double share = std::clamp((time_s - a.time_s) / (b.time_s - a.time_s), 0.0, 1.0);
@@ -87,7 +87,7 @@ bool can_be_presented(const Traces& traces, std::size_t from, double Trace::*for
   double before_N = 0.0, squares_N2 = 0.0;
   for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
     const double now_N = traces[from + i].*force_N * interval_share(i);
-    if (std::abs(now_N) > kLargestStroke_N || std::abs(now_N - before_N) > kFastestStroke_N_per_s * kStudyTick_s)
+    if (std::abs(now_N) > kLargestStroke_N || std::abs(now_N - before_N) > kFastestStroke_N_per_s * kHapticTick_s)
       return false;
     before_N = now_N;
     squares_N2 += now_N * now_N;

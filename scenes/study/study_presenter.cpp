@@ -53,7 +53,7 @@ double StudyPresenter::tick(double rendered_N) noexcept {
     played_ = 0;
   }
   commanded_N_ = next_command_N();
-  const double force_N = limiter_.limit(commanded_N_, kStudyTick_s);
+  const double force_N = limiter_.limit(commanded_N_, kHapticTick_s);
   const auto changed = force_limit::kClamped | force_limit::kSlewed | force_limit::kNotFinite;
   if ((limiter_.flags() & changed) != 0) state_.limited = true;
   ++state_.tick;

@@ -15,10 +15,10 @@
 
 #include "engine/live/force_limiter.h"
 #include "engine/live/handover.h"
+#include "engine/tick/tool_sample.h"
 
 namespace palpate {
 
-inline constexpr double kStudyTick_s = 1e-3;
 inline constexpr double kLargestStudyForce_N = 4.0;
 inline constexpr double kFastestStudyForce_N_per_s = 100.0;
 // Durations in ticks. The ramp stays below the limiter's slew rate: 3.5 N x pi / 2 / 100 ms = 55 N/s.

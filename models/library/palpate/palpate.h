@@ -4,7 +4,7 @@
  *   palpate_model *model = palpate_model_load("block.json", error, sizeof error);
  *   palpate_stream *stream = palpate_stream_new(model, 30e-6, error, sizeof error);
  *   palpate_limiter *limiter = palpate_limiter_new(NULL, error, sizeof error);
- *   for (;;) push(palpate_limiter_render(limiter, stream, time_s, position_m, 1e-3));
+ *   for (;;) push(palpate_limiter_render(limiter, stream, time_s, position_m, time_s - before_s));
  *
  * Units are SI. position_m runs along the inward surface normal: 0 at the undisturbed surface, positive inside. If the
  * training recordings had their surface at another position, so has the model. Forces act along the outward normal,

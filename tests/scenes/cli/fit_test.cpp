@@ -104,6 +104,10 @@ TEST_F(FitVerb, SaysWhatWasSelectedAndWhatComesNext) {
   const ProgramRun trend = fit({"--force"}, "trend");
   expect_model(trend);
   EXPECT_TRUE(has_parts(trend.out, {"FEATURE OF THE TREND", "WEIGHT ABOVE 0", "model", "trend, fitted in"}));
+  const std::string silicone = folder_.file("silicone.csv");
+  must_run({"synth", "--material", "silicone", "--seconds", "20", "--out", silicone});
+  EXPECT_TRUE(has_parts(fit({"--force", "--recording", silicone}, "trend").out,
+                        {"relaxation times  fast ", " s, middle ", " s, slow "}));
 }
 
 TEST_F(FitVerb, TheTrendAloneHasNoCentres) {

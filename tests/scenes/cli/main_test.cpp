@@ -35,6 +35,8 @@ TEST(Main, MistypedOptionIsNamedWithTheNearestOne) {
   EXPECT_TRUE(
       test::fails(2, {"fit", "--recoding", "a.csv"}, {"--recoding", "did you mean --recording?", "palpate fit"}));
   EXPECT_TRUE(test::fails(2, {"study", "analyse", "a.csv", "--pagn"}, {"--pagn", "did you mean --pang?"}));
+  EXPECT_TRUE(test::fails(2, {"study", "simulat"}, {"verb \"simulat\"; did you mean simulate?", "palpate study"}));
+  EXPECT_TRUE(test::fails(2, {"chek", "a.csv"}, {"verb \"chek\"; did you mean check?", "known verbs: "}));
   EXPECT_TRUE(test::fails(2, {"replay", "--modle=m.json"}, {"--modle", "did you mean --model?"}));
 }
 
@@ -42,6 +44,9 @@ TEST(Main, EveryVerbHasAnExampleAndTheVersionSaysWhatComputes) {
   for (const char* verb : {"synth", "import", "check", "fit", "replay", "export", "report", "paper", "hard", "record",
                            "scenes", "devices", "study"}) {
     EXPECT_TRUE(test::has_parts(test::must_run({verb, "--help"}).out, {"Example:\n  palpate " + std::string(verb)}));
+  }
+  for (const std::string verb : {"analyse", "simulate"}) {
+    EXPECT_TRUE(test::has_parts(test::must_run({"study", verb, "--help"}).out, {"Example:\n  palpate study " + verb}));
   }
   EXPECT_TRUE(test::has_parts(run_palpate({"--version"}).out, {"palpate ", "commit ", "BLAS", "vectors "}));
 }

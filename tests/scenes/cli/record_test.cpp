@@ -96,7 +96,7 @@ TEST(DevicesTest, RefusesADeviceThatDoesNotReportItsWatchdog) {
 TEST(RecordGuide, GivesTheAdviceOfCheckOnce) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("press.csv");
-  const CheckRequest request{{}, 1.27};
+  const CheckRequest request{{}, true};
   cli::RecordGuide guide(path, request);
   EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"next: touch the block, then press it slowly"});
   EXPECT_TRUE(guide.update(1.0).empty()) << "no check within two seconds";
@@ -112,7 +112,7 @@ TEST(RecordGuide, GivesTheAdviceOfCheckOnce) {
   const std::vector<std::string> lines = guide.update(1e6);
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_TRUE(test::has_parts(lines[0], {"record next: ", "above", "mm/s at ", " mm"}));
-  EXPECT_TRUE(test::has_parts(lines[1], {"hold still for 2.5 s"}));
+  EXPECT_TRUE(test::has_parts(lines[1], {"hold still at two or three depths"}));
   EXPECT_TRUE(test::has_parts(lines[2], {"small strokes"}));
   const auto file = test::must(check_recording_file(path, request));
   for (std::size_t i = 0; i < 2; ++i) {
@@ -133,7 +133,7 @@ TEST(RecordGuide, SaysThatNothingIsMissing) {
   for (std::size_t i = 0; i < hold.size(); ++i) hold[i].time_s += -2.6 + 1e-3 * static_cast<double>(i);
   recording.rows.insert(deepest, hold.begin(), hold.end());
   ASSERT_TRUE(write_recording(path, recording, {}, true).ok());
-  cli::RecordGuide guide(path, {{}, 1.27});
+  cli::RecordGuide guide(path, {{}, true});
   EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"nothing is missing: Ctrl-C ends the recording"});
 }
 

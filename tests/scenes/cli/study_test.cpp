@@ -33,6 +33,9 @@ TEST(Study, MeasuresTheJndOfAScene) {
   const auto analysed = test::must_run(
       {"study", "analyse", out + "/S01.csv", out + "/S02.csv", out + "/S03.csv", "--out", folder.file("again")});
   EXPECT_EQ(analysed.out, run.out);
+  const auto json = test::must_run({"study", "analyse", out + "/S01.csv", out + "/S02.csv", out + "/S03.csv", "--json",
+                                    "--force", "--out", folder.file("again")});
+  EXPECT_EQ(json.out, test::read_text(out + "/jnd.json"));
   EXPECT_EQ(test::read_text(folder.file("again/jnd.json")), test::read_text(out + "/jnd.json"));
 
   const auto scene = test::must(load_scene("silicone_block"));

@@ -10,7 +10,7 @@
     model.save("model.json")
 
     stream, limiter = palpate.Stream(model), palpate.Limiter(largest_N=5)    # a loop of your own, 1 kHz
-    device.push(limiter.render(stream, time_s, position_m, 1e-3))
+    device.push(limiter.render(stream, time_s, position_m, step_s))
 
 A recording is a `palpate.Recording`: a structured numpy array with the fields time_s, position_m and force_N
 (velocity_m_per_s and acceleration_m_per_s2 where they were measured), and a name. `fit` also takes any structured array
