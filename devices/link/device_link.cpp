@@ -8,7 +8,6 @@
 
 #include "devices/link/device_stop.h"
 #include "engine/live/pacer.h"
-#include "engine/live/rt_thread.h"
 
 namespace palpate {
 namespace {

@@ -40,9 +40,8 @@ Status check_target(const std::string& path, bool overwrite) {
   struct stat status {};
   if (lstat(path.c_str(), &status) != 0) return {};
   if (S_ISDIR(status.st_mode)) return Error{"cannot write " + path + ": it is a folder; name a file"};
-  if (!S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode)) {
+  if (!S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode))
     return Error{"cannot write " + path + ": it is not a regular file; name one"};
-  }
   if (!overwrite) return already_exists(path);
   return {};
 }
@@ -124,11 +123,10 @@ void AtomicFile::flush() {
     left -= static_cast<std::size_t>(written);
   }
   buffer_.clear();
-  if (error_number_ == 0) {
+  if (error_number_ == 0)
     whole_bytes_ = lseek(descriptor_, 0, SEEK_END);
-  } else if (published_ && ftruncate(descriptor_, whole_bytes_) != 0) {
+  else if (published_ && ftruncate(descriptor_, whole_bytes_) != 0)
     error_number_ = errno;
-  }
 }
 
 void AtomicFile::write(std::string_view text) {

@@ -44,10 +44,8 @@ class AtomicFile {
   std::string path_;
   std::string temporary_path_;  // empty: the file has no name
   std::string buffer_;
-  int descriptor_ = -1;
-  int error_number_ = 0;
-  bool overwrite_ = false;
-  bool published_ = false;
+  int descriptor_ = -1, error_number_ = 0;
+  bool overwrite_ = false, published_ = false;
   long long whole_bytes_ = 0;  // length without the text of a failed write
 };
 

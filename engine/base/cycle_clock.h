@@ -1,5 +1,5 @@
-// A clock with a resolution of a few nanoseconds for single evaluations in the tick: the processor's counter if it has
-// a constant rate (x86-64, arm64), else the steady clock. `ns_per_cycle` measures its unit.
+// A clock for single evaluations in the tick: the processor's counter if it has a constant rate (x86-64, arm64), else
+// the steady clock. `ns_per_cycle` measures its unit.
 #pragma once
 
 #include <algorithm>

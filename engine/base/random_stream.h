@@ -1,8 +1,5 @@
-// Random numbers that are bit-identical on every machine.
-//
-// RandomStream: xoshiro256** (Blackman & Vigna 2018), seeded by SplitMix64. Different streams of one seed are
-// independent, e.g. for each sensor and the hand. SplitMix64 (Steele, Lea & Flood 2014): for draws without replacement.
-// Both use integer arithmetic and correctly rounded operations only.
+// Random numbers that are bit-identical on every machine: RandomStream, xoshiro256** (Blackman & Vigna 2018), whose
+// streams of one seed are independent, and SplitMix64 (Steele, Lea & Flood 2014) for draws without replacement.
 // Thread guarantee: one thread at a time; wait-free.
 #pragma once
 

@@ -1,8 +1,5 @@
-// A value or an error, for all input from outside: files, arguments, devices. Not used in the tick.
-//
-// An error message is one sentence with the position, what was found, what was expected and advice; programs print it
-// after "error: ".
-// Thread guarantee: as for any value type.
+// A value or an error, for all input from outside: files, arguments, devices. Not used in the tick. An error message is
+// one sentence with the position, what was found, what was expected and advice.
 #pragma once
 
 #include <cassert>

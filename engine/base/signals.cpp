@@ -22,12 +22,6 @@ std::atomic<int> requested_by{0};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<StopForces>::is_always_lock_free,
               "read by a signal handler");
 
-// Whether the signal is a first request to stop and the program listens for it.
-bool is_taken_as_request(std::size_t index, int number) noexcept {
-  int none = 0;
-  return index < kRequests && listening.load() && requested_by.compare_exchange_strong(none, number);
-}
-
 void pass_on(std::size_t index, int number, siginfo_t* info, void* context) noexcept {
   const struct sigaction& earlier = before[index];
   if ((earlier.sa_flags & SA_SIGINFO) != 0) {
@@ -45,7 +39,9 @@ void on_signal(int number, siginfo_t* info, void* context) {
   const int saved_errno = errno;
   std::size_t index = 0;
   while (index + 1 < kSignals.size() && kSignals[index] != number) ++index;
-  if (!is_taken_as_request(index, number)) {
+  // The first request to stop is only stored while the program listens for it.
+  int none = 0;
+  if (!(index < kRequests && listening.load() && requested_by.compare_exchange_strong(none, number))) {
     if (const StopForces function = stop_forces.load(); function != nullptr) function();
     pass_on(index, number, info, context);
   }

@@ -60,9 +60,8 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
 
 std::string lower_ascii(std::string_view text) {
   std::string lower(text);
-  for (char& c : lower) {
+  for (char& c : lower)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
   return lower;
 }
 
@@ -78,11 +77,10 @@ std::string printable(std::string_view text, std::size_t limit) {
     if (out.size() >= limit) return out + "...";
     const std::size_t bytes = utf8_sequence_bytes(text.substr(i));
     const std::string_view sequence = text.substr(i, std::max<std::size_t>(bytes, 1));
-    if (bytes == 0 || is_control(sequence)) {
+    if (bytes == 0 || is_control(sequence))
       for (const char c : sequence) out += escaped(static_cast<unsigned char>(c));
-    } else {
+    else
       out += sequence;
-    }
     i += sequence.size();
   }
   return out;

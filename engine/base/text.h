@@ -2,7 +2,6 @@
 // Thread guarantee: pure functions, slow side (allocate).
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -2,7 +2,6 @@
 // Thread guarantee: slow side (does I/O).
 #pragma once
 
-#include <cstddef>
 #include <istream>
 #include <memory>
 #include <optional>

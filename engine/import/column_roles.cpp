@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <string_view>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -44,11 +43,9 @@ std::string plain_name(std::string_view text) {
   constexpr std::pair<std::string_view, std::string_view> kLetters[] = {
       {"\xC3\xBC", "ue"}, {"\xC3\x9C", "ue"}, {"\xC3\xA4", "ae"}, {"\xC3\xA9", "e"}, {"\xC3\x89", "e"},
       {"\xC3\xB6", "oe"}, {"\xC3\xA8", "e"},  {"\xC3\xB3", "o"},  {"\xC3\xAD", "i"}, {"\xC3\x9F", "ss"}};
-  for (const auto& [from, to] : kLetters) {
-    for (std::size_t at = 0; (at = plain.find(from, at)) != std::string::npos; at += to.size()) {
+  for (const auto& [from, to] : kLetters)
+    for (std::size_t at = 0; (at = plain.find(from, at)) != std::string::npos; at += to.size())
       plain.replace(at, from.size(), to);
-    }
-  }
   return plain;
 }
 
@@ -83,9 +80,8 @@ int name_claim(std::string_view list, const std::string& name, const std::vector
     list.remove_prefix(std::min(known.size() + 1, list.size()));
     for (const std::string& word : words) {
       // Shorter words are parts of unrelated words.
-      if (known.size() >= 3 && word.size() > known.size() && (word.starts_with(known) || word.ends_with(known))) {
+      if (known.size() >= 3 && word.size() > known.size() && (word.starts_with(known) || word.ends_with(known)))
         return kInsideWord;
-      }
     }
   }
   return 0;
@@ -147,9 +143,8 @@ std::vector<std::size_t> strongest_columns(const std::vector<Claims>& claims, st
   int strongest = 1;
   for (const Claims& claim : claims) strongest = std::max(strongest, claim[role]);
   std::vector<std::size_t> best;
-  for (std::size_t i = 0; i < claims.size(); ++i) {
+  for (std::size_t i = 0; i < claims.size(); ++i)
     if (claims[i][role] == strongest) best.push_back(i);
-  }
   return best;
 }
 
@@ -178,9 +173,8 @@ Result<std::size_t> find_column(const std::vector<ForeignColumn>& columns, std::
                                 const std::string& wanted) {
   const auto with = [&](auto&& name_of) {
     std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
       if (name_of(columns[i])) found.push_back(i);
-    }
     return found;
   };
   const std::string lower = lower_ascii(wanted);
@@ -211,22 +205,6 @@ Error no_column(const std::vector<ForeignColumn>& columns, std::size_t role, boo
   return Error{std::string("found no column that is clearly the ") + kRoleNames[role] + "; add " +
                flag_for(role, "NAME") + " (a name or a number)" + time_advice + "; the columns are " +
                list_columns(columns)};
-}
-
-Error several_columns(const std::vector<ForeignColumn>& columns, std::size_t role,
-                      const std::vector<std::size_t>& best) {
-  std::vector<std::string> flags;
-  for (const std::size_t index : best) flags.push_back(flag_for(role, std::to_string(index + 1)));
-  return Error{"found " + std::to_string(best.size()) + " columns that can be the " + kRoleNames[role] + "; add " +
-               joined(flags, " or ") + "; the columns are " + list_columns(columns)};
-}
-
-Error contradicting_unit(const std::vector<ForeignColumn>& columns, std::size_t role, std::size_t index,
-                         std::size_t named) {
-  return Error{"found column \"" + printable(columns[index].header) + "\", named as a " + kRoleNames[named] +
-               ", with the unit " + std::string(columns[index].parts.unit->name) + " of a " + kRoleNames[role] +
-               ", expected a name and a unit that agree; correct the header, or confirm the role with " +
-               flag_for(role, std::to_string(index + 1)) + "; the columns are " + list_columns(columns)};
 }
 
 }  // namespace
@@ -265,11 +243,10 @@ std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
       column.header = first[i];
     }
     if (i < layout.units.size()) {
-      if (const auto unit = find_unit(layout.units[i])) {
+      if (const auto unit = find_unit(layout.units[i]))
         column.parts.unit = unit;
-      } else if (!column.parts.unit && layout.units[i].find_first_not_of("-[]() ") != std::string_view::npos) {
+      else if (!column.parts.unit && layout.units[i].find_first_not_of("-[]() ") != std::string_view::npos)
         column.parts.foreign_unit = layout.units[i];
-      }
     }
     const auto changes = [&](const auto& row) { return i < std::min(row.size(), first.size()) && row[i] != first[i]; };
     column.constant = rows.size() > 1 && std::none_of(rows.begin(), rows.end(), changes);
@@ -303,10 +280,19 @@ Result<RoleColumns> choose_columns(const std::vector<ForeignColumn>& columns, co
     if (chosen[role].number > 0) continue;
     const std::vector<std::size_t> best = strongest_columns(claims, role);
     if (best.empty()) return no_column(columns, role, has_header);
-    if (best.size() > 1) return several_columns(columns, role, best);
-    const std::size_t named = contradicted_role(columns[best.front()], role);
-    if (named < kRoles) return contradicting_unit(columns, role, best.front(), named);
-    choose(role, best.front(), true);
+    if (best.size() > 1) {
+      std::vector<std::string> flags;
+      for (const std::size_t index : best) flags.push_back(flag_for(role, std::to_string(index + 1)));
+      return Error{"found " + std::to_string(best.size()) + " columns that can be the " + kRoleNames[role] + "; add " +
+                   joined(flags, " or ") + "; the columns are " + list_columns(columns)};
+    }
+    const std::size_t index = best.front(), named = contradicted_role(columns[index], role);
+    if (named < kRoles)
+      return Error{"found column \"" + printable(columns[index].header) + "\", named as a " + kRoleNames[named] +
+                   ", with the unit " + std::string(columns[index].parts.unit->name) + " of a " + kRoleNames[role] +
+                   ", expected a name and a unit that agree; correct the header, or confirm the role with " +
+                   flag_for(role, std::to_string(index + 1)) + "; the columns are " + list_columns(columns)};
+    choose(role, index, true);
   }
   for (std::size_t a = 0; a < kRoles; ++a) {
     for (std::size_t b = 0; b < a; ++b) {

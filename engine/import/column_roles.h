@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,8 +32,7 @@ std::vector<ForeignColumn> foreign_columns(const TableLayout& layout,
 // How well a line names the columns of a table: the roles that its fields name, by words or units, and the sum of the
 // strongest claims.
 struct NamedRoles {
-  int count = 0;
-  int strength = 0;
+  int count = 0, strength = 0;
   std::array<std::size_t, kRoles> column{};  // from 1; 0: none, or several with equal claims
 
   // Whether both name other columns for the position and for the force.
@@ -66,7 +64,6 @@ struct VelocityColumn {
   double to_si = 1.0;
 };
 std::optional<VelocityColumn> find_velocity(const std::vector<ForeignColumn>& columns);
-
 // The columns for a message: 1 "Zeit [s]", 2 "Weg [mm]".
 std::string list_columns(const std::vector<ForeignColumn>& columns);
 

@@ -1,13 +1,9 @@
-// Converts a text table of another program into a recording in SI units, with a note on every guess.
-//
-//   foreign_text   bytes to text          table_layout     separator, decimal mark
-//   table_header   names, units           column_roles     time, position, force
-//   units          units in headers       table_columns    roles with their units
-//   table_cell     numbers, times         repeated_times   a clock coarser than the rows
+// Converts a text table of another program into a recording in SI units. Nothing is repaired without a note: what
+// cannot be determined is an error that shows the header and the option to add.
+//   table_layout   bytes to text, separator, decimal mark     table_header   names, units
+//   column_roles   time, position, force                       units          units in headers
+//   table_columns  roles with their units                      table_cell     numbers, times
 //   import_table   all rows, sign; descriptions of the result
-//
-// Nothing is repaired without a note: what cannot be determined is an error that shows the header and the option to
-// add.
 // Thread guarantee: slow side only (does I/O).
 #pragma once
 
@@ -19,7 +15,6 @@
 
 #include "engine/base/result.h"
 #include "engine/import/column_roles.h"
-#include "engine/import/foreign_text.h"
 #include "engine/import/table_layout.h"
 #include "engine/import/units.h"
 #include "engine/recording/recording.h"
@@ -31,8 +26,7 @@ struct ImportRequest {
   RoleRequest columns;
   std::vector<Unit> units;        // at most one for each quantity; they take precedence over the header
   std::optional<double> rate_Hz;  // for evenly spaced rows, instead of the file's time
-  bool flip_position = false;
-  bool flip_force = false;
+  bool flip_position = false, flip_force = false;
   std::optional<double> gain_N_per_V;  // for a force recorded in volts
   std::uint64_t skip_bad_rows = 0;     // number of rows that may be unreadable
 };
@@ -47,7 +41,6 @@ struct ImportedTable {
 
 // Reads `path`. Errors: "path: ..." or "path:line: ...".
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request);
-
 // The functions below describe the result for the terminal, the window and the comments of the recording.
 // The source of a role's values, e.g. column 2 "Weg [mm]" in mm (guessed).
 std::string column_words(const ImportedColumn& column);

@@ -26,8 +26,7 @@ bool is_thousands_mark(char c, char decimal) {
 // Writes a number with a decimal point and without thousands marks to `buffer`; returns the length, or 0 if the marks
 // are ambiguous.
 std::size_t with_decimal_point(std::string_view text, char decimal, char* buffer) {
-  std::size_t length = 0;
-  std::size_t marks = 0;
+  std::size_t length = 0, marks = 0;
   std::size_t digits = 0;  // since the last mark
   char mark = '\0';
   bool behind_decimal = false;
@@ -79,9 +78,8 @@ bool parse_date(std::string_view& text, std::int64_t& days) {
   if (!parse_digits(rest, 4, parts[0])) return false;
   const std::string_view mark = rest.substr(0, 1);
   if (!skip_one_of(rest, "-/.") || !parse_digits(rest, 2, parts[1]) || !skip_one_of(rest, mark) ||
-      !parse_digits(rest, 4, parts[2])) {
+      !parse_digits(rest, 4, parts[2]))
     return false;
-  }
   if (parts[0] < 32) std::swap(parts[0], parts[2]);
   if (parts[1] > 12) std::swap(parts[1], parts[2]);
   if (parts[0] < 32 || parts[1] < 1 || parts[1] > 12 || parts[2] < 1 || parts[2] > 31) return false;
@@ -122,9 +120,7 @@ std::optional<TableTime> parse_clock_time(std::string_view text) {
     if (!skip_one_of(text, "T ")) return std::nullopt;
     text = trimmed(text);
   }
-  int first = 0;
-  int second = 0;
-  int third = 0;
+  int first = 0, second = 0, third = 0;
   if (!parse_digits(text, 4, first) || !skip_one_of(text, ":") || !parse_digits(text, 2, second) || second > 59)
     return std::nullopt;
   const bool has_hours = skip_one_of(text, ":");
@@ -148,6 +144,27 @@ std::optional<TableTime> parse_clock_time(std::string_view text) {
   // The time zone, "Z" or "+01:00", is the same in every row.
   const bool ends = text.empty() || text == "Z" || text.front() == '+' || text.front() == '-';
   return ends ? std::optional(time) : std::nullopt;
+}
+
+// Fewer times do not show that they are regular. The first and the last one may have fewer rows.
+constexpr std::size_t kLeastTimes = 6;
+// Fewer rows for each time are single repetitions.
+constexpr double kLeastRows = 1.5;
+// The deviation from the mean that the jitter of a logger explains, at least one row; rows and steps may exceed it in
+// one of twenty.
+constexpr double kJitter = 0.15;
+constexpr double kRegularShare = 0.95;
+// A longer step is a pause, after which the rows are not evenly spaced.
+constexpr double kPauseSteps = 1.5;
+
+// Rows with one time.
+struct Group {
+  double time_s = 0.0, rows = 0.0;
+};
+
+bool is_regular(const std::vector<double>& values, double middle, double tolerance) {
+  const auto near = std::ranges::count_if(values, [&](double value) { return std::abs(value - middle) <= tolerance; });
+  return static_cast<double>(near) >= kRegularShare * static_cast<double>(values.size());
 }
 
 }  // namespace
@@ -186,9 +203,7 @@ double RowTimes::examine(const std::vector<std::string_view>& fields) {
     last = time;
   }
   if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle * static_cast<double>(steps.size()) / static_cast<double>(intervals);
+  return nth_smallest(steps, steps.size() / 2) * static_cast<double>(steps.size()) / static_cast<double>(intervals);
 }
 
 std::optional<TableTime> RowTimes::parse(std::string_view field) const {
@@ -205,6 +220,40 @@ std::optional<double> RowTimes::since_first(std::string_view field) {
     time->whole += kDay_s;
   }
   return last_ = since(*time, *first_);
+}
+
+RepeatedTimes find_repeated_times(const std::vector<RecordingRow>& rows) {
+  RepeatedTimes found;
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i == 0 || rows[i].time_s != rows[i - 1].time_s) {
+      groups.push_back({rows[i].time_s, 1.0});
+      continue;
+    }
+    groups.back().rows += 1.0;
+    ++found.rows;
+    found.copies =
+        found.copies && rows[i].position_m == rows[i - 1].position_m && rows[i].force_N == rows[i - 1].force_N;
+  }
+  if (found.rows == 0 || groups.size() < kLeastTimes) return found;
+  std::vector<double> steps_s, counts;
+  double inner_rows = 0.0;
+  for (std::size_t i = 1; i + 1 < groups.size(); ++i) {
+    counts.push_back(groups[i].rows);
+    steps_s.push_back(groups[i + 1].time_s - groups[i].time_s);
+    inner_rows += groups[i].rows;
+  }
+  found.step_s = nth_smallest(steps_s, steps_s.size() / 2);
+  found.mean_rate_Hz = inner_rows / (groups.back().time_s - groups[1].time_s);
+  // The rows between two changes of the time are known to one row.
+  const double whole_Hz = std::round(found.mean_rate_Hz);
+  if (std::abs(whole_Hz - found.mean_rate_Hz) * inner_rows <= 2.0 * found.mean_rate_Hz) found.mean_rate_Hz = whole_Hz;
+  const double mean_rows = inner_rows / static_cast<double>(counts.size());
+  const bool even = mean_rows >= kLeastRows && is_regular(counts, mean_rows, std::max(1.0, kJitter * mean_rows)) &&
+                    is_regular(steps_s, found.step_s, kJitter * found.step_s) &&
+                    *std::ranges::max_element(steps_s) <= kPauseSteps * found.step_s;
+  if (even) found.rate_Hz = found.mean_rate_Hz;
+  return found;
 }
 
 }  // namespace palpate

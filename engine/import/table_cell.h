@@ -8,16 +8,16 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/recording/recording.h"
+
 namespace palpate {
 
 // Whether `text` is a number, which is then in `value`: "0.5", "-1,25e-3", "+3"; also with unambiguous thousands marks:
 // the other mark, an apostrophe or a blank, in groups of three, followed by the decimal mark or repeated ("1,234.5",
 // "1.234.567"). NaN and infinity are not numbers.
 bool parse_table_number(std::string_view text, char decimal, double& value);
-
 // "nan", "NaN", "inf", "-", "n/a": a cell for a missing value.
 bool is_missing_value(std::string_view text);
-
 // Whether `field` is a date or a time of day:
 // "2024-03-05T14:03:22.123Z", "2024-03-05 14:03:22,5", "05.03.2024 14:03:22.1",
 // "3/5/2024 2:03:22.5 PM", "14:03:22.123", "03:22.123".
@@ -52,11 +52,21 @@ class RowTimes {
   std::optional<TableTime> parse(std::string_view field) const;
 
   char decimal_;
-  bool clock_ = false;
-  bool has_date_ = false;
+  bool clock_ = false, has_date_ = false;
   std::optional<TableTime> first_;
   double last_ = 0.0;
   int midnights_ = 0;
 };
+
+struct RepeatedTimes {
+  std::size_t rows = 0;           // number of rows with the time of the row above
+  bool copies = true;             // all of them have its position and force, too
+  double mean_rate_Hz = 0.0;      // of evenly spaced rows
+  double step_s = 0.0;            // median step of the times
+  std::optional<double> rate_Hz;  // the same if the clock is coarse: equal steps, equally many rows for each time
+};
+
+// `rows`: times that do not fall.
+RepeatedTimes find_repeated_times(const std::vector<RecordingRow>& rows);
 
 }  // namespace palpate

@@ -108,8 +108,7 @@ bool is_names_row(const std::vector<std::string_view>& fields) {
 
 struct UnitCount {
   std::size_t known = 0;  // of time, length or force
-  std::size_t others = 0;
-  std::size_t words = 0;
+  std::size_t others = 0, words = 0;
 
   bool decides() const { return known > 0 && known + others >= 2 && known + others > words; }
 };
@@ -186,9 +185,8 @@ void find_table_header(const std::vector<std::string_view>& lines, std::size_t f
     }
   }
   const Line* header = nullptr;
-  for (const Line& line : candidates) {
+  for (const Line& line : candidates)
     if (header == nullptr || line.better_than(*header)) header = &line;
-  }
   if (header == nullptr) header = units ? &*units : nullptr;  // the units are the only names
   if (header == nullptr) return;
   if (units && units->number < header->number) units.reset();

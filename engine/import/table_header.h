@@ -1,13 +1,9 @@
-// Finds the lines of names and of units above a table.
-//
-// The header is a line shortly above the table with a name for each column. A line that names at least two of time,
-// position and force is preferred to any other: boards print their status below the header. Among these, a line split
-// by the separator of the table is preferred to one split by another, and then the one with more names and units. Lines
-// without such names follow, the nearest first. In a line of units most fields are units.
-// Thread guarantee: slow side only.
+// Finds the lines of names and of units shortly above a table. Preferred: a line that names at least two of time,
+// position and force (boards print their status below the header); among these one split by the separator of the table,
+// and then the one with more names and units; then the nearest. In a line of units most fields are units. Thread
+// guarantee: slow side only.
 #pragma once
 
-#include <cstddef>
 #include <string_view>
 #include <vector>
 

@@ -1,14 +1,10 @@
-// Determines the layout of the table in a foreign text: separator of fields, decimal mark, the lines of column names
-// and of units, and the first line of numbers.
-//
-// Every pair of separator and decimal mark is tried on the first lines. Pairs are preferred in which no field begins
-// like a number without being one, and among these the pair with the most numbers. The longest run of rows of numbers
-// is the table; its header is above it (table_header.h).
-// Thread guarantee: slow side only.
+// Reads a file of another program as text, and determines the layout of its table. Every pair of separator and decimal
+// mark is tried on the first lines: preferred are those in which no field begins like a number without being one, then
+// the one with the most numbers. The longest run of rows of numbers is the table; its header is above it
+// (table_header.h). Thread guarantee: slow side only (does I/O).
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -51,13 +47,23 @@ struct TableLayout {
 // `given_decimal`: the decimal mark if the user has given it. Errors (without the file's name): no rows of numbers; a
 // comma that may be a decimal mark or a thousands mark.
 Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> given_decimal);
-
 // The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
 // line are omitted. Returns the number of fields with these.
 std::size_t split_table_fields(std::string_view line, const Delimiter& delimiter,
                                std::vector<std::string_view>& fields);
-
 // Removes the first line from `text` and returns it without its line end.
 std::string_view next_line(std::string_view& text);
+
+// The largest table, which is read as a whole: six million rows, as many as are checked and fitted, of 89 bytes.
+inline constexpr std::size_t kLargestTableBytes = std::size_t{512} << 20;
+
+struct ForeignText {
+  std::string text;                     // UTF-8 without byte order mark
+  std::string_view encoding = "UTF-8";  // of the file: UTF-8, Latin-1 or UTF-16
+};
+
+// Errors: no such file, not a regular file, unreadable, too large, empty, an Excel workbook or another binary file;
+// each with advice.
+Result<ForeignText> read_foreign_text(const std::string& path);
 
 }  // namespace palpate

@@ -84,9 +84,8 @@ std::optional<NameAndUnit> bracketed(std::string_view header) {
 
 // Whether `text` is a unit with a prefix that is in no list: "hN".
 bool is_prefixed_unit(std::string_view text) {
-  for (const std::string_view prefix : {"da", "h", "k", "M", "G", "T", "d", "c", "m", "u", "n", "p", "f"}) {
+  for (const std::string_view prefix : {"da", "h", "k", "M", "G", "T", "d", "c", "m", "u", "n", "p", "f"})
     if (text.starts_with(prefix) && is_word_of("N m s g lbf", text.substr(prefix.size()))) return true;
-  }
   return false;
 }
 
@@ -104,23 +103,20 @@ bool is_word_of(std::string_view list, std::string_view word) {
 std::optional<Unit> find_unit(std::string_view text) {
   text = without_brackets(text);
   if (text.empty()) return std::nullopt;
-  for (const SpelledUnit& one : kUnits) {
+  for (const SpelledUnit& one : kUnits)
     if (is_word_of(one.spellings, text)) return one.unit;
-  }
   // "MN" may be meganewtons, "NM" a torque, "PN" a number of a part and "DN" a diameter, so they are not guessed.
   const std::string lower = lower_ascii(text);
   if (is_word_of("mn nm m pn nn dn", lower)) return std::nullopt;
-  for (const SpelledUnit& one : kUnits) {
+  for (const SpelledUnit& one : kUnits)
     if (is_word_of(lower_ascii(one.spellings), lower)) return one.unit;
-  }
   return std::nullopt;
 }
 
 std::string unit_names(Quantity quantity) {
   std::vector<std::string> names;
-  for (const SpelledUnit& one : kUnits) {
+  for (const SpelledUnit& one : kUnits)
     if (one.unit.quantity == quantity) names.emplace_back(one.unit.name);
-  }
   return joined(names);
 }
 

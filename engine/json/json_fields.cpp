@@ -1,6 +1,7 @@
 #include "engine/json/json_fields.h"
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -94,11 +95,7 @@ std::string field_name(std::string_view pointer) {
     const std::size_t end = std::min(pointer.find('/'), pointer.size());
     const std::string step(pointer.substr(0, end));
     const bool index = !step.empty() && step.find_first_not_of("0123456789") == std::string::npos;
-    if (index) {
-      name.append("[").append(step).append("]");
-    } else {
-      name.append(name.empty() ? "" : ".").append(printable(step));
-    }
+    name.append(index ? "[" : name.empty() ? "" : ".").append(index ? step + "]" : printable(step));
     pointer.remove_prefix(end);
   }
   return name;
@@ -125,14 +122,12 @@ Result<Json> parse_json(std::string_view text, const std::string& path, int nest
                    "found more than " + std::to_string(nesting) + " lists inside each other, expected fewer",
                    advice.damaged);
     }
-    if (is_name(text, token) && !open.empty() && !open.back().insert(token.content).second) {
+    if (is_name(text, token) && !open.empty() && !open.back().insert(token.content).second)
       return wrong(token.begin, "found a name for the second time in one object, expected it once", advice.damaged);
-    }
   }
   // The parser treats a NUL as the end of the text.
-  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos)
     return wrong(nul, "found a NUL byte, expected text", advice.damaged);
-  }
   try {
     return Json::parse(text);
   } catch (const Json::out_of_range&) {
@@ -147,14 +142,9 @@ Result<Json> parse_json(std::string_view text, const std::string& path, int nest
 }
 
 std::string found(const Json& value) {
-  switch (value.type()) {
-    case Json::value_t::array:
-      return "found a list of " + std::to_string(value.size());
-    case Json::value_t::object:
-      return "found an object";
-    default:
-      return "found " + printable(value.dump(-1, ' ', false, Json::error_handler_t::replace));
-  }
+  if (value.is_array()) return "found a list of " + std::to_string(value.size());
+  if (value.is_object()) return "found an object";
+  return "found " + printable(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string NumberRange::words() const {
@@ -176,7 +166,7 @@ void JsonFields::complain(const std::string& pointer, const std::string& words, 
   const auto contains = [&](const std::string& reported) {
     return pointer == reported || (!reported.empty() && pointer.starts_with(reported + "/"));
   };
-  if (std::any_of(reported_.begin(), reported_.end(), contains)) return;
+  if (std::ranges::any_of(reported_, contains)) return;
   ++error_count_;
   if (lines_.size() == kMostLines) return;
   reported_.push_back(pointer);
@@ -195,13 +185,11 @@ JsonNode JsonFields::optional_member(const JsonNode& object, const char* key) {
 }
 
 JsonNode JsonFields::member(const JsonNode& object, const char* key, const std::string& expected) {
-  if (object.value != nullptr && !object.value->is_object()) {
+  if (object.value != nullptr && !object.value->is_object())
     complain(object.pointer, found(*object.value) + ", expected an object with \"" + key + "\"");
-  }
   const JsonNode node = optional_member(object, key);
-  if (node.value == nullptr && object.value != nullptr && object.value->is_object()) {
+  if (node.value == nullptr && object.value != nullptr && object.value->is_object())
     complain(node.pointer, "found no such field, expected " + expected);
-  }
   return node;
 }
 
@@ -214,24 +202,23 @@ template <typename Good>
 const Json* JsonFields::value_where(const JsonNode& object, const char* key, const std::string& expected,
                                     const Good& good) {
   const JsonNode node = member(object, key, expected);
-  if (node.value == nullptr || good(*node.value)) return node.value;
+  if (node.value == nullptr || std::invoke(good, *node.value)) return node.value;
   complain(node.pointer, found(*node.value) + ", expected " + expected);
   return nullptr;
 }
 
 std::string JsonFields::text(const JsonNode& object, const char* key) {
-  const Json* value = value_where(object, key, "a text", [](const Json& one) { return one.is_string(); });
+  const Json* value = value_where(object, key, "a text", &Json::is_string);
   return value != nullptr ? value->get<std::string>() : std::string();
 }
 
 bool JsonFields::boolean(const JsonNode& object, const char* key) {
-  const Json* value = value_where(object, key, "true or false", [](const Json& one) { return one.is_boolean(); });
+  const Json* value = value_where(object, key, "true or false", &Json::is_boolean);
   return value != nullptr && value->get<bool>();
 }
 
 std::uint64_t JsonFields::count(const JsonNode& object, const char* key) {
-  const Json* value =
-      value_where(object, key, "a whole number, 0 or more", [](const Json& one) { return one.is_number_unsigned(); });
+  const Json* value = value_where(object, key, "a whole number, 0 or more", &Json::is_number_unsigned);
   return value != nullptr ? value->get<std::uint64_t>() : 0;
 }
 
@@ -267,8 +254,7 @@ void JsonFields::refuse_unknown(const JsonNode& top) {
 }
 
 JsonNode JsonFields::list(const JsonNode& object, const char* key, const std::string& expected) {
-  return {value_where(object, key, expected, [](const Json& one) { return one.is_array(); }),
-          object.pointer + "/" + key};
+  return {value_where(object, key, expected, &Json::is_array), object.pointer + "/" + key};
 }
 
 bool JsonFields::fill(const JsonNode& node, std::size_t expected_count, const std::string& words, double* values,

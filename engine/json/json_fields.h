@@ -1,7 +1,5 @@
-// Typed access to untrusted JSON text: models, scenes, JND files, calibrations. Errors have the position, the value
-// found and the value expected:
-//   path:line:column: field[index].field: found X, expected Y; what to do
-// All errors of a file are collected, except those that follow from an earlier one.
+// Typed access to untrusted JSON text: models, scenes, JND files, calibrations. All errors of a file are collected,
+// except those that follow from an earlier one: path:line:column: field[index].field: found X, expected Y; what to do
 // Thread guarantee: one thread per object; slow side (allocates).
 #pragma once
 
@@ -36,8 +34,7 @@ inline constexpr double kLargestNumber = std::numeric_limits<double>::max();
 
 // The range of a number, both ends included; without the lower end if `open`.
 struct NumberRange {
-  double low = -kLargestNumber;
-  double high = kLargestNumber;
+  double low = -kLargestNumber, high = kLargestNumber;
   bool open = false;
 
   bool holds(double number) const noexcept { return (open ? number > low : number >= low) && number <= high; }

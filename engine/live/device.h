@@ -47,9 +47,8 @@ struct DeviceHealth {
 
 // What the user must do for zeroing; empty if nothing. Slow side.
 inline std::string zeroing_words(const DeviceHealth& health) {
-  if (health.zeroing == Zeroing::needed) {
+  if (health.zeroing == Zeroing::needed)
     return "bring the tool to its marked rest position and start zeroing; no force before";
-  }
   if (health.zeroing != Zeroing::hold_still) return {};
   return "zeroing: hold the tool still (" + std::to_string(std::lround(100.0F * health.zeroing_progress)) + " %)";
 }

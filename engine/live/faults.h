@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -94,9 +93,8 @@ inline constexpr std::array<Fault, 22> kFaults = {{
 // The bits of all rows of `source`, or only of those that stop the force.
 constexpr std::uint32_t fault_bits_of(FaultSource source, bool only_stopping = false) noexcept {
   std::uint32_t bits = 0;
-  for (const Fault& fault : kFaults) {
+  for (const Fault& fault : kFaults)
     if (fault.source == source && (fault.stops_force || !only_stopping)) bits |= fault.bit;
-  }
   return bits;
 }
 
@@ -114,9 +112,8 @@ constexpr std::size_t fault_index(FaultSource source, std::uint32_t bit) noexcep
 // The sentences of the alarms among `bits`, in the table's order.
 inline std::vector<std::string> alarm_words(FaultSource source, std::uint32_t bits) {
   std::vector<std::string> words;
-  for (const Fault& fault : kFaults) {
+  for (const Fault& fault : kFaults)
     if (fault.alarm && fault.source == source && (bits & fault.bit) != 0) words.emplace_back(fault.sentence);
-  }
   return words;
 }
 // The sentences of a device's alarms among `faults`: what happened and what to do.

@@ -1,14 +1,172 @@
 // The stages between the force of a model and the limiter, for a force that a hand feels: the scale within the
-// stability limit, then the passivity controller. The live loop and the library (models/library) run this code. Thread
-// guarantee: one thread at a time; wait-free, allocates nothing, never throws.
+// stability limit, then the passivity controller. The live loop and the library (models/library) run this code.
+//
+// Stability limit. A force that lags the motion by T (transport, waiting times, half the time for which it is held) is
+// a spring K with the damping -K T (Colgate & Schenkel 1997; with transport: Diolaiti et al. 2006). K T <= b + c B,
+// where
+//   b  damping of the lightest hand
+//   B  largest rendered damping, m / (2 T): it lags, too, and is unstable on a mass m above pi/2 m / T
+//   c  share of B that the passivity controller provides, 0.22: measured. It keeps the swing of every simulated hand
+//   (50
+//      to 300 g, lags to 10 ms, 600 to 7000 N/m) within 0.1 mm (tests/accuracy/closed_loop_late_test.cpp); a controller
+//      that always damps could provide 1.1, because m x''(t) + B x'(t - T) + K x(t - T) = 0 is unstable for
+//      K > 0.55 m / T^2 with any B. c decreases with the encoder step, because the controller has a play of one step.
+// B limits the sum of the damping of model and user, and that of user and controller.
+//
+// Passivity controller (Hannaford & Ryu 2002; Ryu et al. 2004 for a reference that follows the depth): keeps the force
+// from returning more energy than it received. A late force is too small on the way in and too large on the way out.
+// Observer: E += F dx, the energy put in since contact, F the force that acted during dx. During loading E is stored
+// with the depth; during unloading the deficit of E from the value stored at that depth is the debt. (The usual
+// condition, E >= 0, shows a gain only after all stored energy was returned.) The observer follows the position with a
+// play (dead zone) of one encoder step, so that noise is no motion. While the tool moves out with v < 0 and there is a
+// debt, the force is reduced by min(b, debt / (v^2 T)) |v|, b the rest of the damping limit. When the active model
+// changes, the observer begins again, because E of another material is not comparable.
+// Thread guarantee: one thread at a time; wait-free, allocates nothing, never throws.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
-#include "engine/live/passivity_controller.h"
-#include "engine/live/stability_limit.h"
+#include "engine/tick/tool_sample.h"
 
 namespace palpate {
+
+// The response to a small cycle about a depth: F' = stiffness x' + damping v'.
+struct Impedance {
+  double stiffness_N_per_m = 0.0, damping_Ns_per_m = 0.0;
+};
+
+class StabilityLimit {
+ public:
+  static constexpr double kLightestHand_kg = 0.05;  // a finger on which a tool rests
+  // A third of critical damping on 100 N/m; relaxed fingers have half and more (Hajian & Howe 1997).
+  static constexpr double kHandDamping_Ns_per_m = 1.5;
+  static constexpr double kShareOfDamping = 0.22;  // c with a fine encoder
+  static constexpr double kCoarse_m = 30e-6;       // encoder step with c = 0: a third of the permitted swing, 0.1 mm
+
+  explicit StabilityLimit(double encoder_step_m = 0.0) noexcept
+      : share_(kShareOfDamping * std::max(0.0, 1.0 - encoder_step_m / kCoarse_m)) {}
+
+  // Follows the current lag `lag_s` with a time constant of 0.1 s where it grows and 1 s where it falls, because an
+  // increase of stiffness during a press adds energy. The first call takes it at once; before it nothing is limited.
+  void update(double lag_s, double step_s) noexcept {
+    const double time_s = lag_s > lag_s_ ? kRise_s : kFall_s;
+    lag_s_ = lag_s_ > 0.0 ? lag_s_ + std::clamp(step_s / time_s, 0.0, 1.0) * (lag_s - lag_s_) : lag_s;
+  }
+
+  double lag_s() const noexcept { return lag_s_; }
+  double damping_Ns_per_m() const noexcept { return 0.5 * kLightestHand_kg / lag_s_; }
+  double stiffness_N_per_m() const noexcept { return (kHandDamping_Ns_per_m + share_ * damping_Ns_per_m()) / lag_s_; }
+  // The largest stable factor of a force with this impedance.
+  double largest_scale(const Impedance& of) const noexcept {
+    return std::min(stiffness_N_per_m() / std::max(of.stiffness_N_per_m, kNone),
+                    damping_Ns_per_m() / std::max(of.damping_Ns_per_m, kNone));
+  }
+
+ private:
+  static constexpr double kRise_s = 0.1, kFall_s = 1.0, kNone = 1e-9;
+  double share_, lag_s_ = 0.0;
+};
+
+// The scale that the user wants for the force of the active model, and additional damping:
+//   F' = k F + d v     in contact; k: stiffness, d: damping_Ns_per_m, v: velocity inward; d v never changes the sign
+//                      of a positive force
+// Passivity controller and limiter come after it and apply to the scaled force.
+struct ForceScale {
+  static constexpr double kLeast = 0.25, kMost = 4.0, kMostDamping_Ns_per_m = 20.0;
+  double stiffness = 1.0, damping_Ns_per_m = 0.0;
+  bool operator==(const ForceScale&) const = default;
+
+  // Clamped to the bounds above and, for a model of this impedance, to the stability limit.
+  ForceScale limited(const StabilityLimit& limit, const Impedance& model) const noexcept {
+    const double scale = std::min(std::clamp(stiffness, kLeast, kMost), limit.largest_scale(model));
+    // Half of the rest, because the estimated velocity lags more than the position; the passivity controller may use
+    // what the user does not.
+    const double left_Ns_per_m = 0.5 * (limit.damping_Ns_per_m() - scale * model.damping_Ns_per_m);
+    return {scale, std::min(std::clamp(damping_Ns_per_m, 0.0, kMostDamping_Ns_per_m), left_Ns_per_m)};
+  }
+};
+
+// Scales the force without a step.
+class ScaledForce {
+ public:
+  // Moves the scale towards `wanted`, which is not clamped, with a time constant of 50 ms, and returns the scaled force
+  // in newtons. With the default scale the force stays bit-identical.
+  double apply(double force_N, double velocity_m_per_s, bool in_contact, const ForceScale& wanted,
+               double step_s) noexcept {
+    const double share = std::clamp(step_s / kEasing_s, 0.0, 1.0);
+    ease(now_.stiffness, wanted.stiffness, share);
+    ease(now_.damping_Ns_per_m, wanted.damping_Ns_per_m, share);
+    if (!in_contact || now_ == ForceScale{}) return force_N;
+    const double scaled_N = now_.stiffness * force_N;
+    return std::max(scaled_N + now_.damping_Ns_per_m * velocity_m_per_s, std::min(scaled_N, 0.0));
+  }
+
+  const ForceScale& now() const noexcept { return now_; }
+
+ private:
+  static constexpr double kEasing_s = 0.05, kArrived = 1e-3;
+  static void ease(double& value, double wanted, double share) noexcept {
+    value += share * (wanted - value);
+    if (std::abs(wanted - value) < kArrived) value = wanted;
+  }
+  ForceScale now_;
+};
+
+class PassivityController {
+ public:
+  // `encoder_step_m`: 0 without an encoder.
+  explicit PassivityController(double encoder_step_m = 0.0) noexcept : play_m_(kPlay_steps * encoder_step_m) {}
+
+  struct Tool {
+    double position_m = 0.0;  // of the sample, quantised by the encoder, inwards
+    double velocity_m_per_s = 0.0;
+    bool in_contact = false;
+    bool model_changing = false;  // the active model is changing
+    bool fresh = true;            // a sample was read in this tick
+  };
+  struct Loop {
+    double transport_s = kHapticTick_s;  // from a sample to its force; with hold_s at most 63 ms
+    double damping_Ns_per_m = 16.0;      // b
+    double hold_s = kHapticTick_s;       // T, for which a force is held: one tick, or until the next sample
+    double tick_s = kHapticTick_s;       // between two calls
+  };
+
+  // Once a tick, before the limiter. `written_N`: the device's force in the last tick; `step_s`: since then, 0 in the
+  // first tick. Returns at most `commanded_N`, never less than 0 if that is positive; not finite if it is not finite.
+  double apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N, double step_s) noexcept;
+
+  double debt_J() const noexcept { return debt_J_; }
+
+ private:
+  struct Passed {
+    double depth_m = 0.0, energy_J = 0.0;
+  };
+  static constexpr double kPlay_steps = 1.01;  // rounding must not let a step exceed the play
+  static constexpr std::size_t kMostPassed = 256;
+  static constexpr double kSpacing_m = 20e-6;
+  static constexpr std::size_t kMostUnderWay = 64;
+
+  void begin_at(double depth_m) noexcept;
+  double arrived_N(const Tool& tool, double transport_s, double written_N, double step_s) noexcept;
+  double reduced(double commanded_N, double reduction_N) noexcept;
+  void pass_inwards(double depth_m, double energy_J) noexcept;
+  double energy_when_passed(double depth_m) noexcept;
+
+  double play_m_;
+  // The depths passed during loading and not yet during unloading, ascending. The first is where the observer began,
+  // with E = 0: the surface, or a greater depth.
+  std::array<Passed, kMostPassed> passed_{};
+  std::size_t count_ = 1;
+  double energy_J_ = 0.0, debt_J_ = 0.0;
+  double depth_m_ = 0.0;                           // in the last tick, with the play
+  std::array<double, kMostUnderWay> written_N_{};  // ring of the last ticks
+  std::size_t ticks_ = 0;
+  double arrived_N_ = 0.0;  // sum over the ticks since the last sample
+  int arrivals_ = 0;
+  double reduction_N_ = 0.0;  // reduction in this tick
+};
 
 class ForceGuard {
  public:

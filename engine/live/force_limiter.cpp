@@ -66,8 +66,7 @@ double ForceLimiter::limit(double commanded_N, double step_s, const ForceConditi
   if (share_ < 1.0) flags_ |= force_limit::kRamping;
   const double ramped_N = commanded_N * share_;
   share_ = limits_.ramp_s > 0.0 ? std::min(1.0, share_ + step / limits_.ramp_s) : 1.0;
-  const double most_N = clamp_N();
-  const double clamped_N = std::clamp(ramped_N, -most_N, most_N);
+  const double most_N = clamp_N(), clamped_N = std::clamp(ramped_N, -most_N, most_N);
   if (clamped_N != ramped_N) flags_ |= force_limit::kClamped;
   if (clamped_N != ramped_N && most_N < limits_.largest_N) flags_ |= force_limit::kThermal;
   change(clamped_N, limits_.fastest_N_per_s * step);

@@ -20,17 +20,15 @@ void ForceMixer::jump_to(std::size_t selected) noexcept {
 
 double ForceMixer::current(const Forces& forces_N) const noexcept {
   double force_N = 0.0;
-  for (std::size_t i = 0; i < weights_.size(); ++i) {
+  for (std::size_t i = 0; i < weights_.size(); ++i)
     if (weights_[i] != 0.0) force_N += weights_[i] * forces_N[i];
-  }
   return force_N;
 }
 
 double ForceMixer::mix(const Forces& forces_N, std::size_t selected, double step_s) noexcept {
   // After the fade the force has the bits of the model.
   if (settled_on(selected)) return forces_N[selected];
-  const double force_N = current(forces_N);
-  const double difference_N = forces_N[selected] - force_N;
+  const double force_N = current(forces_N), difference_N = forces_N[selected] - force_N;
   const double step = step_s > 0.0 ? std::min(step_s, kJndTime_s) : 0.0;
   const double jnd_N = jnd_.at(std::min(std::abs(force_N), std::abs(forces_N[selected])));
   const double most_N = kShareOfJnd * jnd_N * step / kJndTime_s;

@@ -1,16 +1,11 @@
-// Selects the model whose force is rendered, and fades from one to the next.
-//
-// The force is a mixture, F = sum_i w_i F_i with sum_i w_i = 1, that moves towards the selected model s:
-//   w <- w + a (e_s - w),   e_s the unit vector of s,   so that   F <- F + a (F_s - F).
-// Each tick takes the largest a <= 1 for which the step |a (F_s - F)| stays below a tenth of a JND per millisecond; the
-// JND is that of the smaller of |F| and |F_s|. A switch thus changes the force by at most one JND in 10 ms, for any
-// difference between the models, and is immediate in air, where all forces are 0. Changes of the models' own forces are
-// not limited.
-// Thread guarantee: one thread at a time; wait-free, allocates nothing.
+// Selects the model whose force is rendered, and fades from one to the next: F = sum_i w_i F_i, sum_i w_i = 1, moves to
+// the selected model s by w <- w + a (e_s - w), so F <- F + a (F_s - F). Each tick takes the largest a <= 1 for which
+// the step stays below a tenth of a JND, that of the smaller of |F| and |F_s|, per millisecond: a switch changes the
+// force by at most one JND in 10 ms, and at once in air. Changes of the models' own forces are not limited. Thread
+// guarantee: one thread at a time; wait-free, allocates nothing.
 #pragma once
 
 #include <array>
-#include <cstddef>
 
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
@@ -47,8 +46,7 @@ class TripleBuffer {
   }
 
  private:
-  static constexpr std::uint32_t kFresh = 4;
-  static constexpr std::uint32_t kIndex = 3;
+  static constexpr std::uint32_t kFresh = 4, kIndex = 3;
   // Separate cache lines, so that the two threads do not slow each other down.
   struct alignas(64) Slot {
     T value{};
@@ -106,10 +104,9 @@ class SpscRing {
   alignas(64) std::atomic<std::uint64_t> read_{0};
 };
 
-// The slow side builds, checks and warms a set, then exchanges it into `pending_`; a set that was never taken comes
-// back and is deleted there. The tick takes the pending set at its boundary, but only if the slow side has deleted the
-// set that was retired before. It may continue to use the old one (to blend the force) and retires it later. The tick
-// thus never deletes a set or waits.
+// The slow side exchanges a new set into `pending_`; one that was never taken comes back and is deleted there. The tick
+// takes the pending set only if the slow side has deleted the set that was retired before. It may continue to use the
+// old one (to blend the force) and retires it later. The tick thus never deletes a set or waits.
 template <typename T>
 class ModelSlot {
   static_assert(std::atomic<T*>::is_always_lock_free);

@@ -1,21 +1,19 @@
-// The haptics thread: a LiveTick every millisecond, by absolute deadlines.
-//
-// Deadline k is start + k x 1 ms, independent of the duration of ticks. A deadline that has passed is counted as missed
-// and skipped; its tick is not made up for. The loop shares with other threads only a TripleBuffer each way, an
-// SpscRing of snapshots, one of samples, the ModelSlot and counters.
+// The haptics thread: a LiveTick every millisecond, by absolute deadlines. One that has passed is counted as missed and
+// skipped. The loop shares with other threads only a TripleBuffer each way, an SpscRing of snapshots, one of samples,
+// the ModelSlot and counters.
 #pragma once
 
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
+#include <string>
 #include <thread>
 
+#include "engine/base/result.h"
 #include "engine/live/handover.h"
 #include "engine/live/live_tick.h"
 #include "engine/live/pacer.h"
-#include "engine/live/rt_thread.h"
-#include "engine/live/time_histogram.h"
 
 namespace palpate {
 
@@ -100,5 +98,27 @@ class HapticsLoop {
   std::atomic<std::int64_t> last_tick_ns_{0};  // 0: no tick yet
   std::atomic<bool> stop_{false};
 };
+
+// Keeps the last second of ticks up to kTicksAfter after the beginning of a fault. One slow-side thread.
+class FaultRecorder {
+ public:
+  static constexpr std::size_t kTicks = 1000, kTicksAfter = 100;
+
+  // Takes every snapshot in order. Returns true kTicksAfter ticks after the beginning of a fault that stops the force,
+  // so that `ticks` includes the decay of the force. A further fault in the meantime belongs to it.
+  bool add(const LoopSnapshot& snapshot);
+
+  // Oldest first; fewer than kTicks in the first second of the loop.
+  const std::deque<LoopSnapshot>& ticks() const noexcept { return ticks_; }
+
+ private:
+  std::deque<LoopSnapshot> ticks_;
+  std::size_t left_ = 0;  // ticks until the fault is complete; 0: no fault
+  bool in_fault_ = false;
+};
+
+// Writes the file of a fault: a header with the column names, one line for each tick. Errors: those of AtomicFile; an
+// existing file is not overwritten.
+Status write_fault_file(const std::string& path, const std::deque<LoopSnapshot>& ticks);
 
 }  // namespace palpate

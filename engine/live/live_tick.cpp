@@ -1,7 +1,6 @@
 #include "engine/live/live_tick.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -143,9 +142,8 @@ void LiveTick::process_sample(const DeviceSample& sample) noexcept {
   }
   snapshot_.tick = models_->tick.snapshot();
   snapshot_.faults |= static_cast<std::uint32_t>(snapshot_.tick.fault);
-  if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample) {
+  if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample)
     snapshot_.reference_N = models_->reference->step(snapshot_.tick, sample.restart);
-  }
   if (controls_.recording != 0) record(sample);
 }
 
@@ -155,9 +153,8 @@ void LiveTick::record(const DeviceSample& sample) noexcept {
   const TickFault fault = snapshot_.tick.fault;
   recorded.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
   if (models_->reference != nullptr) recorded.reference_N = snapshot_.reference_N;
-  if (models_->written_model < models_->tick.model_count()) {
+  if (models_->written_model < models_->tick.model_count())
     recorded.model_N = snapshot_.tick.force_N[models_->written_model];
-  }
   recorded_->push(recorded);
 }
 
@@ -167,14 +164,16 @@ double LiveTick::mix(double step_s) noexcept {
   if (snapshot_.selected >= count) snapshot_.selected = 0;
   ForceMixer::Forces forces_N{};
   std::ranges::copy(snapshot_.tick.force_N, forces_N.begin());
-  if (outgoing_ != nullptr) {
-    forces_N[ForceMixer::kOutgoing] = outgoing_->tick.snapshot().force_N[outgoing_selected_];
-  }
+  if (outgoing_ != nullptr) forces_N[ForceMixer::kOutgoing] = outgoing_->tick.snapshot().force_N[outgoing_selected_];
   const double force_N = mixer_.mix(forces_N, snapshot_.selected, step_s);
   snapshot_.fading = !mixer_.settled_on(snapshot_.selected);
   if (outgoing_ != nullptr && !snapshot_.fading) slot_.retire(std::move(outgoing_));
   if (count == 0 && outgoing_ == nullptr) return 0.0;  // without models no damping, either
-  return scale(force_N, step_s);
+  const double scaled_N =
+      guard_.scaled(force_N, impedance(), controls_.scale, held_, tool(snapshot_.tick.in_contact), timing(step_s));
+  snapshot_.stiffness_share = static_cast<float>(guard_.stiffness_share());
+  snapshot_.lag_ms = static_cast<float>(1e3 * guard_.lag_s());
+  return scaled_N;
 }
 
 // The impedance of the rendered force: a mixture of models during a fade.
@@ -196,27 +195,17 @@ ForceGuard::Timing LiveTick::timing(double step_s) const noexcept {
   return {snapshot_.device.lag_s, snapshot_.device.interval_s, step_s};
 }
 
-double LiveTick::scale(double force_N, double step_s) noexcept {
-  const double scaled_N =
-      guard_.scaled(force_N, impedance(), controls_.scale, held_, tool(snapshot_.tick.in_contact), timing(step_s));
-  snapshot_.stiffness_share = static_cast<float>(guard_.stiffness_share());
-  snapshot_.lag_ms = static_cast<float>(1e3 * guard_.lag_s());
-  return scaled_N;
-}
-
 bool LiveTick::dead_man_released() const noexcept {
   if (controls_.dead_man == DeadMan::grip) return !snapshot_.device.grip_held;
   return controls_.dead_man == DeadMan::key && !(snapshot_.loop_time_s - controls_.held_s < kDeadManHold_s);
 }
 
-// Off in a study, which presents forces that do not depend on the position of the tool.
-double LiveTick::passive(double commanded_N, double step_s) noexcept {
-  if (!passivity_on_) return commanded_N;
-  return guard_.passive(commanded_N, tool(snapshot_.tick.in_contact && !snapshot_.restarted), timing(step_s),
-                        snapshot_.rendered_N);
-}
-
 void LiveTick::render(double step_s) noexcept {
+  snapshot_.passive_N = snapshot_.commanded_N;
+  // Off in a study, which presents forces that do not depend on the position of the tool.
+  if (passivity_on_)
+    snapshot_.passive_N = guard_.passive(snapshot_.commanded_N, tool(snapshot_.tick.in_contact && !snapshot_.restarted),
+                                         timing(step_s), snapshot_.rendered_N);
   const DeviceHealth& device = snapshot_.device;
   if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
   snapshot_.dead_man_released = dead_man_released();
@@ -245,7 +234,6 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   snapshot_.device = device_.health(now_s);
   if (std::isinf(snapshot_.device.sample_age_s)) snapshot_.device.sample_age_s = now_s - sampled_s_;
   snapshot_.commanded_N = source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(step_s);
-  snapshot_.passive_N = passive(snapshot_.commanded_N, step_s);
   render(step_s);
   snapshot_.faults_latched |= snapshot_.faults;
   snapshot_.device_faults_latched |= snapshot_.device.faults;

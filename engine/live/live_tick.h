@@ -1,7 +1,4 @@
-// One tick of the live loop: device in, models, force out, snapshot. It has no clock and no thread: the loop calls it
-// every millisecond, tests call it directly. The models' forces are those of HapticsTick, so live and replay give the
-// same bits for the same samples.
-//
+// One tick of the live loop, without clock and thread: the loop calls it every millisecond, tests call it directly.
 //   take a new set of models -> read the device -> HapticsTick for each sample
 //   -> mix (the active model) -> scale -> passivity -> limit -> write the device -> snapshot
 // Thread guarantee: constructed on the slow side. `warm_up` (before the first `run`), `run` and `rehearse` belong to
@@ -158,8 +155,6 @@ class LiveTick {
   Impedance impedance() const noexcept;
   ForceGuard::Tool tool(bool in_contact) const noexcept;
   ForceGuard::Timing timing(double step_s) const noexcept;
-  double scale(double force_N, double step_s) noexcept;
-  double passive(double commanded_N, double step_s) noexcept;
   void render(double step_s) noexcept;
 
   Device& device_;

@@ -1,5 +1,5 @@
 // The interval between the samples of a device, or the ticks of a loop. With fewer than 100 a second a force is held so
-// long that no useful stiffness is stable (engine/live/stability_limit.h); such a device is refused.
+// long that no useful stiffness is stable (engine/live/force_guard.h); such a device is refused.
 // Thread guarantee: one thread at a time; wait-free.
 #pragma once
 
@@ -28,8 +28,7 @@ class SampleRate {
 
  private:
   static constexpr double kFewest = 8.0, kFastSamples = 10.0, kSlowSamples = 50.0;
-  double count_ = 0.0;
-  double interval_s_ = 0.0, slow_s_ = 0.0;
+  double count_ = 0.0, interval_s_ = 0.0, slow_s_ = 0.0;
 };
 
 // The refusal of a device at its start. Slow side.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "engine/base/text.h"
 #include "engine/recording/recording_reader.h"
 #include "engine/recording/recording_writer.h"
 
@@ -18,7 +19,63 @@ constexpr std::size_t kBatchRows = 4096;
 constexpr std::size_t kMostExpected = 6000000;
 constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
 
+// The advice for a median step outside of the valid range.
+std::string rate_advice(double step_s) {
+  struct Unit {
+    const char* name;
+    const char* divisor;
+    double seconds;
+  };
+  static constexpr Unit kUnits[] = {
+      {"milliseconds", "1000", 1e-3}, {"microseconds", "1000000", 1e-6}, {"nanoseconds", "1000000000", 1e-9}};
+  if (step_s < 1.0 / kMaximumRate_Hz) return "keep fewer samples, or check that time_s is in seconds";
+  for (const Unit& unit : kUnits) {
+    if (rate_in_range(step_s * unit.seconds)) {
+      return "if time_s is in " + std::string(unit.name) + ", divide it by " + unit.divisor +
+             ", otherwise record faster";
+    }
+  }
+  return "record faster, or check that time_s is in seconds";
+}
+
+constexpr std::size_t kSlices = 16;
+// Slices of the range of positions that make up an end.
+constexpr std::size_t kEndSlices = 4;
+// An end whose force is below this share of the force at the other end is the shallow one. Above it an offset of the
+// force may hide that.
+constexpr double kShallowShare = 0.35;
+// Free air: the force is below this share of the force at the deep end, and flat to this share.
+constexpr double kAirShare = 0.1;
+// The least ratio of the changes of force at the two ends that identifies the deep end.
+constexpr double kClearRatio = 2.0;
+
+struct Slice {
+  double sum_N = 0.0;
+  std::size_t count = 0;
+};
+
+// The mean force of the outermost slice, and the spread of the means of one end.
+struct EndForce {
+  double outermost_N = 0.0, spread_N = 0.0;
+};
+
+EndForce end_force(const std::array<Slice, kSlices>& slices, bool low) {
+  std::vector<double> means_N;
+  for (std::size_t i = 0; i < kEndSlices; ++i) {
+    const Slice& slice = slices[low ? i : kSlices - 1 - i];
+    if (slice.count > 0) means_N.push_back(slice.sum_N / static_cast<double>(slice.count));
+  }
+  const auto [least_N, largest_N] = std::ranges::minmax(means_N);
+  return {means_N.front(), largest_N - least_N};
+}
+
 }  // namespace
+
+double nth_smallest(std::vector<double> values, std::size_t n) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(n);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
 
 std::uint64_t content_hash(const Recording& recording) {
   std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -52,10 +109,97 @@ Status write_recording(const std::string& path, const Recording& recording, cons
                        bool overwrite) {
   auto writer = RecordingWriter::create(path, recording.columns, comments, overwrite);
   if (!writer) return writer.error();
-  for (const RecordingRow& row : recording.rows) {
+  for (const RecordingRow& row : recording.rows)
     if (Status added = writer->add(row); !added) return added;
-  }
   return writer->commit();
+}
+
+bool rate_in_range(double step_s) {
+  return step_s <= (1.0 + kRateTolerance) / kMinimumRate_Hz && step_s >= (1.0 - kRateTolerance) / kMaximumRate_Hz;
+}
+
+RowFault RowRules::explain(const RecordingRow& row) const {
+  const auto fault = [](ColumnRole role, double found, const std::string& words) {
+    const std::string name(kColumnNames[static_cast<std::size_t>(role)]);
+    return RowFault{RowFault::Place::kThisRow, role, "found " + name + " " + shortest(found) + words};
+  };
+  const auto values = column_values(row);
+  const auto wrong = std::ranges::find_if_not(values, [](double value) { return std::isfinite(value); });
+  if (wrong != values.end()) {
+    return fault(static_cast<ColumnRole>(wrong - values.begin()), *wrong,
+                 ", expected a finite number; remove the row or repair the value");
+  }
+  if (!(row.time_s > last_time_s_)) {
+    return fault(ColumnRole::kTime, row.time_s,
+                 " after " + shortest(last_time_s_) + ", expected a later time in every row; " +
+                     (row.time_s == last_time_s_ ? "remove the repeated row or write time_s with more digits"
+                                                 : "sort the rows, or split the file where time starts again"));
+  }
+  if (std::abs(row.position_m) > kMaximumPosition_m) {
+    return fault(
+        ColumnRole::kPosition, row.position_m,
+        ", expected metres from the surface, at most 1 either way; it looks like millimetres: palpate import FILE "
+        "--units mm,N --out REC.csv");
+  }
+  return fault(ColumnRole::kForce, row.force_N,
+               ", expected newtons, at most 1000000 either way; check the unit of the column");
+}
+
+// Accepts a row among the first ones, from which the rate is checked.
+std::optional<RowFault> RowRules::accept_early(const RecordingRow& row) {
+  if (rows_ > 0) steps_s_.push_back(row.time_s - last_time_s_);
+  last_time_s_ = row.time_s;
+  ++rows_;
+  return rows_ == kRateRows ? check_rate() : std::nullopt;
+}
+
+std::optional<RowFault> RowRules::check_rate() {
+  // With an even number of steps the median is the upper of the two middle ones.
+  const double step_s = nth_smallest(steps_s_, steps_s_.size() / 2);
+  if (rate_in_range(step_s)) return std::nullopt;
+  return RowFault{RowFault::Place::kFirstRow, ColumnRole::kTime,
+                  "found a median time step of " + general(step_s, 3) + " s (" + general(1.0 / step_s, 3) +
+                      " Hz), expected 10 Hz to 20 kHz; " + rate_advice(step_s)};
+}
+
+std::optional<RowFault> RowRules::finish() {
+  if (rows_ < kRecordingMinimumRows) {
+    return RowFault{RowFault::Place::kEnd, ColumnRole::kTime,
+                    "found " + std::to_string(rows_) + (rows_ == 1 ? " row" : " rows") + ", expected at least " +
+                        std::to_string(kRecordingMinimumRows) + "; record for longer"};
+  }
+  return rows_ < kRateRows ? check_rate() : std::nullopt;
+}
+
+PressDirection find_press_direction(const std::vector<RecordingRow>& rows) {
+  PressDirection direction;
+  const auto [lowest, highest] = std::ranges::minmax(rows, {}, &RecordingRow::position_m);
+  const double lowest_m = lowest.position_m, highest_m = highest.position_m;
+  if (!(highest_m > lowest_m)) return direction;
+  std::array<Slice, kSlices> slices{};
+  const double per_metre = static_cast<double>(kSlices) / (highest_m - lowest_m);
+  for (const RecordingRow& row : rows) {
+    const auto index = static_cast<std::size_t>((row.position_m - lowest_m) * per_metre);
+    Slice& slice = slices[std::min(index, kSlices - 1)];
+    slice.sum_N += row.force_N;
+    ++slice.count;
+  }
+  const EndForce low = end_force(slices, true);
+  const EndForce high = end_force(slices, false);
+  const double low_N = std::abs(low.outermost_N), high_N = std::abs(high.outermost_N);
+  const bool clear = std::min(low_N, high_N) < kShallowShare * std::max(low_N, high_N);
+  const bool by_spread = std::max(low.spread_N, high.spread_N) > kClearRatio * std::min(low.spread_N, high.spread_N);
+  if (!clear && !by_spread) return direction;
+  const bool flipped = clear ? high_N < low_N : high.spread_N < low.spread_N;
+  const EndForce& shallow = flipped ? high : low;
+  const EndForce& deep = flipped ? low : high;
+  const double air_N = std::max(shallow.spread_N, std::abs(shallow.outermost_N));
+  return {true,
+          air_N < kAirShare * std::abs(deep.outermost_N),
+          flipped,
+          deep.outermost_N < shallow.outermost_N,
+          shallow.outermost_N,
+          deep.outermost_N};
 }
 
 }  // namespace palpate

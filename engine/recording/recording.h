@@ -2,19 +2,20 @@
 //
 // Columns: time_s, position_m, force_N required; velocity_m_per_s and acceleration_m_per_s2 optional; names exact, any
 // order; further columns are ignored. Lines that begin with '#' before the header are comments. Time is strictly
-// increasing; recording_rules.h limits position, force, the median time step and the length of a line. CRLF, a UTF-8
-// byte order mark, a missing last newline, blank lines at the end, blanks around numbers and a leading '+' are
-// accepted. All other faults are errors,
-//   file:line:column: found X, expected Y; what to do
-// for the first fault in the file, with columns counted in bytes from 1 (after a byte order mark). Numbers use '.' as
-// decimal point in every locale.
-// Thread guarantee: slow side only (allocates, does I/O).
+// increasing; RowRules limits position, force, the median time step and the length of a line. CRLF, a UTF-8 byte order
+// mark, a missing last newline, blank lines at the end, blanks around numbers and a leading '+' are accepted. All other
+// faults are errors, file:line:column: found X, expected Y; what to do, for the first fault in the file, with columns
+// counted in bytes from 1 (after a byte order mark). Numbers use '.' as decimal point in every locale.
+// Thread guarantee: slow side only (allocates, does I/O); one thread per object.
 #pragma once
 
-#include <cstddef>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -24,16 +25,13 @@ namespace palpate {
 // One row. Position along the inward surface normal, 0 at the undisturbed surface, positive inside; force along the
 // outward normal, positive when the block pushes the tool out.
 struct RecordingRow {
-  double time_s = 0.0;
-  double position_m = 0.0;
-  double force_N = 0.0;
+  double time_s = 0.0, position_m = 0.0, force_N = 0.0;
   double velocity_m_per_s = 0.0;       // 0 where the column is absent
   double acceleration_m_per_s2 = 0.0;  // 0 where the column is absent
 };
 
 struct RecordingColumns {
-  bool velocity = false;
-  bool acceleration = false;
+  bool velocity = false, acceleration = false;
   bool force = true;  // false: motion alone, which only RecordingWriter supports
 };
 
@@ -46,6 +44,9 @@ struct Recording {
 // A hash of the numbers of a recording, independent of its name: FNV-1a with an additional shift.
 std::uint64_t content_hash(const Recording& recording);
 
+// The value at index `n` in ascending order.
+double nth_smallest(std::vector<double> values, std::size_t n);
+
 inline constexpr std::size_t kRecordingMinimumRows = 10;
 inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
 
@@ -57,5 +58,88 @@ Result<Recording> read_recording(const std::string& path, std::size_t most_rows 
 // no file is written.
 Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,
                        bool overwrite);
+
+// The role of a column of the file; the order is that of RecordingRow.
+enum class ColumnRole : std::uint8_t { kTime, kPosition, kForce, kVelocity, kAcceleration, kIgnored };
+
+inline constexpr std::size_t kKnownColumns = 5;
+inline constexpr std::size_t kRequiredColumns = 3;
+inline constexpr std::array<std::string_view, kKnownColumns> kColumnNames = {
+    "time_s", "position_m", "force_N", "velocity_m_per_s", "acceleration_m_per_s2"};
+inline std::array<double, kKnownColumns> column_values(const RecordingRow& row) {
+  return {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
+}
+
+// No haptic device has a workspace of a metre: a larger value is in a wrong unit, mostly millimetres.
+inline constexpr double kMaximumPosition_m = 1.0;
+// The weight of a hundred tonnes: a larger value is in a wrong unit, or the sensor is broken.
+inline constexpr double kMaximumForce_N = 1e6;
+// The range of sampling rates. The median step is compared, with a tolerance for slow clocks and for times rounded to
+// few digits; single steps may be of any length.
+inline constexpr double kMinimumRate_Hz = 10.0;
+inline constexpr double kMaximumRate_Hz = 20000.0;
+inline constexpr double kRateTolerance = 0.05;
+// Whether rows with this time step have a rate in that range.
+bool rate_in_range(double step_s);
+// Limit of the length of a line, bytes; it bounds the memory of the reader.
+inline constexpr std::size_t kMaximumLineBytes = 64 * 1024;
+// The rate is checked once, after this many rows, so that rows can be streamed.
+inline constexpr std::size_t kRateRows = 1000;
+
+// A broken rule: "found ..., expected ...; what to do", and its position.
+struct RowFault {
+  enum class Place { kThisRow, kFirstRow, kEnd };
+  Place place = Place::kThisRow;
+  ColumnRole role = ColumnRole::kTime;
+  std::string text;
+};
+
+// Checks rows in order: `check` for every row, then `finish`.
+class RowRules {
+ public:
+  // Returns nothing, or the rule that `row` breaks: a value that is not finite, a position or force beyond the limits
+  // above, a time that is not later than that of the row before; for row kRateRows also a rate outside the range.
+  std::optional<RowFault> check(const RecordingRow& row) {
+    // A comparison with NaN is false, so NaN is rejected, too.
+    const bool sane = row.time_s > last_time_s_ && row.time_s < HUGE_VAL &&
+                      std::abs(row.position_m) <= kMaximumPosition_m && std::abs(row.force_N) <= kMaximumForce_N &&
+                      std::abs(row.velocity_m_per_s) < HUGE_VAL && std::abs(row.acceleration_m_per_s2) < HUGE_VAL;
+    if (!sane) return explain(row);
+    if (rows_ < kRateRows) return accept_early(row);
+    last_time_s_ = row.time_s;
+    ++rows_;
+    return std::nullopt;
+  }
+
+  // To be called after the last row. Detects fewer than kRecordingMinimumRows rows, and a rate outside the range in a
+  // recording with fewer than kRateRows rows.
+  std::optional<RowFault> finish();
+
+  std::uint64_t rows() const { return rows_; }
+
+ private:
+  RowFault explain(const RecordingRow& row) const;
+  std::optional<RowFault> accept_early(const RecordingRow& row);
+  std::optional<RowFault> check_rate();
+
+  double last_time_s_ = -HUGE_VAL;
+  std::uint64_t rows_ = 0;
+  std::vector<double> steps_s_;
+};
+
+// The signs of position and force of a recording: the force of a contact grows with the depth and is nearly zero at the
+// other, shallow end, or changes less there if an offset of the force hides that. The result is certain only with free
+// air, a flat force at the shallow end; without it, a material that softens, drags or yields can look like a flipped
+// sign.
+struct PressDirection {
+  bool known = false;             // whether the signs could be determined
+  bool certain = false;           // there is free air, so that no material explains a flipped sign
+  bool position_flipped = false;  // position decreases with depth
+  bool force_flipped = false;     // force is negative when the material pushes the tool out
+  double shallow_force_N = 0.0;   // mean over the shallowest samples
+  double deep_force_N = 0.0;
+};
+
+PressDirection find_press_direction(const std::vector<RecordingRow>& rows);
 
 }  // namespace palpate

@@ -52,10 +52,9 @@ bool is_number(std::string_view text) {
 // `text` without blanks and one pair of quotes around it.
 std::string_view bare(std::string_view text) {
   text = trimmed(text);
-  for (const char quote : {'"', '\''}) {
+  for (const char quote : {'"', '\''})
     if (text.size() >= 2 && text.starts_with(quote) && text.ends_with(quote))
       return trimmed(text.substr(1, text.size() - 2));
-  }
   return text;
 }
 
@@ -84,9 +83,8 @@ std::optional<LineFault> foreign_separator(std::string_view text, std::size_t fi
 
 LineFault missing_columns(std::string_view text, const std::vector<std::string_view>& names,
                           const std::vector<std::string_view>& missing) {
-  if (trimmed(text).empty()) {
+  if (trimmed(text).empty())
     return {1, "found a blank line, expected a header row with time_s, position_m and force_N; remove the blank line"};
-  }
   if (missing.size() == kRequiredColumns) {
     if (const auto separator = foreign_separator(text, kRequiredColumns)) return *separator;
     if (std::all_of(names.begin(), names.end(), is_number)) {
@@ -113,17 +111,16 @@ LineFault field_count_fault(std::string_view line, bool has_end, std::size_t exp
   const std::size_t found = fields.size();
   const bool cut_off = found < expected && !has_end;
   const char* advice = "write decimal points, not commas, and remove fields without a column";
-  if (cut_off) {
+  if (cut_off)
     advice = "the file was cut off, remove its last line";
-  } else if (found + 1 == expected && header_ends_with_comma) {
+  else if (found + 1 == expected && header_ends_with_comma)
     advice = "remove the comma at the end of the header";
-  } else if (found < expected) {
+  else if (found < expected)
     advice = "add the missing values or remove the row";
-  } else if (found == expected + 1 && trimmed(line).ends_with(',')) {
+  else if (found == expected + 1 && trimmed(line).ends_with(','))
     advice = "remove the comma at the end of the row";
-  } else if (line.find('"') != std::string_view::npos) {
+  else if (line.find('"') != std::string_view::npos)
     advice = "remove quotes and the commas inside them";
-  }
   return {found < expected ? line.size() + 1 : column_of(line, fields[expected]),
           "found " + std::to_string(found) + (found == 1 ? " field" : " fields") +
               (cut_off ? " where the file ends" : "") + ", expected " + std::to_string(expected) +
@@ -159,9 +156,8 @@ std::string number_fault(std::string_view field, std::string_view name) {
 LineFault row_fault(std::string_view line, bool has_end, const std::vector<ColumnRole>& roles,
                     bool header_ends_with_comma) {
   const auto fields = fields_of(line);
-  if (line.starts_with('#')) {
+  if (line.starts_with('#'))
     return {1, "found a comment after the header, expected a row; move it above the header or remove it"};
-  }
   if (fields.size() < roles.size()) {
     if (const auto separator = foreign_separator(line, roles.size())) return *separator;
   }
@@ -239,9 +235,8 @@ bool RecordingReader::next_line() {
   if (count == 0) return false;
   line_ = std::string_view(buffer_.data(), line_has_end_ ? count - 1 : count);
   if (line_number_ == 0) {
-    if (line_.starts_with("\xFF\xFE") || line_.starts_with("\xFE\xFF")) {
+    if (line_.starts_with("\xFF\xFE") || line_.starts_with("\xFE\xFF"))
       return fail(1, 1, "found UTF-16 text, expected UTF-8; save the file as UTF-8 CSV");
-    }
     if (line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
     if (line_.empty() && !line_has_end_) return false;
   }
@@ -252,9 +247,8 @@ bool RecordingReader::next_line() {
 }
 
 bool RecordingReader::read_header() {
-  while (next_line()) {
+  while (next_line())
     if (!line_.starts_with('#')) return parse_header();
-  }
   if (error_) return false;
   return fail(line_number_ + 1, 1,
               std::string("found ") + (line_number_ == 0 ? "an empty file" : "the end of the file") +
@@ -279,9 +273,8 @@ bool RecordingReader::parse_header() {
   }
   header_ends_with_comma_ = names.back().empty();
   std::vector<std::string_view> missing;
-  for (std::size_t i = 0; i < kRequiredColumns; ++i) {
+  for (std::size_t i = 0; i < kRequiredColumns; ++i)
     if (!has(static_cast<ColumnRole>(i))) missing.push_back(kColumnNames[i]);
-  }
   if (missing.empty()) return true;
   // Usually the file is that of another program, so every message recommends the import.
   const LineFault fault = missing_columns(line_, names, missing);

@@ -2,7 +2,6 @@
 // Thread guarantee: slow side only; one thread per object.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,7 +11,6 @@
 
 #include "engine/base/result.h"
 #include "engine/recording/recording.h"
-#include "engine/recording/recording_rules.h"
 
 namespace palpate {
 
@@ -30,7 +28,7 @@ class RecordingReader {
   RecordingColumns columns() const;
 
   // Reads up to `capacity` rows (at least 1) into `rows`; returns their number, which is smaller only at the end.
-  // Errors: a row or recording that breaks a rule (recording_rules.h). After an error each call returns it again.
+  // Errors: a row or recording that breaks a rule (RowRules). After an error each call returns it again.
   Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
 
  private:
@@ -50,8 +48,7 @@ class RecordingReader {
   bool has(ColumnRole role) const { return index_of(role) < roles_.size(); }
 
   std::unique_ptr<std::istream> stream_;
-  std::string label_;
-  std::string name_;
+  std::string label_, name_;
   std::vector<char> buffer_;  // holds the present line
   std::string_view line_;     // without its line end
   std::uint64_t line_number_ = 0;

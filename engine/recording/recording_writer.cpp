@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <limits>
 #include <string_view>
-#include <utility>
 
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
@@ -30,9 +29,8 @@ void append_comment(std::string& out, std::string_view comment) {
   for (;;) {
     const std::size_t newline = comment.find('\n');
     out += "# ";
-    for (const char c : comment.substr(0, std::min(newline, kMaximumCommentBytes))) {
+    for (const char c : comment.substr(0, std::min(newline, kMaximumCommentBytes)))
       out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
     out += '\n';
     if (newline == std::string_view::npos) return;
     comment.remove_prefix(newline + 1);
@@ -45,9 +43,8 @@ std::string line_of(RecordingColumns columns, const Field& field) {
   const std::array present = {true, true, columns.force, columns.velocity, columns.acceleration};
   std::string line;
   line.reserve(128);  // five doubles of at most 24 characters
-  for (std::size_t i = 0; i < present.size(); ++i) {
+  for (std::size_t i = 0; i < present.size(); ++i)
     if (present[i]) line.append(i > 0 ? "," : "").append(field(i));
-  }
   return line + '\n';
 }
 
@@ -88,9 +85,8 @@ RecordingWriter::Claim::~Claim() {
 }
 
 Status RecordingWriter::add(const RecordingRow& row) {
-  if (const auto fault = rules_.check(row)) {
+  if (const auto fault = rules_.check(row))
     return Error{path_ + ": cannot write row " + std::to_string(rules_.rows() + 1) + ": " + fault->text};
-  }
   const auto values = column_values(row);
   file_.write(line_of(columns_, [&](std::size_t i) { return shortest(values[i]); }));
   return {};
@@ -116,9 +112,8 @@ Status RecordingWriter::commit() {
   Status committed = file_.commit();
   if (!committed || notes_.empty()) return committed;
   if (noted_ > kMostNotes) append_comment(notes_, std::to_string(noted_ - kMostNotes) + " more such notes");
-  if (const auto text = read_plain_file(path_, "the recording", "", std::numeric_limits<std::size_t>::max())) {
+  if (const auto text = read_plain_file(path_, "the recording", "", std::numeric_limits<std::size_t>::max()))
     static_cast<void>(write_file_atomically(path_, notes_ + *text, true));
-  }
   return {};
 }
 

@@ -11,7 +11,6 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/result.h"
 #include "engine/recording/recording.h"
-#include "engine/recording/recording_rules.h"
 
 namespace palpate {
 
@@ -66,8 +65,7 @@ class RecordingWriter {
   RecordingColumns columns_;
   RowRules rules_;
   std::string notes_;  // '#' lines
-  std::uint64_t noted_ = 0;
-  std::uint64_t published_rows_ = 0;
+  std::uint64_t noted_ = 0, published_rows_ = 0;
 };
 
 }  // namespace palpate

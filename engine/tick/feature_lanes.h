@@ -1,31 +1,73 @@
-// The parts of features, each with a drive curve g of the depth d, or of the surface s where it lags:
+// The parts of features, each with a drive curve g of the depth d, or of the surface s where it lags, four at a time in
+// SIMD lanes, with arithmetic operations only, so that results are bit-identical on every processor:
 //   Maxwell branch     dz/dt = g'(d) dd/dt - z / tau: a spring g and a dashpot in series. g = d / tau: a low-pass.
 //   stop operator      s' = clamp(s + d' - d, -r, r), 0 out of contact: a bristle that bends by at most r, then slips.
-//   creeping bristle   dq/dt = dd/dt - (q / tau) (q / r)^2: slips at every deflection.
-// The creep rate of a bristle grows with q^3, that of a branch with q: in a hold its force falls as t^-1/2, in motion
-// it rises with v^1/3. A `slowing` b multiplies every tau by exp(b s / reference depth): where a fluid is squeezed
-// through closing pores, all relaxation times grow with the strain by one factor.
+//   creeping bristle   dq/dt = dd/dt - (q / tau) (q / r)^2: slips at every deflection; a hold: t^-1/2.
+// A `slowing` b multiplies every tau by exp(b s / reference depth): where a fluid is squeezed through closing pores.
 //
 // Every part is passive if g rises (branch) or is not negative (bristles). With q = g(d) - z, dq/dt = z / tau, a branch
 // dissipates (d - g^-1(q)) (g(d) - q) / tau >= 0 for any tau; the rest of its power changes the stored energy
 // integral_0^d g ds - q d + integral_0^q g^-1 ds. Bristles dissipate sum_p closed integral G_p(d) dp_p / r_p >= 0 in a
 // cycle, with G_p' = g_p and p_p = d - s_p, which increases only at d > p_p and decreases only at d < p_p.
-//
-// The branches of relaxation spectra, and the stop operators and creeping bristles (features.h gives the equations),
-// four at a time in SIMD lanes. All branches of a filter are in one sequence of groups of four, and all bristles in
-// another. The caller stores their state. Lanes use arithmetic operations only, in the order of four scalars, so that
-// results are bit-identical on every processor.
 // Thread guarantee: immutable after the last `add`, which allocates; all else is wait-free.
 #pragma once
 
-#include <cstddef>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
-#include "engine/tick/drive_curve.h"
-
 namespace palpate {
+
+inline constexpr std::size_t kDriveCoefficients = 4;
+inline constexpr std::size_t kDriveKnots = 7;
+
+// Sets `value` to g(d), a force at depth d: the elastic response, or a Maxwell branch before it relaxes.
+//   g(d) = sum_k coefficient_N[k] u^(k+1) + sum_k knot_N[k] max(0, u - (k + 1) / (knots + 1))^3,  u = d /
+//   reference_depth_m
+// Beyond u = 1, g continues along its tangent. `curve`: a DriveCurve for one Number, or CurveLanes for four at once;
+// the results are bit-identical.
+template <typename Number, typename Curve>
+[[gnu::always_inline]] inline void evaluate_curve(Number& value, const Curve& curve, double depth_m) noexcept {
+  const auto knot_position = [](std::size_t k) { return static_cast<double>(k + 1) / (kDriveKnots + 1); };
+  const Number u = depth_m / curve.reference_depth_m;
+  const Number inside = u > 1.0 ? Number{} + 1.0 : u;
+  Number sum{};
+  for (std::size_t k = kDriveCoefficients; k-- > 0;) sum = (sum + curve.coefficient_N[k]) * inside;
+  Number knots{};
+  for (std::size_t k = 0; curve.has_knots && k < kDriveKnots; ++k) {
+    const Number above = inside - knot_position(k);
+    const Number beyond = above > 0.0 ? above : Number{};
+    knots += curve.knot_N[k] * beyond * beyond * beyond;
+  }
+  value = sum + knots;
+  if (depth_m > curve.least_reference_m()) [[unlikely]] {
+    Number slope{};  // dg/du at u = 1
+    for (std::size_t k = kDriveCoefficients; k-- > 0;) slope += static_cast<double>(k + 1) * curve.coefficient_N[k];
+    Number knots_slope{};
+    for (std::size_t k = 0; curve.has_knots && k < kDriveKnots; ++k) {
+      const double beyond = 1.0 - knot_position(k);
+      knots_slope += 3.0 * (curve.knot_N[k] * beyond * beyond);
+    }
+    value = u > 1.0 ? value + (slope + knots_slope) * (u - 1.0) : value;
+  }
+}
+
+struct DriveCurve {
+  double reference_depth_m = 1.0;
+  std::array<double, kDriveCoefficients> coefficient_N{};
+  bool has_knots = false;
+  std::array<double, kDriveKnots> knot_N{};
+
+  double at(double depth_m) const noexcept {
+    double value = 0.0;
+    evaluate_curve(value, *this, depth_m);
+    return value;
+  }
+  // Beyond this depth g is linear.
+  double least_reference_m() const noexcept { return reference_depth_m; }
+  bool operator==(const DriveCurve&) const = default;
+};
 
 inline constexpr std::size_t kLanes = 4;
 

@@ -21,14 +21,9 @@ using real = double;
 
 }  // namespace
 
-double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept {
-  return surface_search::halfway_m(last_surface_m, last_depth_m, depth_m);
-}
-
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
-  for (const FeatureSpec& spec : specs) {
+  for (const FeatureSpec& spec : specs)
     if (spec.kind == FeatureKind::depth) return spec.surface_position_m;
-  }
   return 0.0;
 }
 
@@ -61,9 +56,8 @@ FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs, double deepest_m
       if (p == 0) first_lane_[i] = lane;
     }
   }
-  for (std::size_t i = 0; i < specs_.size(); ++i) {
+  for (std::size_t i = 0; i < specs_.size(); ++i)
     if (is_bristle(specs_[i].kind)) first_lane_[i] += kLanes * branches_.groups();
-  }
 }
 
 void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept {
@@ -115,7 +109,7 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
 // Returns the surface.
 double FeaturePlan::advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept {
   BranchLanes::Step step[kMaxLaneGroups];
-  branches_.prepare(step_s, surface_halfway(state.surface_m, state.depth_m, depth_m), step);
+  branches_.prepare(step_s, surface_search::halfway_m(state.surface_m, state.depth_m, depth_m), step);
   if (lag_ == kMaxFeatures || !(step_s > 0.0)) {
     branches_.advance(step, depth_m, state.memory, state.memory);
     return depth_m;

@@ -1,23 +1,19 @@
 // The feature vector of a force model: one to eight features of the tool's motion, with their memory. Fit, replay and
-// live loop run this code. models/METHOD.md has the equations of a step.
-//
+// live loop run this code. models/METHOD.md has the equations of a step; feature_lanes.h those of the parts, and why
+// they are passive.
 //   depth             d = max(0, estimated position - surface)              [m]
 //   velocity          v = estimated velocity while d > 0, else 0            [m/s]
 //   lowpass_velocity  y with dy/dt = (dd/dt - y) / tau                      [m/s]
-//   maxwell_spectrum  sum of branches z with dz/dt = g'(d) dd/dt - z / tau  [N]
-//   stops             y = sum_p g_p(d) s_p / r_p, s_p a stop operator       [N]
-//   creep             y = sum_p g_p(d) q_p / r_p, q_p a creeping bristle    [N]
+//   maxwell_spectrum  sum of branches z                                     [N]
+//   stops, creep      sum of bristles                                       [N]
 //   surface_lag       s - d, s the depth of the material's surface          [m]
-//
-// The tool is in contact beyond the depth feature's `surface_position_m`, 0 unless the training recordings had their
-// surface elsewhere. In free air the material relaxes. feature_lanes.h says why parts are passive.
+// The tool is in contact beyond the depth feature's `surface_position_m`. In free air the material relaxes.
 // Sources: Hoever & Harders (2009), eq. 1 (low-pass); Visintin (1994) (stops); Bergstrom & Boyce (1998) (creep);
 // Johnson (1985), 6.5 (the surface lags); Lai & Mow (1980) (slowing).
 // Thread guarantee: value types; `update` is wait-free, allocates nothing and never throws; one thread at a time.
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -83,10 +79,6 @@ struct FeatureSpec {
   bool operator==(const FeatureSpec&) const = default;
 };
 
-// The material's surface halfway through a step: the mean of the last surface and the tool, or the last surface if the
-// tool has left it and not reached it again.
-double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept;
-
 // The position of the surface: that of the depth feature; 0 without one.
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;
 
@@ -138,8 +130,7 @@ class FeaturePlan {
   BranchLanes branches_;
   BristleLanes bristles_;
   std::size_t lag_ = kMaxFeatures;  // index of the surface_lag; kMaxFeatures: none
-  double surface_position_m_ = 0.0;
-  double deepest_m_;
+  double surface_position_m_ = 0.0, deepest_m_;
 };
 
 // A plan and a state, for one stream of samples.

@@ -38,10 +38,9 @@ void MotionHistory::add(const TickSnapshot& snapshot, bool restarted) {
 
 void ExtremeStates::begin(const FeaturePlan& plan, const ToolSample& sample) noexcept {
   double greatest_m = 0.0;
-  for (const FeatureSpec& spec : plan.specs()) {
+  for (const FeatureSpec& spec : plan.specs())
     for (std::size_t p = 0; p < spec.part_count; ++p)
       greatest_m = std::max(greatest_m, spec.parts[p].drive.reference_depth_m);
-  }
   unknown = greatest_m > 0.0;
   const double surface_m = surface_position_m(plan.specs());
   states = {};
@@ -84,17 +83,15 @@ void HapticsTick::rehearse() noexcept {
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     FeatureState state = filters_[i].state();
     filters_[i].plan().update(state, next, estimate);
-    for (std::size_t k = 0; k < models_.size(); ++k) {
+    for (std::size_t k = 0; k < models_.size(); ++k)
       if (filter_of_[k] == i) sum_N += models_[k]->evaluate(state.vector.values.data()).force_N;
-    }
   }
   rehearsed_N_ = sum_N;
 }
 
 void HapticsTick::recall(const MotionHistory& history) noexcept {
-  for (const ToolSample& past : history.past()) {
+  for (const ToolSample& past : history.past())
     for (FeatureFilter& filter : filters_) filter.update(past, {past.position_m, past.velocity_m_per_s});
-  }
 }
 
 void HapticsTick::continue_from(const HapticsTick& before) noexcept {
@@ -169,8 +166,7 @@ void HapticsTick::evaluate_models() noexcept {
   const std::size_t first = models_.empty() ? 0 : static_cast<std::size_t>(snapshot_.tick % models_.size());
   for (std::size_t k = 0; k < models_.size(); ++k) {
     const std::size_t i = first + k < models_.size() ? first + k : first + k - models_.size();
-    double force_N = 0.0;
-    double predicted_error_N = 0.0;
+    double force_N = 0.0, predicted_error_N = 0.0;
     if (snapshot_.in_contact) {
       const std::uint64_t before = timed_ ? cycle_count() : 0;
       const FeatureVector& vector = filters_[filter_of_[i]].vector();

@@ -1,22 +1,17 @@
 // One tick of haptic rendering: takes a tool sample, returns every model's force and a snapshot. It has no clock,
-// thread or device: replay and live loop call the same code, so the same samples give the same bits.
+// thread or device: replay and live loop call the same code, so the same samples give the same bits. Motion is
+// estimated once, features once per distinct list, forces for every model; out of contact every force is 0.
 //
-// The order is: motion estimate (once), features (once per distinct feature list among the models), forces (every
-// model). Out of contact every force is 0.
-//
-// A stream that begins in contact does not show what was pressed before, on which the force depends. The force assumes
-// that the material was at rest at this depth. Two extreme histories are simulated beside it until the tool leaves the
-// material: a sudden press from air, and a sudden retreat from a rest at the greatest depth of the training. Every
-// other history lies between them, so the larger difference of their forces is added to the predicted error. Thread
-// guarantee: construction allocates (slow side); `step` is wait-free, allocates nothing, locks nothing, does no I/O and
-// never throws; one thread at a time.
+// A stream that begins in contact does not show what was pressed before. The force assumes that the material was at
+// rest at this depth. Two extreme histories are simulated beside it until the tool leaves the material: a sudden press
+// from air, and a sudden retreat from a rest at the greatest depth of the training. The larger difference of their
+// forces is added to the predicted error. Thread guarantee: construction allocates (slow side); `step` is wait-free,
+// allocates nothing, locks nothing, does no I/O and never throws; one thread at a time.
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <memory>
 #include <type_traits>
 #include <vector>
 
@@ -93,10 +88,9 @@ class HapticsTick {
   // Slow side, before `continue_from`: advances the filters of the features by this motion.
   void recall(const MotionHistory& history) noexcept;
 
-  // Continues from the state of `before`: takes over the motion estimate and the memory of equal features, so that a
-  // change of models in mid-press does not lose the memory of the material; the snapshot is evaluated with these
-  // models. A new feature has the memory of the recalled motion if that ended less than 5 s ago, otherwise it is at
-  // rest at the last sample. Requires the same sensor. Wait-free.
+  // Continues from the state of `before`: takes over the motion estimate and the memory of equal features; the snapshot
+  // is evaluated with these models. A new feature has the memory of the recalled motion if that ended less than 5 s
+  // ago, otherwise it is at rest at the last sample. Requires the same sensor. Wait-free.
   void continue_from(const HapticsTick& before) noexcept;
 
   // Slow side: from now on `step` measures the time of each evaluation in units of engine/base/cycle_clock.h, which
@@ -128,8 +122,7 @@ class HapticsTick {
   ToolSample sample_;         // last sample
   double rehearsed_N_ = 0.0;  // result of `rehearse`, so that the compiler keeps it
   TickSnapshot snapshot_;
-  bool started_ = false;
-  bool timed_ = false;
+  bool started_ = false, timed_ = false;
 };
 
 }  // namespace palpate

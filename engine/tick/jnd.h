@@ -8,8 +8,7 @@
 namespace palpate {
 
 struct JndLine {
-  double offset_N = 0.065;
-  double weber_fraction = 0.0633;
+  double offset_N = 0.065, weber_fraction = 0.0633;
 
   double at(double force_N) const noexcept { return offset_N + weber_fraction * std::abs(force_N); }
 

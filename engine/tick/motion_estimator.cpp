@@ -12,12 +12,9 @@ void advance(motion_filter::MotionState& state, const SensorSpec& sensor, const 
   const bool repeated = state.started != 0 && sample.position_m == state.position_m;
   const double h_s = motion_filter::advance_motion(&state, n, step_s, sample.position_m);
   if (!(h_s > 0.0)) return;
-  if (n == 4) {
-    measure_motion(&state, n, 2, 3, sample.acceleration_m_per_s2, square(sensor.acceleration_noise_m_per_s2));
-  }
-  if (sensor.has_velocity) {
+  if (n == 4) measure_motion(&state, n, 2, 3, sample.acceleration_m_per_s2, square(sensor.acceleration_noise_m_per_s2));
+  if (sensor.has_velocity)
     measure_motion(&state, n, 1, 1, sample.velocity_m_per_s, square(sensor.velocity_noise_m_per_s));
-  }
   motion_filter::measure_position(&state, n, h_s, repeated, sensor.encoder_step_m, sensor.position_noise_m);
 }
 

@@ -3,18 +3,35 @@
 // which exported models share. On simulated hands (devices/virtual/hand_motion.h) behind a 30 um encoder the velocity
 // error is 0.54 of that of first-order adaptive windowing at its best settings, and 0.08 of it with an accelerometer
 // (tests/engine/tick/motion_estimator_test.cpp).
-// Thread guarantee: one thread at a time; `update` is wait-free, allocates nothing and never throws. Trivially
-// copyable.
+// Thread guarantee: one thread at a time; `update` is wait-free, allocates nothing and never throws.
 #pragma once
 
-#include "engine/tick/motion_filter.h"
+#include <cmath>
+
 #include "engine/tick/tool_sample.h"
 
 namespace palpate {
 
+// The filters of motion_filter.inc in double precision, with four states.
+namespace motion_filter {
+using real = double;
+#define R(x) (x)
+#define SQRT std::sqrt
+#define EXP std::exp
+#define LOG std::log
+#define MOTION_STATES 4
+#include "engine/tick/motion_filter.inc"
+#undef EACH_FILTER
+#undef MOTION_FILTERS
+#undef MOTION_STATES
+#undef LOG
+#undef EXP
+#undef SQRT
+#undef R
+}  // namespace motion_filter
+
 struct MotionEstimate {
-  double position_m = 0.0;
-  double velocity_m_per_s = 0.0;
+  double position_m = 0.0, velocity_m_per_s = 0.0;
 };
 
 class MotionEstimator {

@@ -17,8 +17,7 @@ constexpr std::size_t kFewestAirRows = 20;
 // The standard deviation of the force before the first contact, due to drift of the sensor, inertia and cables. 0 with
 // too few rows.
 double air_deviation_N(const RecordingRow* rows, std::size_t count, double surface_m) {
-  double sum = 0.0;
-  double squares = 0.0;
+  double sum = 0.0, squares = 0.0;
   std::size_t air = 0;
   for (; air < count && rows[air].position_m <= surface_m; ++air) {
     sum += rows[air].force_N;
@@ -67,9 +66,7 @@ class Replay {
  private:
   ReplaySummary summary_;
   HapticsTick tick_;
-  double surface_offset_m_;
-  double surface_m_;
-  double least_N_;
+  double surface_offset_m_, surface_m_, least_N_;
 };
 
 }  // namespace

@@ -1,16 +1,11 @@
 // Replays a recording through the tick of the live loop, without clock and device, as fast as possible. The same rows
-// and models give the same bits.
+// and models give the same bits, from memory or read in chunks.
 //
-// The sensor is identified from the first kSensorIdentificationRows rows, so a recording in memory and the same one
-// read in chunks give the same forces.
-//
-// For the visitor, a sample is in contact if it is beyond the surface or if the measured force exceeds both the JND at
-// 0 N and five times its noise, because an adhesive material also pulls outside. The surface is the outermost of those
-// surfaces of the models that are not at 0; without any it is at 0.
-// Thread guarantee: slow side; one thread at a time.
+// For the visitor, a sample is in contact if it is beyond the surface, the outermost of those surfaces of the models
+// that are not at 0, or if the measured force exceeds both the JND at 0 N and five times its noise, because an adhesive
+// material also pulls outside. Thread guarantee: slow side; one thread at a time.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 
@@ -27,8 +22,7 @@ using ReplayVisitor =
 
 struct ReplaySummary {
   SensorSpec sensor;
-  std::uint64_t samples = 0;
-  std::uint64_t contact_samples = 0;
+  std::uint64_t samples = 0, contact_samples = 0;
 };
 
 // The measured force above which a sample is in contact, N (certain_force_N). The noise is that of the first rows of a

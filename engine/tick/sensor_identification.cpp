@@ -1,6 +1,5 @@
 #include "engine/tick/sensor_identification.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -35,9 +34,7 @@ double quantisation_step(const RecordingRow* rows, std::size_t count, double Rec
     if (change > kFinestStep) step = std::min(step, change);
   }
   if (!std::isfinite(step)) return 0.0;
-  std::size_t moved = 0;
-  std::size_t multiples = 0;
-  std::size_t uneven = 0;
+  std::size_t moved = 0, multiples = 0, uneven = 0;
   double last_steps = 0.0;
   for (std::size_t i = 1; i < count; ++i) {
     const double steps = std::abs(rows[i].*column - rows[i - 1].*column) / step;
@@ -64,9 +61,8 @@ double quiet_noise(const RecordingRow* rows, std::size_t count, double Recording
     window_variance.push_back(sum / static_cast<double>(kWindowRows - 2));
   }
   if (window_variance.empty()) return 0.0;
-  const auto quiet = static_cast<std::ptrdiff_t>(kQuietShare * static_cast<double>(window_variance.size() - 1));
-  std::nth_element(window_variance.begin(), window_variance.begin() + quiet, window_variance.end());
-  return std::sqrt(window_variance[static_cast<std::size_t>(quiet)] / 6.0);
+  const auto quiet = static_cast<std::size_t>(kQuietShare * static_cast<double>(window_variance.size() - 1));
+  return std::sqrt(nth_smallest(window_variance, quiet) / 6.0);
 }
 
 double rounded_step(double step) {
@@ -110,9 +106,8 @@ SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, Recordin
   sensor.has_velocity = columns.velocity;
   sensor.has_acceleration = columns.acceleration;
   // The floors are finer than any sensor, and a column of exact values leaves the estimator well conditioned.
-  if (columns.velocity) {
+  if (columns.velocity)
     sensor.velocity_noise_m_per_s = std::max(1e-4, column_noise(rows, count, &RecordingRow::velocity_m_per_s));
-  }
   if (columns.acceleration) {
     sensor.acceleration_noise_m_per_s2 =
         std::max(1e-2, column_noise(rows, count, &RecordingRow::acceleration_m_per_s2));

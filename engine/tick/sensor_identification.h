@@ -1,11 +1,5 @@
 // Identifies the sensor of a recording, which the motion estimator needs: encoder step, and noise of position, velocity
-// and acceleration.
-//
-// Encoder step: the smallest change of position, if nearly all changes are its multiples, they vary, and it exceeds the
-// noise; else 0. Noise: the standard deviation of second differences divided by sqrt(6), the factor for white noise, in
-// the quietest windows, where smooth motion nearly vanishes. The position noise excludes the quantisation and is
-// rounded so that recordings of one rig have equal sensors. The source gives the thresholds. Errors: none.
-// Thread guarantee: slow side (allocates).
+// and acceleration (models/METHOD.md, Sensor). Thread guarantee: slow side (allocates).
 #pragma once
 
 #include <algorithm>

@@ -9,10 +9,7 @@ inline constexpr double kHapticTick_s = 1e-3;
 // One sample. The position is along the inward surface normal, 0 at the undisturbed surface, positive inside the block.
 // Velocity and acceleration are used only if the sensor has them (SensorSpec).
 struct ToolSample {
-  double time_s = 0.0;
-  double position_m = 0.0;
-  double velocity_m_per_s = 0.0;
-  double acceleration_m_per_s2 = 0.0;
+  double time_s = 0.0, position_m = 0.0, velocity_m_per_s = 0.0, acceleration_m_per_s2 = 0.0;
 };
 
 // The sensor of the samples. It belongs to their source (a device declares it, `identify_sensor` determines it from a

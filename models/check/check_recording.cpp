@@ -5,12 +5,9 @@
 #include <cstdio>
 #include <utility>
 
-#include "engine/recording/press_direction.h"
-#include "engine/tick/jnd.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/check/force_lag.h"
-#include "models/check/noise_floor.h"
-#include "models/check/recording_measures.h"
 
 namespace palpate {
 namespace {

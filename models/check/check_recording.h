@@ -1,9 +1,6 @@
-// Checks whether a recording is suitable for a fit. Each finding has a number, the reason why it matters, and advice.
-// palpate check, fit, replay and report use the same findings.
-//
-// Fatal findings make a fit meaningless: a flipped sign, no force, no motion, no contact. Warnings do not prevent a
-// fit, but the user should know them. Notes are measured values.
-// Thread guarantee: slow side, pure but for check_recording_file (does I/O).
+// Checks whether a recording is suitable for a fit; palpate check, fit, replay and report use the same findings. Fatal
+// ones make a fit meaningless: a flipped sign, no force, no motion, no contact. Notes are measured values. Thread
+// guarantee: slow side, pure but for check_recording_file (does I/O).
 #pragma once
 
 #include <optional>
@@ -43,7 +40,8 @@ CheckRequest check_request(const JndLine& jnd, const std::vector<FeatureSpec>& f
 
 struct RecordingCheck {
   std::vector<Finding> findings;  // in order of severity, fatal first
-  // The share of contact samples within the JND that a perfect model would have with this force noise (noise_floor.h).
+  // The share of contact samples within the JND that a perfect model would have with this force noise
+  // (recording_measures.h).
   double noise_floor_within_jnd = 1.0;
   bool surface_identified = false;
   double surface_offset_m = 0.0;  // to be subtracted from position_m; 0 if not identified
@@ -72,23 +70,18 @@ struct CheckedFile {
 
 // Errors: those of RecordingReader.
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request);
-
 // The median difference of the forces of two recordings of one set, second minus first, N, if no single model can
-// render both; else none. The cause may be another specimen, a preload, a moved surface, or a force zero. They
-// contradict each other if the central 90 % of their forces do not overlap in four of five bins of their positions, and
-// if the median difference exceeds two JND (force_curve.h). Positions count from the surfaces where both are clear, as
-// in a fit.
+// render both; else none: the central 90 % of their forces do not overlap in four of five bins of their positions, and
+// the median difference exceeds two JND (force_curve.h). Positions count from the surfaces where both are clear, as in
+// a fit.
 std::optional<double> find_contradiction_N(const PreparedRecording& first, const PreparedRecording& second,
                                            const JndLine& jnd);
-
 // Checks several recordings of one set. Equal rows, and forces that contradict those of another recording, are findings
 // of the later one. Errors: those of the first file that cannot be read.
 Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths,
                                                        const CheckRequest& request);
-
 // The recordings of checked files, for a fit.
 std::vector<PreparedRecordingPointer> training_recordings(std::vector<CheckedFile> files);
-
 // An error with the fatal findings of the first unusable file: "path: position_sign: ...; ...; force_sign: ...; ...".
 Status refuse_unusable(const std::vector<CheckedFile>& files);
 // One line for each warning: "path: gap: ...; ...".

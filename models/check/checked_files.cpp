@@ -1,7 +1,6 @@
 // Reads and checks recordings for the commands of the program.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -13,12 +12,6 @@ namespace {
 
 constexpr double kApartShare = 0.8;
 constexpr double kLeastJnds = 2.0;
-
-std::vector<ForceAtPosition> forces_of(const Recording& recording) {
-  std::vector<ForceAtPosition> forces;
-  for (const RecordingRow& row : recording.rows) forces.push_back({row.position_m, row.force_N});
-  return forces;
-}
 
 // Inserts a finding before those of its severity.
 void add_finding(CheckedFile& file, Finding finding) {
@@ -62,8 +55,7 @@ void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
 
 std::optional<double> find_contradiction_N(const PreparedRecording& first, const PreparedRecording& second,
                                            const JndLine& jnd) {
-  const std::vector<ForceAtPosition> a = forces_of(first.recording);
-  const std::vector<ForceAtPosition> b = forces_of(second.recording);
+  const std::vector<RecordingRow>&a = first.recording.rows, &b = second.recording.rows;
   const double bin_m = common_bin_m(a, b);
   if (!(bin_m > 0.0)) return std::nullopt;
   const ForceCurve one(a, bin_m);
@@ -112,9 +104,8 @@ std::vector<PreparedRecordingPointer> training_recordings(std::vector<CheckedFil
 Status refuse_unusable(const std::vector<CheckedFile>& files) {
   for (const CheckedFile& file : files) {
     std::vector<std::string> fatal;
-    for (const Finding& finding : file.check.findings) {
+    for (const Finding& finding : file.check.findings)
       if (finding.severity == Severity::fatal) fatal.push_back(finding_text(finding));
-    }
     if (!fatal.empty()) return Error{file.path + ": " + joined(fatal, "; ")};
   }
   return {};
@@ -123,9 +114,8 @@ Status refuse_unusable(const std::vector<CheckedFile>& files) {
 std::vector<std::string> warning_lines(const std::vector<CheckedFile>& files) {
   std::vector<std::string> lines;
   for (const CheckedFile& file : files) {
-    for (const Finding& finding : file.check.findings) {
+    for (const Finding& finding : file.check.findings)
       if (finding.severity == Severity::warning) lines.push_back(file.path + ": " + finding_text(finding));
-    }
   }
   return lines;
 }

@@ -15,8 +15,8 @@ constexpr double kMostBins = 6000.0;   // of the larger range
 constexpr double kLeastOverlap = 0.3;  // of the smaller number of bins
 constexpr double kTail = 0.05;         // of the forces in a bin, on either side
 
-double range_m(const std::vector<ForceAtPosition>& rows) {
-  const auto [low, high] = std::ranges::minmax(rows, {}, &ForceAtPosition::position_m);
+double range_m(const std::vector<RecordingRow>& rows) {
+  const auto [low, high] = std::ranges::minmax(rows, {}, &RecordingRow::position_m);
   return high.position_m - low.position_m;
 }
 
@@ -33,14 +33,14 @@ std::optional<double> force_N(const ForceCurve& curve, std::size_t direction, do
 
 }  // namespace
 
-ForceCurve::ForceCurve(const std::vector<ForceAtPosition>& rows, double bin_m) : bin_m_(bin_m) {
-  const double low_m = std::ranges::min(rows, {}, &ForceAtPosition::position_m).position_m;
+ForceCurve::ForceCurve(const std::vector<RecordingRow>& rows, double bin_m) : bin_m_(bin_m) {
+  const double low_m = std::ranges::min(rows, {}, &RecordingRow::position_m).position_m;
   first_m_ = low_m + 0.5 * bin_m;
   bins_.resize(static_cast<std::size_t>(range_m(rows) / bin_m) + 1);
   std::vector<std::array<std::vector<double>, 2>> forces_N(bins_.size());
   double turn_m = low_m;
   bool inward = true;
-  for (const ForceAtPosition& row : rows) {
+  for (const RecordingRow& row : rows) {
     turn_m = inward ? std::max(turn_m, row.position_m) : std::min(turn_m, row.position_m);
     if (std::abs(row.position_m - turn_m) > bin_m) {
       inward = !inward;
@@ -63,7 +63,7 @@ ForceCurve::ForceCurve(const std::vector<ForceAtPosition>& rows, double bin_m) :
   }
 }
 
-double common_bin_m(const std::vector<ForceAtPosition>& first, const std::vector<ForceAtPosition>& second) {
+double common_bin_m(const std::vector<RecordingRow>& first, const std::vector<RecordingRow>& second) {
   const auto [smaller_m, larger_m] = std::minmax({range_m(first), range_m(second)});
   return std::max(smaller_m / kBins, larger_m / kMostBins);
 }
@@ -71,11 +71,8 @@ double common_bin_m(const std::vector<ForceAtPosition>& first, const std::vector
 std::optional<CurveDifference> difference(const ForceCurve& first, const ForceCurve& second, double shift_m,
                                           const JndLine& jnd) {
   CurveDifference result;
-  std::vector<double> jnds;
-  std::vector<double> forces_N;
-  std::size_t cells = 0;
-  std::size_t compared = 0;
-  std::size_t apart = 0;
+  std::vector<double> jnds, forces_N;
+  std::size_t cells = 0, compared = 0, apart = 0;
   for (std::size_t i = 0; i < second.bins().size(); ++i) {
     const ForceCurve::Bin& bin = second.bins()[i];
     const double position_m = second.first_m() + static_cast<double>(i) * second.bin_m() - shift_m;

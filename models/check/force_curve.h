@@ -10,14 +10,10 @@
 #include <optional>
 #include <vector>
 
+#include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
 
 namespace palpate {
-
-struct ForceAtPosition {
-  double position_m = 0.0;
-  double force_N = 0.0;
-};
 
 class ForceCurve {
  public:
@@ -27,7 +23,7 @@ class ForceCurve {
   };
 
   // `rows`: at least one, in time order. A reversal by less than `bin_m`, the width of a bin, counts as noise.
-  ForceCurve(const std::vector<ForceAtPosition>& rows, double bin_m);
+  ForceCurve(const std::vector<RecordingRow>& rows, double bin_m);
 
   double bin_m() const { return bin_m_; }
   const std::vector<Bin>& bins() const { return bins_; }
@@ -35,13 +31,12 @@ class ForceCurve {
   double first_m() const { return first_m_; }
 
  private:
-  double bin_m_;
-  double first_m_;
+  double bin_m_, first_m_;
   std::vector<Bin> bins_;
 };
 
 // The width of the bins of two recordings: a sixtieth of the smaller range of positions. 0 if neither has a range.
-double common_bin_m(const std::vector<ForceAtPosition>& first, const std::vector<ForceAtPosition>& second);
+double common_bin_m(const std::vector<RecordingRow>& first, const std::vector<RecordingRow>& second);
 
 struct CurveDifference {
   double median_jnds =

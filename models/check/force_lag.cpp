@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <tuple>
 
 #include "engine/tick/sensor_identification.h"
-#include "models/linear/non_negative.h"
+#include "models/linear/lapack.h"
 
 namespace palpate {
 namespace {
@@ -154,8 +153,7 @@ class LagRegression {
   const std::vector<Sample>& rows_;
   double noise_N_;
   std::vector<std::size_t> block_;
-  double low_m_ = 0.0;
-  double high_m_ = 0.0;
+  double low_m_ = 0.0, high_m_ = 0.0;
   Eigen::VectorXd force_N_;
   Eigen::VectorXd scale_;  // 1 / N
 };
@@ -166,9 +164,8 @@ constexpr int kLeastStrokes = 3;
 // Counts how often the tool passes the middle of its range inwards.
 int strokes_of(const std::vector<Sample>& rows, double middle_m) {
   int strokes = 0;
-  for (std::size_t i = 1; i < rows.size(); ++i) {
+  for (std::size_t i = 1; i < rows.size(); ++i)
     if (rows[i - 1].motion.position_m <= middle_m && rows[i].motion.position_m > middle_m) ++strokes;
-  }
   return strokes;
 }
 

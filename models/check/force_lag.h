@@ -1,15 +1,11 @@
-// Estimates the lag of the force channel of a recording against its position channel.
-//
-// The memory of a material makes the force lead the depth, never lag. A regression with non-negative weights,
-//
+// Estimates the lag of the force channel of a recording against its position channel. The memory of a material makes
+// the force lead the depth, never lag. A regression with non-negative weights,
 //   F(t) ~ c + E(p) + sum_t b_t + eta(p) v,   p, v: position and velocity at t - lag, c: force zero,
-//
 // therefore has a larger residual where the force is late. A force that is early looks like viscosity, unless it begins
-// before contact. E and the spring of each Maxwell branch b_t are rising splines over the positions, and eta is not
-// negative. All are 0 in air, so the position of the surface is not needed. Residuals are divided by the noise plus 3 %
-// of the force, with a Huber loss beyond 3; a row without force counts only where the fit is positive. Lags of -50 to
-// 50 ms are searched; a lag that does not improve the fit significantly is 0 (profile_search.h).
-// Thread guarantee: slow side, pure.
+// before contact. E and the spring of each Maxwell branch b_t are rising splines over the positions, all 0 in air.
+// Residuals are divided by the noise plus 3 % of the force, with a Huber loss beyond 3. Lags of -50 to 50 ms are
+// searched; a lag that does not improve the fit significantly is 0 (profile_search.h). Thread guarantee: slow side,
+// pure.
 #pragma once
 
 #include "models/samples/profile_search.h"
@@ -24,7 +20,6 @@ inline constexpr double kLagAccuracy_s = 0.002;
 // `rows`: of a recording, in time order; uses the first 4000 that are at least 5 ms apart. `at` > 0 s: the force is
 // late. Not identified with fewer than 100 rows or three strokes, or with rows too far apart.
 OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_noise_N);
-
 // The rows with the force shifted by `lag_s` to earlier times; rows for which no force was recorded are dropped.
 std::vector<Sample> without_lag(const std::vector<Sample>& rows, double lag_s);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "engine/base/text.h"
 #include "models/samples/sample.h"
@@ -41,15 +40,6 @@ void measure_sampling(const std::vector<RecordingRow>& rows, RecordingMeasures& 
   measures.duration_s = rows.back().time_s - rows.front().time_s;
 }
 
-void measure_ranges(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
-  const auto [outermost, deepest] = std::ranges::minmax(rows, {}, &RecordingRow::position_m);
-  measures.lowest_position_m = outermost.position_m;
-  measures.highest_position_m = deepest.position_m;
-  const auto [weakest, strongest] = std::ranges::minmax(rows, {}, &RecordingRow::force_N);
-  measures.lowest_force_N = weakest.force_N;
-  measures.highest_force_N = strongest.force_N;
-}
-
 // Runs of rows with one force. Those at the greatest force are flat tops, and the others, above half of it, show how
 // far the tool moves within one step of a quantised or held force.
 void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
@@ -57,8 +47,7 @@ void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures&
   for (std::size_t i = 0; i < rows.size();) {
     const std::size_t begin = i;
     const double force_N = rows[i].force_N;
-    double low_m = rows[i].position_m;
-    double high_m = rows[i].position_m;
+    double low_m = rows[i].position_m, high_m = rows[i].position_m;
     for (; i < rows.size() && rows[i].force_N == force_N; ++i) {
       low_m = std::min(low_m, rows[i].position_m);
       high_m = std::max(high_m, rows[i].position_m);
@@ -72,9 +61,7 @@ void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures&
   }
   if (step_travels_m.empty()) return;
   const auto count = static_cast<double>(step_travels_m.size() - 1);
-  const auto most = step_travels_m.begin() + static_cast<std::ptrdiff_t>(kMostSteps * count);
-  std::nth_element(step_travels_m.begin(), most, step_travels_m.end());
-  measures.step_travel_m = *most;
+  measures.step_travel_m = nth_smallest(step_travels_m, static_cast<std::size_t>(kMostSteps * count));
 }
 
 // Divides a motion into strokes in and out. A stroke ends when the depth has come back from its extreme by more than
@@ -82,8 +69,7 @@ void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures&
 struct Strokes {
   double least_m;
   bool inwards;
-  double begin_m = 0.0;
-  double extreme_m = 0.0;
+  double begin_m = 0.0, extreme_m = 0.0;
 
   // The length of the stroke that ends with this depth.
   std::optional<double> end_at(double depth_m) {
@@ -148,13 +134,20 @@ void measure_motion(const std::vector<RecordingRow>& rows, RecordingMeasures& me
   measures.hold_change_N = measures.hold_end_N - mean_force_N(rows, longest_first + held / 2 + averaged, averaged);
 }
 
+constexpr std::size_t kMostSamples = 10000;  // of a recording; of a longer one every n-th is used
+
 }  // namespace
 
 RecordingMeasures measure_recording(const Recording& recording, double surface_m) {
   RecordingMeasures measures;
   const auto& rows = recording.rows;
   measure_sampling(rows, measures);
-  measure_ranges(rows, measures);
+  const auto [outermost, deepest] = std::ranges::minmax(rows, {}, &RecordingRow::position_m);
+  measures.lowest_position_m = outermost.position_m;
+  measures.highest_position_m = deepest.position_m;
+  const auto [weakest, strongest] = std::ranges::minmax(rows, {}, &RecordingRow::force_N);
+  measures.lowest_force_N = weakest.force_N;
+  measures.highest_force_N = strongest.force_N;
   measure_flat_tops(rows, measures);
   measures.outermost_contact_m = std::max(surface_m, measures.lowest_position_m);
   measure_motion(rows, measures);
@@ -166,6 +159,40 @@ std::array<std::string, kSpeedBands> speed_band_names(const RecordingMeasures& m
   const std::string low = general(kSpeedEdges_per_s[0] * pressed_mm, 2);
   const std::string high = general(kSpeedEdges_per_s[1] * pressed_mm, 2);
   return {"below " + low + " mm/s", low + " to " + high + " mm/s", "above " + high + " mm/s"};
+}
+
+NoiseFloor noise_floor(const std::vector<const PreparedRecording*>& recordings, const JndLine& jnd) {
+  std::vector<double> noise_over_jnd;
+  double squares_N2 = 0.0;
+  for (const PreparedRecording* prepared : recordings) {
+    const std::vector<RecordingRow>& rows = prepared->recording.rows;
+    const SurfaceEstimate& surface = prepared->surface;
+    const double noise_N = prepared->force_noise_N;
+    for (std::size_t i = 0; i < rows.size(); i += rows.size() / kMostSamples + 1) {
+      if (!(rows[i].position_m > surface.offset_m)) continue;
+      noise_over_jnd.push_back(noise_N / jnd.at(rows[i].force_N - surface.force_zero_N));
+      squares_N2 += noise_N * noise_N;
+    }
+  }
+  NoiseFloor floor;
+  if (!(squares_N2 > 0.0)) return floor;
+  const auto count = static_cast<double>(noise_over_jnd.size());
+  floor.force_noise_N = std::sqrt(squares_N2 / count);
+  const auto share = [&](double jnds) {
+    double inside = 0.0;
+    for (const double noise : noise_over_jnd) inside += std::erf(jnds / (std::sqrt(2.0) * std::max(noise, 1e-9)));
+    return inside / count;
+  };
+  floor.within_jnd = share(1.0);
+  // Bisection. Its upper end suffices: 99 % of a normal distribution are within 2.576 standard deviations.
+  double low = 0.0;
+  double high = 2.6 * *std::max_element(noise_over_jnd.begin(), noise_over_jnd.end());
+  while (high - low > 1e-3 * high) {
+    const double middle = 0.5 * (low + high);
+    (share(middle) < 0.99 ? low : high) = middle;
+  }
+  floor.p99_error_over_jnd = high;
+  return floor;
 }
 
 }  // namespace palpate

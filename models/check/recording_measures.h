@@ -1,12 +1,14 @@
-// Measures of the sampling, the force and the motion of a recording.
+// Measures of the sampling, the force and the motion of a recording, and the figures of merit that its noise permits.
 // Thread guarantee: slow side, pure.
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "engine/recording/recording.h"
+#include "engine/tick/jnd.h"
+#include "models/samples/prepared_recording.h"
 
 namespace palpate {
 
@@ -19,14 +21,8 @@ inline constexpr std::array<double, kSpeedBands - 1> kSpeedEdges_per_s = {1.0, 5
 inline constexpr double kLeastCell_s = 0.05;
 
 struct RecordingMeasures {
-  double duration_s = 0.0;
-  double median_step_s = 0.0;
-  double largest_step_s = 0.0;
-  double largest_step_at_s = 0.0;
-  double lowest_position_m = 0.0;
-  double highest_position_m = 0.0;
-  double lowest_force_N = 0.0;
-  double highest_force_N = 0.0;
+  double duration_s = 0.0, median_step_s = 0.0, largest_step_s = 0.0, largest_step_at_s = 0.0;
+  double lowest_position_m = 0.0, highest_position_m = 0.0, lowest_force_N = 0.0, highest_force_N = 0.0;
   // Clipping: the number of rows at exactly the greatest force, in runs of at least three, and the largest range of
   // positions in one run.
   std::size_t flat_rows = 0;
@@ -38,8 +34,7 @@ struct RecordingMeasures {
   double outermost_contact_m = 0.0;
   std::size_t contact_rows = 0;
   int strokes = 0;
-  double inward_travel_m = 0.0;
-  double outward_travel_m = 0.0;
+  double inward_travel_m = 0.0, outward_travel_m = 0.0;
   int small_strokes = 0;        // in contact, with a length of 5 to 40 % of the greatest depth
   double longest_hold_s = 0.0;  // in contact, moving by less than 2 % of the depth
   double hold_change_N = 0.0;   // of the force from the middle to the end of that hold, means of a tenth of its rows
@@ -48,8 +43,18 @@ struct RecordingMeasures {
 };
 
 RecordingMeasures measure_recording(const Recording& recording, double surface_m);
-
 // "below 10 mm/s", "10 to 50 mm/s", "above 50 mm/s".
 std::array<std::string, kSpeedBands> speed_band_names(const RecordingMeasures& measures);
+
+// The figures of merit of a perfect model, whose error e is normal with the standard deviation s of the force sensor:
+//   within the JND = mean over the samples of P(|e| <= JND(f));  99 % error: the q with mean P(|e| <= q JND(f)) = 0.99
+struct NoiseFloor {
+  double force_noise_N = 0.0;  // RMS of s over the samples in contact
+  double within_jnd = 1.0, p99_error_over_jnd = 0.0;
+};
+
+// Uses the samples in contact of all `recordings`, at most 10,000 rows of each, evenly spaced. Contact begins at the
+// estimated surface, and forces count from the estimated force zero.
+NoiseFloor noise_floor(const std::vector<const PreparedRecording*>& recordings, const JndLine& jnd);
 
 }  // namespace palpate

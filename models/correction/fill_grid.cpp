@@ -1,7 +1,6 @@
 #include "models/correction/fill_grid.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <vector>
 
 namespace palpate {

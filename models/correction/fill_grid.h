@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <functional>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "models/model/grid/voxel_grid.h"
 

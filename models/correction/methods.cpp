@@ -6,6 +6,15 @@
 
 namespace palpate {
 
+// The trend without a correction: the smallest model, and the baseline of every other method.
+const Method kTrendMethod{
+    .name = "trend",
+    .label = "trend",
+    .colour = 0xCC79A7,
+    .expected_seconds = 0.01,
+    .fit = [](const MethodTask&, const FitControl&) -> Result<FittedCorrection> { return FittedCorrection{}; },
+};
+
 const std::vector<const Method*>& methods() {
   static const std::vector<const Method*> table{&kTrendMethod,  &kDirectMethod, &kVoxelMethod,
                                                 &kRandomMethod, &kKdTreeMethod, &kGreedyMethod};
@@ -36,9 +45,8 @@ Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::Matrix
     return Error{"the weights of the centres could not be computed; check the recording for extreme values"};
   FittedCorrection fitted{
       std::make_shared<const RbfCorrection>(std::move(solved.function)), {}, solved.rank, solved.condition_number};
-  if (centres.cols() < task.centres) {
+  if (centres.cols() < task.centres)
     fitted.notes.push_back("only " + std::to_string(centres.cols()) + " centres: " + shortage);
-  }
   return fitted;
 }
 

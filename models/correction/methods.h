@@ -1,8 +1,6 @@
 // The table of methods. All code that offers, fits, draws or times methods iterates over `methods()`. A new method is
-// one source file that defines its row and its fit, and its name here and in the table of methods.cpp.
-//
-// A method computes the correction of a model (models/model/correction.h) from the sites, which are the same for all
-// methods; models/fit does the rest.
+// one source file that defines its row and its fit, and its name here and in the table of methods.cpp. It computes the
+// correction of a model (models/model/correction.h) from the sites; models/fit does the rest.
 // Thread guarantee: rows are constants; the functions are slow side.
 #pragma once
 
@@ -11,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "models/correction/sites.h"
 #include "models/model/correction.h"
@@ -72,10 +70,8 @@ struct Method {
 const std::vector<const Method*>& methods();
 // The sum for the method and its base.
 double expected_seconds(const Method& method);
-
 // Fits the method, and before it its base if the task has none. Errors: those of validate_sites and of the method.
 Result<FittedCorrection> fit_correction(const Method& method, const MethodTask& task, const FitControl& control = {});
-
 // For methods that select centres (d x n): their weights (models/correction/solve_weights.h). `shortage`: why there are
 // fewer than planned. Errors: the weights could not be computed.
 Result<FittedCorrection> fit_centres(const MethodTask& task, const Eigen::MatrixXd& centres,

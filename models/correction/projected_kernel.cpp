@@ -67,9 +67,7 @@ Eigen::MatrixXd ProjectedKernel::matrix(double fill, double smoothing) const {
   Eigen::MatrixXd matrix(count, count);
   const BlasThreads one_thread(1);
   parallel_for(blocks, [&](int block) {
-    const Eigen::Index first = block * kBlock;
-    const Eigen::Index columns = std::min(kBlock, count - first);
-    const Eigen::Index rows = count - first;
+    const Eigen::Index first = block * kBlock, columns = std::min(kBlock, count - first), rows = count - first;
     auto part = matrix.block(first, first, rows, columns);
     kernel_matrix(kernel_, arrays_, points_.middleCols(first, columns), part, first);
     part.array().colwise() *= scale_.tail(rows).array();

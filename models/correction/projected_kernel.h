@@ -1,14 +1,10 @@
 // The kernel matrix between points, with the polynomial tail projected out.
 //
 // With S = diag(scale), K = sign S Phi S, q an orthonormal basis of the columns of S G and P = I - q q^T: if u = P u,
-// the weights w = sign S u satisfy the side condition G^T w = 0, and their roughness w^T (sign Phi) w = u^T P K P u is
-// never negative (the saddle matrix of eq. 4 is indefinite). Two fits use the matrix:
-// - All sites are centres (fit_direct.h). The smoothing spline, which minimises
-//     sum_i scale_i^2 (f_i - h(x_i))^2 + smoothing w^T (sign Phi) w,
-//   solves (P K P + smoothing I) u = P S f.
-// - Some points are centres (solve_weights.h). The matrix of the centres, with S = I, is the penalty.
-// Source: Hoever & Harders (2009), eqs. 2-8; Wahba (1990) for the form.
-// Thread guarantee: slow side.
+// the weights w = sign S u satisfy the side condition G^T w = 0, and their roughness w^T (sign Phi) w is u^T P K P u >=
+// 0. With all sites as centres (fit_direct.h) the smoothing spline solves (P K P + smoothing I) u = P S f; with some
+// (solve_weights.h) the matrix of the centres, with S = I, is the penalty.
+// Source: Hoever & Harders (2009), eqs. 2-8; Wahba (1990) for the form. Thread guarantee: slow side.
 #pragma once
 
 #include <Eigen/Core>
@@ -59,8 +55,7 @@ class ProjectedKernel {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> tail_;  // of S G with columns of length 1
   Eigen::MatrixXd q_;                                             // N x rank
   Eigen::MatrixXd half_update_;                                   // V of P K P = K - q V^T - V q^T
-  double mean_eigenvalue_ = 1.0;
-  double smallest_smoothing_ = 0.0;
+  double mean_eigenvalue_ = 1.0, smallest_smoothing_ = 0.0;
 };
 
 }  // namespace palpate

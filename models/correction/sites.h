@@ -1,14 +1,25 @@
-// The data of a correction. A site is a normalised feature vector with its measured force (the pairs {u_i; f_i} of
-// Hoever & Harders 2009, section 3) and the factor of its residual. Thread guarantee: value types and pure functions.
+// The data of a correction, and how samples become sites by normalisation and thinning (models/METHOD.md, Features,
+// normalisation, sites).
+//
+// Normalisation: u = (x - mean) / sqrt(range x 4 sigma) for each feature, over the samples in contact. The range alone
+// would compress all slow motion after one fast poke; sigma alone would stretch the poke.
+//
+// Thinning, one of
+//   coverage  all samples in a cube of the feature space, of one fold, with force or without, become one site
+//             with their means (default). This thins rests, keeps every visited region and averages noise.
+//   force     the reduction of the paper (section 2.1): a sample is kept when the force has changed by 50 mN
+//   none      every sample in contact
+// The step of each grows by a quarter while there are too many sites. Thread guarantee: slow side, pure.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
+#include <array>
 #include <vector>
 
 #include "engine/base/random_stream.h"
 #include "engine/base/result.h"
 #include "models/model/rbf/kernels.h"
+#include "models/samples/samples.h"
 
 namespace palpate {
 
@@ -19,7 +30,7 @@ struct Sites {
   Eigen::VectorXd row_scale;
   KernelKind kernel = KernelKind::cubic;
   // Factor of the roughness penalty: the ratio of noise variance to prior variance, which does not depend on the number
-  // of centres. A fit selects it by cross-validation (models/fit/correction_choice.h).
+  // of centres. A fit selects it by cross-validation (models/fit/residual_rows.h).
   double smoothing = 0.0;
   // Above 0: the weights of centres are those of Hoever & Harders (2009), by a pseudo-inverse without the singular
   // values below this share of the largest, instead of the penalty.
@@ -36,15 +47,26 @@ struct Sites {
 
 // Errors: a number is not finite.
 Status validate_sites(const Sites& sites);
-
 // At most `most` of the sites, spread evenly over their order.
 Sites even_subset(const Sites& sites, Eigen::Index most);
-
 // Indices, ascending, of the sites without duplicates: of sites at exactly the same point the first is kept.
 std::vector<Eigen::Index> distinct_sites(const Sites& sites);
-
 // Draws up to `most` of the indices without replacement and moves them to the front (Fisher & Yates). Returns the
 // number of drawn ones.
 std::size_t draw_first(std::vector<Eigen::Index>& indices, Eigen::Index most, SplitMix64& random);
+
+enum class Thinning { coverage, force, none };
+// In commands and model files, in the order of the values.
+inline constexpr std::array<const char*, 3> kThinningNames{"coverage", "force", "none"};
+
+inline constexpr std::size_t kMaximumSites = 10000;
+inline constexpr std::size_t kCoverageSites = 7500;  // the paper worked with 6,850
+inline constexpr double kCoverageStep = 0.005;       // at the start, in normalised feature space
+
+// `features`: at the samples in contact, one column each, SI.
+Normalisation normalisation_of(const Eigen::MatrixXd& features);
+// The sites without targets and row scales, with normalised points. `step_N`: receives the step of Thinning::force.
+Sites thin(const Samples& samples, const Eigen::MatrixXd& features, const Normalisation& normalisation,
+           Thinning thinning, double& step_N);
 
 }  // namespace palpate

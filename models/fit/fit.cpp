@@ -2,34 +2,138 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cmath>
 #include <numeric>
-#include <utility>
 
-#include "engine/base/parallel.h"
 #include "engine/base/text.h"
 #include "models/correction/methods.h"
-#include "models/fit/bound_estimator.h"
 
 namespace palpate {
 namespace {
+
+bool selects_features(const ModelPlan& plan) {
+  return plan.base == Base::trend && plan.features == FeatureChoice::automatic;
+}
+
+// Depth and velocity of these features, with low-passes of these times.
+std::vector<FeatureSpec> with_filters(std::vector<FeatureSpec> features, const std::vector<double>& times_s) {
+  std::erase_if(features, [](const FeatureSpec& spec) {
+    return spec.kind != FeatureKind::depth && spec.kind != FeatureKind::velocity;
+  });
+  for (const double time_s : times_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
+  return features;
+}
+
+// The scene's features with the relaxation times of the scene, of the plan, or identified ones.
+Result<FeatureList> scene_list(const Samples& samples, const TrainingScene& scene, const ModelPlan& plan,
+                               const FitControl& control) {
+  const bool velocity = has_kind(scene.features, FeatureKind::velocity);
+  const std::vector<double> times_s = relaxation_times_s(scene.features);
+  const bool papers = plan.features == FeatureChoice::automatic;
+  if (!papers && plan.relaxation == Relaxation::scene) return single_times(velocity, times_s);
+  if (times_s.empty()) {
+    if (papers) return single_times(velocity, times_s);
+    return Error{"scene \"" + scene.name +
+                 "\" has no relaxation features; leave out --relaxation, or use a scene "
+                 "that has them (palpate scenes)"};
+  }
+  if (!papers && plan.relaxation == Relaxation::given) return single_times(velocity, plan.relaxation_times_s);
+  const auto identified = identify_relaxation(samples, {scene.jnd}, velocity, papers ? 2 : 0, control);
+  if (!identified) return identified.error();
+  return single_times(velocity, *identified);
+}
+
+// The gain of each part of the list: the cross-validated error with it and without it.
+void add_gains(std::vector<PartGain>& gains, const TrendColumns& columns, const TrendEstimator& estimator,
+               const CrossValidated& with_all, const Eigen::VectorXd& x) {
+  const auto& features = columns.list().features;
+  for (std::size_t f = 1; f < features.size(); ++f) {  // after the depth
+    const auto others = columns.columns_of([f](std::size_t other) { return other != f; });
+    const bool taken = (x(columns.feature_columns()[f]).array() > 0.0).any();
+    gains.push_back({term_name(features[f]), taken, with_all.errors.rms_at_mean_score(),
+                     estimator.cross_validate(others).errors.rms_at_mean_score()});
+  }
+  std::stable_partition(gains.begin(), gains.end(), [](const PartGain& one) { return one.taken; });
+}
+
+// The trend, and the features with the drive curves that its regression determines.
+struct TrendFit {
+  TrendColumns columns;
+  FittedTrend fitted;
+  Eigen::MatrixXd left_out;  // the weights of the trends fitted without each fold
+};
+
+Result<TrendFit> fit_trend(const Samples& samples, FeatureList list, const TrendWeights& weights, bool selects,
+                           std::vector<PartGain>& gains, const FitControl& control) {
+  // Enough rows to average out the noise.
+  auto columns = TrendColumns::make(samples, std::move(list), 8000, control);
+  if (!columns) return columns.error();
+  const TrendEstimator estimator(*columns, weights);
+  const CrossValidated left_out = estimator.cross_validate(estimator.all_columns());
+  const Eigen::VectorXd x = estimator.fit(estimator.all_columns());
+  if (selects) add_gains(gains, *columns, estimator, left_out, x);
+  FittedTrend fitted = fitted_trend(*columns, x, !selects);
+  return TrendFit{std::move(*columns), std::move(fitted), left_out.solutions};
+}
+
+// Targets and factors of the sites, their cover, and the limit of the correction.
+void finish_sites(PreparedTraining& prepared, const ModelPlan& plan) {
+  ModelData& common = prepared.common;
+  Sites& sites = prepared.sites;
+  sites.kernel = plan.kernel.value_or(KernelKind::cubic);
+  const double no_force_N = prepared.samples->no_force_N();
+  for (Eigen::Index k = 0; k < sites.count(); ++k) {
+    const Eigen::VectorXd x = common.offset + common.scale.cwiseProduct(sites.points.col(k));
+    const double trend_N = common.trend.at(x.data(), common.features);
+    const double force_N = sites.force_N(k);
+    // Where no force is measured and the trend is below 0, no correction is needed.
+    const bool needless = std::abs(force_N) <= no_force_N && trend_N < 0.0;
+    sites.target_N(k) = needless ? 0.0 : force_N - trend_N;
+    // A dwell of many samples counts as at most 16.
+    sites.row_scale(k) = row_scale(plan.weights(), common.jnd, force_N) * std::sqrt(std::min(sites.samples(k), 16.0));
+  }
+  common.cover = make_cover(sites.points);
+  common.correction_limit_N =
+      std::min(1.1 * sites.target_N.lpNorm<Eigen::Infinity>(), kMaximumForce_N);  // that of a model file
+  if (plan.base == Base::trend) return;
+  // The paper uses its function everywhere, within the limits of the force only.
+  common.cover.inner_radius = kEverywhere;
+  common.cover.outer_radius = 2.0 * kEverywhere;
+  common.correction_limit_N = kForceMargin * std::max(common.largest_force_N, -common.lowest_force_N);
+}
+
+void set_provenance(PreparedTraining& prepared, const TrainingScene& scene, const ModelPlan& plan) {
+  const Samples& samples = *prepared.samples;
+  Provenance& provenance = prepared.common.provenance;
+  provenance.offsets = samples.offsets;
+  for (const RecordingOffset& one : samples.offsets) provenance.recordings.push_back(one.name);
+  provenance.scene = scene.name;
+  provenance.samples = samples.recorded_rows;
+  provenance.contact_samples = samples.contact.size();
+  provenance.samples_after_reduction = static_cast<std::uint64_t>(prepared.sites.count());
+  provenance.weighting = kWeightingNames[static_cast<std::size_t>(plan.weights())];
+  provenance.thinning = kThinningNames[static_cast<std::size_t>(plan.thins())];
+  const Relaxation relaxation = plan.features == FeatureChoice::automatic ? Relaxation::automatic
+                                : plan.features == FeatureChoice::given   ? Relaxation::given
+                                                                          : plan.relaxation;
+  provenance.relaxation = kRelaxationNames[static_cast<std::size_t>(relaxation)];
+}
 
 // The finished fraction of a fit after its choices, and after the method. The fits without each fold follow.
 constexpr double kChosen = 0.15;
 constexpr double kFitted = 0.6;
 
-// At most this many samples, evenly spaced, for the share of the training within the JND.
-constexpr std::size_t kMostEvaluated = 100000;
-
+// The share of the training within the JND, of at most 100,000 samples, evenly spaced.
 double share_within_jnd(const PreparedTraining& prepared, const ModelData& data) {
-  constexpr std::size_t kParts = 4;
   const FittedModel model(data);
   const Samples& samples = *prepared.samples;
-  const std::size_t stride = samples.contact.size() / kMostEvaluated + 1;
+  const std::size_t stride = samples.contact.size() / 100000 + 1;
   const std::size_t count = (samples.contact.size() + stride - 1) / stride;
-  std::array<std::size_t, kParts> within{};
-  parallel_for(kParts, [&](int part) {
+  std::array<std::size_t, 4> within{};
+  parallel_for(4, [&](int part) {
     const auto p = static_cast<std::size_t>(part);
-    for (std::size_t i = count * p / kParts; i < count * (p + 1) / kParts; ++i) {
+    for (std::size_t i = count * p / within.size(); i < count * (p + 1) / within.size(); ++i) {
       const Eigen::VectorXd x = prepared.features.col(static_cast<Eigen::Index>(i * stride));
       const double measured_N = samples.rows[samples.contact[i * stride]].force_N;
       if (data.jnd.error_over_jnd(model.evaluate(x.data()).force_N, measured_N) <= 1.0) ++within[p];
@@ -61,7 +165,7 @@ Result<CorrectionPtr> fit_without(const PreparedTraining& prepared, int fold, co
 // The sites of the selected kernel, normalisation and regularisation.
 Sites chosen_sites(const OpenChoices& choices, const PreparedTraining& prepared, ModelData& data) {
   Sites sites = prepared.sites;
-  data.scale = prepared.normalisation.scale_of(choices.range_exponent);
+  data.scale = prepared.common.scale_of(choices.range_exponent);
   const Eigen::VectorXd factor = prepared.common.scale.cwiseQuotient(data.scale);
   sites.points = factor.asDiagonal() * sites.points;
   data.cover.points = factor.asDiagonal() * data.cover.points;
@@ -72,6 +176,60 @@ Sites chosen_sites(const OpenChoices& choices, const PreparedTraining& prepared,
 }
 
 }  // namespace
+
+Result<PreparedTraining> prepare_training(SamplesPointer samples, const TrainingScene& scene, const ModelPlan& plan,
+                                          const FitControl& control) {
+  PreparedTraining prepared;
+  prepared.samples = std::move(samples);
+  const Samples& table = *prepared.samples;
+  const TrendWeights weights{scene.jnd, plan.weights()};
+  auto list = plan.features == FeatureChoice::given ? Result<FeatureList>(plan.list)
+              : selects_features(plan)
+                  ? select_memory_law(table, weights, dictionary(table), prepared.gains, control.at(0.1))
+                  : scene_list(table, scene, plan, control.at(0.1));
+  if (!list) return list.error();
+  ModelData& common = prepared.common;
+  common.jnd = scene.jnd;
+  common.largest_force_N = table.force_N;
+  common.lowest_force_N = table.lowest_force_N;
+  common.sensor = table.sensor;
+  if (table.always_N > scene.jnd.at(0.0)) common.surface_step_N = table.always_N;
+  common.trend.reference_depth_m = table.depth_m;
+  std::optional<TrendFit> trend;
+  if (plan.base == Base::trend) {
+    auto fitted = fit_trend(table, std::move(*list), weights, selects_features(plan), prepared.gains, control.at(0.3));
+    if (!fitted) return fitted.error();
+    trend = std::move(*fitted);
+    common.trend = trend->fitted.trend;
+    common.features = trend->fitted.features;
+  } else {
+    const auto& kinds = plan.features == FeatureChoice::given ? plan.list.features : scene.features;
+    common.features = with_filters(kinds, relaxation_times_s(list->features));
+  }
+  auto features = features_at(table, common.features, table.contact, control.at(0.6));
+  if (!features) return features.error();
+  prepared.features = std::move(*features);
+  static_cast<Normalisation&>(common) = normalisation_of(prepared.features);
+  prepared.sites = thin(table, prepared.features, common, plan.thins(), prepared.thinning_force_N);
+  finish_sites(prepared, plan);
+  if (!control.may_continue(0.7)) return interrupted();
+  if (trend) {
+    prepared.left_out = residual_rows(common, trend->columns, weights, prepared.features, trend->left_out);
+    prepared.left_out->kernel = prepared.sites.kernel;
+    const CorrectionChoice choice = choose_correction(*prepared.left_out, common);
+    prepared.correction = choice;
+    prepared.sites.smoothing = choice.smoothing;
+    const double outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
+    common.cover.inner_radius = choice.inner_radius;
+    common.cover.outer_radius = outer_to_inner * choice.inner_radius;
+  }
+  // A model takes positions in the coordinate of its recordings.
+  for (FeatureSpec& spec : common.features)
+    if (spec.kind == FeatureKind::depth) spec.surface_position_m = table.surface_m;
+  set_provenance(prepared, scene, plan);
+  if (!control.may_continue(1.0)) return interrupted();
+  return prepared;
+}
 
 Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
   Eigen::VectorXd jnd_N(prepared.sites.count());
@@ -91,7 +249,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
     Result<OpenChoices> selected = choices != nullptr ? *choices : OpenChoices{};
     if (choices == nullptr) {
       selected =
-          select_open_choices(*prepared.samples, prepared.features, prepared.normalisation, sites, data,
+          select_open_choices(*prepared.samples, prepared.features, prepared.common, sites, data,
                               plan.selects_centres() ? plan.centres : 0, plan.kernel, control.part(0.0, kChosen));
     }
     if (!selected) return selected.error();
@@ -144,6 +302,53 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
   if (!control.may_continue(0.99)) return interrupted();
   data.provenance.training_within_jnd = share_within_jnd(prepared, data);
   if (!control.may_continue(1.0)) return interrupted();
+  return fit;
+}
+
+Result<SamplesPointer> ModelFits::samples(const FitControl& control) {
+  if (samples_ == nullptr) {
+    auto made = make_samples(recordings_, scene_.jnd, control);
+    if (!made) return made.error();
+    samples_ = std::make_shared<const Samples>(std::move(*made));
+  }
+  return samples_;
+}
+
+Result<const PreparedTraining*> ModelFits::prepare(const ModelPlan& plan, const FitControl& control) {
+  for (const auto& [other, prepared] : prepared_)
+    if (same_preparation(plan, other)) return prepared.get();
+  const auto table = samples(control.at(0.0));
+  if (!table) return table.error();
+  auto made = prepare_training(*table, scene_, plan, control);
+  if (!made) return made.error();
+  prepared_.emplace_back(plan, std::make_unique<PreparedTraining>(std::move(*made)));
+  return prepared_.back().second.get();
+}
+
+Result<ModelFits::Fit> ModelFits::fit(const ModelPlan& plan, const FitControl& control) {
+  const auto prepared = prepare(plan, control);
+  if (!prepared) return prepared.error();
+  const MethodFit* base = nullptr;
+  const OpenChoices* choices = nullptr;
+  double seconds = 0.0;
+  for (const auto& [other, fit] : fits_) {
+    if (!same_preparation(plan, other) || plan.kernel != other.kernel) continue;
+    const bool same_size =
+        plan.selects_centres() == other.selects_centres() && (!plan.selects_centres() || plan.centres == other.centres);
+    if (fit.choices && same_size) choices = &*fit.choices;
+    if (plan.method->base != other.method) continue;
+    base = &fit;
+    seconds = fit.seconds;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  auto made = fit_method(**prepared, plan, control, base, choices);
+  if (!made) return made.error();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  Fit fit{std::move(*made), elapsed.count() + seconds};
+  const bool starts_others =
+      std::ranges::any_of(methods(), [&](const Method* one) { return one->base == plan.method; });
+  const bool has_choices = fit.choices && choices == nullptr;
+  if (starts_others || has_choices) fits_.emplace_back(plan, fit);
   return fit;
 }
 

@@ -1,27 +1,24 @@
 // The fit of a model to the samples of recordings (`palpate fit`), in two steps, so that plans that differ in the
 // method only share the first.
-//
 //   prepare_training   features, trend, normalisation, thinned sites, domain, whether the correction is used
 //   fit_method         one of the methods of models/correction/methods.h on the prepared sites
-//
 // With Base::trend the methods fit the residual of the trend. With Base::force they fit the measured force, as Hoever &
-// Harders (2009): the scene's features with two identified relaxation times, the 50 mN reduction, rows scaled by 1 / f,
-// no trend and no trust. What the paper leaves open is selected by cross-validation (open_choices.h). Forces are
-// limited as in every model, to 1.2 times the largest measured one and to 0, or to the lowest one of a material that
-// pulls. Thread guarantee: slow side.
+// Harders (2009), and what the paper leaves open is selected by cross-validation (open_choices.h).
+// Thread guarantee: slow side.
 #pragma once
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
-#include "models/fit/correction_choice.h"
 #include "models/fit/model_plan.h"
 #include "models/fit/open_choices.h"
+#include "models/fit/residual_rows.h"
 #include "models/model/fitted_model.h"
-#include "models/trend/memory_law.h"
+#include "models/trend/trend_estimator.h"
 
 namespace palpate {
 
@@ -36,8 +33,7 @@ struct TrainingScene {
 
 struct PreparedTraining {
   SamplesPointer samples;
-  Eigen::MatrixXd features;  // at the samples in contact, one column each, SI
-  Normalisation normalisation;
+  Eigen::MatrixXd features;                    // at the samples in contact, one column each, SI
   Sites sites;                                 // target: the residual of the trend, or the force
   double thinning_force_N = 0.0;               // the step of Thinning::force
   ModelData common;                            // the parts of the model that all methods have in common
@@ -62,15 +58,38 @@ struct MethodFit {
 // Errors: the plan does not suit the scene; interrupted.
 Result<PreparedTraining> prepare_training(SamplesPointer samples, const TrainingScene& scene, const ModelPlan& plan,
                                           const FitControl& control = {});
-
 // The JND at the force of each site.
 Eigen::VectorXd site_thresholds(const PreparedTraining& prepared);
-
 // Fits the method of a plan with this preparation. Deterministic. `base`: a fit with the same preparation by the base
 // of the method (methods.h), which is then not repeated. `choices`: those of a fit with this preparation and number of
 // centres. Errors: the method cannot be fitted to these sites (says why); the forces of the model are not finite;
 // interrupted.
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& plan, const FitControl& control = {},
                              const MethodFit* base = nullptr, const OpenChoices* choices = nullptr);
+
+class ModelFits {
+ public:
+  ModelFits(std::vector<PreparedRecordingPointer> recordings, TrainingScene scene)
+      : recordings_(std::move(recordings)), scene_(std::move(scene)) {}
+  ModelFits(SamplesPointer samples, TrainingScene scene) : scene_(std::move(scene)), samples_(std::move(samples)) {}
+
+  // The samples of the recordings. Errors: those of make_samples.
+  Result<SamplesPointer> samples(const FitControl& control);
+  // The preparation of a plan. Valid while this lives. Errors: those of make_samples and prepare_training.
+  Result<const PreparedTraining*> prepare(const ModelPlan& plan, const FitControl& control);
+
+  struct Fit : MethodFit {
+    double seconds = 0.0;  // with its base, without the preparation
+  };
+  // Errors: those of prepare and fit_method.
+  Result<Fit> fit(const ModelPlan& plan, const FitControl& control);
+
+ private:
+  std::vector<PreparedRecordingPointer> recordings_;
+  TrainingScene scene_;
+  SamplesPointer samples_;
+  std::vector<std::pair<ModelPlan, std::unique_ptr<PreparedTraining>>> prepared_;
+  std::vector<std::pair<ModelPlan, Fit>> fits_;  // to start others from
+};
 
 }  // namespace palpate

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "models/correction/methods.h"
 
 namespace palpate {
 namespace {
@@ -34,16 +33,6 @@ std::vector<double> parse_values(std::string_view text, char separator, std::str
   return values;
 }
 
-// Parses "25x11x11x11": whole numbers of at least 2. Empty if the text is anything else.
-std::vector<int> parse_grid(const std::string& text) {
-  std::vector<int> sizes;
-  for (const double value : parse_values(text, 'x')) {
-    if (value < 2.0 || value > 1e6 || value != std::floor(value)) return {};
-    sizes.push_back(static_cast<int>(value));
-  }
-  return sizes;
-}
-
 std::string found(std::string_view item, const std::string& expected) {
   return "found \"" + std::string(item) + "\", expected " + expected;
 }
@@ -51,8 +40,7 @@ std::string found(std::string_view item, const std::string& expected) {
 // A kind of feature with one to eight values after its colon, in multiples of `scale`.
 struct ListedKind {
   FeatureKind kind;
-  std::string_view name;
-  std::string_view unit;
+  std::string_view name, unit;
   double scale;
   const char* expected;
 };
@@ -82,17 +70,12 @@ Status add_item(std::string_view item, FeatureList& list) {
   return Error{found(item, "depth, velocity, maxwell:, stops: and creep:, where only maxwell: may be repeated")};
 }
 
-template <typename Names>
-std::size_t index_of(const Names& names, const std::string& name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 // Sets `value` to the enumerator of a name.
 template <typename Value, typename Names>
 Status set_one_of(std::optional<Value>& value, const Names& names, const std::string& text) {
-  const std::size_t index = index_of(names, text);
-  if (index == names.size()) return Error{found(text, "one of " + joined({names.begin(), names.end()}))};
-  value = static_cast<Value>(index);
+  const auto name = std::find(names.begin(), names.end(), text);
+  if (name == names.end()) return Error{found(text, "one of " + joined({names.begin(), names.end()}))};
+  value = static_cast<Value>(name - names.begin());
   return {};
 }
 
@@ -103,70 +86,11 @@ std::optional<std::uint64_t> whole_number(const std::string& text, std::uint64_t
   return whole && value >= least && value <= most ? std::optional(value) : std::nullopt;
 }
 
-Status set_method(ModelPlan& plan, const std::string& text) {
-  const auto parsed = parse_plan(text);
-  if (!parsed) return parsed.error();
-  plan.base = parsed->base;
-  plan.method = parsed->method;
-  plan.centres = parsed->centres;
-  return {};
-}
-
 Status set_centres(ModelPlan& plan, const std::string& text) {
   const auto number = whole_number(text, 1, kMostFittedCentres);
   if (!number) return Error{found(text, "1 to " + std::to_string(kMostFittedCentres) + "; direct uses every site")};
   plan.centres = static_cast<int>(*number);
   return {};
-}
-
-Status set_candidates(ModelPlan& plan, const std::string& text) {
-  const auto number = whole_number(text, 1, std::numeric_limits<int>::max());
-  if (!number && text != "all") return Error{found(text, "a whole number of at least 1, or all")};
-  plan.candidates = static_cast<int>(number.value_or(0));
-  return {};
-}
-
-Status set_kernel(ModelPlan& plan, const std::string& text) {
-  plan.kernel.reset();
-  if (text == "auto") return {};
-  plan.kernel = kernel_from_name(text);
-  return plan.kernel ? Status{} : Status{Error{found(text, "auto, or one of " + joined(kernel_names()))}};
-}
-
-Status set_features(ModelPlan& plan, const std::string& text) {
-  plan.features = text == "auto" ? FeatureChoice::automatic : FeatureChoice::scene;
-  if (text == "auto" || text == "scene") return {};
-  auto list = parse_feature_list(text);
-  if (!list) return Error{list.error().message + "; or auto, or scene"};
-  plan.features = FeatureChoice::given;
-  plan.list = std::move(*list);
-  return {};
-}
-
-Status set_relaxation(ModelPlan& plan, const std::string& text) {
-  std::vector<double> times_s = parse_values(text, ',');
-  if (text != "scene" && text != "auto" && (times_s.empty() || times_s.size() > 6))
-    return Error{found(text, "scene, auto, or one to six times in seconds such as 0.17,1.27")};
-  plan.features = FeatureChoice::scene;
-  plan.relaxation = text == "scene" ? Relaxation::scene : text == "auto" ? Relaxation::automatic : Relaxation::given;
-  plan.relaxation_times_s = std::move(times_s);
-  return {};
-}
-
-Status set_grid(ModelPlan& plan, const std::string& text) {
-  plan.grid = parse_grid(text);
-  return plan.grid.empty() ? Status{Error{found(text, "sizes such as 25x11x11x11")}} : Status{};
-}
-
-Status set_seed(ModelPlan& plan, const std::string& text) {
-  const auto number = whole_number(text, 0, std::numeric_limits<std::uint64_t>::max());
-  if (!number) return Error{found(text, "a whole number")};
-  plan.seed = *number;
-  return {};
-}
-
-std::string number_after(const ModelPlan& plan) {
-  return plan.selects_centres() ? "-" + std::to_string(plan.centres) : std::string();
 }
 
 }  // namespace
@@ -185,7 +109,9 @@ std::string family_name(const ModelPlan& plan) {
   return (plain ? "" : std::string(kTrendMethod.name) + "+") + plan.method->name;
 }
 
-std::string plan_name(const ModelPlan& plan) { return family_name(plan) + number_after(plan); }
+std::string plan_name(const ModelPlan& plan) {
+  return family_name(plan) + (plan.selects_centres() ? "-" + std::to_string(plan.centres) : "");
+}
 
 std::uint32_t colour_of(const ModelPlan& plan) {
   return plan.base == Base::trend && plan.method == &kGreedyMethod ? kTrendMethod.colour : plan.method->colour;
@@ -207,9 +133,8 @@ const std::vector<ModelPlan>& all_plans() {
 
 std::string family_names(unsigned option) {
   std::vector<std::string> names;
-  for (const ModelPlan& plan : all_plans()) {
+  for (const ModelPlan& plan : all_plans())
     if ((plan.method->takes & option) == option) names.push_back(family_name(plan));
-  }
   return joined(names);
 }
 
@@ -230,24 +155,67 @@ const std::vector<PlanOption>& plan_options() {
   static const std::vector<PlanOption> options{
       {"method", "NAME",
        "Name of the model: a method on the measured force (direct, voxel, random, kdtree, greedy), the trend, or "
-       "trend+ "
-       "and a method that corrects it",
-       "trend+greedy", 0, set_method},
+       "trend+ and a method that corrects it",
+       "trend+greedy", 0,
+       [](ModelPlan& plan, const std::string& text) {
+         const auto parsed = parse_plan(text);
+         if (!parsed) return Status(parsed.error());
+         plan.base = parsed->base;
+         plan.method = parsed->method;
+         plan.centres = parsed->centres;
+         return Status();
+       }},
       {"centres", "1 - " + std::to_string(kMostFittedCentres), "Number of centres", "100", kTakesCentres, set_centres},
-      {"candidates", "N|all", "Candidate sites per step, a number or all", "100", kTakesCandidates, set_candidates},
+      {"candidates", "N|all", "Candidate sites per step, a number or all", "100", kTakesCandidates,
+       [](ModelPlan& plan, const std::string& text) {
+         const auto number = whole_number(text, 1, std::numeric_limits<int>::max());
+         plan.candidates = static_cast<int>(number.value_or(0));
+         return number || text == "all" ? Status() : Status(Error{found(text, "a whole number of at least 1, or all")});
+       }},
       {"features", "auto|scene|LIST",
-       std::string(
-           "Features of the force: auto (those that the recordings support), scene (the scene's), or a list such "
-           "as ") +
+       std::string("Features of the force: auto (those that the recordings support), scene (the scene's), or a list "
+                   "such as ") +
            kFeatureListExample,
-       "auto", 0, set_features},
+       "auto", 0,
+       [](ModelPlan& plan, const std::string& text) {
+         plan.features = text == "auto" ? FeatureChoice::automatic : FeatureChoice::scene;
+         if (text == "auto" || text == "scene") return Status();
+         auto list = parse_feature_list(text);
+         if (!list) return Status(Error{list.error().message + "; or auto, or scene"});
+         plan.features = FeatureChoice::given;
+         plan.list = std::move(*list);
+         return Status();
+       }},
       {"relaxation", "scene|auto|S,S",
        "Use the scene's features with these relaxation times: scene (the scene's), auto (identified) or a list in s",
-       "", 0, set_relaxation},
+       "", 0,
+       [](ModelPlan& plan, const std::string& text) {
+         std::vector<double> times_s = parse_values(text, ',');
+         if (text != "scene" && text != "auto" && (times_s.empty() || times_s.size() > 6))
+           return Status(Error{found(text, "scene, auto, or one to six times in seconds such as 0.17,1.27")});
+         plan.features = FeatureChoice::scene;
+         plan.relaxation = text == "scene"  ? Relaxation::scene
+                           : text == "auto" ? Relaxation::automatic
+                                            : Relaxation::given;
+         plan.relaxation_times_s = std::move(times_s);
+         return Status();
+       }},
       {"kernel", "auto|cubic|linear|thin-plate",
        "Kernel; auto: cubic with the trend, selected by cross-validation with the force", "auto", kTakesKernel,
-       set_kernel},
-      {"grid", "NxN", "Nodes of the grid along each feature [25x11x11x11]", "", kTakesGrid, set_grid},
+       [](ModelPlan& plan, const std::string& text) {
+         plan.kernel = kernel_from_name(text);
+         return plan.kernel || text == "auto" ? Status()
+                                              : Status(Error{found(text, "auto, or one of " + joined(kernel_names()))});
+       }},
+      {"grid", "NxN", "Nodes of the grid along each feature [25x11x11x11]", "", kTakesGrid,
+       [](ModelPlan& plan, const std::string& text) {
+         const std::vector<double> sizes = parse_values(text, 'x');
+         const auto is_size = [](double size) { return size >= 2.0 && size <= 1e6 && size == std::floor(size); };
+         if (sizes.empty() || !std::ranges::all_of(sizes, is_size))
+           return Status(Error{found(text, "sizes such as 25x11x11x11")});
+         plan.grid.assign(sizes.begin(), sizes.end());
+         return Status();
+       }},
       {"weighting", "jnd|relative|none",
        "Weight of an error: jnd (1/JND, the default with the trend), relative (1/force, the default with the force) or "
        "none (1)",
@@ -255,10 +223,13 @@ const std::vector<PlanOption>& plan_options() {
        [](ModelPlan& plan, const std::string& text) { return set_one_of(plan.weighting, kWeightingNames, text); }},
       {"thinning", "coverage|force|none",
        "Samples that become sites: coverage of the feature space (the default with the trend), force (steps of 50 mN, "
-       "the "
-       "default with the force) or none (all)",
+       "the default with the force) or none (all)",
        "", 0, [](ModelPlan& plan, const std::string& text) { return set_one_of(plan.thinning, kThinningNames, text); }},
-      {"seed", "N", "Seed of the random numbers", "1", kTakesSeed, set_seed}};
+      {"seed", "N", "Seed of the random numbers", "1", kTakesSeed, [](ModelPlan& plan, const std::string& text) {
+         const auto number = whole_number(text, 0, std::numeric_limits<std::uint64_t>::max());
+         plan.seed = number.value_or(plan.seed);
+         return number ? Status() : Status(Error{found(text, "a whole number")});
+       }}};
   return options;
 }
 
@@ -315,20 +286,16 @@ Result<ModelPlan> parse_plan_options(const std::string& text) {
     if (item.empty()) continue;
     const std::size_t end = item.find('=');
     // Without a value the item is refused as an unknown name.
-    if (end == std::string_view::npos) {
-      texts.push_back({std::string(item), ""});
-    } else {
-      texts.push_back({std::string(item.substr(0, end)), std::string(item.substr(end + 1))});
-    }
+    const bool whole = end == std::string_view::npos;
+    texts.push_back({std::string(item.substr(0, end)), whole ? "" : std::string(item.substr(end + 1))});
   }
   return plan_of(std::move(texts));
 }
 
 Result<FeatureList> parse_feature_list(const std::string& text) {
   FeatureList list;
-  for (const std::string_view item : split(text, ',')) {
+  for (const std::string_view item : split(text, ','))
     if (const Status status = add_item(item, list); !status) return status.error();
-  }
   if (list.features.size() > kMaxFeatures) {
     return Error{"found " + std::to_string(list.features.size()) + " features, expected at most " +
                  std::to_string(kMaxFeatures) + "; join relaxation times with +"};

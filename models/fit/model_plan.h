@@ -17,9 +17,9 @@
 
 #include "engine/base/result.h"
 #include "models/correction/methods.h"
-#include "models/correction/thinning.h"
+#include "models/correction/sites.h"
 #include "models/model/rbf/kernels.h"
-#include "models/samples/weighting.h"
+#include "models/samples/cross_validation.h"
 #include "models/trend/trend_columns.h"
 
 namespace palpate {
@@ -62,7 +62,6 @@ struct ModelPlan {
 
 // Whether both plans have the same samples, trend and sites, so that one preparation serves both.
 bool same_preparation(const ModelPlan& one, const ModelPlan& other);
-
 // "trend+greedy": the name without a number.
 std::string family_name(const ModelPlan& plan);
 // "trend+greedy-100", "voxel".
@@ -94,8 +93,7 @@ std::string option_error(std::string_view name, const std::string& text);
 
 // The text of an option.
 struct OptionText {
-  std::string name;
-  std::string value;
+  std::string name, value;
 };
 // The plan with these options. Errors: an unknown name; a value that is not allowed: "name: found ..., expected ...";
 // options that exclude each other, or that the method does not take.
@@ -103,16 +101,10 @@ Result<ModelPlan> plan_of(std::vector<OptionText> texts);
 // The same from "method=random centres=40": pairs separated by blanks.
 Result<ModelPlan> parse_plan_options(const std::string& text);
 
+// A list of features, in any order, each except maxwell at most once; depth is always included. maxwell and creep have
+// times in s, stops have thresholds. Errors: the item, the value found and the value expected.
 inline constexpr const char* kFeatureListExample =
     "depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.1mm,creep:0.1+1";
-
-// A list of features:
-//   depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.05mm+0.1mm,creep:0.1+1
-// Items in any order, each except maxwell at most once; depth is always included:
-//   maxwell:T[+T...]     one feature, the sum of the branches with these times (s)
-//   stops:Rmm[+Rmm...]   the sum of stop operators with these thresholds
-//   creep:T[+T...]       the sum of creeping bristles with these times (s) at the greatest depth
-// Errors: the item, the value found and the value expected.
 Result<FeatureList> parse_feature_list(const std::string& text);
 
 }  // namespace palpate

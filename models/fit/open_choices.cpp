@@ -15,7 +15,6 @@
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/samples/cross_validation.h"
-#include "models/samples/weighting.h"
 
 namespace palpate {
 namespace {

@@ -15,9 +15,9 @@
 #include <optional>
 #include <string>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
-#include "models/correction/thinning.h"
+#include "models/correction/sites.h"
 #include "models/model/fitted_model.h"
 
 namespace palpate {

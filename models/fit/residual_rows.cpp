@@ -1,34 +1,127 @@
 #include "models/fit/residual_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "engine/base/parallel.h"
+#include "engine/base/random_stream.h"
+#include "engine/tick/sensor_identification.h"
+#include "models/correction/projected_kernel.h"
+#include "models/linear/lapack.h"
 #include "models/model/domain_guard.h"
+#include "models/model/rbf/polynomial_tail.h"
+#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
 namespace {
 
-// More rows give the same selection.
-constexpr std::size_t kMostRows = 2500;
-constexpr Eigen::Index kMostSites = 1500;  // a tenth of a second for each fold
+constexpr Eigen::Index kCentres = 200;
+constexpr int kLowestDecade = -9;  // of the smoothing, relative to the mean eigenvalue
+constexpr int kHighestDecade = 1;
+constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
+
+Eigen::MatrixXd random_centres(const Eigen::MatrixXd& points) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(points.cols()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  SplitMix64 random(1);
+  order.resize(draw_first(order, std::clamp<Eigen::Index>(points.cols() / 4, 1, kCentres), random));
+  return points(Eigen::all, order);
+}
+
+struct ScoredCorrection : CorrectionChoice {
+  FoldErrors errors;
+};
+
+// The fits of a correction without each fold, for any smoothing. The rows are sorted by fold.
+class LeftOutFits {
+ public:
+  explicit LeftOutFits(const ResidualRows& rows)
+      : rows_(rows),
+        centres_(random_centres(rows.points)),
+        kernel_(rows.kernel, centres_, Eigen::VectorXd::Ones(centres_.cols())),
+        penalty_(kernel_.matrix(kernel_.mean_eigenvalue(), kernel_.smallest_smoothing())),
+        design_(rows.points.cols(),
+                centres_.cols() + tail_size(tail_degree(rows.kernel), static_cast<int>(rows.points.rows()))),
+        folds_(static_cast<std::size_t>(rows.folds())) {
+    Eigen::MatrixXd kernel(design_.rows(), centres_.cols());
+    kernel_matrix(rows.kernel, PointArrays(rows.points), centres_, kernel);
+    kernel_.project_rows(kernel);
+    design_ << kernel, tail_matrix(tail_degree(rows.kernel), rows.points);
+    parallel_for(rows.folds(), [&](int fold) { gather(fold); });
+    Eigen::MatrixXd total = Eigen::MatrixXd::Zero(design_.cols(), design_.cols());
+    for (const Fold& fold : folds_) total += fold.gram;
+    for (Fold& fold : folds_) fold.gram = total - fold.gram;
+  }
+
+  // Predicts the correction at every row from the rows of the other folds.
+  Eigen::VectorXd predict(double smoothing) const {
+    Eigen::VectorXd values(design_.rows());
+    for (const Fold& fold : folds_) {
+      if (fold.count == 0) continue;
+      Eigen::MatrixXd penalised = fold.gram;
+      penalised.topLeftCorner(penalty_.rows(), penalty_.cols()).triangularView<Eigen::Lower>() += smoothing * penalty_;
+      const Eigen::VectorXd coefficients = solve_with_ridge(penalised, fold.right, 1e-14);
+      multiply(design_.middleRows(fold.first, fold.count), false, coefficients, false, 1.0, 0.0,
+               values.segment(fold.first, fold.count));
+    }
+    return values;
+  }
+
+  // The mean eigenvalue of the kernel between all scaled rows, estimated at the centres: the unit of the smoothing.
+  double unit() const {
+    const double mean_scale = rows_.row_scale.squaredNorm() / static_cast<double>(rows_.row_scale.size());
+    return mean_scale > 0.0 ? kernel_.mean_eigenvalue() * mean_scale : 1.0;
+  }
+
+ private:
+  struct Fold {
+    Eigen::Index first = 0, count = 0;
+    Eigen::MatrixXd gram;   // first of its own rows, then of all others; the lower triangle
+    Eigen::VectorXd right;  // of all others, for the residual of the trend without this fold
+  };
+  void gather(int fold) {
+    Fold& mine = folds_[static_cast<std::size_t>(fold)];
+    const auto& of = rows_.fold;
+    const auto [from, to] = std::equal_range(of.begin(), of.end(), fold);
+    mine.first = from - of.begin();
+    mine.count = to - from;
+    mine.gram = Eigen::MatrixXd::Zero(design_.cols(), design_.cols());
+    mine.right = Eigen::VectorXd::Zero(design_.cols());
+    if (mine.count > 0) {
+      Eigen::MatrixXd part = design_.middleRows(mine.first, mine.count);
+      part.array().colwise() *= rows_.row_scale.segment(mine.first, mine.count).array();
+      gram(part, mine.gram);
+    }
+    Eigen::VectorXd left = rows_.residual_N(fold);
+    left.array() *= rows_.row_scale.array().square();
+    left.segment(mine.first, mine.count).setZero();
+    multiply(design_, true, left, false, 1.0, 0.0, mine.right);
+  }
+
+  const ResidualRows& rows_;
+  Eigen::MatrixXd centres_;
+  ProjectedKernel kernel_;   // of the centres
+  Eigen::MatrixXd penalty_;  // its lower triangle
+  Eigen::MatrixXd design_;   // [K P, G]
+  std::vector<Fold> folds_;
+};
 
 }  // namespace
 
 std::vector<Eigen::Index> ResidualRows::outside(int without) const {
   std::vector<Eigen::Index> others;
-  for (std::size_t i = 0; i < fold.size(); ++i) {
+  for (std::size_t i = 0; i < fold.size(); ++i)
     if (fold[i] != without) others.push_back(static_cast<Eigen::Index>(i));
-  }
   return others;
 }
 
 Eigen::VectorXd ResidualRows::residual_N(int without) const {
   Eigen::VectorXd residual_N = force_N - trend_N.col(without);
-  for (Eigen::Index i = 0; i < residual_N.size(); ++i) {
+  for (Eigen::Index i = 0; i < residual_N.size(); ++i)
     if (no_force[static_cast<std::size_t>(i)]) residual_N(i) = std::min(0.0, residual_N(i));
-  }
   return residual_N;
 }
 
@@ -43,7 +136,7 @@ double ResidualRows::predicted_N(const ModelData& common, std::size_t i, double 
 Sites ResidualRows::sites_without(int without, double smoothing) const {
   const std::vector<Eigen::Index> others = outside(without);
   return even_subset({points(Eigen::all, others), residual_N(without)(others), row_scale(others), kernel, smoothing},
-                     kMostSites);
+                     1500);  // a tenth of a second for each fold
 }
 
 void ResidualRows::find_distances() {
@@ -64,7 +157,7 @@ ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns,
                            const Eigen::MatrixXd& features, const Eigen::MatrixXd& left_out_trends) {
   const double no_force_N = columns.samples().no_force_N();
   std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < columns.count(); i += columns.count() / kMostRows + 1) order.push_back(i);
+  for (std::size_t i = 0; i < columns.count(); i += columns.count() / 2500 + 1) order.push_back(i);
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return columns.fold(i); });
   const auto n = static_cast<Eigen::Index>(order.size());
   ResidualRows out;
@@ -85,6 +178,92 @@ ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns,
   out.strokes = columns.samples().strokes;
   out.find_distances();
   return out;
+}
+
+FoldErrors BoundEstimator::add(const ResidualRows& rows, const ModelData& common,
+                               const std::vector<CorrectionPtr>& corrections) {
+  const double inner_radius = common.cover.inner_radius;
+  FoldErrors errors(static_cast<std::size_t>(rows.folds()));
+  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
+    if (!std::isfinite(rows.distance[i])) continue;  // there is no other fold
+    const auto row = static_cast<Eigen::Index>(i);
+    double correction_N = 0.0;
+    if (!corrections.empty()) {
+      const Eigen::VectorXd point = rows.points.col(row);
+      correction_N = corrections[static_cast<std::size_t>(rows.fold[i])]->evaluate(point.data());
+    }
+    const double force_N = rows.predicted_N(common, i, inner_radius, correction_N);
+    const double error = common.jnd.error_over_jnd(force_N, rows.force_N(row));
+    errors.add(static_cast<std::size_t>(rows.fold[i]), error * robust_scale(error));
+    add(std::abs(force_N - rows.force_N(row)), force_N, std::max(0.0, rows.distance[i] - inner_radius));
+  }
+  return errors;
+}
+
+std::optional<ErrorBound> BoundEstimator::fit() const {
+  if (rows_.size() < 50) return std::nullopt;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(3, 3);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
+  for (const Row& one : rows_) {
+    const double scale = 1.0 / jnd_.at(one.predicted_N);
+    const Eigen::Vector3d row = scale * Eigen::Vector3d(1.0, std::abs(one.predicted_N), one.beyond);
+    gram += row * row.transpose();
+    right += row * scale * one.error_N;
+  }
+  const Eigen::VectorXd shape = solve_non_negative(gram, right);
+  const double least_per_distance_N = 0.25 * largest_force_N_;
+  // Above 0, so that the factor enlarges it.
+  ErrorBound bound{std::max(shape(0), 1e-3), shape(1), std::max(shape(2), least_per_distance_N)};
+  std::vector<double> ratios;
+  for (const Row& one : rows_) ratios.push_back(one.error_N / bound.at(one.predicted_N, one.beyond));
+  // The smallest factor that covers ceil((n + 1) 97.5 %) of them.
+  const auto n = static_cast<double>(ratios.size());
+  const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * 0.975)) - 1);
+  const double factor = nth_smallest(std::move(ratios), rank);
+  bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);
+  // One or two strokes do not show how the next one differs. 5 % of the force is the difference between two specimens
+  // of a cast silicone (Dawood et al. 2026).
+  bound.per_force = std::max(factor * bound.per_force, strokes_ < 3 ? 0.05 : 0.0);
+  // One unit beyond the data nothing is known but the range of the force.
+  bound.per_distance_N =
+      std::clamp(factor * bound.per_distance_N, least_per_distance_N, std::max(least_per_distance_N, largest_force_N_));
+  return bound;
+}
+
+CorrectionChoice choose_correction(const ResidualRows& rows, const ModelData& common) {
+  const double least_radius = common.cover.inner_radius;
+  const auto folds = static_cast<std::size_t>(rows.folds());
+  if (rows.fold.size() < 2 || folds < 2) return {.inner_radius = least_radius};
+  const BlasThreads one_thread(1);
+  const LeftOutFits fits(rows);
+  const std::vector<double> deepest_m =
+      deepest_elsewhere_m(rows.fold, {rows.depth_m.data(), rows.fold.size()}, rows.folds());
+  // Adds the errors of a candidate. `h`: its correction at every row.
+  const auto score = [&](ScoredCorrection& candidate, const Eigen::VectorXd& h) {
+    for (std::size_t i = 0; i < rows.fold.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto fold = static_cast<std::size_t>(rows.fold[i]);
+      if (rows.depth_m(row) > deepest_m[fold]) continue;
+      const double force_N = rows.predicted_N(common, i, candidate.inner_radius, h(row));
+      const double error = common.jnd.error_over_jnd(force_N, rows.force_N(row));
+      candidate.errors.add(fold, error * robust_scale(error));
+    }
+  };
+  std::vector<ScoredCorrection> candidates{{{false, fits.unit(), least_radius}, folds}};  // no correction
+  for (int decade = kHighestDecade; decade >= kLowestDecade; --decade)
+    for (const double factor : kRadiusFactors)
+      candidates.push_back({{true, fits.unit() * std::pow(10.0, decade), factor * least_radius}, folds});
+  score(candidates.front(), Eigen::VectorXd::Zero(rows.force_N.size()));
+  parallel_for(kHighestDecade - kLowestDecade + 1, [&](int part) {
+    const auto first = candidates.begin() + 1 + static_cast<std::ptrdiff_t>(kRadiusFactors.size()) * part;
+    const Eigen::VectorXd h = fits.predict(first->smoothing);
+    for (std::size_t i = 0; i < kRadiusFactors.size(); ++i) score(first[static_cast<std::ptrdiff_t>(i)], h);
+  });
+  const ScoredCorrection& chosen = candidates[best_score(errors_of(candidates))];
+  CorrectionChoice choice = chosen;
+  choice.trend_error_over_jnd = candidates.front().errors.rms_at_mean_score();
+  choice.error_over_jnd = chosen.errors.rms_at_mean_score();
+  return choice;
 }
 
 }  // namespace palpate

@@ -1,14 +1,15 @@
-// The rows that the correction and the error bound are fitted to: samples in contact, each with the trend that was
-// fitted without its fold (models/samples/cross_validation.h).
-// Thread guarantee: value types and pure functions, slow side.
+// Rows of samples in contact, each with the trend that was fitted without its fold (models/samples/cross_validation.h),
+// and what is fitted to them: the choice of the correction, and the error bound. Thread guarantee: slow side, value
+// types and pure functions.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "models/correction/sites.h"
 #include "models/model/fitted_model.h"
+#include "models/samples/cross_validation.h"
 #include "models/trend/trend_estimator.h"
 
 namespace palpate {
@@ -46,5 +47,47 @@ struct ResidualRows {
 // samples in contact, SI. `left_out_trends`: columns x folds, the weights of the trends fitted without each fold.
 ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns, const TrendWeights& weights,
                            const Eigen::MatrixXd& features, const Eigen::MatrixXd& left_out_trends);
+
+// Fits the error bound of a model (models/model/fitted_model.h) to cross-validated errors: non-negative least squares
+// with rows scaled by 1 / JND, then all coefficients times the quantile of error over bound that covers 97.5 % of the
+// rows. The floor is at least kForceFloor_N: without it the coverage was 77 to 90 % on skin and 83 % on one trial of
+// silicone, with it 97 to 100 %.
+class BoundEstimator {
+ public:
+  BoundEstimator(const JndLine& jnd, double largest_force_N, std::size_t strokes)
+      : jnd_(jnd), largest_force_N_(largest_force_N), strokes_(strokes) {}
+
+  // Adds the prediction of one row by a model that was fitted without its fold. `beyond`: its distance to the nearest
+  // row of another fold, beyond the inner radius.
+  void add(double error_N, double predicted_N, double beyond) { rows_.push_back({error_N, predicted_N, beyond}); }
+  // Adds all rows. `corrections`: fitted to the sites without each fold; empty: none, the errors are those of the
+  // trend. Returns the errors by fold.
+  FoldErrors add(const ResidualRows& rows, const ModelData& common, const std::vector<CorrectionPtr>& corrections);
+
+  // Empty with fewer than 50 predictions.
+  std::optional<ErrorBound> fit() const;
+
+ private:
+  struct Row {
+    double error_N = 0.0, predicted_N = 0.0, beyond = 0.0;
+  };
+  JndLine jnd_;
+  double largest_force_N_;
+  std::size_t strokes_;
+  std::vector<Row> rows_;
+};
+
+struct CorrectionChoice {
+  bool used = false;
+  double smoothing = 0.0, inner_radius = 0.0;
+  double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::rms_at_mean_score), without the correction
+  double error_over_jnd = 0.0;        // the same, with the correction
+};
+
+// Selects by cross-validation whether a model has a correction, how smooth it is, and how far from the data it is
+// trusted (models/METHOD.md, Correction; Wahba 1990; Craven & Wahba 1979). One smoothing serves every method: with more
+// centres each approaches the smoothing spline. `common`: needs the JND, the limits of correction and force, and a
+// cover with every site inside, whose inner radius is the smallest candidate.
+CorrectionChoice choose_correction(const ResidualRows& rows, const ModelData& common);
 
 }  // namespace palpate

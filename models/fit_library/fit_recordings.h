@@ -9,7 +9,7 @@
 
 #include "engine/base/result.h"
 #include "models/check/check_recording.h"
-#include "models/fit/model_fits.h"
+#include "models/fit/fit.h"
 
 namespace palpate {
 
@@ -25,7 +25,6 @@ struct RecordingsFit {
 Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingScene& scene,
                                      const ModelPlan& plan, std::chrono::steady_clock::time_point began,
                                      const std::function<bool(double)>& progress);
-
 // The JSON object that `palpate fit --json` prints.
 nlohmann::ordered_json fit_json(const RecordingsFit& fitted);
 

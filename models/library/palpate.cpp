@@ -57,21 +57,20 @@ namespace {
 
 // A recording that owns its name and columns.
 struct OwnedRecording : palpate_recording {
-  explicit OwnedRecording(palpate::Recording recording) : palpate_recording{}, owned_name(std::move(recording.name)) {
+  explicit OwnedRecording(Recording recording) : palpate_recording{}, owned_name(std::move(recording.name)) {
     name = owned_name.c_str();
     size = recording.rows.size();
-    time_s = add(recording, &palpate::RecordingRow::time_s);
-    position_m = add(recording, &palpate::RecordingRow::position_m);
-    force_N = add(recording, &palpate::RecordingRow::force_N);
-    if (recording.columns.velocity) velocity_m_per_s = add(recording, &palpate::RecordingRow::velocity_m_per_s);
-    if (recording.columns.acceleration)
-      acceleration_m_per_s2 = add(recording, &palpate::RecordingRow::acceleration_m_per_s2);
+    time_s = add(recording, &RecordingRow::time_s);
+    position_m = add(recording, &RecordingRow::position_m);
+    force_N = add(recording, &RecordingRow::force_N);
+    if (recording.columns.velocity) velocity_m_per_s = add(recording, &RecordingRow::velocity_m_per_s);
+    if (recording.columns.acceleration) acceleration_m_per_s2 = add(recording, &RecordingRow::acceleration_m_per_s2);
   }
 
  private:
-  const double* add(const palpate::Recording& recording, double palpate::RecordingRow::*column) {
+  const double* add(const Recording& recording, double RecordingRow::*column) {
     std::vector<double>& values = columns.emplace_back();
-    for (const palpate::RecordingRow& row : recording.rows) values.push_back(row.*column);
+    for (const RecordingRow& row : recording.rows) values.push_back(row.*column);
     return values.data();
   }
 
@@ -83,8 +82,7 @@ struct OwnedRecording : palpate_recording {
 struct GivenNumber {
   const char* name;
   double value;
-  bool zero = false;
-  bool infinite = false;
+  bool zero = false, infinite = false;
 };
 
 Status check_numbers(std::initializer_list<GivenNumber> numbers) {
@@ -102,14 +100,12 @@ Result<SensorSpec> sensor_spec(const palpate_sensor& sensor) {
                                        {"velocity_noise_m_per_s", sensor.velocity_noise_m_per_s, true},
                                        {"acceleration_noise_m_per_s2", sensor.acceleration_noise_m_per_s2, true}});
   if (!status) return status.error();
-  SensorSpec spec;
-  spec.encoder_step_m = sensor.encoder_step_m;
-  spec.position_noise_m = sensor.position_noise_m;
-  spec.velocity_noise_m_per_s = sensor.velocity_noise_m_per_s;
-  spec.acceleration_noise_m_per_s2 = sensor.acceleration_noise_m_per_s2;
-  spec.has_velocity = sensor.velocity_noise_m_per_s > 0.0;
-  spec.has_acceleration = sensor.acceleration_noise_m_per_s2 > 0.0;
-  return spec;
+  return SensorSpec{sensor.encoder_step_m,
+                    sensor.position_noise_m,
+                    sensor.velocity_noise_m_per_s > 0.0,
+                    sensor.velocity_noise_m_per_s,
+                    sensor.acceleration_noise_m_per_s2 > 0.0,
+                    sensor.acceleration_noise_m_per_s2};
 }
 
 palpate_sensor sensor_from(const SensorSpec& spec) {
@@ -163,31 +159,23 @@ double render(palpate_limiter& limiter, palpate_stream& stream, double step_s) n
   const ForceGuard::Tool tool{tick.position_m, tick.velocity_m_per_s, in_contact, false, stream.accepted};
   const double scaled_N = limiter.guard.scaled(tick.force_N[0], stream.impedance, {}, true, tool, timing);
   const double passive_N = limiter.guard.passive(scaled_N, tool, timing, limiter.limiter.force_N());
-  ForceConditions conditions;
-  conditions.sample_age_s = limiter.sample_age_s;
-  conditions.device_fault =
-      std::exchange(limiter.stop, false) || limiter.calls.too_slow() || limiter.samples.too_slow();
-  conditions.bad_sample = tick.fault == TickFault::bad_sample;
-  return limiter.limiter.limit(passive_N, step_s, conditions);
+  const bool stopped = std::exchange(limiter.stop, false) || limiter.calls.too_slow() || limiter.samples.too_slow();
+  return limiter.limiter.limit(passive_N, step_s,
+                               {limiter.sample_age_s, stopped, false, tick.fault == TickFault::bad_sample});
 }
 
 }  // namespace
 }  // namespace palpate::library
 
-using palpate::Error;
-using palpate::Recording;
-using palpate::Result;
-using palpate::Status;
-using palpate::library::made;
-using palpate::library::recording_of;
-using palpate::library::status_of;
+using namespace palpate;
+using namespace palpate::library;
 
 int palpate_abi_version(void) { return PALPATE_ABI_VERSION; }
 
 palpate_model* palpate_model_load(const char* path, char* error, size_t error_size) {
   return made<palpate_model>(error, error_size, [&]() -> Result<palpate_model*> {
     if (path == nullptr) return Error{"found no path, expected that of a model file"};
-    auto model = palpate::load_model(path);
+    auto model = load_model(path);
     if (!model) return model.error();
     return new palpate_model(std::move(*model));
   });
@@ -204,7 +192,7 @@ const char* palpate_model_report(const palpate_model* model) { return model == n
 int palpate_model_save(const palpate_model* model, const char* path, int overwrite, char* error, size_t error_size) {
   return status_of(error, error_size, [&]() -> Status {
     if (model == nullptr || path == nullptr) return Error{"found no model or no path, expected both"};
-    return palpate::save_model(path, model->model->data(), overwrite != 0);
+    return save_model(path, model->model->data(), overwrite != 0);
   });
 }
 
@@ -219,24 +207,22 @@ const char* palpate_model_feature_name(const palpate_model* model, size_t index)
 palpate_recording* palpate_recording_load(const char* path, char* error, size_t error_size) {
   return made<palpate_recording>(error, error_size, [&]() -> Result<palpate_recording*> {
     if (path == nullptr) return Error{"found no path, expected that of a recording"};
-    auto recording = palpate::read_recording(path);
+    auto recording = read_recording(path);
     if (!recording) return recording.error();
-    return new palpate::library::OwnedRecording(*recording);
+    return new OwnedRecording(*recording);
   });
 }
 
-void palpate_recording_free(palpate_recording* recording) {
-  delete static_cast<palpate::library::OwnedRecording*>(recording);
-}
+void palpate_recording_free(palpate_recording* recording) { delete static_cast<OwnedRecording*>(recording); }
 
 int palpate_in_contact(const palpate_recording* given, unsigned char* in_contact) {
   if (given == nullptr || in_contact == nullptr || given->position_m == nullptr || given->force_N == nullptr) return -1;
   return status_of(nullptr, 0, [&]() -> Status {
     const Recording recording = recording_of(*given);
     // As in a replay, which reads long recordings in chunks, from the first rows.
-    const std::size_t first_rows = std::min(recording.rows.size(), palpate::kSensorIdentificationRows);
-    const double least_N = palpate::least_contact_N(recording.rows.data(), first_rows, 0.0);
-    std::ranges::transform(recording.rows, in_contact, [&](const palpate::RecordingRow& row) {
+    const std::size_t first_rows = std::min(recording.rows.size(), kSensorIdentificationRows);
+    const double least_N = least_contact_N(recording.rows.data(), first_rows, 0.0);
+    std::ranges::transform(recording.rows, in_contact, [&](const RecordingRow& row) {
       return row.position_m > 0.0 || std::abs(row.force_N) > least_N ? 1 : 0;
     });
     return {};
@@ -245,9 +231,7 @@ int palpate_in_contact(const palpate_recording* given, unsigned char* in_contact
 
 palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_step_m, char* error, size_t error_size) {
   palpate_sensor sensor{};
-  if (model != nullptr) {
-    sensor = palpate::library::sensor_from(palpate::sensor_with_step(model->model->data(), encoder_step_m));
-  }
+  if (model != nullptr) sensor = sensor_from(sensor_with_step(model->model->data(), encoder_step_m));
   return palpate_stream_new_with_sensor(model, &sensor, error, error_size);
 }
 
@@ -256,7 +240,7 @@ palpate_stream* palpate_stream_new_with_sensor(const palpate_model* model, const
   return made<palpate_stream>(error, error_size, [&]() -> Result<palpate_stream*> {
     if (model == nullptr) return Error{"found no model, expected one that palpate_model_load gave"};
     if (sensor == nullptr) return Error{"found no sensor, expected a palpate_sensor"};
-    const auto spec = palpate::library::sensor_spec(*sensor);
+    const auto spec = sensor_spec(*sensor);
     if (!spec) return spec.error();
     return new palpate_stream(*spec, model->model);
   });
@@ -266,8 +250,7 @@ int palpate_sensor_of(const palpate_recording* given, palpate_sensor* sensor) {
   if (given == nullptr || sensor == nullptr || given->position_m == nullptr) return -1;
   return status_of(nullptr, 0, [&]() -> Status {
     const Recording recording = recording_of(*given);
-    *sensor = palpate::library::sensor_from(
-        palpate::identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns));
+    *sensor = sensor_from(identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns));
     return {};
   });
 }
@@ -277,9 +260,8 @@ void palpate_stream_free(palpate_stream* stream) { delete stream; }
 void palpate_stream_reset(palpate_stream* stream) {
   if (stream == nullptr) return;
   stream->tick.reset();
-  stream->accepted = false;
+  stream->accepted = stream->out_of_domain = false;
   stream->restarted = true;
-  stream->out_of_domain = false;
   stream->predicted_error_N = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -290,8 +272,8 @@ double palpate_stream_force(palpate_stream* stream, double time_s, double positi
 double palpate_stream_force_with_motion(palpate_stream* stream, double time_s, double position_m,
                                         double velocity_m_per_s, double acceleration_m_per_s2) {
   if (stream == nullptr) return 0.0;
-  return palpate::library::step(*stream, {time_s, position_m, stream->sensor.has_velocity ? velocity_m_per_s : 0.0,
-                                          stream->sensor.has_acceleration ? acceleration_m_per_s2 : 0.0});
+  return step(*stream, {time_s, position_m, stream->sensor.has_velocity ? velocity_m_per_s : 0.0,
+                        stream->sensor.has_acceleration ? acceleration_m_per_s2 : 0.0});
 }
 
 int palpate_stream_forces(palpate_stream* stream, size_t n, const double* time_s, const double* position_m,
@@ -328,7 +310,7 @@ double palpate_stream_predicted_error(const palpate_stream* stream) {
 
 void palpate_limits_default(palpate_limits* limits) {
   if (limits == nullptr) return;
-  const palpate::ForceLimits by_default;
+  const ForceLimits by_default;
   *limits = {by_default.largest_N,      by_default.fastest_N_per_s, by_default.ramp_s, by_default.continuous_N,
              by_default.thermal_time_s, by_default.stale_after_s,   by_default.stop_s};
 }
@@ -338,7 +320,7 @@ palpate_limiter* palpate_limiter_new(const palpate_limits* limits, char* error, 
     palpate_limits chosen;
     palpate_limits_default(&chosen);
     if (limits != nullptr) chosen = *limits;
-    const auto checked = palpate::library::force_limits(chosen);
+    const auto checked = force_limits(chosen);
     if (!checked) return checked.error();
     return new palpate_limiter(*checked);
   });
@@ -348,18 +330,14 @@ void palpate_limiter_free(palpate_limiter* limiter) { delete limiter; }
 
 double palpate_limiter_force(palpate_limiter* limiter, double commanded_N, double step_s, double sample_age_s) {
   if (limiter == nullptr) return 0.0;
-  palpate::ForceConditions conditions;
-  conditions.sample_age_s = sample_age_s;
-  conditions.device_fault = limiter->stop;
-  limiter->stop = false;
-  return limiter->limiter.limit(commanded_N, step_s, conditions);
+  return limiter->limiter.limit(commanded_N, step_s, {sample_age_s, std::exchange(limiter->stop, false)});
 }
 
 double palpate_limiter_render(palpate_limiter* limiter, palpate_stream* stream, double time_s, double position_m,
                               double step_s) {
   if (limiter == nullptr || stream == nullptr) return 0.0;
   palpate_stream_force(stream, time_s, position_m);
-  return palpate::library::render(*limiter, *stream, std::isfinite(step_s) ? std::max(0.0, step_s) : 0.0);
+  return render(*limiter, *stream, std::isfinite(step_s) ? std::max(0.0, step_s) : 0.0);
 }
 
 void palpate_limiter_set_lag(palpate_limiter* limiter, double lag_s) {
@@ -374,10 +352,7 @@ unsigned palpate_limiter_flags(const palpate_limiter* limiter) {
   return limiter == nullptr ? 0U : limiter->limiter.flags();
 }
 
-static_assert(PALPATE_LIMIT_NOT_FINITE == palpate::force_limit::kNotFinite);
-static_assert(PALPATE_LIMIT_CLAMPED == palpate::force_limit::kClamped);
-static_assert(PALPATE_LIMIT_SLEWED == palpate::force_limit::kSlewed);
-static_assert(PALPATE_LIMIT_RAMPING == palpate::force_limit::kRamping);
-static_assert(PALPATE_LIMIT_THERMAL == palpate::force_limit::kThermal);
-static_assert(PALPATE_LIMIT_STALE == palpate::force_limit::kStale);
-static_assert(PALPATE_LIMIT_STOPPED == palpate::force_limit::kDeviceFault);
+static_assert(PALPATE_LIMIT_NOT_FINITE == force_limit::kNotFinite && PALPATE_LIMIT_CLAMPED == force_limit::kClamped &&
+              PALPATE_LIMIT_SLEWED == force_limit::kSlewed && PALPATE_LIMIT_RAMPING == force_limit::kRamping &&
+              PALPATE_LIMIT_THERMAL == force_limit::kThermal && PALPATE_LIMIT_STALE == force_limit::kStale &&
+              PALPATE_LIMIT_STOPPED == force_limit::kDeviceFault);

@@ -1,5 +1,6 @@
 #include "models/linear/lapack.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -89,20 +90,15 @@ std::string blas_name() {
 
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
               double beta, MatrixRef c) {
-  const int m = to_int(c.rows());
-  const int n = to_int(c.cols());
+  const int m = to_int(c.rows()), n = to_int(c.cols());
   const int k = to_int(transpose_a ? a.rows() : a.cols());
   assert(m == (transpose_a ? a.cols() : a.rows()) && n == (transpose_b ? b.rows() : b.cols()));
   assert(k == (transpose_b ? b.cols() : b.rows()));
   if (m == 0 || n == 0) return;
-  const int lda = leading(a);
-  const int ldb = leading(b);
-  const int ldc = leading(c);
+  const int lda = leading(a), ldb = leading(b), ldc = leading(c);
   if (n <= 2 && !transpose_b) {
     // dgemm would copy all of `a`, which takes longer than the product.
-    const int rows = to_int(a.rows());
-    const int columns = to_int(a.cols());
-    const int one = 1;
+    const int rows = to_int(a.rows()), columns = to_int(a.cols()), one = 1;
     for (int j = 0; j < n; ++j) {
       dgemv_(transpose_a ? "T" : "N", &rows, &columns, &alpha, a.data(), &lda, b.col(j).data(), &one, &beta,
              c.col(j).data(), &one);
@@ -118,12 +114,9 @@ namespace {
 void rank_update(const char* transpose, Eigen::Index size, Eigen::Index depth, const ConstMatrixRef& a, MatrixRef c) {
   assert(c.rows() == size && c.cols() == size);
   if (size == 0) return;
-  const int n = to_int(size);
-  const int k = to_int(depth);
-  const double one = 1.0;
-  const double zero = 0.0;
-  const int lda = leading(a);
-  const int ldc = leading(c);
+  const int n = to_int(size), k = to_int(depth);
+  const double one = 1.0, zero = 0.0;
+  const int lda = leading(a), ldc = leading(c);
   dsyrk_("L", transpose, &n, &k, &one, a.data(), &lda, &zero, c.data(), &ldc);
 }
 
@@ -137,11 +130,9 @@ void gram_of_transpose(const ConstMatrixRef& at, MatrixRef c) { rank_update("N",
 // with 106 columns.
 void qr_in_place(MatrixRef a) {
   assert(a.rows() >= a.cols());
-  const int m = to_int(a.rows());
-  const int n = to_int(a.cols());
+  const int m = to_int(a.rows()), n = to_int(a.cols());
   if (n == 0) return;
-  const int lda = leading(a);
-  const int block = std::min(32, n);
+  const int lda = leading(a), block = std::min(32, n);
   Eigen::MatrixXd factors(block, n);
   Eigen::VectorXd work(block * n);
   int info = 0;
@@ -150,14 +141,11 @@ void qr_in_place(MatrixRef a) {
 }
 
 SingularValues singular_values(Eigen::MatrixXd a) {
-  const int m = to_int(a.rows());
-  const int n = to_int(a.cols());
-  const int least = std::min(m, n);
+  const int m = to_int(a.rows()), n = to_int(a.cols()), least = std::min(m, n);
   SingularValues found{Eigen::MatrixXd(m, least), Eigen::VectorXd(least), Eigen::MatrixXd(least, n)};
   if (least == 0) return found;
   double wanted = 0.0;
-  int query = -1;
-  int info = 0;
+  int query = -1, info = 0;
   std::vector<int> integers(8 * static_cast<std::size_t>(least));
   dgesdd_("S", &m, &n, a.data(), &m, found.values.data(), found.u.data(), &m, found.vt.data(), &least, &wanted, &query,
           integers.data(), &info);
@@ -188,28 +176,24 @@ Eigen::VectorXd SingularValues::solve(const Eigen::VectorXd& b, double smallest)
 }
 
 bool cholesky_in_place(MatrixRef a) {
-  const int n = to_int(a.rows());
-  const int lda = leading(a);
+  const int n = to_int(a.rows()), lda = leading(a);
   int info = 0;
   dpotrf_("L", &n, a.data(), &lda, &info);
   return info == 0;
 }
 
 bool cholesky_in_place(MatrixRef a, const FitControl& control) {
-  constexpr Eigen::Index kColumns = 256;
-  const double one = 1.0;
-  const double minus_one = -1.0;
+  const double one = 1.0, minus_one = -1.0;
   const int lda = leading(a);
   const Eigen::Index size = a.rows();
-  for (Eigen::Index first = 0; first < size; first += kColumns) {
+  for (Eigen::Index first = 0, columns = 0; first < size; first += columns) {
     const double left = static_cast<double>(size - first) / static_cast<double>(size);
     if (!control.may_continue(1.0 - left * left * left)) return false;
-    const Eigen::Index columns = std::min(kColumns, size - first);
+    columns = std::min<Eigen::Index>(256, size - first);
     const Eigen::Index below = size - first - columns;
     if (!cholesky_in_place(a.block(first, first, columns, columns))) return false;
     if (below == 0) break;
-    const int m = to_int(below);
-    const int n = to_int(columns);
+    const int m = to_int(below), n = to_int(columns);
     double* const panel = &a(first + columns, first);
     dtrsm_("R", "L", "T", "N", &m, &n, &one, &a(first, first), &lda, panel, &lda);
     dsyrk_("L", "N", &m, &n, &minus_one, panel, &lda, &one, &a(first + columns, first + columns), &lda);
@@ -218,8 +202,7 @@ bool cholesky_in_place(MatrixRef a, const FitControl& control) {
 }
 
 double cholesky_condition(const ConstMatrixRef& factor, double norm) {
-  const int n = to_int(factor.rows());
-  const int lda = leading(factor);
+  const int n = to_int(factor.rows()), lda = leading(factor);
   Eigen::VectorXd work(3 * n);
   std::vector<int> integers(static_cast<std::size_t>(n));
   double reciprocal = 0.0;
@@ -246,6 +229,72 @@ Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd
     return x.cwiseProduct(scale);
   }
   return Eigen::VectorXd::Zero(b.size());
+}
+
+Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right_side,
+                                   const Eigen::VectorXd& start) {
+  Eigen::VectorXd inverse_norm = gram.diagonal();
+  for (double& value : inverse_norm) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
+  Eigen::MatrixXd scaled = inverse_norm.asDiagonal() * gram * inverse_norm.asDiagonal();
+  // Far below the information in a recording and far above rounding: decides only between equal columns.
+  scaled.diagonal().array() += 1e-8;
+  const Eigen::VectorXd right = right_side.cwiseProduct(inverse_norm);
+  const Eigen::Index size = right.size();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
+  std::vector<bool> passive(static_cast<std::size_t>(size), false);
+  const auto is_passive = [&](Eigen::Index i) { return passive[static_cast<std::size_t>(i)]; };
+  const auto unconstrained = [&] {
+    std::vector<Eigen::Index> index;
+    for (Eigen::Index i = 0; i < size; ++i)
+      if (is_passive(i)) index.push_back(i);
+    Eigen::VectorXd full = Eigen::VectorXd::Zero(size);
+    const Eigen::MatrixXd part = scaled(index, index);
+    const Eigen::VectorXd part_right = right(index);
+    if (!index.empty()) full(index) = part.llt().solve(part_right).eval();
+    return full;
+  };
+  // Moves x towards the minimum over the passive set. A coefficient that would become negative stops the step and
+  // leaves the set.
+  const auto move_to_minimum = [&] {
+    Eigen::VectorXd candidate = unconstrained();
+    for (Eigen::Index leaving = 0; leaving < size; ++leaving) {
+      double step = 1.0;
+      Eigen::Index blocking = -1;
+      for (Eigen::Index i = 0; i < size; ++i) {
+        if (!is_passive(i) || candidate(i) > 0.0) continue;
+        const double reach = x(i) / std::max(x(i) - candidate(i), 1e-300);
+        if (blocking >= 0 && !(reach < step)) continue;
+        step = std::min(1.0, reach);
+        blocking = i;
+      }
+      if (blocking < 0) break;
+      x += step * (candidate - x);
+      x(blocking) = 0.0;
+      passive[static_cast<std::size_t>(blocking)] = false;
+      candidate = unconstrained();
+    }
+    x = candidate;
+  };
+  if (start.size() > 0 && (start.array() > 0.0).any()) {
+    const auto moving = inverse_norm.array() > 0.0;
+    x = moving.select(start.array() / moving.select(inverse_norm.array(), 1.0), 0.0).matrix();
+    for (Eigen::Index i = 0; i < size; ++i) passive[static_cast<std::size_t>(i)] = x(i) > 0.0;
+    move_to_minimum();
+  }
+  // The method ends after a few changes; 3 n is the limit of its authors.
+  for (Eigen::Index change = 0; change < 3 * size; ++change) {
+    const Eigen::VectorXd gradient = right - scaled * x;
+    const double tolerance = 1e-12 * std::max(1e-300, right.cwiseAbs().maxCoeff());
+    Eigen::Index entering = -1;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      if (is_passive(i) || gradient(i) <= tolerance) continue;
+      if (entering < 0 || gradient(i) > gradient(entering)) entering = i;
+    }
+    if (entering < 0) break;
+    passive[static_cast<std::size_t>(entering)] = true;
+    move_to_minimum();
+  }
+  return x.cwiseMax(0.0).cwiseProduct(inverse_norm);
 }
 
 }  // namespace palpate

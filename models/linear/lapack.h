@@ -1,5 +1,5 @@
-// The BLAS and LAPACK routines of the fits, by their Fortran names, and wrappers for Eigen matrices. These libraries
-// select the instruction set at run time; Eigen's own products in a portable build do not. Slow side only.
+// The BLAS and LAPACK routines of the fits, which select the instruction set at run time, for Eigen matrices, and
+// non-negative least squares. Slow side only.
 //
 // OpenBLAS treats a processor that is newer than itself as a Prescott of 2004, which makes fits two to three times
 // slower (0.3.21 of Debian 12 on a Xeon of 2023). Loading this code selects the right type in OpenBLAS, in programs and
@@ -10,7 +10,7 @@
 #include <mutex>
 #include <string>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 
 namespace palpate {
 
@@ -36,7 +36,6 @@ class BlasThreads {
 // settings. Ends the threads that OpenBLAS starts with the program, because they occupy the other cores for some 30 ms.
 // From then on products use one thread, except within BlasThreads.
 void prepare_blas();
-
 // "OpenBLAS SkylakeX", with the processor type that it selected; "BLAS" where it does not say.
 std::string blas_name();
 
@@ -46,12 +45,10 @@ inline constexpr Eigen::Index kBlockRows = 512;
 // c = alpha op(a) op(b) + beta c, where op is the transpose or nothing.
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
               double beta, MatrixRef c);
-
 // The lower triangle of c = a^T a; the rest of c stays as it is. `at`: a is given by its transpose, whose columns are
 // the rows of a.
 void gram(const ConstMatrixRef& a, MatrixRef c);
 void gram_of_transpose(const ConstMatrixRef& at, MatrixRef c);
-
 // Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation; the rest becomes meaningless.
 void qr_in_place(MatrixRef a);
 
@@ -69,7 +66,6 @@ struct SingularValues {
   Eigen::VectorXd solve(const Eigen::VectorXd& b, double smallest) const;
 };
 SingularValues singular_values(Eigen::MatrixXd a);
-
 // Cholesky factor in the lower triangle of `a`. False if `a` is not positive definite.
 bool cholesky_in_place(MatrixRef a);
 // The same in steps of some hundred columns. False, too, if `control` interrupts it; the fraction is that of the
@@ -84,5 +80,9 @@ void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
 // diagonal of ones, to which `ridge` is added; it is multiplied by 100 until a Cholesky factor exists. Unknowns whose
 // diagonal is 0 are 0, and all are 0 if no ridge below 1 suffices.
 Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double ridge);
+// Minimises x^T G x - 2 b^T x subject to x >= 0. `gram`: G, n x n, symmetric, positive semidefinite; a ridge of 1e-8
+// separates equal columns. `start`: initial x, n values >= 0, or empty. Returns n values.
+Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right_side,
+                                   const Eigen::VectorXd& start = {});
 
 }  // namespace palpate

@@ -1,19 +1,15 @@
 #include "models/model/domain_guard.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <vector>
-
-#include "engine/tick/features.h"
 
 namespace palpate {
 namespace {
 
 // Radii in the normalised feature space, where a feature's spread is about 1. The inner one is the smallest of those
-// that a fit selects from (models/fit/correction_choice.h). On held-out recordings of six materials a correction is
+// that a fit selects from (models/fit/residual_rows.h). On held-out recordings of six materials a correction is
 // better than the trend up to about 0.2 from the data and worse beyond.
 constexpr double kInnerRadius = 0.08;
 constexpr double kOuterToInner = 3.0;
@@ -45,13 +41,6 @@ std::vector<Eigen::Index> all_of(const Eigen::MatrixXd& points) {
   std::vector<Eigen::Index> all(static_cast<std::size_t>(points.cols()));
   std::iota(all.begin(), all.end(), Eigen::Index{0});
   return all;
-}
-
-Eigen::Index widest_dimension(const Eigen::MatrixXd& points, const std::vector<Eigen::Index>& part) {
-  const Eigen::MatrixXd some = points(Eigen::all, part);
-  Eigen::Index widest = 0;
-  (some.rowwise().maxCoeff() - some.rowwise().minCoeff()).maxCoeff(&widest);
-  return widest;
 }
 
 }  // namespace
@@ -98,7 +87,9 @@ void DomainGuard::split(const Eigen::MatrixXd& points, std::vector<Eigen::Index>
     leaves_.emplace_back(points(Eigen::all, part));
     return;
   }
-  const Eigen::Index k = widest_dimension(points, part);
+  const Eigen::MatrixXd some = points(Eigen::all, part);
+  Eigen::Index k = 0;  // the widest dimension
+  (some.rowwise().maxCoeff() - some.rowwise().minCoeff()).maxCoeff(&k);
   std::sort(part.begin(), part.end(), [&](Eigen::Index a, Eigen::Index b) {
     return points(k, a) != points(k, b) ? points(k, a) < points(k, b) : a < b;
   });

@@ -1,24 +1,14 @@
-// The distance of a feature vector from the data of a model, and the trust in the correction there.
-//
-// The domain is the neighbourhood of the recorded samples in the normalised feature space, not their bounding box: the
-// box of a few strokes is mostly empty, and errors of radial basis functions in it reached twice the largest force.
-// The guard stores the cover, a thinned set of the sites that has every site well within inner_radius, and gives
-//
-//   trust g(x) = 1                 for distance <= inner_radius
-//              = smoothstep        between
-//              = 0                 for distance >= outer_radius
-//
-// The distance to a set is Lipschitz continuous with constant 1, so g is continuous, with slope at most
-// 1.5 / (outer - inner).
-//
-// Points are stored and compared in single precision. The error of a distance is at most
+// The distance of a feature vector from the data of a model, and the trust in the correction there. The domain is the
+// neighbourhood of the recorded samples in the normalised feature space, not their bounding box, which is mostly empty.
+// The guard stores the cover, a thinned set of the sites that has every site well within inner_radius, and gives the
+// trust g(x): 1 for distance <= inner_radius, 0 for distance >= outer_radius, smoothstep between, with slope at most
+// 1.5 / (outer - inner). Points are compared in single precision; the error of a distance is at most
 // 3e-7 (|x| + largest |point|) + 1e-10.
 // Thread guarantee: immutable; queries are wait-free and allocate nothing, any thread.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
-#include <cstddef>
 #include <vector>
 
 #include "engine/tick/features.h"
@@ -30,8 +20,7 @@ inline constexpr Eigen::Index kMaximumCoverPoints = 768;
 
 struct DomainCover {
   Eigen::MatrixXd points;  // d x M, normalised
-  double inner_radius = 0.0;
-  double outer_radius = 0.0;
+  double inner_radius = 0.0, outer_radius = 0.0;
 };
 
 // The trust g at a distance from the cover.
@@ -87,8 +76,7 @@ class DomainGuard {
  private:
   void split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> part, std::size_t node);
 
-  double inner_radius_ = 0.0;
-  double outer_radius_ = 0.0;
+  double inner_radius_ = 0.0, outer_radius_ = 0.0;
   float near_squared_ = 0.0F;  // at most the square of the inner radius
   NearestDistance all_;
   simd::Splits splits_;

@@ -1,7 +1,5 @@
 #include "models/model/fitted_model.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -19,15 +17,26 @@ constexpr double kMostOfLimit = 100.0;
 
 }  // namespace
 
+double Normalisation::range(Eigen::Index feature) const {
+  const double low = lower(feature), high = upper(feature);
+  return high - low > 1e-12 * std::max(std::abs(low), std::abs(high)) ? high - low : 0.0;
+}
+
+Eigen::VectorXd Normalisation::scale_of(double range_exponent) const {
+  Eigen::VectorXd other = scale;
+  for (Eigen::Index k = 0; k < other.size(); ++k)
+    if (range(k) > 0.0) other(k) = range(k) * std::pow(scale(k) / range(k), 2.0 * (1.0 - range_exponent));
+  return other;
+}
+
 Status check_forces(const ModelData& data) {
   const double limit_N = kMostOfLimit * (data.largest_force_N + data.correction_limit_N + data.jnd.offset_N);
   const TrendInputs inputs(data.features);
   std::array<double, kMaxFeatures> features{};
   for (Eigen::Index j = 0; j < data.cover.points.cols(); ++j) {
     const auto u = data.cover.points.col(j);
-    for (Eigen::Index i = 0; i < u.size(); ++i) {
+    for (Eigen::Index i = 0; i < u.size(); ++i)
       features[static_cast<std::size_t>(i)] = data.offset(i) + data.scale(i) * u(i);
-    }
     const double correction_N = data.correction ? data.correction->evaluate(u.data()) : 0.0;
     for (const auto& [part_N, name] :
          {std::pair{data.trend.at(features.data(), inputs), "trend"}, std::pair{correction_N, "correction"}}) {

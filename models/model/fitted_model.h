@@ -1,23 +1,15 @@
 // A fitted force model: its data, and the ForceModel that evaluates them.
-//
-//   f(x) = clamp( T(x) + g(u) clamp(h(u), -limit, limit), lowest, largest )
-//   u = (x - offset) / scale                                    normalised features
-//
+//   f(x) = clamp( T(x) + g(u) clamp(h(u), -limit, limit), lowest, largest ),   u = (x - offset) / scale
 // T: the trend (models/model/trend.h). h: the correction (models/model/correction.h): eq. 2 of Hoever & Harders (2009),
-// a grid of its values, or none. g: the trust, 1 near the data, 0 out of the domain (models/model/domain_guard.h).
-// limit: 1.1 x the largest residual of the trend in the training data. largest: 1.2 x the largest training force.
-// lowest: the lowest training force of a material that adheres to the tool, else 0. Out of its domain a model is thus
-// the trend: continuous, bounded, and attracting the tool at most as much as the material did. A model that was fitted
-// to the measured force has T = 0 and g = 1 everywhere.
-//
-// Thread guarantee: FittedModel is immutable; `evaluate` as in ForceModel.
+// a grid of its values, or none. g: the trust (models/model/domain_guard.h). Out of its domain a model is thus the
+// trend: continuous, bounded, and attracting the tool at most as much as the material did. A model of the measured
+// force has T = 0 and g = 1 everywhere. Thread guarantee: FittedModel is immutable; `evaluate` as in ForceModel.
 #pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -49,9 +41,7 @@ struct Provenance {
   std::vector<RecordingOffset> offsets;
   std::string scene;
   std::uint64_t samples = 0;  // rows of all recordings
-  std::uint64_t contact_samples = 0;
-  std::uint64_t samples_after_reduction = 0;
-  std::uint64_t seed = 0;
+  std::uint64_t contact_samples = 0, samples_after_reduction = 0, seed = 0;
   std::string weighting;   // jnd, relative, none
   std::string thinning;    // coverage, force, none
   std::string relaxation;  // scene, auto, given
@@ -61,14 +51,12 @@ struct Provenance {
 // The bound on the error of a model's force where no force is measured, at 95 %:
 //   bound(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
 // distance: to the nearest training data in the normalised feature space (domain_guard.h). The coefficients are fitted
-// to cross-validated errors and scaled by a quantile of the errors over the bound (models/fit/bound_estimator.h). This
+// to cross-validated errors and scaled by a quantile of the errors over the bound (models/fit/residual_rows.h). This
 // resembles cross-conformal prediction, but has no guarantee: neighbouring samples are not exchangeable.
 // Sources: Vovk (2015), "Cross-conformal predictors"; Lei, G'Sell, Rinaldo, Tibshirani & Wasserman (2018), section 5.2
 // (locally weighted).
 struct ErrorBound {
-  double floor_N = 0.0;
-  double per_force = 0.0;
-  double per_distance_N = 0.0;
+  double floor_N = 0.0, per_force = 0.0, per_distance_N = 0.0;
 
   // `beyond`: distance - inner radius. An infinite distance gives an infinite bound.
   double at(double force_N, double beyond) const noexcept {
@@ -76,14 +64,23 @@ struct ErrorBound {
   }
 };
 
-struct ModelData {
+// Of the features.
+struct Normalisation {
+  Eigen::VectorXd offset;  // SI
+  Eigen::VectorXd scale;   // SI, > 0; 1 for a feature that never changes
+  Eigen::VectorXd lower;   // bounds in contact, SI
+  Eigen::VectorXd upper;
+
+  // Upper minus lower bound; 0 at the level of rounding.
+  double range(Eigen::Index feature) const;
+  // The scale range^a (4 sigma)^(1 - a) of each feature; a = 1/2 gives `scale`.
+  Eigen::VectorXd scale_of(double range_exponent) const;
+};
+
+struct ModelData : Normalisation {
   std::string name;    // of its plan (models/fit/model_plan.h), e.g. "trend+greedy-100"
   std::string method;  // the name without the number of centres, e.g. "trend+greedy"
   std::vector<FeatureSpec> features;
-  Eigen::VectorXd offset;  // per feature, SI
-  Eigen::VectorXd scale;   // per feature, SI, > 0
-  Eigen::VectorXd lower;   // smallest values of the training data, SI
-  Eigen::VectorXd upper;
   Trend trend;
   double correction_limit_N = 0.0;
   double largest_force_N = 0.0;  // of the training data; the output is at most 1.2 times this
@@ -111,15 +108,12 @@ inline constexpr double kEverywhere = 1e6;
 // Checks the forces at the points of the cover. Errors: a part of the force is not finite or far above the limits of
 // the model.
 Status check_forces(const ModelData& data);
-
 // The sensor of a tool with this encoder step: the sensor of the training recordings if the step is theirs or 0 (not
 // known), else one with this step and no noise.
 SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m);
-
 // The greatest depth in the domain, m; a greater one is out of it at any distance from the data. Infinite without a
 // depth feature. `feature`: receives the index of the depth feature, or 0.
 double deepest_in_domain_m(const ModelData& data, std::size_t& feature);
-
 // The least depth in the domain, m: above 0 only with a step at the surface.
 double shallowest_in_domain_m(const ModelData& data);
 

@@ -1,9 +1,5 @@
 #include "models/model/trend.h"
 
-#include <algorithm>
-
-#include "engine/tick/motion_estimator.h"
-
 namespace palpate {
 namespace {
 
@@ -17,19 +13,6 @@ std::array<Quadratic, 3> b_splines(std::size_t piece) {
   const double last = piece + 1 == kElasticPieces ? 1.0 : 0.5;
   return {{{first, -2.0 * first, first}, {1.0 - first, 2.0 * first, -first - last}, {0.0, 0.0, last}}};
 }
-
-// The source text that exported models share with the library.
-namespace trend_equation {
-using real = double;
-using motion_filter::larger;
-using motion_filter::smaller;
-static_assert(kViscosityCoefficients == 3 && kElasticCoefficients == 4);
-#define R(x) (x)
-#define ELASTIC_PIECES kElasticPieces
-#include "models/model/trend.inc"
-#undef ELASTIC_PIECES
-#undef R
-}  // namespace trend_equation
 
 }  // namespace
 
@@ -45,9 +28,7 @@ std::vector<ElasticSpline> spline_basis() {
       if (i < piece || i > piece + 2) continue;
       const Quadratic spline = b_splines(piece)[i - piece];
       // The integral over u.
-      for (std::size_t k = 0; k < spline.size(); ++k) {
-        c[k + 1] = spline[k] / (static_cast<double>(k + 1) * kPieces);
-      }
+      for (std::size_t k = 0; k < spline.size(); ++k) c[k + 1] = spline[k] / (static_cast<double>(k + 1) * kPieces);
       sum += c[1] + c[2] + c[3];
     }
   }
@@ -56,9 +37,8 @@ std::vector<ElasticSpline> spline_basis() {
 
 ElasticSpline combined_spline(const std::vector<ElasticSpline>& basis, const double* weights) {
   ElasticSpline sum;
-  for (std::size_t i = 0; i < basis.size(); ++i) {
+  for (std::size_t i = 0; i < basis.size(); ++i)
     for (std::size_t j = 0; j < sum.pieces_N.size(); ++j) sum.pieces_N[j] += weights[i] * basis[i].pieces_N[j];
-  }
   return sum;
 }
 

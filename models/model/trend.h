@@ -1,23 +1,12 @@
-// The trend: a nonlinear viscoelastic solid fitted to the recordings. The radial basis functions correct it near the
-// data; away from the data it is the model.
-//
+// The trend, a nonlinear viscoelastic solid fitted to the recordings; away from the data it is the model.
 //   T(x) = E(d) + eta(d) v + mu(d) v / (1 + |v| / v_0) + sum_b z_b + sum_k y_k
-//
-// d: depth, v: velocity, z_b: force of Maxwell branch b or of a spectrum of them, y_k: force of stops and creeping
-// bristles (engine/tick/features.h); all are features. v_0: RMS velocity of the recordings. The two viscous terms
-// together describe a viscosity that falls with speed. E increases with depth, and eta, mu and the stiffnesses of
-// branches and bristles are non-negative (the fit enforces it), so that the trend is passive. A model has only the
-// terms of its features; position alone leaves E(d).
-//
-// Beyond the data: E continues along its tangent beyond the greatest recorded depth, and v is clamped to
-// velocity_limit, so that the value is bounded; the model clamps the rest.
-//
+// d: depth, v: velocity, z_b: force of a Maxwell spectrum, y_k: force of stops and creeping bristles; all are features
+// (engine/tick/features.h). E increases with depth, and eta, mu and the stiffnesses of branches and bristles are not
+// negative, so that the trend is passive. v is clamped to velocity_limit.
 // Thread guarantee: value types; `at` is wait-free and allocates nothing.
 #pragma once
 
 #include <array>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -50,6 +39,19 @@ ElasticSpline combined_spline(const std::vector<ElasticSpline>& basis, const dou
 
 inline constexpr std::size_t kViscosityCoefficients = 3;
 
+// The source text that exported models share with the library.
+namespace trend_equation {
+using real = double;
+using motion_filter::larger;
+using motion_filter::smaller;
+static_assert(kViscosityCoefficients == 3 && kElasticCoefficients == 4);
+#define R(x) (x)
+#define ELASTIC_PIECES kElasticPieces
+#include "models/model/trend.inc"
+#undef ELASTIC_PIECES
+#undef R
+}  // namespace trend_equation
+
 // The indices of the trend's inputs among the features, determined once outside the tick.
 struct TrendInputs {
   explicit TrendInputs(const std::vector<FeatureSpec>& specs) noexcept;
@@ -75,18 +77,5 @@ struct Trend {
     return at(features, TrendInputs(specs));
   }
 };
-
-// Value of sum_k coefficients[k] u^k.
-template <std::size_t n>
-constexpr double polynomial(const std::array<double, n>& coefficients, double u) noexcept {
-  double value = 0.0;
-  for (std::size_t k = n; k-- > 0;) value = value * u + coefficients[k];
-  return value;
-}
-
-// v / (1 + |v| / v_0).
-inline double thinned_velocity(double velocity_m_per_s, double thinning_velocity_m_per_s) noexcept {
-  return velocity_m_per_s / (1.0 + std::abs(velocity_m_per_s) / thinning_velocity_m_per_s);
-}
 
 }  // namespace palpate

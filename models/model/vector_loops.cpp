@@ -12,7 +12,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 #include <utility>
 

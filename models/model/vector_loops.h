@@ -1,12 +1,9 @@
 // The vectorised loops of the tick and of the fits, one variant per instruction set (AVX-512, AVX2, SSE4, NEON or
-// plain), selected at run time; pure and wait-free. Only rbf_evaluate.h, domain_guard.h, tests and benchmarks use them.
-//
-// Points are structures of arrays: coordinate k of point i is coordinates[k * stride + i]. Loads are fast because
-// CMakeLists.txt lets Eigen align to 64 bytes.
+// plain), selected at run time; pure and wait-free. Points are structures of arrays: coordinate k of point i is
+// coordinates[k * stride + i]. Loads are fast because CMakeLists.txt lets Eigen align to 64 bytes.
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -87,7 +84,6 @@ struct NearestLoops {
 };
 // For dimensions 1 to 8.
 NearestLoops nearest_loops(int dimension);
-
 // ---- instruction sets ----
 
 // The names of the instruction sets of this processor, best first, and the one in use. choose_target selects one of

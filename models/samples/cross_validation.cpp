@@ -1,7 +1,5 @@
 #include "models/samples/cross_validation.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace palpate {
@@ -69,9 +67,8 @@ std::size_t best_score(std::span<const FoldErrors> candidates) {
 std::size_t simplest_adequate(std::span<const FoldErrors> candidates) {
   const std::size_t best = best_score(candidates);
   const std::vector<double> scores = scores_of(candidates[best], candidates);
-  for (std::size_t i = 0; i < best; ++i) {
+  for (std::size_t i = 0; i < best; ++i)
     if (is_adequate(scores_of(candidates[i], candidates), scores)) return i;
-  }
   return best;
 }
 

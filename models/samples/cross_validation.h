@@ -1,22 +1,51 @@
-// Cross-validation: the errors of candidates, and the selection rules that choose among them. Every candidate predicts
-// the samples of each fold (samples.h) from the other folds.
-//
-// The score of a fold is
-//   l_k = ln(mean_i (e_i / JND_i)^2 + kUnnoticed_jnd^2).
-// The logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below the
+// The weight of an error in a fit, the errors of candidates in cross-validation, and the rules that choose among them.
+// Every candidate predicts the samples of each fold (samples.h) from the other folds. The score of a fold is
+//   l_k = ln(mean_i (e_i / JND_i)^2 + kUnnoticed_jnd^2):
+// the logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below the
 // JND irrelevant. The correction and what the paper leaves open have the lowest score. The shape of the trend is the
 // simplest whose mean score exceeds the lowest by at most two standard errors of the paired difference; with the lowest
 // score, 0.9 points of the share within the JND are lost on the recorded sets (tests/bench/README.md).
-// Source: Breiman, Friedman, Olshen & Stone (1984), section 3.4.3; Hastie, Tibshirani & Friedman
-// (2009), section 7.10.
+// Source: Breiman et al. (1984), section 3.4.3; Hastie, Tibshirani & Friedman (2009), section 7.10.
 // Thread guarantee: value types and pure functions, slow side.
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
+#include "engine/tick/jnd.h"
+
 namespace palpate {
+
+// The factor of a residual.
+enum class Weighting {
+  jnd,       // 1 / JND(f), errors relative to perception (default)
+  relative,  // 1 / max(|f|, kReductionForce_N), eq. (8) of the paper
+  none,      // 1
+};
+
+// Names in commands and model files, in the order of the values.
+inline constexpr std::array<const char*, 3> kWeightingNames{"jnd", "relative", "none"};
+
+// The step of the paper's reduction (models/correction/sites.h), below which it separates no forces: 1 / |f| is
+// constant there.
+inline constexpr double kReductionForce_N = 0.05;
+
+inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N) noexcept {
+  if (weighting == Weighting::none) return 1.0;
+  return 1.0 / (weighting == Weighting::jnd ? jnd.at(force_N) : std::max(std::abs(force_N), kReductionForce_N));
+}
+
+// The factor robust_scale is the square root of the weight of a Cauchy likelihood (Holland & Welsch 1977): 1 for small
+// errors, less for errors well above the JND, which would otherwise bend the fit elsewhere.
+inline constexpr double kRobustError_jnd = 2.0;
+
+inline double robust_scale(double error_over_jnd) noexcept {
+  const double share = error_over_jnd / kRobustError_jnd;
+  return 1.0 / std::sqrt(1.0 + share * share);
+}
 
 // By fold, the greatest depth in the other folds. Deeper samples of the fold would be extrapolated, so they do not
 // count. `fold`, `depth_m`: of each sample.
@@ -52,7 +81,6 @@ std::vector<FoldErrors> errors_of(const std::vector<Candidate>& candidates) {
 
 // Index of the candidate with the lowest mean score.
 std::size_t best_score(std::span<const FoldErrors> candidates);
-
 // Index of the selected candidate. `candidates`: at least one, from the simplest to the most complex, with the same
 // folds. A fold in which one of them has no samples is ignored.
 std::size_t simplest_adequate(std::span<const FoldErrors> candidates);

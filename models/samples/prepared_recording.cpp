@@ -1,11 +1,364 @@
 #include "models/samples/prepared_recording.h"
 
+#include <Eigen/Core>
+#include <algorithm>
+#include <tuple>
 #include <utility>
 
-#include "engine/recording/recording.h"
 #include "engine/tick/sensor_identification.h"
+#include "models/linear/lapack.h"
 
 namespace palpate {
+namespace {
+
+constexpr std::size_t kSlices = 100;    // of the range of positions
+constexpr std::size_t kLeastRows = 10;  // of the stretch
+
+// Differences of velocities over 10 ms where no acceleration is measured.
+std::vector<double> accelerations(const std::vector<Sample>& rows) {
+  const bool measured =
+      std::ranges::any_of(rows, [](const Sample& row) { return row.tool.acceleration_m_per_s2 != 0.0; });
+  std::vector<double> result(rows.size(), 0.0);
+  std::size_t from = 0, to = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (measured) {
+      result[i] = rows[i].tool.acceleration_m_per_s2;
+      continue;
+    }
+    while (to + 1 < rows.size() && rows[to].tool.time_s < rows[i].tool.time_s + 0.01) ++to;
+    while (rows[from].tool.time_s < rows[i].tool.time_s - 0.01) ++from;
+    const double step_s = rows[to].tool.time_s - rows[from].tool.time_s;
+    if (step_s > 0.0) result[i] = (rows[to].motion.velocity_m_per_s - rows[from].motion.velocity_m_per_s) / step_s;
+  }
+  return result;
+}
+
+class AirSearch {
+ public:
+  AirSearch(const std::vector<Sample>& rows, double force_noise_N)
+      : rows_(rows), noise_N_(force_noise_N), acceleration_m_per_s2_(accelerations(rows)), slices_(kSlices) {
+    std::tie(low_m_, high_m_) = position_range_m(rows);
+    const auto [low, high] = std::ranges::minmax_element(rows, {}, &Sample::force_N);
+    range_N_ = high->force_N - low->force_N;
+    // The medians of the slices stay within this, because sensors drift and encoders are coarse.
+    flat_N_ = std::max({3.0 * force_noise_N, 0.003 * range_N_, 2e-3});
+    for (std::size_t i = 0; i < rows.size() && high_m_ > low_m_; ++i) {
+      const double share = (rows[i].motion.position_m - low_m_) / (high_m_ - low_m_);
+      slices_[std::min(kSlices - 1, static_cast<std::size_t>(share * kSlices))].push_back(i);
+    }
+  }
+
+  FreeAir run() {
+    FreeAir air = stretch(0.0);
+    // The inertia of the tool may hide the flat slices.
+    const double mass_kg = mass();
+    if (mass_kg > 0.0) {
+      FreeAir without = stretch(mass_kg);
+      if (without.found && (!air.found || without.inner_end_m >= air.inner_end_m)) {
+        air = without;
+        air.tool_mass_kg = mass_kg;
+      }
+    }
+    return air;
+  }
+
+ private:
+  double force_N(std::size_t i, double mass_kg) const { return rows_[i].force_N - mass_kg * acceleration_m_per_s2_[i]; }
+
+  // Finds the outermost slices whose force is flat during loading.
+  FreeAir stretch(double mass_kg) const {
+    FreeAir air;
+    double lowest_N = HUGE_VAL, highest_N = -HUGE_VAL;
+    std::size_t end = 0;
+    for (; end < kSlices; ++end) {
+      std::vector<double> forces_N;
+      for (const std::size_t i : slices_[end])
+        if (rows_[i].motion.velocity_m_per_s >= 0.0) forces_N.push_back(force_N(i, mass_kg));
+      if (forces_N.empty()) continue;
+      // The median of a few rows is noisy itself.
+      const double middle_N = median_of(forces_N);
+      const double margin_N = 4.0 * noise_N_ / std::sqrt(static_cast<double>(forces_N.size()));
+      lowest_N = std::min(lowest_N, middle_N + margin_N);
+      highest_N = std::max(highest_N, middle_N - margin_N);
+      if (highest_N - lowest_N > flat_N_) break;
+    }
+    const double span_m = static_cast<double>(end) / kSlices * (high_m_ - low_m_);
+    const double stiffness_N_per_m = range_N_ / std::max(high_m_ - low_m_ - span_m, 1e-9);
+    // Materials begin ten times softer than they end.
+    const bool evident = end >= 2 && end < kSlices && stiffness_N_per_m * span_m > 20.0 * flat_N_;
+    if (!evident) return air;
+    // If the force begins softly, the inner half may be in the material already.
+    air.inner_end_m = low_m_ + 0.5 * span_m;
+    std::vector<double> forces_N;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const MotionEstimate& motion = rows_[i].motion;
+      if (motion.position_m < air.inner_end_m && motion.velocity_m_per_s >= 0.0)
+        forces_N.push_back(force_N(i, mass_kg));
+    }
+    if (forces_N.size() < kLeastRows) return air;
+    air.found = true;
+    put_zero(air, forces_N);
+    return air;
+  }
+
+  // The mean of the forces within three standard deviations of their median, estimated by the median of the deviations:
+  // the median of a quantised force is one of its steps, and rows in the material would bias the mean of all.
+  void put_zero(FreeAir& air, std::vector<double> forces_N) const {
+    const auto third = static_cast<std::ptrdiff_t>(forces_N.size() / 3);
+    air.drift_N =
+        median_of({forces_N.end() - third, forces_N.end()}) - median_of({forces_N.begin(), forces_N.begin() + third});
+    const double middle_N = median_of(forces_N);
+    std::vector<double> deviations_N;
+    for (const double force_N : forces_N) deviations_N.push_back(std::abs(force_N - middle_N));
+    // The standard deviation of normal errors is 1.4826 times the median of their sizes.
+    const double limit_N = std::max(flat_N_, 3.0 * 1.4826 * median_of(std::move(deviations_N)));
+    std::erase_if(forces_N, [&](double force_N) { return std::abs(force_N - middle_N) > limit_N; });
+    const auto count = static_cast<double>(forces_N.size());
+    double mean_N = 0.0, squares = 0.0;
+    for (const double force_N : forces_N) mean_N += (force_N - middle_N) / count;
+    for (const double force_N : forces_N) squares += (force_N - middle_N) * (force_N - middle_N);
+    air.zero_N = middle_N + mean_N;
+    air.zero_error_N = std::sqrt(squares) / count;
+  }
+
+  // The mass of the tool, by a regression of the force on the acceleration in the outermost tenth of the slices; 0 if
+  // the slope is not significant.
+  double mass() const {
+    double count = 0.0, a = 0.0, f = 0.0, aa = 0.0, af = 0.0, ff = 0.0;
+    for (std::size_t s = 0; s < kSlices / 10; ++s) {
+      for (const std::size_t i : slices_[s]) {
+        const double x = acceleration_m_per_s2_[i], y = rows_[i].force_N;
+        count += 1.0, a += x, f += y;
+        aa += x * x, af += x * y, ff += y * y;
+      }
+    }
+    if (count < 3.0 * kLeastRows) return 0.0;
+    const double xx = aa - a * a / count, xy = af - a * f / count, yy = ff - f * f / count;
+    if (!(xx > 0.0)) return 0.0;
+    const double mass_kg = xy / xx;
+    const double error_kg = std::sqrt(std::max(0.0, yy - mass_kg * xy) / xx / count);
+    const bool follows = xy * mass_kg > 0.5 * yy;
+    return follows && mass_kg > std::max(1e-3, 5.0 * error_kg) ? mass_kg : 0.0;
+  }
+
+  const std::vector<Sample>& rows_;
+  double noise_N_;
+  std::vector<double> acceleration_m_per_s2_;
+  std::vector<std::vector<std::size_t>> slices_;
+  double low_m_ = 0.0, high_m_ = 0.0, range_N_ = 0.0, flat_N_ = 0.0;
+};
+
+constexpr double kTouchOut_m = 1e-3;  // a touch begins so far outside of its first force
+constexpr double kCoarseStep_m = 0.05e-3;
+constexpr Eigen::Index kTerms = 2;
+// The exponent of the force law: a flat or rough contact, or a sphere on a soft solid (Hertz, 1881).
+constexpr double kLinear = 1.0, kBall = 1.5;
+// A difference of chi^2 above this, two standard errors, selects an exponent. Below it, half the difference of the two
+// onsets adds to the standard error.
+constexpr double kClearDrop = kSignificantErrors * kSignificantErrors;
+// Force begins with this many consecutive rows above the threshold.
+constexpr std::size_t kForceRun = 3;
+
+// One touch: the rows [begin, end) of its loading.
+struct Touch {
+  std::size_t begin = 0, end = 0;
+  double first_force_m = 0.0;  // position where the force leaves the noise: too deep if the onset is soft
+};
+
+struct Onset {
+  double at_m = 0.0;
+  double standard_error_m = 0.0;  // infinite if J has no minimum
+  double misfit_m = 0.0;          // additional error if the force follows neither law
+};
+
+class OnsetCost {
+ public:
+  OnsetCost(const std::vector<Sample>& rows, const std::vector<Touch>& touches, double zero_N, double exponent)
+      : zero_N_(zero_N), exponent_(exponent) {
+    for (const Touch& touch : touches) {
+      const std::size_t stride = (touch.end - touch.begin) / 300 + 1;  // a slow touch is thinned
+      std::vector<const Sample*> kept;
+      for (std::size_t i = touch.begin; i < touch.end; i += stride) kept.push_back(&rows[i]);
+      count_ += static_cast<double>(kept.size());
+      touches_.push_back(std::move(kept));
+    }
+  }
+
+  // J(d0), N^2.
+  double at(double offset_m) const {
+    double cost = 0.0;
+    for (const auto& touch : touches_) cost += touch_cost(touch, offset_m);
+    return cost;
+  }
+
+  double degrees_of_freedom() const {
+    return std::max(1.0, count_ - 1.0 - static_cast<double>(kTerms) * static_cast<double>(touches_.size()));
+  }
+
+ private:
+  double touch_cost(const std::vector<const Sample*>& touch, double offset_m) const {
+    Eigen::Matrix<double, kTerms, kTerms> gram = Eigen::Matrix<double, kTerms, kTerms>::Zero();
+    Eigen::Matrix<double, kTerms, 1> right_side = Eigen::Matrix<double, kTerms, 1>::Zero();
+    double squares = 0.0;
+    const double bend = exponent_ / ((exponent_ + 1.0) * 3.0);  // the slope is 0 at 3 mm
+    for (const Sample* row : touch) {
+      const double force_N = row->force_N - zero_N_;
+      squares += force_N * force_N;
+      const double x = (row->motion.position_m - offset_m) / 1e-3;  // mm: columns of similar size
+      if (!(x > 0.0)) continue;
+      const double power = exponent_ == kLinear ? x : x * std::sqrt(x);
+      const Eigen::Matrix<double, kTerms, 1> term(power * (1.0 - bend * x), power * bend * x);
+      gram += term * term.transpose();
+      right_side += term * force_N;
+    }
+    const Eigen::VectorXd best = solve_non_negative(gram, right_side);
+    return squares - 2.0 * right_side.dot(best) + best.dot(gram * best);
+  }
+
+  double zero_N_, exponent_, count_ = 0.0;
+  std::vector<std::vector<const Sample*>> touches_;
+};
+
+// A retreat slower than 2 mm/s is jitter of an approach.
+bool approaches(const Sample& row) { return row.motion.velocity_m_per_s > -2e-3; }
+
+struct FormOnset {
+  double at_m = 0.0;
+  double cost = 0.0;       // N^2
+  double curvature = 0.0;  // N^2/m^2
+  double degrees_of_freedom = 1.0;
+};
+
+FormOnset onset_of_form(const OnsetCost& cost, double first_force_m) {
+  FormOnset onset{first_force_m, kUnknownError, 0.0, cost.degrees_of_freedom()};
+  const auto scan = [&](double from_m, double to_m, double step_m) {
+    for (double at_m = from_m; at_m < to_m + 0.5 * step_m; at_m += step_m) {
+      const double value = cost.at(at_m);
+      if (value >= onset.cost) continue;
+      onset.cost = value;
+      onset.at_m = at_m;
+    }
+  };
+  // The first force comes late where the onset is soft.
+  scan(first_force_m - kTouchOut_m, first_force_m + 0.3e-3, kCoarseStep_m);
+  for (double step_m = kCoarseStep_m; step_m > kFinest_m;) {
+    const double around_m = onset.at_m;
+    step_m *= 0.25;
+    scan(around_m - 4.0 * step_m, around_m + 4.0 * step_m, step_m);
+  }
+  onset.curvature = (cost.at(onset.at_m - kLeastOffset_m) + cost.at(onset.at_m + kLeastOffset_m) - 2.0 * onset.cost) /
+                    (kLeastOffset_m * kLeastOffset_m);
+  return onset;
+}
+
+// The touches of a surface at rest that begin in free air, which is certain for positions below `air_end_m`.
+// `threshold_N`: force above the noise that counts as contact.
+std::vector<Touch> touches_at_rest(const std::vector<Sample>& rows, double zero_N, double threshold_N,
+                                   double air_end_m) {
+  std::vector<Touch> touches;
+  bool in_air = false;
+  bool rested = true;  // the first touch counts as one at rest
+  double left_s = 0.0;
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double time_s = rows[i].tool.time_s;
+    in_air = in_air || rows[i].motion.position_m < air_end_m;
+    if (!(rows[i].force_N - zero_N > threshold_N)) {
+      run = 0;
+      const bool out = touches.empty() || rows[i].motion.position_m < touches.front().first_force_m;
+      if (out && time_s - left_s >= kRestBeforeTouch_s) rested = true;
+      continue;
+    }
+    left_s = time_s;
+    if (++run != kForceRun || !rested) continue;
+    rested = false;
+    const std::size_t first = i + 1 - kForceRun;
+    const double first_m = rows[first].motion.position_m;
+    const auto position_m = [&](std::size_t row) { return rows[row].motion.position_m; };
+    Touch touch{first, first, first_m};
+    while (touch.begin > 0 && position_m(touch.begin - 1) > first_m - kTouchOut_m && approaches(rows[touch.begin - 1]))
+      --touch.begin;
+    while (touch.end < rows.size() && position_m(touch.end) < first_m + 2e-3 && approaches(rows[touch.end]))
+      ++touch.end;
+    // An approach of half a millimetre without force begins in free air.
+    const bool from_air = in_air || first_m - position_m(touch.begin) >= 0.5 * kTouchOut_m;
+    if (from_air && touch.end >= first + kForceRun + 1) touches.push_back(touch);
+    in_air = false;
+  }
+  return touches;
+}
+
+// The common onset of at least one touch; the coefficients a and b of each touch are its own.
+Onset find_onset(const std::vector<Sample>& rows, const std::vector<Touch>& touches, double zero_N,
+                 double force_noise_N) {
+  const FormOnset linear = onset_of_form(OnsetCost(rows, touches, zero_N, kLinear), touches.front().first_force_m);
+  const FormOnset ball = onset_of_form(OnsetCost(rows, touches, zero_N, kBall), touches.front().first_force_m);
+  const double variance =
+      std::max(std::min(linear.cost, ball.cost) / linear.degrees_of_freedom, force_noise_N * force_noise_N);
+  const double drop = (ball.cost - linear.cost) / std::max(variance, 1e-18);
+  const FormOnset& chosen = drop > kClearDrop ? linear : ball;
+  Onset onset{chosen.at_m, kUnknownError};
+  if (chosen.curvature > 0.0) {
+    // J rises by noise^2 within one standard error.
+    onset.standard_error_m = std::max(2.0 * kFinest_m, std::sqrt(2.0 * variance / chosen.curvature));
+    const bool clear = drop > kClearDrop || drop < -kClearDrop;
+    if (!clear) onset.standard_error_m = std::hypot(onset.standard_error_m, 0.5 * (linear.at_m - ball.at_m));
+    // Neither law fits, so that the onset between free air and the first force is uncertain.
+    if (std::sqrt(variance) > kSignificantErrors * force_noise_N)
+      onset.misfit_m = std::abs(onset.at_m - touches.front().first_force_m);
+  }
+  return onset;
+}
+
+void estimate_drift(SurfaceEstimate& estimate, const std::vector<Sample>& rows, const std::vector<Touch>& touches,
+                    double zero_N, double force_noise_N) {
+  if (touches.size() < 2) return;
+  const Onset first = find_onset(rows, {touches.front()}, zero_N, force_noise_N);
+  const Onset last = find_onset(rows, {touches.back()}, zero_N, force_noise_N);
+  estimate.offset_drift_error_m =
+      std::hypot(std::hypot(first.standard_error_m, last.standard_error_m), std::hypot(first.misfit_m, last.misfit_m));
+  const double drift_m = last.at_m - first.at_m;
+  if (std::abs(drift_m) > kSignificantErrors * estimate.offset_drift_error_m) estimate.offset_drift_m = drift_m;
+}
+
+}  // namespace
+
+SurfaceEstimate estimate_surface(const std::vector<Sample>& rows, double force_noise_N) {
+  SurfaceEstimate estimate;
+  if (rows.size() < kLeastRows) return estimate;
+  const FreeAir& air = estimate.air = AirSearch(rows, force_noise_N).run();
+  if (!air.found) return estimate;
+  // A force zero that drifts by more than its size is not identified.
+  const double least_N = std::max({1e-3, kSignificantErrors * air.zero_error_N, std::abs(air.drift_N)});
+  if (std::abs(air.zero_N) >= least_N) estimate.force_zero_N = air.zero_N;
+
+  std::vector<Sample> still;
+  const std::vector<Sample>* material = &rows;
+  if (air.tool_mass_kg > 0.0) {
+    still = rows;
+    const std::vector<double> acceleration_m_per_s2 = accelerations(rows);
+    for (std::size_t i = 0; i < rows.size(); ++i) still[i].force_N -= air.tool_mass_kg * acceleration_m_per_s2[i];
+    material = &still;
+  }
+  const double threshold_N = std::max(0.02, 5.0 * force_noise_N);
+  const auto touches = touches_at_rest(*material, air.zero_N, threshold_N, air.inner_end_m);
+  if (touches.empty()) return estimate;
+  Onset onset = find_onset(*material, touches, air.zero_N, force_noise_N);
+  onset.standard_error_m = std::hypot(onset.standard_error_m, onset.misfit_m);
+  if (kSignificantErrors * onset.standard_error_m > kWidestSurface_m) return estimate;
+  estimate.raw_offset_m = onset.at_m;
+  estimate.standard_error_m = onset.standard_error_m;
+  const bool significant = std::abs(onset.at_m) > std::max(kLeastOffset_m, kSignificantErrors * onset.standard_error_m);
+  if (significant) estimate.offset_m = onset.at_m;
+  estimate_drift(estimate, *material, touches, air.zero_N, force_noise_N);
+  return estimate;
+}
+
+SurfaceEstimate estimate_surface(const Recording& recording) {
+  // 30 minutes at 1 kHz keep every row.
+  return estimate_surface(thinned_rows(recording, 2000000),
+                          identify_force_noise_N(recording.rows.data(), recording.rows.size()));
+}
 
 PreparedRecordingPointer prepare_recording(Recording recording) {
   const auto prepared = std::make_shared<PreparedRecording>();

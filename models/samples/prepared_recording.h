@@ -1,18 +1,57 @@
-// A recording with all estimates from it alone. palpate check reports them, and a fit uses them.
-// Thread guarantee: an immutable value; prepare_recording is pure, slow side.
+// A recording with all estimates from it alone, above all its surface and force zero. palpate check reports them, and a
+// fit uses them.
+//
+// Free air is a range at the outer end of the positions where the force during loading does not depend on the position
+// ; without it, neither force zero nor surface is identified. Force zero: the mean force there, without
+// outliers. Surface: the onset of force in touches of a surface at rest that begin in free air: the first, and those
+// after 5 s of air, because a surface that still recovers meets the tool late, by up to a millimetre. During loading,
+//   J(d0) = sum_i (f_i - zero - x_i^n (a (1 - k x_i) + b k x_i))^2,
+//           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5,  k = n / ((n + 1) 3 mm)
+// is minimised over d0: a force law that is convex or concave and rises up to 3 mm.
+// Thread guarantee: an immutable value and pure functions, slow side.
 #pragma once
 
-#include <cstddef>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "engine/recording/recording.h"
 #include "engine/tick/motion_estimator.h"
+#include "models/samples/profile_search.h"
 #include "models/samples/sample.h"
-#include "models/samples/surface_estimate.h"
 
 namespace palpate {
+
+inline constexpr double kRestBeforeTouch_s = 5.0;
+
+struct FreeAir {
+  bool found = false;
+  double inner_end_m = 0.0;  // free air is certain for positions below
+  double zero_N = 0.0;
+  double zero_error_N = kUnknownError;  // standard error
+  double drift_N = 0.0;       // of the zero: median of the last third of the rows in air minus that of the first
+  double tool_mass_kg = 0.0;  // mass carried by the force sensor; 0 if not identified
+};
+
+struct SurfaceEstimate {
+  FreeAir air;  // if not found, all below is unknown
+  // To be subtracted from position_m so that 0 is the surface. `raw_offset_m`: the onset, before the test against 0.
+  double offset_m = 0.0;
+  double raw_offset_m = 0.0;
+  double standard_error_m = kUnknownError;  // infinite if the surface is not identified
+  double force_zero_N = 0.0;                // to be subtracted from force_N; 0 if not significant
+  // The surface at the last touch at rest minus that at the first; the error is infinite with fewer than two.
+  double offset_drift_m = 0.0;
+  double offset_drift_error_m = kUnknownError;
+
+  bool identified() const { return std::isfinite(standard_error_m); }
+};
+
+// `rows`: a whole recording in time order. `force_noise_N`: standard deviation.
+SurfaceEstimate estimate_surface(const std::vector<Sample>& rows, double force_noise_N);
+// The same from a recording in memory.
+SurfaceEstimate estimate_surface(const Recording& recording);
 
 // The maximum number of rows from which a surface is estimated, and their largest interval: an approach with fewer rows
 // does not identify the onset. A longer recording at 1 kHz contributes its first seven minutes.

@@ -1,40 +1,31 @@
 #include "models/samples/profile_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMostValleys = 4;
-constexpr double kMostScans = 1e6;
-constexpr double kForceResolution = 1e-3;  // of the largest force
 constexpr double kGolden = 0.6180339887498949;
-constexpr int kMostGoldenSteps = 100;  // an interval shrinks by 1e-21: beyond the digits of any number
-// Replaces a cost that is not finite: worse than any other, and sums of it stay finite.
-constexpr double kWorstCost = 1e100;
 
 double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
 
 // Whether the sum of `one` exceeds the sum of `best` by at most one standard error of their paired differences.
-bool is_within_one_standard_error(const std::vector<double>& one, const std::vector<double>& best) {
+bool is_within_one_standard_error(const BlockCosts& one, const BlockCosts& best) {
   const auto count = static_cast<double>(one.size());
-  const double sum = std::accumulate(one.begin(), one.end(), 0.0) - std::accumulate(best.begin(), best.end(), 0.0);
-  if (count < 2.0) return sum <= 0.0;
+  const double more = sum(one) - sum(best);
+  if (count < 2.0) return more <= 0.0;
   double squares = 0.0;
-  for (std::size_t k = 0; k < one.size(); ++k) squares += std::pow(one[k] - best[k] - sum / count, 2);
-  return sum <= std::sqrt(squares * count / (count - 1.0));
+  for (std::size_t k = 0; k < one.size(); ++k) squares += std::pow(one[k] - best[k] - more / count, 2);
+  return more <= std::sqrt(squares * count / (count - 1.0));
 }
 
 // Whether `one` is significantly worse than `best` (profile_search.h). The tenth of the mean block damps blocks with
 // small costs, whose relative differences are noise.
-bool is_significantly_worse(const std::vector<double>& one, const std::vector<double>& best) {
-  constexpr double kLeastBlock = 0.1;
+bool is_significantly_worse(const BlockCosts& one, const BlockCosts& best) {
   const auto count = static_cast<double>(one.size());
-  const double least = kLeastBlock * std::accumulate(best.begin(), best.end(), 0.0) / count;
-  double mean = 0.0;
-  double squares = 0.0;
+  const double least = 0.1 * sum(best) / count;
+  double mean = 0.0, squares = 0.0;
   for (std::size_t b = 0; b < one.size(); ++b) {
     const double whole = one[b] + best[b] + least;
     const double share = whole > 0.0 ? (one[b] - best[b]) / whole : 0.0;
@@ -52,7 +43,8 @@ struct ScannedOffset {
 
 ScannedOffset candidate_at(const CostFunction& cost, double at) {
   ScannedOffset made{at, cost(at)};
-  for (double& one : made.costs) one = std::abs(one) < kWorstCost ? one : kWorstCost;
+  // A cost that is not finite is worse than any other, and sums of it stay finite.
+  for (double& one : made.costs) one = std::abs(one) < 1e100 ? one : 1e100;
   return made;
 }
 
@@ -60,7 +52,8 @@ ScannedOffset candidate_at(const CostFunction& cost, double at) {
 ScannedOffset golden(const CostFunction& cost, double low, double high, double fine_step) {
   ScannedOffset a = candidate_at(cost, high - kGolden * (high - low));
   ScannedOffset b = candidate_at(cost, low + kGolden * (high - low));
-  for (int step = 0; step < kMostGoldenSteps && high - low > fine_step; ++step) {
+  // In 100 steps an interval shrinks by 1e-21, beyond the digits of any number.
+  for (int step = 0; step < 100 && high - low > fine_step; ++step) {
     if (sum(a.costs) < sum(b.costs)) {
       high = b.at;
       b = std::move(a);
@@ -79,13 +72,13 @@ class Search {
   Search(const CostFunction& cost, const SearchRange& range) : cost_(cost), range_(range) {}
 
   OffsetEstimate run() {
-    if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans)) return {};
+    if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < 1e6)) return {};
     scan();
     const ScannedOffset zero = candidate_at(cost_, 0.0);
     const double effect = range_.systematic_effect;
-    const bool any_better = std::any_of(scanned_.begin(), scanned_.end(), [&](const ScannedOffset& one) {
-      return is_significantly_worse(zero.costs, one.costs);
-    });
+    const bool any_better = std::ranges::any_of(
+        scanned_, [&](const BlockCosts& costs) { return is_significantly_worse(zero.costs, costs); },
+        &ScannedOffset::costs);
     if (effect > 0.0 && !any_better) return {};
     refine_valleys();
     look_around();
@@ -123,9 +116,8 @@ class Search {
       const bool right = i + 1 == scanned_.size() || here < sum(scanned_[i + 1].costs);
       if (left && right) valleys.push_back(i);
     }
-    std::sort(valleys.begin(), valleys.end(),
-              [&](std::size_t a, std::size_t b) { return sum(scanned_[a].costs) < sum(scanned_[b].costs); });
-    valleys.resize(std::min(valleys.size(), kMostValleys));
+    std::ranges::sort(valleys, {}, [&](std::size_t i) { return sum(scanned_[i].costs); });
+    valleys.resize(std::min<std::size_t>(valleys.size(), 4));
     std::vector<ScannedOffset> bottoms;
     for (const std::size_t valley : valleys) {
       const double around = scanned_[valley].at;
@@ -133,10 +125,8 @@ class Search {
                                std::min(range_.high, around + range_.coarse_step), range_.fine_step));
       scanned_.push_back(bottoms.back());
     }
-    best_ = *std::min_element(bottoms.begin(), bottoms.end(), [](const ScannedOffset& a, const ScannedOffset& b) {
-      return sum(a.costs) < sum(b.costs);
-    });
-    alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const ScannedOffset& one) {
+    best_ = *std::ranges::min_element(bottoms, {}, [](const ScannedOffset& one) { return sum(one.costs); });
+    alone_ = std::ranges::none_of(bottoms, [&](const ScannedOffset& one) {
       return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_significantly_worse(one.costs, best_.costs);
     });
   }
@@ -144,12 +134,10 @@ class Search {
   // Adds offsets at growing distances from the best, for the minima of the jackknife.
   void look_around() {
     for (double step = range_.fine_step; step < range_.coarse_step; step *= 2.0) {
-      for (const double at : {best_.at - step, best_.at + step}) {
+      for (const double at : {best_.at - step, best_.at + step})
         if (at > range_.low && at < range_.high) scanned_.push_back(candidate_at(cost_, at));
-      }
     }
-    std::sort(scanned_.begin(), scanned_.end(),
-              [](const ScannedOffset& a, const ScannedOffset& b) { return a.at < b.at; });
+    std::ranges::sort(scanned_, {}, &ScannedOffset::at);
   }
 
   // The minimum of the cost without one block: a parabola through the best offset tried and its neighbours.
@@ -159,11 +147,9 @@ class Search {
     for (std::size_t i = 1; i < scanned_.size(); ++i) best = cost(i) < cost(best) ? i : best;
     const double at = scanned_[best].at;
     if (best == 0 || best + 1 == scanned_.size()) return at;
-    const double left = at - scanned_[best - 1].at;
-    const double right = scanned_[best + 1].at - at;
+    const double left = at - scanned_[best - 1].at, right = scanned_[best + 1].at - at;
     if (!(left > 0.0) || !(right > 0.0)) return at;
-    const double fall = (cost(best - 1) - cost(best)) / left;
-    const double climb = (cost(best + 1) - cost(best)) / right;
+    const double fall = (cost(best - 1) - cost(best)) / left, climb = (cost(best + 1) - cost(best)) / right;
     const double bend = fall + climb;
     return bend > 0.0 ? at + 0.5 * (fall * right - climb * left) / bend : at;
   }
@@ -177,7 +163,7 @@ class Search {
     const std::size_t count = best_.costs.size();
     std::vector<double> minima;
     for (std::size_t b = 0; b < count; ++b) minima.push_back(best_without(b));
-    const double mean = std::accumulate(minima.begin(), minima.end(), 0.0) / static_cast<double>(count);
+    const double mean = sum(minima) / static_cast<double>(count);
     double squares = 0.0;
     for (const double at : minima) squares += (at - mean) * (at - mean);
     return std::max(std::sqrt(squares * static_cast<double>(count - 1) / static_cast<double>(count)), range_.fine_step);
@@ -197,7 +183,7 @@ OffsetEstimate estimate_offset(const CostFunction& cost, const SearchRange& rang
 OffsetEstimate unless_force_offset(OffsetEstimate shift, const CostFunction& cost, double most_N) {
   if (!shift.identified || !shift.not_zero || !(most_N > 0.0)) return shift;
   // J, a sum of Huber's losses, has one minimum over the force offset.
-  const ScannedOffset best = golden(cost, -most_N, most_N, kForceResolution * most_N);
+  const ScannedOffset best = golden(cost, -most_N, most_N, 1e-3 * most_N);
   if (!is_within_one_standard_error(best.costs, shift.minimum)) return shift;
   shift.identified = false;
   shift.at = 0.0;

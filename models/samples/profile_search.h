@@ -1,20 +1,15 @@
 // Searches the offset (of a surface, a force lag, ...) with the lowest cost, gives its standard error, and tests
-// whether the data identify it.
-//
-// 1. Search: a scan of the range, and golden sections at its lowest minima. The cost is a sum over blocks, pieces of
-//    the recordings with independent errors.
+// whether the data identify it. The cost is a sum over blocks, pieces of the recordings with independent errors.
+// 1. Search: a scan of the range, and golden sections at its lowest minima.
 // 2. Standard error, by the jackknife (Quenouille 1956; Tukey 1958): the search without block b gives x_b, and the
 //    error is sqrt((n - 1)/n sum_b (x_b - mean)^2).
 // 3. Identified: two standard errors stay within the range and below `widest`, and every other minimum is significantly
 //    worse. An identified offset within two standard errors of 0 is 0.
 //
-// Significantly worse: a paired t-test at two standard errors. Offsets a and b have the costs a_k and b_k in block k,
-// r_k = (a_k - b_k) / (a_k + b_k + m / 10), m the mean of the b_k; a is worse if mean r > 2 s / sqrt(n), s the standard
-// deviation of r.
-//
-// An effect of the material may look like an offset: viscosity looks like a lag of the force. It is the same in all
-// blocks, so the jackknife does not show it. Where its size is known (`systematic_effect`), the costs at 0 and at this
-// distance on either side must be significantly worse, and the offset must exceed the effect plus two standard errors.
+// Significantly worse: a paired t-test at two standard errors of r_k = (a_k - b_k) / (a_k + b_k + m / 10), the costs of
+// both offsets in block k, m the mean of the b_k. An effect of the material, the same in all blocks, may look like an
+// offset. Where its size is known (`systematic_effect`), the costs at 0 and at this distance on either side must be
+// significantly worse, and the offset must exceed the effect plus two standard errors.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -60,17 +55,13 @@ struct OffsetEstimate {
 };
 
 struct SearchRange {
-  double low = 0.0;
-  double high = 0.0;
-  double coarse_step = 0.0;
-  double fine_step = 0.0;
+  double low = 0.0, high = 0.0, coarse_step = 0.0, fine_step = 0.0;
   double widest = 0.0;             // limit of two standard errors
   double systematic_effect = 0.0;  // of the material, in units of the offset; 0: none
 };
 
 // The minimum of `cost` in `range`, which contains 0. Not identified where the range is empty.
 OffsetEstimate estimate_offset(const CostFunction& cost, const SearchRange& range);
-
 // Tests whether a force offset explains the data as well as `shift`: whether the lowest cost over force offsets of
 // -most_N to most_N exceeds that of the shift by at most one standard error of their paired differences. If so, the
 // shift is not identified. `cost`: J by blocks for a force offset in N.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -15,19 +14,12 @@ namespace {
 using Rows = std::vector<RecordingRow>;
 using Column = double RecordingRow::*;
 
-constexpr std::size_t kLongestDropout = 3;  // rows
 constexpr std::size_t kLeastDropouts = 3;
-constexpr double kMostDropoutShare = 0.1;
-constexpr double kNoiseFactor = 6.0;         // exceeded by one row in 1e9 of white noise
-constexpr double kCourseFactor = 3.0;        // the tip of a triangle wave has 1
-constexpr double kResidualShare = 0.9;       // dropouts are at most a tenth of the rows
-constexpr double kFastest_m_per_s2 = 100.0;  // a hand reaches some 50 m/s^2, a testing machine less
-constexpr double kSlowStep_s = 0.01;
+constexpr std::size_t kLeastUpdates = 50;
 
 // Consecutive rows with one value.
 struct Run {
-  std::size_t begin = 0;
-  std::size_t end = 0;
+  std::size_t begin = 0, end = 0;
   double value = 0.0;
 };
 
@@ -42,15 +34,13 @@ std::vector<Run> runs_of(const Rows& rows, Column column) {
 
 double quantile_of(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  return nth_smallest(std::move(values), at);
 }
 
 // The distance of a run to the nearer of its neighbours' values if it exceeds, or is below, both; else 0.
 double excursion(const std::vector<Run>& runs, std::size_t at) {
-  const double before = runs[at].value - runs[at - 1].value;
-  const double after = runs[at].value - runs[at + 1].value;
+  const double before = runs[at].value - runs[at - 1].value, after = runs[at].value - runs[at + 1].value;
   return before * after > 0.0 ? std::min(std::abs(before), std::abs(after)) : 0.0;
 }
 
@@ -66,16 +56,18 @@ std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is
   for (std::size_t i = 1; i + 1 < runs.size(); ++i) excursions.push_back(excursion(runs, i));
   std::vector<double> of_rows = excursions;  // a row that repeats its value has none
   of_rows.resize(rows.size(), 0.0);
-  const double least = kNoiseFactor * std::max(noise, quantile_of(std::move(of_rows), kResidualShare));
+  // Six times the noise is exceeded by one row in 1e9 of white noise.
+  const double least = 6.0 * std::max(noise, quantile_of(std::move(of_rows), 0.9));
   std::vector<std::pair<Run, bool>> candidates;  // and whether it is physically impossible
   std::map<double, std::size_t> values;
   for (std::size_t i = 2; i + 2 < runs.size(); ++i) {
     const Run& run = runs[i];
     const double size = excursions[i - 1];
-    if (run.end - run.begin > kLongestDropout || !(size > least) || !(size > kCourseFactor * change_beside(runs, i)))
-      continue;
+    // The tip of a triangle wave exceeds the change beside it once.
+    if (run.end - run.begin > 3 || !(size > least) || !(size > 3.0 * change_beside(runs, i))) continue;
     const double half_s = 0.5 * (rows[run.end].time_s - rows[run.begin - 1].time_s);
-    const bool impossible = is_position ? 2.0 * size > kFastest_m_per_s2 * half_s * half_s : half_s < kSlowStep_s;
+    // A hand reaches some 50 m/s^2, a testing machine less.
+    const bool impossible = is_position ? 2.0 * size > 100.0 * half_s * half_s : half_s < 0.01;
     candidates.emplace_back(run, impossible);
     ++values[run.value];
   }
@@ -86,7 +78,7 @@ std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is
     found.push_back(run);
     count += run.end - run.begin;
   }
-  const bool few = static_cast<double>(count) <= kMostDropoutShare * static_cast<double>(rows.size());
+  const bool few = static_cast<double>(count) <= 0.1 * static_cast<double>(rows.size());
   return found.size() >= kLeastDropouts && few ? found : std::vector<Run>{};
 }
 
@@ -100,20 +92,6 @@ std::size_t mark(const std::vector<Run>& runs, std::vector<bool>& out) {
   return count;
 }
 
-void remove_marked(Rows& rows, const std::vector<bool>& out) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!out[i]) rows[kept++] = rows[i];
-  }
-  rows.resize(kept);
-}
-
-constexpr std::size_t kLeastUpdates = 50;
-constexpr double kFewIntervals = 0.05;    // shorter ones are jitter
-constexpr double kEqualIntervals = 0.75;  // of the median
-constexpr double kLargeChange = 1.5;      // steps of the channel
-constexpr double kMovingShare = 0.25;     // of the motion from a row to the next one, which has an update
-
 // The intervals between the large changes of a channel, and the motion meanwhile.
 struct Updates {
   std::vector<double> rows;  // of the runs between two large changes
@@ -124,7 +102,7 @@ struct Updates {
 Updates updates_of(const Rows& rows, const std::vector<Run>& runs) {
   std::vector<double> changes;
   for (std::size_t i = 1; i < runs.size(); ++i) changes.push_back(std::abs(runs[i].value - runs[i - 1].value));
-  const double large = kLargeChange * quantile_of(changes, 0.0);
+  const double large = 1.5 * quantile_of(changes, 0.0);  // steps of the channel
   Updates updates;
   for (std::size_t i = 1; i + 1 < runs.size(); ++i) {
     const Run& run = runs[i];
@@ -145,12 +123,11 @@ double update_rows(const Rows& rows, Column column, const std::vector<Run>& runs
   // The first and the last run are incomplete.
   for (std::size_t i = 1; i + 1 < runs.size(); ++i) lengths.push_back(static_cast<double>(runs[i].end - runs[i].begin));
   const double middle = quantile_of(updates.rows, 0.5);
-  const double shortest = quantile_of(lengths, kFewIntervals);
-  if (!(shortest >= 2.0) || shortest + 1.0 < middle * kEqualIntervals) return 0.0;
+  const double shortest = quantile_of(lengths, 0.05);  // shorter ones are jitter
+  if (!(shortest >= 2.0) || shortest + 1.0 < 0.75 * middle) return 0.0;
   // A tool that moves in steps explains the steps of a force.
-  if (column == &RecordingRow::force_N && updates.inside_m < kMovingShare * updates.across_m) return 0.0;
-  double sum = 0.0;
-  double count = 0.0;
+  if (column == &RecordingRow::force_N && updates.inside_m < 0.25 * updates.across_m) return 0.0;
+  double sum = 0.0, count = 0.0;
   for (const double length : updates.rows) {
     if (length > 1.5 * middle) continue;  // two equal readings
     sum += length;
@@ -161,12 +138,10 @@ double update_rows(const Rows& rows, Column column, const std::vector<Run>& runs
 
 void keep_updates(Rows& rows, const std::vector<Run>& runs, double interval) {
   Rows kept;
-  for (const Run& run : runs) {
+  for (const Run& run : runs)
     for (double at = 0.0; at + 0.5 * interval < std::max(static_cast<double>(run.end - run.begin), interval);
-         at += interval) {
+         at += interval)
       kept.push_back(rows[std::min(run.begin + static_cast<std::size_t>(std::lround(at)), run.end - 1)]);
-    }
-  }
   rows = std::move(kept);
 }
 
@@ -183,7 +158,10 @@ RecordingFaults remove_faults(Recording& recording) {
   faults.position_dropouts = mark(dropouts(rows, &RecordingRow::position_m, position_noise_m, true), out);
   faults.force_dropouts =
       mark(dropouts(rows, &RecordingRow::force_N, identify_force_noise_N(rows.data(), rows.size()), false), out);
-  if (faults.any()) remove_marked(rows, out);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!out[i]) rows[kept++] = rows[i];
+  rows.resize(kept);
   // Of two slow channels the slower one determines the rows.
   double interval = 0.0;
   std::vector<Run> updates;

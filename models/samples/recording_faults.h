@@ -1,20 +1,16 @@
-// Finds and removes rows of a recording without information about the material, before anything is computed: dropouts
-// and held values.
+// Finds and removes rows of a recording without information about the material, before anything is computed.
 //
-// Dropout: up to three consecutive rows with one value outside the range of their neighbours. Its distance from the
-// median of itself and its two neighbours exceeds six times the noise, six times the 90 % quantile of these distances,
-// and three times the change of the signal next to it. A position must also imply an acceleration above 100 m/s^2;
-// otherwise, and for a force below 100 Hz, three dropouts must have exactly the same value. Fewer than three dropouts,
-// or more than a tenth of all rows, are not removed.
+// Dropout: up to three consecutive rows with one value outside the range of their neighbours, by more than six times
+// the noise, six times the 90 % quantile of such distances, and three times the change of the signal next to it. A
+// position must also imply an acceleration above 100 m/s^2; otherwise, and for a force below 100 Hz, three dropouts
+// must have exactly the same value. Fewer than three, or more than a tenth of all rows, are not removed.
 //
-// Held values: the position or the force is slower than the rows, so that rows repeat its last value. It changes by
-// several of its steps at once and then not for equal intervals of two rows or more, at any speed, whereas a quantised
-// signal changes by one step, and in faster motion more often. A force must do so while the tool moves. Only the rows
-// with an update are kept; at rest, rows at the same intervals. Of two slow channels the slower one determines the
-// rows. Thread guarantee: slow side, pure but for read_usable_recording (does I/O).
+// Held values: the position or the force is slower than the rows, which repeat its last value: it changes by several of
+// its steps at once and then not for equal intervals of two rows or more, at any speed. Only the rows with an update
+// are kept; at rest, rows at the same intervals. Of two slow channels the slower one determines the rows. Thread
+// guarantee: slow side, pure but for read_usable_recording (does I/O).
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "engine/base/result.h"
@@ -35,7 +31,6 @@ struct RecordingFaults {
 
 // Removes the rows from `recording`.
 RecordingFaults remove_faults(Recording& recording);
-
 // Reads a recording and removes such rows. `faults`: receives what was removed; may be null. Errors: those of
 // read_recording.
 Result<Recording> read_usable_recording(const std::string& path, std::size_t most_rows = kAllRows,

@@ -47,17 +47,14 @@ std::pair<double, double> position_range_m(const std::vector<Sample>& rows) {
 }
 
 double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  const std::size_t middle = values.size() / 2;
+  return values.empty() ? 0.0 : nth_smallest(std::move(values), middle);
 }
 
 std::vector<std::size_t> blocks_by_path(const std::vector<Sample>& rows) {
   std::vector<double> path_m(rows.size(), 0.0);
-  for (std::size_t i = 1; i < rows.size(); ++i) {
+  for (std::size_t i = 1; i < rows.size(); ++i)
     path_m[i] = path_m[i - 1] + std::abs(rows[i].motion.position_m - rows[i - 1].motion.position_m);
-  }
   std::vector<std::size_t> block(rows.size(), 0);
   for (std::size_t i = 0; i < rows.size() && path_m.back() > 0.0; ++i) {
     block[i] =

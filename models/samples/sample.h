@@ -2,7 +2,6 @@
 // Thread guarantee: value types and pure functions, slow side.
 #pragma once
 
-#include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -35,8 +34,7 @@ class GrowingStride {
  private:
   std::size_t most_;
   double coarsest_s_;
-  std::size_t stride_ = 1;
-  std::size_t seen_ = 0;
+  std::size_t stride_ = 1, seen_ = 0;
   std::vector<Sample> rows_;
 };
 
@@ -44,7 +42,6 @@ class GrowingStride {
 std::vector<Sample> thinned_rows(const std::vector<Sample>& rows, std::size_t most);
 // The same of a recording, with the motion estimates.
 std::vector<Sample> thinned_rows(const Recording& recording, std::size_t most);
-
 // The smallest and the largest position of at least one row.
 std::pair<double, double> position_range_m(const std::vector<Sample>& rows);
 // The median (the upper one of an even number); 0 for no values.

@@ -6,32 +6,16 @@
 #include <limits>
 #include <tuple>
 
-#include "engine/base/parallel.h"
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {
 namespace {
 
-// The material pulls if at least kLeastPulls samples and a share of kPullShare have a force below -JND(0), and the
-// lowest force is certain (certain_force_N).
-constexpr double kLeastPulls = 10.0;
-constexpr double kPullShare = 1e-3;
-
-constexpr std::size_t kFewestRecordings = 3;
-constexpr std::size_t kMostFolds = 6;
-constexpr int kStrokeFolds = 5;
-// The number of pieces of one long stroke, two for each fold, so that no fold consists of a single phase.
-constexpr std::size_t kPieces = 10;
-constexpr std::size_t kPiecesOneWay = 50;
-// An unloading path below this share of the loading path counts as none.
-constexpr double kLeastUnloading = 0.1;
-
 // The offsets of the recordings from the surface of the table.
 void set_offsets(Samples& samples, const std::vector<PreparedRecordingPointer>& recordings) {
   std::vector<double> surfaces_m;
-  for (const PreparedRecordingPointer& one : recordings) {
+  for (const PreparedRecordingPointer& one : recordings)
     if (one->surface.identified()) surfaces_m.push_back(one->surface.raw_offset_m);
-  }
   const double middle_m = median_of(surfaces_m);
   if (std::abs(middle_m) > kLeastSurface_m) samples.surface_m = middle_m;
   for (const PreparedRecordingPointer& one : recordings) {
@@ -69,18 +53,12 @@ Status add_rows(Samples& samples, const PreparedRecording& prepared, std::size_t
 
 // Strokes, rows in contact and their ranges.
 void measure(Samples& samples, const JndLine& jnd) {
-  double squares = 0.0;
-  double lowest_N = 0.0;
-  double pulls = 0.0;
-  double start_s = 0.0;
-  double duration_s = 0.0;
-  double steps = 0.0;
+  double squares = 0.0, lowest_N = 0.0, pulls = 0.0, start_s = 0.0, duration_s = 0.0, steps = 0.0;
   int stroke = 0;
   bool was_in_contact = false;
   for (std::size_t i = 0; i < samples.rows.size(); ++i) {
     const Sample& row = samples.rows[i];
-    const bool first = samples.begins_recording(i);
-    const bool contact = in_contact(row.tool, 0.0);
+    const bool first = samples.begins_recording(i), contact = in_contact(row.tool, 0.0);
     if (first) {
       start_s = row.tool.time_s;
     } else {
@@ -100,7 +78,7 @@ void measure(Samples& samples, const JndLine& jnd) {
     squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
   }
   const auto count = static_cast<double>(samples.contact.size());
-  const bool pulling = pulls >= std::max(kLeastPulls, kPullShare * count);
+  const bool pulling = pulls >= std::max(10.0, 1e-3 * count);
   if (pulling && lowest_N < -certain_force_N(samples.force_noise_N)) samples.lowest_force_N = lowest_N;
   samples.strokes = static_cast<std::size_t>(stroke);
   samples.sample_s = duration_s / std::max(1.0, steps);
@@ -113,19 +91,16 @@ void measure(Samples& samples, const JndLine& jnd) {
 // response; the surface is where its force is 0. The line is used if its force at position 0 exceeds the JND and two
 // standard errors, its slope exceeds two standard errors, and the surface is nearer than the greatest depth.
 double preload_surface_m(const Samples& samples, const JndLine& jnd) {
-  constexpr double kShallow = 0.01;
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // sums, of depth x and force y
   for (const std::size_t i : samples.contact) {
-    const double depth_m = samples.rows[i].motion.position_m;
-    const double force_N = samples.rows[i].force_N;
-    if (!(depth_m > 0.0) || depth_m > kShallow * samples.depth_m) continue;
+    const double depth_m = samples.rows[i].motion.position_m, force_N = samples.rows[i].force_N;
+    if (!(depth_m > 0.0) || depth_m > 0.01 * samples.depth_m) continue;
     n += 1.0, x += depth_m, y += force_N;
     xx += depth_m * depth_m, xy += depth_m * force_N, yy += force_N * force_N;
   }
   const double spread = n * xx - x * x;
   if (n < 3.0 || !(spread > 0.0)) return 0.0;
-  const double slope = (n * xy - x * y) / spread;
-  const double force_N = (y - slope * x) / n;
+  const double slope = (n * xy - x * y) / spread, force_N = (y - slope * x) / n;
   const double variance = std::max(0.0, yy - force_N * y - slope * xy) / (n - 2.0);
   const double noticeable_N = std::max(jnd.at(0.0), 2.0 * std::sqrt(variance * xx / spread));
   const bool identified = force_N > noticeable_N && slope > 2.0 * std::sqrt(variance * n / spread);
@@ -133,37 +108,28 @@ double preload_surface_m(const Samples& samples, const JndLine& jnd) {
   return identified && out_m < samples.depth_m ? -out_m : 0.0;
 }
 
-// The force that all rows but one in a thousand exceed.
-double exceeded_N(const Samples& samples) {
-  std::vector<double> forces_N;
-  for (const Sample& row : samples.rows) forces_N.push_back(row.force_N);
-  const auto at = forces_N.begin() + static_cast<std::ptrdiff_t>(forces_N.size() / 1000);
-  std::nth_element(forces_N.begin(), at, forces_N.end());
-  return *at;
-}
-
-// Whether the tool moves outwards in contact by more than a share of its motion inwards.
+// Whether the tool moves outwards in contact by more than a tenth of its motion inwards.
 bool has_unloading(const Samples& samples) {
-  double inward_m = 0.0;
-  double outward_m = 0.0;
+  double inward_m = 0.0, outward_m = 0.0;
   for (const std::size_t i : samples.contact) {
     if (samples.begins_recording(i)) continue;
     const double travel_m = samples.rows[i].motion.position_m - samples.rows[i - 1].motion.position_m;
     (travel_m > 0.0 ? inward_m : outward_m) += std::abs(travel_m);
   }
-  return outward_m > kLeastUnloading * inward_m;
+  return outward_m > 0.1 * inward_m;
 }
 
 void split_into_folds(Samples& samples) {
   const std::size_t count = samples.rows.size();
   samples.fold.assign(count, 0);
-  if (samples.offsets.size() >= kFewestRecordings) {
-    samples.folds = static_cast<int>(std::min(samples.offsets.size(), kMostFolds));
+  if (samples.offsets.size() >= 3) {
+    samples.folds = static_cast<int>(std::min<std::size_t>(samples.offsets.size(), 6));
     for (std::size_t i = 0; i < count; ++i) samples.fold[i] = samples.recording[i] % samples.folds;
     return;
   }
-  samples.folds = kStrokeFolds;
-  const std::size_t longest = samples.contact.size() / (has_unloading(samples) ? kPieces : kPiecesOneWay) + 1;
+  samples.folds = 5;
+  // At least two pieces of a long stroke for each fold, so that no fold consists of a single phase.
+  const std::size_t longest = samples.contact.size() / (has_unloading(samples) ? 10 : 50) + 1;
   std::size_t in_piece = 0;
   int piece = -1;
   for (std::size_t i = 0; i < count; ++i) {
@@ -205,9 +171,8 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
   set_offsets(samples, recordings);
   const std::size_t stride = std::max<std::size_t>(1, (samples.recorded_rows + most_rows - 1) / most_rows);
   samples.rows.reserve(samples.recorded_rows / stride + recordings.size());
-  for (const PreparedRecordingPointer& one : recordings) {
+  for (const PreparedRecordingPointer& one : recordings)
     if (Status status = add_rows(samples, *one, stride, control); !status) return status.error();
-  }
   measure(samples, jnd);
   if (samples.contact.empty()) {
     return Error{
@@ -225,7 +190,9 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
     samples.contact.clear();
     measure(samples, jnd);
   }
-  samples.always_N = exceeded_N(samples);
+  std::vector<double> forces_N;
+  for (const Sample& row : samples.rows) forces_N.push_back(row.force_N);
+  samples.always_N = nth_smallest(std::move(forces_N), samples.rows.size() / 1000);
   split_into_folds(samples);
   return samples;
 }

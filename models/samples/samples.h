@@ -1,26 +1,17 @@
 // The table of samples of a training: every row of all recordings, made once. Each estimate of a fit reads its columns;
-// nothing reads the recordings again.
+// nothing reads the recordings again. models/METHOD.md, Samples, defines contact, offsets and folds.
 //
-// Positions and forces are corrected by the offset of their recording. It comes from that recording alone, where its
-// free air and its first contact are clear (surface_estimate.h); otherwise the recording is used as it is. The surface
-// of the table is the median of the clear surfaces, because the next recording is as likely on one side of it as on the
-// other; a recording is moved to it only by more than kLeastSurface_m and two standard errors. Without a clear surface,
-// recordings that begin under a preload have theirs where the line through their first forces is 0.
-//
-// Folds for cross-validation (cross_validation.h): neighbouring samples of a stroke have correlated errors, so a fold
-// never consists of single samples. Three recordings or more form up to six folds of whole recordings; fewer form five
-// folds of whole strokes. A stroke with more than a tenth of the samples in contact is cut into pieces in time. A
-// recording without unloading visits each depth once and is cut into pieces of a fiftieth.
+// Positions and forces are corrected by the offset of their recording, where that is clear (prepared_recording.h). The
+// surface of the table is the median of the clear surfaces, because the next recording is as likely on one side of it
+// as on the other. Without one, recordings that begin under a preload have theirs where the line through their first
+// forces is 0. Neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples.
 // Thread guarantee: an immutable value; slow side.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
-#include <cstdint>
-#include <string>
 #include <vector>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
@@ -72,11 +63,9 @@ struct Samples {
 // `recordings`: at least one. `most_rows`: the number of rows to keep. Errors: no sample in contact; interrupted.
 Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, const JndLine& jnd,
                              const FitControl& control = {}, std::size_t most_rows = kMaximumRows);
-
 // The rows that are at least `least_step_s` after the last one of their recording, with the same ranges. The filters of
 // the features are exact for steps of any length.
 Samples thinned(const Samples& samples, double least_step_s);
-
 // The features at these rows (ascending): one column a row, SI. FeaturePlan advances through all samples, eight
 // features at a time. Errors: interrupted.
 Result<Eigen::MatrixXd> features_at(const Samples& samples, const std::vector<FeatureSpec>& features,

@@ -10,27 +10,17 @@
 namespace palpate {
 namespace {
 
-// Neighbouring times differ by a factor of 1.8; a sum of two fits any time between them better than the data resolve.
-constexpr double kTimesPerDecade = 4.0;
-// A shorter time than a tick is not rendered; no exploration shows what takes longer than 100 s.
-constexpr double kShortest_s = kHapticTick_s;
-constexpr double kLongest_s = 100.0;
-constexpr std::size_t kBands = 3;
-// The trend limits velocities to this multiple of the greatest recorded one.
-constexpr double kVelocityMargin = 1.5;
-
-std::vector<double> ladder(double shortest_s, double longest_s, double per_decade) {
+// Times up to a third of the longest recording and 100 s, because no exploration shows what takes longer.
+std::vector<double> ladder(const Samples& samples, double shortest_s, double per_decade) {
   std::vector<double> times_s;
   // Rounding must not drop the last time.
-  const double end_s = longest_s * (1.0 + 1e-9);
+  const double end_s = std::min(100.0, samples.longest_recording_s / 3.0) * (1.0 + 1e-9);
   for (int i = 0;; ++i) {
     const double time_s = shortest_s * std::pow(10.0, i / per_decade);
     if (!(time_s <= end_s)) return times_s;
     times_s.push_back(time_s);
   }
 }
-
-double longest_time_s(const Samples& samples) { return std::min(kLongest_s, samples.longest_recording_s / 3.0); }
 
 // The quadratic Bernstein polynomials (1 - u)^2, 2 u (1 - u) and u^2: coefficients of u^0 .. u^2.
 constexpr std::array<std::array<double, kViscosityCoefficients>, kViscosityCoefficients> kViscousBasis{
@@ -76,14 +66,13 @@ Trend trend_from(const TrendColumns& columns, const Eigen::VectorXd& x) {
     trend.thinning_velocity_m_per_s = samples.rms_velocity_m_per_s;
     auto column = static_cast<Eigen::Index>(kElasticTerms);
     for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
-      for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column) {
+      for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column)
         for (std::size_t j = 0; j < kViscosityCoefficients; ++j) (*viscosity)[j] += x(column) * kViscousBasis[k][j];
-      }
     }
   }
   for (const std::size_t row : columns.rows()) {
     const double velocity_m_per_s = samples.rows[row].motion.velocity_m_per_s;
-    trend.velocity_limit_m_per_s = std::max(trend.velocity_limit_m_per_s, kVelocityMargin * std::abs(velocity_m_per_s));
+    trend.velocity_limit_m_per_s = std::max(trend.velocity_limit_m_per_s, 1.5 * std::abs(velocity_m_per_s));
   }
   return trend;
 }
@@ -139,25 +128,24 @@ std::vector<double> constants_of(const FeatureSpec& spec) {
 }
 
 std::vector<double> dictionary_times_s(const Samples& samples) {
-  return ladder(std::max(kShortest_s, 2.0 * samples.sample_s), longest_time_s(samples), kTimesPerDecade);
+  // Neighbours differ by a factor of 1.8; a sum of two fits any time between them better than the data resolve.
+  return ladder(samples, std::max(kHapticTick_s, 2.0 * samples.sample_s), 4.0);
 }
 
 FeatureList dictionary(const Samples& samples) {
   FeatureList list;
   list.add(FeatureKind::velocity);
   const std::vector<double> times_s = dictionary_times_s(samples);
-  for (std::size_t band = 0; band < kBands; ++band) {
-    const auto from = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * band / kBands);
-    const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
-    list.add(FeatureKind::maxwell_spectrum, {from, to});
-  }
+  const auto third = [&](std::size_t i) {
+    return times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * i / 3);
+  };
+  for (const std::size_t band : {0u, 1u, 2u}) list.add(FeatureKind::maxwell_spectrum, {third(band), third(band + 1)});
   std::vector<double> thresholds_m;
   for (double threshold_m = 0.5 * samples.depth_m;
-       thresholds_m.size() < kMaxFeatureParts && threshold_m >= samples.sensor.encoder_step_m; threshold_m *= 0.5) {
+       thresholds_m.size() < kMaxFeatureParts && threshold_m >= samples.sensor.encoder_step_m; threshold_m *= 0.5)
     thresholds_m.insert(thresholds_m.begin(), threshold_m);
-  }
   list.add(FeatureKind::stops, thresholds_m);
-  list.add(FeatureKind::creep, ladder(kShortest_s, longest_time_s(samples), 1.0));
+  list.add(FeatureKind::creep, ladder(samples, kHapticTick_s, 1.0));
   return list;
 }
 
@@ -183,9 +171,8 @@ DriveCurve combined_curve(FeatureKind kind, const double* weights, double refere
   const Basis& basis = is_bristle(kind) ? kFrictions : kDrives;
   DriveCurve curve;
   curve.reference_depth_m = reference_depth_m;
-  for (std::size_t k = 0; k < kCurveTerms; ++k) {
+  for (std::size_t k = 0; k < kCurveTerms; ++k)
     for (std::size_t j = 0; j < kDriveCoefficients; ++j) curve.coefficient_N[j] += weights[k] * basis[k][j];
-  }
   return curve;
 }
 
@@ -226,9 +213,8 @@ Result<TrendColumns> TrendColumns::make(const Samples& samples, FeatureList list
     double* to = made.terms_.row(row).data();
     for (const ElasticSpline& curve : elastic) *to++ = curve.at(u);
     if (viscous) {
-      for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, samples.rms_velocity_m_per_s)}) {
-        for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
-      }
+      for (const double v : {velocity_m_per_s, trend_equation::thinned(velocity_m_per_s, samples.rms_velocity_m_per_s)})
+        for (const auto& power : kViscousBasis) *to++ = v * trend_equation::quadratic(power.data(), u);
     }
     to = std::copy(of_branches->col(row).begin(), of_branches->col(row).end(), to);
     std::copy(of_bristles->col(row).begin(), of_bristles->col(row).end(), to);
@@ -252,9 +238,8 @@ FeatureSpec surface_lag_of(const ElasticSpline& elastic, double reference_depth_
                 ((average[i + 1] - average[i]) * kWidth);
   }
   std::array<double, kCoarsePieces + 1> bend{};
-  for (std::size_t k = 0; k <= kCoarsePieces; ++k) {
+  for (std::size_t k = 0; k <= kCoarsePieces; ++k)
     bend[k] = (k == 0 || k == kCoarsePieces ? 2.0 : 1.0) * (weight[k + 1] - weight[k]) / kWidth;
-  }
   const auto cube = [&](std::size_t piece) { return (bend[piece + 1] - bend[piece]) / (6.0 * kWidth); };
   FeatureSpec lag{FeatureKind::surface_lag};
   DriveCurve& curve = lag.drive;
@@ -271,11 +256,10 @@ FittedTrend fitted_trend(const TrendColumns& columns, const Eigen::VectorXd& x, 
   for (std::size_t f = 0; f < columns.list().features.size(); ++f) {
     const FeatureSpec& candidate = columns.list().features[f];
     const Eigen::VectorXd weights = x(columns.feature_columns()[f]);
-    if (!has_parts(candidate.kind)) {
+    if (!has_parts(candidate.kind))
       fitted.features.push_back(candidate);
-    } else if (all || weights.maxCoeff() > 0.0) {
+    else if (all || weights.maxCoeff() > 0.0)
       fitted.features.push_back(with_drives(candidate, weights.data(), depth_m, all));
-    }
     if (candidate.kind == FeatureKind::depth && !columns.list().surface.empty())
       fitted.features.push_back(surface_lag_of(fitted.trend.elastic, depth_m));
   }

@@ -11,11 +11,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "models/model/trend.h"
@@ -44,14 +43,9 @@ struct FeatureList {
   bool operator==(const FeatureList&) const = default;
 };
 
-// The dictionary: all terms that a recording of this length and rate can identify. The non-negative regression sets the
-// weights of terms that do not help to 0.
-//   velocity    viscosity
-//   relaxation  Maxwell branches, four relaxation times a decade, from two samples (at least 1 ms) to a third of the
-//               recording (at most 100 s), in three bands (fast, middle, slow). The sum of a band is one feature.
-//   stops       a Prandtl-Ishlinskii operator of up to 8 stops, whose thresholds halve from half of the greatest depth
-//               down to the encoder step
-//   creep       bristles that creep by a power law, one time a decade, from 1 ms to the same limit
+// The dictionary: all terms that a recording of this length and rate can identify: viscosity, Maxwell branches in three
+// bands (fast, middle, slow), of which each sum is one feature, up to 8 stops, whose thresholds halve from half of the
+// greatest depth down to the encoder step, and creeping bristles. The regression sets the weights of useless ones to 0.
 FeatureList dictionary(const Samples& samples);
 // Its relaxation times in s, ascending.
 std::vector<double> dictionary_times_s(const Samples& samples);
@@ -59,7 +53,6 @@ std::vector<double> dictionary_times_s(const Samples& samples);
 FeatureList single_times(bool velocity, const std::vector<double>& times_s);
 // The name of a candidate feature in reports, with the range of its constants.
 std::string term_name(const FeatureSpec& spec);
-
 // The drive curve of a branch, or the friction curve of a stop or creeping bristle, from its kCurveTerms weights.
 DriveCurve combined_curve(FeatureKind kind, const double* weights, double reference_depth_m);
 using ColumnList = std::vector<Eigen::Index>;
@@ -93,9 +86,8 @@ class TrendColumns {
   template <typename Wanted>
   ColumnList columns_of(const Wanted& wanted) const {
     ColumnList columns;
-    for (std::size_t f = 0; f < feature_columns_.size(); ++f) {
+    for (std::size_t f = 0; f < feature_columns_.size(); ++f)
       if (wanted(f)) columns.insert(columns.end(), feature_columns_[f].begin(), feature_columns_[f].end());
-    }
     return columns;
   }
 
@@ -108,9 +100,8 @@ class TrendColumns {
   Matrix terms_;
 };
 
-// The surface_lag feature of an elastic response: a cubic spline with only the kDriveKnots knots of a DriveCurve,
-// through the response at the knot averages (Schoenberg's variation diminishing approximation; de Boor, "A practical
-// guide to splines", chapter 11). It rises where the response rises.
+// The surface_lag feature of an elastic response: a cubic spline with the knots of a DriveCurve, through the response
+// at the knot averages (Schoenberg's variation diminishing approximation; de Boor, "A practical guide to splines", 11).
 FeatureSpec surface_lag_of(const ElasticSpline& elastic, double reference_depth_m);
 
 struct FittedTrend {

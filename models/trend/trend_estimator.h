@@ -1,30 +1,21 @@
-// The non-negative regression of the trend (models/model/trend.h).
+// The non-negative regression of the trend (models/model/trend.h; models/METHOD.md, Trend).
 //
 //   minimise sum_i s_i^2 (f_i - sum_j c_j t_ij)^2 + alpha^2 sum_j g_jj c_j^2
 //            + lambda S n sum_k (c_k+1 - c_k)^2,       all c_j >= 0,
 //   g_jj = sum_i s_i^2 t_ij^2,  S = sum_i s_i^2,  n = kElasticPieces
 //
-// t_ij: term j at row i (trend_columns.h), f_i: force, k: index of an elastic term. s_i = 1 / JND(f_i), or by the
-// chosen weighting, times the weight of a Cauchy likelihood (weighting.h). Contact is one-sided: a sample without
-// measured force counts only while the trend there is positive (active set). Both are iterated within the training rows
-// of each fold, so that the fold itself has no influence on them. Non-negative weights make the elastic response rise
-// and every viscosity, branch and friction dissipate.
-//
-// The elastic response is a P-spline, whose penalty approximates the integral of its squared second derivative (Eilers
-// & Marx 1996; models/model/trend.h). lambda is selected by cross-validation (cross_validation.h). alpha is the
-// relative error of all other columns, of which repeated measurements agree to about a tenth; the penalty is the
-// expected square of such errors (errors in variables; Golub & Van Loan 1980). Columns that the recording cannot
-// separate then share their effect.
-//
-// Source of the solver: Lawson & Hanson (1974), chapter 23, on the normal equations with columns scaled to unit norm.
-// Thread guarantee: slow side, pure.
+// t_ij: term j at row i (trend_columns.h), f_i: force, k: index of an elastic term. s_i: the weighting times that of a
+// Cauchy likelihood; a sample without measured force counts only while the trend there is positive. Both are iterated
+// within the training rows of each fold. The elastic response is a P-spline (Eilers & Marx 1996). alpha is the relative
+// error of all other columns, of which repeated measurements agree to about a tenth (errors in variables; Golub & Van
+// Loan 1980); columns that the recording cannot separate then share their effect. Thread guarantee: slow side, pure.
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "models/samples/cross_validation.h"
-#include "models/samples/weighting.h"
 #include "models/trend/trend_columns.h"
 
 namespace palpate {
@@ -77,10 +68,32 @@ class TrendEstimator {
 
   const TrendColumns& columns_;
   TrendWeights weights_;
-  double part_error_;
-  double smoothness_;
+  double part_error_, smoothness_;
   std::vector<double> deepest_elsewhere_m_;  // by fold
   std::vector<Equations> equations_;         // index: the fold that is left out; the last of all rows
 };
+
+// Below: the selection, by cross-validation and the selection rule, of the parameters of the memory that a linear
+// regression cannot identify: whether the material's surface lags behind a retreating tool (`surface_lag`,
+// engine/tick/features.h), how the relaxation times change with depth (`slowing`), and, for models with few features,
+// one to three relaxation times.
+
+// The gain of a term of the trend: the cross-validated error in JND (FoldErrors::rms_at_mean_score) with it and without
+// it.
+struct PartGain {
+  std::string name;
+  bool taken = false;
+  double error_with = 0.0, error_without = 0.0;
+};
+
+// Returns `list` with the selected surface and slowing, and appends their gains to `gains`. Errors: interrupted.
+Result<FeatureList> select_memory_law(const Samples& samples, const TrendWeights& weights, const FeatureList& list,
+                                      std::vector<PartGain>& gains, const FitControl& control);
+// Selects relaxation times from those of the dictionary (ascending, in s). Each candidate is a feature of one
+// regression. Times are added one by one, by the lowest cross-validated error; after each addition, times move to
+// neighbouring candidates while the error falls. `count`: 1 to 3, or 0: a further time is kept if the selection rule
+// prefers it. `velocity`: whether the trend has viscosity. Errors: no candidates (recordings too short); interrupted.
+Result<std::vector<double>> identify_relaxation(const Samples& samples, const TrendWeights& weights, bool velocity,
+                                                std::size_t count, const FitControl& control);
 
 }  // namespace palpate

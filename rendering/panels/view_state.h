@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/live/time_histogram.h"
+#include "engine/live/pacer.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/ui/colours.h"
 #include "scenes/live/live_session.h"

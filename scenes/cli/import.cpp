@@ -9,7 +9,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
-#include "models/samples/surface_estimate.h"
+#include "models/samples/prepared_recording.h"
 #include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "engine/tick/replay.h"
 #include "scenes/evaluation/model_errors.h"

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "models/fit/model_fits.h"
+#include "models/fit/fit.h"
 
 namespace palpate {
 

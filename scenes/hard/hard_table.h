@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "scenes/hard/hard_case.h"
 #include "scenes/report/table.h"

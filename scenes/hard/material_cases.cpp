@@ -110,7 +110,7 @@ HardCase hand_case(const TrainingsPointer& trainings, const std::string& materia
           }};
 }
 
-// A late or slow line reduces the force to what is stable (engine/live/stability_limit.h), so that the hand goes deeper
+// A late or slow line reduces the force to what is stable (engine/live/force_guard.h), so that the hand goes deeper
 // than it was recorded, and is not within the JND: steps and energy count.
 struct Line {
   const char* name;

@@ -15,7 +15,6 @@
 
 #include "devices/registry/device_registry.h"
 #include "engine/base/result.h"
-#include "engine/live/fault_recorder.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/tick/jnd.h"
 #include "scenes/live/comparison.h"

@@ -5,9 +5,9 @@
 #include <map>
 #include <optional>
 
-#include "engine/base/fit_control.h"
-#include "models/check/noise_floor.h"
-#include "models/fit/model_fits.h"
+#include "engine/base/parallel.h"
+#include "models/check/recording_measures.h"
+#include "models/fit/fit.h"
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/evaluation/model_timing.h"

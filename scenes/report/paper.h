@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
 #include "scenes/evaluation/error_figures.h"

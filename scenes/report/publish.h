@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "scenes/plot/draw.h"
 #include "scenes/report/table.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
 

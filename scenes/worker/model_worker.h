@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "engine/recording/recording.h"
-#include "models/fit/model_fits.h"
+#include "models/fit/fit.h"
 #include "models/model/fitted_model.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/model_request.h"

@@ -1,5 +1,5 @@
 // The closed loop (closed_loop_test.cpp) with delay or a low sample rate: the rendered stiffness is limited to the
-// stable range (engine/live/stability_limit.h), so that no hand oscillates.
+// stable range (engine/live/force_guard.h), so that no hand oscillates.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/live/stability_limit.h"
+#include "engine/live/force_guard.h"
 #include "tests/support/closed_loop_measures.h"
 #include "tests/support/live_doubles.h"
 

@@ -6,7 +6,7 @@
 // spring K with the damping -K (T / 2 + t_d): -0.9 N s/m on 600 N/m, -4.5 N s/m
 // on 3 kN/m (Colgate & Schenkel 1997, for t_d = 0). The viscosity of the model, the
 // hand and the device must provide that much damping; the passivity controller
-// (engine/live/passivity_controller.h) adds what is missing. Some tests switch it
+// (engine/live/force_guard.h) adds what is missing. Some tests switch it
 // off to show its effect.
 #include <gtest/gtest.h>
 

@@ -8,12 +8,9 @@
 // With palpate::fit linked also
 //   palpate::fit({palpate::Recording("press.csv")}, "method=random centres=40").save("block.json");
 //
-// All functions are inline and call functions with C linkage, so that a program may use another compiler, or other
-// options, than the library.
-//
-// Errors: a Failure is thrown; its text has the value found, the value expected and advice. Functions marked noexcept
-// never fail and may run in a haptics loop.
-// Thread guarantee: threads may share a Model; all else belongs to one thread at a time.
+// palpate.h describes the functions, which are inline here and call C, so that a program may use another compiler than the
+// library. Errors: a Failure is thrown; its text has the value found, the value expected and advice. Functions marked
+// noexcept never fail and may run in a haptics loop. Threads may share a Model; all else belongs to one thread at a time.
 #ifndef PALPATE_PALPATE_HPP
 #define PALPATE_PALPATE_HPP
 
@@ -124,22 +121,15 @@ class Stream {
           return palpate_stream_new_with_sensor(model.handle(), &sensor, error, size);
         })) {}
 
-  // Takes the next sample and returns the force, N; 0 if a value is not finite or the time is not later than the last
-  // one. Wait-free.
   double force(double time_s, double position_m) noexcept {
     return palpate_stream_force(stream_.get(), time_s, position_m);
   }
-  // The same with measured velocity and acceleration.
   double force(double time_s, double position_m, double velocity_m_per_s, double acceleration_m_per_s2) noexcept {
     return palpate_stream_force_with_motion(stream_.get(), time_s, position_m, velocity_m_per_s, acceleration_m_per_s2);
   }
-  // Whether the last call took its sample: tells a refused one from no contact.
   bool accepted() const noexcept { return palpate_stream_accepted(stream_.get()) != 0; }
-  // Whether the last sample was out of the domain of the recordings.
   bool out_of_domain() const noexcept { return palpate_stream_out_of_domain(stream_.get()) != 0; }
-  // The 95 % bound on the error of the force at the last sample, N; NaN if the model has none.
   double predicted_error_N() const noexcept { return palpate_stream_predicted_error(stream_.get()); }
-  // Resets the motion estimate and the filters. Wait-free.
   void reset() noexcept { palpate_stream_reset(stream_.get()); }
   palpate_stream* handle() noexcept { return stream_.get(); }
 
@@ -177,18 +167,13 @@ class Limiter {
           return palpate_limiter_new(&plain, error, size);
         })) {}
 
-  // The force on a hand: takes the next sample into the stream and returns what to render, finite. See
-  // palpate_limiter_render. `step_s`: since the last call. Wait-free.
   double render(Stream& stream, double time_s, double position_m, double step_s) noexcept {
     return palpate_limiter_render(limiter_.get(), stream.handle(), time_s, position_m, step_s);
   }
-  // The lag of the force behind the motion, for `render`; at least 1.5 times the interval between calls.
   void set_lag(double lag_s) noexcept { palpate_limiter_set_lag(limiter_.get(), lag_s); }
-  // The limiter alone: the force to render, finite. Wait-free.
   double force(double commanded_N, double step_s, double sample_age_s = 0.0) noexcept {
     return palpate_limiter_force(limiter_.get(), commanded_N, step_s, sample_age_s);
   }
-  // The next force goes towards 0; to be called once per tick while a fault lasts. Wait-free.
   void stop() noexcept { palpate_limiter_stop(limiter_.get()); }
   // PALPATE_LIMIT_... bits of the last force.
   unsigned flags() const noexcept { return palpate_limiter_flags(limiter_.get()); }

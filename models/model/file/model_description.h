@@ -3,12 +3,10 @@
 // Thread guarantee: slow side.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 
 #include "engine/json/json_fields.h"
-#include "engine/recording/recording_rules.h"
+#include "engine/recording/recording.h"
 #include "models/model/fitted_model.h"
 #include "models/model/rbf/rbf_evaluate.h"
 
@@ -75,11 +73,10 @@ void describe_trend(auto& file, Trend& trend) {
 void describe_surface(auto& file, RecordingOffset& surface) {
   file.text("name", surface.name);
   file.number("surface_offset_m", surface.offset_m);
-  if (file.has("standard_error_m", std::isfinite(surface.standard_error_m))) {
+  if (file.has("standard_error_m", std::isfinite(surface.standard_error_m)))
     file.number("standard_error_m", surface.standard_error_m, kNotNegative);
-  } else {
+  else
     surface.standard_error_m = HUGE_VAL;
-  }
   file.number("force_zero_N", surface.force_zero_N);
 }
 
@@ -87,10 +84,9 @@ void describe_provenance(auto& file, Provenance& from) {
   file.object("provenance", "an object", [&] {
     file.names("recordings", from.recordings);
     // Models fitted to positions as recorded have no such list.
-    if (file.has("surfaces", !from.offsets.empty())) {
+    if (file.has("surfaces", !from.offsets.empty()))
       describe_each(file, "surfaces", from.offsets, 0,
                     [&](RecordingOffset& surface) { describe_surface(file, surface); });
-    }
     file.text("scene", from.scene);
     file.count("samples", from.samples);
     file.count("contact_samples", from.contact_samples);

@@ -137,9 +137,8 @@ class ModelReader {
   // Reads the correction from the one member that identifies its kind.
   void correction(CorrectionPtr& value, Eigen::Index dimension) {
     std::vector<std::string> present;
-    for (const char* key : {"centres", "grid", "trend_alone"}) {
+    for (const char* key : {"centres", "grid", "trend_alone"})
       if (at_.value->contains(key)) present.emplace_back(key);
-    }
     if (present.size() != 1) {
       const std::string given = present.empty() ? "none" : '"' + joined(present, "\" and \"") + '"';
       fields_.complain("", "found " + given + R"(, expected one of "centres", "grid", "trend_alone")");

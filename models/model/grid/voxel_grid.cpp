@@ -27,9 +27,8 @@ GridCorrection::GridCorrection(VoxelGrid grid) : grid_(std::move(grid)), interpo
   for (std::size_t k = grid_.nodes.size(); k-- > 0; stride *= grid_.nodes[k].size()) {
     const std::vector<double>& nodes = grid_.nodes[k];
     axes_[k] = {nodes, {}, stride};
-    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i)
       axes_[k].reciprocal_width.push_back(1.0 / (nodes[i + 1] - nodes[i]));
-    }
   }
 }
 

@@ -1,17 +1,9 @@
-// The radial kernels phi(r) of Hoever & Harders (2009), eq. 2: polyharmonic
-// splines, which have no shape parameter to tune.
-//
-//   linear      r          polynomial tail of degree 0
-//   thin-plate  r^2 log r  1
-//   cubic       r^3        1
-//
-// With a tail of at least that degree the kernel times its sign is positive
-// definite on every weight vector orthogonal to the tail (Micchelli 1986).
-// Thread guarantee: pure functions, any thread.
+// The radial kernels phi(r) of Hoever & Harders (2009), eq. 2: polyharmonic splines, which have no shape parameter to
+// tune. With a tail of at least its degree the kernel times its sign is positive definite on every weight vector
+// orthogonal to the tail (Micchelli 1986). Thread guarantee: pure functions, any thread.
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +11,7 @@
 
 namespace palpate {
 
-enum class KernelKind { cubic, linear, thin_plate };
+enum class KernelKind { cubic, linear, thin_plate };  // r^3, r, r^2 log r
 
 inline constexpr std::array<KernelKind, 3> kKernelKinds = {KernelKind::cubic, KernelKind::linear,
                                                            KernelKind::thin_plate};

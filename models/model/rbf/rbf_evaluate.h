@@ -1,13 +1,10 @@
 // Vectorised evaluation of radial basis functions for the tick, the grid and the fits. The instruction set
-// (vector_loops.h) is selected when an object is built, not per call.
+// (vector_loops.h) is selected when an object is built.
 //
-// Accuracy: each phi has a relative error of at most 4 ulp (thin-plate: 8 ulp of r^2 (1 + |log r|)). The order of sums
-// depends on the instruction set. The results of two instruction sets, or of the defining sum, differ by at most 32 eps
-// (sum_j |w_j phi_j| + sum_k |d_k g_k|), eps = 2^-53.
-//
-// Coordinates and weights below kTiny count as 0 and distances below 1e-18 as 1e-18, so no intermediate value is
-// denormal unless the result is. Results are finite while |x| and |centres| are below 1e60 and the result is below
-// 1e300; a non-finite x gives a non-finite result.
+// Each phi has a relative error of at most 4 ulp (thin-plate: 8 ulp of r^2 (1 + |log r|)). Two instruction sets, or the
+// defining sum, differ by at most 32 eps (sum_j |w_j phi_j| + sum_k |d_k g_k|), eps = 2^-53. Coordinates and weights
+// below kTiny count as 0 and distances below 1e-18 as 1e-18, so no intermediate value is denormal unless the result is.
+// Results are finite while |x| and |centres| are below 1e60 and the result is below 1e300.
 #pragma once
 
 #include <Eigen/Core>
@@ -76,14 +73,12 @@ class RbfCorrection final : public Correction {
 
 // The function of a correction of this kind, else null.
 const RbfFunction* rbf_of(const CorrectionPtr& correction);
-
 // Rows of the matrix Phi of eq. 5,
 //   out(i, j) = phi(|points.col(first_row + i) - centres.col(j)|)
 // `out`: rows x n, contiguous columns; `first_row`: a multiple of 8. Runs on the calling thread; several threads may
 // fill parts of a matrix at once.
 void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<const Eigen::MatrixXd>& centres,
                    Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index first_row = 0);
-
 // Phi v, the product with the kernel matrix of a point set, without storing the matrix. `points`: d x N; `v`: N values.
 // Uses all cores; the result does not depend on their number.
 Eigen::VectorXd kernel_product(KernelKind kind, const Eigen::MatrixXd& points, const Eigen::VectorXd& v);

@@ -31,7 +31,6 @@
 #include "devices/virtual/hand_device.h"
 #include "engine/base/random_stream.h"
 #include "engine/live/pacer.h"
-#include "engine/live/rt_thread.h"
 #include "scenes/material/rig.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // The recorded ticks around a fault.
-#include "engine/live/fault_recorder.h"
+#include "engine/live/haptics_loop.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/live/passivity_controller.h"
+#include "engine/live/force_guard.h"
 
 #include <gtest/gtest.h>
 

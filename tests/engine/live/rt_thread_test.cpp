@@ -1,5 +1,5 @@
 // The advice if the system refuses real-time priority.
-#include "engine/live/rt_thread.h"
+#include "engine/live/pacer.h"
 
 #include <gtest/gtest.h>
 

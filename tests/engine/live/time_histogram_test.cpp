@@ -1,5 +1,5 @@
 // Percentiles from a histogram, without storing the times.
-#include "engine/live/time_histogram.h"
+#include "engine/live/pacer.h"
 
 #include <gtest/gtest.h>
 

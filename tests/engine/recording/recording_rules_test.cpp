@@ -1,4 +1,4 @@
-#include "engine/recording/recording_rules.h"
+#include "engine/recording/recording.h"
 
 #include <gtest/gtest.h>
 

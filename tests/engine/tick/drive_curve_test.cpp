@@ -1,4 +1,4 @@
-#include "engine/tick/drive_curve.h"
+#include "engine/tick/feature_lanes.h"
 
 #include <gtest/gtest.h>
 

@@ -10,18 +10,18 @@ namespace palpate {
 namespace {
 
 // Ten strokes from 1 to 3 mm. The force is larger during loading by `friction_N` on either side of its mean.
-std::vector<ForceAtPosition> strokes(double shift_m, double friction_N = 0.0, double factor = 1.0) {
-  std::vector<ForceAtPosition> rows;
+std::vector<RecordingRow> strokes(double shift_m, double friction_N = 0.0, double factor = 1.0) {
+  std::vector<RecordingRow> rows;
   for (int i = 0; i < 20000; ++i) {
     const double depth_m = 2e-3 - 1e-3 * std::cos(2e-3 * std::acos(-1.0) * i);
     const double friction = std::sin(2e-3 * std::acos(-1.0) * i) > 0.0 ? friction_N : -friction_N;
-    rows.push_back({depth_m + shift_m, factor * 8e5 * depth_m * depth_m + friction});
+    rows.push_back({0.0, depth_m + shift_m, factor * 8e5 * depth_m * depth_m + friction});
   }
   return rows;
 }
 
-std::optional<CurveDifference> difference_of(const std::vector<ForceAtPosition>& first,
-                                             const std::vector<ForceAtPosition>& second, double shift_m = 0.0) {
+std::optional<CurveDifference> difference_of(const std::vector<RecordingRow>& first,
+                                             const std::vector<RecordingRow>& second, double shift_m = 0.0) {
   const double bin_m = common_bin_m(first, second);
   return difference(ForceCurve(first, bin_m), ForceCurve(second, bin_m), shift_m, JndLine{});
 }
@@ -38,8 +38,8 @@ TEST(ForceCurve, OfTheSameForcesHasNoDifference) {
 }
 
 TEST(ForceCurve, TellsAForceOffset) {
-  std::vector<ForceAtPosition> second = strokes(0.0);
-  for (ForceAtPosition& row : second) row.force_N += 2.0;
+  std::vector<RecordingRow> second = strokes(0.0);
+  for (RecordingRow& row : second) row.force_N += 2.0;
   const auto found = difference_of(strokes(0.0), second);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->median_N, 2.0, 1e-9);
@@ -73,12 +73,12 @@ TEST(ForceCurve, ComparesOnlyCurvesThatOverlap) {
 }
 
 // Presses from 10 mm outside of the material to 3 mm inside, with pseudo-noise of 3 mN.
-std::vector<ForceAtPosition> presses_from_air(double factor) {
-  std::vector<ForceAtPosition> rows;
+std::vector<RecordingRow> presses_from_air(double factor) {
+  std::vector<RecordingRow> rows;
   for (int i = 0; i < 20000; ++i) {
     const double position_m = -3.5e-3 - 6.5e-3 * std::cos(2e-3 * std::acos(-1.0) * i);
     const double depth_m = std::max(0.0, position_m);
-    rows.push_back({position_m, factor * 8e5 * depth_m * depth_m + 4e-3 * std::sin(977.0 * i * 1e-3 * i)});
+    rows.push_back({0.0, position_m, factor * 8e5 * depth_m * depth_m + 4e-3 * std::sin(977.0 * i * 1e-3 * i)});
   }
   return rows;
 }
@@ -92,7 +92,7 @@ TEST(ForceCurve, AirDoesNotDecide) {
 }
 
 TEST(ForceCurve, AToolAtRestHasNoBins) {
-  const std::vector<ForceAtPosition> rest(20, {1e-3, 0.5});
+  const std::vector<RecordingRow> rest(20, {1e-3, 0.5});
   EXPECT_EQ(common_bin_m(rest, rest), 0.0);
 }
 

@@ -1,4 +1,4 @@
-#include "models/check/noise_floor.h"
+#include "models/check/recording_measures.h"
 
 #include <gtest/gtest.h>
 

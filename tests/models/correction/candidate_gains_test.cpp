@@ -1,4 +1,4 @@
-#include "models/correction/candidate_gains.h"
+#include "models/correction/orthogonal_basis.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "models/correction/thinning.h"
+#include "models/correction/sites.h"
 
 #include <gtest/gtest.h>
 

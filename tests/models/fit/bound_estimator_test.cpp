@@ -1,4 +1,4 @@
-#include "models/fit/bound_estimator.h"
+#include "models/fit/residual_rows.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "models/fit/correction_choice.h"
+#include "models/fit/residual_rows.h"
 
 #include <gtest/gtest.h>
 

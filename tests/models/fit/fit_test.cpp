@@ -302,7 +302,7 @@ TEST(Fit, OnTheForceUsesWhatIsSelected) {
   const auto fit = fit_method(*prepared, asked.plan, {}, nullptr, &choices);
   ASSERT_TRUE(fit.ok()) << fit.error().message;
   EXPECT_EQ(fit->data.name, "random-30");
-  EXPECT_EQ(fit->data.scale, prepared->normalisation.scale_of(1.0));
+  EXPECT_EQ(fit->data.scale, prepared->common.scale_of(1.0));
   EXPECT_EQ(fit->kernel, KernelKind::linear);
   EXPECT_LT(fit->condition_number, 1e6);
   ASSERT_EQ(fit->notes.size(), 1u);
@@ -317,7 +317,7 @@ TEST(Fit, OnTheForceUsesWhatIsSelected) {
   const auto selected = fit_method(*prepared, asked.plan);
   ASSERT_TRUE(selected.ok());
   ASSERT_TRUE(selected->choices.has_value());
-  EXPECT_EQ(selected->data.scale, prepared->normalisation.scale_of(selected->choices->range_exponent));
+  EXPECT_EQ(selected->data.scale, prepared->common.scale_of(selected->choices->range_exponent));
   EXPECT_EQ(rbf_of(selected->data.correction)->kernel, selected->choices->kernel);
 }
 

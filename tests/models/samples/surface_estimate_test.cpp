@@ -1,4 +1,4 @@
-#include "models/samples/surface_estimate.h"
+#include "models/samples/prepared_recording.h"
 
 #include <gtest/gtest.h>
 

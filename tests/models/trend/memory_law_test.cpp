@@ -1,4 +1,4 @@
-#include "models/trend/memory_law.h"
+#include "models/trend/trend_estimator.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,4 @@
-#include "engine/live/passivity_controller.h"
-
-#include <algorithm>
-#include <cmath>
+#include "engine/live/force_guard.h"
 
 namespace palpate {
 namespace {
@@ -65,19 +62,17 @@ double PassivityController::apply(double commanded_N, const Tool& tool, const Lo
   }
   const double half_play_m = 0.5 * play_m_;
   const double depth_m = std::clamp(depth_m_, tool.position_m - half_play_m, tool.position_m + half_play_m);
-  const double change_m = depth_m - depth_m_;
-  const double before_J = energy_J_;
+  const double change_m = depth_m - depth_m_, before_J = energy_J_;
   energy_J_ += acted_N * change_m;
   if (change_m >= 0.0) {
     if (depth_m > passed_[count_ - 1].depth_m + kSpacing_m) pass_inwards(depth_m, energy_J_ + debt_J_);
   } else {
     // Adds the turning point, unless it was added before.
     if (depth_m_ > passed_[count_ - 1].depth_m) pass_inwards(depth_m_, before_J + debt_J_);
-    if (depth_m < passed_[0].depth_m) {
+    if (depth_m < passed_[0].depth_m)
       begin_at(depth_m);  // further out than the beginning: there is no reference
-    } else {
+    else
       debt_J_ = std::max(0.0, energy_when_passed(depth_m) - energy_J_);
-    }
   }
   depth_m_ = depth_m;
   const double out_m_per_s = -tool.velocity_m_per_s;
