@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "tests/support/message_parts.h"
+
 namespace palpate {
 namespace {
 
@@ -158,6 +160,31 @@ TEST(PaperClaims, DifferencesAndBusyMachinesHaveARemark) {
       EXPECT_NE(one.why.find("Busy"), std::string::npos);
     }
   }
+}
+
+// Eight seconds: a fifth of the recordings of both materials. Every model of a run is judged on the same samples; the
+// exchanged ones on those of the other recording, which is a tenth shorter.
+TEST(MeasurePaper, JudgesEveryModelOnTheRecordingItHasNotSeen) {
+  const PaperData data = test::must(measure_paper(true, {}));
+  ASSERT_EQ(data.runs.size(), 2u);
+  for (const PaperRun& run : data.runs) {
+    ASSERT_EQ(run.models.size(), kPaperMethods);
+    ASSERT_EQ(run.exchanged.size(), kPaperMethods);
+    EXPECT_EQ(run.repeated.size(), 2u);
+    EXPECT_EQ(run.settings.size(), 18u) << "three kernels, two normalisations, three truncations";
+    const std::uint64_t samples = run.models.front().errors.samples, others = run.exchanged.front().errors.samples;
+    EXPECT_LT(others, samples);
+    for (const auto* list : {&run.models, &run.repeated, &run.settings}) {
+      for (const PaperModel& one : *list) EXPECT_EQ(one.errors.samples, samples) << one.name;
+    }
+    for (const PaperModel& one : run.exchanged) EXPECT_EQ(one.errors.samples, others) << one.name;
+    for (const PaperModel& one : run.models) EXPECT_TRUE(one.time.measured) << one.name;
+    EXPECT_NE(run.repeated[0].errors.rms_error_N, run.models[kGreedy100].errors.rms_error_N) << "another seed";
+  }
+  ASSERT_EQ(data.by_sites.size(), 3u);
+  EXPECT_GT(data.by_sites[2].sites, data.by_sites[1].sites);
+  for (const FitTimes& one : data.by_sites) EXPECT_GE(one.seconds[kGridOfAll], one.solve_s);
+  EXPECT_EQ(data.by_dimension.back().dimensions, 4u);
 }
 
 }  // namespace
