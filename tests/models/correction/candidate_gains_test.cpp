@@ -80,5 +80,16 @@ TEST(CandidateGains, KnowsAColumnAllButInsideTheBasis) {
   EXPECT_EQ(gains.gain(2), 0.0) << "a repeated point adds nothing";
 }
 
+// Columns that differ by 1e-7 of their length: one pass of Gram-Schmidt leaves 1e-9 of each in the others.
+TEST(OrthogonalBasis, IsOrthogonalForColumnsThatAreAlmostTheSame) {
+  const Sites sites = test::smooth_sites(2, 200, 0.0, 3);
+  const Eigen::MatrixXd random = test::random_points(200, 11, 7);
+  OrthogonalBasis basis(sites, 10);
+  for (Eigen::Index k = 1; k <= 10; ++k) EXPECT_TRUE(basis.add(random.col(0) + 1e-7 * random.col(k)));
+  const Eigen::MatrixXd q = basis.data_and_columns().rightCols(basis.size());
+  const Eigen::MatrixXd error = q.transpose() * q - Eigen::MatrixXd::Identity(q.cols(), q.cols());
+  EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-13);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -63,6 +63,23 @@ TEST(Methods, StartFromTheBaseThatTheyAreGiven) {
   EXPECT_NE(grid_of(fit_correction(kVoxelMethod, task)->correction)->values_N, grid_of(alone->correction)->values_N);
 }
 
+// Half way between even steps and the quantiles of the sites, which are cubes of even numbers.
+TEST(Methods, TheGridHasItsNodesWhereTheSitesAre) {
+  Sites sites = smooth_sites(1, 201, 0.0, 1);
+  for (Eigen::Index i = 0; i < 201; ++i) sites.points(0, i) = std::pow(static_cast<double>(i) / 200.0, 3);
+  const Eigen::VectorXd jnd_N = Eigen::VectorXd::Ones(201);
+  MethodTask task{sites, jnd_N};
+  task.grid = {5};
+  const auto fitted = fit_correction(kVoxelMethod, task);
+  ASSERT_TRUE(fitted.ok());
+  const std::vector<double>& nodes = grid_of(fitted->correction)->nodes[0];
+  ASSERT_EQ(nodes.size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const double share = static_cast<double>(k) / 4.0;
+    EXPECT_NEAR(nodes[k], 0.5 * (share + std::pow(share, 3)), 1e-12) << k;
+  }
+}
+
 // Calls `test` with each method that selects centres; greedy ones with subsets of candidates and with all.
 template <typename Test>
 void for_every_selection(const Test& test) {

@@ -15,8 +15,10 @@ namespace {
 constexpr double kDepth_m = 5e-3;
 
 // Strokes of various speeds, two seconds each, in and out of a spring with a Maxwell branch of these times.
-Samples strokes_into(std::initializer_list<double> times_s) {
-  FeatureFilter branches({test::spectrum(times_s, {kDepth_m, {2.0, 0.0, 0.0, 0.0}})});
+Samples strokes_into(std::initializer_list<double> times_s, double slowing = 0.0) {
+  FeatureSpec spec = test::spectrum(times_s, {kDepth_m, {2.0, 0.0, 0.0, 0.0}});
+  spec.slowing = slowing;
+  FeatureFilter branches({spec});
   return test::exact_samples(10000, kDepth_m, [&](std::size_t i) {
     const double time_s = 2e-3 * static_cast<double>(i);
     const int stroke = static_cast<int>(i) / 1000;
@@ -63,6 +65,21 @@ TEST(SelectMemoryLaw, OfAListWithoutBranchesChangesNothing) {
   std::vector<PartGain> gains;
   EXPECT_EQ(test::must(select_memory_law(strokes_into({0.1}), {}, list, gains, {})), list);
   EXPECT_TRUE(gains.empty());
+}
+
+TEST(SelectMemoryLaw, FindsHowTheRelaxationDependsOnDepth) {
+  for (const double slowing : {1.5, -1.5}) {
+    const Samples samples = strokes_into({0.1}, slowing);
+    FeatureList list;
+    list.add(FeatureKind::maxwell_spectrum, {0.02, 0.1, 0.5});
+    std::vector<PartGain> gains;
+    const FeatureList law = test::must(select_memory_law(samples, {}, list, gains, {}));
+    EXPECT_TRUE(gains.back().taken);
+    EXPECT_LT(gains.back().error_with, gains.back().error_without);
+    // The simplest that is not significantly worse: at least half of it.
+    EXPECT_GE(law.features.back().slowing / slowing, 0.5);
+    EXPECT_LE(law.features.back().slowing / slowing, 1.0);
+  }
 }
 
 // A branch that follows the tool with one relaxation time needs neither.

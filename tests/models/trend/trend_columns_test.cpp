@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -260,6 +261,14 @@ TEST(FittedTrend, HasTheFeaturesWithWeights) {
   // 1.5 times the greatest velocity.
   EXPECT_NEAR(fitted.trend.velocity_limit_m_per_s, 1.5 * kDepth_m * 2.0 * std::numbers::pi / 1.5, 1e-6);
   EXPECT_EQ(fitted_trend(columns, x, true).features.size(), 4u);
+}
+
+TEST(FittedTrend, LimitsTheVelocityByTheFastestOfBothDirections) {
+  Samples samples = strokes();
+  for (Sample& row : samples.rows) row.motion.velocity_m_per_s = std::min(row.motion.velocity_m_per_s, 1e-3);
+  const TrendColumns columns = columns_of(samples, {});
+  const FittedTrend fitted = fitted_trend(columns, Eigen::VectorXd::Zero(columns.columns()), false);
+  EXPECT_NEAR(fitted.trend.velocity_limit_m_per_s, 1.5 * kDepth_m * 2.0 * std::numbers::pi / 1.5, 1e-6);
 }
 
 // 60 s at 1 kHz: four times a decade from 2 samples to a third of the recording.

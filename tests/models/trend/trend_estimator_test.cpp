@@ -65,6 +65,26 @@ TEST(TrendEstimator, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
   EXPECT_LT(estimator.cross_validate(estimator.all_columns()).errors.rms(), 0.2);
 }
 
+// The features of the trend have an error of 3 %, and of 10 % if there is creep: a viscous force of 100 Ns/m, up to 9
+// N, is fitted that much too small in the mean square.
+TEST(TrendEstimator, FeaturesCountAsInexact) {
+  Samples samples = samples_of(0.0, [](const ToolSample&, const MotionEstimate& motion) {
+    return motion.position_m > 0.0 ? 100.0 * motion.velocity_m_per_s : 0.0;
+  });
+  samples.lowest_force_N = -10.0;  // every force counts
+  double rms_N[2];
+  for (const bool creep : {false, true}) {
+    FeatureList list;
+    list.add(FeatureKind::velocity);
+    if (creep) list.add(FeatureKind::creep, {10.0});
+    const TrendColumns rows = columns_of(samples, list);
+    const TrendEstimator estimator(rows, {});
+    rms_N[creep ? 1 : 0] = rms_of(rows, estimator.fit(estimator.all_columns()));
+  }
+  EXPECT_GT(rms_N[0], 1e-4);
+  EXPECT_GT(rms_N[1], 5.0 * rms_N[0]);
+}
+
 // The force is 3 N at the greatest depth. On the way out one sample in four has no force,
 // because the tool has left the material.
 TEST(TrendEstimator, AForceThatWasNotMeasuredIsNoForceToFollow) {

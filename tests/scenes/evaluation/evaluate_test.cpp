@@ -39,6 +39,24 @@ TEST(Evaluate, TakesMoreModelsThanOneTick) {
             result.models[0].surface.at == 0.0);
 }
 
+TEST(Evaluate, EveryModelHasItsOwnDomain) {
+  const Recording recording = test::example_recording(800, 1000.0);
+  std::vector<EvaluatedModel> models;
+  for (const double share : {0.3, 1.0, 0.6}) {
+    ModelData data = test::example_models().front();
+    data.upper *= share;
+    models.push_back({std::make_shared<const FittedModel>(data), data.jnd});
+  }
+  const auto together = test::must(evaluate(rows_of(recording), models));
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const auto alone = test::must(evaluate(rows_of(recording), {models[i]}));
+    EXPECT_EQ(together.models[i].as_recorded.summary().out_of_domain_samples,
+              alone.models[0].as_recorded.summary().out_of_domain_samples);
+  }
+  EXPECT_GT(together.models[0].as_recorded.summary().out_of_domain_samples,
+            together.models[1].as_recorded.summary().out_of_domain_samples);
+}
+
 TEST(Evaluate, AFileAndItsRecordingGiveTheSame) {
   const Recording recording = test::example_recording(800, 1000.0);
   const test::TemporaryFolder folder;
@@ -95,6 +113,9 @@ TEST(BoundErrors, CountErrorsWithinTheBoundAndKnowWhenItSaysNothing) {
   EXPECT_EQ(bounds.figures().coverage, 3.0 / 11.0);
   EXPECT_EQ(bounds.figures().median_N, 2.0);
   EXPECT_TRUE(std::isnan(bounds.figures().median_over_jnd)) << "wider than the largest force, 1.5 N";
+  BoundErrors pulling;
+  pulling.add(1.25, 0.0, -1.5, jnd);
+  EXPECT_NEAR(pulling.figures().median_over_jnd, 12.5, 1e-6) << "the largest force is that of a material that pulls";
 }
 
 }  // namespace

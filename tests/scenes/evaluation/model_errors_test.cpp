@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/random_stream.h"
 
@@ -96,6 +97,32 @@ TEST(Bootstrap, DrawsWholeStrokes) {
   EXPECT_NEAR(share_up_to(8.0), std::pow(0.8, 10), 0.03);
   EXPECT_EQ(errors.p99_interval().low, 7.0);
   EXPECT_EQ(errors.p99_interval().high, 10.0);
+}
+
+// The 99 % error of a draw has the nearest rank, as that of all samples: one of 99 samples is more than a hundredth.
+TEST(Bootstrap, ADrawHasTheNearestRank) {
+  for (const int samples : {99, 100, 101}) {
+    ModelErrors errors(JndLine{1.0, 0.0});
+    for (int stroke = 0; stroke < 3; ++stroke) {
+      errors.begin_stroke();
+      for (int i = 0; i < samples; ++i) errors.add(i == 0 ? 9.0 : 0.1, 0.0, false);
+    }
+    const UnitErrors unit_errors = errors.unit_errors();
+    EXPECT_NEAR(unit_errors.p99_error_over_jnd, samples == 99 ? 9.0 : 0.1, 1e-6);
+    for (const float one : unit_errors.resampled_p99)
+      ASSERT_EQ(static_cast<double>(one), unit_errors.p99_error_over_jnd) << samples;
+  }
+}
+
+// Phi(-sqrt(10 / 9) x 2.262) = 0.86 % of 2,000 draws are 17, Phi(-sqrt(30 / 29) x 2.045) = 1.88 % are 37.
+TEST(Bootstrap, TheIntervalIsExpandedForFewUnits) {
+  UnitErrors errors;
+  for (std::size_t i = 0; i < kResamples; ++i) errors.resampled_p99.push_back(static_cast<float>(i));
+  for (const auto& [units, rank] : {std::pair{10, 17.0}, {30, 37.0}}) {
+    errors.unit_samples.assign(static_cast<std::size_t>(units), 1.0);
+    EXPECT_EQ(errors.p99_interval().low, rank);
+    EXPECT_EQ(errors.p99_interval().high, 1999.0 - rank);
+  }
 }
 
 TEST(Bootstrap, IsTheSameInEveryRunAndForEveryModelOfTheSameStrokes) {

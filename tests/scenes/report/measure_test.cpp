@@ -68,13 +68,29 @@ TEST(WorstStretch, IsWhereTheFirstModelErrs) {
   EXPECT_EQ(worst.rows[10].force_N.size(), 2u);
 }
 
+// 50 ms of a large error in the air count as a quarter of 5 s, so that five seconds of a smaller error are worse.
+TEST(WorstStretch, ATouchOfAMomentIsNotTheWorst) {
+  Recording recording;
+  for (int i = 0; i < 15000; ++i) {
+    const double time_s = 1e-3 * i;
+    const bool touch = i >= 2000 && i < 2050, press = i >= 8000 && i < 14000;
+    RecordingRow row;
+    row.time_s = time_s;
+    row.position_m = touch || press ? 1e-3 : -1e-3;
+    row.force_N = touch ? 100.0 : press ? 5.0 : 0.0;
+    recording.rows.push_back(row);
+  }
+  const auto model = std::make_shared<const FittedModel>(test::example_models().front());
+  EXPECT_GT(worst_stretch(recording, {model}, JndLine{}).rows.front().time_s, 3.0);
+}
+
 TEST(WorstStretch, OfAShortRecordingIsTheWhole) {
   const Recording recording = test::example_recording(500, 1000.0);
   const auto model = std::make_shared<const FittedModel>(test::example_models().front());
   EXPECT_EQ(worst_stretch(recording, {model}, JndLine{}).rows.size(), 500u);
 }
 
-// Two recordings without a test, in both orders: two folds, of which one has few sites.
+// Two recordings without a test, in both orders: two folds, of which one has few sites. Their surfaces differ.
 TEST(Measure, HasTheMainModelsWithFiveSeedsAndNamesWithTheNumberOfCentres) {
   const auto scene = test::must(load_scene("silicone_block"));
   for (const bool long_first : {false, true}) {
@@ -82,6 +98,7 @@ TEST(Measure, HasTheMainModelsWithFiveSeedsAndNamesWithTheNumberOfCentres) {
     for (const bool first : {true, false}) {
       Recording recording = *record_sensors({"silicone", first ? 1U : 2U, first == long_first ? 20.0 : 4.0, 100.0});
       recording.name = first ? "a" : "b";
+      for (RecordingRow& row : recording.rows) row.position_m += first ? 0.0 : 0.4e-3;
       recordings.push_back(prepare_recording(std::move(recording)));
     }
     const auto set = test::must(split_recordings(recordings, {}));
@@ -96,6 +113,13 @@ TEST(Measure, HasTheMainModelsWithFiveSeedsAndNamesWithTheNumberOfCentres) {
       EXPECT_EQ(one.seeds, one.plan->method->can_take(kTakesSeed) ? kSeeds : 1) << one.name;
       EXPECT_LE(one.p99_range.low, one.errors.p99_error_over_jnd);
       EXPECT_GE(one.p99_range.high, one.errors.p99_error_over_jnd);
+      if (one.p99_range.low < one.p99_range.high) {
+        EXPECT_LT(one.p99_range.low, one.errors.p99_error_over_jnd) << "the median of five";
+        EXPECT_GT(one.p99_range.high, one.errors.p99_error_over_jnd);
+      }
+      if (one.plan->base == Base::trend) {
+        EXPECT_LT(one.moved.rms_error_N, one.errors.rms_error_N) << one.name;
+      }
       EXPECT_EQ(one.bound.has_bounds(), one.plan->base == Base::trend) << one.name;
       if (one.size == 0 || !one.plan->selects_centres()) continue;
       EXPECT_EQ(one.name, family_name(*one.plan) + "-" + std::to_string(one.size));

@@ -67,6 +67,7 @@ TEST(ReportRecordings, WithoutATestEveryRecordingIsTestedOnceByTheOthers) {
     }
   }
   EXPECT_EQ(tested, (Names{"a", "b", "c", "d", "e", "f", "g"}));
+  EXPECT_EQ(names(set.folds[0].tested), (Names{"a", "f"})) << "recordings with similar names are in other folds";
 }
 
 TEST(ReportRecordings, OfASingleOneABlockAtItsEndIsTested) {
