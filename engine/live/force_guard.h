@@ -1,6 +1,6 @@
 // The stages between the force of a model and the limiter, for a force that a hand feels: the scale within the
-// stability limit, then the passivity controller. The live loop and the library (models/library) run this code. Thread
-// guarantee: one thread at a time; wait-free, allocates nothing, never throws.
+// stability limit, then the passivity controller. The live loop and the library (models/library) run this code.
+// Thread guarantee: one thread at a time; wait-free, allocates nothing, never throws.
 #pragma once
 
 #include <algorithm>

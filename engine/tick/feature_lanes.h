@@ -1,3 +1,8 @@
+// The branches of relaxation spectra, and the stop operators and creeping bristles (features.h gives the equations),
+// four at a time in SIMD lanes. All branches of a filter are in one sequence of groups of four, and all bristles in
+// another. The caller stores their state. Lanes use arithmetic operations only, in the order of four scalars, so that
+// results are bit-identical on every processor.
+//
 // The parts of features, each with a drive curve g of the depth d, or of the surface s where it lags:
 //   Maxwell branch     dz/dt = g'(d) dd/dt - z / tau: a spring g and a dashpot in series. g = d / tau: a low-pass.
 //   stop operator      s' = clamp(s + d' - d, -r, r), 0 out of contact: a bristle that bends by at most r, then slips.
@@ -10,11 +15,6 @@
 // dissipates (d - g^-1(q)) (g(d) - q) / tau >= 0 for any tau; the rest of its power changes the stored energy
 // integral_0^d g ds - q d + integral_0^q g^-1 ds. Bristles dissipate sum_p closed integral G_p(d) dp_p / r_p >= 0 in a
 // cycle, with G_p' = g_p and p_p = d - s_p, which increases only at d > p_p and decreases only at d < p_p.
-//
-// The branches of relaxation spectra, and the stop operators and creeping bristles (features.h gives the equations),
-// four at a time in SIMD lanes. All branches of a filter are in one sequence of groups of four, and all bristles in
-// another. The caller stores their state. Lanes use arithmetic operations only, in the order of four scalars, so that
-// results are bit-identical on every processor.
 // Thread guarantee: immutable after the last `add`, which allocates; all else is wait-free.
 #pragma once
 
