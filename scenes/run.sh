@@ -16,11 +16,12 @@ compare_methods() {
 }
 
 install_packages "${packages[@]}"
-# Builds only the two programs. tests/run.sh installs and configures what the
-# tests need.
-options=()
+# Builds only the two programs, and for the window the models of its first scene. tests/run.sh installs and configures
+# what the tests need.
+options=() targets="palpate palpate-demo"
+[ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] || targets+=" ready_silicone_block"
 [ -f "$root/build/build.ninja" ] || options=(-DBUILD_TESTING=OFF)
-build_in "$root/build" "palpate palpate-demo" "${options[@]}"
+build_in "$root/build" "$targets" "${options[@]}"
 
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && [ -x "$root/build/palpate-demo" ]; then
   exec "$root/build/palpate-demo" "$@"

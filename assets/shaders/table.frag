@@ -16,7 +16,7 @@ float box_distance(vec2 p) {
 
 void main() {
   vec2 from = place + vec2(0.0, 0.5 * half_size.y);
-  float fade = smoothstep(0.45, 1.0, length(place * vec2(1.0, 1.25)) / reach);
+  float fade = smoothstep(0.45, 1.0, length(place * vec2(1.0, 1.0 + 1.3 * step(0.0, place.y))) / reach);
   float wide = smoothstep(-0.030, 0.030, box_distance(from + vec2(-0.006, 0.008)));
   float contact = smoothstep(-0.003, 0.010, box_distance(from));
   float light_left = (0.62 + 0.38 * wide) * (0.62 + 0.38 * contact);

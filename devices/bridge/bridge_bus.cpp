@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "devices/bridge/byte_stream.h"
 #include "engine/base/signals.h"
@@ -74,9 +73,8 @@ class BridgeConnection final : public DeviceConnection {
     if (came <= 0) return came;
     next_ = bytes_;
     end_ = bytes_ + came;
-    if (!reports_.any_frame()) {
+    if (!reports_.any_frame())
       beginning_.append(next_, next_ + std::min(static_cast<std::size_t>(came), kBeginning - beginning_.size()));
-    }
     return reports_.next(next_, end_, bytes);
   }
   bool write(const std::uint8_t* bytes, std::size_t size) noexcept override { return stream_->write(bytes, size); }

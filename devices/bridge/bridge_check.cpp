@@ -67,9 +67,8 @@ class BridgeTest {
     if (frames_++ > 0) intervals_s_.push_back(1e-6 * (reading.time_us - last_.time_us));
     lowest_nm_ = std::min(lowest_nm_, reading.counts);
     highest_nm_ = std::max(highest_nm_, reading.counts);
-    if (reading.confirmed != last_.confirmed && sent_at_s_[reading.confirmed] > 0.0) {
+    if (reading.confirmed != last_.confirmed && sent_at_s_[reading.confirmed] > 0.0)
       round_trips_s_.push_back(steady_now_s() - sent_at_s_[reading.confirmed]);
-    }
     last_ = reading;
   }
 

@@ -109,9 +109,8 @@ Opened open_unix(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::size_t most = sizeof address.sun_path - 1;
-  if (path.empty() || path.size() > most) {
+  if (path.empty() || path.size() > most)
     return wrong("unix:" + path, "unix:PATH, the path of a socket of 1 to " + std::to_string(most) + " bytes");
-  }
   std::copy(path.begin(), path.end(), address.sun_path);
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return failure(path, errno, "close other programs");
@@ -122,9 +121,8 @@ Opened open_unix(const std::string& path) {
 }
 
 bool is_loopback(const sockaddr* address) {
-  if (address->sa_family == AF_INET) {
+  if (address->sa_family == AF_INET)
     return (ntohl(reinterpret_cast<const sockaddr_in*>(address)->sin_addr.s_addr) >> 24) == 127;
-  }
   return address->sa_family == AF_INET6 &&
          IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6*>(address)->sin6_addr) != 0;
 }
@@ -182,9 +180,8 @@ Opened open_tcp(const std::string& name, bool remote) {
 Opened open_command(const std::string& command) {
   if (command.find_first_not_of(' ') == std::string::npos) return wrong("exec:" + command, "a program, exec:COMMAND");
   int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     return failure(command, errno, "close other programs");
-  }
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child == 0) run_child(ends[1], command.c_str(), parent);

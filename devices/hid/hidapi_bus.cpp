@@ -19,9 +19,8 @@ std::mutex hidapi_mutex;
 
 std::string narrow(const wchar_t* text) {
   std::string result;
-  for (; text != nullptr && *text != L'\0'; ++text) {
+  for (; text != nullptr && *text != L'\0'; ++text)
     result += *text >= L' ' && *text < 0x7F ? static_cast<char>(*text) : '?';
-  }
   return result;
 }
 

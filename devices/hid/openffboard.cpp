@@ -39,9 +39,8 @@ ReportVerdict decode_openffboard(const std::uint8_t* bytes, std::size_t size, De
     return ReportVerdict::nothing;
   }
   const bool answer = type == kRequest || type == kAck;
-  if (!answer || wire::read16(bytes + 2) != kFfbAxis || bytes[4] != 0 || wire::read32(bytes + 5) != kFfbPosition) {
+  if (!answer || wire::read16(bytes + 2) != kFfbAxis || bytes[4] != 0 || wire::read32(bytes + 5) != kFfbPosition)
     return ReportVerdict::nothing;
-  }
   // The field of 64 bits has a position of 32 bits; the upper half repeats the sign.
   const auto low = static_cast<std::int32_t>(wire::read32(bytes + 9));
   const std::uint32_t high = wire::read32(bytes + 13);

@@ -14,7 +14,6 @@ namespace palpate {
 
 class SpaceMouse final : public LinkListener {
  public:
-  // `bus` outlives this.
   SpaceMouse(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened)
       : calibration_(calibration), link_(bus, *this, std::move(opened)) {}
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 
 #include "engine/base/whole_file.h"
 #include "engine/json/json_fields.h"
@@ -54,9 +53,8 @@ Result<DeviceCalibration> read_calibration(const std::string& folder, const Devi
   }
   calibration.direction = fields.number(top, "direction", {-1.0, 1.0});
   const JsonNode direction = fields.optional_member(top, "direction");
-  if (direction.value != nullptr && std::abs(calibration.direction) != 1.0) {
+  if (direction.value != nullptr && std::abs(calibration.direction) != 1.0)
     fields.complain(direction.pointer, found(*direction.value) + ", expected 1 or -1");
-  }
   calibration.rest_position_m = fields.number(top, "rest_position_m", {-1.0, 1.0});
   if (protocol.renders_force) read_force(fields, top, calibration);
   fields.refuse_unknown(top);

@@ -73,9 +73,8 @@ class DeviceClock {
   }
   void try_slope(double slope, std::size_t count) noexcept {
     double level_s = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i)
       level_s = std::min(level_s, points_[i].lag_s - slope * (points_[i].device_s - middle_s_));
-    }
     if (!(level_s > level_s_)) return;
     level_s_ = level_s;
     drift_ = slope;

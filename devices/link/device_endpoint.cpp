@@ -4,19 +4,15 @@
 #include <chrono>
 #include <cmath>
 #include <thread>
-#include <utility>
 
 #include "engine/live/pacer.h"
 
 namespace palpate {
-namespace {
 
 // The rate of an untimed device is measured over so many samples, for so long; one that sends none yet is not waited
 // for.
 constexpr std::uint64_t kMeasuredSamples = 20;
 constexpr double kMeasured_s = 0.3, kFirstSample_s = 0.1;
-
-}  // namespace
 
 DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration, std::string name) noexcept
     : calibration_(calibration), name_(std::move(name)), monitor_(calibration) {
@@ -147,9 +143,8 @@ DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
   DeviceHealth health = state.health;
   if (state.samples > 0) health.sample_age_s = std::max(0.0, now_s - state.sample_time_s);
   if (health.faults == 0) {
-    if (health.sample_age_s > state.late_after_s) {
+    if (health.sample_age_s > state.late_after_s)
       health.faults |= device_fault::kLate | (state.corrupt > 0 ? device_fault::kCorrupt : 0U);
-    }
     if (stalled(state, now_s)) health.faults |= device_fault::kWriteStalled;
   }
   health.faults |= state.lost;

@@ -38,7 +38,6 @@ class DeviceEndpoint : public Device, public LinkListener {
   // A device with timed reports gets one command per sample, but at least one in this time.
   static constexpr double kSlowestSample_s = 0.01;
 
-  // `name`: as in --device.
   explicit DeviceEndpoint(const DeviceCalibration& calibration, std::string name = "hid") noexcept;
 
   const std::string& name() const noexcept override { return name_; }
@@ -110,7 +109,6 @@ class DeviceEndpoint : public Device, public LinkListener {
   bool began_ = false;  // a sample was read, so that the position is known
 };
 
-// A DeviceEndpoint and its threads.
 class LinkedDevice final : public DeviceEndpoint {
  public:
   // `bus` outlives this, or is `own_bus`; `opened` has the calibration's protocol, which renders force; `name`: as in
@@ -128,7 +126,6 @@ class LinkedDevice final : public DeviceEndpoint {
   // was measured when it was identified).
   Status open() override;
   void close() noexcept override { link_.stop(); }
-  // See DeviceLink::description.
   std::string note() const override { return link_.description(); }
 
  private:

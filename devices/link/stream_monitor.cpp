@@ -4,19 +4,12 @@
 #include <cmath>
 
 namespace palpate {
-namespace {
-
 // Tolerance of a step beyond the fastest motion, in steps of the sensor.
 constexpr double kNoiseSteps = 4.0;
 // The speed is computed with at least this time step, because two reports may arrive in quick succession.
 constexpr double kShortestStep_s = 1e-3;
 // The least difference between the times of two samples.
 constexpr double kLeastStep_s = 1e-6;
-
-// Compares sequence numbers that wrap at 32 bits.
-bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::int32_t>(a - b) > 0; }
-
-}  // namespace
 
 StreamMonitor::StreamMonitor(const DeviceCalibration& calibration) noexcept
     : calibration_(calibration), protocol_(*calibration.protocol) {
@@ -64,7 +57,7 @@ bool StreamMonitor::accept_untimed(double now_s) noexcept {
 }
 
 bool StreamMonitor::accept_timed(const DeviceReading& reading, double now_s) noexcept {
-  if (connected_ && !later(reading.sequence, last_.sequence)) {
+  if (connected_ && static_cast<std::int32_t>(reading.sequence - last_.sequence) <= 0) {
     // A repeated report is ignored; the age of the sample grows until it is late.
     if (reading.sequence == last_.sequence) return false;
     refused_in_order_ = reading.sequence == refused_ + 1 ? refused_in_order_ + 1 : 0;

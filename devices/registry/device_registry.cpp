@@ -1,6 +1,5 @@
 #include "devices/registry/device_registry.h"
 
-#include <string_view>
 #include <utility>
 
 #include "devices/bridge/bridge_bus.h"
@@ -12,6 +11,7 @@
 #include "devices/virtual/hand_device.h"
 #include "devices/virtual/mouse_device.h"
 #include "devices/virtual/replay_device.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -75,12 +75,6 @@ MadeDevice make_bridge(const std::string& target, const DeviceRequest& request) 
   return MadeDevice(std::make_unique<LinkedDevice>(used, *calibration, std::move(*opened), "bridge", std::move(bus)));
 }
 
-std::string known_names(const std::vector<DeviceEntry>& entries) {
-  std::string names;
-  for (const DeviceEntry& entry : entries) names += (names.empty() ? "" : ", ") + entry.description.name;
-  return names;
-}
-
 }  // namespace
 
 const std::vector<DeviceEntry>& device_entries() {
@@ -118,19 +112,18 @@ MadeDevice open_device(const std::string& name, const DeviceRequest& request, co
   // Some names have an argument after a colon.
   const std::size_t colon = name.find(':');
   const std::string what = colon == std::string::npos ? "" : name.substr(colon + 1);
+  std::vector<std::string> names;
   for (const DeviceEntry& entry : entries) {
-    const std::string& known = entry.description.name;
+    const std::string& known = names.emplace_back(entry.description.name);
     const std::size_t end = known.find(':');
-    if (name.substr(0, colon) != known.substr(0, end) || (colon == std::string::npos) != (end == std::string::npos)) {
+    if (name.substr(0, colon) != known.substr(0, end) || (colon == std::string::npos) != (end == std::string::npos))
       continue;
-    }
     MadeDevice device = entry.make(what, request);
     if (!device) return device;
     if (const Status status = (*device)->open(); !status) return status.error();
     return device;
   }
-  return Error{"unknown device \"" + name + "\", expected one of: " + known_names(entries) +
-               " (palpate devices explains)"};
+  return Error{"unknown device \"" + name + "\", expected one of: " + joined(names) + " (palpate devices explains)"};
 }
 
 }  // namespace palpate

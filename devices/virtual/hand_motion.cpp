@@ -6,7 +6,6 @@
 #include <utility>
 
 namespace palpate {
-namespace {
 
 constexpr double kStart_m = -0.006;
 // Duration of the way back from any position of the tool.
@@ -15,8 +14,6 @@ constexpr double kReturn_s = 0.8;
 constexpr double kUsual_m_per_s = 0.05;
 // Ratio of peak speed to mean speed of a minimum-jerk segment.
 constexpr double kPeakOverMean = 1.875;
-
-}  // namespace
 
 HandMotion::HandMotion(const HandSettings& settings, std::uint64_t seed) : settings_(settings), random_(seed, 0) {
   const std::pair<Gesture, int> times[] = {{&HandMotion::slow_press, 3}, {&HandMotion::taps, 3},
@@ -92,9 +89,7 @@ void HandMotion::go(Segment segment) {
 void HandMotion::plan() {
   segment_count_ = segment_ = 0;
   if (dealt_ == deck_.size()) {
-    for (std::size_t i = deck_.size() - 1; i > 0; --i) {
-      std::swap(deck_[i], deck_[random_.index(i + 1)]);
-    }
+    for (std::size_t i = deck_.size() - 1; i > 0; --i) std::swap(deck_[i], deck_[random_.index(i + 1)]);
     dealt_ = 0;
   }
   (this->*deck_[dealt_++])();

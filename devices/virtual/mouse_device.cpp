@@ -4,15 +4,12 @@
 #include <cmath>
 
 namespace palpate {
-namespace {
 
 constexpr HandSettings kArm;                         // mass, stiffness and damping of the coupling
 constexpr double kSmoothingTime_s = 0.015;           // tau: two reports of a mouse at 125 Hz
 constexpr double kDriveAcceleration_m_per_s2 = 0.3;  // of the velocity of `drive`: 18 mm/s after 60 ms
 // A twentieth of the shortest time constant of the coupling, m / c.
 constexpr double kMouseSubstep_s = 250e-6;
-
-}  // namespace
 
 void MouseDevice::set_target(double position_m, double now_s) noexcept {
   if (!std::isfinite(position_m)) return;

@@ -7,12 +7,9 @@
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {
-namespace {
 
 // A longer gap between ticks is a stall; the replay advances by this at most.
 constexpr double kLongestReplayStep_s = 0.1;
-
-}  // namespace
 
 ReplayDevice::ReplayDevice(Recording recording)
     : name_("replay:" + recording.name),

@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cstddef>
-#include <memory>
 #include <string>
 
 #include "devices/virtual/hand_device.h"

@@ -61,10 +61,10 @@ struct Provenance {
 // The bound on the error of a model's force where no force is measured, at 95 %:
 //   bound(x) = floor + per_force |f(x)| + per_distance max(0, distance(x) - inner radius) >= |model - material|
 // distance: to the nearest training data in the normalised feature space (domain_guard.h). The coefficients are fitted
-// to cross-validated errors and scaled by split-conformal prediction, with the quantile of the normalised errors
-// (models/fit/bound_estimator.h).
-// Sources: Vovk, Gammerman & Shafer (2005), "Algorithmic learning in a random world";
-// Lei, G'Sell, Rinaldo, Tibshirani & Wasserman (2018), section 5.2 (locally weighted).
+// to cross-validated errors and scaled by a quantile of the errors over the bound (models/fit/bound_estimator.h). This
+// resembles cross-conformal prediction, but has no guarantee: neighbouring samples are not exchangeable.
+// Sources: Vovk (2015), "Cross-conformal predictors"; Lei, G'Sell, Rinaldo, Tibshirani & Wasserman (2018), section 5.2
+// (locally weighted).
 struct ErrorBound {
   double floor_N = 0.0;
   double per_force = 0.0;

@@ -1,17 +1,13 @@
 #include "rendering/app/demo_app.h"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "engine/live/pacer.h"
-#include "rendering/panels/panel_parts.h"
 #include "scenes/scene/folders.h"
 #include "scenes/worker/model_request.h"
 
@@ -29,6 +25,8 @@ void yield_to_haptics(const RtStatus& granted) {
   if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
 }
 
+DemoApp& app_of(GLFWwindow* handle) { return *static_cast<DemoApp*>(glfwGetWindowUserPointer(handle)); }
+
 }  // namespace
 
 Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
@@ -43,8 +41,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   // Reports a missing display before anything else starts.
   if (Status status = Window::find_display(); !status) return status;
   request_ = request.session;
-  // Models with differences from obvious to unnoticeable.
-  if (request.exhibit && request_.models.empty()) request_.models = {"kdtree-3", "random-20", "trend+greedy-100"};
+  if (request.exhibit && request_.models.empty()) request_.models = exhibit_models();
   if (const auto folder = data_folder()) request_.data_folder = *folder;
   files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
   if (!view_.settings.line_up.empty() && request_.models.empty() && !request_.line_up.empty())
@@ -65,9 +62,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
   blocks_->camera().turn(view_.settings.camera);
-  if (view_.exhibit.on) {
-    if (Status status = set_up_exhibit(request.exhibit_times); !status) return status;
-  }
+  if (Status status = set_up_exhibit(request.exhibit_times); !status) return status;
   commands_ = make_commands();
   listen();
   if (find_font().empty()) notify("no font found; install fonts-dejavu-core", true);
@@ -79,30 +74,21 @@ Status DemoApp::set_up(const DemoRequest& request) {
 }
 
 void DemoApp::listen() {
-  glfwSetWindowUserPointer(window_->handle(), this);
-  glfwSetDropCallback(window_->handle(), [](GLFWwindow* handle, int count, const char** paths) {
-    auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
-    app->drop_files({paths, paths + count});
+  GLFWwindow* handle = window_->handle();
+  glfwSetWindowUserPointer(handle, this);
+  glfwSetDropCallback(handle, [](GLFWwindow* from, int count, const char** paths) {
+    app_of(from).drop_files({paths, paths + count});
   });
-  glfwSetKeyCallback(window_->handle(), [](GLFWwindow* handle, int key, int, int action, int modifiers) {
-    auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
-    app->handle_key_event(key, action, modifiers);
+  glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int modifiers) {
+    app_of(from).handle_key_event(key, action, modifiers);
   });
   // Their values are ImGui's; here they are only signs of a user.
-  glfwSetMouseButtonCallback(window_->handle(), [](GLFWwindow* handle, int, int, int) {
-    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
-  });
-  glfwSetScrollCallback(window_->handle(), [](GLFWwindow* handle, double, double) {
-    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
-  });
-  glfwSetCharCallback(window_->handle(), [](GLFWwindow* handle, unsigned) {
-    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
-  });
-  glfwSetWindowRefreshCallback(window_->handle(), [](GLFWwindow* handle) {
-    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->note_input();
-  });
+  glfwSetMouseButtonCallback(handle, [](GLFWwindow* from, int, int, int) { app_of(from).note_input(); });
+  glfwSetScrollCallback(handle, [](GLFWwindow* from, double, double) { app_of(from).note_input(); });
+  glfwSetCharCallback(handle, [](GLFWwindow* from, unsigned) { app_of(from).note_input(); });
+  glfwSetWindowRefreshCallback(handle, [](GLFWwindow* from) { app_of(from).note_input(); });
   // After these callbacks: ImGui installs its own and calls them.
-  ui_ = std::make_unique<UiContext>(window_->handle());
+  ui_ = std::make_unique<UiContext>(handle);
 }
 
 std::string DemoApp::end() {
@@ -215,13 +201,10 @@ void DemoApp::frame() {
   last_frame_s_ = shown_s;
 }
 
-// Makes the view of this frame; all drawing uses it.
 void DemoApp::look() { shown_ = window_view(*session_, view_); }
 
 void DemoApp::read_notices(double now_s) {
-  for (const Notice& notice : session_->read_notices()) {
-    notify(notice.text, notice.problem);
-  }
+  for (const Notice& notice : session_->read_notices()) notify(notice.text, notice.problem);
   std::erase_if(view_.toasts, [&](const Toast& toast) { return toast.until_s < now_s; });
   if (view_.toasts.size() > kMostToasts) view_.toasts.erase(view_.toasts.begin(), view_.toasts.end() - kMostToasts);
 }
@@ -232,7 +215,7 @@ void DemoApp::notify(std::string text, bool problem) {
     return;
   }
   std::erase_if(view_.toasts, [&](const Toast& toast) { return toast.text == text; });
-  view_.toasts.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
+  view_.toasts.push_back({{std::move(text), problem}, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
 }
 
 // Opens another material and fits models to it; models from files are kept.
@@ -280,10 +263,7 @@ void DemoApp::reopen(const SessionRequest& request) {
   // The previous session may fail as well, if its device or its files are gone.
   SessionRequest without_device = request_;
   without_device.device = "mouse";
-  SessionRequest plain;
-  plain.device = "mouse";
-  plain.data_folder = request_.data_folder;
-  plain.realtime = request_.realtime;
+  const SessionRequest plain{.device = "mouse", .realtime = request_.realtime, .data_folder = request_.data_folder};
   for (const SessionRequest& wanted : {request, request_, without_device, plain}) {
     auto session = LiveSession::open(wanted);
     if (session) {
@@ -300,13 +280,13 @@ void DemoApp::reopen(const SessionRequest& request) {
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(view_.settings.camera);
   curves_ = {};  // without those of the old session
-  view_.time = CurveTime{};
+  view_.time = {.zero_s = steady_now_s()};
   view_.scales_force = false;
-  view_.time.zero_s = steady_now_s();
   look();
 }
 
 Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
+  if (!view_.exhibit.on) return {};
   const auto assets = find_assets();
   if (!assets) return assets.error();
   auto languages = read_exhibit_words(*assets + "/exhibit");

@@ -1,5 +1,4 @@
 // The commands of the window, one row for each; a command has a key or a button.
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
@@ -108,7 +107,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
   const auto press = [this](std::size_t key) { key_velocity_m_per_s_ += (key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s; };
   const auto scroll = [this](std::size_t key) {
     const ForceHistory& history = session_->comparison().history();
-    const double by_s = kScrollSpeed * static_cast<double>(ImGui::GetIO().DeltaTime);
+    const double by_s = kScrollSpeed * ImGui::GetIO().DeltaTime;
     if (history.size() > 0) view_.time.scroll_back(key == 0 ? by_s : -by_s, history[0].loop_time_s);
   };
   const auto play_at = [this](double speed) { session_->replay()->set_speed(speed * session_->replay()->speed()); };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <glm/common.hpp>
@@ -13,7 +12,6 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/whole_file.h"
 #include "rendering/panels/panel_parts.h"
-#include "scenes/live/live_session.h"
 #include "scenes/plot/draw.h"
 #include "scenes/scene/folders.h"
 
@@ -58,27 +56,23 @@ Json graphics_json(const FrameFigures& frames) {
            {{"p50", kMsPerUs * times.p50_us}, {"p99", kMsPerUs * times.p99_us}, {"max", kMsPerUs * times.max_us}}}};
 }
 
-Json seconds_json(double seconds) { return std::isnan(seconds) ? Json(nullptr) : Json(seconds); }
-
-// When the comparison stood, in seconds since the session was opened; null: not yet.
+// When the comparison stood, in seconds since the session was opened. A NaN, not yet, becomes null.
 Json start_json(const LiveSession::StartTimes& times) {
-  return {{"first_row_s", seconds_json(times.first_model_s)},
-          {"all_rows_s", seconds_json(times.all_models_s)},
-          {"verdict_s", seconds_json(times.verdict_s)}};
+  return {{"first_row_s", times.first_model_s}, {"all_rows_s", times.all_models_s}, {"verdict_s", times.verdict_s}};
 }
 
 // Figures are null if there are no samples.
 Json model_json(const ModelView& slot) {
-  const bool has_errors = slot.errors.samples > 0;
+  const auto known = [&](double value) { return slot.errors.samples > 0 ? value : kUnknown; };
   return {{"name", slot.name},
           {"method", slot.method},
           {"centres", slot.centres},
           {"samples", slot.errors.samples},
-          {"within_jnd", has_errors ? Json(slot.errors.within_jnd) : Json(nullptr)},
-          {"rms_error_N", has_errors ? Json(slot.errors.rms_error_N) : Json(nullptr)},
-          {"max_error_over_jnd", has_errors ? Json(slot.errors.max_error_over_jnd) : Json(nullptr)},
-          {"p99_error_over_jnd", has_errors ? Json(slot.errors.p99_error_over_jnd) : Json(nullptr)},
-          {"tick_ns", slot.tick_ns() > 0.0 ? Json(slot.tick_ns()) : Json(nullptr)},
+          {"within_jnd", known(slot.errors.within_jnd)},
+          {"rms_error_N", known(slot.errors.rms_error_N)},
+          {"max_error_over_jnd", known(slot.errors.max_error_over_jnd)},
+          {"p99_error_over_jnd", known(slot.errors.p99_error_over_jnd)},
+          {"tick_ns", slot.tick_ns() > 0.0 ? slot.tick_ns() : kUnknown},
           {"equals", slot.equals}};
 }
 
@@ -166,10 +160,7 @@ void DemoFiles::use_settings(const std::string& file) {
   settings_file_ = file;
   if (file.empty()) return;
   auto settings = read_settings(file);
-  if (!settings) {
-    notify_(settings.error().message, true);
-    return;
-  }
+  if (!settings) return notify_(settings.error().message, true);
   view_.settings = *settings;
 }
 
@@ -235,10 +226,7 @@ void DemoFiles::open_recording(const std::string& path) {
 }
 
 void DemoFiles::record(LiveSession& session) {
-  if (session.recording().active) {
-    session.stop_recording();
-    return;
-  }
+  if (session.recording().active) return session.stop_recording();
   std::string path = new_path("/session-%Y%m%d-%H%M%S");
   if (path.empty()) return;
   path += ".csv";

@@ -6,15 +6,13 @@
 #include <functional>
 #include <future>
 #include <string>
-#include <vector>
 
 #include "engine/base/result.h"
 #include "rendering/panels/curve_files.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/panels/window_view.h"
-#include "scenes/live/convert_recording.h"
 #include "scenes/live/live_session.h"
-#include "scenes/live/notices.h"
+#include "scenes/live/session_recordings.h"
 
 namespace palpate {
 

@@ -1,8 +1,6 @@
 // Draws a frame of the window.
-#include <epoxy/gl.h>
-// GLFW after epoxy, which declares the functions of OpenGL.
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,7 +92,6 @@ void DemoApp::draw(bool texts) {
   resolution_.add(steady_now_s() - frame_began_s_);
 }
 
-// Returns the parts of the window that have changed.
 std::vector<Viewport> DemoApp::draw_blocks(bool all) {
   const SceneArea& area = layout_.scene;
   const std::vector<BlockPose> poses = block_poses();
@@ -106,7 +103,6 @@ std::vector<Viewport> DemoApp::draw_blocks(bool all) {
   return blocks_->draw(poses, pixels_of(area), view_.settings.theme, resolution_.scale(), all);
 }
 
-// The poses at the last tick that the curves show.
 std::vector<BlockPose> DemoApp::block_poses() const {
   if (view_.exhibit.on) {
     const std::vector<BlockPose> revealed = exhibit_.shown_poses(*session_, shown_, view_.settings.theme);

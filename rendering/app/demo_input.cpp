@@ -1,7 +1,4 @@
 // Keyboard and mouse of the window.
-#include <epoxy/gl.h>
-// GLFW after epoxy, which declares the functions of OpenGL.
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
@@ -83,7 +80,7 @@ void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const Blo
   const glm::vec2 size(area.size.x, area.size.y);
   const std::size_t count = std::max<std::size_t>(shown.blocks.size(), 1);
   const float surface_px = blocks.on_screen(*index, count, {0.0F, 0.0F, 0.0F}, size).y;
-  const double below_px = static_cast<double>(mouse.y - area.at.y - surface_px);
+  const double below_px = mouse.y - area.at.y - surface_px;
   const double room_px = std::max(1.0, static_cast<double>(kReach * (area.size.y - surface_px)));
   double m_per_px = static_cast<double>(kMouseGain * blocks.depth_per_pixel(*index, count, size));
   const double known_m = session.models().trained_depth_m();
@@ -178,7 +175,7 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
   if (io.KeyCtrl) {
     blocks.camera().zoom(std::pow(kZoom_per_step, io.MouseWheel));
   } else if (io.MouseWheel != 0.0F) {
-    nudge_tool(session, -kWheelStep_m * static_cast<double>(io.MouseWheel));
+    nudge_tool(session, -kWheelStep_m * io.MouseWheel);
   }
   if (!view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {

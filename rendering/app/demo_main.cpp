@@ -146,6 +146,7 @@ Status run_demo(Arguments& arguments) {
   if (const auto folder = config_folder(); folder && arguments.screenshot.empty())
     arguments.demo.settings_file = *folder + "/window.json";
   sort_files(arguments);
+  arguments.demo.session.ready_models = ready_models_folder();
   if (!arguments.test.empty()) device = "replay:" + arguments.test;
   // Without a test recording, the end of the last training recording is replayed.
   const std::vector<std::string>& training = arguments.demo.session.recordings;

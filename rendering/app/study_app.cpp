@@ -1,6 +1,5 @@
 #include "rendering/app/study_app.h"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
@@ -24,7 +23,6 @@ int usual_key(int key) {
   return key == GLFW_KEY_KP_1 || key == GLFW_KEY_KP_2 ? GLFW_KEY_1 + key - GLFW_KEY_KP_1 : key;
 }
 
-// Vertical space between groups of elements.
 void gap() { ImGui::Dummy({1.0F, 0.6F * ImGui::GetFontSize()}); }
 
 }  // namespace
@@ -102,7 +100,6 @@ void StudyApp::draw() {
   pressed_.clear();
 }
 
-// Whether the button or its key was pressed.
 bool StudyApp::button(const char* label, int key, ImVec2 size) {
   return ImGui::Button(label, size) || std::find(pressed_.begin(), pressed_.end(), key) != pressed_.end();
 }

@@ -3,8 +3,6 @@
 #include <epoxy/gl.h>
 #include <epoxy/glx.h>
 #undef Status  // of Xlib
-// GLFW after epoxy, which declares the functions of OpenGL.
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <dlfcn.h>
 #include <png.h>
@@ -16,7 +14,6 @@
 #include <cstdio>
 #include <exception>
 #include <utility>
-#include <vector>
 
 #include "engine/base/atomic_file.h"
 #include "engine/live/pacer.h"
@@ -82,24 +79,19 @@ Result<std::string> png_of(const std::vector<unsigned char>& pixels, const UiSiz
   const auto stride = -static_cast<png_int_32>(kChannels * image.width);
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::string file(size, '\0');
-  if (png_image_write_to_memory(&image, file.data(), &size, 0, pixels.data(), stride, nullptr) == 0) {
+  if (png_image_write_to_memory(&image, file.data(), &size, 0, pixels.data(), stride, nullptr) == 0)
     return Error{std::string("the picture cannot be made a PNG: ") + image.message};
-  }
   file.resize(size);
   return file;
 }
 
-struct Rectangle {
-  int x = 0, y = 0, width = 0, height = 0;
-};
-
 // The free part of the screen that shows the upper left corner of the window, else of the primary screen.
-Rectangle free_part(const Rectangle& window) {
+Viewport free_part(const Viewport& window) {
   int count = 0;
   GLFWmonitor** monitors = glfwGetMonitors(&count);
-  Rectangle found;
+  Viewport found;
   for (int i = count - 1; i >= 0; --i) {  // the primary screen is the first
-    Rectangle part;
+    Viewport part;
     glfwGetMonitorWorkarea(monitors[i], &part.x, &part.y, &part.width, &part.height);
     found = part;
     if (window.x >= part.x && window.x < part.x + part.width && window.y >= part.y && window.y < part.y + part.height)
@@ -110,12 +102,12 @@ Rectangle free_part(const Rectangle& window) {
 
 // Shrinks and moves the window so that it and its frame are inside the screen.
 void keep_on_screen(GLFWwindow* handle) {
-  Rectangle window;
+  Viewport window;
   int left = 0, top = 0, right = 0, bottom = 0;  // of the frame
   glfwGetWindowPos(handle, &window.x, &window.y);
   glfwGetWindowSize(handle, &window.width, &window.height);
   glfwGetWindowFrameSize(handle, &left, &top, &right, &bottom);
-  const Rectangle room = free_part(window);
+  const Viewport room = free_part(window);
   const int width = std::min(window.width, room.width - left - right);
   const int height = std::min(window.height, room.height - top - bottom);
   if (width <= 0 || height <= 0) return;  // no screen is known
@@ -264,9 +256,8 @@ void Window::show_frame() {
 
 void Window::show_frame(const std::vector<Viewport>& changed) {
   if (keeps_frame_ && has_settled()) {
-    for (const Viewport& part : changed) {
+    for (const Viewport& part : changed)
       glXCopySubBufferMESA(glXGetCurrentDisplay(), glXGetCurrentDrawable(), part.x, part.y, part.width, part.height);
-    }
   } else {
     glfwSwapBuffers(window_);
   }

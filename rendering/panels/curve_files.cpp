@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFigure_jnd = 3.0;
 
-std::string number(float value) { return std::isnan(value) ? "" : general(static_cast<double>(value), 6); }
+std::string number(float value) { return std::isnan(value) ? "" : general(value, 6); }
 
 }  // namespace
 
@@ -35,8 +35,8 @@ Plot curve_plot(const CurveColumns& columns, const CurveSource& source) {
     const HistoryPoint& tick = column.tick;
     if (!column.any || tick.loop_time_s < source.from_s || tick.loop_time_s > source.to_s) continue;
     const double time_s = tick.loop_time_s - source.zero_s;
-    const auto reference_N = static_cast<double>(tick.reference_N);
-    const auto jnd_N = static_cast<double>(column.jnd_N);
+    const double reference_N = tick.reference_N;
+    const double jnd_N = column.jnd_N;
     force.series[0].rows.push_back({time_s, reference_N, reference_N - jnd_N, reference_N + jnd_N});
     force.series[1].rows.push_back({time_s, reference_N});
     difference.series[0].rows.push_back({time_s, 0.0, -1.0, 1.0});

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "rendering/panels/panel_parts.h"
-#include "scenes/scene/folders.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
@@ -42,7 +41,6 @@ bool begin_dialog(const char* title, bool& open) {
   return true;
 }
 
-// Whether Enter was pressed in this frame.
 bool enter_pressed() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false); }
 
 // An entry of a list. Returns whether it was chosen with the mouse, the space bar or Enter.
@@ -143,7 +141,6 @@ void draw_role(RecordingRoles& roles, std::size_t index) {
   for (const std::string& line : one.words) ImGui::TextDisabled("%s", line.c_str());
 }
 
-// Describes the effect of the button Start.
 std::string recording_roles_words(const RecordingRoles& roles) {
   const std::size_t training = roles.training().size();
   const bool test = !roles.test().empty();
@@ -231,7 +228,6 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   if (done) view.dialogs.file_list = false;
 }
 
-// Draws the list of devices, with the reason if one cannot be used.
 void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions) {
   if (!begin_dialog("Device", view.dialogs.device_list)) return;
   if (view.devices.empty()) ImGui::TextDisabled("looking for devices ...");

@@ -1,6 +1,5 @@
 #include "rendering/panels/exhibit.h"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
@@ -32,20 +31,19 @@ std::vector<ExhibitModel> ready_models(const LiveSession& session) {
   return ready;
 }
 
-// Whether the reference is not a model.
 bool has_reference(const LiveSession& session) { return session.comparison().reference() != ReferenceKind::model; }
 
 ExhibitTick tick_of(const HistoryPoint& point, const ExhibitRound& round) {
   const std::size_t second = round.second.slot;
   ExhibitTick tick;
   tick.loop_time_s = point.loop_time_s;
-  tick.first_N = static_cast<double>(round.first ? point.force_N[round.first->slot] : point.reference_N);
-  tick.second_N = static_cast<double>(point.force_N[second]);
-  tick.over_jnd = static_cast<double>(point.sustained_over_jnd[second]);
-  if (round.first) tick.over_jnd -= static_cast<double>(point.sustained_over_jnd[round.first->slot]);
+  tick.first_N = round.first ? point.force_N[round.first->slot] : point.reference_N;
+  tick.second_N = point.force_N[second];
+  tick.over_jnd = point.sustained_over_jnd[second];
+  if (round.first) tick.over_jnd -= point.sustained_over_jnd[round.first->slot];
   tick.in_contact = point.in_contact;
   tick.out_of_domain = point.out_of_domain;
-  tick.position_m = static_cast<double>(point.position_m);
+  tick.position_m = point.position_m;
   return tick;
 }
 

@@ -16,10 +16,8 @@
 // Thread guarantee: the window's thread.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -22,7 +22,6 @@ bool pointer_moved() {
 
 }  // namespace
 
-// Draws the screens of a frame.
 struct Exhibit::Screens {
   Exhibit& exhibit;
   ExhibitGame& game;
@@ -85,11 +84,11 @@ struct Exhibit::Screens {
   }
 
   // A button that is high enough for a finger, with its key in the corner. It is pressed at the end of the frame.
-  // `height`: 0: of a line.
-  void button(const std::string& text, const std::string& key, float width, std::function<void()> press,
-              bool down = false, float height = 0.0F) {
+  void button(const std::string& text, const std::string& key, std::function<void()> press, ImVec2 size = {-1.0F, 0.0F},
+              bool down = false) {
+    size.y = std::max(size.y, 2.2F * height_of(style.fonts().heading));
     if (down) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-    if (ImGui::Button(text.c_str(), {width, std::max(height, 2.2F * height_of(style.fonts().heading))})) pressed = key;
+    if (ImGui::Button(text.c_str(), size)) pressed = key;
     if (down) ImGui::PopStyleColor();
     const ImVec2 low = ImGui::GetItemRectMin();
     const ImVec2 corner = ImGui::GetItemRectMax();
@@ -142,13 +141,12 @@ struct Exhibit::Screens {
     say_quietly(words()("attract_more"));
     space(0.6F);
     if (exhibit.pair() == nullptr) return draw_learning();
-    button(words()("play"), "1", -1.0F, begin());
+    button(words()("play"), "1", begin());
     space(0.6F);
     say(words()(exhibit.shows_worst() ? "attract_worst" : "attract_best"));
     draw_difference(exhibit.attract_trace());
   }
 
-  // Draws the progress of the fits until the first models are ready.
   void draw_learning() {
     say_quietly(words()("learning"));
     float done = 0.0F;
@@ -158,7 +156,6 @@ struct Exhibit::Screens {
     ImGui::ProgressBar(done / all, {-1.0F, 0.8F * body()}, "");
   }
 
-  // The question and two buttons that fill the panel.
   void draw_guess() {
     say_round();
     const ExhibitModel& model = game.round().second;
@@ -166,12 +163,11 @@ struct Exhibit::Screens {
     space(0.6F);
     say(words()("question_guess"));
     space(0.4F);
-    const float height = 0.5F * (bottom() - ImGui::GetCursorScreenPos().y - ImGui::GetStyle().ItemSpacing.y);
+    const ImVec2 half(-1.0F, 0.5F * (bottom() - ImGui::GetCursorScreenPos().y - ImGui::GetStyle().ItemSpacing.y));
+    const auto guess = [this](bool noticed) { return [&game = game, noticed] { game.guess(noticed); }; };
     ImGui::PushFont(style.fonts().big);
-    button(
-        words()("yes"), "1", -1.0F, [&game = game] { game.guess(true); }, false, height);
-    button(
-        words()("no"), "2", -1.0F, [&game = game] { game.guess(false); }, false, height);
+    button(words()("yes"), "1", guess(true), half);
+    button(words()("no"), "2", guess(false), half);
     ImGui::PopFont();
   }
 
@@ -186,16 +182,15 @@ struct Exhibit::Screens {
     say(words()("question_feel"));
     say_quietly(words()(game.pressed_both() ? "answer" : "feel_both"));
     space(0.4F);
-    const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-    button(
-        words()("block_1"), "1", half, [&game = game] { game.choose(1); }, game.chosen() == 1);
+    const ImVec2 half(0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x), 0.0F);
+    const auto choose = [this](int key) { return [&game = game, key] { game.choose(key); }; };
+    button(words()("block_1"), "1", choose(1), half, game.chosen() == 1);
     ImGui::SameLine();
-    button(
-        words()("block_2"), "2", half, [&game = game] { game.choose(2); }, game.chosen() == 2);
+    button(words()("block_2"), "2", choose(2), half, game.chosen() == 2);
     if (!game.pressed_both()) return;
     space(0.8F);
-    button(words()("differ"), words()("key_differ"), -1.0F, [&game = game] { game.answer(true); });
-    button(words()("same"), words()("key_same"), -1.0F, [&game = game] { game.answer(false); });
+    button(words()("differ"), words()("key_differ"), [&game = game] { game.answer(true); });
+    button(words()("same"), words()("key_same"), [&game = game] { game.answer(false); });
   }
 
   void draw_key(const ExhibitModel& model, const char* block) {
@@ -204,7 +199,6 @@ struct Exhibit::Screens {
     ImGui::PopStyleColor();
   }
 
-  // Draws the arrows in the rest of the panel.
   void draw_slow_motion() {
     const float line = body();
     const ImVec2 at(ImGui::GetCursorScreenPos().x, ImGui::GetCursorScreenPos().y + line);
@@ -226,7 +220,7 @@ struct Exhibit::Screens {
     say_large(words()(edge ? "edge" : round.correct() ? "right" : "wrong"));
     say(verdict());
     space(0.4F);
-    button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter", -1.0F,
+    button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter",
            [&game = game] { game.go_on(); });
     if (game.has_force()) {  // shows which model had which key
       space(0.4F);
@@ -236,7 +230,6 @@ struct Exhibit::Screens {
     draw_slow_motion();
   }
 
-  // Draws the largest difference of a round as a bar, in JND.
   void draw_bar(const ExhibitRound& round) {
     const std::string name = round.is_catch() ? "name_catch" : "name_" + kind_of(round.second);
     say_quietly(words()(name, centres_of(round.second)) + ": " + number(round.largest_over_jnd) + ", " +
@@ -266,10 +259,9 @@ struct Exhibit::Screens {
     say(game.has_force() ? words()("take_home_felt", used_us)
                          : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
     space(0.4F);
-    button(words()("again"), "Enter", -1.0F, begin());
+    button(words()("again"), "Enter", begin());
   }
 
-  // Draws the button of the next language and the countdown.
   void draw_foot() {
     const double left_s = exhibit.times_.stay_s - (now_s() - exhibit.moved_s_);
     const float line = ImGui::GetFrameHeight();
@@ -283,7 +275,6 @@ struct Exhibit::Screens {
     say(words()("countdown", std::to_string(static_cast<int>(std::ceil(std::max(0.0, left_s))))));
   }
 
-  // Draws the information for the host.
   void draw_host() {
     ImGui::SetCursorScreenPos({layout.panel.at.x + 0.4F * layout.panel.size.x, layout.panel.at.y + 2.0F});
     ImGui::PushFont(style.fonts().body);
@@ -299,7 +290,6 @@ struct Exhibit::Screens {
     return words()(session.comparison().reference() == ReferenceKind::measured ? "name_measured" : "name_simulated");
   }
 
-  // Draws the name of block `index` of `count` at its foot.
   void draw_name(std::size_t index, std::size_t count, const std::string& text, const Rgb& colour) const {
     const SceneArea& scene = layout.scene;
     ImFont* font = style.fonts().heading;

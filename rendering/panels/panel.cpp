@@ -1,12 +1,10 @@
 #include "rendering/panels/panel.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_models.h"
-#include "rendering/panels/panel_parts.h"
 #include "rendering/panels/panel_speed.h"
 #include "rendering/ui/plot.h"
 #include "scenes/worker/model_request.h"
@@ -14,7 +12,6 @@
 namespace palpate {
 namespace {
 
-// Draws the slider of the number of centres, for all models that have centres.
 void draw_centres(LiveSession& session, const ModelsView& models, ViewState& view) {
   std::vector<std::size_t> slots = models.listed();
   std::erase_if(slots, [&](std::size_t slot) { return !models.slots[slot].takes_centres; });

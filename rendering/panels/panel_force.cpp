@@ -30,7 +30,7 @@ double eased_scale(double scale, double wanted) {
   return scale > 2.0 * target ? scale + 0.05 * (target - scale) : scale;
 }
 
-Range single(float value) { return {static_cast<double>(value), static_cast<double>(value)}; }
+Range single(float value) { return {value, value}; }
 Range around(double middle, double half) { return {middle - half, middle + half}; }
 
 // The end of the range with the larger magnitude.
@@ -42,10 +42,9 @@ using SlotRange = Range (*)(const CurveColumn& column, std::size_t slot);
 Range force_of(const CurveColumn& column, std::size_t slot) { return single(column.tick.force_N[slot]); }
 Range sustained_of(const CurveColumn& column, std::size_t slot) { return single(column.sustained_over_jnd[slot]); }
 Range difference_of(const CurveColumn& column, std::size_t slot) {
-  return {static_cast<double>(column.low_over_jnd[slot]), static_cast<double>(column.high_over_jnd[slot])};
+  return {column.low_over_jnd[slot], column.high_over_jnd[slot]};
 }
 
-// The plots of a frame.
 struct Drawing {
   const WindowView& shown;
   ViewState& view;
@@ -61,8 +60,7 @@ struct Drawing {
   // Without a reference, the curves show the predicted error of the active model.
   bool predicts() const { return !models().compared && models().active() != nullptr; }
   double predicted_over_jnd(const CurveColumn& column) const {
-    return predicted_error_N(column.tick) /
-           models().jnd.at(static_cast<double>(column.tick.force_N[column.tick.active]));
+    return predicted_error_N(column.tick) / models().jnd.at(column.tick.force_N[column.tick.active]);
   }
 
   TimePlot begin_plot(const ImVec2& size, const Range& y, const char* unit) const {
@@ -80,7 +78,7 @@ struct Drawing {
       words += ", band: where the active model expects it, 95 %";
     } else {
       ImGui::TextColored(paint(text_colour(reference(), style.theme())), "%s N",
-                         at_most_three_decimals(static_cast<double>(models().now.reference_N)).c_str());
+                         at_most_three_decimals(models().now.reference_N).c_str());
       ImGui::SameLine();
     }
     const float room = width - ImGui::GetCursorPosX();
@@ -116,7 +114,6 @@ struct Drawing {
                      "tick.\nV: the difference in its band.");
   }
 
-  // Draws a curve of each model, the active one on top.
   void draw_curves(const TimePlot& plot, SlotRange range) const {
     for (const std::size_t slot : models().drawn()) {
       plot.curve(ink(colour(slot)), (slot == models().selected ? kSelectedLine_px : kModelLine_px) * scale(),
@@ -134,7 +131,7 @@ struct Drawing {
     const auto read = [&](const std::string& name, const Rgb& in, double value, const char* of) {
       if (!std::isnan(value)) readings.push_back({name + "  " + at_most_three_decimals(value) + of, in});
     };
-    if (under != nullptr) read("reference", reference(), static_cast<double>(under->tick.reference_N), " N");
+    if (under != nullptr) read("reference", reference(), under->tick.reference_N, " N");
     for (const std::size_t slot : models().listed()) {
       const std::string& name = models().slots[slot].name;
       const double end = last != nullptr ? farther(range(*last, slot)) : std::nan("");
@@ -151,8 +148,7 @@ struct Drawing {
     const std::size_t first = history.first_at(end_s - view.time.shown_s);
     const std::size_t end = history.first_at(end_s);
     double deepest_mm = std::isfinite(shown.usual_depth_m) ? 1e3 * shown.usual_depth_m : 1.0;
-    for (std::size_t i = first; i < end; ++i)
-      deepest_mm = std::max(deepest_mm, 1e3 * static_cast<double>(history[i].depth_m));
+    for (std::size_t i = first; i < end; ++i) deepest_mm = std::max(deepest_mm, 1e3 * history[i].depth_m);
     const LivePlot plot(style, size,
                         {{-0.04 * deepest_mm, round_up(deepest_mm)}, {-0.04 * scale_N, scale_N}, "mm", "N"});
     const std::size_t step = std::max<std::size_t>(1, (end - first) / kLoopPoints);
@@ -160,7 +156,7 @@ struct Drawing {
     // Points that are closer to the last one than a pixel are not visible.
     const auto extend = [&plot](std::vector<ImVec2>& points, float depth_m, float force_N) {
       if (std::isnan(force_N)) return;
-      const ImVec2 at(plot.x_px(1e3 * static_cast<double>(depth_m)), plot.y_px(static_cast<double>(force_N)));
+      const ImVec2 at(plot.x_px(1e3 * depth_m), plot.y_px(force_N));
       const bool close =
           !points.empty() && std::abs(at.x - points.back().x) < 1.0F && std::abs(at.y - points.back().y) < 1.0F;
       if (!close) points.push_back(at);
@@ -186,15 +182,14 @@ struct Drawing {
 
   void draw_force(const ImVec2& size, double scale_N) {
     TimePlot plot = begin_plot(size, {-0.04 * scale_N, scale_N}, "N");
-    plot.fill(ink(style.colours().band), [](const CurveColumn& column) {
-      return around(static_cast<double>(column.tick.reference_N), static_cast<double>(column.jnd_N));
-    });
+    plot.fill(ink(style.colours().band),
+              [](const CurveColumn& column) { return around(column.tick.reference_N, column.jnd_N); });
     for (const float side : {-1.0F, 1.0F}) {
       plot.curve(ink(style.colours().edge, 0.6F), scale(),
                  [side](const CurveColumn& column) { return single(column.tick.reference_N + side * column.jnd_N); });
     }
     fill_prediction(plot, [](const CurveColumn& column) {
-      return around(static_cast<double>(column.tick.force_N[column.tick.active]), predicted_error_N(column.tick));
+      return around(column.tick.force_N[column.tick.active], predicted_error_N(column.tick));
     });
     draw_curves(plot, force_of);
     plot.curve(ink(reference()), kReferenceLine_px * scale(),
@@ -242,11 +237,10 @@ void ForceCurves::draw(const WindowView& shown, ViewState& view, const UiStyle& 
   const auto count = static_cast<std::size_t>(std::max(40.0F, all / (kColumn_px * style.scale())));
   columns_.gather(*shown.history, shown.models.jnd, shown.models.slots.size(), drawing.end_s - view.time.shown_s,
                   drawing.end_s, count);
-  const double highest_N = 1.05 * static_cast<double>(columns_.highest_force_N());
+  const double highest_N = 1.05 * columns_.highest_force_N();
   force_scale_N_ = eased_scale(force_scale_N_, std::max({1.0, shown.usual_force_N, highest_N}));
   // A larger range than 8 JND would hide differences near 1 JND.
-  error_scale_ =
-      eased_scale(error_scale_, std::clamp(1.2 * static_cast<double>(columns_.highest_sustained_over_jnd()), 1.5, 8.0));
+  error_scale_ = eased_scale(error_scale_, std::clamp(1.2 * columns_.highest_sustained_over_jnd(), 1.5, 8.0));
   drawing.draw_titles_of_force(kTimeShare * all);
   drawing.draw_force({kTimeShare * all - ImGui::GetStyle().ItemSpacing.x, force_height}, force_scale_N_);
   ImGui::SameLine();

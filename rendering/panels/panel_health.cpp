@@ -44,7 +44,7 @@ void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
   row("frame", frames.times.percentiles());
   ImGui::EndTable();
   if (frames.picture_scale < 1.0F)
-    ImGui::TextDisabled("3-D view at %.0f %% of its pixels a side", 100.0 * static_cast<double>(frames.picture_scale));
+    ImGui::TextDisabled("3-D view at %.0f %% of its pixels a side", 100.0 * frames.picture_scale);
 }
 
 void draw_faults(const HealthView& health, const UiStyle& style) {
@@ -67,7 +67,7 @@ void draw_faults(const HealthView& health, const UiStyle& style) {
 
 std::string device_line(const HealthView& health) {
   const DeviceHealth& device = health.newest.device;
-  const auto stiffness_share = static_cast<double>(health.newest.stiffness_share);
+  const double stiffness_share = health.newest.stiffness_share;
   const bool real = device.zeroing != Zeroing::not_needed || device.interval_s > 0.0;
   const bool softened = stiffness_share < 0.995;
   if (!real && device.faults == 0 && !softened) return {};
@@ -76,9 +76,9 @@ std::string device_line(const HealthView& health) {
   if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
   if (softened) {
     line += text_of(", force %.1f ms late: rendered at %.0f %% of the stiffness, because more would oscillate",
-                    static_cast<double>(health.newest.lag_ms), 100.0 * stiffness_share);
+                    health.newest.lag_ms, 100.0 * stiffness_share);
   }
-  line += text_of(", motor heat %.0f %%", 100.0 * static_cast<double>(health.newest.heat_share));
+  line += text_of(", motor heat %.0f %%", 100.0 * health.newest.heat_share);
   return line;
 }
 
@@ -98,12 +98,10 @@ float health_height(const HealthView& health, const ViewState& view) {
 
 HealthWords health_words(const HealthView& health, double recent_fps, bool details) {
   const LoopStatistics& statistics = health.loop;
-  if (statistics.ticks > 0 && statistics.age_s > kStall_s) {
+  if (statistics.ticks > 0 && statistics.age_s > kStall_s)
     return {text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s), true};
-  }
-  if (const auto words = device_fault_words(health.newest.device.faults); !words.empty()) {
+  if (const auto words = device_fault_words(health.newest.device.faults); !words.empty())
     return {"Device: " + words.front(), true};
-  }
   if (const std::vector<std::string>& words = health.alarms; !words.empty()) {
     const std::string more = words.size() > 1 ? " (and " + std::to_string(words.size() - 1) + " more)" : std::string();
     return {"Earlier: " + words.front() + more, true, true};
@@ -128,7 +126,7 @@ HealthWords health_words(const HealthView& health, double recent_fps, bool detai
 void draw_health(const HealthView& health, ViewState& view, const UiStyle& style) {
   section_title(style, "LOOP");
   ImGui::SameLine();
-  const HealthWords words = health_words(health, static_cast<double>(ImGui::GetIO().Framerate), view.details);
+  const HealthWords words = health_words(health, ImGui::GetIO().Framerate, view.details);
   const auto wrapped = [](const Rgb& colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
     ImGui::TextWrapped("%s", text.c_str());

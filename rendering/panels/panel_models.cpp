@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "engine/base/text.h"
 #include "rendering/panels/panel_models.h"
@@ -18,11 +16,11 @@ using Slot = std::size_t;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // The values of the columns; NaN: none. Forces are those of the last tick of the curves.
-double force_now_N(const ModelsView& models, Slot slot) { return static_cast<double>(models.now.force_N[slot]); }
+double force_now_N(const ModelsView& models, Slot slot) { return models.now.force_N[slot]; }
 
 double error_now_N(const ModelsView& models, Slot slot) {
   if (std::isnan(models.now.difference_over_jnd(slot, models.jnd))) return kNone;
-  return models.now.in_contact ? force_now_N(models, slot) - static_cast<double>(models.now.reference_N) : 0.0;
+  return models.now.in_contact ? force_now_N(models, slot) - models.now.reference_N : 0.0;
 }
 
 double p99_over_jnd(const ModelsView& models, Slot slot) {
@@ -60,20 +58,20 @@ constexpr int kName = 0, kColumns = 7;
 constexpr Column kTable[kColumns] = {
     {"model", "Click, or press its number, to make a model the active one.", "      trend+greedy-100", 0, nullptr,
      nullptr},
-    {"N", "Force at the right edge of the curves, newtons", "12.34", 4, force_now_N, two_decimals},
-    {"mN off", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},
-    {"99 %",
+    {"N", "Force at the right edge of the curves, newtons", "12.34", 3, force_now_N, two_decimals},
+    {"error mN", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},
+    {"99 % error / JND",
      "99 % of the samples in contact are off by at most so many just noticeable differences (JND).\n"
      "Above 1 a hand could feel it. The headline, the big number and the plot below are this one.",
-     "12.34", 5, p99_over_jnd, jnd_text},
+     "12.34", 0, p99_over_jnd, jnd_text},
     {"% in JND",
      "Share of the samples in contact whose error a hand cannot feel, of the test that the line below names.\n"
      "With more centres it mostly grows, while the largest errors (99 %) may grow, too.",
-     "100.00", 0, percent_within, two_decimals},
+     "100.00", 4, percent_within, two_decimals},
     {"ns",
      "Time of a whole tick of this model alone (motion, features, force), nanoseconds: the median of six\n"
      "interleaved measurements. The report, the plot below and the headline have the same",
-     "12,345", 3, tick_ns, whole},
+     "12,345", 0, tick_ns, whole},
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2, centres, whole}};
 
 // Sorts by magnitude; missing values come first.
@@ -129,7 +127,6 @@ void draw_heading(int column, TableState& sort) {
                                                 colour);
 }
 
-// The menu of the right mouse button.
 void draw_menu(LiveSession& session, const ModelsView& models, Slot slot, TableState& table) {
   if (!ImGui::BeginPopupContextItem()) return;
   if (ImGui::IsWindowAppearing()) {
@@ -174,7 +171,6 @@ void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewS
   draw_mark(list, middle, (index == models.selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
 }
 
-// Draws the progress of a fit in place of the figures.
 void draw_waiting(const ModelView& slot) {
   ImGui::TableNextColumn();
   const ImVec2 at = ImGui::GetCursorScreenPos();

@@ -2,7 +2,6 @@
 // Thread guarantee: the window's thread, inside a frame; `shown_columns` is a pure function.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 

@@ -5,13 +5,10 @@
 #include <sstream>
 
 namespace palpate {
-namespace {
 
 constexpr float kSceneShare = 0.6F;    // of the width
 constexpr float kSceneHeight = 0.45F;  // of the height, above the panel
 constexpr float kTall = 1.1F;          // ratio of width to height below which the panel is below the scene
-
-}  // namespace
 
 WindowLayout lay_out(const ImVec2& window) {
   WindowLayout layout;
@@ -63,8 +60,12 @@ void quiet_words(const std::string& text) {
   const float room = ImGui::GetContentRegionAvail().x;
   // Drops whole clauses, the last one first, before words.
   std::string shown = text;
-  while (ImGui::CalcTextSize(shown.c_str()).x > room && shown.find_last_of(",;") != std::string::npos)
-    shown.resize(shown.find_last_of(",;"));
+  const auto end_of_clauses = [&] {
+    const std::size_t comma = shown.rfind(", "), semicolon = shown.rfind("; ");
+    return comma == std::string::npos || (semicolon != std::string::npos && semicolon > comma) ? semicolon : comma;
+  };
+  while (ImGui::CalcTextSize(shown.c_str()).x > room && end_of_clauses() != std::string::npos)
+    shown.resize(end_of_clauses());
   shown = fitting(shown, room);
   ImGui::TextDisabled("%s", shown.c_str());
   if (shown != text) tip(text.c_str());

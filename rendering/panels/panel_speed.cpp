@@ -125,6 +125,8 @@ struct SpeedPlot {
     const float radius = (slot == models.verdict.chosen ? 7.0F : 5.0F) * size;
     draw_mark(list(), dot, radius, one.paper, colour(slot), style);
     placed.push_back({dot.x - radius, dot.y - radius, dot.x + radius, dot.y + radius});
+    placed.push_back({plot.x_px(std::log10(one.tick.low_ns)), dot.y - 1.0F,
+                      plot.x_px(std::log10(drawn_high_ns(one.tick))), dot.y + 1.0F});
   }
 
   bool is_free(const ImVec4& box) const {
@@ -132,6 +134,17 @@ struct SpeedPlot {
     return std::none_of(placed.begin(), placed.end(), [&](const ImVec4& other) {
       return box.x < other.z && other.x < box.z && box.y < other.w && other.y < box.w;
     });
+  }
+
+  // Draws what the JND is above its line, at the left or the right, where no model is.
+  void draw_caption() {
+    const char* text = "a hand could tell";
+    const float width = ImGui::CalcTextSize(text).x, gap = 0.4F * line(), bottom = plot.y_px(0.0);
+    ImVec4 box(plot.left() + gap, bottom - 1.1F * line(), plot.left() + gap + width, bottom);
+    const ImVec4 right(plot.right() - gap - width, box.y, plot.right() - gap, box.w);
+    if (!is_free(box) && is_free(right)) box = right;
+    placed.push_back(box);
+    list().AddText({box.x, box.y}, ink(style.colours().quiet), text);
   }
 
   // Draws the name beside its dot, on the side and at the height that are free; else joined to it by a line.
@@ -160,7 +173,6 @@ struct SpeedPlot {
   }
 };
 
-// Draws the 1 ms of a tick as a bar, and in it the time of the model.
 void draw_budget(const ModelView& one, const ImU32 colour, const UiStyle& style) {
   const std::string text = fixed(one.tick_ns(), 0) + " ns = " + tick_share(one.tick_ns()) + " of 1 ms";
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -210,13 +222,10 @@ void draw_speed(const ModelsView& models, const UiStyle& style, float height) {
     SpeedPlot drawing{models, style, plot, ranges};
     drawing.draw_grid();
     plot.level(0.0, ink(style.colours().text), 1.5F * style.scale());
-    const float caption_px = plot.y_px(0.0) - 1.1F * ImGui::GetFontSize();
-    plot.caption("a hand could tell", caption_px);
-    drawing.placed.push_back(
-        {plot.left(), caption_px, plot.left() + ImGui::CalcTextSize("a hand could tell ").x, plot.y_px(0.0)});
     std::vector<std::size_t> dots = models.drawn();
     std::erase_if(dots, [&](std::size_t slot) { return !has_dot(models, slot); });
     for (const std::size_t slot : dots) drawing.draw_dot(slot);
+    drawing.draw_caption();
     std::ranges::sort(dots, {}, [&](std::size_t slot) { return models.slots[slot].errors.p99_error_over_jnd; });
     for (const std::size_t slot : dots) drawing.draw_name(slot);
   }

@@ -1,5 +1,5 @@
-// The panel's plot of error against time: one dot for each model, with the columns "99 %" and "ns" of the table.
-// Thread guarantee: the window's thread, inside a frame; speed_ranges is a pure function.
+// The panel's plot of error against time: one dot for each model, with the columns "99 % error / JND" and "ns" of the
+// table. Thread guarantee: the window's thread, inside a frame; speed_ranges is a pure function.
 #pragma once
 
 #include "rendering/panels/window_view.h"

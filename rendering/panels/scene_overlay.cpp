@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 
 #include "engine/base/text.h"
-#include "rendering/panels/panel_parts.h"
 
 namespace palpate {
 namespace {
@@ -76,11 +74,10 @@ struct Overlay {
     tip("Changes only the rendered force. Curves and figures show the unchanged models. J ends it.");
     const float below_px = top_px + ImGui::GetWindowHeight();
     ImGui::End();
-    if (moved) session.controls().scale = {static_cast<double>(stiffness), static_cast<double>(damping)};
+    if (moved) session.controls().scale = {stiffness, damping};
     return below_px;
   }
 
-  // Draws the title of the scene, and any exaggeration of force or picture.
   void draw_title() const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.0F});
     ImGui::Begin("title", nullptr, kFloating);
@@ -88,7 +85,7 @@ struct Overlay {
     tip(session.scene().description.c_str());
     if (!view.scales_force) {
       ImGui::SameLine(0.0F, ImGui::GetFontSize());
-      ImGui::TextDisabled("dents x 2");
+      ImGui::TextDisabled("drawn twice as deep");
     }
     if (view.scales_force || view.exaggerated) {
       ImGui::SameLine(0.0F, ImGui::GetFontSize());
@@ -119,9 +116,8 @@ struct Overlay {
     return y + 0.3F * line();
   }
 
-  // Returns the y below it.
-  float draw_data_warning(float top_px) const {
-    const std::string text = data_warning(models());
+  // Draws a text in the middle on a plate, because it may cover the blocks. Returns the y below it.
+  float draw_plated(const std::string& text, float top_px) const {
     if (text.empty()) return top_px;
     const float wrap = 0.8F * area.size.x, pad = 0.4F * line();
     const ImVec2 size = text_size(fonts().body, text, wrap);
@@ -140,8 +136,7 @@ struct Overlay {
     if (!alone && view.has_pressed) return top_px;
     const std::string hint = alone ? "The hand moves by itself. Move the mouse down over the block to press it."
                                    : "Move the mouse down over the block to press it. No button is needed.";
-    return draw_wrapped(fonts().body, {area.at.x + 0.9F * line(), top_px}, hint, text_ink(true),
-                        area.size.x - 1.8F * line());
+    return draw_plated(hint, top_px);
   }
 
   // The error and the time of a model, as in the table.
@@ -207,7 +202,7 @@ struct Overlay {
     for (int i = 0; i < 40; ++i) {
       const float from = static_cast<float>(i) / 40.0F;
       list().AddRectFilled({corner.x + from * width, top}, {corner.x + (from + 0.025F) * width + 0.5F, bottom},
-                           ink(error_colour(static_cast<double>(from))));
+                           ink(error_colour(from)));
     }
     list().AddRect({corner.x, top}, {corner.x + width, bottom}, ink(colours().edge));
     list().AddRectFilled({corner.x + width + 3.0F, top}, {corner.x + 1.3F * width, bottom}, ink(kAboveJndColour));
@@ -219,7 +214,6 @@ struct Overlay {
     label(width + line(), "error / JND");
   }
 
-  // Draws five buttons, and a menu of all other commands.
   void draw_buttons() const {
     ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - 2.0F}, ImGuiCond_Always, {0.0F, 1.0F});
     ImGui::Begin("buttons", nullptr, kFloating);
@@ -255,16 +249,14 @@ struct Overlay {
     // The numbers are beside the sliders, because the grip would hide them.
     ImGui::SetNextItemWidth(0.40F * area.size.x);
     auto at_s = static_cast<float>(replay.playhead_s());
-    if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s()), ""))
-      replay.seek(static_cast<double>(at_s));
+    if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s()), "")) replay.seek(at_s);
     tip("Position in the recording");
     ImGui::SameLine();
     ImGui::Text("%5.1f of %.1f s", replay.playhead_s(), replay.duration_s());
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-4.5F * ImGui::GetFontSize());
     auto speed = static_cast<float>(replay.speed());
-    if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic))
-      replay.set_speed(static_cast<double>(speed));
+    if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) replay.set_speed(speed);
     tip("Speed of the replay");
     ImGui::SameLine();
     ImGui::Text("%.2f x", replay.speed());
@@ -278,7 +270,6 @@ struct Overlay {
     ImGui::End();
   }
 
-  // Draws the state of a recording that is being made.
   void draw_recording() const {
     const std::string text = recording_words(session.recording());
     if (text.empty()) return;
@@ -310,7 +301,6 @@ struct Overlay {
     ImGui::End();
   }
 
-  // Draws notices from `y` downwards.
   void draw_toasts(float y) const {
     const float pad = 0.6F * line(), wrap = 0.86F * area.size.x;
     ImDrawList& front = *ImGui::GetForegroundDrawList();
@@ -334,7 +324,7 @@ struct Overlay {
       if (!models().slots.empty()) draw_big_number(bars);
       draw_title();
       top_px = draw_headline();
-      top_px = draw_data_warning(top_px);
+      top_px = draw_plated(data_warning(models()), top_px);
       if (view.scales_force) {
         top_px = draw_feel(top_px);
       } else if (data_warning(models()).empty()) {

@@ -6,12 +6,9 @@
 #include "engine/base/text.h"
 
 namespace palpate {
-namespace {
 
 constexpr float kDrag_px = 6.0F;     // a shorter movement is a click
 constexpr double kWheelShare = 0.1;  // one step of the wheel scrolls by this share of the visible span
-
-}  // namespace
 
 TimePlot::TimePlot(const UiStyle& style, const ImVec2& size, const Range& y, const char* y_unit, CurveTime& time,
                    double end_s, const CurveColumns& columns)
@@ -98,8 +95,7 @@ bool TimePlot::handle_mouse(const ForceHistory& history) {
     time_.hover_s = time_under_mouse();
     if (const float wheel = ImGui::GetIO().MouseWheel; wheel != 0.0F) {
       time_.pause(end_s_);
-      time_.scroll_back(kWheelShare * time_.shown_s * static_cast<double>(wheel),
-                        history.size() > 0 ? history[0].loop_time_s : end_s_);
+      time_.scroll_back(kWheelShare * time_.shown_s * wheel, history.size() > 0 ? history[0].loop_time_s : end_s_);
     }
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
       time_.run();

@@ -124,9 +124,7 @@ struct FrameFigures {
 };
 
 // A notice over the picture.
-struct Toast {
-  std::string text;
-  bool problem = false;
+struct Toast : Notice {
   double until_s = 0.0;  // window time
 };
 

@@ -1,6 +1,5 @@
 #include "rendering/panels/window_command.h"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -9,15 +8,12 @@
 #include "rendering/panels/panel_parts.h"
 
 namespace palpate {
-namespace {
 
 constexpr std::pair<int, const char*> kKeyNames[] = {
     {GLFW_KEY_SPACE, "Space"},        {GLFW_KEY_HOME, "Home"},   {GLFW_KEY_BACKSPACE, "Backspace"},
     {GLFW_KEY_ESCAPE, "Esc"},         {GLFW_KEY_UP, "Up"},       {GLFW_KEY_DOWN, "Down"},
     {GLFW_KEY_LEFT, "Left"},          {GLFW_KEY_RIGHT, "Right"}, {GLFW_KEY_PAGE_UP, "Page Up"},
     {GLFW_KEY_PAGE_DOWN, "Page Down"}};
-
-}  // namespace
 
 std::string key_name(int key) {
   for (const auto& [known, name] : kKeyNames) {

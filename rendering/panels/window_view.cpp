@@ -7,7 +7,6 @@
 
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
-#include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {

@@ -88,12 +88,20 @@ class BlockView {
     Shader top, section, sides, solid, table, line, arrow, halo, sprite;
   };
 
+  // The tool, in radii of its ball; the place of the arrow of the model and the half width of its shaft.
+  static constexpr float kToolLength = 6.4F, kToolWidth = 1.16F;
+  static constexpr float kModelArrow = 2.75F, kModelArrowWidth = 0.25F;
+  static constexpr float kShortestArrow_N = 0.03F;
+  static constexpr float kLeastLine_px = 2.5F;
+
   BlockView(const Scene& scene, float magnified, Shaders shaders);
   Cells cells(std::size_t count, const glm::vec2& size) const;
   glm::vec2 corner(std::size_t index, std::size_t count, const Cells& cells, const glm::vec2& size) const;
   float drawn_m(float depth_m) const;
   float outline_px() const;
+  float line_px() const;
   float arrow_px(float force_N) const;
+  // block_view.cpp arranges, block_drawing.cpp draws.
   glm::vec2 in_cell(const glm::vec3& point) const;
   float halo_px(const BlockPose& pose) const;
   float opacity_of_error(const BlockPose& pose) const;
@@ -116,6 +124,7 @@ class BlockView {
   float magnified_;
   float radius_m_;  // of the tool as drawn
   float dome_m_;    // height of a dome over its block, whose flat top is lower by it
+  float rim_m_;     // from the middle to the nearest side
   float middle_m_;  // radius of what moves of the top
   Finish finish_;
   Rgb block_colour_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <glm/common.hpp>
 #include <vector>
@@ -28,7 +27,7 @@ double luminance(const Rgb& colour) noexcept {
   const auto linear = [](float value) {
     return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
   };
-  return static_cast<double>(0.2126F * linear(colour.r) + 0.7152F * linear(colour.g) + 0.0722F * linear(colour.b));
+  return 0.2126F * linear(colour.r) + 0.7152F * linear(colour.g) + 0.0722F * linear(colour.b);
 }
 
 // Mixes the colour with `end` until its contrast to all surfaces is at least `least`. Drawing asks for the same few

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace palpate {
 
 double predicted_error_N(const HistoryPoint& tick) noexcept {
   if (!std::isnan(tick.reference_N)) return std::nan("");
-  return tick.in_contact ? static_cast<double>(tick.predicted_error_N) : 0.0;
+  return tick.in_contact ? tick.predicted_error_N : 0.0;
 }
 
 void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::size_t slots, double from_s,
@@ -61,7 +60,7 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
   // The last of equal ticks; a comparison with NaN is false.
   if (!column.any || farthest(point) >= farthest(column.tick)) {
     column.tick = point;
-    column.jnd_N = static_cast<float>(jnd.at(static_cast<double>(point.reference_N)));
+    column.jnd_N = static_cast<float>(jnd.at(point.reference_N));
   }
   column.any = true;
   for (std::size_t i = 0; i < slots_; ++i) {

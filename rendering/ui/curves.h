@@ -14,13 +14,11 @@
 
 namespace palpate {
 
-// For each model: no value.
 constexpr std::array<float, kMaxModels> no_values() {
   std::array<float, kMaxModels> values{};
   values.fill(std::numeric_limits<float>::quiet_NaN());
   return values;
 }
-// A tick without forces.
 inline HistoryPoint no_forces() {
   HistoryPoint tick;
   tick.force_N = no_values();

@@ -72,7 +72,7 @@ float LivePlot::y_px(double y) const noexcept {
 }
 
 double LivePlot::x_at(float px) const noexcept {
-  return axes_.x.from + static_cast<double>((px - low_.x) / (high_.x - low_.x)) * (axes_.x.to - axes_.x.from);
+  return axes_.x.from + (px - low_.x) / (high_.x - low_.x) * (axes_.x.to - axes_.x.from);
 }
 
 bool LivePlot::hovered() const noexcept { return ImGui::IsMouseHoveringRect(low_, high_) && ImGui::IsWindowHovered(); }

@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <memory>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -55,9 +54,8 @@ Status print_devices() {
   }
   print_table(rows, false);
   std::printf("\nSUPPORTED BY hid\n");
-  for (const DeviceProtocol* protocol : kHidProtocols) {
+  for (const DeviceProtocol* protocol : kHidProtocols)
     std::printf("  %s: %s; tested %s\n", protocol->name, protocol->description, kTestedOn);
-  }
   std::fputs(plugged_in_text(system_hid_bus(), assets ? *assets : "assets").c_str(), stdout);
   return {};
 }
@@ -71,9 +69,8 @@ Status run_devices(const DevicesOptions& options) {
   constexpr std::string_view kBridge = "bridge:";
   const std::string device = options.bridge_remote ? with_remote_bridge(options.test) : options.test;
   if (options.test.empty()) return print_devices();
-  if (options.test.rfind(kBridge, 0) != 0) {
+  if (options.test.rfind(kBridge, 0) != 0)
     throw CLI::ValidationError("--test", "found \"" + options.test + "\", expected bridge:TARGET");
-  }
   const auto result = test_bridge(device.substr(kBridge.size()));
   if (!result) return result.error();
   std::printf("%s", result->c_str());

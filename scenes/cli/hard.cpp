@@ -31,10 +31,7 @@ void print_marks(const std::vector<HardRow>& rows) {
 }
 
 Status run(const HardOptions& options) {
-  const auto rows = [&] {
-    ProgressLine line("testing");
-    return run_hard({[&](double fraction) { return line.update(fraction); }});
-  }();
+  const auto rows = with_progress("testing", [](const FitControl& control) { return run_hard(control); });
   if (!rows) return rows.error();
   if (options.json) {
     print_json(hard_json(*rows));

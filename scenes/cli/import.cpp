@@ -23,9 +23,8 @@ struct ImportOptions {
   std::vector<std::string> units;
   std::vector<std::string> flips;
   std::string decimal;
-  double rate_Hz = 0.0;
   double gain_N_per_V = 0.0;
-  std::uint64_t skip_bad_rows = 0;
+  ImportRequest request;  // its rate and the number of bad rows
   std::string origin;
   bool json = false;
   bool force = false;
@@ -59,17 +58,15 @@ void read_unit(const std::string& text, std::vector<Unit>& units) {
 }
 
 ImportRequest import_request(const ImportOptions& options) {
-  ImportRequest request;
+  ImportRequest request = options.request;
   for (const std::string& column : options.columns) read_column(column, request.columns);
   for (const std::string& unit : options.units) read_unit(unit, request.units);
+  if (options.gain_N_per_V != 0.0) request.gain_N_per_V = options.gain_N_per_V;
   for (const std::string& flip : options.flips) {
     request.flip_position = request.flip_position || flip != "force";
     request.flip_force = request.flip_force || flip != "position";
   }
   if (!options.decimal.empty()) request.decimal = options.decimal == "comma" ? ',' : '.';
-  if (options.rate_Hz > 0.0) request.rate_Hz = options.rate_Hz;
-  if (options.gain_N_per_V != 0.0) request.gain_N_per_V = options.gain_N_per_V;
-  request.skip_bad_rows = options.skip_bad_rows;
   return request;
 }
 
@@ -154,9 +151,8 @@ Status run_import(const ImportOptions& options) {
   if (!table) return table.error();
   if (!options.origin.empty()) {
     const double before_m = table->recording.rows.front().position_m;
-    if (Status status = move_origin(options.origin, table->recording); !status) {
+    if (Status status = move_origin(options.origin, table->recording); !status)
       return Error{options.file + ": " + status.error().message};
-    }
     table->notes.push_back("position 0 was at " +
                            fixed(1e3 * (before_m - table->recording.rows.front().position_m), 4) + " mm in the table");
   }
@@ -185,7 +181,8 @@ void add_import(CLI::App& app, Verbs& verbs) {
                    "Units that the header lacks or has wrong, such as mm,N or ms,mm,mN [from the header]")
       ->delimiter(',')
       ->type_name("UNIT,...");
-  verb->add_option("--rate", options->rate_Hz, "Rate of evenly spaced rows in Hz; the times in the file are ignored")
+  verb->add_option("--rate", options->request.rate_Hz,
+                   "Rate of evenly spaced rows in Hz; the times in the file are ignored")
       ->check(CLI::Range(10.0, 20000.0))
       ->type_name("HZ");
   verb->add_option("--flip", options->flips, "Reverse the sign of position, force or both")
@@ -197,7 +194,8 @@ void add_import(CLI::App& app, Verbs& verbs) {
       ->check(CLI::Validator(check_origin, "contact|first|M"));
   verb->add_option("--gain", options->gain_N_per_V, "Newtons per volt, for a force recorded in volts")
       ->type_name("N_PER_V");
-  verb->add_option("--skip-bad-rows", options->skip_bad_rows, "Largest number of unreadable rows to leave out [0]")
+  verb->add_option("--skip-bad-rows", options->request.skip_bad_rows,
+                   "Largest number of unreadable rows to leave out [0]")
       ->type_name("N");
   verb->add_option("--decimal", options->decimal, "Decimal mark: point or comma [guessed]")
       ->check(CLI::IsMember({"point", "comma"}));

@@ -54,20 +54,17 @@ int fail(const std::string& message, int exit_code) {
   return exit_code;
 }
 
-std::string known_verbs(const Verbs& verbs) {
-  std::string names;
-  for (const auto& [command, run] : verbs) names += (names.empty() ? "" : ", ") + command->get_name();
-  return names;
-}
-
 // Prints the usage error as one line that refers to the verbs or to the verb's help.
 int fail_usage(const CLI::App& app, const Verbs& verbs, std::string message) {
   for (char& letter : message) {
     if (letter == '\n' || letter == '\r') letter = ' ';
   }
   const std::vector<CLI::App*> chosen = app.get_subcommands();
-  if (chosen.empty())
-    return fail(message + "; known verbs: " + known_verbs(verbs) + " (palpate --help explains)", kUsage);
+  if (chosen.empty()) {
+    std::vector<std::string> names;
+    for (const auto& [command, run] : verbs) names.push_back(command->get_name());
+    return fail(message + "; known verbs: " + joined(names) + " (palpate --help explains)", kUsage);
+  }
   return fail(message + " (palpate " + chosen.front()->get_name() + " --help explains)", kUsage);
 }
 
@@ -77,9 +74,8 @@ Status run_chosen(const Verbs& verbs) {
     if (const Status status = run(); !status) return status;
   }
   std::cout.flush();
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout) {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout)
     return Error{"cannot write the results to standard output"};
-  }
   return {};
 }
 

@@ -4,16 +4,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <utility>
 
 #include "engine/base/text.h"
 
 namespace palpate::cli {
-namespace {
 
 constexpr auto kDrawInterval = std::chrono::milliseconds(100);
-
-}  // namespace
 
 std::string progress_text(const std::string& label, double fraction, double elapsed_s) {
   fraction = fraction > 0.0 ? std::min(fraction, 1.0) : 0.0;  // a NaN is 0

@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
 
+#include "engine/base/fit_control.h"
 #include "engine/base/signals.h"
 
 namespace palpate::cli {
@@ -33,6 +35,12 @@ class ProgressLine {
   bool drawn_ = false;
   double most_ = 0.0;  // of the fractions
 };
+
+// Calls `make` with the progress on stderr.
+auto with_progress(std::string label, const auto& make) {
+  ProgressLine line(std::move(label));
+  return make(FitControl{[&](double fraction) { return line.update(fraction); }});
+}
 
 // "label  37 %  12 s left"; the remaining time is shown after 2 % and 1 s.
 std::string progress_text(const std::string& label, double fraction, double elapsed_s);

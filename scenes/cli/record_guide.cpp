@@ -6,14 +6,11 @@
 #include "engine/live/pacer.h"
 
 namespace palpate::cli {
-namespace {
 
 constexpr double kPeriod_s = 2.0;
 constexpr double kRest = 10.0;  // pause after a check, as a multiple of its duration
 constexpr int kSmallStrokes = 10;
 constexpr const char* kFollowed[] = {"explored", "no_hold", "short_hold"};
-
-}  // namespace
 
 RecordGuide::RecordGuide(std::string path, const CheckRequest& request) : path_(std::move(path)), request_(request) {}
 

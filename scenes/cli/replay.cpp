@@ -131,7 +131,6 @@ OrderedJson recording_json(const ReplayedRecording& replayed) {
           {"models", list}};
 }
 
-// Titles and cells of the table's row of a model.
 std::vector<std::pair<std::string, std::string>> table_cells(const ReplayedModel& model, bool all) {
   std::vector<std::pair<std::string, std::string>> cells{{"MODEL", model.loaded.name}};
   const auto add = [&](const std::string& title, bool known, double value, int decimals) {

@@ -74,9 +74,7 @@ void ForcesFile::add(const RecordingRow& row, const TickSnapshot& snapshot, cons
   std::string line;
   const auto append = [&](double value) { (line += line.empty() ? "" : ",") += shortest(value); };
   for (const double value : {row.time_s, row.position_m, row.force_N, snapshot.depth_m}) append(value);
-  for (const FeatureColumn& column : columns_) {
-    append(tick.features_of(column.model).values[column.index]);
-  }
+  for (const FeatureColumn& column : columns_) append(tick.features_of(column.model).values[column.index]);
   for (std::size_t m = 0; m < tick.model_count(); ++m) append(snapshot.force_N[m]);
 
   file_.write(line + "\n");

@@ -38,16 +38,9 @@ std::string command_line(const Arguments& arguments) {
   return text;
 }
 
-// Calls `make` with the progress on stderr.
-auto with_progress(const char* label, const auto& make) {
-  ProgressLine line(label);
-  return make(FitControl{[&](double fraction) { return line.update(fraction); }});
-}
-
 Status run_report(Arguments arguments) {
-  if (arguments.train.empty() && !arguments.test.empty()) {
+  if (arguments.train.empty() && !arguments.test.empty())
     return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
-  }
   const auto scene = load_scene(arguments.scene);
   if (!scene) return scene.error();
   std::vector<std::string> paths = arguments.train;
@@ -58,9 +51,8 @@ Status run_report(Arguments arguments) {
   request.scene = *scene;
   request.command_line = command_line(arguments);
   request.version = "palpate " PALPATE_VERSION;
-  for (std::size_t i = 0; i < checked->size(); ++i) {
+  for (std::size_t i = 0; i < checked->size(); ++i)
     (i < arguments.train.size() ? request.train : request.test).push_back((*checked)[i].prepared);
-  }
   const auto answer =
       with_progress("reporting", [&](const FitControl& control) { return make_report(request, control); });
   if (!answer) return answer.error();

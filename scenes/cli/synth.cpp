@@ -22,9 +22,8 @@ struct SynthOptions {
 
 // Checks the command line before any work.
 void check_usage(const CLI::App& verb, const SynthOptions& options) {
-  if (verb.count("--seconds") > 0 && !(options.rig.seconds > 0.0)) {
+  if (verb.count("--seconds") > 0 && !(options.rig.seconds > 0.0))
     throw CLI::ValidationError("--seconds", "must be a number above 0");
-  }
   const Result<Rig> trial = Rig::create(options.rig);
   if (!trial) throw CLI::ValidationError("synth", trial.error().message);
 }
@@ -40,10 +39,9 @@ void list_materials() {
 Status run_synth(const SynthOptions& options) {
   const Result<Material> material = find_material(options.rig.material);
   if (!material) return material.error();
-  const Result<Recording> recording = [&] {
-    ProgressLine line("recording " + options.rig.material);
-    return record_sensors(options.rig, [&](double share) { return line.update(share); });
-  }();
+  const Result<Recording> recording =
+      with_progress("recording " + options.rig.material,
+                    [&](const FitControl& control) { return record_sensors(options.rig, control.progress); });
   if (!recording) return recording.error();
   const Status written = write_recording(
       options.out, *recording, describe_recording(options.rig, *material, recording->rows.size()), options.force);

@@ -1,18 +1,20 @@
 #include "scenes/evaluation/ranking.h"
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <tuple>
+
+#include "models/correction/methods.h"
 
 namespace palpate {
 namespace {
 
-// The place of the method in the order of simplicity; one that is not listed is the least simple.
+// The place of the method in the order of simplicity: the trend, then the table of methods from its end. One that is
+// not listed is the least simple.
 std::ptrdiff_t complexity(std::string_view method) {
-  constexpr std::array<std::string_view, 6> kSimplestFirst{"trend", "greedy", "kdtree", "random", "voxel", "direct"};
   const std::string_view corrects = method.substr(method.rfind('+') + 1);
-  return std::ranges::find(kSimplestFirst, corrects) - kSimplestFirst.begin();
+  if (corrects == kTrendMethod.name) return -1;
+  return std::ranges::find(methods().rbegin(), methods().rend(), corrects, &Method::name) - methods().rbegin();
 }
 
 }  // namespace

@@ -2,8 +2,7 @@
 //   best         the model with the lowest 99 % error
 //   near_best    models whose 99 % error exceeds the lowest by at most kMargin_jnd
 //   recommended  of these the one with the lowest median time of a tick; where others take at most kEqualTime longer,
-//   the
-//                simplest of them: trend, greedy, kD-tree, random, voxel, direct
+//                the simplest of them: trend, greedy, kD-tree, random, voxel, direct
 // The estimates alone decide, so that the result does not depend on the width of an interval. The report, the main job
 // and the window use this rule.
 // Thread guarantee: pure functions.

@@ -5,25 +5,11 @@
 #include <vector>
 
 namespace palpate {
-namespace {
 
-constexpr int kStepsPerSecond = 20000;
+constexpr double kStepsPerSecond = 1000.0 * static_cast<double>(kPeriodSteps);
 constexpr double kStep_s = 1.0 / kStepsPerSecond;
-constexpr std::int64_t kPeriod = kStepsPerSecond / 1000;  // of the tick, in steps
-constexpr std::uint64_t kLatest = 10;                     // steps; jitter below this
-constexpr std::uint64_t kOneLeftOutIn = 30;
-constexpr std::int64_t kGapEvery = 100 * kPeriod;
-constexpr std::int64_t kGap = 5 * kPeriod;
 
-}  // namespace
-
-const std::array<Grip, 4>& grips() {
-  static const std::array<Grip, 4> all{{{"relaxed", 0.08, 150.0, 3.5},
-                                        {"braced", 0.12, 800.0, 14.0},
-                                        {"clenched", 0.3, 2000.0, 30.0},
-                                        {"mass alone", 0.1, 0.0, 0.0}}};
-  return all;
-}
+static std::int64_t steps_in(double seconds) { return std::llround(seconds * kStepsPerSecond); }
 
 double SimulatedTool::time_s() const noexcept { return kStep_s * static_cast<double>(step_); }
 
@@ -32,8 +18,7 @@ bool SimulatedTool::read(double now_s, DeviceSample& sample) noexcept {
   read_step_ = step_;
   // If samples are more frequent than ticks, this is the newest one.
   if (step_ < sample_step_) return false;
-  sample_step_ = step_ + std::llround(settings_.sample_s * kStepsPerSecond) -
-                 (settings_.sample_s > 1e-3 ? static_cast<std::int64_t>(kLatest) : 0);
+  sample_step_ = step_ + steps_in(settings_.sample_s) - (settings_.sample_s > 1e-3 ? kPeriodSteps / 2 : 0);
   sample = {};
   sample.tool.time_s = now_s;
   const double quantum_m = settings_.encoder_step_m;
@@ -51,8 +36,7 @@ DeviceHealth SimulatedTool::health(double) noexcept {
 
 void SimulatedTool::write(double force_N) noexcept {
   if (count_ == written_.size()) return;  // a delay of 10 ms fills less than half
-  written_[(first_ + count_++) % written_.size()] = {force_N,
-                                                     step_ + std::llround(settings_.delay_s * kStepsPerSecond)};
+  written_[(first_ + count_++) % written_.size()] = {force_N, step_ + steps_in(settings_.delay_s)};
 }
 
 // Acceleration is constant within a step, so that the work of the held force is exact
@@ -83,7 +67,7 @@ void SimulatedTool::place(double position_m, double velocity_m_per_s) noexcept {
 ClosedLoop::ClosedLoop(const LoopSettings& settings)
     : tool_(settings),
       live_(tool_, slot_, LiveTickSettings{{}, nullptr, settings.passivity}),
-      ticking_(settings.ticking) {
+      uneven_(settings.uneven) {
   controls_.scale = settings.scale;
 }
 
@@ -93,26 +77,16 @@ void ClosedLoop::publish(std::shared_ptr<const ForceModel> model) {
   slot_.publish(std::move(set));
 }
 
-// The step of the next tick.
-std::int64_t ClosedLoop::next_tick() {
-  deadline_ += kPeriod;
-  if (ticking_ == Ticking::even) return deadline_;
-  if (ticking_ == Ticking::gaps) {
-    if (random_.index(kOneLeftOutIn) == 0) deadline_ += kPeriod;
-    if (deadline_ / kGapEvery != (deadline_ - kPeriod) / kGapEvery) deadline_ += kGap - kPeriod;
-  }
-  return deadline_ + static_cast<std::int64_t>(random_.index(kLatest));
-}
-
 void ClosedLoop::run(double seconds, const Path& path, const AfterTick& after_tick) {
   const std::int64_t from = step_;
-  const std::int64_t end = step_ + std::llround(seconds * kStepsPerSecond);
+  const std::int64_t end = step_ + steps_in(seconds);
   for (; step_ < end; ++step_) {
     if (step_ == due_) {
       const LoopSnapshot& snapshot = tick();
       faults_ |= snapshot.faults;
       if (snapshot.samples > 0) history_.add(snapshot.tick, snapshot.restarted);
-      due_ = next_tick();
+      deadline_ += kPeriodSteps;
+      due_ = uneven_ ? uneven_(deadline_) : deadline_;
       if (after_tick) after_tick(snapshot);
     }
     const Drive drive = path(kStep_s * static_cast<double>(step_ - from));

@@ -12,7 +12,6 @@
 #include <memory>
 #include <string>
 
-#include "engine/base/random_stream.h"
 #include "engine/live/live_tick.h"
 
 namespace palpate {
@@ -28,24 +27,22 @@ struct Grip {
 // together with the grip (Hajian & Howe 1997; Hasser & Cutkosky 2002), the damping is
 // 0.5 to 0.7 of critical. `braced` is the hand of devices/virtual/hand_motion.h.
 // The last is a free mass without stiffness and damping.
-const std::array<Grip, 4>& grips();
-inline const Grip& mass_alone() { return grips().back(); }
+inline const std::array<Grip, 4> kGrips{{{"relaxed", 0.08, 150.0, 3.5},
+                                         {"braced", 0.12, 800.0, 14.0},
+                                         {"clenched", 0.3, 2000.0, 30.0},
+                                         {"mass alone", 0.1, 0.0, 0.0}}};
+inline const Grip& mass_alone() { return kGrips.back(); }
 inline bool held(const Grip& grip) { return grip.stiffness_N_per_m > 0.0; }
-// A grip so stiff that the tool follows the prescribed path.
-inline Grip lead() { return {"lead", 1.0, 4e5, 1200.0}; }
 
-// The timing of ticks.
-enum class Ticking {
-  even,      // every millisecond
-  jittered,  // each independently up to 0.45 ms late
-  gaps,      // jittered, one in 30 left out, and one gap of 5 ms in each 100 ms
-};
+// The simulation has this many steps of time within the period of a tick, 1 ms.
+inline constexpr std::int64_t kPeriodSteps = 20;
 
 struct LoopSettings {
   Grip grip;
   double encoder_step_m = 30e-6;
   double delay_s = 1e-3;
-  Ticking ticking = Ticking::even;
+  // Moves the deadline of the next tick, in steps, and returns the step of the tick; null: ticks are even.
+  std::function<std::int64_t(std::int64_t& deadline)> uneven{};
   ForceLimits limits{10.0, 5000.0, 0.0};  // of a typical force-feedback device
   bool passivity = true;                  // false: without the passivity controller
   double sample_s = 0.0;                  // interval of the samples; 0: one sample in each tick
@@ -128,15 +125,12 @@ class ClosedLoop {
   virtual const LoopSnapshot& tick() { return live_.run(tool_.time_s(), controls_); }
 
  private:
-  std::int64_t next_tick();
-
   SimulatedTool tool_;
   ModelSlot<LiveModels> slot_;
   LiveTick live_;
   MotionHistory history_;
-  Ticking ticking_;
+  std::function<std::int64_t(std::int64_t& deadline)> uneven_;
   LoopControls controls_;
-  RandomStream random_{1, 77};
   std::int64_t step_ = 0, deadline_ = 0, due_ = 0;
   std::uint32_t id_ = 0, faults_ = 0;
 };

@@ -1,28 +1,69 @@
 #include "scenes/hard/hard_case.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/whole_file.h"
+#include "engine/json/json_fields.h"
+#include "engine/live/pacer.h"
+#include "scenes/scene/folders.h"
 
 namespace palpate {
 
-const char* kind_name(HardKind kind) {
-  constexpr const char* kNames[] = {"sites", "recording", "motion", "loop"};
-  return kNames[static_cast<std::size_t>(kind)];
+namespace {
+
+HardExpectation expectation_of(const nlohmann::json& limits) {
+  HardExpectation expected;
+  if (limits.is_string()) {
+    expected.refusal = limits;
+    return expected;
+  }
+  double* const values[] = {&expected.within_jnd, &expected.worst_error_N, &expected.worst_step_N, &expected.energy_J};
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    if (!limits[i].is_null()) *values[i] = limits[i];
+  }
+  return expected;
+}
+
+}  // namespace
+
+Result<std::vector<HardCase>> hard_cases() {
+  const auto assets = find_assets();
+  if (!assets) return assets.error();
+  const std::string path = *assets + "/hard/cases.json";
+  const auto text = read_plain_file(path, "the reasons and expectations of the hard cases");
+  if (!text) return text.error();
+  const auto document = parse_json(*text, path, 3, {});
+  if (!document) return document.error();
+  std::vector<HardCase> cases = site_cases();
+  std::ranges::move(recording_cases(), std::back_inserter(cases));
+  std::ranges::move(material_cases(), std::back_inserter(cases));
+  for (HardCase& one : cases) {
+    const auto found = document->find(one.name);
+    if (found == document->end()) return Error{path + ": found no case \"" + one.name + "\", expected one"};
+    for (const auto& [key, value] : found->items()) {
+      if (key == "why") {
+        one.why = value;
+      } else {
+        one.expected[key] = expectation_of(value);
+      }
+    }
+  }
+  return cases;
 }
 
 Result<HardTraining::Fit> HardTraining::fit(const ModelPlan& plan, const FitControl& control) {
   const std::string name = plan_name(plan);
-  for (const auto& [other, made] : made_) {
-    if (other == name) return made;
-  }
+  if (const auto made = made_.find(name); made != made_.end()) return made->second;
   ModelPlan asked = common_;
   asked.base = plan.base;
   asked.method = plan.method;
-  const auto start = std::chrono::steady_clock::now();
+  const double start_s = steady_now_s();
   auto fitted = fits_.fit(asked, control);
   Fit fit;
-  fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fit.seconds = steady_now_s() - start_s;
   if (fitted) {
     fit.model = std::make_shared<const FittedModel>(std::move(fitted->data));
     fit.rank = fitted->rank;
@@ -32,14 +73,12 @@ Result<HardTraining::Fit> HardTraining::fit(const ModelPlan& plan, const FitCont
   } else {
     fit.refusal = fitted.error().message;
   }
-  made_.emplace_back(name, fit);
-  return fit;
+  return made_[name] = fit;
 }
 
-const HardExpectation& HardExpectations::of(const ModelPlan& plan) const {
-  const auto found = std::ranges::find(exceptions, plan_name(plan), &std::pair<std::string, HardExpectation>::first);
-  if (found != exceptions.end()) return found->second;
-  return plan.base == Base::force ? force : plan.method == &kTrendMethod ? trend : corrected;
+const HardExpectation& HardCase::expectation(const ModelPlan& plan) const {
+  if (const auto own = expected.find(plan_name(plan)); own != expected.end()) return own->second;
+  return expected.at(plan.base == Base::force ? "force" : "corrected");
 }
 
 void HardMeasure::add(double force_N, double true_N, bool counts) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -18,7 +19,7 @@
 namespace palpate {
 
 enum class HardKind : std::uint8_t { sites, recording, motion, loop };
-const char* kind_name(HardKind kind);  // "sites", ...
+inline constexpr const char* kHardKinds[] = {"sites", "recording", "motion", "loop"};  // their names
 
 // The figures of one model in one trial; NaN: does not apply.
 struct HardFigures {
@@ -37,20 +38,9 @@ struct HardExpectation {
   double worst_error_N = kAny;  // at most, and so on
   double worst_step_N = kAny;
   double energy_J = kAny;
-  const char* refusal = nullptr;  // part of the reason; null: the fit must be accepted
+  std::string refusal{};  // part of the reason; empty: the fit must be accepted
 
   static constexpr double kAny = std::numeric_limits<double>::infinity();
-};
-
-// The expectations of a case. Where the data determine the force they are requirements; elsewhere they are the measured
-// figures with a margin, so that a change is seen.
-struct HardExpectations {
-  HardExpectation force;                                              // of the methods on the measured force
-  HardExpectation trend;                                              // of the trend
-  HardExpectation corrected;                                          // of the trend with its correction
-  std::vector<std::pair<std::string, HardExpectation>> exceptions{};  // by the name of the plan
-
-  const HardExpectation& of(const ModelPlan& plan) const;
 };
 
 // The fits to one training, each made when it is first asked for.
@@ -72,7 +62,7 @@ class HardTraining {
  private:
   ModelFits fits_;
   ModelPlan common_;
-  std::vector<std::pair<std::string, Fit>> made_;  // by the name of the plan
+  std::map<std::string, Fit> made_;  // by the name of the plan
 };
 
 struct HardTrial {
@@ -84,9 +74,12 @@ struct HardTrial {
 struct HardCase {
   std::string name;
   HardKind kind = HardKind::sites;
-  std::string why;  // what is hard, and where the expectation comes from
-  HardExpectations expected;
   std::function<HardTrial()> build;
+  std::string why{};  // what is hard, and where the expectation comes from
+  // By the name of the plan; "force" (the methods on the measured force), "trend" and "corrected" for all others.
+  std::map<std::string, HardExpectation> expected{};
+
+  const HardExpectation& expectation(const ModelPlan& plan) const;
 };
 
 // Collects the figures of one model, tick by tick.
@@ -106,10 +99,15 @@ class HardMeasure {
   double given_J_ = 0.0, truly_given_J_ = 0.0, energy_J_ = 0.0;
 };
 
-// The cases of each kind, in the order of the table.
+// The cases of each kind, in the order of the table, without reason and expectation.
 std::vector<HardCase> site_cases();
 std::vector<HardCase> recording_cases();
 // Motions and hands share the fits to each material.
 std::vector<HardCase> material_cases();
+
+// All cases. Reasons and expectations are those of assets/hard/cases.json: a list of within_jnd, worst_error_N,
+// worst_step_N and energy_J, where null or a missing number is no limit, or the reason of a refusal. Errors: the file
+// cannot be read, is no JSON or lacks a case.
+Result<std::vector<HardCase>> hard_cases();
 
 }  // namespace palpate

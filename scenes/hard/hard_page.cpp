@@ -1,4 +1,3 @@
-#include <array>
 #include <cmath>
 
 #include "engine/base/text.h"
@@ -9,8 +8,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::array kKinds{HardKind::sites, HardKind::recording, HardKind::motion, HardKind::loop};
-
 // Rank and condition number of the fit.
 std::string numerics_text(const HardCell& cell) {
   if (cell.rank == 0) return "–";
@@ -18,17 +15,17 @@ std::string numerics_text(const HardCell& cell) {
 }
 
 // The cases of one kind: a row for each, a column for each method, its rank and condition number below.
-Table marks_table(const std::vector<HardRow>& rows, HardKind kind) {
-  Table table{kind_name(kind)};
+Table marks_table(const std::vector<HardRow>& rows, std::size_t kind) {
+  Table table{kHardKinds[kind]};
   const std::vector<ModelPlan> plans = hard_plans();
   for (const HardRow& row : rows) {
-    if (row.of.kind != kind) continue;
+    if (static_cast<std::size_t>(row.of.kind) != kind) continue;
     table.begin_row();
     table.add({"case", "case", 1.0, TableColumn::kThreeDigits, 1}, row.of.name);
     table.add({"why", ""}, row.of.why);
     table.add({"force", "expected on the force, with the trend", 1.0, TableColumn::kThreeDigits, 1},
-              expectation_text(row.of.expected.force));
-    table.add({"corrected", ""}, expectation_text(row.of.expected.corrected));
+              expectation_text(row.of.expected.at("force")));
+    table.add({"corrected", ""}, expectation_text(row.of.expected.at("corrected")));
     for (std::size_t k = 0; k < plans.size(); ++k) {
       table.add({plan_name(plans[k]), plan_name(plans[k]), 1.0, TableColumn::kThreeDigits, 1}, cell_text(row.cells[k]));
       table.add({plan_name(plans[k]) + " rank and condition", ""}, numerics_text(row.cells[k]));
@@ -73,7 +70,7 @@ Status write_hard_page(const std::vector<HardRow>& rows, const HardPage& page, c
   auto folder = ReportFolder::create(page.out, page.force);
   if (!folder) return folder.error();
   std::vector<Table> tables;
-  for (const HardKind kind : kKinds) tables.push_back(marks_table(rows, kind));
+  for (std::size_t kind = 0; kind < std::size(kHardKinds); ++kind) tables.push_back(marks_table(rows, kind));
   tables.push_back(cells_table(rows));
   nlohmann::ordered_json report{{"format", "palpate-hard"}, {"version", 1}, {"answer", hard_answer(rows)}};
   report.update(hard_json(rows));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "engine/base/parallel.h"
 #include "engine/base/text.h"
@@ -12,13 +11,6 @@ namespace {
 
 std::string percent(double share) { return at_most_three_decimals(0.1 * std::floor(1000.0 * share)) + " %"; }
 
-std::vector<HardCase> all_cases() {
-  std::vector<HardCase> cases = site_cases();
-  std::ranges::move(recording_cases(), std::back_inserter(cases));
-  std::ranges::move(material_cases(), std::back_inserter(cases));
-  return cases;
-}
-
 // The numbers of a cell. JSON has null for those that do not apply.
 double known(double value, bool applies) { return applies ? value : kNoNumber; }
 
@@ -26,41 +18,36 @@ double known(double value, bool applies) { return applies ? value : kNoNumber; }
 Result<HardRow> run_case(HardCase one, const FitControl& control) {
   const HardTrial trial = one.build();
   HardRow row{std::move(one), {}};
-  std::vector<std::shared_ptr<const FittedModel>> models;
   for (const ModelPlan& plan : hard_plans()) {
     auto fitted = trial.training->fit(plan, control);
     if (!fitted) return fitted.error();
-    HardCell& cell = row.cells.emplace_back();
-    cell.refusal = std::move(fitted->refusal);
-    cell.rank = fitted->rank;
-    cell.condition_number = fitted->condition_number;
-    cell.seconds = fitted->seconds;
-    models.push_back(std::move(fitted->model));
+    row.cells.push_back({std::move(*fitted)});
   }
-  parallel_for(static_cast<int>(models.size()), [&](int i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (models[k]) row.cells[k].figures = trial.measure(models[k]);
+  parallel_for(static_cast<int>(row.cells.size()), [&](int i) {
+    HardCell& cell = row.cells[static_cast<std::size_t>(i)];
+    if (cell.model) cell.figures = trial.measure(cell.model);
   });
-  for (std::size_t k = 0; k < models.size(); ++k)
-    row.cells[k].missed = missed_by(row.cells[k], row.of.expected.of(hard_plans()[k]));
+  for (std::size_t k = 0; k < row.cells.size(); ++k)
+    row.cells[k].missed = missed_by(row.cells[k], row.of.expectation(hard_plans()[k]));
   return row;
 }
 
 }  // namespace
 
 std::vector<ModelPlan> hard_plans() {
-  std::vector<ModelPlan> plans;
-  for (const char* name : {"direct", "voxel", "random", "kdtree", "greedy", "trend", "trend+greedy"})
-    plans.push_back(*parse_plan(name));
+  std::vector<ModelPlan> plans = all_plans();
+  std::erase_if(plans, [](const ModelPlan& plan) {
+    return plan.base == Base::trend && plan.method != &kTrendMethod && plan.method != ModelPlan{}.method;
+  });
   return plans;
 }
 
 std::string missed_by(const HardCell& cell, const HardExpectation& expected) {
-  if (expected.refusal != nullptr) {
+  if (!expected.refusal.empty()) {
     if (cell.refusal.empty()) return "fitted, expected a refusal";
     return cell.refusal.find(expected.refusal) != std::string::npos
                ? ""
-               : "refused with another reason, expected \"" + std::string(expected.refusal) + "\"";
+               : "refused with another reason, expected \"" + expected.refusal + "\"";
   }
   if (!cell.refusal.empty()) return "refused, expected a fit";
   const HardFigures& found = cell.figures;
@@ -79,7 +66,7 @@ std::string missed_by(const HardCell& cell, const HardExpectation& expected) {
 }
 
 std::string expectation_text(const HardExpectation& expected) {
-  if (expected.refusal != nullptr) return "refused: \"" + std::string(expected.refusal) + "\"";
+  if (!expected.refusal.empty()) return "refused: \"" + expected.refusal + "\"";
   std::string text;
   const auto add = [&](double most, double scale, const char* what, const char* unit) {
     if (std::isfinite(most)) text += (text.empty() ? "" : ", ") + (what + three_digits(scale * most)) + unit;
@@ -92,10 +79,11 @@ std::string expectation_text(const HardExpectation& expected) {
 }
 
 Result<std::vector<HardRow>> run_hard(const FitControl& control) {
-  std::vector<HardCase> cases = all_cases();
+  auto cases = hard_cases();
+  if (!cases) return cases.error();
   std::vector<HardRow> rows;
-  for (HardCase& one : cases) {
-    const double done = static_cast<double>(rows.size()) / static_cast<double>(cases.size());
+  for (HardCase& one : *cases) {
+    const double done = static_cast<double>(rows.size()) / static_cast<double>(cases->size());
     if (!control.may_continue(done)) return interrupted();
     auto row = run_case(std::move(one), control.at(done));
     if (!row) return row.error();
@@ -143,7 +131,7 @@ Table cells_table(const std::vector<HardRow>& rows) {
       const HardCell& cell = row.cells[k];
       table.begin_row();
       table.add({"case", "case"}, row.of.name);
-      table.add({"kind", ""}, kind_name(row.of.kind));
+      table.add({"kind", ""}, kHardKinds[static_cast<std::size_t>(row.of.kind)]);
       table.add({"method", "method"}, plan_name(hard_plans()[k]));
       table.add({"status", "status"}, cell.refusal.empty() ? "fitted" : "refused");
       table.add({"reason", "reason"}, cell.refusal);

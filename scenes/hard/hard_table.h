@@ -12,16 +12,12 @@
 
 namespace palpate {
 
-// The methods: those of the paper on the measured force, the trend, and the default.
+// The plans of the table: all methods on the measured force, the trend, and the default.
 std::vector<ModelPlan> hard_plans();
 
-struct HardCell {
-  HardFigures figures;
-  std::string refusal;  // empty: fitted
-  Eigen::Index rank = 0;
-  double condition_number = 0.0;
-  double seconds = 0.0;  // of the fit
-  std::string missed;    // what the expectation does not allow; empty: as expected
+struct HardCell : HardTraining::Fit {
+  HardFigures figures{};
+  std::string missed{};  // what the expectation does not allow; empty: as expected
 };
 
 struct HardRow {
@@ -44,7 +40,6 @@ std::string hard_answer(const std::vector<HardRow>& rows);
 
 // One row for each cell, with every figure.
 Table cells_table(const std::vector<HardRow>& rows);
-// The same as JSON (`palpate hard --json`).
 nlohmann::ordered_json hard_json(const std::vector<HardRow>& rows);
 // "✓ 99.8": whether the cell is as expected, and the percentage within the JND, or "refused".
 std::string cell_text(const HardCell& cell);

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "engine/base/random_stream.h"
 #include "engine/tick/replay.h"
 
 namespace palpate {
-namespace {
 
 constexpr double kPress_s = 0.3, kPulse_s = 0.6, kStill_s = 1.0, kReturn_s = 1.5, kEnd_s = 2.2;
 constexpr double kTick_s = 1e-3;
-
-}  // namespace
+constexpr double kHalfSpan_s = 50e-6;  // half the span of a central difference of a path
 
 Path training_path(int variant) {
   return [variant](double time_s) {
@@ -28,6 +28,39 @@ Path training_path(int variant) {
 
 Path scaled(const Path& path, double factor, double offset_m) {
   return [=](double time_s) { return offset_m + factor * path(time_s); };
+}
+
+std::vector<double> even_times(double seconds, double rate_Hz) {
+  std::vector<double> times_s;
+  for (double i = 0.0; i < seconds * rate_Hz; ++i) times_s.push_back(i / rate_Hz);
+  return times_s;
+}
+
+Press press_into(Block& block, const Path& path, const std::vector<double>& times_s, const PressSensors& sensors) {
+  RandomStream noise(sensors.seed, 0);
+  Press press;
+  press.recording.name = "press";
+  double last_s = times_s.front() - kHalfSpan_s;
+  block.reset(path(last_s));
+  for (const double time_s : times_s) {
+    double position_m = path(time_s);
+    const double velocity_m_per_s = (path(time_s + kHalfSpan_s) - path(time_s - kHalfSpan_s)) / (2.0 * kHalfSpan_s);
+    const double force_N = block.step(position_m, velocity_m_per_s, time_s - last_s);
+    if (sensors.encoder_step_m > 0.0)
+      position_m = sensors.encoder_step_m * std::round(position_m / sensors.encoder_step_m);
+    press.true_N.push_back(force_N);
+    press.recording.rows.push_back({time_s, position_m, force_N + sensors.force_noise_N * noise.normal(), 0.0, 0.0});
+    last_s = time_s;
+  }
+  return press;
+}
+
+std::shared_ptr<HardTraining> train_on(Recording recording) {
+  const TrainingScene scene{
+      "hard case",
+      {{FeatureKind::depth, 0.0, {}}, {FeatureKind::velocity, 0.0, {}}, {FeatureKind::lowpass_velocity, 0.17, {}}},
+      {}};
+  return std::make_shared<HardTraining>(ModelFits({prepare_recording(std::move(recording))}, scene), ModelPlan{});
 }
 
 HardFigures measure_press(const Press& press, const std::shared_ptr<const FittedModel>& model) {

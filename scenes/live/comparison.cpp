@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace palpate {
-namespace {
 
 // A longer gap between two snapshots is a stall; only this part of it counts as time.
 constexpr double kLongestStep_s = 0.1;
@@ -12,8 +11,6 @@ constexpr double kLongestStep_s = 0.1;
 constexpr double kBeginning_s = 0.05;
 // After 5 time constants a first-order filter has less than 1 % of its initial error.
 constexpr double kSettled_memories = 5.0;
-
-}  // namespace
 
 Comparison::Comparison(const SessionModels& models, ReferenceKind reference, const JndLine& jnd)
     : models_(models), jnd_(jnd), reference_(reference) {}
@@ -110,7 +107,7 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
   counted_s_ += step_s;
   for (const auto& [slot, i] : set.models) {
     if (!std::isnan(point.difference_over_jnd(slot, jnd_)))
-      slots_[slot].errors.add(static_cast<double>(point.force_N[slot]), static_cast<double>(point.reference_N), jnd_);
+      slots_[slot].errors.add(point.force_N[slot], point.reference_N, jnd_);
   }
 }
 

@@ -5,19 +5,12 @@
 #include <utility>
 
 namespace palpate {
-namespace {
 
 constexpr double kLongest_s = 60.0;  // of a trace
 
-}  // namespace
-
 void ExhibitTrace::clear() {
-  columns_.clear();
+  *this = {};
   columns_.reserve(static_cast<std::size_t>(kLongest_s / kColumn_s));
-  began_s_ = -1.0;
-  seconds_ = largest_ = 0.0;
-  strong_ = false;
-  largest_at_ = 0;
 }
 
 void ExhibitTrace::add(const ExhibitTick& tick) {

@@ -37,12 +37,6 @@ std::string ExhibitWords::operator()(const std::string& key, const std::string& 
   return text;
 }
 
-std::vector<std::string> ExhibitWords::keys() const {
-  std::vector<std::string> keys;
-  for (const auto& [key, text] : texts_) keys.push_back(key);
-  return keys;
-}
-
 Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder) {
   std::vector<ExhibitWords> languages;
   std::error_code missing;

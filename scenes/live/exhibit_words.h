@@ -20,7 +20,6 @@ class ExhibitWords {
 
   // The text of a key, with %1 and %2 replaced by `one` and `two`; the key itself where it has no text.
   std::string operator()(const std::string& key, const std::string& one = "", const std::string& two = "") const;
-  std::vector<std::string> keys() const;
 
  private:
   std::map<std::string, std::string> texts_;

@@ -4,7 +4,6 @@
 #include <utility>
 
 namespace palpate {
-namespace {
 
 constexpr double kSameEvent_s = 1.0;
 constexpr double kRememberedDeadlines = 10'000.0;
@@ -13,8 +12,6 @@ constexpr std::size_t kDeadlineMissed = fault_index(FaultSource::loop, loop_faul
 // What only the reader of the snapshots notices.
 constexpr const char* kDropped = "the window was too slow to show every tick";
 constexpr const char* kStall = "the haptics loop stood still for more than 50 ms";
-
-}  // namespace
 
 TickFaultLevel FaultLog::update(const LoopSnapshot& snapshot) {
   TickFaultLevel fault_level = TickFaultLevel::none;

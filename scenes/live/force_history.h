@@ -2,11 +2,13 @@
 // Thread guarantee: one thread.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <ranges>
 #include <vector>
 
 #include "engine/tick/haptics_tick.h"
@@ -46,8 +48,8 @@ struct HistoryPoint {
   double difference_over_jnd(std::size_t slot, const JndLine& jnd) const noexcept {
     const bool none = std::isnan(reference_N) || std::isnan(force_N[slot]) || (other_material >> slot & 1U) != 0;
     if (none || (in_contact && !counts)) return std::numeric_limits<double>::quiet_NaN();
-    const auto from_N = static_cast<double>(reference_N);
-    return in_contact ? (static_cast<double>(force_N[slot]) - from_N) / jnd.at(from_N) : 0.0;
+    const double from_N = reference_N;
+    return in_contact ? (force_N[slot] - from_N) / jnd.at(from_N) : 0.0;
   }
 };
 
@@ -64,20 +66,14 @@ class ForceHistory {
   }
   // Index of the first point at `loop_time_s` or later; size() if there is none. O(log size).
   std::size_t first_at(double loop_time_s) const noexcept {
-    std::size_t from = 0;
-    for (std::size_t to = size_; from < to;) {
-      const std::size_t middle = from + (to - from) / 2;
-      const bool before = (*this)[middle].loop_time_s < loop_time_s;
-      (before ? from : to) = before ? middle + 1 : middle;
-    }
-    return from;
+    const auto before = [&](std::size_t index) { return (*this)[index].loop_time_s < loop_time_s; };
+    return *std::ranges::partition_point(std::views::iota(std::size_t{0}, size_), before);
   }
   // The last point up to `loop_time_s`; null: there is none.
   const HistoryPoint* last_until(double loop_time_s) const noexcept {
     const std::size_t next = first_at(std::nextafter(loop_time_s, std::numeric_limits<double>::infinity()));
     return next > 0 ? &(*this)[next - 1] : nullptr;
   }
-  // Removes the forces of a slot from all points.
   void forget(std::size_t slot) noexcept {
     for (HistoryPoint& point : points_) point.force_N[slot] = point.sustained_over_jnd[slot] = std::nanf("");
   }

@@ -10,8 +10,7 @@
 #include "engine/live/pacer.h"
 #include "models/model/fitted_model.h"
 #include "models/samples/recording_faults.h"
-#include "scenes/live/hand_limits.h"
-#include "scenes/live/test_part.h"
+#include "scenes/live/session_recordings.h"
 #include "scenes/live/true_force.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/folders.h"
@@ -57,7 +56,6 @@ Result<std::vector<Recording>> take_recordings(const SessionRequest& request, Sc
   return recordings;
 }
 
-// The file of SessionRequest::test.
 std::string test_file_of(const SessionRequest& request, const Scene& scene) {
   if (!request.test.empty()) return request.test;
   const std::string replayed = replayed_file(request.device);
@@ -89,7 +87,7 @@ LiveSession::LiveSession(const SessionRequest& request, Parts parts)
       scene_(std::move(parts.scene)),
       device_(std::move(parts.device)),
       set_apart_(parts.test_part.has_value()),
-      models_(scene_, request.seed, notices_, std::move(parts.training)),
+      models_(scene_, request.seed, notices_, std::move(parts.training), request.ready_models),
       comparison_(models_,
                   device_->measures_force() ? ReferenceKind::measured
                   : scene_.material         ? ReferenceKind::truth
@@ -98,7 +96,6 @@ LiveSession::LiveSession(const SessionRequest& request, Parts parts)
       test_(device_->replay(), make_test(std::move(parts.test_part)), scene_.jnd),
       buffer_(kSnapshotsAtOnce) {}
 
-// The recording to test on where none is replayed.
 ModelTest::MakeRecording LiveSession::make_test(std::optional<Recording> part) const {
   if (part) return [part = std::move(*part)](const auto&) -> Result<Recording> { return part; };
   const std::string file = test_file();
@@ -365,13 +362,11 @@ void LiveSession::reset_figures() {
 std::string LiveSession::device_words() const {
   const DeviceHealth& device = newest_.device;
   // The fault that made zeroing necessary comes first: an unplugged device cannot be zeroed.
-  if (device.zeroing == Zeroing::needed && (device.faults & device_fault::kLosesPosition) != 0) {
+  if (device.zeroing == Zeroing::needed && (device.faults & device_fault::kLosesPosition) != 0)
     return device_fault_words(device.faults & device_fault::kLosesPosition).front();
-  }
   std::string words = zeroing_words(device);
-  if (words.empty() && newest_.dead_man_released) {
+  if (words.empty() && newest_.dead_man_released)
     words = controls_.dead_man == DeadMan::grip ? "no force: hold the switch on the handle" : "no force: hold G";
-  }
   return words;
 }
 
@@ -381,9 +376,7 @@ void LiveSession::move_surface(bool moved) {
 }
 
 Status LiveSession::start_recording(const std::string& path) {
-  if (!has_reference()) {
-    return Error{"there is no force to record yet: no reference is ready; wait for one"};
-  }
+  if (!has_reference()) return Error{"there is no force to record yet: no reference is ready; wait for one"};
   RecorderRequest request;
   request.path = path;
   request.force = comparison_.reference();

@@ -31,23 +31,24 @@
 namespace palpate {
 
 struct SessionRequest {
-  std::string scene;  // empty: silicone_block, or with model files only the scene that the first was fitted for
+  std::string scene{};  // empty: silicone_block, or with model files only the scene that the first was fitted for
   // Training set of the models. Empty: the recording that the device replays, else the scene's virtual material.
-  std::vector<std::string> recordings;
+  std::vector<std::string> recordings{};
   // The recording that models are tested on. Empty: the one that the device replays, else the last training recording,
   // else that of the scene's virtual material with another seed. The last part of a recording that is in the training
   // set as well is set apart for the test, if models are fitted to the rest or were (this names it).
   std::string test{};
   std::string device = "auto";
-  std::vector<std::string> models;  // methods or model files; empty: those of `line_up`
-  std::string line_up;  // a name of line_ups() (model_request.h); empty or unknown: the scene's default models
+  std::vector<std::string> models{};  // methods or model files; empty: those of `line_up`
+  std::string line_up{};  // a name of line_ups() (model_request.h); empty or unknown: the scene's default models
   // Additional models, of an earlier session (SessionModels::requests). `refits` false: the session has only these.
-  std::vector<ModelRequest> kept;
+  std::vector<ModelRequest> kept{};
   bool refits = true;
-  std::uint64_t seed = 1;    // of the training recording and the fits; the hand and the test have seed + 1
-  bool realtime = true;      // asks for real-time scheduling
-  std::string data_folder;   // for fault files; empty: the working directory
-  DeviceBus* bus = nullptr;  // outlives the session; null: the bus of this machine
+  std::uint64_t seed = 1;      // of the training recording and the fits; the hand and the test have seed + 1
+  bool realtime = true;        // asks for real-time scheduling
+  std::string ready_models{};  // a folder (scenes/worker/ready_models.h); empty: every model is fitted
+  std::string data_folder{};   // for fault files; empty: the working directory
+  DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
 };
 
 // The devices that need no argument after their name, for code that may not include devices/. Blocks: opens and
@@ -120,7 +121,6 @@ class LiveSession {
   std::string device_words() const;  // what the user has to do so that it renders force; may be empty
   bool renders_force() const noexcept { return device_->holder() == Holder::person; }
   void start_zeroing() { device_->start_zeroing(); }  // call it while the tool is at its rest position
-  // Null where the device has none.
   ToolInput* tool_input() const noexcept { return device_->tool_input(); }
   ReplayControl* replay() const noexcept { return device_->replay(); }
   void move_surface(bool moved);  // of the replay (ModelTest::move); clears the errors

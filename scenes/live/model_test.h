@@ -53,7 +53,6 @@ class ModelTest {
     UnitErrors as_recorded, surface_moved;  // without samples if there is no recording
     Timing tick;                            // a whole tick with this model alone
   };
-  // Null: not tested yet.
   const Tested* find(const ForceModel* model) const noexcept;
   // Its errors with the surface as it is now (`moved`). `tested`: of this object.
   const UnitErrors& errors(const Tested& tested) const noexcept {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "engine/base/text.h"
 #include "engine/tick/haptics_tick.h"
@@ -40,8 +39,9 @@ TimedSamples test_strokes(double depth_m) {
   return strokes;
 }
 
-SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training)
-    : scene_(scene), notices_(notices), worker_(scene_, seed, std::move(training)) {}
+SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training,
+                             const std::string& ready)
+    : scene_(scene), notices_(notices), worker_(scene_, seed, std::move(training), ready) {}
 
 Status SessionModels::start(const std::vector<ModelRequest>& requests, bool claimed) {
   for (const ModelRequest& request : requests) {
@@ -125,7 +125,8 @@ void SessionModels::unite_equal() {
   for (Slot& slot : slots_) {
     if (slot.takes_part() && !slot.renamed) slot.info.name = distinct_name(slot.model->name(), &slot);
   }
-  select_what_is_there();
+  const auto shown = ready_slots();
+  if (!shown.empty() && !slots_[selected_].takes_part()) selected_ = shown.front();
 }
 
 std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noexcept {
@@ -226,12 +227,6 @@ void SessionModels::use_requests(const std::vector<ModelRequest>& requests) {
   unite_equal();
 }
 
-// If the active model is not shown, selects the first shown model, if there is one.
-void SessionModels::select_what_is_there() {
-  const auto shown = ready_slots();
-  if (!shown.empty() && !slots_[selected_].takes_part()) selected_ = shown.front();
-}
-
 bool SessionModels::remove(std::size_t index) {
   if (index >= slots_.size() || slots_[index].removed) return false;
   Slot& slot = slots_[index];
@@ -251,8 +246,6 @@ void SessionModels::free(std::size_t index) {
   freed_.push_back(index);
   for (PublishedSet& set : sets_) set.models.erase(index);
 }
-
-std::vector<std::size_t> SessionModels::read_freed() { return std::exchange(freed_, {}); }
 
 void SessionModels::rename(std::size_t slot, const std::string& name) {
   if (slot >= slots_.size() || name.empty()) return;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/live/live_tick.h"
@@ -62,9 +63,10 @@ struct PublishedSet {
 
 class SessionModels {
  public:
-  // `scene` and `notices` outlive this. `seed` is that of the training recording and the fits. `training`: see
-  // ModelWorker.
-  SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training = {});
+  // `scene` and `notices` outlive this. `seed` is that of the training recording and the fits. `training`,
+  // `ready`: see ModelWorker.
+  SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training = {},
+                const std::string& ready = "");
   SessionModels(const SessionModels&) = delete;
   SessionModels& operator=(const SessionModels&) = delete;
 
@@ -121,7 +123,7 @@ class SessionModels {
   // Removes a model permanently. Returns false, with a notice, for the last model.
   bool remove(std::size_t slot);
   // The slots whose models were removed or replaced since the last call. Discard all results of theirs.
-  std::vector<std::size_t> read_freed();
+  std::vector<std::size_t> read_freed() { return std::exchange(freed_, {}); }
   // Appends a number where another listed slot has the name.
   void rename(std::size_t slot, const std::string& name);
   // Fits the model, again if it is ready, with this number of centres, before those that wait. Ignored unless
@@ -170,7 +172,6 @@ class SessionModels {
   void unite_equal();
   std::optional<std::size_t> room() const noexcept;
   bool has_room(const std::string& what);
-  void select_what_is_there();
   std::optional<std::size_t> slot_of_job(std::size_t job) const noexcept;
   void free(std::size_t index);
   std::string distinct_name(const std::string& name, const Slot* but) const;

@@ -57,7 +57,7 @@ Status SessionRecorder::start(const RecorderRequest& request) {
   request_ = request;
   ++number_;
   time_ = {};
-  counts_ = {};
+  without_force_ = unusable_ = 0;
   restart_pending_ = false;
   dropped_before_ = loop_.recorded().dropped();
   rows_.store(0, std::memory_order_relaxed);
@@ -116,12 +116,12 @@ void SessionRecorder::write(const RecordedSample& sample) {
   if (sample.recording != number_) return;
   restart_pending_ = restart_pending_ || sample.restart;
   if (!sample.usable || !std::isfinite(sample.tool.time_s)) {
-    ++counts_.unusable;
+    ++unusable_;
     return;
   }
   const double force_N = request_.columns.force ? sample.*kForces[static_cast<std::size_t>(request_.force)] : 0.0;
   if (!std::isfinite(force_N)) {
-    ++counts_.without_force;
+    ++without_force_;
     return;
   }
   const double gaps_s = time_.gaps_s();
@@ -132,13 +132,12 @@ void SessionRecorder::write(const RecordedSample& sample) {
                   general(kStreamGap_s, 3) + " s before it were not measured");
   }
   if (!time_s) {
-    ++counts_.unusable;
+    ++unusable_;
     return;
   }
   const ToolSample& tool = sample.tool;
-  if (!writer_->add({*time_s, tool.position_m, force_N, tool.velocity_m_per_s, tool.acceleration_m_per_s2})) {
-    ++counts_.unusable;
-  }
+  if (!writer_->add({*time_s, tool.position_m, force_N, tool.velocity_m_per_s, tool.acceleration_m_per_s2}))
+    ++unusable_;
 }
 
 Notice SessionRecorder::finish() {
@@ -152,8 +151,8 @@ Notice SessionRecorder::finish() {
   }
   return {"recorded " + std::to_string(writer_->rows()) + " rows (" + fixed(time_.last_s() - time_.gaps_s(), 1) +
               " s) into " + request_.path + counted(dropped, "were lost because the disk was too slow") +
-              counted(counts_.unusable, "that the loop could not use were left out") +
-              counted(counts_.without_force, "without a force were left out"),
+              counted(unusable_, "that the loop could not use were left out") +
+              counted(without_force_, "without a force were left out"),
           dropped > 0};
 }
 

@@ -84,10 +84,6 @@ class SessionRecorder {
   std::optional<Notice> read_outcome();
 
  private:
-  struct Counts {
-    std::uint64_t without_force = 0;
-    std::uint64_t unusable = 0;
-  };
   void work();
   void drain();
   void write(const RecordedSample& sample);
@@ -98,7 +94,7 @@ class SessionRecorder {
   std::uint32_t number_ = 0;
   std::optional<RecordingWriter> writer_;
   RecordingTime time_;
-  Counts counts_;
+  std::uint64_t without_force_ = 0, unusable_ = 0;  // samples that were left out
   bool restart_pending_ = false;
   std::uint64_t dropped_before_ = 0;
   std::vector<RecordedSample> buffer_;

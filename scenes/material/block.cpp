@@ -1,10 +1,8 @@
 #include "scenes/material/block.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace palpate {
-namespace {
 
 constexpr double kLongestSubstep_s = 1e-4;
 constexpr double kMostSubsteps = 1000.0;
@@ -12,8 +10,6 @@ constexpr double kFlat_m = 1e-15;
 // Tolerance of the force on a free surface, far below the noise of force sensors. An exact root would take most of the
 // time of a tick.
 constexpr double kFree_N = 1e-11;
-
-}  // namespace
 
 void Block::reset(double position_m) noexcept {
   position_m_ = position_m;
@@ -24,9 +20,8 @@ void Block::reset(double position_m) noexcept {
 }
 
 double Block::step(double position_m, double velocity_m_per_s, double dt_s) noexcept {
-  if (!std::isfinite(position_m) || !std::isfinite(velocity_m_per_s) || !std::isfinite(dt_s) || dt_s <= 0.0) {
+  if (!std::isfinite(position_m) || !std::isfinite(velocity_m_per_s) || !std::isfinite(dt_s) || dt_s <= 0.0)
     return force_N_;
-  }
   // The tolerance of 1e-9 gives ten sub-steps for 1 ms, which is inexact in binary.
   const int count =
       static_cast<int>(std::clamp(std::ceil(dt_s / kLongestSubstep_s * (1.0 - 1e-9)), 1.0, kMostSubsteps));

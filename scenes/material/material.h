@@ -12,15 +12,17 @@
 
 namespace palpate {
 
+inline constexpr double kUsualRecording_s = 41.499, kUsualForceRange_N = 10.0;
+
 struct Material {
   std::string_view name;
   std::string_view summary;           // one line
   std::string_view relaxation_times;  // the true ones, in words
   // Returns an undeformed block with the parameters of this material.
   std::unique_ptr<Block> (*make_block)() = nullptr;
-  double recording_seconds = 41.499;  // default length of a recording
-  double force_range_N = 10.0;        // default range of the force sensor
-  HandSettings hand{};                // default hand of a recording
+  double recording_seconds = kUsualRecording_s;                 // default length of a recording
+  double force_range_N = kUsualForceRange_N;                    // default range of the force sensor
+  double strongest_press_N = HandSettings{}.strongest_press_N;  // default of the hand of a recording
 };
 
 // All materials, in the order of lists.

@@ -108,9 +108,8 @@ class MaxwellBlock final : public Block {
     double friction_N = 0.0;
   };
   void prepare() noexcept override {
-    for (std::size_t b = 0; b < kMaximumBranches; ++b) {
+    for (std::size_t b = 0; b < kMaximumBranches; ++b)
       steps_[b] = MaxwellStep(substep_s(), material_.branches[b].relaxation_time_s);
-    }
   }
   double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override {
     const Inner inner = inner_at(surface_m);

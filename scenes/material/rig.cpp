@@ -43,7 +43,7 @@ double encoded(double position_m, double step_m) {
 // Fills the settings that are not given with those of the material.
 RigSettings suited(RigSettings settings, const Material& material) {
   if (settings.sensors.force_range_N == 0.0) settings.sensors.force_range_N = material.force_range_N;
-  if (!settings.hand) settings.hand = material.hand;
+  if (!settings.hand) settings.hand = {.strongest_press_N = material.strongest_press_N};
   return settings;
 }
 
@@ -61,15 +61,12 @@ double Hand::held_depth_m(double force_N) const noexcept {
 Result<Rig> Rig::create(const RigSettings& settings) {
   const Result<Material> material = find_material(settings.material);
   if (!material) return material.error();
-  if (!(settings.rate_Hz >= kSlowestRate_Hz && settings.rate_Hz <= kFastestRate_Hz)) {
+  if (!(settings.rate_Hz >= kSlowestRate_Hz && settings.rate_Hz <= kFastestRate_Hz))
     return Error{"the rate must be 10 to 20000 Hz"};
-  }
   const double seconds = settings.seconds == 0.0 ? material->recording_seconds : settings.seconds;
   if (!(seconds > 0.0)) return Error{"the seconds must be a number above 0"};
   const double rows = std::floor(seconds * settings.rate_Hz + 0.5);
-  if (rows < static_cast<double>(kRecordingMinimumRows)) {
-    return Error{"seconds times rate must give at least 10 rows"};
-  }
+  if (rows < static_cast<double>(kRecordingMinimumRows)) return Error{"seconds times rate must give at least 10 rows"};
   if (rows > kMostRows) return Error{"seconds times rate must give at most 50 million rows"};
   return Rig(settings, *material, static_cast<std::size_t>(rows));
 }

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {
@@ -22,18 +23,6 @@ constexpr std::size_t kRandomLetters = 6;  // of mkdtemp
 // A folder is locked within this time after it was made.
 constexpr std::chrono::seconds kLockedBy(10);
 
-// Quotes the text for the shell, so that no character has a special meaning.
-std::string shell_quoted(const std::string& text) {
-  std::string safe(1, '\'');
-  for (const char letter : text) {
-    if (letter == '\'') safe.append("'\\'");
-    safe.push_back(letter);
-  }
-  safe.push_back('\'');
-  return safe;
-}
-
-// Whether the command succeeds; its output is appended to `text`.
 bool run_in_shell(const std::string& command, std::string& text) {
   std::FILE* const output = popen(command.c_str(), "r");
   if (output == nullptr) return false;
@@ -55,7 +44,7 @@ std::string first_line(const std::string& text) {
 // Runs gnuplot without the user's settings.
 Status run_gnuplot(const std::string& folder, const std::string& script) {
   std::string message;
-  if (run_in_shell("cd " + shell_quoted(folder) + " && LC_ALL=C gnuplot -d " + shell_quoted(script) +
+  if (run_in_shell("cd " + shell_word(folder) + " && LC_ALL=C gnuplot -d " + shell_word(script) +
                        " 2>&1 >/dev/null </dev/null",
                    message))
     return {};
@@ -126,9 +115,8 @@ Status draw_plots(const std::string& folder, const std::vector<Plot>& plots) {
     for (const char* ending : {".svg", ".png"}) {
       const std::string drawn = plot.name + ending;
       std::error_code missing;
-      if (const auto bytes = fs::file_size(folder + "/" + drawn, missing); missing || bytes == 0) {
+      if (const auto bytes = fs::file_size(folder + "/" + drawn, missing); missing || bytes == 0)
         return Error{"gnuplot wrote no " + drawn + "; check the free space, and that it is gnuplot 5.4 or newer"};
-      }
     }
   }
   return {};

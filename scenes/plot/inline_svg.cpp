@@ -11,9 +11,8 @@ namespace {
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
   std::string result;
   std::size_t at = 0;
-  for (std::size_t next; (next = text.find(from, at)) != std::string::npos; at = next + from.size()) {
+  for (std::size_t next; (next = text.find(from, at)) != std::string::npos; at = next + from.size())
     result.append(text, at, next - at).append(to);
-  }
   return result.append(text, at, std::string::npos);
 }
 
@@ -49,9 +48,8 @@ std::string inline_svg(const std::string& svg, const std::string& name, const st
   const std::size_t about = body.find("<title>");
   const std::size_t after = body.find("</desc>");
   if (about != std::string::npos && after != std::string::npos) body.erase(about, after + 7 - about);
-  for (const char* reference : {"id=\"", "id='", "xlink:href=\"#", "xlink:href='#"}) {
+  for (const char* reference : {"id=\"", "id='", "xlink:href=\"#", "xlink:href='#"})
     body = replaced(body, reference, std::string(reference).append(name).append("-"));
-  }
   body = replaced(body, "url(#", std::string("url(#").append(name).append("-"));
   body = replaced(body, "xlink:href", "href");
   const std::pair<std::string_view, std::string_view> variables[] = {{"#222222", "var(--ink)"},

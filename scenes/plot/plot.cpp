@@ -149,9 +149,8 @@ Result<std::string> plot_script(Plot plot) {
   text += "width = " + std::to_string(static_cast<int>(plot.width * kPageWidth)) +
           "\nheight = " + std::to_string(height) + "\n" + *style;
   for (std::size_t p = 0; p < plot.panels.size(); ++p) {
-    for (std::size_t s = 0; s < plot.panels[p].series.size(); ++s) {
+    for (std::size_t s = 0; s < plot.panels[p].series.size(); ++s)
       text += data_block(plot.panels[p].series[s], data_name(p, s));
-    }
   }
   for (const char* medium : {"svg", "png"}) {
     text += "eval " + std::string(medium) + "\nset output '" + plot.name + "." + medium + "'\n";

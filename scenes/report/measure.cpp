@@ -19,19 +19,17 @@ class Progress {
  public:
   Progress(FitControl whole, double total) : whole_(std::move(whole)), total_(total) {}
 
-  // Begins the next part and returns its control, which is valid until the next call.
+  // The control of the next part.
   FitControl next(double seconds) {
-    done_ += part_;
-    part_ = seconds;
-    return FitControl{
-        [this](double fraction) { return whole_.may_continue(std::min(1.0, (done_ + part_ * fraction) / total_)); }};
+    const double begin = std::min(1.0, done_ / total_);
+    done_ += seconds;
+    return whole_.part(begin, std::min(1.0, done_ / total_));
   }
 
  private:
   FitControl whole_;
   double total_;
   double done_ = 0.0;
-  double part_ = 0.0;
 };
 
 // One fit of one fold. Several rows have the same where they ask for the same.

@@ -1,7 +1,5 @@
 #include "scenes/report/paper.h"
 
-#include <algorithm>
-
 #include "engine/base/text.h"
 #include "scenes/plot/inline_svg.h"
 #include "scenes/report/publish.h"
@@ -32,18 +30,12 @@ Figure bins_figure(const PaperData& data, int number, const std::string& title, 
     panel.x.title = "Force [N]";
     panel.y = {relative ? "Relative error" : "Error", relative ? "" : "N", true};
     panel.names_at_ends = true;
-    double from_N = 1e300;
-    double to_N = 0.0;
     for (const PaperModel& model : run.models) {
-      Series series{model.name, model.colour, Mark::curve, {}};
-      for (const ForceBin& bin : model.errors.bins) {
-        series.rows.push_back({bin.force_N.mean(), value(bin)});
-        from_N = std::min(from_N, bin.force_N.mean());
-        to_N = std::max(to_N, bin.force_N.mean());
-      }
-      panel.series.push_back(std::move(series));
+      Series& series = panel.series.emplace_back(Series{model.name, model.colour, Mark::curve, {}});
+      for (const ForceBin& bin : model.errors.bins) series.rows.push_back({bin.force_N.mean(), value(bin)});
     }
-    panel.series.push_back(jnd_curve(data.jnd, from_N, to_N, relative));
+    const std::vector<PlotRow> rows = panel.series.front().rows;  // at the same forces as all
+    panel.series.push_back(jnd_curve(data.jnd, rows.front().x, rows.back().x, relative));
     figure.plot.panels.push_back(std::move(panel));
   }
   return figure;
@@ -83,15 +75,15 @@ Figure jnd_figure(const PaperData& data) {
   figure.plot.columns = 2;
   figure.caption =
       "Figure 3: JND of twelve simulated subjects in the paper's study, with standard errors, and the point of Pang, "
-      "Tan & Durlach (1991); the line through them, and the paper's conservative line, 0.065 N + 6.33 %. Of the "
-      "paper's "
-      "own points only 13.3 % at 2.5 N is published.";
+      "Tan & Durlach (1991); the line through them, and the paper's conservative line, 0.065 N + 6.33 %. The paper's "
+      "13.3 % at 2.5 N is the only one of its points with a published value.";
   for (const bool relative : {false, true}) {
     Panel panel;
     panel.x.title = "Reference force [N]";
     panel.y.title = relative ? "Relative JND" : "JND [N]";
     Series study{"simulated study", kGreedyMethod.colour, Mark::bars, {}};
     Series other{"Pang et al.", kRandomMethod.colour, Mark::bars, {}};
+    Series papers{"the paper", kMeasuredColour, Mark::bars, {{2.5, relative ? 0.133 : 0.133 * 2.5}}};
     for (const JndPoint& point : data.points) {
       const double by = relative ? point.reference_N : 1.0, error_N = point.standard_error_N;
       Series& to = point.source == kPangTanDurlach.source ? other : study;
@@ -103,7 +95,7 @@ Figure jnd_figure(const PaperData& data) {
     fitted.mark = Mark::line;
     Series conservative = jnd_curve(data.jnd, 0.2, 3.0, relative);
     conservative.name = "conservative line";
-    panel.series = {std::move(study), std::move(other), std::move(fitted), std::move(conservative)};
+    panel.series = {std::move(study), std::move(other), std::move(papers), std::move(fitted), std::move(conservative)};
     figure.plot.panels.push_back(std::move(panel));
   }
   return figure;
@@ -190,13 +182,12 @@ Table bins_table(const PaperData& data) {
 std::string protocol_words(const PaperData& data) {
   std::string text =
       "Samples at steps of 50 mN; depth, velocity and two low-passed velocities; rows scaled by 1/f; linear polynomial "
-      "tail; pseudo-inverses by truncated singular values, of the interpolation a smoothed Cholesky factor; 100 "
-      "centres; "
-      "no trend, trust or surface search. The paper leaves kernel, normalisation and truncation open: they have the "
-      "lowest cross-validated error in the training recording. Other recordings: the two are exchanged. Times are of "
-      "the fastest of several rounds. Forces are "
-      "cut at 0 and at 1.2 times the largest measured one, as of every model here. Bins are two JND wide, those of "
-      "fewer than 20 samples in contact are left out.";
+      "tail; pseudo-inverses by truncated singular values, of the interpolation a smoothed Cholesky factor; a grid of "
+      "25x11x11x11 nodes, half way between even steps and quantiles of the samples; 100 centres; no trend, trust or "
+      "surface search. The paper leaves kernel, normalisation and truncation open: they have the lowest "
+      "cross-validated error in the training recording. Other recordings: the two are exchanged. Times of fits are "
+      "processor times, of the fastest of several rounds. Forces are cut at 0 and at 1.2 times the largest measured "
+      "one, as of every model here. Bins are two JND wide, those of fewer than 20 samples in contact are left out.";
   for (const PaperRun& run : data.runs) {
     text.append(" ").append(run_name(run)).append(": ").append(with_thousands(std::to_string(run.trained)));
     text.append(" samples to train, ").append(with_thousands(std::to_string(run.tested)));

@@ -3,7 +3,7 @@
 //   recordings  one for training and one for the test, 41,499 and 45,272 samples at 1 kHz, with accelerometer
 //   sites       samples at steps of 50 mN; depth, velocity and two low-pass velocities, with the paper's relaxation
 //               times and with times fitted to the recording; rows scaled by 1/f
-//   methods     interpolation of all sites on an even 25x11x11x11 grid; 100 centres: random, kD-tree, greedy with 20
+//   methods     interpolation of all sites on a 25x11x11x11 grid; 100 centres: random, kD-tree, greedy with 20
 //               and with 100 candidates per step
 //   open        kernel, normalisation and truncation: selected by cross-validation on the training recording
 //   errors      of the samples in contact of the test, through the tick
@@ -27,7 +27,7 @@ namespace palpate {
 struct PaperModel {
   std::string name;
   std::uint32_t colour = 0;  // 0xRRGGBB
-  double fit_seconds = 0.0;
+  double fit_seconds = 0.0;  // processor time; of random with the selection of the open choices
   ModelTiming time;
   ErrorSummary errors;  // without the bins of few samples
 };
@@ -35,25 +35,26 @@ struct PaperModel {
 // The results for one material and one pair of relaxation times.
 struct PaperRun {
   std::string material;
-  bool fitted_times = false;    // false: the paper's relaxation times
-  std::vector<double> times_s;  // relaxation times
-  std::uint64_t trained = 0;    // number of training samples
-  std::uint64_t tested = 0;     // number of test samples
+  bool fitted_times = false;      // false: the paper's relaxation times
+  std::vector<double> times_s{};  // relaxation times
+  std::uint64_t trained = 0;      // number of training samples
+  std::uint64_t tested = 0;       // number of test samples
   std::uint64_t sites = 0;
   std::string choices{};                // kernel, normalisation and truncation of the centres, in words
   std::vector<PaperModel> models{};     // in the order of PaperMethod
   std::vector<PaperModel> repeated{};   // greedy-100 with other seeds
+  std::vector<PaperModel> settings{};   // kD-tree with every kernel and normalisation and several truncations
   std::vector<PaperModel> exchanged{};  // as `models`, trained on the test recording and tested on the other
 };
 enum PaperMethod : std::size_t { kGridOfAll, kRandomCentres, kTreeCentres, kGreedy20, kGreedy100, kPaperMethods };
 
-// Time of a fit by the number of sites; figure 8.
+// Processor time of a fit by the number of sites; figure 8.
 struct FitTimes {
   std::size_t sites = 0;
   std::vector<double> seconds;  // in the order of PaperMethod
   double solve_s = 0.0;         // of the interpolation, without its grid
 };
-// Time of the interpolant by the dimension of the domain; figure 2.
+// Processor time of the interpolant by the dimension of the domain; figure 2.
 struct DimensionTimes {
   std::size_t dimensions = 0;
   double solve_s = 0.0;  // fit of the weights of all sites

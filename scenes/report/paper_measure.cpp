@@ -1,6 +1,7 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
+#include <optional>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
@@ -28,10 +29,12 @@ constexpr std::uint64_t kMostSeeds = 3;  // of greedy-100
 // Rounds of a measured time; of long ones at least two.
 constexpr int kRounds = 4;
 constexpr double kLong_s = 1.0;
+// The range of the selection (models/fit/open_choices.cpp).
+constexpr double kRangeExponents[] = {0.5, 1.0};
+constexpr double kTruncations[] = {1e-14, 1e-9, 1e-5};
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+// The processor time of all threads, because the cost of a method does not depend on other programs.
+double processor_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 ModelPlan plan_of(std::size_t which, std::uint64_t seed = 1) {
   const Method* methods[kPaperMethods] = {&kVoxelMethod, &kRandomMethod, &kKdTreeMethod, &kGreedyMethod,
@@ -49,23 +52,15 @@ std::uint32_t colour_of(std::size_t which) {
   return which == kGridOfAll ? kDirectMethod.colour : which == kGreedy20 ? 0xCC79A7 : plan_of(which).method->colour;
 }
 
-MethodTask task_of(std::size_t which, const Sites& sites, const Eigen::VectorXd& jnd_N) {
-  MethodTask task{sites, jnd_N};
-  task.candidates = plan_of(which).candidates;
-  task.grid = kGrid;
-  return task;
-}
-
 class PaperMeasurement {
  public:
-  PaperMeasurement(bool quick, const FitControl& control) : quick_(quick), control_(control) {}
+  PaperMeasurement(bool quick, const FitControl& control) : control_(control) { data_.quick = quick; }
 
   Result<PaperData> run() {
     const auto scene = load_scene("silicone_block");
     if (!scene) return scene.error();
     scene_ = *scene;
     data_.jnd = scene_.jnd;
-    data_.quick = quick_;
     for (const char* material : {"silicone", "maxwell"}) {
       if (const Status status = run_material(material); !status) return status.error();
     }
@@ -77,21 +72,21 @@ class PaperMeasurement {
   // Begins the next of the parts, and returns its control.
   FitControl part() {
     done_ += 1.0;
-    const double parts = quick_ ? 90.0 : 190.0;
+    const double parts = data_.quick ? 140.0 : 290.0;
     return {
         [this, parts](double fraction) { return control_.may_continue(std::min(0.99, (done_ + fraction) / parts)); }};
   }
 
-  // The time of the fastest of several rounds of `work`, which may fail.
+  // The processor time of the fastest of several rounds of `work`, which may fail.
   template <typename Work>
   Result<double> fastest(const Work& work) {
     double least_s = 1e300, most_s = 0.0;
     for (int round = 0; round < kRounds && (round < 2 || least_s < kLong_s); ++round) {
-      const auto start = std::chrono::steady_clock::now();
+      const double start_s = processor_s();
       const auto done = work();
       if (!done) return done.error();
-      least_s = std::min(least_s, seconds_since(start));
-      most_s = std::max(most_s, seconds_since(start));
+      least_s = std::min(least_s, processor_s() - start_s);
+      most_s = std::max(most_s, processor_s() - start_s);
     }
     data_.slowest_round = std::max(data_.slowest_round, most_s / least_s);
     return least_s;
@@ -112,11 +107,11 @@ class PaperMeasurement {
   }
 
   Status run_material(const std::string& material) {
-    auto made = virtual_recordings(material, quick_ ? kQuickShare : 1.0);
+    auto made = virtual_recordings(material, data_.quick ? kQuickShare : 1.0);
     if (!made) return made.error();
     const PreparedRecordingPointer train = (*made)[0], test = (*made)[1];
     for (const bool fitted : {false, true}) {
-      if (fitted && quick_) continue;
+      if (fitted && data_.quick) continue;
       // The scene's relaxation times are the paper's, 0.17 and 1.27 s.
       const auto prepared = prepare(train, training_scene(scene_), fitted);
       if (!prepared) return prepared.error();
@@ -126,78 +121,86 @@ class PaperMeasurement {
                    train->recording.rows.size(),
                    test->recording.rows.size(),
                    static_cast<std::uint64_t>(prepared->sites.count())};
-      MethodFit direct, centres;
-      if (const Status status = measure_models(run, *prepared, test->recording, direct, centres); !status)
-        return status;
-      run.choices = choices_text(*centres.choices);
+      if (const Status status = measure_models(run, *prepared, test->recording, true); !status) return status;
+      run.choices = choices_text(*centres_);
+      if (data_.runs.empty()) {
+        if (const Status status = time_sites(*prepared); !status) return status;
+        if (const Status status = time_dimensions(train); !status) return status;
+      }
       const auto exchanged = prepare(test, training_scene(scene_), fitted);
       if (!exchanged) return exchanged.error();
-      PaperRun other;
-      other.material = material;
-      MethodFit ignored_direct, ignored_centres;
-      if (const Status status = measure_models(other, *exchanged, train->recording, ignored_direct, ignored_centres);
-          !status)
-        return status;
+      PaperRun other{material};
+      if (const Status status = measure_models(other, *exchanged, train->recording, false); !status) return status;
       run.exchanged = std::move(other.models);
       data_.runs.push_back(std::move(run));
-      if (data_.runs.size() > 1) continue;
-      if (const Status status = time_sites(*prepared, *direct.choices, *centres.choices); !status) return status;
-      if (const Status status = time_dimensions(train, *direct.choices); !status) return status;
     }
     return {};
   }
 
-  // Fits the methods, and greedy-100 with other seeds, and evaluates them on a recording. `direct`: receives the
-  // interpolation, `centres`: the fit whose open choices all methods with 100 centres have.
-  Status measure_models(PaperRun& run, const PreparedTraining& prepared, const Recording& tested, MethodFit& direct,
-                        MethodFit& centres) {
+  // Fits the methods, and evaluates them on a recording. Sets the open choices of the interpolation and those of all
+  // methods with 100 centres. `varies`: also fits greedy-100 with other seeds and kD-tree with other open choices.
+  Status measure_models(PaperRun& run, const PreparedTraining& prepared, const Recording& tested, bool varies) {
     std::vector<EvaluatedModel> evaluated;
     std::vector<ModelPointer> models;
-    const auto add = [&](std::vector<PaperModel>& to, std::size_t which, std::uint64_t seed) -> Status {
-      const bool grid = which == kGridOfAll;
-      const auto start = std::chrono::steady_clock::now();
-      auto fit = fit_method(prepared, plan_of(which, seed), part(), grid ? &direct : nullptr,
-                            grid || !centres.choices ? (grid ? &*direct.choices : nullptr) : &*centres.choices);
+    const auto interpolation = fit_method(prepared, {.base = Base::force, .method = &kDirectMethod}, part());
+    if (!interpolation) return Error{run.material + ", direct: " + interpolation.error().message};
+    direct_ = interpolation->choices;
+    centres_.reset();
+    const auto add = [&](std::vector<PaperModel>& to, std::size_t which, std::uint64_t seed,
+                         const std::optional<OpenChoices>& choices) -> Status {
+      const double start_s = processor_s();
+      auto fit = fit_method(prepared, plan_of(which, seed), part(), which == kGridOfAll ? &*interpolation : nullptr,
+                            choices ? &*choices : nullptr);
       if (!fit) return Error{run.material + ", " + kNames[which] + ": " + fit.error().message};
-      to.push_back({kNames[which], colour_of(which), seconds_since(start), {}, {}});
-      if (!grid && !centres.choices) centres = *fit;
+      to.push_back({kNames[which], colour_of(which), processor_s() - start_s, {}, {}});
+      if (!choices) centres_ = fit->choices;
       models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
       evaluated.push_back({models.back(), data_.jnd});
       return {};
     };
-    auto interpolation = fit_method(prepared, {.base = Base::force, .method = &kDirectMethod}, part());
-    if (!interpolation) return Error{run.material + ", direct: " + interpolation.error().message};
-    direct = std::move(*interpolation);
     for (std::size_t which = 0; which < kPaperMethods; ++which) {
-      if (const Status status = add(run.models, which, 1); !status) return status;
+      const Status status = add(run.models, which, 1, which == kGridOfAll ? direct_ : centres_);
+      if (!status) return status;
     }
-    for (std::uint64_t seed = 2; seed <= kMostSeeds; ++seed) {
-      if (const Status status = add(run.repeated, kGreedy100, seed); !status) return status;
+    for (std::uint64_t seed = 2; varies && seed <= kMostSeeds; ++seed) {
+      if (const Status status = add(run.repeated, kGreedy100, seed, centres_); !status) return status;
+    }
+    for (const KernelKind kernel : kKernelKinds) {
+      for (const double exponent : kRangeExponents) {
+        for (const double truncation : kTruncations) {
+          if (!varies) continue;
+          const Status status = add(run.settings, kTreeCentres, 1, OpenChoices{kernel, exponent, truncation});
+          if (!status) return status;
+        }
+      }
     }
     EvaluationRequest as_recorded;
     as_recorded.move_surface = false;
     const auto result = evaluate(rows_of(tested), evaluated, as_recorded);
     if (!result) return result.error();
-    const std::vector<ModelTiming> times = time_models(models, {result->timing});
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      PaperModel& model = i < kPaperMethods ? run.models[i] : run.repeated[i - kPaperMethods];
-      model.errors = result->models[i].as_recorded.summary();
-      std::erase_if(model.errors.bins, [](const ForceBin& bin) { return bin.force_N.count() < kReducedSamples; });
-      model.time = times[i];
+    auto one = result->models.begin();
+    for (std::vector<PaperModel>* list : {&run.models, &run.repeated, &run.settings}) {
+      for (PaperModel& model : *list) {
+        model.errors = (one++)->as_recorded.summary();
+        std::erase_if(model.errors.bins, [](const ForceBin& bin) { return bin.force_N.count() < kReducedSamples; });
+      }
     }
+    models.resize(kPaperMethods);
+    const std::vector<ModelTiming> times = time_models(models, {result->timing});
+    for (std::size_t i = 0; i < kPaperMethods; ++i) run.models[i].time = times[i];
     return {};
   }
 
   // With the open choices of the models.
-  Status time_sites(const PreparedTraining& prepared, const OpenChoices& direct, const OpenChoices& centres) {
+  Status time_sites(const PreparedTraining& prepared) {
     const Eigen::Index all = prepared.sites.count();
     for (const double share :
-         quick_ ? std::vector<double>{0.25, 0.5, 1.0} : std::vector<double>{0.125, 0.25, 0.5, 1.0}) {
+         data_.quick ? std::vector<double>{0.25, 0.5, 1.0} : std::vector<double>{0.125, 0.25, 0.5, 1.0}) {
       Sites some = even_subset(prepared.sites, static_cast<Eigen::Index>(share * static_cast<double>(all)));
       const Eigen::VectorXd jnd_N = some.target_N.unaryExpr([&](double force_N) { return data_.jnd.at(force_N); });
       FitTimes times{static_cast<std::size_t>(some.count()), {}};
-      some.kernel = direct.kernel;
-      some.smoothing = direct.smoothing;
+      some.kernel = direct_->kernel;
+      some.smoothing = direct_->smoothing;
       CorrectionPtr interpolation;
       const auto solved = fastest([&] {
         auto fit = fit_correction(kDirectMethod, {some, jnd_N}, part());
@@ -208,12 +211,18 @@ class PaperMeasurement {
       times.solve_s = *solved;
       for (std::size_t which = 0; which < kPaperMethods; ++which) {
         if (which == kRandomCentres) {
-          some.kernel = centres.kernel;
-          some.truncation = centres.truncation;
+          some.kernel = centres_->kernel;
+          some.truncation = centres_->truncation;
         }
-        MethodTask task = task_of(which, some, jnd_N);
-        if (which == kGridOfAll) task.base = interpolation;
-        const auto seconds = fastest([&] { return fit_correction(*plan_of(which).method, task, part()); });
+        const ModelPlan plan = plan_of(which);
+        const MethodTask task{some,
+                              jnd_N,
+                              plan.centres,
+                              plan.candidates,
+                              plan.grid,
+                              plan.seed,
+                              which == kGridOfAll ? interpolation : nullptr};
+        const auto seconds = fastest([&] { return fit_correction(*plan.method, task, part()); });
         if (!seconds) return seconds.error();
         times.seconds.push_back(*seconds + (which == kGridOfAll ? times.solve_s : 0.0));
       }
@@ -222,16 +231,16 @@ class PaperMeasurement {
     return {};
   }
 
-  Status time_dimensions(const PreparedRecordingPointer& train, const OpenChoices& direct) {
+  Status time_dimensions(const PreparedRecordingPointer& train) {
     std::vector<FeatureSpec> features = scene_.features;
     for (const double time_s : kMoreTimes_s) features.push_back({FeatureKind::lowpass_velocity, time_s, {}});
-    for (std::size_t d = 1; d <= (quick_ ? std::size_t{4} : features.size()); ++d) {
+    for (std::size_t d = 1; d <= (data_.quick ? std::size_t{4} : features.size()); ++d) {
       TrainingScene scene = training_scene(scene_);
       scene.features.assign(features.begin(), features.begin() + static_cast<std::ptrdiff_t>(d));
       auto prepared = prepare(train, scene, false);
       if (!prepared) return prepared.error();
-      prepared->sites.kernel = direct.kernel;
-      prepared->sites.smoothing = direct.smoothing;
+      prepared->sites.kernel = direct_->kernel;
+      prepared->sites.smoothing = direct_->smoothing;
       const Eigen::VectorXd jnd_N = site_thresholds(*prepared);
       MethodTask asked{prepared->sites, jnd_N};
       asked.grid.assign(d, kNodesOfFigure2);
@@ -264,11 +273,11 @@ class PaperMeasurement {
     return {};
   }
 
-  bool quick_;
   const FitControl& control_;
   double done_ = 0.0;
   Scene scene_;
   PaperData data_;
+  std::optional<OpenChoices> direct_, centres_;
 };
 
 }  // namespace

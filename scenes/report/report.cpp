@@ -51,13 +51,15 @@ std::string seeds_text(const ModelResult& model) {
   return model.seeds > 1 ? " (the median of " + std::to_string(model.seeds) + " seeds)" : "";
 }
 
+std::string interval_text(const Interval& interval) {
+  if (!interval.known()) return {};
+  return " (95 %: " + three_digits(interval.low) + " to " + three_digits(interval.high) + ")";
+}
+
 // Says by how much the model with the lowest 99 % error is better, and how much longer it takes.
 std::string best_text(const ModelResult& best, const ModelResult& use) {
   const PairedDifference difference = paired_difference(use.errors, best.errors);
-  const Interval& interval = difference.interval;
-  return "; the lowest 99 % error, " + three_digits(difference.p99) + " JND less" +
-         (interval.known() ? " (95 %: " + three_digits(interval.low) + " to " + three_digits(interval.high) + ")"
-                           : "") +
+  return "; the lowest 99 % error, " + three_digits(difference.p99) + " JND less" + interval_text(difference.interval) +
          ", is that of " + best.name + ", which takes " +
          three_digits(best.time.tick.median_ns / use.time.tick.median_ns) + " times as long";
 }
@@ -77,16 +79,13 @@ std::string answer(const ReportData& data) {
   const ModelResult& use = data.models[data.choice.recommended];
   const ModelResult& best = data.models[data.choice.best];
   const UnitErrors& errors = use.errors;
-  const Interval interval = errors.p99_interval();
   return (errors.within_jnd >= kGoodShare ? "Use " : "No model is good enough as recorded; the best choice is ") +
          use.name + seeds_text(use) + ": a whole tick takes " + with_thousands(fixed(use.time.tick.median_ns, 0)) +
          " ns, the error is below the just noticeable difference in " + percent(errors.within_jnd) +
          " of the test, and 99 % of the errors are below " + three_digits(errors.p99_error_over_jnd) + " JND" +
-         (interval.known() ? " (95 %: " + three_digits(interval.low) + " to " + three_digits(interval.high) + ")"
-                           : "") +
-         (&best != &use ? best_text(best, use) : "") + "; this test chose it among " +
-         std::to_string(data.choice.candidates.size()) + " models, so another recording has to confirm these figures." +
-         surface_text(data, use);
+         interval_text(errors.p99_interval()) + (&best != &use ? best_text(best, use) : "") +
+         "; this test chose it among " + std::to_string(data.choice.candidates.size()) +
+         " models, so another recording has to confirm these figures." + surface_text(data, use);
 }
 
 // All numbers of the report. Those that differ from run to run are in "timings".
@@ -269,9 +268,7 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   if (!folder) return folder.error();
   const auto recordings = split_recordings(request.train, request.test);
   if (!recordings) return recordings.error();
-  FitControl measuring;
-  measuring.progress = [&](double fraction) { return control.may_continue(kMeasuringShare * fraction); };
-  const auto data = measure(*recordings, request.scene, request.quick, measuring);
+  const auto data = measure(*recordings, request.scene, request.quick, control.part(0.0, kMeasuringShare));
   if (!data) return data.error();
   const std::string words = answer(*data);
   const std::vector<Table> tables = make_tables(*data);

@@ -10,6 +10,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of the executable; empty if unknown.
+fs::path program_folder() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).parent_path();
+}
+
 // Creates the folder. Ignores a relative path in the variable, as the specification demands.
 Result<std::string> user_folder(const char* variable, const char* below_home) {
   const char* wanted = std::getenv(variable);
@@ -37,8 +43,8 @@ Result<std::string> find_assets() {
   if (const char* named = std::getenv("PALPATE_ASSETS"); named != nullptr && *named != '\0') {
     folders = {named};
   } else {
-    const fs::path prefix = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
-    if (!error) folders = {prefix / "share" / "palpate", prefix / "assets"};
+    const fs::path prefix = program_folder().parent_path();
+    if (!prefix.empty()) folders = {prefix / "share" / "palpate", prefix / "assets"};
     folders.emplace_back(PALPATE_SOURCE_ASSETS);
   }
   std::string tried;
@@ -48,6 +54,15 @@ Result<std::string> find_assets() {
   }
   return Error{"cannot find the assets folder (with its subfolder scenes); looked at " + tried +
                "; set PALPATE_ASSETS to it"};
+}
+
+std::string ready_models_folder() {
+  const fs::path program = program_folder();
+  std::error_code error;
+  for (const fs::path& folder : {program.parent_path() / "share" / "palpate" / "ready", program / "ready"}) {
+    if (fs::is_directory(folder, error)) return folder.string();
+  }
+  return "";
 }
 
 std::string calibrations_folder() {

@@ -15,6 +15,10 @@ namespace palpate {
 // Errors: none of these folders has a subfolder `scenes`; the message lists the folders.
 Result<std::string> find_assets();
 
+// The folder of the models that the build has fitted (scenes/worker/ready_models.h): `../share/palpate/ready` or
+// `ready`, relative to the folder of the executable; empty where there is none.
+std::string ready_models_folder();
+
 // The folder of the devices' calibrations; empty where there are no assets.
 std::string calibrations_folder();
 

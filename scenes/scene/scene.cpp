@@ -26,7 +26,6 @@ constexpr double kLargestJndOffset_N = 100.0;
 constexpr double kStrongestPress_N = 20.0;
 constexpr const char* kJndAdvice = "; write it again with palpate study analyse";
 
-// The members of a JND line.
 JndLine jnd_line(JsonFields& fields, const JsonNode& object) {
   const double offset_N = fields.number(object, "offset_N", {0.0, kLargestJndOffset_N, true});
   return {offset_N, fields.number(object, "weber_fraction", {0.0, 1.0})};
@@ -46,9 +45,8 @@ class SceneReader : private JsonFields {
     read_jnd();
     read_block();
     read_colours();
-    if (optional_member(top_, "strongest_press_N").value != nullptr) {
+    if (optional_member(top_, "strongest_press_N").value != nullptr)
       scene_.strongest_press_N = number(top_, "strongest_press_N", {0.0, kStrongestPress_N, true});
-    }
     refuse_unknown(top_);
     if (std::optional<Error> wrong = error()) return *wrong;
     return scene_;

@@ -24,7 +24,6 @@ struct BlockGeometry {
   double tool_radius_m = 0.0;
 };
 
-// The visual appearance of the block.
 enum class Finish { silicone, foam, gel, rubber, skin, dome };
 
 struct Scene {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "engine/recording/recording.h"
 #include "engine/tick/replay.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/material/rig.h"

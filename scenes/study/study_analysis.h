@@ -45,7 +45,6 @@ Result<JndLines> fit_jnd_lines(const std::vector<JndPoint>& points);
 // Hoever & Harders. (The abstract of Pang et al. summarises 2.5 to 10 N as "roughly 7 %".)
 inline const JndPoint kPangTanDurlach{2.5, 0.09 * 2.5, 0.0, "Pang, Tan & Durlach (1991)"};
 
-// The JND at one reference force.
 struct ReferenceJnd {
   double reference_N = 0.0;  // as planned
   double rendered_N = 0.0;   // mean over the trials; 0 without usable answers

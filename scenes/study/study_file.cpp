@@ -23,7 +23,6 @@ namespace {
 
 constexpr double kLargestRendered_N = 10.0;  // more than any device renders in a study
 
-// The header line with the timing of a presentation.
 std::string timing_line() {
   return "# timing_ms lead_in " + std::to_string(kLeadIn_ticks) + " ramp " + std::to_string(kRamp_ticks) + " hold " +
          std::to_string(kHold_ticks) + " pause " + std::to_string(kPause_ticks);
@@ -42,7 +41,6 @@ std::string planned_columns(const StudyTrial& trial) {
          shortest(trial.reference_N) + "," + shortest(trial.comparison_N) + (trial.comparison_first ? ",1," : ",0,");
 }
 
-// The whole lines of `text`.
 std::string_view whole_lines(std::string_view text) { return text.substr(0, text.rfind('\n') + 1); }
 
 // The rest of the line that begins with `key`; empty without one.

@@ -27,7 +27,6 @@
 
 namespace palpate {
 
-// Common data of all trials of one subject.
 struct StudyHeader {
   std::string subject;
   std::shared_ptr<const StrokePair> strokes = nullptr;  // null: constant stimuli

@@ -20,7 +20,6 @@ RandomStream subject_random(const std::string& code, std::uint64_t stream) noexc
   return {hash ^ kStudySeed, stream};
 }
 
-// Shuffles in place (Fisher & Yates).
 template <typename T>
 void shuffle(std::vector<T>& values, RandomStream& random) {
   for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.index(i)]);

@@ -23,14 +23,12 @@ std::uint64_t StudyPresenter::present(const Stimuli& stimuli) noexcept {
   return ordered_;
 }
 
-// Records the force that the device rendered for the last command.
 void StudyPresenter::record(double rendered_N) noexcept {
   if (state_.interval < 0 || !std::isfinite(rendered_N)) return;
   state_.worst_N = std::max(state_.worst_N, std::abs(rendered_N - commanded_N_));
   if (is_held(in_interval_)) state_.rendered_N[static_cast<std::size_t>(state_.interval)] += rendered_N / kHold_ticks;
 }
 
-// Sets the interval and returns the force of this tick of the presentation.
 double StudyPresenter::next_command_N() noexcept {
   state_.interval = -1;
   if (stopped_.load(std::memory_order_acquire) || state_.presentation == 0 || state_.finished_at > 0) return 0.0;

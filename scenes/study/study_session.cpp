@@ -18,7 +18,6 @@ const double kMostAway_N = 0.5 * JndLine{}.at(0.0);
 
 double to_tenth_mN(double force_N) noexcept { return std::round(force_N * 1e4) / 1e4; }
 
-// The question to the subject.
 const char* question(bool strokes) {
   return strokes ? "Which of the two pushes was like the reference?" : "Which push was larger?";
 }

@@ -22,7 +22,6 @@ namespace palpate {
 
 enum class StudyState : std::uint8_t { consent, ready, presenting, answering, rest, done, aborted };
 
-// Contents of the subject's screen.
 struct StudyView {
   StudyState state = StudyState::consent;
   bool training = false;
@@ -54,7 +53,6 @@ class StudySession final : public ForceSource {
   const StudyFile& file() const noexcept { return file_; }
   const StudyTrial& trial() const { return trials_.at(answered()); }  // the current one
 
-  // Once per ms; see StudyPresenter.
   double next_force_N(double rendered_N) noexcept override { return presenter_.tick(rendered_N); }
 
  private:
@@ -89,7 +87,6 @@ class LiveStudy {
   // Creates or resumes study-CODE.csv, or with strokes discriminate-CODE.csv, in the working directory. Call it once,
   // or again after an error. Errors: those of StudyFile::open; a thread cannot be started.
   Status begin(const std::string& code);
-  // Call it once a frame.
   void update();
 
   // Null before `begin` succeeded.

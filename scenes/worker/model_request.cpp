@@ -29,6 +29,15 @@ Result<ModelRequest> request_of(const Scene& scene, const std::string& asked) {
   return ModelRequest{.plan = {}, .path = asked, .loaded = std::move(*model)};
 }
 
+// The names of all plans on this base but that of the interpolation of every sample; on the force also the default.
+std::vector<std::string> plans_on(Base base) {
+  std::vector<std::string> names;
+  for (const ModelPlan& plan : all_plans())
+    if (plan.base == base && plan.method != &kDirectMethod) names.push_back(plan_name(plan));
+  if (base == Base::force) names.push_back(plan_name(ModelPlan{}));
+  return names;
+}
+
 }  // namespace
 
 std::string request_name(const ModelRequest& request) {
@@ -37,15 +46,12 @@ std::string request_name(const ModelRequest& request) {
 
 const std::vector<LineUp>& line_ups() {
   static const std::vector<LineUp> all = {
-      {"Comparison",
-       "the methods of Hoever & Harders (2009) with 100 centres, and this program's best",
-       {"voxel", "random-100", "kdtree-100", "greedy-100", "trend+greedy-100"}},
+      {"Comparison", "the methods of Hoever & Harders (2009) with 100 centres, and this program's best",
+       plans_on(Base::force)},
       {"Sizes",
        "the greedy method with 10 to 200 centres",
        {"greedy-10", "greedy-20", "greedy-50", "greedy-100", "greedy-200"}},
-      {"Corrections",
-       "the trend alone, and with the correction of each method",
-       {"trend", "trend+voxel", "trend+random-100", "trend+kdtree-100", "trend+greedy-100"}},
+      {"Corrections", "the trend alone, and with the correction of each method", plans_on(Base::trend)},
       {"Direct", "the interpolation of every sample", {"direct", "voxel", "trend+direct", "trend+greedy-100"}}};
   return all;
 }
@@ -53,6 +59,11 @@ const std::vector<LineUp>& line_ups() {
 const LineUp* find_line_up(const std::string& name) {
   const auto found = std::ranges::find(line_ups(), name, &LineUp::name);
   return found == line_ups().end() ? nullptr : &*found;
+}
+
+const std::vector<std::string>& exhibit_models() {
+  static const std::vector<std::string> all{"kdtree-3", "random-20", "trend+greedy-100"};
+  return all;
 }
 
 Result<std::vector<ModelRequest>> requested_models(const Scene& scene, const std::vector<std::string>& models) {

@@ -26,7 +26,6 @@ struct ModelRequest {
   bool is_file() const { return !path.empty(); }
 };
 
-// A named set of models to compare.
 struct LineUp {
   const char* name;
   const char* help;  // one line
@@ -34,8 +33,10 @@ struct LineUp {
 };
 // All line-ups; the first is the default of a window, of the report's first table and of the main job.
 const std::vector<LineUp>& line_ups();
-// Null when the name is unknown.
 const LineUp* find_line_up(const std::string& name);
+
+// Models with differences from obvious to unnoticeable, for the game of the exhibit.
+const std::vector<std::string>& exhibit_models();
 
 // The name of a model until it is ready.
 std::string request_name(const ModelRequest& request);

@@ -12,7 +12,6 @@
 #include "models/linear/lapack.h"
 #include "models/samples/recording_faults.h"
 #include "scenes/material/rig.h"
-#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
@@ -26,19 +25,16 @@ constexpr double kPrepared = 0.7;
 // Additional time of the first fit of a Base.
 constexpr double kPreparation_s = 1.0;
 
-// Approximate time to make a model; only the order matters. It puts a method after its base, from which it starts.
-double expected_cost_s(const ModelRequest& request) {
-  if (request.loaded != nullptr) return 0.0;
-  return expected_seconds(*request.plan.method);
-}
-
 }  // namespace
 
 // On Linux, the niceness of one thread is set by its thread id.
 void lower_thread_priority() noexcept { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }
 
-ModelWorker::ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training)
-    : scene_(std::move(scene)), seed_(seed), training_(std::move(training)) {}
+ModelWorker::ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training, const std::string& ready)
+    : scene_(std::move(scene)),
+      seed_(seed),
+      ready_(training.empty() ? ReadyModels(ready, scene_, seed) : ReadyModels()),
+      training_(std::move(training)) {}
 
 ModelWorker::~ModelWorker() {
   cancel();
@@ -58,6 +54,12 @@ Status ModelWorker::start() {
     return Error{std::string("cannot start a thread that fits models: ") + error.what() + "; close other programs"};
   }
   return {};
+}
+
+// Approximate time to make a model; only the order matters. It puts a method after its base, from which it starts.
+double ModelWorker::expected_cost_s(const ModelRequest& request) const {
+  if (request.loaded != nullptr || ready_.has(request.plan)) return 0.0;
+  return expected_seconds(*request.plan.method);
 }
 
 void ModelWorker::add_job(std::size_t job_id, const ModelRequest& request, bool at_once) {
@@ -122,6 +124,9 @@ void ModelWorker::work(Lane& lane) {
 
 Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const ModelRequest& request) {
   if (request.loaded != nullptr) return request.loaded;
+  if (ready_.has(request.plan)) {
+    if (auto model = ready_.read(request.plan)) return model;
+  }
   Result<ModelData> data = fit(lane_of(request), request.plan);
   if (!data) return data.error();
   return std::make_shared<const FittedModel>(std::move(*data));

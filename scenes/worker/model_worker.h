@@ -22,6 +22,7 @@
 #include "models/model/fitted_model.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/model_request.h"
+#include "scenes/worker/ready_models.h"
 
 namespace palpate {
 
@@ -36,8 +37,9 @@ void lower_thread_priority() noexcept;
 
 class ModelWorker {
  public:
-  // `training`: recordings; empty: that of the scene's virtual material.
-  ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training = {});
+  // `training`: recordings; empty: that of the scene's virtual material. `ready`: a folder of models that need no fit
+  // to that material (ready_models.h); may be empty.
+  ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training = {}, const std::string& ready = "");
   ModelWorker(const ModelWorker&) = delete;
   ModelWorker& operator=(const ModelWorker&) = delete;
   // Interrupts the running fits and waits for the threads.
@@ -59,7 +61,6 @@ class ModelWorker {
     std::size_t job_id = 0;
     double share = 0.0;  // of this job, 0..1
   };
-  // Of the jobs that run.
   std::vector<Progress> progress() const;
   // Estimated time until all jobs are done.
   double left_s() const;
@@ -86,12 +87,14 @@ class ModelWorker {
   };
   Lane& lane_of(const ModelRequest& request) { return lanes_[request.plan.base == Base::force ? 0 : 1]; }
   void work(Lane& lane);  // until cancelled
+  double expected_cost_s(const ModelRequest& request) const;
   Result<ModelData> fit(Lane& lane, const ModelPlan& plan);
   Status prepare_recordings(Lane& lane);
   FitControl control(Lane& lane, double from, double to);
 
   Scene scene_;
   std::uint64_t seed_;
+  ReadyModels ready_;
   std::atomic<bool> cancelled_{false};
   std::mutex recordings_mutex_;
   // Guarded by recordings_mutex_.

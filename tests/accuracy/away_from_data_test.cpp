@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "engine/tick/replay.h"
-#include "scenes/hard/press.h"
+#include "scenes/hard/hard_trials.h"
 #include "scenes/material/material.h"
 #include "tests/support/fitting.h"
 
@@ -17,6 +17,32 @@ namespace {
 
 constexpr double kEncoder_m = 30e-6;
 constexpr double kModerateSpeed_m_per_s = 0.03;
+
+// A minimum-jerk move to `target_m` in `duration_s`.
+struct Stretch {
+  double target_m = 0.0;
+  double duration_s = 0.0;
+};
+
+// The path of these moves one after the other, from kInAir_m; then at rest.
+Path along(std::vector<Stretch> stretches) {
+  return [stretches = std::move(stretches)](double time_s) {
+    double from_m = kInAir_m;
+    for (const auto& [target_m, duration_s] : stretches) {
+      if (time_s < duration_s) return minimum_jerk(from_m, target_m, duration_s, time_s).aim_m;
+      time_s -= duration_s;
+      from_m = target_m;
+    }
+    return from_m;
+  };
+}
+
+// A press to `depth_m`, a hold of `hold_s`, and a return to kInAir_m, with the peak speed `speed_m_per_s`.
+std::vector<Stretch> press_and_hold(double depth_m, double speed_m_per_s, double hold_s) {
+  constexpr double kPeakSpeed = 1.875;  // of a minimum-jerk path of length 1 in time 1
+  const double travel_s = kPeakSpeed * (depth_m - kInAir_m) / speed_m_per_s;
+  return {{depth_m, travel_s}, {depth_m, hold_s}, {kInAir_m, travel_s}, {kInAir_m, 0.5}};
+}
 
 struct Subject {
   std::string name;

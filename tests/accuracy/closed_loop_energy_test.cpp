@@ -81,12 +81,13 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
     for (const ModelPtr& model : loop_models(limits.material)) {
       const std::string who = std::string(limits.material) + ", " + model->name();
       Strokes worst;
-      for (const Grip& grip : grips()) {
+      for (const Grip& grip : kGrips) {
         if (!held(grip)) continue;
         for (const double encoder_m : kEncoders_m) {
           for (const Ticking ticking : kTickings) {
             if (ticking != Ticking::gaps && !limits.every_ticking) continue;
-            worst.keep_worse(stroke(model, {grip, encoder_m, kOneTick_s, ticking}, press_of(limits.material, model)));
+            worst.keep_worse(
+                stroke(model, {grip, encoder_m, kOneTick_s, ticks(ticking)}, press_of(limits.material, model)));
           }
         }
       }
@@ -98,21 +99,27 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
       EXPECT_LE(worst.largest_cost_jnd, limits.largest_cost_jnd) << who;
     }
   }
-  for (const Grip& grip : grips()) {
-    LoopSettings settings{grip, 5e-6, kOneTick_s, Ticking::even};
+  for (const Grip& grip : kGrips) {
+    LoopSettings settings{grip, 5e-6, kOneTick_s, ticks(Ticking::even)};
     settings.passivity = false;
     EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), settings, kFirm).worst_return, 1.2) << grip.name;
   }
 }
 
-// A mass thrown at the surface stays where silicone has little viscosity, and one
-// encoder step hides energy. Measured: 1.09; 1.19 without the controller.
+// A mass thrown at the surface, at 0.0125 to 0.1 m/s, stays where silicone has little viscosity. The passivity
+// controller does not see the energy of one encoder step: each throw returns at most that more than it put in, 0.7 to
+// 31 % of it. Without the controller a fine encoder shows up to 25 % more.
 TEST(ClosedLoop, AMassThrownAtSiliconeReturnsLittleMoreEnergyThanItHad) {
   for (const ModelPtr& model : silicone_models()) {
     for (const double encoder_m : kEncoders_m) {
       for (const Ticking ticking : kTickings) {
-        const double returned = stroke(model, {mass_alone(), encoder_m, kOneTick_s, ticking}, kFirm).worst_return;
-        EXPECT_LE(returned, 1.15) << model->name() << ", " << encoder_m;
+        LoopSettings settings{mass_alone(), encoder_m, kOneTick_s, ticks(ticking)};
+        EXPECT_LE(stroke(model, settings, kFirm).own_beyond_step_J, 0.0) << model->name() << ", " << encoder_m;
+        settings.passivity = false;
+        const double without_J = stroke(model, settings, kFirm).own_beyond_step_J;
+        if (encoder_m < kEncoders_m[0]) {
+          EXPECT_GT(without_J, 0.0) << model->name();
+        }
       }
     }
   }

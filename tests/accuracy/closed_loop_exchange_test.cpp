@@ -34,7 +34,7 @@ double largest_change_jnd(const std::vector<ForcePtr>& models, double most_N, co
   for (const ForcePtr& model : models) own.push_back(model.use_count());
   double largest = 0.0;
   {
-    GuardedLoop loop({grip, encoder_m, kOneTick_s, Ticking::gaps});
+    GuardedLoop loop({grip, encoder_m, kOneTick_s, ticks(Ticking::gaps)});
     loop.publish(models.front());
     std::vector<double> time_s, force_N;
     std::size_t published = 0;
@@ -101,7 +101,7 @@ TEST(ClosedLoop, AtAHundredExchangesASecondTheErrorIsBelowTheJnd) {
   for (const Exchange& exchange : exchanges) {
     for (const double encoder_m : kEncoders_m) {
       const double led = largest_change_jnd(exchange.models, exchange.most_N, lead(), encoder_m);
-      const double in_hand = largest_change_jnd(exchange.models, exchange.most_N, grips()[1], encoder_m);
+      const double in_hand = largest_change_jnd(exchange.models, exchange.most_N, kGrips[1], encoder_m);
       say("exchanges, " + exchange.name, "%.2f JND in 10 ms with the tool led, %.2f JND in a hand", led, in_hand);
       EXPECT_LE(led, exchange.led_jnd) << exchange.name;
       EXPECT_LE(in_hand, exchange.in_hand_jnd) << exchange.name;

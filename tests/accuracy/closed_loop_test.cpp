@@ -65,7 +65,7 @@ TEST(ClosedLoop, ComesToRestInEveryHandOnAModelOfRecordingsThatBeginUnderLoad) {
   EXPECT_NEAR(surface_position_m(model->features()), -1.5e-3, 0.1e-3);
   EXPECT_GT(judge(recording, model).within_jnd, 0.95);
   Rest worst;
-  for (const Grip& grip : grips()) {
+  for (const Grip& grip : kGrips) {
     if (!held(grip)) continue;
     worst.keep_worse(worst_hold(model, grip, kFirm));
     worst.keep_worse(worst_hold(model, grip, kLight));

@@ -73,11 +73,12 @@ TEST(SyntheticAccuracy, ForeignPhysicsByDefault) {
     double within_jnd;
     double max_error_over_jnd;
   };
-  // Reached: 100, 99.94, 100, 98.2, 99.99, 99.4 and 92.5 %, worst 0.9, 2.0, 0.9, 1.3, 1.2, 1.5
-  // and 6.8 JND. Softening reached 100 % with a feature of the fading deepest depth, which was
-  // removed because no recorded set gained from it.
+  // Reached: 100, 99.94, 100, 97.35, 99.99, 99.4 and 92.5 %, worst 0.9, 2.0, 0.9, 1.3, 1.2, 1.5
+  // and 6.8 JND. Softening reached 100 % with a feature of the fading deepest depth, and 98.2 % with a correction that
+  // was chosen two standard errors above the lowest score. Both were removed: no recorded set gained from the first,
+  // and without the second the recorded sets gain (tests/bench/README.md).
   constexpr Law kLaws[] = {{"foam", 0.9990, 2.0},      {"gel", 0.9985, 2.5},     {"tissue", 0.9990, 2.0},
-                           {"softening", 0.9800, 2.0}, {"layered", 0.9985, 2.0}, {"friction", 0.98, 2.5},
+                           {"softening", 0.9700, 2.0}, {"layered", 0.9985, 2.0}, {"friction", 0.98, 2.5},
                            {"sponge", 0.92, 12.0}};
   for (const Law& law : kLaws) {
     SCOPED_TRACE(law.material);

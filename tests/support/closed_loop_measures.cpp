@@ -8,6 +8,8 @@
 #include <map>
 #include <numbers>
 
+#include "engine/base/random_stream.h"
+
 namespace palpate::test {
 namespace {
 
@@ -26,6 +28,18 @@ double ripple(const std::vector<double>& values) {
 }
 
 }  // namespace
+
+std::function<std::int64_t(std::int64_t& deadline)> ticks(Ticking ticking) {
+  if (ticking == Ticking::even) return {};
+  return [ticking, random = RandomStream(1, 77)](std::int64_t& deadline) mutable {
+    constexpr std::int64_t kGapEvery = 100 * kPeriodSteps;
+    if (ticking == Ticking::gaps) {
+      if (random.index(30) == 0) deadline += kPeriodSteps;
+      if (deadline / kGapEvery != (deadline - kPeriodSteps) / kGapEvery) deadline += 4 * kPeriodSteps;
+    }
+    return deadline + static_cast<std::int64_t>(random.index(10));
+  };
+}
 
 const std::vector<ModelPtr>& loop_models(const std::string& material) {
   static std::map<std::string, std::vector<ModelPtr>> fitted;
@@ -104,7 +118,7 @@ Rest worst_hold(const ForcePtr& model, const Grip& grip, const HandPress& press,
   Rest worst;
   for (const double encoder_m : kEncoders_m) {
     for (const Ticking ticking : kTickings) {
-      LoopSettings settings{grip, encoder_m, kOneTick_s, ticking};
+      LoopSettings settings{grip, encoder_m, kOneTick_s, ticks(ticking)};
       settings.passivity = passivity;
       worst.keep_worse(hold(model, settings, press, seconds));
     }
@@ -116,7 +130,7 @@ double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double enc
                               Ticking ticking, bool passivity) {
   double least = std::numeric_limits<double>::infinity();
   for (const double rate_Hz : {2.0, 5.0, 10.0, 20.0, 40.0}) {
-    LoopSettings settings{lead(), encoder_m, kOneTick_s, ticking};
+    LoopSettings settings{lead(), encoder_m, kOneTick_s, ticks(ticking)};
     settings.passivity = passivity;
     ClosedLoop loop(settings);
     loop.publish(model);
@@ -150,6 +164,7 @@ double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, bool passi
 void Strokes::keep_worse(const Strokes& other) {
   worst_return = std::max(worst_return, other.worst_return);
   beyond_step_J = std::max(beyond_step_J, other.beyond_step_J);
+  own_beyond_step_J = std::max(own_beyond_step_J, other.own_beyond_step_J);
   largest_cost_jnd = std::max(largest_cost_jnd, other.largest_cost_jnd);
   mean_cost_jnd = std::max(mean_cost_jnd, other.mean_cost_jnd);
 }
@@ -159,10 +174,11 @@ Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const HandPr
   loop.publish(model);
   const Grip& grip = settings.grip;
   Strokes strokes;
-  double cost_sum = 0.0, contacts = 0.0, lowest_J = 0.0, largest_N = 0.0;
+  double cost_sum = 0.0, contacts = 0.0, lowest_J = 0.0, largest_N = 0.0, own_largest_N = 0.0;
   const auto watch = [&](const LoopSnapshot& snapshot) {
     lowest_J = std::min(lowest_J, loop.tool().energy().balance_J());
     largest_N = std::max(largest_N, snapshot.rendered_N);
+    own_largest_N = std::max(own_largest_N, snapshot.rendered_N);
     if (!snapshot.tick.in_contact) return;
     const double cost_jnd = (snapshot.commanded_N - snapshot.passive_N) / JndLine{}.at(snapshot.commanded_N);
     EXPECT_GE(cost_jnd, 0.0) << "it never adds force";
@@ -172,6 +188,7 @@ Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const HandPr
   };
   for (const double half_s : {0.05, 0.1, 0.2, 0.4}) {
     const LoopEnergy before = loop.tool().energy();
+    own_largest_N = 0.0;
     const auto move = [&](double from_m, double to_m, double seconds) {
       loop.run(
           seconds, [&](double time_s) { return minimum_jerk(from_m, to_m, half_s, time_s); }, watch);
@@ -194,8 +211,10 @@ Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const HandPr
     }
     const LoopEnergy& after = loop.tool().energy();
     EXPECT_EQ(loop.tool().force_N(), 0.0) << grip.name << ": back in the air";
-    strokes.worst_return =
-        std::max(strokes.worst_return, (after.got_out_J - before.got_out_J) / (after.put_in_J - before.put_in_J));
+    const double in_J = after.put_in_J - before.put_in_J, out_J = after.got_out_J - before.got_out_J;
+    strokes.worst_return = std::max(strokes.worst_return, out_J / in_J);
+    strokes.own_beyond_step_J =
+        std::max(strokes.own_beyond_step_J, out_J - in_J - settings.encoder_step_m * own_largest_N);
   }
   strokes.beyond_step_J = -lowest_J - settings.encoder_step_m * largest_N;
   strokes.mean_cost_jnd = contacts > 0.0 ? cost_sum / contacts : 0.0;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,18 @@ class GuardedLoop final : public ClosedLoop {
   }
   int offences_ = 0;
 };
+
+// The timing of ticks.
+enum class Ticking {
+  even,      // every millisecond
+  jittered,  // each independently up to 0.45 ms late
+  gaps,      // jittered, one in 30 left out, and one gap of 5 ms in each 100 ms
+};
+// For LoopSettings::uneven.
+std::function<std::int64_t(std::int64_t& deadline)> ticks(Ticking ticking);
+
+// A grip so stiff that the tool follows the prescribed path.
+inline Grip lead() { return {"lead", 1.0, 4e5, 1200.0}; }
 
 inline constexpr double kOneTick_s = 1e-3;
 inline constexpr double kEncoders_m[] = {30e-6, 5e-6};
@@ -89,10 +103,11 @@ double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double enc
 double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, bool passivity = true);
 
 struct Strokes {
-  double worst_return = 0.0;      // largest ratio of energy returned to energy put in, of one stroke
-  double beyond_step_J = 0.0;     // largest surplus of returned energy beyond one encoder step times the largest force
-  double largest_cost_jnd = 0.0;  // of the force that the controller takes away, over the JND
-  double mean_cost_jnd = 0.0;     // its mean in contact
+  double worst_return = 0.0;   // largest ratio of energy returned to energy put in, of one stroke
+  double beyond_step_J = 0.0;  // largest surplus of returned energy beyond one encoder step times the largest force
+  double own_beyond_step_J = -1.0;  // the same of one stroke and its own largest force
+  double largest_cost_jnd = 0.0;    // of the force that the controller takes away, over the JND
+  double mean_cost_jnd = 0.0;       // its mean in contact
 
   void keep_worse(const Strokes& other);
 };

@@ -164,7 +164,8 @@ int main(int argc, char** argv) {
   if (!material_name.empty()) {
     const auto material = palpate::find_material(material_name);
     if (!material) fail(material.error().message.c_str());
-    hand = std::make_unique<palpate::Hand>(*material, material->hand, seed);
+    hand = std::make_unique<palpate::Hand>(
+        *material, palpate::HandSettings{.strongest_press_N = material->strongest_press_N}, seed);
     block = material->make_block();
   }
   Bench bench;

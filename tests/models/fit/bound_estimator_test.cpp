@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tests/support/random_points.h"
 
@@ -66,6 +69,53 @@ TEST(BoundEstimator, TwoStrokesDoNotShowHowTheNextOneDiffers) {
   }
   EXPECT_LT(many.fit()->per_force, 0.01);
   EXPECT_EQ(few.fit()->per_force, 0.05);
+}
+
+// Of 199 errors the 195th, ceil(200 x 0.975), is the bound; the least floor, 10 mN, may be added.
+TEST(BoundEstimator, IsTheQuantileOfTheErrors) {
+  BoundEstimator estimator(JndLine{}, 5.0, kManyStrokes);
+  for (int i = 1; i <= 199; ++i) estimator.add(0.1 * i, 1.0, 0.0);
+  EXPECT_NEAR(estimator.fit()->at(1.0, 0.0), 19.5, 0.011);
+}
+
+// Mean errors that are no line over the force: 20, 200 and 110 mN at 0, 2.5 and 5 N. Least squares with rows over the
+// JND follow the small force.
+TEST(BoundEstimator, ErrorsCountInJnd) {
+  const JndLine jnd;
+  BoundEstimator estimator(jnd, 5.0, kManyStrokes);
+  Eigen::Matrix2d gram = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  for (const auto& [force_N, error_N] : {std::pair{0.0, 0.02}, {2.5, 0.2}, {5.0, 0.11}}) {
+    for (int i = 0; i < 50; ++i) estimator.add(error_N, force_N, 0.0);
+    const Eigen::Vector2d row = Eigen::Vector2d(1.0, force_N) / jnd.at(force_N);
+    gram += row * row.transpose();
+    right += row * error_N / jnd.at(force_N);
+  }
+  const Eigen::Vector2d shape = gram.inverse() * right;
+  EXPECT_NEAR(estimator.fit()->floor_N / estimator.fit()->per_force, shape(0) / shape(1), 1e-6);
+}
+
+// Errors of 3 N for each unit of distance beyond the inner radius, 0.1.
+TEST(BoundEstimator, DistancesCountFromTheInnerRadius) {
+  constexpr Eigen::Index kRows = 200;
+  ResidualRows rows;
+  rows.points = Eigen::MatrixXd::Zero(1, kRows);
+  rows.force_N = Eigen::VectorXd::Constant(kRows, 2.0);
+  rows.trend_N.resize(kRows, 2);
+  for (Eigen::Index i = 0; i < kRows; ++i) {
+    rows.fold.push_back(i < kRows / 2 ? 0 : 1);
+    rows.distance.push_back(0.5 * static_cast<double>(i % 100) / 100.0);
+    rows.trend_N.row(i).setConstant(2.0 - 3.0 * std::max(0.0, rows.distance.back() - 0.1));
+  }
+  ModelData common;
+  common.cover = {{}, 0.1, 0.3};
+  BoundEstimator estimator(common.jnd, 5.0, kManyStrokes);
+  const FoldErrors errors = estimator.add(rows, common, {});
+  EXPECT_EQ(errors.counts, (std::vector<double>{100.0, 100.0}));
+  const auto bound = estimator.fit();
+  ASSERT_TRUE(bound.has_value());
+  EXPECT_NEAR(bound->per_distance_N, 3.0, 0.1);
+  EXPECT_LT(bound->at(2.0, 0.0), 0.05);
 }
 
 }  // namespace

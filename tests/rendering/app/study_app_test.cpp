@@ -3,7 +3,6 @@
 
 #include <epoxy/gl.h>
 // Included after epoxy, which declares OpenGL's functions.
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 

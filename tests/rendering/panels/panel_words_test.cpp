@@ -1,5 +1,4 @@
 // The texts of the panels from plain views, without session, threads or device.
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 

@@ -77,10 +77,10 @@ TEST(Rig, EveryMaterialIsPressedToTheForceOfItsHand) {
         strongest_N = std::max(strongest_N, truth.force_N);
         contact += truth.position_m > 0.0;
       }
-      EXPECT_GT(strongest_N, 5.0 / 6.0 * material.hand.strongest_press_N) << material.name;
+      EXPECT_GT(strongest_N, 5.0 / 6.0 * material.strongest_press_N) << material.name;
       // After snapping through, the tool hits the floor at speed.
       const double beyond = material.name == "button" ? 8.4 / 6.0 : 7.8 / 6.0;
-      EXPECT_LT(strongest_N, beyond * material.hand.strongest_press_N) << material.name;
+      EXPECT_LT(strongest_N, beyond * material.strongest_press_N) << material.name;
       EXPECT_LT(strongest_N, material.force_range_N) << material.name;
       EXPECT_GT(static_cast<double>(contact), 0.6 * static_cast<double>(rig.truth.size()));
       EXPECT_LT(static_cast<double>(contact), 0.9 * static_cast<double>(rig.truth.size()));

@@ -1,0 +1,56 @@
+// Models fitted by the build are those that a session would fit, and serve no other scene, seed or plan.
+#include "scenes/worker/ready_models.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+
+#include "scenes/worker/model_request.h"
+#include "scenes/worker/model_worker.h"
+#include "tests/support/example_model.h"
+#include "tests/support/message_parts.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+TEST(ReadyModels, AreThoseThatASessionWouldFitAndServeNoOtherSceneSeedOrPlan) {
+  const test::TemporaryFolder folder;
+  const std::string ready = folder.file("ready");
+  const Scene scene = test::must(load_scene("elastic_block"));
+  ASSERT_TRUE(make_ready_models(ready, scene.name).ok());
+  const ReadyModels models(ready, scene, 1);
+  ModelWorker with(scene, 1, {}, ready), without(scene, 1);
+  for (const ModelRequest& request : test::must(requested_models(scene, {}))) {
+    EXPECT_TRUE(models.has(request.plan)) << plan_name(request.plan);
+    const auto read = test::must(with.make(request)), fitted = test::must(without.make(request));
+    EXPECT_EQ(read->name(), fitted->name());
+    for (int i = 0; i < 50; ++i) {
+      const std::array<double, kMaxFeatures> values{1e-4 * i};
+      ASSERT_EQ(read->evaluate(values.data()).force_N, fitted->evaluate(values.data()).force_N);
+    }
+  }
+  for (const ModelRequest& request : test::must(requested_models(scene, exhibit_models())))
+    EXPECT_TRUE(models.has(request.plan)) << plan_name(request.plan);
+
+  const ModelPlan plan = test::must(parse_plan("random-100"));
+  EXPECT_FALSE(ReadyModels(ready, scene, 2).has(plan));
+  EXPECT_FALSE(ReadyModels("", scene, 1).has(plan));
+  EXPECT_FALSE(ReadyModels(ready, test::must(load_scene("stiff_block")), 1).has(plan));
+  Scene other = scene;
+  other.material = "stiff";
+  EXPECT_FALSE(ReadyModels(ready, other, 1).has(plan));
+  other = scene;
+  other.jnd.weber_fraction = 0.07;
+  EXPECT_FALSE(ReadyModels(ready, other, 1).has(plan));
+  EXPECT_FALSE(models.has(test::must(parse_plan("random-99"))));
+  EXPECT_FALSE(models.has(test::must(parse_plan_options("method=random seed=2"))));
+
+  // Instead of a damaged file the worker makes the fit.
+  std::filesystem::resize_file(ready + "/elastic_block/random-100.json", 1000);
+  EXPECT_EQ(test::must(with.make({plan}))->name(), "random-100");
+}
+
+}  // namespace
+}  // namespace palpate
