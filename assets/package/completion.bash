@@ -3,7 +3,7 @@ _palpate() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    words=$(palpate --help 2>/dev/null | sed -n '/^Subcommands:/,$ s/^  \([a-z]*\) .*/\1/p')
+    words=$(palpate --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/ s/^  \([a-z]*\) .*/\1/p')
     COMPREPLY=($(compgen -W "$words --help --version" -- "$word"))
   elif [ "$before" = --method ]; then
     COMPREPLY=($(compgen -W "$(palpate fit --list-methods 2>/dev/null)" -- "$word"))
@@ -15,7 +15,7 @@ _palpate() {
     words=$(palpate fit --help 2>/dev/null | sed -n 's/.*--kernel \([a-z|-]*\).*/\1/p')
     COMPREPLY=($(compgen -W "${words//|/ }" -- "$word"))
   elif [ "$COMP_CWORD" -eq 2 ] && [ "$before" = study ] && [[ $word != -* ]]; then
-    words=$(palpate study --help 2>/dev/null | sed -n '/^Subcommands:/,$ s/^  \([a-z]*\) .*/\1/p')
+    words=$(palpate study --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/ s/^  \([a-z]*\) .*/\1/p')
     COMPREPLY=($(compgen -W "$words" -- "$word"))
   elif [[ $word == -* ]]; then
     [ "${COMP_WORDS[1]}" = study ] && words=${COMP_WORDS[2]} || words=

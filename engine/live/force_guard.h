@@ -7,14 +7,20 @@
 //   b  damping of the lightest hand
 //   B  largest rendered damping, m / (2 T): it lags, too, and is unstable on a mass m above pi/2 m / T
 //   c  share of B that the passivity controller provides, 0.22: measured. It keeps the swing of every simulated hand
-//   (50
-//      to 300 g, lags to 10 ms, 600 to 7000 N/m) within 0.1 mm (tests/accuracy/closed_loop_late_test.cpp); a controller
-//      that always damps could provide 1.1, because m x''(t) + B x'(t - T) + K x(t - T) = 0 is unstable for
+//      (50 to 300 g, lags to 10 ms, 600 to 7000 N/m) within 0.1 mm (tests/accuracy/closed_loop_late_test.cpp); a
+//      controller that always damps could provide 1.1, because m x''(t) + B x'(t - T) + K x(t - T) = 0 is unstable for
 //      K > 0.55 m / T^2 with any B. c decreases with the encoder step, because the controller has a play of one step.
 // B limits the sum of the damping of model and user, and that of user and controller.
 //
 // Passivity controller (Hannaford & Ryu 2002; Ryu et al. 2004 for a reference that follows the depth): keeps the force
-// from returning more energy than it received. A late force is too small on the way in and too large on the way out.
+// from returning more energy than it received.
+//
+//   force |        loading ___/     A press to a depth and back: the tool puts in the area below the upper path and
+//   gets
+//         |           ___/_/        back the one below the lower. A late force is that of an earlier depth, too small
+//         on |     _____/_/ unloading  the way in, too large on the way out, so that the paths cross and the loop gains
+//         |____/_/_________ depth   energy.
+//
 // Observer: E += F dx, the energy put in since contact, F the force that acted during dx. During loading E is stored
 // with the depth; during unloading the deficit of E from the value stored at that depth is the debt. (The usual
 // condition, E >= 0, shows a gain only after all stored energy was returned.) The observer follows the position with a

@@ -5,7 +5,8 @@
 // A stream that begins in contact does not show what was pressed before. The force assumes that the material was at
 // rest at this depth. Two extreme histories are simulated beside it until the tool leaves the material: a sudden press
 // from air, and a sudden retreat from a rest at the greatest depth of the training. The larger difference of their
-// forces is added to the predicted error. Thread guarantee: construction allocates (slow side); `step` is wait-free,
+// forces is added to the predicted error.
+// Thread guarantee: construction allocates (slow side); `step` is wait-free,
 // allocates nothing, locks nothing, does no I/O and never throws; one thread at a time.
 #pragma once
 

@@ -143,7 +143,7 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
   print_line("training <= JND", fixed(100.0 * provenance.training_within_jnd, 2) + " %" +
                                     (accelerometer ? " (with the accelerometer)" : " (from positions alone)"));
   print_line("written", out);
-  print_line("next", "palpate replay --recording TEST.csv --model " + out);
+  print_line("next", "palpate replay --recording TEST.csv --model " + shell_word(out));
 }
 
 Status run_fit(const FitArguments& arguments) {
