@@ -38,8 +38,6 @@ class ModelWorker {
  public:
   // `training`: recordings; empty: that of the scene's virtual material.
   ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training = {});
-  ModelWorker(const ModelWorker&) = delete;
-  ModelWorker& operator=(const ModelWorker&) = delete;
   // Interrupts the running fits and waits for the threads.
   ~ModelWorker();
 
