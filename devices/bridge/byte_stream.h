@@ -43,9 +43,7 @@ class ByteStream {
  private:
   bool other_end_closes(double within_s) noexcept;
 
-  int descriptor_;
-  int child_;
-  int exit_status_ = -1;
+  int descriptor_, child_, exit_status_ = -1;
   std::uint8_t rest_[64] = {};
   std::size_t rest_size_ = 0;
 };

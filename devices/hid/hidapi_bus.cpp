@@ -46,8 +46,7 @@ class HidapiConnection final : public DeviceConnection {
 
  private:
   hid_device* reader_;
-  int descriptor_;
-  int wait_ms_;
+  int descriptor_, wait_ms_;
 };
 
 }  // namespace

@@ -44,13 +44,11 @@ class DeviceClock {
 
  private:
   // Well above the error of a ceramic resonator, 0.5 %, plus that of a host clock which is slewed, 0.5 %.
-  static constexpr double kLargestDrift = 0.015;
-  static constexpr double kSegment_s = 0.05;
+  static constexpr double kLargestDrift = 0.015, kSegment_s = 0.05;
   static constexpr std::size_t kSegments = 10;
 
   struct Point {
-    double device_s = 0.0;
-    double lag_s = 0.0;
+    double device_s = 0.0, lag_s = 0.0;
   };
 
   double above_line_s(const Point& point) const noexcept {

@@ -101,8 +101,7 @@ class DeviceEndpoint : public Device, public LinkListener {
   // Writer thread only.
   std::uint32_t sequence_ = 0;
   std::uint16_t last_heartbeat_ = 0;
-  double last_beat_s_ = 0.0;
-  double last_sent_s_ = -1.0;
+  double last_beat_s_ = 0.0, last_sent_s_ = -1.0;
   std::uint64_t answered_ = 0;  // accepted samples at the last command
   // Haptics thread only.
   Command next_command_;

@@ -74,8 +74,6 @@ class DeviceLink {
 
   // `bus` and `listener` outlive this.
   DeviceLink(DeviceBus& bus, LinkListener& listener, OpenedDevice opened);
-  DeviceLink(const DeviceLink&) = delete;
-  DeviceLink& operator=(const DeviceLink&) = delete;
   ~DeviceLink();
 
   // Slow side. Errors: a thread cannot be started.

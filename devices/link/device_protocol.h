@@ -16,10 +16,7 @@ inline constexpr std::size_t kLargestReport = 64;
 struct DeviceNode {
   std::string path;  // empty: there is no node
   std::string product;
-  std::uint16_t vendor_id = 0;
-  std::uint16_t product_id = 0;
-  std::uint16_t usage_page = 0;
-  std::uint16_t usage = 0;
+  std::uint16_t vendor_id = 0, product_id = 0, usage_page = 0, usage = 0;
 };
 
 // The result of decoding one report.
@@ -33,8 +30,7 @@ enum class ReportVerdict : std::uint8_t {
 struct DeviceReading {
   std::int32_t counts = 0;
   // `sequence` and `time_us`: of a `timed` protocol; `confirmed`: of one that `confirms`.
-  std::uint32_t sequence = 0;
-  std::uint32_t time_us = 0;
+  std::uint32_t sequence = 0, time_us = 0;
   std::uint32_t confirmed = 0;  // sequence of the last command that the device obeyed
   std::uint8_t version = 0;
   double measured_N = std::numeric_limits<double>::quiet_NaN();  // of a force sensor; NaN: none

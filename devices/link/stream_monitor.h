@@ -59,9 +59,7 @@ class StreamMonitor {
   static constexpr int kStartedAgain = 8;
   // A sample of a timed stream is late when it is older than kLateIntervals intervals, clamped to stale_after_s ..
   // kLongestSilence_s. After a late sample the limit is half of that.
-  static constexpr double kLateIntervals = 5.0;
-  static constexpr double kLongestSilence_s = 0.1;
-  static constexpr double kOnTimeAgain = 0.5;
+  static constexpr double kLateIntervals = 5.0, kLongestSilence_s = 0.1, kOnTimeAgain = 0.5;
   // A new timed stream begins after kLongestSilence_s without a usable reading, or when the device's clock was set
   // back. The readings of its first kSettling_s only fit the clock, because they may have waited in a queue.
   static constexpr double kSettling_s = 0.05;

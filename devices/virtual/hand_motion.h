@@ -59,12 +59,10 @@ class HandMotion {
  private:
   using Gesture = void (HandMotion::*)();  // plans the segments of one gesture
   struct Segment {
-    double target_m = 0.0;
-    double duration_s = 0.0;
+    double target_m = 0.0, duration_s = 0.0;
   };
   struct Press {
-    double force_N = 0.0;
-    double duration_s = 0.0;
+    double force_N = 0.0, duration_s = 0.0;
   };
   // A tremor component as a rotating vector, which needs no cosine per step.
   struct Tremor {
@@ -100,8 +98,7 @@ class HandMotion {
   std::array<Gesture, 16> deck_{};  // in random order; shuffled again when all were used
   std::size_t dealt_ = 0;           // number of used gestures
   double segment_from_m_ = 0.0, segment_time_s_ = 0.0, planned_m_ = 0.0;
-  double aim_m_ = 0.0, aim_velocity_m_per_s_ = 0.0;
-  double tremor_dt_s_ = 0.0;
+  double aim_m_ = 0.0, aim_velocity_m_per_s_ = 0.0, tremor_dt_s_ = 0.0;
   std::array<Tremor, 5> tremor_{};
   double position_m_ = 0.0, velocity_m_per_s_ = 0.0, acceleration_m_per_s2_ = 0.0;
 };

@@ -52,8 +52,7 @@ class MouseDevice : public SimulatedDevice, public ToolInput {
   static_assert(std::atomic<double>::is_always_lock_free);
   // Haptics thread only.
   double smooth_m_ = kStart_m;  // y
-  double position_m_ = kStart_m;
-  double velocity_m_per_s_ = 0.0;
+  double position_m_ = kStart_m, velocity_m_per_s_ = 0.0;
   double target_velocity_m_per_s_ = 0.0;  // follows drive_m_per_s_
 };
 

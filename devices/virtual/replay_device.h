@@ -72,13 +72,11 @@ class ReplayDevice final : public Device, public ReplayControl {
   std::atomic<double> surface_offset_m_{0.0};
   static_assert(std::atomic<double>::is_always_lock_free);
   // Haptics thread only.
-  double playhead_s_ = 0.0;
-  double now_s_ = 0.0;
+  double playhead_s_ = 0.0, now_s_ = 0.0;
   double moved_m_ = 0.0;  // surface offset of the present stream
   std::size_t next_ = 0;
   int handed_over_ = 0;  // rows read in this tick
-  bool restart_ = true;
-  bool started_ = false;
+  bool restart_ = true, started_ = false;
 };
 
 }  // namespace palpate

@@ -15,11 +15,13 @@
 // Passivity controller (Hannaford & Ryu 2002; Ryu et al. 2004 for a reference that follows the depth): keeps the force
 // from returning more energy than it received.
 //
-//   force |        loading ___/     A press to a depth and back: the tool puts in the area below the upper path and
-//   gets
-//         |           ___/_/        back the one below the lower. A late force is that of an earlier depth, too small
-//         on |     _____/_/ unloading  the way in, too large on the way out, so that the paths cross and the loop gains
-//         |____/_/_________ depth   energy.
+//   force |        loading ___/
+//         |           ___/_/ unloading
+//         |     _____/_/
+//         |____/_/_________ depth
+//
+// In a press and back the tool puts in the area below the upper path and gets back the one below the lower. A late
+// force is too small on the way in and too large on the way out, so that the paths cross and the loop gains energy.
 //
 // Observer: E += F dx, the energy put in since contact, F the force that acted during dx. During loading E is stored
 // with the depth; during unloading the deficit of E from the value stored at that depth is the debt. (The usual

@@ -36,8 +36,6 @@ class DemoApp {
  public:
   // Errors: those of LiveSession::open and Window::open, a broken shader.
   static Result<std::unique_ptr<DemoApp>> create(const DemoRequest& request);
-  DemoApp(const DemoApp&) = delete;
-  DemoApp& operator=(const DemoApp&) = delete;
   ~DemoApp();
   // Saves all that is to be saved and lets go of the device; then only the destructor may be called, which waits for
   // fits. A factorisation cannot be interrupted.

@@ -33,8 +33,6 @@ class DemoFiles {
   // `view` outlives this. `notify` shows a notice. `read` is called in a background thread and may block.
   DemoFiles(ViewState& view, Notify notify, Read read = convert_recording)
       : view_(view), notify_(std::move(notify)), read_(std::move(read)) {}
-  DemoFiles(const DemoFiles&) = delete;
-  DemoFiles& operator=(const DemoFiles&) = delete;
   ~DemoFiles() { finish(); }
   // Waits for the work that runs, and completes the saves that wait.
   void finish();

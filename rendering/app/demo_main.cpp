@@ -35,10 +35,8 @@ constexpr const char* kStudyScene = "jnd_study";
 struct Arguments {
   DemoRequest demo;
   double seconds = 0.0;  // 0: until the window is closed
-  std::string screenshot;
-  std::string stats;
-  bool force = false;
-  bool bridge_remote = false;
+  std::string screenshot, stats;
+  bool force = false, bridge_remote = false;
   std::optional<std::string> discriminate;  // the recording; empty: a virtual one
   std::string test;                         // the recording to replay; empty: none
   std::vector<std::string> files;

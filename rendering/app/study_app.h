@@ -21,8 +21,6 @@ class StudyApp {
   static Result<std::unique_ptr<StudyApp>> create(const WindowRequest& asked, const std::string& device,
                                                   std::shared_ptr<const StrokePair> strokes, bool realtime = true);
   ~StudyApp() { Window::at_loss_of_display(nullptr); }
-  StudyApp(const StudyApp&) = delete;
-  StudyApp& operator=(const StudyApp&) = delete;
 
   void frame();
   bool closing() const noexcept;
@@ -50,8 +48,7 @@ class StudyApp {
   UiStyle style_;
   std::vector<int> pressed_;  // since the last frame
   // The code so far. With slow frames a text field of Dear ImGui sometimes loses the Enter after the code.
-  std::string code_;
-  std::string problem_;
+  std::string code_, problem_;
 };
 
 }  // namespace palpate

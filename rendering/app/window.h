@@ -16,8 +16,7 @@ struct GLFWwindow;
 namespace palpate {
 
 struct WindowRequest {
-  int width = 1280;
-  int height = 720;
+  int width = 1280, height = 720;
   bool fullscreen = false;
   Rgb empty{0.08F, 0.09F, 0.10F};  // colour until the first frame
 };
@@ -58,8 +57,7 @@ class Window {
   bool has_settled();
 
   GLFWwindow* window_;
-  bool software_ = false;
-  bool keeps_frame_ = false;
+  bool software_ = false, keeps_frame_ = false;
   Viewport settled_;   // size of the last frame
   int same_size_ = 0;  // frames since it has changed
   bool paced_by_display_ = false;

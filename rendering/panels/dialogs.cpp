@@ -52,8 +52,7 @@ bool list_entry(const std::string& text, bool selected = false, bool enabled = t
 
 void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands) {
   if (!begin_dialog("Help", view.dialogs.help)) return;
-  float keys = 0.0F;
-  float text = 0.0F;
+  float keys = 0.0F, text = 0.0F;
   for (const WindowCommand& command : commands) {
     keys = std::max(keys, ImGui::CalcTextSize(shown_keys(command).c_str()).x);
     text = std::max(text, ImGui::CalcTextSize(command.help.c_str()).x);

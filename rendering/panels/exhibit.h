@@ -111,8 +111,7 @@ class Exhibit {
   ExhibitTally tally_;
   std::map<std::string, Button> buttons_;
   std::vector<std::string> said_;
-  bool host_ = false;
-  bool visitor_ = false;
+  bool host_ = false, visitor_ = false;
   double moved_s_ = -1e9;     // loop time of the visitor's last action
   double seen_s_ = 0.0;       // loop time of the last processed tick
   double device_at_m_ = 0.0;  // position of the device's tool at its last movement

@@ -43,8 +43,7 @@ class ExhibitReveal {
   std::vector<Moment> moments_{1};  // one for each column of the trace
   std::size_t largest_at_ = 0;
   JndLine jnd_;
-  double slowness_ = 1.0;
-  double began_s_ = 0.0;
+  double slowness_ = 1.0, began_s_ = 0.0;
 };
 
 }  // namespace palpate

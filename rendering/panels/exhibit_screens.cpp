@@ -65,19 +65,14 @@ struct Exhibit::Screens {
     exhibit.said_.push_back(text);
   }
 
-  void say_quietly(const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().quiet));
-    ImGui::PushFont(style.fonts().body);
+  void say_in(ImFont* font, const Rgb& colour, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
+    ImGui::PushFont(font);
     say(text);
     ImGui::PopFont();
     ImGui::PopStyleColor();
   }
-
-  void say_large(const std::string& text) {
-    ImGui::PushFont(style.fonts().big);
-    say(text);
-    ImGui::PopFont();
-  }
+  void say_quietly(const std::string& text) { say_in(style.fonts().body, style.colours().quiet, text); }
 
   void say_round() {
     say_quietly(words()("round", std::to_string(game.number()), std::to_string(game.rounds().size())));
@@ -194,9 +189,8 @@ struct Exhibit::Screens {
   }
 
   void draw_key(const ExhibitModel& model, const char* block) {
-    ImGui::PushStyleColor(ImGuiCol_Text, paint(text_colour(colour_of(model), style.theme())));
-    say(words()(block) + ": " + words()("name_" + kind_of(model), centres_of(model)));
-    ImGui::PopStyleColor();
+    say_in(style.fonts().heading, text_colour(colour_of(model), style.theme()),
+           words()(block) + ": " + words()("name_" + kind_of(model), centres_of(model)));
   }
 
   void draw_slow_motion() {
@@ -217,7 +211,7 @@ struct Exhibit::Screens {
       return draw_slow_motion();
     }
     const bool edge = round.near_jnd() && !round.is_catch();
-    say_large(words()(edge ? "edge" : round.correct() ? "right" : "wrong"));
+    say_in(style.fonts().big, style.colours().text, words()(edge ? "edge" : round.correct() ? "right" : "wrong"));
     say(verdict());
     space(0.4F);
     button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter",
@@ -249,7 +243,8 @@ struct Exhibit::Screens {
   void draw_score() {
     const std::vector<ExhibitRound>& rounds = game.rounds();
     say(words()("score"));
-    say_large(words()("score_of", std::to_string(game.correct_answers()), std::to_string(rounds.size())));
+    say_in(style.fonts().big, style.colours().text,
+           words()("score_of", std::to_string(game.correct_answers()), std::to_string(rounds.size())));
     space(0.4F);
     for (const ExhibitRound& round : rounds) draw_bar(round);
     say_quietly(words()("bars"));

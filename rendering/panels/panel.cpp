@@ -41,8 +41,7 @@ constexpr std::uint64_t kFewestSamples = 20;
 
 // The ends of the axes of draw_error_bins.
 struct Limits {
-  double force_N = 1.0;
-  double error_N = 0.1;
+  double force_N = 1.0, error_N = 0.1;
 };
 
 Limits limits_of(const ModelsView& models) {
@@ -83,10 +82,8 @@ void draw_error_bins(const ModelsView& models, const UiStyle& style, float heigh
   {
     const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
                         {{0.0, limits.force_N}, {0.0, limits.error_N}, "N", "N"});
-    const double ends[2] = {0.0, limits.force_N};
-    std::vector<ImVec2> line;
-    std::vector<ImVec2> floor;
-    for (const double force_N : ends) {
+    std::vector<ImVec2> line, floor;
+    for (const double force_N : {0.0, limits.force_N}) {
       line.emplace_back(plot.x_px(force_N), plot.y_px(models.jnd.at(force_N)));
       floor.emplace_back(plot.x_px(force_N), plot.bottom());
     }

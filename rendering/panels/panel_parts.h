@@ -13,8 +13,7 @@ namespace palpate {
 
 // A part of the window, in ImGui's coordinates.
 struct SceneArea {
-  ImVec2 at;
-  ImVec2 size;
+  ImVec2 at, size;
   bool holds(const ImVec2& point) const {
     return point.x >= at.x && point.y >= at.y && point.x < at.x + size.x && point.y < at.y + size.y;
   }

@@ -30,8 +30,7 @@ struct CurveTime {
   double shown_s = kShown_s;
   // Paused curves end at paused_at_s (loop time) - scrolled_back_s.
   bool paused = false;
-  double paused_at_s = 0.0;
-  double scrolled_back_s = 0.0;
+  double paused_at_s = 0.0, scrolled_back_s = 0.0;
   // Loop time under the mouse, and at the beginning of a drag; NaN: none.
   double hover_s = std::numeric_limits<double>::quiet_NaN();
   double drag_from_s = std::numeric_limits<double>::quiet_NaN();

@@ -87,8 +87,7 @@ std::string data_warning(const ModelsView& models);
 // model.
 struct BigNumber {
   std::string number{};  // empty: there is none
-  std::string what{};
-  std::string below{};
+  std::string what{}, below{};
   double error_over_jnd = 0.0;  // above 1 it is drawn in kAboveJndColour
 };
 BigNumber big_number(const ModelsView& models);

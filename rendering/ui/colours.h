@@ -20,9 +20,7 @@ constexpr Rgb hex(unsigned value) noexcept {
 enum class Theme { light, dark };
 
 struct Palette {
-  Rgb background;
-  Rgb table;
-  Rgb panel;
+  Rgb background, table, panel;
   Rgb raised;  // controls
   Rgb text;
   Rgb quiet;  // secondary text, axes

@@ -72,8 +72,7 @@ class CurveColumns {
   double width_s_ = 0.0;
   double first_ = 0.0;    // left border of the first column, in widths
   double taken_s_ = 0.0;  // loop time of the last tick that was gathered
-  float highest_force_N_ = 0.0F;
-  float highest_sustained_ = 0.0F;
+  float highest_force_N_ = 0.0F, highest_sustained_ = 0.0F;
 };
 
 }  // namespace palpate

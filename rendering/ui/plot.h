@@ -11,8 +11,7 @@
 namespace palpate {
 
 struct Range {
-  double from = 0.0;
-  double to = 1.0;
+  double from = 0.0, to = 1.0;
 };
 
 // The smallest step of 1, 2 or 5 times a power of ten that gives at most `most` intervals.

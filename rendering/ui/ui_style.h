@@ -92,8 +92,7 @@ class UiStyle {
 
   Fonts fonts_;
   float scale_ = 0.0F;  // 0: no fonts yet
-  float pixels_per_unit_ = 1.0F;
-  float body_px_ = kBody_px;
+  float pixels_per_unit_ = 1.0F, body_px_ = kBody_px;
   Theme theme_ = Theme::light;
 };
 

@@ -13,11 +13,9 @@ namespace palpate::cli {
 namespace {
 
 struct ExportArguments {
-  std::string model;
-  std::string out;
+  std::string model, out;
   double encoder_step_m = 0.0;
-  bool single_precision = false;
-  bool force = false;
+  bool single_precision = false, force = false;
 };
 
 void print_summary(const ExportArguments& arguments, const ModelData& data, const SensorSpec& sensor,

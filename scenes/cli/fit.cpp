@@ -32,10 +32,8 @@ struct FitArguments {
   std::vector<std::string> recordings;
   std::vector<OptionText> options;
   ModelPlan plan;
-  std::string scene = "silicone_block";
-  std::string out;
-  bool force = false;
-  bool json = false;
+  std::string scene = "silicone_block", out;
+  bool force = false, json = false;
 };
 
 void list_methods() {

@@ -17,17 +17,13 @@ namespace palpate::cli {
 namespace {
 
 struct ImportOptions {
-  std::string file;
-  std::string out;
-  std::vector<std::string> columns;
-  std::vector<std::string> units;
-  std::vector<std::string> flips;
+  std::string file, out;
+  std::vector<std::string> columns, units, flips;
   std::string decimal;
   double gain_N_per_V = 0.0;
   ImportRequest request;  // its rate and the number of bad rows
   std::string origin;
-  bool json = false;
-  bool force = false;
+  bool json = false, force = false;
 };
 
 // Assigns the column of an argument such as "time=NAME" to its role.

@@ -31,8 +31,7 @@ class ProgressLine {
   std::string label_;
   Clock::time_point start_;
   Clock::time_point last_drawn_;
-  bool terminal_;
-  bool drawn_ = false;
+  bool terminal_, drawn_ = false;
   double most_ = 0.0;  // of the fractions
 };
 

@@ -25,14 +25,9 @@ namespace {
 constexpr auto kPause = std::chrono::milliseconds(100);
 
 struct RecordOptions {
-  std::string device;
-  std::string out;
-  std::string scene = "silicone_block";
+  std::string device, out, scene = "silicone_block";
   double seconds = 0.0;  // 0: until Ctrl-C
-  bool guide = false;
-  bool json = false;
-  bool force = false;
-  bool bridge_remote = false;
+  bool guide = false, json = false, force = false, bridge_remote = false;
 };
 
 // Shows the recording on stderr: on a terminal a status line that is overwritten, and each problem as a separate line.

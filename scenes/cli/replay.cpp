@@ -21,14 +21,9 @@ namespace fs = std::filesystem;
 using OrderedJson = nlohmann::ordered_json;
 
 struct Options {
-  std::vector<std::string> recordings;
-  std::vector<std::string> models;
-  std::vector<std::string> names;
-  std::string out;
-  std::string plot;
-  bool all = false;
-  bool json = false;
-  bool force = false;
+  std::vector<std::string> recordings, models, names;
+  std::string out, plot;
+  bool all = false, json = false, force = false;
 };
 
 // The output has a note if moving the surface changes the share within the JND by more.
@@ -45,8 +40,7 @@ struct ReplayedModel {
 
 struct ReplayedRecording {
   std::string path;
-  std::uint64_t samples = 0;
-  std::uint64_t contact_samples = 0;
+  std::uint64_t samples = 0, contact_samples = 0;
   std::vector<ReplayedModel> models;
 };
 

@@ -63,8 +63,7 @@ class ReplayPlot {
 
  private:
   struct Moment {
-    double time_s;
-    double measured_N;
+    double time_s, measured_N;
     bool in_contact;
     std::vector<float> over_jnd;  // difference of each model from the measured force
   };

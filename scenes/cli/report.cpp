@@ -16,8 +16,7 @@ namespace palpate::cli {
 namespace {
 
 struct Arguments {
-  std::vector<std::string> train;
-  std::vector<std::string> test;
+  std::vector<std::string> train, test;
   std::string scene = "silicone_block";
   bool json = false;
   ReportRequest request;

@@ -19,8 +19,7 @@ namespace palpate {
 struct Grip {
   std::string name;
   double mass_kg = 0.12;  // tool, handle and the moving part of the hand
-  double stiffness_N_per_m = 800.0;
-  double damping_Ns_per_m = 14.0;
+  double stiffness_N_per_m = 800.0, damping_Ns_per_m = 14.0;
 };
 
 // From a light contact of a finger to a clenched fist: stiffness and damping rise
@@ -52,8 +51,7 @@ struct LoopSettings {
 // Energy between the tool and the rendered force, J: `put_in_J` by the tool while the
 // force resists the motion, `got_out_J` by the force while it drives the motion.
 struct LoopEnergy {
-  double put_in_J = 0.0;
-  double got_out_J = 0.0;
+  double put_in_J = 0.0, got_out_J = 0.0;
   double balance_J() const { return put_in_J - got_out_J; }
 };
 
@@ -88,9 +86,7 @@ class SimulatedTool final : public Device {
 
   LoopSettings settings_;
   std::string name_ = "simulated tool";
-  std::int64_t step_ = 0;
-  std::int64_t read_step_ = -1;
-  std::int64_t sample_step_ = 0;
+  std::int64_t step_ = 0, read_step_ = -1, sample_step_ = 0;
   double position_m_ = -2e-3, velocity_m_per_s_ = 0.0, force_N_ = 0.0;
   std::array<Written, 64> written_{};
   std::size_t first_ = 0, count_ = 0;
@@ -101,8 +97,7 @@ class SimulatedTool final : public Device {
 class ClosedLoop {
  public:
   struct Drive {
-    double aim_m = 0.0;
-    double aim_m_per_s = 0.0;
+    double aim_m = 0.0, aim_m_per_s = 0.0;
     double push_N = 0.0;  // a force that does not depend on the position
   };
   using Path = std::function<Drive(double time_s)>;

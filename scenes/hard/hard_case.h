@@ -36,8 +36,7 @@ struct HardFigures {
 struct HardExpectation {
   double within_jnd = 0.0;      // at least
   double worst_error_N = kAny;  // at most, and so on
-  double worst_step_N = kAny;
-  double energy_J = kAny;
+  double worst_step_N = kAny, energy_J = kAny;
   std::string refusal{};  // part of the reason; empty: the fit must be accepted
 
   static constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -95,8 +94,7 @@ class HardMeasure {
   std::size_t ticks_ = 0, counted_ = 0, within_ = 0;
   double worst_N_ = 0.0, step_N_ = 0.0, last_N_ = 0.0;
   bool has_energy_ = false;
-  double last_m_ = 0.0, last_true_N_ = 0.0;
-  double given_J_ = 0.0, truly_given_J_ = 0.0, energy_J_ = 0.0;
+  double last_m_ = 0.0, last_true_N_ = 0.0, given_J_ = 0.0, truly_given_J_ = 0.0, energy_J_ = 0.0;
 };
 
 // The cases of each kind, in the order of the table, without reason and expectation.

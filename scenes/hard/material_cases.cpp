@@ -20,8 +20,7 @@ class Trainings {
  public:
   struct One {
     std::shared_ptr<HardTraining> training;
-    double depth_m = 0.0;
-    double force_N = 0.0;
+    double depth_m = 0.0, force_N = 0.0;
   };
   const One& of(const std::string& material) {
     One& one = made_[material];

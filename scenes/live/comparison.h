@@ -45,8 +45,7 @@ struct ModelFigures {
   std::uint64_t press_samples = 0;
   double press_p99_over_jnd = 0.0;
   // For drawing (dent.h): depth of the dent, and the largest recent magnitude of the sustained error.
-  double dent_m = 0.0;
-  double recent_error_over_jnd = 0.0;
+  double dent_m = 0.0, recent_error_over_jnd = 0.0;
 };
 
 class Comparison {

@@ -42,12 +42,10 @@ class Dent {
 
  private:
   struct Branch {
-    double relaxation_time_s = 0.0;
-    double depth_m = 0.0;
+    double relaxation_time_s = 0.0, depth_m = 0.0;
   };
   std::vector<Branch> branches_;
-  double dent_m_ = 0.0;
-  double error_over_jnd_ = 0.0;
+  double dent_m_ = 0.0, error_over_jnd_ = 0.0;
 };
 
 }  // namespace palpate

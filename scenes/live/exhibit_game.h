@@ -23,12 +23,9 @@
 namespace palpate {
 
 struct ExhibitTick {
-  double loop_time_s = 0.0;
-  double first_N = 0.0;
-  double second_N = 0.0;
+  double loop_time_s = 0.0, first_N = 0.0, second_N = 0.0;
   double over_jnd = 0.0;  // mean over 50 ms of difference / JND, signed; NaN: none
-  bool in_contact = false;
-  bool out_of_domain = false;
+  bool in_contact = false, out_of_domain = false;
   double position_m = 0.0;
 };
 
@@ -36,8 +33,7 @@ struct ExhibitTick {
 // has reached kStrong_N, the largest difference is that of such forces: a smaller one cannot be shown.
 class ExhibitTrace {
  public:
-  static constexpr double kColumn_s = 0.025;
-  static constexpr double kStrong_N = 1.0;
+  static constexpr double kColumn_s = 0.025, kStrong_N = 1.0;
   struct Column {
     double first_N = 0.0;                                        // mean
     double position_m = 0.0;                                     // mean

@@ -30,8 +30,7 @@ Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder);
 
 // Answers of all visitors, kept across restarts.
 struct ExhibitTally {
-  std::uint64_t answers = 0;
-  std::uint64_t as_expected = 0;
+  std::uint64_t answers = 0, as_expected = 0;
 };
 // Zero where the file is missing or invalid.
 ExhibitTally read_tally(const std::string& path);

@@ -57,8 +57,7 @@ class FaultLog {
   std::uint64_t missed_ = 0;
   double missed_of_late_ = 0.0;
   std::uint64_t dropped_ = 0;
-  bool stalled_ = false;
-  bool stall_unseen_ = false;
+  bool stalled_ = false, stall_unseen_ = false;
 };
 
 }  // namespace palpate

@@ -88,8 +88,7 @@ class ForceHistory {
 
  private:
   std::vector<HistoryPoint> points_;
-  std::size_t first_ = 0;
-  std::size_t size_ = 0;
+  std::size_t first_ = 0, size_ = 0;
 };
 
 }  // namespace palpate

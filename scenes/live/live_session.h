@@ -36,8 +36,7 @@ struct SessionRequest {
   // The recording that models are tested on. Empty: the one that the device replays, else the last training recording,
   // else that of the scene's virtual material with another seed. The last part of a recording that is in the training
   // set as well is set apart for the test, if models are fitted to the rest or were (this names it).
-  std::string test{};
-  std::string device = "auto";
+  std::string test{}, device = "auto";
   std::vector<std::string> models{};  // methods or model files; empty: those of `line_up`
   std::string line_up{};  // a name of line_ups() (model_request.h); empty or unknown: the scene's default models
   // Additional models, of an earlier session (SessionModels::requests). `refits` false: the session has only these.
@@ -60,8 +59,6 @@ class LiveSession {
   // background. Errors: those of load_scene, read_usable_recording, requested_models and open_device; a thread cannot
   // be started.
   static Result<std::unique_ptr<LiveSession>> open(const SessionRequest& request);
-  LiveSession(const LiveSession&) = delete;
-  LiveSession& operator=(const LiveSession&) = delete;
   // Calls `close`, and waits for the fits that it interrupts.
   ~LiveSession();
   // Ends a recording and waits until it is on the disk; ramps the force to zero; closes the device; interrupts fits and
@@ -106,9 +103,7 @@ class LiveSession {
   void reset_figures();
   // Times since the session was opened; NaN: not yet.
   struct StartTimes {
-    double first_model_s = kUnknown;
-    double all_models_s = kUnknown;
-    double verdict_s = kUnknown;
+    double first_model_s = kUnknown, all_models_s = kUnknown, verdict_s = kUnknown;
   };
   const StartTimes& start_times() const noexcept { return start_; }
 

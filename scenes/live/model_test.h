@@ -35,8 +35,6 @@ class ModelTest {
   // `replay` outlives this; null: nothing is replayed. Without a replay and without `make` models are only timed.
   ModelTest(ReplayControl* replay, MakeRecording make, const JndLine& jnd)
       : replay_(replay), make_(std::move(make)), jnd_(jnd) {}
-  ModelTest(const ModelTest&) = delete;
-  ModelTest& operator=(const ModelTest&) = delete;
   ~ModelTest() { cancelled_.store(true, std::memory_order_relaxed); }
 
   // Whether there is a recording to test on.
@@ -78,8 +76,7 @@ class ModelTest {
   ReplayControl* replay_;
   MakeRecording make_;
   JndLine jnd_;
-  bool moved_ = false;
-  bool complete_ = false;
+  bool moved_ = false, complete_ = false;
   std::uint64_t results_ = 0;
   Models ready_;  // of the last test
   std::vector<Tested> tested_;

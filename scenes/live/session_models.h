@@ -67,8 +67,6 @@ class SessionModels {
   // `ready`: see ModelWorker.
   SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training = {},
                 const std::string& ready = "");
-  SessionModels(const SessionModels&) = delete;
-  SessionModels& operator=(const SessionModels&) = delete;
 
   // Makes a slot for each request. `claimed`: model files count as models of this material, whatever their provenance.
   // Errors: a thread cannot be started.
@@ -150,8 +148,7 @@ class SessionModels {
     int asked_centres = 0;                     // of the plan, before the user changed the number
     std::shared_ptr<const FittedModel> model;  // null until ready
     std::vector<double> forces_N;              // of the model, over its test_strokes
-    bool removed = false;
-    bool renamed = false;
+    bool removed = false, renamed = false;
     bool claimed = false;  // see `start`
 
     bool hidden() const { return info.state == SlotState::hidden; }

@@ -54,8 +54,7 @@ class RecordingTime {
  private:
   double origin_s_ = 0.0;  // device time of the stream's first sample
   double start_s_ = 0.0;   // time of that sample in the file
-  double last_s_ = 0.0;
-  double gaps_s_ = 0.0;
+  double last_s_ = 0.0, gaps_s_ = 0.0;
   bool started_ = false;
 };
 
@@ -63,8 +62,6 @@ class SessionRecorder {
  public:
   // `loop` outlives this; no other object reads its samples.
   explicit SessionRecorder(HapticsLoop& loop);
-  SessionRecorder(const SessionRecorder&) = delete;
-  SessionRecorder& operator=(const SessionRecorder&) = delete;
   // Stops and waits until the file is on the disk.
   ~SessionRecorder();
 

@@ -87,13 +87,11 @@ class SustainedError {
 
  private:
   struct Sample {
-    double time_s = 0.0;
-    double difference = 0.0;
+    double time_s = 0.0, difference = 0.0;
   };
   // Holds the span at 1 kHz; at a higher rate the newest 64 samples.
   std::array<Sample, 64> samples_{};
-  std::size_t first_ = 0;
-  std::size_t count_ = 0;
+  std::size_t first_ = 0, count_ = 0;
   double sum_ = 0.0;
 };
 

@@ -22,8 +22,7 @@ struct MaxwellStep {
     decay = std::exp(-ratio);
     gain = -std::expm1(-ratio) / ratio;
   }
-  double decay = 1.0;
-  double gain = 1.0;
+  double decay = 1.0, gain = 1.0;
 };
 
 class Block {
@@ -79,10 +78,7 @@ class Block {
   double free_surface_m(double depth_m, double depth_residual_N) const noexcept;
   double residual_N(double surface_m) const noexcept;
 
-  double position_m_ = 0.0;
-  double velocity_m_per_s_ = 0.0;
-  double surface_m_ = 0.0;
-  double force_N_ = 0.0;
+  double position_m_ = 0.0, velocity_m_per_s_ = 0.0, surface_m_ = 0.0, force_N_ = 0.0;
   double substep_s_ = 0.0;
 };
 

@@ -67,9 +67,7 @@ struct RigSettings {
 
 // The true motion and force at the time of one row.
 struct RigTruth {
-  double position_m = 0.0;
-  double velocity_m_per_s = 0.0;
-  double acceleration_m_per_s2 = 0.0;
+  double position_m = 0.0, velocity_m_per_s = 0.0, acceleration_m_per_s2 = 0.0;
   double force_N = 0.0;  // of the material, without noise; >= 0
 };
 

@@ -41,8 +41,7 @@ const PlotRow* last_point(const Series& series) {
 void spread(std::vector<NameTag>& names, double line) {
   std::ranges::stable_sort(names, {}, &NameTag::y);
   struct Block {
-    double mean;
-    double weight;
+    double mean, weight;
     std::size_t names;
   };
   std::vector<Block> blocks;  // pool adjacent violators

@@ -10,8 +10,7 @@
 namespace palpate {
 
 struct AxisRange {
-  double low = 0.0;
-  double high = 1.0;
+  double low = 0.0, high = 1.0;
 };
 
 // The range of the x axis, or of the y axis when `vertical`: the limits of the axis where they are given, else those
@@ -26,8 +25,7 @@ std::vector<double> log_tics(const AxisRange& range, std::size_t most);
 struct NameTag {
   std::string text;
   Hue colour = kInkColour;
-  double x = 1.0;
-  double y = 0.0;
+  double x = 1.0, y = 0.0;
   bool beside_panel = false;
   bool begins_here = true;  // the text begins at x; false: it ends there
 };

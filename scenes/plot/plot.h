@@ -37,12 +37,7 @@ enum class Mark {
 
 // A point, and the ends of its bars or area. A NaN in y and low is a gap in a line; a NaN end is no bar.
 struct PlotRow {
-  double x = 0.0;
-  double y = 0.0;
-  double low = kNoValue;
-  double high = kNoValue;
-  double left = kNoValue;
-  double right = kNoValue;
+  double x = 0.0, y = 0.0, low = kNoValue, high = kNoValue, left = kNoValue, right = kNoValue;
 };
 
 struct Series {

@@ -18,18 +18,14 @@ struct TrainingScene;
 
 // The undisturbed surface of the block is at height 0. The tool is a ball.
 struct BlockGeometry {
-  double width_m = 0.0;
-  double length_m = 0.0;
-  double height_m = 0.0;
-  double tool_radius_m = 0.0;
+  double width_m = 0.0, length_m = 0.0, height_m = 0.0, tool_radius_m = 0.0;
 };
 
 enum class Finish { silicone, foam, gel, rubber, skin, dome };
 
 struct Scene {
   std::string name;  // of its file
-  std::string title;
-  std::string description;
+  std::string title, description;
   std::optional<std::string> material;  // name of the virtual material; empty: models need recordings
   std::vector<std::string> recordings;  // files that a session uses instead of the virtual material
   std::vector<FeatureSpec> features;    // 1 to 8: always the depth; velocity, low-pass velocities

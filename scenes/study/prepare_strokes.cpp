@@ -32,9 +32,7 @@ using Model = std::shared_ptr<const ForceModel>;
 
 // Forces over time: after the tick of each row, or with one value per ms.
 struct Trace {
-  double time_s = 0.0;
-  double reference_N = 0.0;
-  double comparison_N = 0.0;
+  double time_s = 0.0, reference_N = 0.0, comparison_N = 0.0;
   bool contact = false;
 };
 using Traces = std::vector<Trace>;

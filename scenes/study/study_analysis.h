@@ -25,8 +25,7 @@
 namespace palpate {
 
 struct JndPoint {
-  double reference_N = 0.0;
-  double jnd_N = 0.0;
+  double reference_N = 0.0, jnd_N = 0.0;
   double standard_error_N = 0.0;  // 0: not known
   std::string source;             // "study", or a publication
 };
@@ -81,16 +80,13 @@ std::string jnd_file_text(const StudyAnalysis& analysis);
 
 struct Discrimination {
   std::string subject;  // "all": all subjects together
-  std::size_t trials = 0;
-  std::size_t correct = 0;
+  std::size_t trials = 0, correct = 0;
   std::size_t unusable = 0;  // excluded trials
 };
 
 // The share of correct answers with its 95 % interval; without trials 0 in 0 to 1.
 struct CorrectShare {
-  double share = 0.0;
-  double low = 0.0;
-  double high = 1.0;
+  double share = 0.0, low = 0.0, high = 1.0;
 };
 CorrectShare correct_share(const Discrimination& result) noexcept;
 

@@ -33,14 +33,11 @@ struct StrokePair {
   std::uint64_t checksum = 0;  // of both forces
   JndLine jnd;
   // |comparison - reference| over the JND of the reference, over the ticks in contact, with the ramps of an interval.
-  double mean_over_jnd = 0.0;
-  double max_over_jnd = 0.0;
+  double mean_over_jnd = 0.0, max_over_jnd = 0.0;
   // Means between the ramps, which represent the strokes in a study file.
-  double reference_mean_N = 0.0;
-  double comparison_mean_N = 0.0;
+  double reference_mean_N = 0.0, comparison_mean_N = 0.0;
   // One force per tick of an interval, rounded to 0.1 mN; empty when the pair was read from a study file.
-  std::vector<double> reference_N;
-  std::vector<double> comparison_N;
+  std::vector<double> reference_N, comparison_N;
 };
 
 inline constexpr std::array<double, 4> kReferenceForces_N = {0.3, 0.5, 1.0, 2.5};
@@ -52,10 +49,8 @@ inline constexpr std::size_t kConstantBlock = 64;
 inline constexpr std::size_t kDiscriminationBlock = 20;
 
 struct StudyTrial {
-  double reference_N = 0.0;
-  double comparison_N = 0.0;
-  bool comparison_first = false;
-  bool training = false;
+  double reference_N = 0.0, comparison_N = 0.0;
+  bool comparison_first = false, training = false;
   std::size_t number = 0;  // from 1, separately for the training and the study
 
   double first_N() const noexcept { return comparison_first ? comparison_N : reference_N; }

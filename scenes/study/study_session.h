@@ -67,8 +67,7 @@ class StudySession final : public ForceSource {
   StudyPresenter presenter_;
 
   StudyState state_ = StudyState::consent;
-  std::uint64_t presentation_ = 0;
-  std::uint64_t rest_until_ = 0;
+  std::uint64_t presentation_ = 0, rest_until_ = 0;
   bool dropped_out_ = false;  // the device did not render the last presentation as planned
   std::string problem_;       // error message of the file
 };
@@ -79,8 +78,6 @@ class LiveStudy {
   // `strokes`: null for constant stimuli. Errors: the device cannot be opened.
   static Result<std::unique_ptr<LiveStudy>> open(const std::string& device, bool realtime,
                                                  std::shared_ptr<const StrokePair> strokes);
-  LiveStudy(const LiveStudy&) = delete;
-  LiveStudy& operator=(const LiveStudy&) = delete;
   // Ramps the force to zero.
   ~LiveStudy();
 

@@ -52,7 +52,9 @@ const std::vector<LineUp>& line_ups() {
        "the greedy method with 10 to 200 centres",
        {"greedy-10", "greedy-20", "greedy-50", "greedy-100", "greedy-200"}},
       {"Corrections", "the trend alone, and with the correction of each method", plans_on(Base::trend)},
-      {"Direct", "the interpolation of every sample", {"direct", "voxel", "trend+direct", "trend+greedy-100"}}};
+      {"Direct",
+       "the interpolation of every sample",
+       {kDirectMethod.name, kVoxelMethod.name, "trend+direct", "trend+greedy-100"}}};
   return all;
 }
 

@@ -40,8 +40,6 @@ class ModelWorker {
   // `training`: recordings; empty: that of the scene's virtual material. `ready`: a folder of models that need no fit
   // to that material (ready_models.h); may be empty.
   ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training = {}, const std::string& ready = "");
-  ModelWorker(const ModelWorker&) = delete;
-  ModelWorker& operator=(const ModelWorker&) = delete;
   // Interrupts the running fits and waits for the threads.
   ~ModelWorker();
 
