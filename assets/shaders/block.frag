@@ -63,8 +63,8 @@ void main() {
   float ball = clamp(dot(n, to_ball) * tool_radius * tool_radius / (ball_m * ball_m * ball_m), 0.0, 1.0);
   open *= (1.0 - 0.75 * ball) * (1.0 - 0.45 * sunk * sqrt(min(dent / tool_radius, 1.0)));
   lamp = 1.0 - 0.65 * shadow();
-  vec2 pixel_m = fwidth(material.xz);
-  base *= 1.0 - grid * max(line_of_grid(material.x, 0.01, pixel_m.x), line_of_grid(material.z, 0.01, pixel_m.y));
+  vec2 px_per_m = 1.0 / fwidth(material.xz);
+  base *= 1.0 - grid * max(line_of_grid(material.x, 0.01, px_per_m.x), line_of_grid(material.z, 0.01, px_per_m.y));
   thin += 0.6 * sunk * (1.0 - sunk);
   spread = smoothstep(0.28, 0.36, sunk);
 #endif

@@ -2,9 +2,9 @@
 const float kLineWidth = 0.0006;  // of the grid, metres
 
 // Coverage of this pixel by lines of the grid at a distance of `step` metres.
-float line_of_grid(float at, float step, float pixel_m) {
+float line_of_grid(float at, float step, float px_per_m) {
   float away = abs(fract(at / step + 0.5) - 0.5) * step;
-  return clamp((0.5 * kLineWidth - away) / pixel_m + 0.5, 0.0, 1.0) * min(1.0, kLineWidth / pixel_m);
+  return clamp((0.5 * kLineWidth - away) * px_per_m + 0.5, 0.0, 1.0) * min(1.0, kLineWidth * px_per_m);
 }
 
 #ifdef PORES

@@ -6,16 +6,13 @@ uniform vec3 colour;
 uniform vec3 half_size;     // of the whole block, y its whole height, metres
 uniform float translucent;  // 0..1
 
-noperspective out vec2 material;  // position without deformation
-noperspective out vec2 at;        // the same with it
-noperspective out vec3 lit;       // colour in this light
+noperspective out vec3 material;  // position without deformation; z: its height with it
+flat out vec3 lit;                // colour in this light
 
 void main() {
-  material = position.xy;
-  at = position.xy;
-  at.y -= surface_at(abs(position.x)).depth * (1.0 + position.y / half_size.y);
-  vec4 place = vec4(at, 0.0, 1.0);
+  float sunk = surface_at(abs(position.x)).depth * (1.0 + position.y / half_size.y);
+  material = vec3(position.xy, position.y - sunk);
   vec3 own = colour / max(max(colour.r, colour.g), colour.b);
   lit = 0.5 + 0.62 * wrapped(vec3(0.0, 0.0, 1.0), mix(vec3(0.15), 0.55 * own * own, translucent));
-  gl_Position = view_projection * place;
+  gl_Position = view_projection * vec4(material.xz, 0.0, 1.0);
 }

@@ -297,7 +297,6 @@ Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
 }
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {
-  resolution_ = {};  // full resolution at any load
   draw(true);
   return window_->save_frame(path, overwrite);
 }

@@ -17,7 +17,6 @@
 #include "rendering/panels/scene_overlay.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/picture/block_view.h"
-#include "rendering/picture/resolution.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 
@@ -50,7 +49,7 @@ class DemoApp {
   // Completes a recording, removes the force and closes the device, without GLFW and OpenGL: for the loss of the
   // display. Returns the text of --stats.
   std::string end();
-  // Draws the present state in full resolution and saves it. Errors: those of Window::save_frame.
+  // Draws the present state and saves it. Errors: those of Window::save_frame.
   Status screenshot(const std::string& path, bool overwrite);
 
   LiveSession& session() noexcept { return *session_; }
@@ -114,7 +113,6 @@ class DemoApp {
   SessionRequest request_;
   std::string first_device_;            // of the command line
   std::optional<SessionRequest> next_;  // the session to open after this frame
-  Resolution resolution_;
   std::vector<WindowCommand> commands_;
   double key_velocity_m_per_s_ = 0.0;  // of the tool by the keys of this frame, positive inwards
   WindowLayout layout_;

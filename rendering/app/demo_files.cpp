@@ -51,7 +51,6 @@ Json graphics_json(const FrameFigures& frames) {
   const TimePercentiles times = frames.times.percentiles();
   return {{"frames", times.count},
           {"fps", frames.seconds > 0.0 ? static_cast<double>(times.count) / frames.seconds : 0.0},
-          {"picture_scale", frames.picture_scale},
           {"frame_ms",
            {{"p50", kMsPerUs * times.p50_us}, {"p99", kMsPerUs * times.p99_us}, {"max", kMsPerUs * times.max_us}}}};
 }

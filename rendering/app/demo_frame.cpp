@@ -86,10 +86,6 @@ void DemoApp::draw(bool texts) {
   } else {
     ui_->draw_again(changed_);
   }
-  if (!window_->is_software()) return;
-  // With a software renderer, waits for the drawing here instead of in the buffer swap, to measure its time.
-  glFinish();
-  resolution_.add(steady_now_s() - frame_began_s_);
 }
 
 std::vector<Viewport> DemoApp::draw_blocks(bool all) {
@@ -99,8 +95,7 @@ std::vector<Viewport> DemoApp::draw_blocks(bool all) {
   blocks_->leave_free((stage.at.y - area.at.y) / area.size.y,
                       1.0F - (stage.at.y - area.at.y + stage.size.y) / area.size.y);
   blocks_->show(poses.size(), {area.size.x, area.size.y}, false);  // their number changes when models become ready
-  view_.frames.picture_scale = resolution_.scale();
-  return blocks_->draw(poses, pixels_of(area), view_.settings.theme, resolution_.scale(), all);
+  return blocks_->draw(poses, pixels_of(area), view_.settings.theme, all);
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {

@@ -17,7 +17,6 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/live/pacer.h"
-#include "rendering/picture/resolution.h"
 
 namespace palpate {
 namespace {
@@ -125,6 +124,14 @@ bool copies_parts() {
 
 }  // namespace
 
+bool is_software(std::string_view renderer) noexcept {
+  // The software renderers of Mesa (three), Microsoft and Apple.
+  for (const std::string_view program : {"llvmpipe", "softpipe", "SWR", "GDI Generic", "Software"}) {
+    if (renderer.find(program) != std::string_view::npos) return true;
+  }
+  return false;
+}
+
 Status Window::find_display() {
   glfwSetErrorCallback(keep_problem);
   set_handler("XSetIOErrorHandler", &on_lost_server);
@@ -164,10 +171,10 @@ Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
   }
   set_handler("XSetErrorHandler", &on_refused_request);  // GLFW resets it while it makes a context
   std::unique_ptr<Window> window(new Window(handle));
-  window->software_ = palpate::is_software(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+  const bool software = is_software(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
   // A software renderer does not wait; on a busy machine its frames would seem to.
-  window->paced_by_display_ = window->display_sets_pace(request.empty) && !window->software_;
-  window->keeps_frame_ = window->software_ && copies_parts();
+  window->paced_by_display_ = window->display_sets_pace(request.empty) && !software;
+  window->keeps_frame_ = software && copies_parts();
   return window;
 }
 

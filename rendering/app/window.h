@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -20,6 +21,9 @@ struct WindowRequest {
   bool fullscreen = false;
   Rgb empty{0.08F, 0.09F, 0.10F};  // colour until the first frame
 };
+
+// Whether OpenGL is a program instead of a graphics card. `renderer`: its name as OpenGL reports it.
+bool is_software(std::string_view renderer) noexcept;
 
 class Window {
  public:
@@ -40,8 +44,6 @@ class Window {
   // Fills the frame, or a part of it, with one colour.
   void clear(const Rgb& colour) const;
   void clear(const Viewport& part, const Rgb& colour) const;
-  // Whether OpenGL is a program instead of a graphics card.
-  bool is_software() const noexcept { return software_; }
   // Whether the frame is kept when it is shown, so that the next one may be drawn in parts.
   bool keeps_frame() const noexcept { return keeps_frame_; }
   // Shows the frame and waits for the next one: until the display is ready if the driver waits for it, else 1/60 s.
@@ -57,7 +59,7 @@ class Window {
   bool has_settled();
 
   GLFWwindow* window_;
-  bool software_ = false, keeps_frame_ = false;
+  bool keeps_frame_ = false;
   Viewport settled_;   // size of the last frame
   int same_size_ = 0;  // frames since it has changed
   bool paced_by_display_ = false;

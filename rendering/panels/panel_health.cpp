@@ -43,8 +43,6 @@ void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
   row("tick", statistics.tick);
   row("frame", frames.times.percentiles());
   ImGui::EndTable();
-  if (frames.picture_scale < 1.0F)
-    ImGui::TextDisabled("3-D view at %.0f %% of its pixels a side", 100.0 * frames.picture_scale);
 }
 
 void draw_faults(const HealthView& health, const UiStyle& style) {

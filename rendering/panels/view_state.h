@@ -119,7 +119,6 @@ struct ExhibitState {
 struct FrameFigures {
   TimeHistogram times;  // from the end of one frame to that of the next
   double seconds = 0.0;
-  float picture_scale = 1.0F;  // see Resolution::scale
 };
 
 // A notice over the picture.

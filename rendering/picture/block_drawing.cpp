@@ -45,6 +45,7 @@ void BlockView::begin_block(const Shader& shader) const {
   shader.set("grid", material.grid);
   shader.set("mark", 0.0F);
   shader.set("tip", -1.0F);  // the tip is far above
+  shader.set("px_per_m", 2.0F * px_per_m_);  // of the static parts
   set_dent(shader, 0.0F);
 }
 
@@ -68,6 +69,7 @@ void BlockView::set_error(const Shader& shader, const BlockPose& pose) const {
   shader.set("tip", drawn_m(pose.tool_m));
   shader.set("outline_colour", outline_on(block_colour_));
   shader.set("outline_width", outline_px());
+  shader.set("px_per_m", px_per_m_);
 }
 
 void BlockView::draw_still(std::size_t count, Theme theme) {

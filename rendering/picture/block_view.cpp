@@ -117,10 +117,10 @@ BlockView::BlockView(const Scene& scene, float magnified, Shaders shaders)
       ball_(lathe_mesh(ball_profile(), 40)),
       sensor_(lathe_mesh(kSensor, 40)),
       handle_(lathe_mesh(handle_profile(kToolLength), 40)),
-      middle_(block_middle(middle_m_, 14, finish_ == Finish::dome ? 16 : 11)),
+      middle_(block_middle(middle_m_, 12, finish_ == Finish::dome ? 14 : 9)),
       moving_section_(block_section(middle_m_, 0.5F * size_of(geometry_).x,
-                                    0.97F * static_cast<float>(geometry_.height_m), 0.0F, 40)),
-      line_(line_mesh(middle_m_, 40)) {
+                                    0.97F * static_cast<float>(geometry_.height_m), 0.0F, 22)),
+      line_(line_mesh(middle_m_, 22)) {
   show(1, glm::vec2(1.0F), true);
 }
 
@@ -253,40 +253,23 @@ std::vector<Viewport> BlockView::moving_parts(const BlockPose& pose) const {
   return parts;
 }
 
-// From pixels of the picture to the window, whose origin is at the lower left.
+// From the picture to the window, whose origin is at the lower left.
 Viewport BlockView::in_window(const Viewport& part) const {
-  const int wide = viewport_.width, high = viewport_.height, width = pixels_.width(), height = pixels_.height();
-  const int left = part.x * wide / width, right = ((part.x + part.width) * wide + width - 1) / width;
-  const int top = part.y * high / height, low = ((part.y + part.height) * high + height - 1) / height;
-  // With a margin of the pixels into which the outermost ones are interpolated.
-  const int margin = width != wide || height != high ? 2 : 0;
-  return common_part(viewport_, {viewport_.x + left - margin, viewport_.y + high - low - margin,
-                                 right - left + 2 * margin, low - top + 2 * margin});
+  return {viewport_.x + part.x, viewport_.y + viewport_.height - part.y - part.height, part.width, part.height};
 }
 
 void BlockView::copy_to_window(const Viewport& part) const {
-  const int wide = viewport_.width, high = viewport_.height;
-  if (wide < 1 || high < 1) return;
-  const Viewport whole{0, 0, pixels_.width(), pixels_.height()};
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(part.x, part.y, part.width, part.height);
-  if (whole.width == wide && whole.height == high) {
-    const Viewport from{part.x - viewport_.x, high - (part.y - viewport_.y) - part.height, part.width, part.height};
-    pixels_.copy_to(nullptr, from, part);
-  } else {
-    pixels_.copy_to(nullptr, whole, viewport_);
-  }
-  glDisable(GL_SCISSOR_TEST);
+  const Viewport shown = common_part(part, viewport_);
+  if (shown.empty()) return;
+  const int top = viewport_.height - (shown.y - viewport_.y) - shown.height;
+  pixels_.copy_to(nullptr, {shown.x - viewport_.x, top, shown.width, shown.height}, shown);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 std::vector<Viewport> BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme,
-                                      float scale, bool all) {
+                                      bool all) {
   if (viewport.width < 1 || viewport.height < 1 || blocks.empty()) return {};
-  const auto scaled = [scale](int size) {
-    return std::max(1, static_cast<int>(std::round(scale * static_cast<float>(size))));
-  };
-  const int width = scaled(viewport.width), height = scaled(viewport.height);
+  const int width = viewport.width, height = viewport.height;
   all = all || viewport != viewport_;
   viewport_ = viewport;
   const glm::vec2 size(width, height);

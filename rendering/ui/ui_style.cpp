@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <glm/common.hpp>
 #include <initializer_list>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -31,9 +32,6 @@ constexpr const char* kFontFiles[] = {
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
     "/usr/share/fonts/TTF/DejaVuSans.ttf", "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
 
-// Side of the squares in which the window is searched for widgets, in its units.
-constexpr int kTile = 16;
-
 // Latin letters and the signs that the panel uses.
 constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193, 0x2264,
                                0x2265, 0x25A0, 0x25CF, 0x3BC,  0x3C4,  0};
@@ -44,6 +42,27 @@ ImFont* add_font(const std::string& path, float size_px) {
   ImFontConfig plain;
   plain.SizePixels = size_px;
   return io.Fonts->AddFontDefault(&plain);
+}
+
+// Appends the commands of a list that draw in a part of the window, clipped to it, with their triangles there.
+void add_commands_in(const ImDrawList& list, const ImVec4& part, ImVector<ImDrawCmd>& commands,
+                     ImVector<ImDrawIdx>& indices) {
+  for (ImDrawCmd command : list.CmdBuffer) {
+    ImVec4& clip = command.ClipRect;
+    clip = {std::max(clip.x, part.x), std::max(clip.y, part.y), std::min(clip.z, part.z), std::min(clip.w, part.w)};
+    if (clip.x >= clip.z || clip.y >= clip.w) continue;
+    const ImDrawIdx* const first = list.IdxBuffer.Data + command.IdxOffset;
+    command.IdxOffset = static_cast<unsigned>(indices.Size);
+    for (const ImDrawIdx* corner = first; corner < first + command.ElemCount; corner += 3) {
+      const auto at = [&](int k) { return list.VtxBuffer[static_cast<int>(corner[k] + command.VtxOffset)].pos; };
+      const auto [left, right] = std::minmax({at(0).x, at(1).x, at(2).x});
+      const auto [top, bottom] = std::minmax({at(0).y, at(1).y, at(2).y});
+      if (left > clip.z || right < clip.x || top > clip.w || bottom < clip.y) continue;
+      for (int k = 0; k < 3; ++k) indices.push_back(corner[k]);
+    }
+    command.ElemCount = static_cast<unsigned>(indices.Size) - command.IdxOffset;
+    if (command.ElemCount > 0) commands.push_back(command);
+  }
 }
 
 }  // namespace
@@ -81,81 +100,43 @@ void UiContext::begin_frame(const std::vector<int>& tapped) {
 void UiContext::end_frame() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  note_tiles();
-}
-
-// Notes where the triangles of the frame are.
-void UiContext::note_tiles() {
-  const ImDrawData& data = *ImGui::GetDrawData();
-  columns_ = static_cast<int>(data.DisplaySize.x) / kTile + 1;
-  rows_ = static_cast<int>(data.DisplaySize.y) / kTile + 1;
-  tiles_.assign(static_cast<std::size_t>(columns_ * rows_), false);
-  const auto tile = [](float at, int count) { return std::clamp(static_cast<int>(at) / kTile, 0, count - 1); };
-  for (int n = 0; n < data.CmdListsCount; ++n) {
-    const ImDrawList& list = *data.CmdLists[n];
-    for (const ImDrawCmd& command : list.CmdBuffer) {
-      const ImVec4& clip = command.ClipRect;
-      for (unsigned i = 0; i + 2 < command.ElemCount; i += 3) {
-        ImVec2 low(FLT_MAX, FLT_MAX), high(-FLT_MAX, -FLT_MAX);
-        for (unsigned k = 0; k < 3; ++k) {
-          const unsigned vertex = list.IdxBuffer[static_cast<int>(command.IdxOffset + i + k)] + command.VtxOffset;
-          const ImVec2& at = list.VtxBuffer[static_cast<int>(vertex)].pos;
-          low = {std::min(low.x, at.x), std::min(low.y, at.y)};
-          high = {std::max(high.x, at.x), std::max(high.y, at.y)};
-        }
-        if (low.x > clip.z || low.y > clip.w || high.x < clip.x || high.y < clip.y) continue;
-        const int right = tile(std::min(high.x, clip.z), columns_), bottom = tile(std::min(high.y, clip.w), rows_);
-        for (int y = tile(std::max(low.y, clip.y), rows_); y <= bottom; ++y) {
-          for (int x = tile(std::max(low.x, clip.x), columns_); x <= right; ++x)
-            tiles_[static_cast<std::size_t>(y * columns_ + x)] = true;
-        }
-      }
-    }
-  }
-}
-
-// The smallest rectangle around the widgets in a part, both in the window's units with the origin at the upper left.
-Viewport UiContext::drawn_part(const Viewport& part) const {
-  Viewport drawn;
-  for (int y = std::max(0, part.y / kTile); y < std::min(rows_, (part.y + part.height - 1) / kTile + 1); ++y) {
-    for (int x = std::max(0, part.x / kTile); x < std::min(columns_, (part.x + part.width - 1) / kTile + 1); ++x) {
-      if (tiles_[static_cast<std::size_t>(y * columns_ + x)])
-        drawn = around_both(drawn, common_part(part, {x * kTile, y * kTile, kTile, kTile}));
-    }
-  }
-  return drawn;
 }
 
 void UiContext::draw_again(const std::vector<Viewport>& parts) const {
   ImDrawData& data = *ImGui::GetDrawData();
   const ImVec2 scale = data.FramebufferScale;
+  std::vector<ImVec4> within;  // the parts in the window's units, with the origin at the upper left
   for (const Viewport& part : parts) {
-    const auto at = [](int pixels, float by, bool up) {
-      const float units = static_cast<float>(pixels) / by;
-      return static_cast<int>(up ? std::ceil(units) : std::floor(units));
-    };
-    const int left = at(part.x, scale.x, false), right = at(part.x + part.width, scale.x, true);
-    const int high = static_cast<int>(data.DisplaySize.y);
-    const int top = high - at(part.y + part.height, scale.y, true), bottom = high - at(part.y, scale.y, false);
-    const Viewport drawn = drawn_part({left, top, right - left, bottom - top});
-    if (drawn.empty()) continue;
-    // The commands clipped to the part, for this call only.
-    std::vector<ImVec4> clips;
-    const ImVec4 within(static_cast<float>(drawn.x), static_cast<float>(drawn.y),
-                        static_cast<float>(drawn.x + drawn.width), static_cast<float>(drawn.y + drawn.height));
-    for (int n = 0; n < data.CmdListsCount; ++n) {
-      for (ImDrawCmd& command : data.CmdLists[n]->CmdBuffer) {
-        ImVec4& clip = command.ClipRect;
-        clips.push_back(clip);
-        clip = {std::max(clip.x, within.x), std::max(clip.y, within.y), std::min(clip.z, within.z),
-                std::min(clip.w, within.w)};
-      }
-    }
-    ImGui_ImplOpenGL3_RenderDrawData(&data);
-    auto clip = clips.begin();
-    for (int n = 0; n < data.CmdListsCount; ++n) {
-      for (ImDrawCmd& command : data.CmdLists[n]->CmdBuffer) command.ClipRect = *clip++;
-    }
+    const auto low = ImVec2(static_cast<float>(part.x) / scale.x, static_cast<float>(part.y) / scale.y);
+    const auto high =
+        ImVec2(low.x + static_cast<float>(part.width) / scale.x, low.y + static_cast<float>(part.height) / scale.y);
+    within.push_back({std::floor(low.x), std::floor(data.DisplaySize.y - high.y), std::ceil(high.x),
+                      std::ceil(data.DisplaySize.y - low.y)});
+  }
+  // The commands and triangles that are in a part take the place of all, for this call only.
+  std::vector<ImDrawList*> lists;
+  std::vector<std::pair<ImVector<ImDrawCmd>, ImVector<ImDrawIdx>>> kept;
+  for (int n = 0; n < data.CmdListsCount; ++n) {
+    ImDrawList& list = *data.CmdLists[n];
+    ImVector<ImDrawCmd> commands;
+    ImVector<ImDrawIdx> indices;
+    for (const ImVec4& part : within) add_commands_in(list, part, commands, indices);
+    if (commands.empty()) continue;
+    lists.push_back(&list);
+    kept.emplace_back();
+    list.CmdBuffer.swap(commands);
+    list.IdxBuffer.swap(indices);
+    kept.back().first.swap(commands);
+    kept.back().second.swap(indices);
+  }
+  if (lists.empty()) return;
+  ImDrawData some = data;
+  some.CmdLists = lists.data();
+  some.CmdListsCount = static_cast<int>(lists.size());
+  ImGui_ImplOpenGL3_RenderDrawData(&some);
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    lists[i]->CmdBuffer.swap(kept[i].first);
+    lists[i]->IdxBuffer.swap(kept[i].second);
   }
 }
 

@@ -66,13 +66,7 @@ class UiContext {
   void draw_again(const std::vector<Viewport>& parts) const;
 
  private:
-  void note_tiles();
-  Viewport drawn_part(const Viewport& part) const;
-
   GLFWwindow* window_;
-  // Whether a widget is in a square of the window, by rows from the top.
-  std::vector<bool> tiles_;
-  int columns_ = 0, rows_ = 0;
 };
 
 class UiStyle {

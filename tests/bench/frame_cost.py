@@ -98,7 +98,7 @@ def row(program, blocks, options, display):
     cost = [1e3 * (both_s[part] - first_s[part]) / max(frames, 1) for part in both_s]
     haptics = both["haptics"]
     values = [blocks, program, frames, f"{graphics['fps']:.1f}", f"{graphics['frame_ms']['p50']:.1f}",
-              f"{graphics['frame_ms']['p99']:.1f}", f"{graphics.get('picture_scale', 1.0):.2f}",
+              f"{graphics['frame_ms']['p99']:.1f}",
               *(f"{ms:.2f}" for ms in cost), f"{haptics['lateness_us']['p99_9']:.0f}", f"{both['ideal_us']:.0f}",
               haptics["missed_deadlines"]]
     return ",".join(map(str, values))
@@ -120,7 +120,7 @@ def main():
     while not os.path.exists(f"/tmp/.X11-unix/X{number}"):
         time.sleep(0.05)
     try:
-        print("blocks,program,frames,fps,frame_ms_p50,frame_ms_p99,picture_scale,main_processor_ms,driver_processor_ms,"
+        print("blocks,program,frames,fps,frame_ms_p50,frame_ms_p99,main_processor_ms,driver_processor_ms,"
               "whole_processor_ms,lateness_us_p99_9,ideal_loop_us_p99_9,missed_deadlines")
         for _ in range(options.rounds):
             for blocks in options.blocks:

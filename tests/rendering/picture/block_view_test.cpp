@@ -59,8 +59,8 @@ class BlockViewTest : public ::testing::Test {
     return blocks;
   }
   static Picture draw(BlockView& view, const std::vector<BlockPose>& blocks, Theme theme = Theme::light,
-                      float scale = 1.0F, int width = kWidth, int height = kHeight, bool all = true) {
-    view.draw(blocks, {0, 0, width, height}, theme, scale, all);
+                      int width = kWidth, int height = kHeight, bool all = true) {
+    view.draw(blocks, {0, 0, width, height}, theme, all);
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
     Picture pixels(static_cast<std::size_t>(3 * width * height));
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -69,7 +69,7 @@ class BlockViewTest : public ::testing::Test {
   }
   static Picture draw_whole(BlockView& view, const std::vector<BlockPose>& blocks, Theme theme) {
     view.show(blocks.size(), {kWholeWidth, kWholeHeight}, true);
-    return draw(view, blocks, theme, 1.0F, kWholeWidth, kWholeHeight);
+    return draw(view, blocks, theme, kWholeWidth, kWholeHeight);
   }
   static Rgb pixel(const Picture& picture, int x, int y_down) {
     const auto at = static_cast<std::size_t>(3 * ((kWholeHeight - 1 - y_down) * kWholeWidth + x));
@@ -98,21 +98,20 @@ class BlockViewTest : public ::testing::Test {
   Scene scene_;
 };
 
-// Only the parts that change are drawn, copied and enlarged; the rest of the window stays as it is.
+// Only the parts that change are drawn and copied; the rest of the window stays as it is.
 TEST_F(BlockViewTest, EveryChangeGivesThePictureOfAFreshStart) {
   const auto used = view();
   std::vector<BlockPose> blocks = poses(2, 0.002F);
   CameraTurn turn;
   Theme theme = Theme::light;
-  float scale = 1.0F;
   const auto expect_fresh = [&](const char* what) {
     const auto fresh = view();
     for (BlockView* each : {used.get(), fresh.get()}) {
       each->camera().turn(turn);
       each->show(blocks.size(), {kWidth, kHeight}, true);
     }
-    const Picture kept = draw(*used, blocks, theme, scale, kWidth, kHeight, false);
-    EXPECT_EQ(kept, draw(*fresh, blocks, theme, scale)) << what;
+    const Picture kept = draw(*used, blocks, theme, kWidth, kHeight, false);
+    EXPECT_EQ(kept, draw(*fresh, blocks, theme)) << what;
   };
   expect_fresh("first");
   blocks[0].tool_m = blocks[0].dent_m = 0.006F;
@@ -131,11 +130,9 @@ TEST_F(BlockViewTest, EveryChangeGivesThePictureOfAFreshStart) {
   expect_fresh("more blocks");
   used->leave_free(0.0F, 0.0F);
   expect_fresh("nothing");
-  scale = 0.67F;
-  expect_fresh("reduced");
   for (const float depth_m : {0.009F, -0.03F, 0.0F}) {
     blocks = poses(6, depth_m);
-    expect_fresh("reduced, in motion");
+    expect_fresh("in motion");
   }
 }
 
@@ -144,10 +141,10 @@ TEST_F(BlockViewTest, SaysWhichPartsOfTheWindowHaveChanged) {
   const Viewport whole{7, 5, kWidth, kHeight};
   std::vector<BlockPose> blocks = poses(6, 0.002F);
   each->show(6, {kWidth, kHeight}, true);
-  EXPECT_EQ(each->draw(blocks, whole, Theme::light, 1.0F, false), std::vector{whole}) << "the first picture";
-  EXPECT_TRUE(each->draw(blocks, whole, Theme::light, 1.0F, false).empty()) << "nothing moves";
+  EXPECT_EQ(each->draw(blocks, whole, Theme::light, false), std::vector{whole}) << "the first picture";
+  EXPECT_TRUE(each->draw(blocks, whole, Theme::light, false).empty()) << "nothing moves";
   blocks[4].dent_m = blocks[4].tool_m = 0.003F;
-  const std::vector<Viewport> changed = each->draw(blocks, whole, Theme::light, 1.0F, false);
+  const std::vector<Viewport> changed = each->draw(blocks, whole, Theme::light, false);
   ASSERT_FALSE(changed.empty());
   Viewport around;
   for (const Viewport& part : changed) around = around_both(around, part);
