@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/base/fit_control.h"
+#include "engine/base/parallel.h"
 #include "engine/base/signals.h"
 
 namespace palpate::cli {

@@ -1,9 +1,8 @@
 #include "rendering/ui/ui_style.h"
 
 #include <epoxy/gl.h>
-// Included after epoxy, which declares OpenGL's functions.
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
+
+#include <GLFW/glfw3.h>  // after epoxy
 #include <gtest/gtest.h>
 
 #include "tests/support/virtual_display.h"
