@@ -4,18 +4,17 @@
   python3 tests/labs.py [--palpate build/palpate] [--recordings DIR ...] [--models NAME ...]
                         [--sets WORD ...] [--no-virtual] [--json FILE] [--against FILE] [--write]
 
-Recorded sets come first: every folder with train*.csv and test*.csv in ../shared/data and ../shared/labs (if
-present) or in DIR. Virtual materials follow. All use positions only, without the accelerometer column of
-the virtual rig. Columns: the share [%] of the samples in contact within the JND, as recorded
-(aligned), for 0 N and every model; then, for the last model, the 99 % quantile and the maximum of the error in
-JND as recorded, the coverage of the 95 % bound, and the seconds of the fit. "Aligned" fits the surface
-of the test (also force zero and lag) to the forces of the test. It shows the error after registration of the
-rig and is not a prediction. Recorded sets and virtual materials have separate means. Models are named as in
-palpate fit --list-methods; of methods that draw random numbers the medians of five seeds are shown. bins and ridge are
-the baselines of baselines.py. --json saves the figures; --against prints the differences from
-such a file. --write puts the table into bench/RESULTS.md, and its means into README.md together with the
-sentence and the figure of a report on a material on which the methods differ. Takes minutes on two cores. Needs
-python3-numpy.
+Recorded sets come first: every folder with train*.csv and test*.csv in ../shared/data and ../shared/labs (if present)
+or in DIR. Virtual materials follow. All use positions only, without the accelerometer column of the virtual rig.
+Columns: the share [%] of the samples in contact within the JND, as recorded (aligned), for 0 N and every model; then,
+for the last model that is no baseline, the 99 % quantile and the maximum of the error in JND as recorded, the coverage
+of the 95 % bound, and the seconds of the fit. "Aligned" fits the surface of the test (also force zero and lag) to the
+forces of the test. It shows the error after registration of the rig and is not a prediction. Recorded sets and virtual
+materials have separate means. Models are named as in palpate fit --list-methods; of methods that draw random numbers
+the medians of five seeds are shown. bins and ridge are the baselines of baselines.py. --json saves the figures;
+--against prints the differences from such a file. --write puts the table into bench/RESULTS.md, and its means into
+README.md together with the sentence and the figure of a report on a material on which the methods differ. Takes minutes
+on two cores. Needs python3-numpy.
 """
 import argparse
 import concurrent.futures
@@ -169,12 +168,14 @@ def share(one):
 def table(names, results, models):
     lines = ["| | 0 N | " + " | ".join(models) + " | 99 % up to [JND] | worst [JND] | within the bound | fit [s] |",
              "|---|" + "---:|" * (len(models) + 5)]
+    detailed = next((model for model in reversed(models) if model not in baselines.KINDS), models[-1])
     for name in names:
         entries = [results[name, model] for model in models]
-        seconds = f"{entries[-1]['seconds']:.2f}" if "seconds" in entries[-1] else ""
-        lines.append(f"| {name} | " + cells(entries[-1], lambda one: f"{one['nothing']:.1f}") + " | "
+        last = results[name, detailed]
+        seconds = f"{last['seconds']:.2f}" if "seconds" in last else ""
+        lines.append(f"| {name} | " + cells(last, lambda one: f"{one['nothing']:.1f}") + " | "
                      + " | ".join(cells(entry, share) for entry in entries) + " | "
-                     + " | ".join(cells(entries[-1], lambda one, key=key, digits=digits: number(one[key], digits))
+                     + " | ".join(cells(last, lambda one, key=key, digits=digits: number(one[key], digits))
                                   for key, digits in (("p99", ".2f"), ("worst", ".2f"), ("held", ".1f")))
                      + f" | {seconds} |")
     return lines
