@@ -73,6 +73,7 @@ Figure jnd_figure(const PaperData& data) {
   Figure figure;
   figure.plot.name = "figure_3";
   figure.plot.columns = 2;
+  figure.plot.height = 1.5;
   figure.caption =
       "Figure 3: JND of twelve simulated subjects in the paper's study, with standard errors, and the point of Pang, "
       "Tan & Durlach (1991); the line through them, and the paper's conservative line, 0.065 N + 6.33 %. The paper's "

@@ -33,8 +33,7 @@ constexpr Tolerance kConsiderable{0.25, 0.8,
 constexpr Tolerance kLess{0.25, 1.0 / 1.1,
                           "0.25 to 0.91: more than the difference that counts as none; on one axis in the figures"};
 constexpr Tolerance kFaster{0.0, 1.0 / 1.1, "up to 0.91: by more than a tenth; the paper gives no other limit"};
-// The paper's times have a ratio of 1.8, from kD-tree to greedy-20, or more.
-constexpr Tolerance kLonger{1.1, 3.6, "1.1 to 3.6: by more than a tenth, up to twice the paper's 1.8"};
+constexpr Tolerance kLonger{1.1, 3.6, "1.1 to 3.6: more than a tenth, up to twice the 1.8 of greedy-20 over kD-tree"};
 constexpr Tolerance kLinear{0.8, 1.2, "0.8 to 1.2: twice the samples take 1.7 to 2.3 times as long"};
 constexpr Tolerance kCubic{2.7, 3.3, "2.7 to 3.3: twice the samples take 6.5 to 9.8 times as long"};
 constexpr Tolerance kTenfold{8.0, 12.5, "8 to 12.5: ten times the nodes; the other work of a node grows by a fifth"};

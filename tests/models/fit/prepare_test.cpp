@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -136,9 +137,14 @@ TEST(PrepareTraining, TheOrderOfRecordingsChangesNoByteOfTheModel) {
   EXPECT_EQ(model_of({b, c, a}, &kKdTreeMethod), model);
 }
 
-TEST(PrepareTraining, AModelSaysWhereItsRecordingsWere) {
+TEST(PrepareTraining, ASiteCountsAsItsSamplesAndAModelSaysWhereItsRecordingsWere) {
   const auto prepared =
       test::prepare({rig("maxwell", 2, 0.5e-3), rig("maxwell", 3)}, test::scene_request("silicone_block"));
+  EXPECT_GT(prepared.sites.samples.maxCoeff(), 16.0);
+  for (Eigen::Index i = 0; i < prepared.sites.count(); ++i) {
+    const double samples = std::min(prepared.sites.samples(i), 16.0);
+    EXPECT_DOUBLE_EQ(prepared.sites.row_scale(i), std::sqrt(samples) / JndLine{}.at(prepared.sites.force_N(i)));
+  }
   const auto& offsets = prepared.common.provenance.offsets;
   ASSERT_EQ(offsets.size(), 2u);
   // The accuracy of each surface is 0.02 mm.
