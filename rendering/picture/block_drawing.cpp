@@ -162,8 +162,10 @@ void BlockView::draw_moving(const BlockPose& pose) const {
   glEnable(GL_CULL_FACE);
   set_error(shaders_.top, pose);
   middle_.draw();
-  set_error(shaders_.section, pose);
-  moving_section_.draw();
+  if (pose.dent_m > 0.0F) {
+    set_error(shaders_.section, pose);
+    moving_section_.draw();
+  }
   glDisable(GL_CULL_FACE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);

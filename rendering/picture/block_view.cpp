@@ -232,25 +232,25 @@ Viewport BlockView::part_around(const glm::vec3& low, const glm::vec3& high) con
   return grown(least, most, cell_);
 }
 
-// The parts of a cell that are drawn in each frame: the block without its rim, and the tool with arrows and halo.
-std::vector<Viewport> BlockView::moving_parts(const BlockPose& pose) const {
+// The part of a cell that is drawn in each frame: the block without its rim, and the tool with arrows and halo.
+Viewport BlockView::moving_part(const BlockPose& pose) const {
   const glm::vec2 tip = in_cell({0.0F, -drawn_m(pose.tool_m), 0.0F});
   const float arrows = std::max(pose.force_N, pose.shows_truth ? pose.true_force_N : 0.0F);
   const glm::vec2 surface = in_cell({0.0F, 0.0F, 0.0F});
   const float line = line_px();
-  glm::vec2 low = tip + tool_low_, high = tip + tool_high_;
+  glm::vec2 low = glm::min(tip + tool_low_, surface - line), high = glm::max(tip + tool_high_, surface + line);
   if (arrows > kShortestArrow_N) {
     low = glm::min(low, surface - glm::vec2(0.0F, arrow_px(arrows) + line));
     high = glm::max(high, surface + glm::vec2(radius_m_ * px_per_m_ * (kModelArrow + 3.0F * kModelArrowWidth), line));
   }
-  const float halo = halo_px(pose);
-  const glm::vec2 ball = in_cell({0.0F, radius_m_ - drawn_m(pose.dent_m), 0.0F});
-  Viewport block =
-      part_around({-middle_m_, -static_cast<float>(geometry_.height_m), -middle_m_}, {middle_m_, 0.0F, 0.0F});
-  block = around_both(block, grown(surface - line, surface + line, cell_));
-  std::vector<Viewport> parts{block, grown(low, high, cell_)};
-  if (halo > 0.0F) parts.push_back(grown(ball - halo - line, ball + halo + line, cell_));
-  return parts;
+  if (const float halo = halo_px(pose); halo > 0.0F) {
+    const glm::vec2 ball = in_cell({0.0F, radius_m_ - drawn_m(pose.dent_m), 0.0F});
+    low = glm::min(low, ball - halo - line);
+    high = glm::max(high, ball + halo + line);
+  }
+  return around_both(
+      grown(low, high, cell_),
+      part_around({-middle_m_, -static_cast<float>(geometry_.height_m), -middle_m_}, {middle_m_, 0.0F, 0.0F}));
 }
 
 // From the picture to the window, whose origin is at the lower left.
@@ -287,30 +287,19 @@ std::vector<Viewport> BlockView::draw(const std::vector<BlockPose>& blocks, cons
     draw_still(blocks.size(), theme);
   }
   pixels_.draw_into(width, height);
+  drawn_parts_.resize(blocks.size());
   std::vector<Viewport> changed;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (i < drawn_.size() && drawn_[i] == blocks[i]) continue;
     const glm::vec2 at = corner(i, blocks.size(), grid, size);
     const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
-    const std::vector<Viewport> parts = moving_parts(blocks[i]);
-    std::vector<Viewport> drawn = parts;
-    if (i < drawn_parts_.size()) {
-      for (std::size_t k = 0; k < drawn_parts_[i].size(); ++k) {
-        if (k < drawn.size()) {
-          drawn[k] = around_both(drawn[k], drawn_parts_[i][k]);
-        } else {
-          drawn.push_back(drawn_parts_[i][k]);
-        }
-      }
-    }
-    drawn_parts_.resize(blocks.size());
-    drawn_parts_[i] = parts;
-    for (Viewport& part : drawn) {
-      part.x += x;
-      part.y += y;
-      still_pixels_.copy_to(&pixels_, part, part);
-      changed.push_back(in_window(part));
-    }
+    const Viewport now_moving = moving_part(blocks[i]);
+    Viewport part = around_both(now_moving, drawn_parts_[i]);
+    drawn_parts_[i] = now_moving;
+    part.x += x;
+    part.y += y;
+    still_pixels_.copy_to(&pixels_, part, part);
+    changed.push_back(in_window(part));
     pixels_.draw_into(width, height);
     glViewport(x, y, static_cast<int>(cell_.x), static_cast<int>(cell_.y));
     draw_moving(blocks[i]);

@@ -105,7 +105,7 @@ class BlockView {
   float halo_px(const BlockPose& pose) const;
   float opacity_of_error(const BlockPose& pose) const;
   Viewport part_around(const glm::vec3& low, const glm::vec3& high) const;
-  std::vector<Viewport> moving_parts(const BlockPose& pose) const;
+  Viewport moving_part(const BlockPose& pose) const;
   void begin(const Shader& shader) const;
   void begin_block(const Shader& shader) const;
   void set_dent(const Shader& shader, float depth_m) const;
@@ -144,7 +144,7 @@ class BlockView {
   float px_per_m_ = 1.0F;
   glm::vec2 tool_low_{0.0F}, tool_high_{0.0F};  // of the picture of the tool, relative to the tip's, pixels
   std::vector<BlockPose> drawn_;
-  std::vector<std::vector<Viewport>> drawn_parts_;  // of each block
+  std::vector<Viewport> drawn_parts_;  // of each block, in its cell
 };
 
 }  // namespace palpate
