@@ -105,10 +105,9 @@ void UiContext::note_tiles() {
         }
         if (low.x > clip.z || low.y > clip.w || high.x < clip.x || high.y < clip.y) continue;
         const int right = tile(std::min(high.x, clip.z), columns_), bottom = tile(std::min(high.y, clip.w), rows_);
-        for (int y = tile(std::max(low.y, clip.y), rows_); y <= bottom; ++y) {
+        for (int y = tile(std::max(low.y, clip.y), rows_); y <= bottom; ++y)
           for (int x = tile(std::max(low.x, clip.x), columns_); x <= right; ++x)
             tiles_[static_cast<std::size_t>(y * columns_ + x)] = true;
-        }
       }
     }
   }
@@ -118,10 +117,9 @@ void UiContext::note_tiles() {
 Viewport UiContext::drawn_part(const Viewport& part) const {
   Viewport drawn;
   for (int y = std::max(0, part.y / kTile); y < std::min(rows_, (part.y + part.height - 1) / kTile + 1); ++y) {
-    for (int x = std::max(0, part.x / kTile); x < std::min(columns_, (part.x + part.width - 1) / kTile + 1); ++x) {
+    for (int x = std::max(0, part.x / kTile); x < std::min(columns_, (part.x + part.width - 1) / kTile + 1); ++x)
       if (tiles_[static_cast<std::size_t>(y * columns_ + x)])
         drawn = around_both(drawn, common_part(part, {x * kTile, y * kTile, kTile, kTile}));
-    }
   }
   return drawn;
 }
@@ -153,9 +151,8 @@ void UiContext::draw_again(const std::vector<Viewport>& parts) const {
     }
     ImGui_ImplOpenGL3_RenderDrawData(&data);
     auto clip = clips.begin();
-    for (int n = 0; n < data.CmdListsCount; ++n) {
+    for (int n = 0; n < data.CmdListsCount; ++n)
       for (ImDrawCmd& command : data.CmdLists[n]->CmdBuffer) command.ClipRect = *clip++;
-    }
   }
 }
 
