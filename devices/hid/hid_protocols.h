@@ -19,9 +19,8 @@ inline constexpr std::array kHidProtocols = {
 
 // The protocol of `node`, by its ids; null: unknown.
 inline const DeviceProtocol* hid_protocol_of(const DeviceNode& node) {
-  for (const DeviceProtocol* protocol : kHidProtocols) {
+  for (const DeviceProtocol* protocol : kHidProtocols)
     if (protocol->matches(node)) return protocol;
-  }
   return nullptr;
 }
 

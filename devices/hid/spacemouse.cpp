@@ -33,9 +33,8 @@ ReportVerdict decode_space_mouse(const std::uint8_t* bytes, std::size_t size, De
   if (size == 0) return ReportVerdict::corrupt;
   if (bytes[0] != 1) return ReportVerdict::nothing;  // rotation, buttons, battery
   if (size < 7) return ReportVerdict::corrupt;
-  for (const std::size_t at : {1u, 3u, 5u}) {
+  for (const std::size_t at : {1u, 3u, 5u})
     if (std::abs(static_cast<std::int16_t>(wire::read16(bytes + at))) > kSpaceMouseMost) return ReportVerdict::corrupt;
-  }
   reading.counts = static_cast<std::int16_t>(wire::read16(bytes + 5));
   return ReportVerdict::position;
 }

@@ -18,9 +18,8 @@ namespace {
 
 std::vector<const DeviceProtocol*> protocols_that(bool render_force) {
   std::vector<const DeviceProtocol*> protocols;
-  for (const DeviceProtocol* protocol : kHidProtocols) {
+  for (const DeviceProtocol* protocol : kHidProtocols)
     if (protocol->renders_force == render_force) protocols.push_back(protocol);
-  }
   return protocols;
 }
 

@@ -117,9 +117,8 @@ Status write_settings(const std::string& path, const Settings& settings) {
 
 std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames) {
   Json models = Json::array();
-  for (const ModelView& model : shown.models.slots) {
+  for (const ModelView& model : shown.models.slots)
     if (model.state == SlotState::ready) models.push_back(model_json(model));
-  }
   Json faults = Json::array();
   for (const FaultEvent& fault : session.faults().events()) {
     faults.push_back({{"loop_time_s", fault.loop_time_s}, {"text", fault.text}, {"count", fault.count}});
@@ -150,9 +149,8 @@ std::string DemoFiles::new_path(const char* name) {
 
 void DemoFiles::finish() {
   if (running_.valid()) running_.wait();
-  for (const Task& task : std::exchange(waiting_, {})) {
+  for (const Task& task : std::exchange(waiting_, {}))
     if (task.saves) (void)task.work();
-  }
 }
 
 void DemoFiles::use_settings(const std::string& file) {

@@ -118,9 +118,8 @@ bool DemoInput::is_down(int key) const { return std::find(down_.begin(), down_.e
 
 std::vector<int> DemoInput::tapped() const {
   std::vector<int> tapped;
-  for (const KeyPress& press : keys_) {
+  for (const KeyPress& press : keys_)
     if (!is_down(press.key)) tapped.push_back(press.key);
-  }
   return tapped;
 }
 

@@ -242,9 +242,8 @@ void draw_model_table(LiveSession& session, const ModelsView& models, ViewState&
     ImGui::TableSetColumnEnabled(column, !hidden);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const int column : shown) {
+  for (const int column : shown)
     if (ImGui::TableSetColumnIndex(column)) draw_heading(column, view.table);
-  }
   for (const std::size_t index : sorted_slots(models, view.table)) {
     ImGui::TableNextRow();
     ImGui::TableSetColumnIndex(kName);

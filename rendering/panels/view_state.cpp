@@ -12,24 +12,21 @@ void RecordingRoles::add(OpenedRecording recording) {
 }
 
 void RecordingRoles::make_test(std::size_t index) {
-  for (OpenedRecording& one : recordings) {
+  for (OpenedRecording& one : recordings)
     if (one.role == OpenedRecording::Role::test) one.role = OpenedRecording::Role::train;
-  }
   recordings[index].role = OpenedRecording::Role::test;
 }
 
 std::vector<std::string> RecordingRoles::training() const {
   std::vector<std::string> paths;
-  for (const OpenedRecording& one : recordings) {
+  for (const OpenedRecording& one : recordings)
     if (one.role == OpenedRecording::Role::train) paths.push_back(one.path);
-  }
   return paths;
 }
 
 std::string RecordingRoles::test() const {
-  for (const OpenedRecording& one : recordings) {
+  for (const OpenedRecording& one : recordings)
     if (one.role == OpenedRecording::Role::test) return one.path;
-  }
   return {};
 }
 

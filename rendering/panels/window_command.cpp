@@ -16,9 +16,8 @@ constexpr std::pair<int, const char*> kKeyNames[] = {
     {GLFW_KEY_PAGE_DOWN, "Page Down"}};
 
 std::string key_name(int key) {
-  for (const auto& [known, name] : kKeyNames) {
+  for (const auto& [known, name] : kKeyNames)
     if (known == key) return name;
-  }
   // GLFW numbers printable keys by their ASCII characters. The other keys have numbers from 256 on.
   if (key < GLFW_KEY_SPACE || key > GLFW_KEY_GRAVE_ACCENT) return {};
   return {static_cast<char>(key)};

@@ -45,9 +45,8 @@ std::string counted_words(const LiveSession& session) {
 // since, and a new reference.
 void show_newest(const LiveSession& session, ModelsView& view) {
   view.now.reference_N = static_cast<float>(session.comparison().reference_N());
-  for (std::size_t i = 0; i < view.slots.size(); ++i) {
+  for (std::size_t i = 0; i < view.slots.size(); ++i)
     if (view.slots[i].state == SlotState::ready) view.now.force_N[i] = static_cast<float>(view.slots[i].force_N);
-  }
 }
 
 ModelsView models_view(const LiveSession& session, double until_s) {
@@ -83,9 +82,8 @@ std::string reference_block(const LiveSession& session) {
 
 std::vector<std::size_t> ModelsView::listed() const {
   std::vector<std::size_t> list;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
+  for (std::size_t i = 0; i < slots.size(); ++i)
     if (slots[i].state != SlotState::hidden && slots[i].state != SlotState::equal) list.push_back(i);
-  }
   return list;
 }
 

@@ -10,18 +10,16 @@ double tick_step(double span, int most) noexcept {
   if (!(span > 0.0) || most < 1) return 1.0;
   const double rough = span / most;
   const double decade = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double step : {1.0, 2.0, 5.0}) {
+  for (const double step : {1.0, 2.0, 5.0})
     if (step * decade >= rough * (1.0 - 1e-9)) return step * decade;
-  }
   return 10.0 * decade;
 }
 
 double round_up(double value) noexcept {
   if (!(value > 0.0)) return 1.0;
   const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
+  for (const double step : {1.0, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
     if (step * decade >= value * (1.0 - 1e-9)) return step * decade;
-  }
   return 10.0 * decade;
 }
 
@@ -138,9 +136,8 @@ void LivePlot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>&
     list_->PrimWriteVtx(upper[i], white, colour);
     list_->PrimWriteVtx(lower[i], white, colour);
   }
-  for (int i = 0; i < quads; ++i) {
+  for (int i = 0; i < quads; ++i)
     for (const int corner : {0, 1, 2, 2, 1, 3}) list_->PrimWriteIdx(static_cast<ImDrawIdx>(first + 2 * i + corner));
-  }
 }
 
 void LivePlot::jnd_band(double from, double to) const {

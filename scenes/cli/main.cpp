@@ -56,9 +56,8 @@ int fail(const std::string& message, int exit_code) {
 
 // Prints the usage error as one line that refers to the verbs or to the verb's help.
 int fail_usage(const CLI::App& app, const Verbs& verbs, std::string message) {
-  for (char& letter : message) {
+  for (char& letter : message)
     if (letter == '\n' || letter == '\r') letter = ' ';
-  }
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   if (chosen.empty()) {
     std::vector<std::string> names;
@@ -166,7 +165,5 @@ int main(int argc, char** argv) {
     return palpate::cli::fail("out of memory", palpate::cli::kFailed);
   } catch (const std::exception& error) {
     return palpate::cli::fail(std::string("unexpected: ") + error.what(), palpate::cli::kFailed);
-  } catch (...) {
-    return palpate::cli::fail("unexpected: an exception that is not a std::exception", palpate::cli::kFailed);
   }
 }

@@ -131,10 +131,9 @@ std::vector<std::pair<std::string, std::string>> table_cells(const ReplayedModel
     cells.emplace_back(title, known ? fixed(value, decimals) : "-");
   };
   const auto add_errors = [&](const std::string& before, const ErrorSummary& errors) {
-    for (const ErrorColumn& figure : kFigures) {
+    for (const ErrorColumn& figure : kFigures)
       if (all || figure.decides)
         add(before + figure.title, errors.samples > 0, figure.scale * (errors.*figure.value), figure.decimals);
-    }
   };
   add_errors("", model.as_recorded);
   add("TICK ns", model.time.measured, model.time.tick.median_ns, 0);
@@ -200,9 +199,8 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
     }
   }
   print_table(rows, true);
-  for (const std::string& remark : {surface_remark(replayed), ambiguity_remark(replayed)}) {
+  for (const std::string& remark : {surface_remark(replayed), ambiguity_remark(replayed)})
     if (!remark.empty()) std::printf("note: %s\n", remark.c_str());
-  }
 }
 
 // `forces_path`: features and forces; `plot_path`: a figure. Empty: not requested.
@@ -275,11 +273,9 @@ Status run(const Options& options) {
     print_json(list.size() == 1 ? list.front() : list);
   } else {
     for (const ReplayedRecording& replayed : all) print_recording(replayed, options.all);
-    for (const auto* paths : {&forces, &plots}) {
-      for (const std::string& path : *paths) {
+    for (const auto* paths : {&forces, &plots})
+      for (const std::string& path : *paths)
         if (!path.empty()) std::printf("written  %s\n", path.c_str());
-      }
-    }
   }
   return {};
 }

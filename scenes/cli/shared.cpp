@@ -97,21 +97,16 @@ Status print_file(const std::string& path) {
   return {};
 }
 
-namespace {
-
 // The number of characters of UTF-8 text.
-std::size_t width_of(const std::string& text) {
+static std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));
 }
 
-}  // namespace
-
 void print_table(const std::vector<std::vector<std::string>>& rows, bool numbers) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const auto& row : rows) {
+  for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
-  }
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {

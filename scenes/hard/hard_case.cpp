@@ -21,9 +21,8 @@ HardExpectation expectation_of(const nlohmann::json& limits) {
     return expected;
   }
   double* const values[] = {&expected.within_jnd, &expected.worst_error_N, &expected.worst_step_N, &expected.energy_J};
-  for (std::size_t i = 0; i < limits.size(); ++i) {
+  for (std::size_t i = 0; i < limits.size(); ++i)
     if (!limits[i].is_null()) *values[i] = limits[i];
-  }
   return expected;
 }
 

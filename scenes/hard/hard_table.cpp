@@ -96,10 +96,9 @@ std::vector<std::string> missed_cells(const std::vector<HardRow>& rows) {
   std::vector<std::string> missed;
   const std::vector<ModelPlan> plans = hard_plans();
   for (const HardRow& row : rows) {
-    for (std::size_t k = 0; k < plans.size(); ++k) {
+    for (std::size_t k = 0; k < plans.size(); ++k)
       if (!row.cells[k].missed.empty())
         missed.push_back(row.of.name + ", " + plan_name(plans[k]) + ": " + row.cells[k].missed);
-    }
   }
   return missed;
 }

@@ -137,9 +137,8 @@ std::vector<HardCase> material_cases() {
   const auto trainings = std::make_shared<Trainings>();
   std::vector<HardCase> cases;
   add_motions(cases, trainings);
-  for (const char* material : {"maxwell", "stiff"}) {
+  for (const char* material : {"maxwell", "stiff"})
     for (const Line& line : kLines) add_hands(cases, trainings, material, line);
-  }
   for (const char* material : {"friction", "sponge", "layered"})  // with memory
     add_hands(cases, trainings, material, {"1 kHz, 1 ms late"});
   for (const char* material : {"maxwell", "stiff"}) {

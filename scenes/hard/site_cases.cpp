@@ -123,9 +123,8 @@ void in_clusters(SiteSet& set, double radius, Eigen::Index count = kSites) {
 
 // Sites and path on the image of the square.
 void mapped(SiteSet& set, Point (*to)(double u, double v)) {
-  for (Points* points : {&set.points, &set.tested}) {
+  for (Points* points : {&set.points, &set.tested})
     for (auto point : points->colwise()) point = to(point.x(), point.y());
-  }
 }
 
 void first_sites(SiteSet& set, Eigen::Index count) {

@@ -57,10 +57,9 @@ void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
   for (Slot& slot : slots_) slot.dent.step(snapshot.tick.depth_m, std::abs(slot.sustained_over_jnd), step_s);
   if (!fresh) return;
   last_time_s_ = time_s;
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
+  for (std::size_t i = 0; i < slots_.size(); ++i)
     if (!std::isnan(point.difference_over_jnd(i, jnd_)))
       point.sustained_over_jnd[i] = static_cast<float>(slots_[i].sustained_over_jnd);
-  }
   history_.append(point);
   fault_level_ = TickFaultLevel::none;
 }
@@ -105,10 +104,9 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
   // A snapshot of an earlier set lacks the models that joined since.
   if (&set != models_.newest_set() || std::isnan(point.reference_N) || outside || !point.counts) return;
   counted_s_ += step_s;
-  for (const auto& [slot, i] : set.models) {
+  for (const auto& [slot, i] : set.models)
     if (!std::isnan(point.difference_over_jnd(slot, jnd_)))
       slots_[slot].errors.add(point.force_N[slot], point.reference_N, jnd_);
-  }
 }
 
 void Comparison::show(const LoopSnapshot& newest) {

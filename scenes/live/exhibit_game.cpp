@@ -58,9 +58,8 @@ bool ExhibitGame::begin(const std::vector<ExhibitModel>& ready, bool has_referen
     rounds.resize(std::min(rounds.size(), kMostRounds - 1));
     rounds.push_back({rounds.back().first, *rounds.back().first});
     for (std::size_t i = rounds.size(); i > 1; --i) std::swap(rounds[i - 1], rounds[random_.index(i)]);
-    for (ExhibitRound& round : rounds) {
+    for (ExhibitRound& round : rounds)
       if (random_.index(2) == 1) std::swap(*round.first, round.second);
-    }
   }
   rounds_ = std::move(rounds);
   has_force_ = has_force;

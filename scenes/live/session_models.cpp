@@ -55,9 +55,8 @@ Status SessionModels::start(const std::vector<ModelRequest>& requests, bool clai
 // The slot for a new model: that of a removed model, else a new one, else that of a hidden model; empty: there is none.
 std::optional<std::size_t> SessionModels::room() const noexcept {
   for (const bool removed : {true, false}) {
-    for (std::size_t i = 0; i < slots_.size(); ++i) {
+    for (std::size_t i = 0; i < slots_.size(); ++i)
       if (removed ? slots_[i].removed : slots_[i].hidden()) return i;
-    }
     if (slots_.size() < kMaxModels) return slots_.size();
   }
   return std::nullopt;
@@ -122,17 +121,15 @@ void SessionModels::unite_equal() {
     const std::string asked = request_name(slot.request);
     if (!slot.request.is_file() && asked != listed.model->name()) listed.info.equals.push_back(asked);
   }
-  for (Slot& slot : slots_) {
+  for (Slot& slot : slots_)
     if (slot.takes_part() && !slot.renamed) slot.info.name = distinct_name(slot.model->name(), &slot);
-  }
   const auto shown = ready_slots();
   if (!shown.empty() && !slots_[selected_].takes_part()) selected_ = shown.front();
 }
 
 std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noexcept {
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
+  for (std::size_t i = 0; i < slots_.size(); ++i)
     if (slots_[i].job == job && !slots_[i].removed) return i;
-  }
   return std::nullopt;
 }
 
@@ -172,9 +169,8 @@ std::size_t SessionModels::unfinished() const noexcept {
 
 std::vector<std::size_t> SessionModels::ready_slots() const {
   std::vector<std::size_t> shown;
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
+  for (std::size_t i = 0; i < slots_.size(); ++i)
     if (slots_[i].takes_part()) shown.push_back(i);
-  }
   return shown;
 }
 
@@ -208,9 +204,8 @@ bool SessionModels::join(std::size_t index, const FinishedModel& finished) {
 }
 
 void SessionModels::use_requests(const std::vector<ModelRequest>& requests) {
-  for (Slot& slot : slots_) {
+  for (Slot& slot : slots_)
     if (!slot.request.is_file()) slot.info.state = SlotState::hidden;
-  }
   std::optional<std::size_t> first;
   for (const ModelRequest& request : requests) {
     const auto same = std::ranges::find_if(slots_, [&](const Slot& slot) { return slot.is(request); });
@@ -268,20 +263,18 @@ double SessionModels::trained_depth_m() const noexcept {
   double depth_m = std::numeric_limits<double>::infinity();
   for (const std::size_t slot : ready_slots()) {
     const ModelData& data = slots_[slot].model->data();
-    for (std::size_t i = 0; i < data.features.size(); ++i) {
+    for (std::size_t i = 0; i < data.features.size(); ++i)
       if (data.features[i].kind == FeatureKind::depth)
         depth_m = std::min(depth_m, data.upper[static_cast<Eigen::Index>(i)]);
-    }
   }
   return depth_m;
 }
 
 double SessionModels::longest_memory_s() const noexcept {
   double memory_s = 0.0;
-  for (const std::size_t slot : ready_slots()) {
+  for (const std::size_t slot : ready_slots())
     for (const double time_s : relaxation_times_s(slots_[slot].model->features()))
       memory_s = std::max(memory_s, time_s);
-  }
   return memory_s;
 }
 

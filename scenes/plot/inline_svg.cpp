@@ -57,9 +57,8 @@ std::string inline_svg(const std::string& svg, const std::string& name, const st
                                                                      {"#d8d8d8", "var(--grid)"},
                                                                      {"#e3e3e3", "var(--band)"},
                                                                      {"#fefefe", "var(--paper)"}};
-  for (const auto& [colour, variable] : variables) {
+  for (const auto& [colour, variable] : variables)
     for (const std::string& form : spellings(colour)) body = replaced(body, form, variable);
-  }
   body = replaced(body, "\"black\"", "\"var(--ink)\"");
   return "<svg viewBox=\"" + view + "\" role=\"img\" aria-label=\"" + escape_html(title) + "\">" + body;
 }

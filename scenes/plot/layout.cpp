@@ -30,9 +30,8 @@ double fraction_of(const Axis& axis, const AxisRange& range, double value) {
 }
 
 const PlotRow* last_point(const Series& series) {
-  for (auto row = series.rows.rbegin(); row != series.rows.rend(); ++row) {
+  for (auto row = series.rows.rbegin(); row != series.rows.rend(); ++row)
     if (std::isfinite(row->y)) return &*row;
-  }
   return nullptr;
 }
 
@@ -58,10 +57,9 @@ void spread(std::vector<NameTag>& names, double line) {
   }
   const double most = std::max(0.0, 1.0 - line * (static_cast<double>(names.size()) - 1.0));
   std::size_t i = 0;
-  for (const Block& block : blocks) {
+  for (const Block& block : blocks)
     for (std::size_t k = 0; k < block.names; ++k, ++i)
       names[i].y = std::clamp(block.mean, 0.0, most) + static_cast<double>(i) * line;
-  }
 }
 
 // Moves names from their points into one of the quadrants between the bars, to the right or left of the point and above
@@ -115,9 +113,8 @@ AxisRange range_of(const Panel& panel, bool vertical) {
       include(vertical ? row.high : row.right);
     }
   }
-  for (const Level& level : panel.levels) {
+  for (const Level& level : panel.levels)
     if (level.vertical != vertical) include(level.value);
-  }
   if (!(range.low <= range.high)) range = axis.logarithmic ? AxisRange{0.1, 10.0} : AxisRange{0.0, 1.0};
   if (axis.logarithmic) {
     range.low /= 1.25;
@@ -149,9 +146,8 @@ std::vector<NameTag> name_tags(const Panel& panel, double line, double character
   const AxisRange x = range_of(panel, false);
   const AxisRange y = range_of(panel, true);
   std::vector<NameTag> tags;
-  for (const Level& level : panel.levels) {
+  for (const Level& level : panel.levels)
     if (!level.vertical) tags.push_back({level.text, kMutedColour, 1.0, fraction_of(panel.y, y, level.value), true});
-  }
   std::vector<NameTag> points;
   for (const Series& series : panel.series) {
     const PlotRow* last = last_point(series);

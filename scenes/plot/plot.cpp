@@ -148,10 +148,9 @@ Result<std::string> plot_script(Plot plot) {
   const PanelSize size{plot.width * kPageWidth / plot.columns - 100.0, kPanelShare * kRowHeight * plot.height};
   text += "width = " + std::to_string(static_cast<int>(plot.width * kPageWidth)) +
           "\nheight = " + std::to_string(height) + "\n" + *style;
-  for (std::size_t p = 0; p < plot.panels.size(); ++p) {
+  for (std::size_t p = 0; p < plot.panels.size(); ++p)
     for (std::size_t s = 0; s < plot.panels[p].series.size(); ++s)
       text += data_block(plot.panels[p].series[s], data_name(p, s));
-  }
   for (const char* medium : {"svg", "png"}) {
     text += "eval " + std::string(medium) + "\nset output '" + plot.name + "." + medium + "'\n";
     text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(plot.columns) + "\n";

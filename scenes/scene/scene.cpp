@@ -195,9 +195,8 @@ Result<std::vector<std::string>> scene_names() {
   if (!folder) return folder.error();
   std::error_code error;
   std::vector<std::string> names;
-  for (fs::directory_iterator entry(*folder, error), end; !error && entry != end; entry.increment(error)) {
+  for (fs::directory_iterator entry(*folder, error), end; !error && entry != end; entry.increment(error))
     if (entry->path().extension() == ".json") names.push_back(entry->path().stem().string());
-  }
   if (error) return Error{"cannot list the scenes in " + *folder + ": " + error.message()};
   std::sort(names.begin(), names.end());
   return names;

@@ -18,9 +18,8 @@ bool answers_second(const SubjectTraits& traits, const Stimuli& stimuli, RandomS
     return std::abs(first.force_N(tick) - second.force_N(tick)) / traits.jnd.at(reminder.force_N(tick));
   };
   std::uint32_t most = 0;
-  for (std::uint32_t tick = 1; tick < kInterval_ticks; ++tick) {
+  for (std::uint32_t tick = 1; tick < kInterval_ticks; ++tick)
     if (difference(tick) > difference(most)) most = tick;
-  }
   const double first_N = first.force_N(most), second_N = second.force_N(most);
   return second_feels_larger(traits, first_N, second_N, random) == (2.0 * reminder.force_N(most) > first_N + second_N);
 }

@@ -116,9 +116,8 @@ Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, bool wi
 
 std::string analysis_table(const StudyAnalysis& analysis) {
   std::string text = "subject,reference_N,rendered_N,count,jnd_N,standard_error_N,jnd_percent,determined\n";
-  for (const SubjectJnd& subject : analysis.subjects) {
+  for (const SubjectJnd& subject : analysis.subjects)
     for (const ReferenceJnd& one : subject.references) text += row(subject.subject, one);
-  }
   for (const ReferenceJnd& mean : analysis.mean.references) text += row(analysis.mean.subject, mean);
   return text;
 }

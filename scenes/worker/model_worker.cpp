@@ -42,9 +42,8 @@ ModelWorker::~ModelWorker() {
     const std::lock_guard lock(mutex_);
     wake_.notify_all();
   }
-  for (Lane& lane : lanes_) {
+  for (Lane& lane : lanes_)
     if (lane.thread.joinable()) lane.thread.join();
-  }
 }
 
 Status ModelWorker::start() {
@@ -78,9 +77,8 @@ std::vector<FinishedModel> ModelWorker::read_finished() {
 std::vector<ModelWorker::Progress> ModelWorker::progress() const {
   const std::lock_guard lock(mutex_);
   std::vector<Progress> running;
-  for (const Lane& lane : lanes_) {
+  for (const Lane& lane : lanes_)
     if (lane.working_on) running.push_back({*lane.working_on, lane.share.load(std::memory_order_relaxed)});
-  }
   return running;
 }
 
