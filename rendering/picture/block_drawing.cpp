@@ -44,7 +44,7 @@ void BlockView::begin_block(const Shader& shader) const {
   shader.set("pores", material.pores);
   shader.set("grid", material.grid);
   shader.set("mark", 0.0F);
-  shader.set("tip", -1.0F);  // the tip is far above
+  shader.set("tip", -1.0F);                  // the tip is far above
   shader.set("px_per_m", 2.0F * px_per_m_);  // of the static parts
   set_dent(shader, 0.0F);
 }

@@ -64,7 +64,7 @@ void SimulatedTool::place(double position_m, double velocity_m_per_s) noexcept {
   velocity_m_per_s_ = velocity_m_per_s;
 }
 
-ClosedLoop::ClosedLoop(const LoopSettings& settings)
+ClosedLoop::ClosedLoop(const ClosedLoopSettings& settings)
     : tool_(settings),
       live_(tool_, slot_, LiveTickSettings{{}, nullptr, settings.passivity}),
       uneven_(settings.uneven) {

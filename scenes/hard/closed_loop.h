@@ -36,7 +36,7 @@ inline bool held(const Grip& grip) { return grip.stiffness_N_per_m > 0.0; }
 // The simulation has this many steps of time within the period of a tick, 1 ms.
 inline constexpr std::int64_t kPeriodSteps = 20;
 
-struct LoopSettings {
+struct ClosedLoopSettings {
   Grip grip;
   double encoder_step_m = 30e-6;
   double delay_s = 1e-3;
@@ -57,7 +57,7 @@ struct LoopEnergy {
 
 class SimulatedTool final : public Device {
  public:
-  explicit SimulatedTool(const LoopSettings& settings) : settings_(settings) {}
+  explicit SimulatedTool(const ClosedLoopSettings& settings) : settings_(settings) {}
 
   const std::string& name() const noexcept override { return name_; }
   SensorSpec sensor() const noexcept override { return {.encoder_step_m = settings_.encoder_step_m}; }
@@ -84,7 +84,7 @@ class SimulatedTool final : public Device {
     std::int64_t due = 0;  // step at which it takes effect
   };
 
-  LoopSettings settings_;
+  ClosedLoopSettings settings_;
   std::string name_ = "simulated tool";
   std::int64_t step_ = 0, read_step_ = -1, sample_step_ = 0;
   double position_m_ = -2e-3, velocity_m_per_s_ = 0.0, force_N_ = 0.0;
@@ -103,7 +103,7 @@ class ClosedLoop {
   using Path = std::function<Drive(double time_s)>;
   using AfterTick = std::function<void(const LoopSnapshot&)>;
 
-  explicit ClosedLoop(const LoopSettings& settings);
+  explicit ClosedLoop(const ClosedLoopSettings& settings);
   virtual ~ClosedLoop() = default;
 
   // Publishes a set of one model, which the next tick takes, with the memory of the motion so far.

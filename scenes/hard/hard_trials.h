@@ -49,7 +49,7 @@ HardFigures measure_press(const Press& press, const std::shared_ptr<const Fitted
 
 // Runs a hand in closed loop with this model. The true force is that of `block` along the path that the tool takes.
 struct HandTrial {
-  LoopSettings settings;
+  ClosedLoopSettings settings;
   double exchange_s = 0.0;  // above 0: exchanges the model with `other` that often
   double depth_m = 0.0;     // the aim of the press
   double force_N = 0.0;     // approximately there

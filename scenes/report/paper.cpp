@@ -205,11 +205,11 @@ std::string summary(const PaperData& data, const std::vector<Claim>& claims) {
   for (std::size_t i = 0; i < data.runs.size(); ++i) {
     std::size_t compared = 0, reproduced = 0;
     for (const Claim& claim : claims) {
-      const Verdict verdict = claim.here[i].verdict;
-      reproduced += verdict == Verdict::reproduced ? 1 : 0;
-      compared += verdict == Verdict::reproduced || verdict == Verdict::different ? 1 : 0;
-      undecided += verdict == Verdict::undecided ? 1 : 0;
-      incomparable += verdict > Verdict::undecided ? 1 : 0;
+      const ClaimVerdict verdict = claim.here[i].verdict;
+      reproduced += verdict == ClaimVerdict::reproduced ? 1 : 0;
+      compared += verdict == ClaimVerdict::reproduced || verdict == ClaimVerdict::different ? 1 : 0;
+      undecided += verdict == ClaimVerdict::undecided ? 1 : 0;
+      incomparable += verdict > ClaimVerdict::undecided ? 1 : 0;
     }
     text += (i == 0 ? "" : "; ") + std::to_string(reproduced) + " of " + std::to_string(compared) + " claims on " +
             run_name(data.runs[i]);

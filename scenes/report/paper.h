@@ -77,7 +77,7 @@ struct PaperData {
 // steps above 50 mN; those of the fits; interrupted.
 Result<PaperData> measure_paper(bool quick, const FitControl& control);
 
-enum class Verdict {
+enum class ClaimVerdict {
   none,  // not measured in that run
   reproduced,
   different,
@@ -87,13 +87,13 @@ enum class Verdict {
   other_recording,
   other_subjects,
 };
-const char* verdict_name(Verdict verdict);  // "reproduced", "another machine", ...; empty for none
+const char* verdict_name(ClaimVerdict verdict);  // "reproduced", "another machine", ...; empty for none
 
 // A claim of the paper, compared with the results.
 struct Claim {
   struct Result {
     std::string text;
-    Verdict verdict = Verdict::none;
+    ClaimVerdict verdict = ClaimVerdict::none;
   };
   std::string claim;
   std::string there;           // the result in the paper

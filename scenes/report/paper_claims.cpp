@@ -24,7 +24,9 @@ struct Tolerance {
   double high = 0.0;
   const char* text = "";
 
-  Verdict of(double value) const { return value >= low && value <= high ? Verdict::reproduced : Verdict::different; }
+  ClaimVerdict of(double value) const {
+    return value >= low && value <= high ? ClaimVerdict::reproduced : ClaimVerdict::different;
+  }
 };
 constexpr Tolerance kIdentical{1.0 / 1.1, 1.1, "0.91 to 1.1: a tenth of errors below the JND is a tenth of a JND"};
 constexpr Tolerance kSimilar{0.8, 1.25, "0.8 to 1.25: less than considerable"};
@@ -61,7 +63,7 @@ class Claims {
     add_settings(claims_[2]);
     add_comparisons();
     for (Claim& claim : claims_) {
-      if (claim.why.empty() && std::ranges::count(claim.here, Verdict::different, &Claim::Result::verdict) > 0)
+      if (claim.why.empty() && std::ranges::count(claim.here, ClaimVerdict::different, &Claim::Result::verdict) > 0)
         claim.why = "The paper's recordings are not public.";
     }
     add_study();
@@ -84,7 +86,7 @@ class Claims {
   }
 
   // What a fifth of the recordings cannot decide.
-  Verdict decided(Verdict verdict) const { return data_.quick ? Verdict::undecided : verdict; }
+  ClaimVerdict decided(ClaimVerdict verdict) const { return data_.quick ? ClaimVerdict::undecided : verdict; }
 
   // Adds a claim that is checked in each run by `result`, a function of the run.
   template <typename Check>
@@ -102,13 +104,13 @@ class Claims {
     });
   }
   // Adds a claim about measurements that are made once for all runs.
-  void add_once(Claim claim, const std::string& text, Verdict verdict) {
+  void add_once(Claim claim, const std::string& text, ClaimVerdict verdict) {
     claim.here.resize(data_.runs.size());
     claim.here.front() = {text, verdict};
     claims_.push_back(std::move(claim));
   }
   // As above, about times of several rounds.
-  void add_timed(Claim claim, const std::string& text, Verdict verdict) {
+  void add_timed(Claim claim, const std::string& text, ClaimVerdict verdict) {
     if (data_.slowest_round > kBusy) {
       claim.why += std::string(claim.why.empty() ? "" : " ") + "Busy machine: rounds differ by up to " +
                    three_digits(data_.slowest_round) + " times.";
@@ -124,7 +126,7 @@ class Claims {
     const auto result = [&](const PaperModel& model) {
       const std::size_t above = bins_above(data_, model, random ? largest : spread);
       const bool as_there = above == (random ? model.errors.bins.size() : 0);
-      return Claim::Result{of_bins(above, model), as_there ? Verdict::reproduced : Verdict::different};
+      return Claim::Result{of_bins(above, model), as_there ? ClaimVerdict::reproduced : ClaimVerdict::different};
     };
     const char* there = random ? "every force" : "0 bins above";
     add({claim, there, tolerance}, [&](const PaperRun& run) { return result(run.models[which]); });
@@ -142,7 +144,7 @@ class Claims {
       const auto [least, most] = std::ranges::minmax(above);
       Claim::Result& here = tree.here[i];
       here.text += "; " + std::to_string(least) + " to " + std::to_string(most) + " with other settings";
-      if (here.verdict == Verdict::different && least == 0) passing += " " + run_name(data_.runs[i]) + ".";
+      if (here.verdict == ClaimVerdict::different && least == 0) passing += " " + run_name(data_.runs[i]) + ".";
     }
     tree.why = "Settings: every kernel and normalisation, each with several truncations. " +
                (passing.empty() ? "Where it fails, it fails with each of them." : "One passes on" + passing);
@@ -191,7 +193,7 @@ class Claims {
              fixed(100.0 * relative(data_.points.front()), 1) + " % at " +
                  three_digits(data_.points.front().reference_N) + " N, " + three_digits(rise) +
                  " times that of Pang et al.",
-             Verdict::other_subjects);
+             ClaimVerdict::other_subjects);
   }
 
   // The fast methods, in the order of the paper's times.
@@ -201,13 +203,13 @@ class Claims {
     add({"samples after the reduction to 50 mN steps", "6,850 of 41,499"}, [](const PaperRun& run) {
       return Claim::Result{
           with_thousands(std::to_string(run.sites)) + " of " + with_thousands(std::to_string(run.trained)),
-          Verdict::other_recording};
+          ClaimVerdict::other_recording};
     });
     add({"one evaluation with 100 centres", "60 us"}, [](const PaperRun& run) {
       const ModelTiming& time = run.models[kGreedy100].time;
       return Claim::Result{
           three_digits(time.evaluation.median_ns) + " ns; whole tick " + three_digits(time.tick.median_ns) + " ns",
-          Verdict::other_machine};
+          ClaimVerdict::other_machine};
     });
     const FitTimes& most = data_.by_sites.back();
     std::string text;
@@ -222,7 +224,7 @@ class Claims {
     const double grid_s = most.seconds[kGridOfAll];
     add_timed(
         {"time of a fit: random, kD-tree, greedy-20, greedy-100, interpolation", "4 s, 5 min, 9 min, 41 min, 50 min"},
-        text + ", " + three_digits(grid_s) + " s", Verdict::other_machine);
+        text + ", " + three_digits(grid_s) + " s", ClaimVerdict::other_machine);
     add_timed({"the more accurate a selection, the longer it takes", "1.8 times or more", kLonger.text},
               three_digits(least) + " times from one to the next, or more", decided(kLonger.of(least)));
     add_timed({"with many samples every fast method beats the interpolation", "yes", kFaster.text},
@@ -238,10 +240,10 @@ class Claims {
       return std::log(most_s / fewer_s) / std::log(static_cast<double>(most.sites) / static_cast<double>(fewer.sites));
     };
     std::string linear;
-    Verdict verdict = Verdict::reproduced;
+    ClaimVerdict verdict = ClaimVerdict::reproduced;
     for (const PaperMethod which : kFast) {
       const double slope = exponent(most.seconds[which], fewer.seconds[which]);
-      if (kLinear.of(slope) != Verdict::reproduced) verdict = Verdict::different;
+      if (kLinear.of(slope) != ClaimVerdict::reproduced) verdict = ClaimVerdict::different;
       linear += (linear.empty() ? "exponents " : ", ") + fixed(slope, 2);
     }
     add_timed({"cost of random, kD-tree and greedy is linear in the samples", "linear", kLinear.text,
@@ -261,7 +263,7 @@ class Claims {
     add_timed({"six dimensions of 10 nodes", "308 min, solve 50 min"},
               std::to_string(last.dimensions) + "-D: " + three_digits(last.grid_s + last.solve_s) + " s, solve " +
                   three_digits(last.solve_s) + " s",
-              Verdict::other_machine);
+              ClaimVerdict::other_machine);
   }
 
   const PaperData& data_;
@@ -270,7 +272,7 @@ class Claims {
 
 }  // namespace
 
-const char* verdict_name(Verdict verdict) {
+const char* verdict_name(ClaimVerdict verdict) {
   constexpr const char* kNames[] = {"",
                                     "reproduced",
                                     "not reproduced",

@@ -100,7 +100,7 @@ TEST(ClosedLoop, StrokesOfAHandGiveLessThanTheyTake) {
     }
   }
   for (const Grip& grip : kGrips) {
-    LoopSettings settings{grip, 5e-6, kOneTick_s, ticks(Ticking::even)};
+    ClosedLoopSettings settings{grip, 5e-6, kOneTick_s, ticks(Ticking::even)};
     settings.passivity = false;
     EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), settings, kFirm).worst_return, 1.2) << grip.name;
   }
@@ -113,7 +113,7 @@ TEST(ClosedLoop, AMassThrownAtSiliconeReturnsLittleMoreEnergyThanItHad) {
   for (const ModelPtr& model : silicone_models()) {
     for (const double encoder_m : kEncoders_m) {
       for (const Ticking ticking : kTickings) {
-        LoopSettings settings{mass_alone(), encoder_m, kOneTick_s, ticks(ticking)};
+        ClosedLoopSettings settings{mass_alone(), encoder_m, kOneTick_s, ticks(ticking)};
         EXPECT_LE(stroke(model, settings, kFirm).own_beyond_step_J, 0.0) << model->name() << ", " << encoder_m;
         settings.passivity = false;
         const double without_J = stroke(model, settings, kFirm).own_beyond_step_J;

@@ -30,7 +30,7 @@ constexpr double kCoarse_m = 30e-6;
 constexpr double kGiven_J = 100e-6, kCoarseGiven_J = 300e-6;
 
 // Presses with 1 N, receives a pulse, and holds still for half a second.
-Rest swing(double stiffness_N_per_m, const LoopSettings& settings) {
+Rest swing(double stiffness_N_per_m, const ClosedLoopSettings& settings) {
   return hold(spring(stiffness_N_per_m), settings, {1.0, 1e-3}, 2.5, 0.5);
 }
 
@@ -39,7 +39,7 @@ TEST(ClosedLoop, NeitherScaleNorDampingOfTheUserDrivesAHand) {
   for (const double encoder_m : {5e-6, 10e-6}) {
     for (const ForceScale& scale : {ForceScale{4.0, 0.0}, ForceScale{1.0, 20.0}, ForceScale{4.0, 20.0}}) {
       for (const double delay_s : {0.0, 1e-3, 3e-3}) {
-        LoopSettings settings{kHands[0], encoder_m, delay_s};
+        ClosedLoopSettings settings{kHands[0], encoder_m, delay_s};
         settings.scale = scale;
         const Rest one = swing(3000.0, settings);
         std::printf("x %.0f, %2.0f N s/m, %.0f ms, %2.0f um: %.3f mm\n", scale.stiffness, scale.damping_Ns_per_m,
@@ -59,7 +59,7 @@ TEST(ClosedLoop, NoHandIsDrivenHoweverLateOrSlowTheLineIs) {
         Rest worst;
         for (const Grip& grip : kHands) {
           for (const double encoder_m : {5e-6, 10e-6, 30e-6}) {
-            LoopSettings settings{grip, encoder_m, delay_s};
+            ClosedLoopSettings settings{grip, encoder_m, delay_s};
             settings.sample_s = sample_s;
             const Rest one = swing(stiffness_N_per_m, settings);
             const std::string row = grip.name + ", " + std::to_string(stiffness_N_per_m) + " N/m, " +

@@ -75,7 +75,8 @@ void Rest::keep_worse(const Rest& other) {
   share = std::min(share, other.share);
 }
 
-Rest hold(const ForcePtr& model, const LoopSettings& settings, const HandPress& press, double seconds, double still_s) {
+Rest hold(const ForcePtr& model, const ClosedLoopSettings& settings, const HandPress& press, double seconds,
+          double still_s) {
   GuardedLoop loop(settings);
   loop.publish(model);
   const Grip& grip = settings.grip;
@@ -118,7 +119,7 @@ Rest worst_hold(const ForcePtr& model, const Grip& grip, const HandPress& press,
   Rest worst;
   for (const double encoder_m : kEncoders_m) {
     for (const Ticking ticking : kTickings) {
-      LoopSettings settings{grip, encoder_m, kOneTick_s, ticks(ticking)};
+      ClosedLoopSettings settings{grip, encoder_m, kOneTick_s, ticks(ticking)};
       settings.passivity = passivity;
       worst.keep_worse(hold(model, settings, press, seconds));
     }
@@ -130,7 +131,7 @@ double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double enc
                               Ticking ticking, bool passivity) {
   double least = std::numeric_limits<double>::infinity();
   for (const double rate_Hz : {2.0, 5.0, 10.0, 20.0, 40.0}) {
-    LoopSettings settings{lead(), encoder_m, kOneTick_s, ticks(ticking)};
+    ClosedLoopSettings settings{lead(), encoder_m, kOneTick_s, ticks(ticking)};
     settings.passivity = passivity;
     ClosedLoop loop(settings);
     loop.publish(model);
@@ -169,7 +170,7 @@ void Strokes::keep_worse(const Strokes& other) {
   mean_cost_jnd = std::max(mean_cost_jnd, other.mean_cost_jnd);
 }
 
-Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const HandPress& press) {
+Strokes stroke(const ForcePtr& model, const ClosedLoopSettings& settings, const HandPress& press) {
   ClosedLoop loop(settings);
   loop.publish(model);
   const Grip& grip = settings.grip;

@@ -38,7 +38,7 @@ enum class Ticking {
   jittered,  // each independently up to 0.45 ms late
   gaps,      // jittered, one in 30 left out, and one gap of 5 ms in each 100 ms
 };
-// For LoopSettings::uneven.
+// For ClosedLoopSettings::uneven.
 std::function<std::int64_t(std::int64_t& deadline)> ticks(Ticking ticking);
 
 // A grip so stiff that the tool follows the prescribed path.
@@ -87,7 +87,7 @@ struct Rest {
 
 // Presses within 0.3 s, receives a pulse of 1 N for 20 ms at 0.6 s, and holds still.
 // Measures the last `still_s` of `seconds`.
-Rest hold(const ForcePtr& model, const LoopSettings& settings, const HandPress& press, double seconds,
+Rest hold(const ForcePtr& model, const ClosedLoopSettings& settings, const HandPress& press, double seconds,
           double still_s = 0.25);
 // The worst result over both encoders and all values of Ticking, with one tick of delay.
 Rest worst_hold(const ForcePtr& model, const Grip& grip, const HandPress& press, double seconds = 1.5,
@@ -113,7 +113,7 @@ struct Strokes {
 };
 
 // Four strokes from the air and back into it, in 0.1 to 0.8 s.
-Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const HandPress& press);
+Strokes stroke(const ForcePtr& model, const ClosedLoopSettings& settings, const HandPress& press);
 
 // Prints "who: " and both numbers by the printf `format` as one line.
 void say(const std::string& who, const char* format, double first, double second);

@@ -61,9 +61,9 @@ Claim claim_of(const PaperData& data, const std::string& name) {
   ADD_FAILURE() << name;
   return {};
 }
-Verdict verdict_of(const PaperData& data, const std::string& claim) {
+ClaimVerdict verdict_of(const PaperData& data, const std::string& claim) {
   const Claim found = claim_of(data, claim);
-  return found.here.empty() ? Verdict::none : found.here.front().verdict;
+  return found.here.empty() ? ClaimVerdict::none : found.here.front().verdict;
 }
 
 TEST(PaperClaims, EqualClaimsAreReproduced) {
@@ -72,15 +72,15 @@ TEST(PaperClaims, EqualClaimsAreReproduced) {
         "kD-tree: the same with other", "greedy-20: mean", "greedy-100: mean", "kD-tree is more accurate",
         "especially at large", "than random and kD-tree", "almost as accurate", "20 and 100", "repetitions",
         "the longer it takes", "beats the interpolation", "is linear in", "third power", "tenfold"})
-    EXPECT_EQ(verdict_of(example(), claim), Verdict::reproduced) << claim;
-  EXPECT_EQ(verdict_of(example(), "maxima at small forces"), Verdict::different) << "they are almost equal here";
+    EXPECT_EQ(verdict_of(example(), claim), ClaimVerdict::reproduced) << claim;
+  EXPECT_EQ(verdict_of(example(), "maxima at small forces"), ClaimVerdict::different) << "they are almost equal here";
 }
 
 TEST(PaperClaims, WhatDependsOnMachineRecordingOrSubjectsIsNeverReproduced) {
-  EXPECT_EQ(verdict_of(example(), "one evaluation"), Verdict::other_machine);
-  EXPECT_EQ(verdict_of(example(), "time of a fit"), Verdict::other_machine);
-  EXPECT_EQ(verdict_of(example(), "samples after"), Verdict::other_recording);
-  EXPECT_EQ(verdict_of(example(), "relative JND"), Verdict::other_subjects);
+  EXPECT_EQ(verdict_of(example(), "one evaluation"), ClaimVerdict::other_machine);
+  EXPECT_EQ(verdict_of(example(), "time of a fit"), ClaimVerdict::other_machine);
+  EXPECT_EQ(verdict_of(example(), "samples after"), ClaimVerdict::other_recording);
+  EXPECT_EQ(verdict_of(example(), "relative JND"), ClaimVerdict::other_subjects);
 }
 
 TEST(PaperClaims, AQuickRunDecidesNoRatio) {
@@ -88,8 +88,8 @@ TEST(PaperClaims, AQuickRunDecidesNoRatio) {
   data.quick = true;
   for (const char* claim :
        {"kD-tree is more accurate", "than random and kD-tree", "the longer", "is linear in", "tenfold"})
-    EXPECT_EQ(verdict_of(data, claim), Verdict::undecided) << claim;
-  EXPECT_EQ(verdict_of(data, "greedy-100: mean"), Verdict::reproduced);
+    EXPECT_EQ(verdict_of(data, claim), ClaimVerdict::undecided) << claim;
+  EXPECT_EQ(verdict_of(data, "greedy-100: mean"), ClaimVerdict::reproduced);
 }
 
 // A claim fails on either side of its tolerance.
@@ -97,43 +97,43 @@ TEST(PaperClaims, ToleranceHasTwoSides) {
   for (const double solve_s : {8.0 * std::pow(2.0, 0.5), 8.0 * std::pow(2.0, 4.9)}) {
     PaperData data = example();
     data.by_sites[2].solve_s = solve_s;
-    EXPECT_EQ(verdict_of(data, "third power"), Verdict::different) << solve_s;
+    EXPECT_EQ(verdict_of(data, "third power"), ClaimVerdict::different) << solve_s;
   }
   for (const double fit_s : {10.0, 32.0}) {
     PaperData data = example();
     data.by_sites[2].seconds[kGreedy100] = fit_s;
-    EXPECT_EQ(verdict_of(data, "is linear in"), Verdict::different) << fit_s;
+    EXPECT_EQ(verdict_of(data, "is linear in"), ClaimVerdict::different) << fit_s;
   }
   for (const double grid_s : {5.5, 20.0}) {
     PaperData data = example();
     data.by_dimension[1].grid_s = grid_s;
-    EXPECT_EQ(verdict_of(data, "tenfold"), Verdict::different) << grid_s;
+    EXPECT_EQ(verdict_of(data, "tenfold"), ClaimVerdict::different) << grid_s;
   }
   for (const double scale : {0.5, 1.0}) {
     PaperData data = example();
     set_errors(data.runs[0].models[kGridOfAll], {scale, scale, scale});
-    EXPECT_EQ(verdict_of(data, "almost as accurate"), Verdict::different) << scale;
+    EXPECT_EQ(verdict_of(data, "almost as accurate"), ClaimVerdict::different) << scale;
   }
   for (const double scale : {0.15, 0.95}) {
     PaperData data = example();
     set_errors(data.runs[0].models[kTreeCentres], {scale, scale, scale});
-    EXPECT_EQ(verdict_of(data, "kD-tree is more accurate"), Verdict::different) << scale;
+    EXPECT_EQ(verdict_of(data, "kD-tree is more accurate"), ClaimVerdict::different) << scale;
     data = example();
     set_errors(data.runs[0].models[kGreedy100], {scale, scale, scale});
-    EXPECT_EQ(verdict_of(data, "than random and kD-tree"), Verdict::different) << scale;
+    EXPECT_EQ(verdict_of(data, "than random and kD-tree"), ClaimVerdict::different) << scale;
   }
   for (const double fit_s : {2.0, 16.0}) {  // of kD-tree, beside 2 s of random and 8 s of greedy-20
     PaperData data = example();
     data.by_sites[2].seconds = {70.0, 2.0, fit_s, 8.0 * fit_s, 64.0 * fit_s};
-    EXPECT_EQ(verdict_of(data, "the longer it takes"), Verdict::different) << fit_s;
+    EXPECT_EQ(verdict_of(data, "the longer it takes"), ClaimVerdict::different) << fit_s;
   }
 }
 
 TEST(PaperClaims, OneBinAboveTheJndIsEnoughToRefuteAlways) {
   PaperData data = example();
   data.runs[0].models[kTreeCentres].errors.bins[1].error_N.add(3.0 * data.jnd.at(1.0));
-  EXPECT_EQ(verdict_of(data, "kD-tree: mean plus deviation"), Verdict::different);
-  EXPECT_EQ(verdict_of(data, "greedy-100: mean"), Verdict::reproduced);
+  EXPECT_EQ(verdict_of(data, "kD-tree: mean plus deviation"), ClaimVerdict::different);
+  EXPECT_EQ(verdict_of(data, "greedy-100: mean"), ClaimVerdict::reproduced);
 }
 
 // What the paper leaves open is blamed only where another setting passes.
@@ -155,7 +155,7 @@ TEST(PaperClaims, DifferencesAndBusyMachinesHaveARemark) {
   PaperData data = example();
   data.slowest_round = 3.0;
   for (const Claim& one : paper_claims(data)) {
-    EXPECT_TRUE(one.here.front().verdict != Verdict::different || !one.why.empty()) << one.claim;
+    EXPECT_TRUE(one.here.front().verdict != ClaimVerdict::different || !one.why.empty()) << one.claim;
     if (one.claim.find("third power") != std::string::npos) {
       EXPECT_NE(one.why.find("Busy"), std::string::npos);
     }
