@@ -119,8 +119,8 @@ BlockView::BlockView(const Scene& scene, float magnified, Shaders shaders)
       handle_(lathe_mesh(handle_profile(kToolLength), 40)),
       middle_(block_middle(middle_m_, 12, finish_ == Finish::dome ? 14 : 9)),
       moving_section_(block_section(middle_m_, 0.5F * size_of(geometry_).x,
-                                    0.97F * static_cast<float>(geometry_.height_m), 0.0F, 22)),
-      line_(line_mesh(middle_m_, 22)) {
+                                    0.97F * static_cast<float>(geometry_.height_m), 0.0F, 28)),
+      line_(line_mesh(middle_m_, 28)) {
   show(1, glm::vec2(1.0F), true);
 }
 

@@ -94,7 +94,7 @@ float edge_depth_m(float from_m, float half_m) {
 // The x of a column, from half_m to -half_m, denser in the middle.
 float column_m(int i, int columns, float half_m) {
   const float t = 1.0F - 2.0F * static_cast<float>(i) / static_cast<float>(columns);
-  return half_m * t * (0.35F + 0.65F * std::abs(t));
+  return half_m * t * (0.25F + 0.75F * std::abs(t));
 }
 
 }  // namespace

@@ -53,10 +53,10 @@ TEST(Mesh, TopAndSidesMeetWithoutAGap) {
 
 // What moves is drawn in each frame, and a triangle costs a software renderer as much as a hundred pixels.
 TEST(Mesh, WhatMovesHasFewTriangles) {
-  const Mesh middle = block_middle(0.045F, 14, 11), section = block_section(0.045F, 0.05F, 0.04F, 0.0F, 40);
+  const Mesh middle = block_middle(0.045F, 12, 9), section = block_section(0.045F, 0.05F, 0.04F, 0.0F, 28);
   extent({middle, section});
-  EXPECT_LT(middle.triangles.size() + section.triangles.size(), 3u * 420u);
-  const Mesh line = line_mesh(0.045F, 40);
+  EXPECT_LT(middle.triangles.size() + section.triangles.size(), 3u * 280u);
+  const Mesh line = line_mesh(0.045F, 28);
   expect_consistent(line);
   EXPECT_EQ(line.vertices.front().position, glm::vec3(0.045F, 1.0F, 0.0F));
   EXPECT_EQ(line.vertices.back().position, glm::vec3(-0.045F, -1.0F, 0.0F));
