@@ -44,9 +44,9 @@ std::string first_line(const std::string& text) {
 // Runs gnuplot without the user's settings.
 Status run_gnuplot(const std::string& folder, const std::string& script) {
   std::string message;
-  if (run_in_shell("cd " + shell_word(folder) + " && LC_ALL=C gnuplot -d " + shell_word(script) +
-                       " 2>&1 >/dev/null </dev/null",
-                   message))
+  if (run_in_shell(
+          "cd " + shell_word(folder) + " && LC_ALL=C gnuplot -d " + shell_word(script) + " 2>&1 >/dev/null </dev/null",
+          message))
     return {};
   return Error{"gnuplot could not draw " + script + ": " + first_line(message) +
                "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
