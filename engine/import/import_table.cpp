@@ -191,6 +191,7 @@ class Importer {
         } else if (has_numbers()) {  // a damaged row
           if (++bad.rows > request_.skip_bad_rows && !fault) fault = unreadable(*column, number);
         } else {
+          count_missing(footer.missing);
           if (++footer.rows > 1) continue;
           footer_line = number;
           footer_text = line;
@@ -299,6 +300,8 @@ class Importer {
     for (const RecordingRow& row : table_.recording.rows)
       if (const auto fault = rules.check(row)) return broken(*fault, table_.layout.data_line);
     if (const auto fault = rules.finish()) return broken(*fault, table_.layout.data_line);
+    describe_time();
+    check_velocity();
     table_.columns = std::move(columns_.roles);
     if (request_.rate_Hz) table_.columns[0] = {};
     table_.layout.names.clear();

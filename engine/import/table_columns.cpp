@@ -114,6 +114,7 @@ class ColumnFinder {
                   "; add the unit of the numbers with --units " + (role == 1 ? "mm" : "N") +
                   ", with a comma between two units: --units mm,N");
     }
+    compare_unit(role, *unit);
     use_unit(role, *unit);
     return {};
   }
