@@ -64,7 +64,7 @@ const LineUp* find_line_up(const std::string& name) {
 }
 
 const std::vector<std::string>& exhibit_models() {
-  static const std::vector<std::string> all{"kdtree-3", "random-20", "trend+greedy-100"};
+  static const std::vector<std::string> all{"kdtree-2", "random-20", "trend+greedy-100"};
   return all;
 }
 

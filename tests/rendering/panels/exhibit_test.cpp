@@ -149,7 +149,7 @@ class ExhibitTest : public test::DemoWindowTest {
         },
         [&] {
           const auto over = [&] { return state() != State::press; };
-          hold(GLFW_KEY_DOWN, [&] { return over() || app_->session().newest().tick.depth_m > 0.003; });
+          hold(GLFW_KEY_DOWN, [&] { return over() || app_->session().newest().tick.depth_m > 0.005; });
           hold(GLFW_KEY_UP, [&] { return over() || !app_->session().newest().tick.in_contact; });
         });
   }

@@ -51,8 +51,8 @@ TEST(ModelTable, DropsColumnsInAFixedOrder) {
   const auto width = [](int) { return 10.0F; };
   EXPECT_EQ(shown_columns(100.0F, width), (std::vector<int>{0, 1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(shown_columns(65.0F, width), (std::vector<int>{0, 1, 3, 4, 5, 6})) << "millinewtons first";
-  EXPECT_EQ(shown_columns(35.0F, width), (std::vector<int>{0, 3, 4}));
-  EXPECT_EQ(shown_columns(1.0F, width), (std::vector<int>{0, 4})) << "the name and what is within the JND stay";
+  EXPECT_EQ(shown_columns(45.0F, width), (std::vector<int>{0, 3, 4, 5}));
+  EXPECT_EQ(shown_columns(1.0F, width), (std::vector<int>{0, 3, 5})) << "name, error and speed stay";
 }
 
 }  // namespace
