@@ -196,8 +196,7 @@ void DemoApp::frame() {
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame(changed_);
   const double shown_s = steady_now_s();
-  view_.frames.times.add(static_cast<std::int64_t>(1e9 * (shown_s - last_frame_s_)));
-  view_.frames.seconds += shown_s - last_frame_s_;
+  view_.frames.add(shown_s - last_frame_s_);
   last_frame_s_ = shown_s;
 }
 

@@ -124,7 +124,9 @@ HealthWords health_words(const HealthView& health, double recent_fps, bool detai
 void draw_health(const HealthView& health, ViewState& view, const UiStyle& style) {
   section_title(style, "LOOP");
   ImGui::SameLine();
-  const HealthWords words = health_words(health, ImGui::GetIO().Framerate, view.details);
+  // ImGuiIO::Framerate has only the frames in which texts were drawn.
+  const double frame_s = view.frames.recent_s;
+  const HealthWords words = health_words(health, frame_s > 0.0 ? 1.0 / frame_s : 0.0, view.details);
   const auto wrapped = [](const Rgb& colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
     ImGui::TextWrapped("%s", text.c_str());

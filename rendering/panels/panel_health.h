@@ -16,7 +16,7 @@ struct HealthWords {
   bool problem = false;
   bool past = false;  // a past alarm that is not acknowledged (LiveSession::reset_figures)
 };
-// `recent_fps`: frames per second, the mean of the last 120 frames (ImGuiIO::Framerate); 0: unknown. `details`: the
+// `recent_fps`: frames per second, of about the last 60 frames; 0: unknown. `details`: the
 // reader is an engineer, to whom missed deadlines are a problem.
 HealthWords health_words(const HealthView& health, double recent_fps, bool details);
 // Age of the sample, rate, round trip, stiffness limit and heat of a real device, or of one with a fault; else empty.

@@ -119,6 +119,13 @@ struct ExhibitState {
 struct FrameFigures {
   TimeHistogram times;  // from the end of one frame to that of the next
   double seconds = 0.0;
+  double recent_s = 0.0;  // mean of one frame, of about the last 60; 0: unknown
+
+  void add(double frame_s) noexcept {
+    times.add(static_cast<std::int64_t>(1e9 * frame_s));
+    seconds += frame_s;
+    recent_s += (frame_s - recent_s) / (recent_s > 0.0 ? 60.0 : 1.0);
+  }
 };
 
 // A notice over the picture.
