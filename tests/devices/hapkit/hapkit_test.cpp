@@ -135,8 +135,7 @@ TEST(Hapkit, ItsRecordingIsFittedReplayedAndRendered) {
   for (const std::string seed : {"1", "2"}) {
     ASSERT_TRUE(record_without_gaps(seed, folder.file(seed + ".csv")));
   }
-  const auto fit = run_palpate(
-      {"fit", "--recording", folder.file("1.csv"), "--method", "greedy", "--out", folder.file("press.json")});
+  const auto fit = run_palpate({"fit", "--recording", folder.file("1.csv"), "--out", folder.file("press.json")});
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   const auto replay =
       run_palpate({"replay", "--recording", folder.file("2.csv"), "--model", folder.file("press.json"), "--json"});
