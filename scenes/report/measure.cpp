@@ -1,7 +1,6 @@
 #include "scenes/report/measure.h"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "models/correction/methods.h"
@@ -232,12 +231,13 @@ class Measurement {
     for (auto first = models_.begin(); first != models_.end();) {
       const auto last = std::find_if(first + 1, models_.end(),
                                      [](const ModelResult& one) { return !one.plan || one.plan->seed == 1; });
-      const auto [fewest, most] =
-          std::ranges::minmax(std::ranges::subrange(first, last) | std::views::transform(within));
+      const auto [fewest, most] = std::minmax_element(
+          first, last, [&](const ModelResult& a, const ModelResult& b) { return within(a) < within(b); });
+      const Interval shares{within(*fewest), within(*most)};
       std::ranges::stable_sort(first, last, {}, p99);
       ModelResult& median = *(first + (last - first) / 2);
       median.seeds = static_cast<std::uint64_t>(last - first);
-      median.within_range = {fewest, most};
+      median.within_range = shares;
       median.p99_range = {p99(*first), p99(*(last - 1))};
       kept.push_back(std::move(median));
       first = last;
