@@ -6,10 +6,11 @@
 // where
 //   b  damping of the lightest hand
 //   B  largest rendered damping, m / (2 T): it lags, too, and is unstable on a mass m above pi/2 m / T
-//   c  share of B that the passivity controller provides, 0.22: measured. It keeps the swing of every simulated hand
-//      (50 to 300 g, lags to 10 ms, 600 to 7000 N/m) within 0.1 mm (tests/accuracy/closed_loop_late_test.cpp); a
-//      controller that always damps could provide 1.1, because m x''(t) + B x'(t - T) + K x(t - T) = 0 is unstable for
-//      K > 0.55 m / T^2 with any B. c decreases with the encoder step, because the controller has a play of one step.
+//   c  share of B that the passivity controller provides, 0.22: measured. Every simulated hand (50 to 300 g, lags to
+//      10 ms, 600 to 7000 N/m) swings by at most 0.12 mm with encoder steps to 10 um, and by 0.35 mm with 30 um
+//      (tests/accuracy/closed_loop_late_test.cpp). A controller that always damps could provide 1.1, because
+//      m x''(t) + B x'(t - T) + K x(t - T) = 0 is unstable for K > 0.55 m / T^2 with any B. c decreases with the
+//      encoder step, because the controller has a play of one step.
 // B limits the sum of the damping of model and user, and that of user and controller.
 //
 // Passivity controller (Hannaford & Ryu 2002; Ryu et al. 2004 for a reference that follows the depth): keeps the force

@@ -12,18 +12,6 @@
 namespace palpate {
 namespace {
 
-// The force at `time_s`, interpolated between two of the rows; none before the first and after the last. `rows`: in
-// time order, Sample or derived. `at`: index of the first of the two, 0 at first; increases from call to call.
-std::optional<double> force_at(const std::vector<Sample>& rows, double time_s, std::size_t& at) {
-  while (at + 2 < rows.size() && rows[at + 1].tool.time_s < time_s) ++at;
-  if (at + 1 >= rows.size()) return std::nullopt;
-  const Sample& before = rows[at];
-  const Sample& after = rows[at + 1];
-  if (time_s < before.tool.time_s || time_s > after.tool.time_s) return std::nullopt;
-  const double share = (time_s - before.tool.time_s) / (after.tool.time_s - before.tool.time_s);
-  return before.force_N + share * (after.force_N - before.force_N);
-}
-
 constexpr double kMostLag_s = 0.05;
 constexpr double kCoarse_s = 0.005;  // between lags, and at least between rows
 constexpr double kFine_s = 0.2e-3;
@@ -191,18 +179,6 @@ OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_nois
   const LagRegression regression(some, force_noise_N);
   return estimate_offset([&](double lag_s) { return regression.costs(lag_s); },
                          {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kLagAccuracy_s, kLagAccuracy_s});
-}
-
-std::vector<Sample> without_lag(const std::vector<Sample>& rows, double lag_s) {
-  std::vector<Sample> moved;
-  std::size_t at = 0;
-  for (const Sample& row : rows) {
-    const auto force_N = force_at(rows, row.tool.time_s + lag_s, at);
-    if (!force_N) continue;
-    moved.push_back(row);
-    moved.back().force_N = *force_N;
-  }
-  return moved;
 }
 
 }  // namespace palpate

@@ -20,7 +20,5 @@ inline constexpr double kLagAccuracy_s = 0.002;
 // `rows`: of a recording, in time order; uses the first 4000 that are at least 5 ms apart. `at` > 0 s: the force is
 // late. Not identified with fewer than 100 rows or three strokes, or with rows too far apart.
 OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_noise_N);
-// The rows with the force shifted by `lag_s` to earlier times; rows for which no force was recorded are dropped.
-std::vector<Sample> without_lag(const std::vector<Sample>& rows, double lag_s);
 
 }  // namespace palpate

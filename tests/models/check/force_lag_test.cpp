@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
@@ -13,12 +15,23 @@
 namespace palpate {
 namespace {
 
+// The forces of a recording at a constant rate, late by whole rows; rows without a force are dropped.
+std::vector<Sample> late_forces(const std::vector<Sample>& rows, double late_s) {
+  const auto shift = std::lround(late_s / (rows[1].tool.time_s - rows[0].tool.time_s));
+  std::vector<Sample> moved;
+  for (long i = std::max(0L, shift); i < static_cast<long>(rows.size()) + std::min(0L, shift); ++i) {
+    moved.push_back(rows[static_cast<std::size_t>(i)]);
+    moved.back().force_N = rows[static_cast<std::size_t>(i - shift)].force_N;
+  }
+  return moved;
+}
+
 OffsetEstimate lag_of(const std::string& material, double late_s) {
   RigSettings settings = test::train_settings(material);
   settings.seconds = 15.0;
   const Recording recording = *test::rig_recording(settings);
   const double noise_N = identify_force_noise_N(recording.rows.data(), recording.rows.size());
-  return find_force_lag(without_lag(thinned_rows(recording, kAllRows), -late_s), noise_N);
+  return find_force_lag(late_forces(thinned_rows(recording, kAllRows), late_s), noise_N);
 }
 
 // The tolerance is 2 ms.
