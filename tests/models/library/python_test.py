@@ -10,7 +10,6 @@ import subprocess
 import sys
 import tempfile
 import unittest
-import zipfile
 
 import numpy as np
 
@@ -212,22 +211,6 @@ class WrongArguments(Case):
         for name in palpate.__all__:
             self.assertIn(name, manual)
             self.assertTrue(getattr(palpate, name).__doc__, name)
-
-
-class Wheel(unittest.TestCase):
-    def test_pip_installs_package_and_library(self):
-        """The wheel that pip makes works alone: unpacked elsewhere, without the variable that names a library."""
-        sys.path.insert(0, str(pathlib.Path(palpate.__file__).resolve().parents[1]))
-        import install
-        with tempfile.TemporaryDirectory() as folder:
-            wheel = install.build_wheel(folder)
-            with zipfile.ZipFile(pathlib.Path(folder) / wheel) as archive:
-                archive.extractall(folder)
-            bare = {key: value for key, value in os.environ.items() if key != "PALPATE_LIBRARY"}
-            done = subprocess.run([sys.executable, "-c", "import palpate; print(palpate.__file__, palpate.Limiter().force(1, 1e-3))"],
-                                  env={**bare, "PYTHONPATH": folder}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-            self.assertEqual(done.returncode, 0, done.stdout)
-            self.assertIn(folder, done.stdout)
 
 
 if __name__ == "__main__":
