@@ -86,7 +86,7 @@ void DemoApp::listen() {
   glfwSetMouseButtonCallback(handle, [](GLFWwindow* from, int, int, int) { app_of(from).note_input(); });
   glfwSetScrollCallback(handle, [](GLFWwindow* from, double, double) { app_of(from).note_input(); });
   glfwSetCharCallback(handle, [](GLFWwindow* from, unsigned) { app_of(from).note_input(); });
-  glfwSetWindowRefreshCallback(handle, [](GLFWwindow* from) { app_of(from).note_input(); });
+  glfwSetWindowRefreshCallback(handle, [](GLFWwindow* from) { app_of(from).everything_ = true; });
   // After these callbacks: ImGui installs its own and calls them.
   ui_ = std::make_unique<UiContext>(handle);
 }

@@ -85,7 +85,7 @@ class DemoApp {
   bool needs_texts(double now_s);
   void draw(bool texts);
   void draw_texts();
-  std::vector<Viewport> draw_blocks(bool all);
+  std::vector<Viewport> draw_blocks();
   std::vector<BlockPose> block_poses() const;
   BlockPose model_pose(std::size_t slot, BlockPose pose) const;
   BlockPose reference_pose(BlockPose pose) const;
@@ -119,6 +119,8 @@ class DemoApp {
   double texts_due_s_ = 0.0;       // when the texts are drawn next
   double lively_until_s_ = 0.0;    // until then they are drawn in every frame
   std::vector<Viewport> changed_;  // parts of the window in this frame
+  bool no_model_ = true;           // in the last frame
+  bool everything_ = true;         // the next frame draws all of the window
   double frame_began_s_ = 0.0;
   double last_frame_s_ = 0.0;  // end of the last frame
   bool leaving_ = false;       // `close` was called; an exhibit ends only by it

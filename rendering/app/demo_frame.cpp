@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
@@ -50,8 +51,8 @@ bool DemoApp::needs_texts(double now_s) {
 
 void DemoApp::draw_texts() {
   const bool exhibit = view_.exhibit.on;
-  style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
-                exhibit ? kExhibitBody_px : kBody_px);
+  everything_ |= style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
+                               exhibit ? kExhibitBody_px : kBody_px);
   ui_->begin_frame(input_.tapped());
   layout_ = lay_out(ImGui::GetIO().DisplaySize);
   if (input_.handle_mouse(*session_, shown_, *blocks_, view_, layout_.scene) && !exhibit)
@@ -71,31 +72,34 @@ void DemoApp::draw_texts() {
   } else {
     draw_panel(curves_, *session_, shown_, view_, style_, layout_.panel);
   }
+  ImGui::Render();
 }
 
 void DemoApp::draw(bool texts) {
-  texts = texts || !window_->keeps_frame();
+  texts = texts || everything_ || !window_->keeps_frame();
   if (texts) draw_texts();
-  changed_ = draw_blocks(texts);
-  if (texts) {
+  changed_ = draw_blocks();
+  const Viewport scene = pixels_of(layout_.scene), panel = pixels_of(layout_.panel);
+  if (std::exchange(everything_, false) || !window_->keeps_frame()) changed_ = {scene, panel};
+  if (texts) changed_ = ui_->changed_parts(changed_);
+  for (const Viewport& part : changed_) {
+    blocks_->copy_to_window(part);
     // With a software renderer, clearing is faster than filling a rectangle.
-    const Viewport panel = pixels_of(layout_.panel);
-    window_->clear(panel, style_.colours().panel);
-    ui_->end_frame();
-    changed_.push_back(panel);
-  } else {
-    ui_->draw_again(changed_);
+    if (const Viewport of_panel = common_part(part, panel); !of_panel.empty())
+      window_->clear(of_panel, style_.colours().panel);
   }
+  ui_->draw_again(changed_);
 }
 
-std::vector<Viewport> DemoApp::draw_blocks(bool all) {
+std::vector<Viewport> DemoApp::draw_blocks() {
   const SceneArea& area = layout_.scene;
   const std::vector<BlockPose> poses = block_poses();
   const SceneArea stage = stage_of(*session_, view_, style_, area);
   blocks_->leave_free((stage.at.y - area.at.y) / area.size.y,
                       1.0F - (stage.at.y - area.at.y + stage.size.y) / area.size.y);
-  blocks_->show(poses.size(), {area.size.x, area.size.y}, false);  // their number changes when models become ready
-  return blocks_->draw(poses, pixels_of(area), view_.settings.theme, all);
+  // Their number changes when models become ready; the camera jumps to the first ones.
+  blocks_->show(poses.size(), {area.size.x, area.size.y}, std::exchange(no_model_, shown_.blocks.empty()));
+  return blocks_->draw(poses, pixels_of(area), view_.settings.theme);
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {

@@ -243,12 +243,11 @@ Status Window::save_frame(const std::string& path, bool overwrite) {
 // Whether the driver's buffer has the size of this frame: to copy a part outside of it is an error that ends the
 // program. The driver follows a window that is resized a few frames late, or before its event arrives.
 bool Window::has_settled() {
-  constexpr int kFrames = 10;
   const UiSize now = size();
   const bool same = now.width_px == settled_.width && now.height_px == settled_.height;
   settled_ = {0, 0, now.width_px, now.height_px};
   same_size_ = same ? same_size_ + 1 : 0;
-  if (same_size_ < kFrames) return false;
+  if (same_size_ < kSettled) return false;
   unsigned width = 0, height = 0;
   glXQueryDrawable(glXGetCurrentDisplay(), glXGetCurrentDrawable(), GLX_WIDTH, &width);
   glXQueryDrawable(glXGetCurrentDisplay(), glXGetCurrentDrawable(), GLX_HEIGHT, &height);

@@ -44,8 +44,9 @@ class Window {
   // Fills the frame, or a part of it, with one colour.
   void clear(const Rgb& colour) const;
   void clear(const Viewport& part, const Rgb& colour) const;
-  // Whether the frame is kept when it is shown, so that the next one may be drawn in parts.
-  bool keeps_frame() const noexcept { return keeps_frame_; }
+  // Whether the frame is kept when it is shown, so that the next one may be drawn in parts: not while it changes its
+  // size.
+  bool keeps_frame() const noexcept { return keeps_frame_ && same_size_ >= kSettled; }
   // Shows the frame and waits for the next one: until the display is ready if the driver waits for it, else 1/60 s.
   // `changed`: the parts that differ from the last frame, for a window that keeps it.
   void show_frame(const std::vector<Viewport>& changed);
@@ -57,6 +58,8 @@ class Window {
   explicit Window(GLFWwindow* window) : window_(window) {}
   bool display_sets_pace(const Rgb& empty);
   bool has_settled();
+
+  static constexpr int kSettled = 10;  // frames of the same size
 
   GLFWwindow* window_;
   bool keeps_frame_ = false;

@@ -266,11 +266,10 @@ void BlockView::copy_to_window(const Viewport& part) const {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-std::vector<Viewport> BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme,
-                                      bool all) {
+std::vector<Viewport> BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) {
   if (viewport.width < 1 || viewport.height < 1 || blocks.empty()) return {};
   const int width = viewport.width, height = viewport.height;
-  all = all || viewport != viewport_;
+  bool all = viewport != viewport_;
   viewport_ = viewport;
   const glm::vec2 size(width, height);
   const Cells grid = cells(blocks.size(), size);
@@ -308,9 +307,7 @@ std::vector<Viewport> BlockView::draw(const std::vector<BlockPose>& blocks, cons
   glFrontFace(GL_CCW);
   glBindVertexArray(0);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  if (all) changed = {viewport};
-  for (const Viewport& part : changed) copy_to_window(part);
-  return changed;
+  return all ? std::vector{viewport} : changed;
 }
 
 }  // namespace palpate

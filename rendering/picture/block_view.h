@@ -49,11 +49,10 @@ class BlockView {
   void leave_free(float above, float below) noexcept { above_ = above, below_ = below; }
   // Arranges `count` blocks in a picture of `size` and turns the camera to them, with a transition unless `at_once`.
   void show(std::size_t count, const glm::vec2& size, bool at_once);
-  // Draws 1 to kMostBlocks blocks into a part of the window. Returns the parts of the window, with the origin at its
-  // lower left corner, that have changed since the last call; only they are drawn, unless `all`.
-  std::vector<Viewport> draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme,
-                             bool all = true);
-  // Copies a part of the window of the last `draw` to the window.
+  // Draws 1 to kMostBlocks blocks for a part of the window. Returns the parts of the window, with the origin at its
+  // lower left corner, that have changed since the last call; only they are drawn.
+  std::vector<Viewport> draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme);
+  // Copies what was drawn there to a part of the window.
   void copy_to_window(const Viewport& part) const;
 
   Camera& camera() noexcept { return camera_; }

@@ -49,15 +49,18 @@ void add_commands_in(const ImDrawList& list, const ImVec4& part, ImVector<ImDraw
                      ImVector<ImDrawIdx>& indices) {
   for (ImDrawCmd command : list.CmdBuffer) {
     ImVec4& clip = command.ClipRect;
-    clip = {std::max(clip.x, part.x), std::max(clip.y, part.y), std::min(clip.z, part.z), std::min(clip.w, part.w)};
+    // The whole pixels that ImGui's backend makes of it, so that no line is missing between two parts.
+    const float left = std::floor(clip.x), right = left + std::floor(clip.z - clip.x);
+    const float bottom = std::ceil(clip.w), top = bottom - std::floor(clip.w - clip.y);
+    clip = {std::max(left, part.x), std::max(top, part.y), std::min(right, part.z), std::min(bottom, part.w)};
     if (clip.x >= clip.z || clip.y >= clip.w) continue;
     const ImDrawIdx* const first = list.IdxBuffer.Data + command.IdxOffset;
     command.IdxOffset = static_cast<unsigned>(indices.Size);
     for (const ImDrawIdx* corner = first; corner < first + command.ElemCount; corner += 3) {
       const auto at = [&](int k) { return list.VtxBuffer[static_cast<int>(corner[k] + command.VtxOffset)].pos; };
-      const auto [left, right] = std::minmax({at(0).x, at(1).x, at(2).x});
-      const auto [top, bottom] = std::minmax({at(0).y, at(1).y, at(2).y});
-      if (left > clip.z || right < clip.x || top > clip.w || bottom < clip.y) continue;
+      const auto [low_x, high_x] = std::minmax({at(0).x, at(1).x, at(2).x});
+      const auto [low_y, high_y] = std::minmax({at(0).y, at(1).y, at(2).y});
+      if (low_x > clip.z || high_x < clip.x || low_y > clip.w || high_y < clip.y) continue;
       for (int k = 0; k < 3; ++k) indices.push_back(corner[k]);
     }
     command.ElemCount = static_cast<unsigned>(indices.Size) - command.IdxOffset;
@@ -100,6 +103,10 @@ void UiContext::begin_frame(const std::vector<int>& tapped) {
 void UiContext::end_frame() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+std::vector<Viewport> UiContext::changed_parts(const std::vector<Viewport>& also) {
+  return changes_.update(*ImGui::GetDrawData(), also);
 }
 
 void UiContext::draw_again(const std::vector<Viewport>& parts) const {
@@ -155,16 +162,17 @@ float ui_scale(const UiSize& size, float larger) noexcept {
   return unit * kScaleStep * std::round(scale / kScaleStep);
 }
 
-void UiStyle::update(const UiSize& size, float larger, Theme theme, float body_px) {
+bool UiStyle::update(const UiSize& size, float larger, Theme theme, float body_px) {
   const float wanted = ui_scale(size, larger);
   const bool resized = wanted != scale_ || size.pixels_per_unit != pixels_per_unit_ || body_px != body_px_;
-  if (!resized && theme == theme_) return;
+  if (!resized && theme == theme_) return false;
   scale_ = wanted;
   pixels_per_unit_ = size.pixels_per_unit;
   body_px_ = body_px;
   theme_ = theme;
   if (resized) build_fonts();
   set_colours();
+  return true;
 }
 
 // Builds fonts in pixels of the framebuffer, so that they are sharp; they are drawn in units of the window.

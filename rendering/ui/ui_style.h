@@ -9,6 +9,7 @@
 
 #include "rendering/ui/colours.h"
 #include "rendering/ui/viewport.h"
+#include "rendering/ui/widget_changes.h"
 
 struct GLFWwindow;
 
@@ -61,19 +62,22 @@ class UiContext {
   void begin_frame(const std::vector<int>& tapped = {});
   // Draws all widgets since `begin_frame`.
   void end_frame();
+  // The parts of the window that have to be drawn after ImGui::Render: see WidgetChanges.
+  std::vector<Viewport> changed_parts(const std::vector<Viewport>& also);
   // Draws the widgets of the last frame again where they are in these parts of the window (pixels, with the origin at
   // the lower left corner), which were drawn over.
   void draw_again(const std::vector<Viewport>& parts) const;
 
  private:
   GLFWwindow* window_;
+  WidgetChanges changes_;
 };
 
 class UiStyle {
  public:
   // Call it before each frame (UiContext::begin_frame). Rebuilds the fonts when the scale has changed, and sets the
-  // colours when the theme has changed.
-  void update(const UiSize& size, float larger, Theme theme, float body_px = kBody_px);
+  // colours when the theme has changed. Returns whether one has.
+  bool update(const UiSize& size, float larger, Theme theme, float body_px = kBody_px);
 
   const Fonts& fonts() const noexcept { return fonts_; }
   float scale() const noexcept { return scale_; }  // of ui_scale

@@ -53,6 +53,28 @@ TEST_F(DemoAppTest, ShowsAPictureThatIsNotEmpty) {
   EXPECT_GT(panel.size(), 100u) << "text and curves";
 }
 
+// Only what changes is drawn: it must leave the picture that drawing everything gives.
+TEST_F(DemoAppTest, PartsGiveThePictureOfTheWhole) {
+  open("hand");
+  GLFWwindow* handle = app_->window().handle();
+  for (const int key : {GLFW_KEY_UNKNOWN, GLFW_KEY_H, GLFW_KEY_ESCAPE, GLFW_KEY_T, GLFW_KEY_B, GLFW_KEY_L}) {
+    if (key != GLFW_KEY_UNKNOWN) press(key);
+    frames(25);
+    ASSERT_TRUE(app_->window().keeps_frame()) << "the software renderer of the tests";
+    ASSERT_TRUE(app_->screenshot(folder_.file("parts.png"), true).ok());
+    const GLFWwindowrefreshfun uncovered = glfwSetWindowRefreshCallback(handle, nullptr);
+    glfwSetWindowRefreshCallback(handle, uncovered);
+    uncovered(handle);
+    ASSERT_TRUE(app_->screenshot(folder_.file("whole.png"), true).ok());
+    const Picture parts = read_picture(folder_.file("parts.png")), whole = read_picture(folder_.file("whole.png"));
+    ASSERT_EQ(parts.pixels.size(), whole.pixels.size());
+    int largest = 0;
+    for (std::size_t i = 0; i < whole.pixels.size(); ++i)
+      largest = std::max(largest, std::abs(parts.pixels[i] - whole.pixels[i]));
+    EXPECT_LE(largest, 1) << "after the key " << key << "; a texture's interpolation is rounded in each part";
+  }
+}
+
 TEST_F(DemoAppTest, ADroppedModelTakesPart) {
   open("hand");
   save("third.json", 3, 1.2);

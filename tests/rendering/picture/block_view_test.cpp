@@ -60,7 +60,9 @@ class BlockViewTest : public ::testing::Test {
   }
   static Picture draw(BlockView& view, const std::vector<BlockPose>& blocks, Theme theme = Theme::light,
                       int width = kWidth, int height = kHeight, bool all = true) {
-    view.draw(blocks, {0, 0, width, height}, theme, all);
+    std::vector<Viewport> parts = view.draw(blocks, {0, 0, width, height}, theme);
+    if (all) parts = {{0, 0, width, height}};
+    for (const Viewport& part : parts) view.copy_to_window(part);
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
     Picture pixels(static_cast<std::size_t>(3 * width * height));
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -141,10 +143,10 @@ TEST_F(BlockViewTest, SaysWhichPartsOfTheWindowHaveChanged) {
   const Viewport whole{7, 5, kWidth, kHeight};
   std::vector<BlockPose> blocks = poses(6, 0.002F);
   each->show(6, {kWidth, kHeight}, true);
-  EXPECT_EQ(each->draw(blocks, whole, Theme::light, false), std::vector{whole}) << "the first picture";
-  EXPECT_TRUE(each->draw(blocks, whole, Theme::light, false).empty()) << "nothing moves";
+  EXPECT_EQ(each->draw(blocks, whole, Theme::light), std::vector{whole}) << "the first picture";
+  EXPECT_TRUE(each->draw(blocks, whole, Theme::light).empty()) << "nothing moves";
   blocks[4].dent_m = blocks[4].tool_m = 0.003F;
-  const std::vector<Viewport> changed = each->draw(blocks, whole, Theme::light, false);
+  const std::vector<Viewport> changed = each->draw(blocks, whole, Theme::light);
   ASSERT_FALSE(changed.empty());
   Viewport around;
   for (const Viewport& part : changed) around = around_both(around, part);
