@@ -58,9 +58,9 @@ void add_commands_in(const ImDrawList& list, const ImVec4& part, ImVector<ImDraw
     command.IdxOffset = static_cast<unsigned>(indices.Size);
     for (const ImDrawIdx* corner = first; corner < first + command.ElemCount; corner += 3) {
       const auto at = [&](int k) { return list.VtxBuffer[static_cast<int>(corner[k] + command.VtxOffset)].pos; };
-      const auto [low_x, high_x] = std::minmax({at(0).x, at(1).x, at(2).x});
-      const auto [low_y, high_y] = std::minmax({at(0).y, at(1).y, at(2).y});
-      if (low_x > clip.z || high_x < clip.x || low_y > clip.w || high_y < clip.y) continue;
+      const ImVec2 a = at(0), b = at(1), c = at(2);
+      const bool beside = std::min(a.x, std::min(b.x, c.x)) > clip.z || std::max(a.x, std::max(b.x, c.x)) < clip.x;
+      if (beside || std::min(a.y, std::min(b.y, c.y)) > clip.w || std::max(a.y, std::max(b.y, c.y)) < clip.y) continue;
       for (int k = 0; k < 3; ++k) indices.push_back(corner[k]);
     }
     command.ElemCount = static_cast<unsigned>(indices.Size) - command.IdxOffset;
