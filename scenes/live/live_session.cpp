@@ -275,7 +275,7 @@ ModelFigures LiveSession::figures(std::size_t slot) const {
   figures.errors = {};
   if (tested != nullptr && !models_.info(slot).other_material) {
     figures.errors = test_.errors(*tested);
-    figures.p99_interval = test_.errors(*tested).p99_interval();
+    figures.p99_interval = test_.errors(*tested).p99_interval;
   }
   if (const auto path = paths_.find(slot); path != paths_.end()) figures.path = path->second;
   return figures;

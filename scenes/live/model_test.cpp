@@ -60,11 +60,13 @@ ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed, d
     request.move_surface = replay_ != nullptr;
     auto result = evaluate(rows_of(*recording), evaluated, request);
     if (!result) return outcome;
+    const auto errors_of = [](const ModelErrors& errors) -> Errors {
+      const UnitErrors of_units = errors.unit_errors();
+      return {of_units, of_units.p99_interval()};
+    };
     for (std::size_t i = 0; i < untested.size(); ++i) {
-      outcome.tested.push_back({untested[i],
-                                result->models[i].as_recorded.unit_errors(),
-                                result->models[i].surface_moved.unit_errors(),
-                                {}});
+      const auto& one = result->models[i];
+      outcome.tested.push_back({untested[i], errors_of(one.as_recorded), errors_of(one.surface_moved), {}});
     }
     samples_ = std::move(result->timing);
   }

@@ -46,14 +46,17 @@ class ModelTest {
   // Number of tests with results.
   std::uint64_t results() const noexcept { return results_; }
 
+  struct Errors : ErrorSummary {
+    Interval p99_interval{kUnknown, kUnknown};
+  };
   struct Tested {
     std::shared_ptr<const ForceModel> model;
-    UnitErrors as_recorded, surface_moved;  // without samples if there is no recording
-    Timing tick;                            // a whole tick with this model alone
+    Errors as_recorded, surface_moved;  // without samples if there is no recording
+    Timing tick;                        // a whole tick with this model alone
   };
   const Tested* find(const ForceModel* model) const noexcept;
   // Its errors with the surface as it is now (`moved`). `tested`: of this object.
-  const UnitErrors& errors(const Tested& tested) const noexcept {
+  const Errors& errors(const Tested& tested) const noexcept {
     return moved_ ? tested.surface_moved : tested.as_recorded;
   }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "engine/base/text.h"
@@ -227,9 +229,14 @@ std::string describe_features(const Scene& scene) {
 
 TrainingScene training_scene(const Scene& scene) { return {scene.name, scene.features, scene.jnd}; }
 
-std::uint32_t method_rgb(std::string_view name) {
-  const auto plan = parse_plan(name);
-  return plan ? colour_of(*plan) : kNeutralColour;
+std::uint32_t method_rgb(std::string_view family) {
+  static const auto hues = [] {
+    std::map<std::string, std::uint32_t, std::less<>> all;
+    for (const ModelPlan& plan : all_plans()) all[family_name(plan)] = colour_of(plan);
+    return all;
+  }();
+  const auto hue = hues.find(family);
+  return hue != hues.end() ? hue->second : kNeutralColour;
 }
 
 }  // namespace palpate
