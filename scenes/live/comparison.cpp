@@ -54,7 +54,10 @@ void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
   // While a replay is paused, ticks have no new sample.
   const bool fresh = snapshot.samples > 0;
   if (fresh && set != nullptr) count(point, snapshot, *set, std::clamp(time_s - last_time_s_, 0.0, kLongestStep_s));
-  for (Slot& slot : slots_) slot.dent.step(snapshot.tick.depth_m, std::abs(slot.sustained_over_jnd), step_s);
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    slots_[i].dent.step(snapshot.tick.depth_m, static_cast<double>(point.force_N[i]),
+                        std::abs(slots_[i].sustained_over_jnd), step_s);
+  }
   if (!fresh) return;
   last_time_s_ = time_s;
   for (std::size_t i = 0; i < slots_.size(); ++i)
