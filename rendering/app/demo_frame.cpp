@@ -94,7 +94,7 @@ void DemoApp::draw(bool texts) {
 std::vector<Viewport> DemoApp::draw_blocks() {
   const SceneArea& area = layout_.scene;
   const std::vector<BlockPose> poses = block_poses();
-  const SceneArea stage = stage_of(*session_, view_, style_, area);
+  const SceneArea stage = stage_of(*session_, shown_.models.verdict, view_, style_, area);
   blocks_->leave_free((stage.at.y - area.at.y) / area.size.y,
                       1.0F - (stage.at.y - area.at.y + stage.size.y) / area.size.y);
   // Their number changes when models become ready; the camera jumps to the first ones.

@@ -26,6 +26,32 @@ float big_number_height(const UiStyle& style, float lift) {
   return lift + height_of(style.fonts().big) + 1.9F * height_of(style.fonts().body);
 }
 
+// The verdict below the title, and where its lines end.
+struct Headline {
+  std::string words;
+  ImVec2 at;
+  float room;  // the width to which it is wrapped
+  float detail_px, below_px;
+};
+Headline headline_of(const Verdict& verdict, const UiStyle& style, const SceneArea& area) {
+  const Fonts& fonts = style.fonts();
+  const float line = height_of(fonts.body), top = area.at.y + 2.0F * line;
+  if (verdict.headline.empty()) return {{}, {}, 0.0F, top, top};
+  const float indent = verdict.chosen ? 1.1F * height_of(fonts.heading) : 0.0F;
+  const float room = area.size.x - indent - 1.4F * line;
+  Headline headline{verdict.headline, {area.at.x + 0.7F * line + indent, top}, room, top, top};
+  // No line ends between a number and its unit.
+  std::string& words = headline.words;
+  for (std::size_t i = 0; (i = words.find(" %", i)) != std::string::npos;) words.replace(i, 1, "\u00A0");
+  headline.detail_px = headline.below_px = top + text_size(fonts.heading, words, headline.room).y;
+  if (!verdict.detail.empty()) {
+    headline.detail_px += 0.1F * line;
+    headline.below_px = headline.detail_px + text_size(fonts.body, verdict.detail, headline.room).y;
+  }
+  headline.below_px += 0.3F * line;
+  return headline;
+}
+
 // The overlay of a frame. `lift` in its functions: height of other parts at the lower edge of the area.
 struct Overlay {
   LiveSession& session;
@@ -49,12 +75,6 @@ struct Overlay {
     const ImVec2 low(at.x - margin.x, at.y - margin.y), high(at.x + size.x + margin.x, at.y + size.y + margin.y);
     list.AddRectFilled(low, high, colour, 6.0F);
     list.AddRectFilled(low, {at.x - 0.55F * margin.x, high.y}, stripe, 3.0F);
-  }
-
-  // Draws text that is wrapped to the width `room`. Returns the y below it.
-  static float draw_wrapped(ImFont* font, const ImVec2& at, const std::string& text, ImU32 colour, float room) {
-    text_at(font, at, colour, text, room);
-    return at.y + text_size(font, text, room).y;
   }
 
   // Draws the sliders that scale the rendered force. Returns the y below them.
@@ -98,22 +118,17 @@ struct Overlay {
   // Draws the verdict below the title. Returns the y of its lower edge.
   float draw_headline() const {
     const Verdict& verdict = models().verdict;
-    const float head = height_of(fonts().heading), top = area.at.y + 2.0F * line();
-    if (verdict.headline.empty()) return top;
-    const float indent = verdict.chosen ? 1.1F * head : 0.0F;
-    const ImVec2 at(area.at.x + 0.7F * line() + indent, top);
-    const float room = area.size.x - indent - 1.4F * line();
+    const Headline headline = headline_of(verdict, style, area);
+    if (verdict.headline.empty()) return headline.below_px;
+    const float head = height_of(fonts().heading);
     if (verdict.chosen) {
-      draw_mark(list(), {at.x - 0.6F * head, top + 0.55F * head}, 0.36F * head, models().slots[*verdict.chosen].paper,
-                ink(slot_colour(models(), *verdict.chosen, style.theme())), style);
+      draw_mark(list(), {headline.at.x - 0.6F * head, headline.at.y + 0.55F * head}, 0.36F * head,
+                models().slots[*verdict.chosen].paper, ink(slot_colour(models(), *verdict.chosen, style.theme())),
+                style);
     }
-    // No line ends between a number and its unit.
-    std::string headline = verdict.headline;
-    for (std::size_t i = 0; (i = headline.find(" %", i)) != std::string::npos;) headline.replace(i, 1, "\u00A0");
-    float y = draw_wrapped(fonts().heading, at, headline, text_ink(!verdict.chosen), room);
-    if (!verdict.detail.empty())
-      y = draw_wrapped(fonts().body, {at.x, y + 0.1F * line()}, verdict.detail, text_ink(true), room);
-    return y + 0.3F * line();
+    text_at(fonts().heading, headline.at, text_ink(!verdict.chosen), headline.words, headline.room);
+    text_at(fonts().body, {headline.at.x, headline.detail_px}, text_ink(true), verdict.detail, headline.room);
+    return headline.below_px;
   }
 
   // Draws a text in the middle on a plate, because it may cover the blocks. Returns the y below it.
@@ -341,10 +356,12 @@ struct Overlay {
 
 }  // namespace
 
-SceneArea stage_of(const LiveSession& session, const ViewState& view, const UiStyle& style, const SceneArea& area) {
+SceneArea stage_of(const LiveSession& session, const Verdict& verdict, const ViewState& view, const UiStyle& style,
+                   const SceneArea& area) {
   if (view.exhibit.on) return area;
-  // Room for a title, a headline of two lines, and its detail.
-  const float above = 3.3F * height_of(style.fonts().body) + 2.0F * height_of(style.fonts().heading);
+  // At least room for a title, a headline of two lines, and its detail, so that the blocks seldom move.
+  const float usual = 3.4F * height_of(style.fonts().body) + 2.0F * height_of(style.fonts().heading);
+  const float above = std::max(usual, headline_of(verdict, style, area).below_px - area.at.y);
   const float below = big_number_height(style, buttons_height(style) + replay_height(session, style));
   return {{area.at.x, area.at.y + above}, {area.size.x, std::max(1.0F, area.size.y - above - below)}};
 }

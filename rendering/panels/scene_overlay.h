@@ -17,7 +17,8 @@ std::string scale_words(const ForceScale& scale);
 std::string recording_words(const RecordingStatus& recording);
 
 // The part of the picture between the headline and the big number, for the blocks.
-SceneArea stage_of(const LiveSession& session, const ViewState& view, const UiStyle& style, const SceneArea& area);
+SceneArea stage_of(const LiveSession& session, const Verdict& verdict, const ViewState& view, const UiStyle& style,
+                   const SceneArea& area);
 
 void draw_overlay(LiveSession& session, const WindowView& shown, const BlockView& blocks, ViewState& view,
                   const UiStyle& style, const SceneArea& area, const OverlayActions& actions);
