@@ -13,6 +13,8 @@ namespace {
 constexpr int kThree = TableColumn::kThreeDigits;
 constexpr const char* kNothing = "–";
 
+const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
+
 std::string quoted_if_needed(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted(1, '"');
@@ -25,12 +27,13 @@ std::string quoted_if_needed(const std::string& text) {
 
 std::string csv_cell(const TableCell& cell) {
   if (cell.is_string()) return quoted_if_needed(cell.get<std::string>());
-  if (cell.is_number_integer()) return cell.dump();
+  if (cell.is_number_integer() || cell.is_boolean()) return cell.dump();
   return std::isfinite(cell.get<double>()) ? shortest(cell.get<double>()) : "";
 }
 
 std::string shown(const TableCell& cell, const TableColumn& column) {
   if (cell.is_string()) return cell.get<std::string>();
+  if (cell.is_boolean()) return yes_or_no(cell.get<bool>());
   if (cell.is_number_integer()) return with_thousands(cell.dump());
   const double value = cell.get<double>() * column.scale;
   if (!std::isfinite(value)) return kNothing;
@@ -51,8 +54,6 @@ bool is_text(const Table& table, std::size_t column) {
   return !table.rows.empty() &&
          std::ranges::all_of(table.rows, [&](const auto& row) { return row[column].is_string(); });
 }
-
-const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 
 // A figure over the seeds of a method that draws random numbers.
 TableCell of_seeds(const ModelResult& one, double value) { return one.seeds > 1 ? value : kNoNumber; }

@@ -23,7 +23,7 @@ struct TableColumn {
   static constexpr int kThreeDigits = -1;  // three significant digits
 };
 
-// Text, a count, or a number. A number that is not finite becomes an empty cell, null in JSON, a dash on the page.
+// Text, a count, a truth value, or a number. A number that is not finite becomes an empty cell, null in JSON, a dash on the page.
 using TableCell = nlohmann::ordered_json;
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInPercent = 100.0;

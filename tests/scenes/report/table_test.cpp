@@ -50,6 +50,13 @@ TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
   EXPECT_TRUE(test::has_parts(table_html(table), {"<td>50.0<small>25.0–75.0</small></td></tr>"}));
 }
 
+TEST(Table, ATruthValueIsAWordOnThePage) {
+  const Table table{"example", false, {{"expected", "as expected"}}, {{true}, {false}}};
+  EXPECT_EQ(table_csv(table), "expected\ntrue\nfalse\n");
+  EXPECT_EQ(table_json(table).dump(), "[{\"expected\":true},{\"expected\":false}]");
+  EXPECT_EQ(table_text(table), (std::vector<std::vector<std::string>>{{"as expected"}, {"yes"}, {"no"}}));
+}
+
 TEST(Table, ARowWithoutCellsBreaksALine) {
   EXPECT_EQ(table_csv({"t", false, {{"x", ""}}, {{1.0}, {}, {2.0}}}), "x\n1\n\n2\n");
 }
