@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 
 #include "devices/bridge/byte_stream.h"
 #include "engine/base/signals.h"
@@ -17,6 +16,9 @@ namespace {
 constexpr int kRead_ms = 50;  // short, so that the reader thread ends soon after it is stopped
 // A board that resets takes two seconds; a program with an SDK may search for its device first.
 constexpr double kFirstFrame_s = 4.0, kFirstFrameOfProgram_s = 20.0;
+// The rate of the first frames is the best of so many trials, because a program may pause while it starts.
+constexpr int kTrials = 3, kIntervals = 8;
+constexpr double kTrial_s = 0.1;
 
 // The limits of a recording; larger values are invalid.
 constexpr std::int32_t kMost_nm = 1'000'000'000;
@@ -100,42 +102,6 @@ class BridgeConnection final : public DeviceConnection {
   std::string beginning_;  // the bytes until there is a frame, at most kBeginning
 };
 
-// The rate of the first frames: the best of kTrials, because a program may pause while it starts. The larger of the
-// device's time and the time of arrival counts: the first frames may have waited in a queue, and a device's clock may
-// stand still.
-class FirstFrames {
- public:
-  void add(const DeviceReading& reading, double now_s) noexcept {
-    if (trial_ends_) begin(reading, now_s);
-    const double device_s = 1e-6 * static_cast<std::int32_t>(reading.time_us - first_us_);
-    const double span_s = std::max(device_s, now_s - first_s_);
-    if (++intervals_ < kIntervals || span_s < kTrial_s) return;
-    interval_s_ = std::min(interval_s_, span_s / intervals_);
-    ++trials_;
-    trial_ends_ = true;
-  }
-  bool fast_enough() const noexcept { return interval_s_ <= SampleRate::kLongestInterval_s; }
-  bool done() const noexcept { return fast_enough() || trials_ == kTrials; }
-  double interval_s() const noexcept { return interval_s_; }
-
- private:
-  static constexpr int kTrials = 3, kIntervals = 8;
-  static constexpr double kTrial_s = 0.1;
-
-  void begin(const DeviceReading& reading, double now_s) noexcept {
-    first_us_ = reading.time_us;
-    first_s_ = now_s;
-    intervals_ = -1;
-    trial_ends_ = false;
-  }
-
-  int intervals_ = 0, trials_ = 0;
-  bool trial_ends_ = true;
-  std::uint32_t first_us_ = 0;
-  double first_s_ = 0.0;
-  double interval_s_ = std::numeric_limits<double>::infinity();
-};
-
 }  // namespace
 
 const DeviceProtocol kBridgeProtocol = {
@@ -170,9 +136,9 @@ Result<OpenedDevice> BridgeBus::open_and_identify() {
   OpenedDevice result{info_, &kBridgeProtocol};
   const double patience_s = target_.starts_with("exec:") ? kFirstFrameOfProgram_s : kFirstFrame_s;
   const double until_s = steady_now_s() + patience_s;
-  double last_sent_s = 0.0;
-  FirstFrames first;
-  for (int frames = 0; !first.done();) {
+  double last_sent_s = 0.0, first_s = 0.0, interval_s = HUGE_VAL;
+  std::uint32_t first_us = 0;
+  for (int frames = 0, intervals = -1, trials = 0; interval_s > SampleRate::kLongestInterval_s && trials < kTrials;) {
     if (stop_requested() != 0) return Error{"interrupted"};
     // Opening the line may reset the board, which then misses the first frames of the host.
     if (steady_now_s() - last_sent_s > 0.1) {
@@ -197,10 +163,21 @@ Result<OpenedDevice> BridgeBus::open_and_identify() {
     }
     if (verdict != ReportVerdict::position) continue;
     ++frames;
-    first.add(reading, steady_now_s());
     result.measures_force = result.measures_force || !std::isnan(reading.measured_N);
+    const double now_s = steady_now_s();
+    if (++intervals == 0) {
+      first_s = now_s;
+      first_us = reading.time_us;
+    }
+    // The larger of the device's time and the time of arrival counts: the first frames may have waited in a queue, and
+    // a device's clock may stand still.
+    const double span_s = std::max(1e-6 * static_cast<std::int32_t>(reading.time_us - first_us), now_s - first_s);
+    if (intervals < kIntervals || span_s < kTrial_s) continue;
+    interval_s = std::min(interval_s, span_s / intervals);
+    intervals = -1;
+    ++trials;
   }
-  if (!first.fast_enough()) return too_slow(info_.path, first.interval_s());
+  if (interval_s > SampleRate::kLongestInterval_s) return too_slow(info_.path, interval_s);
   result.info.product = result.measures_force ? "measures force" : "measures no force";
   if (target_.starts_with("remote-")) result.info.product += ", on a network, which adds delay";
   result.connection = std::move(*opened);

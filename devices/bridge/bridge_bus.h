@@ -25,35 +25,25 @@ class BridgeReports {
   // Consumes bytes from `at` until `report` has a report of at most kDeviceBytes. Returns its size; 0: all bytes were
   // consumed without one.
   int next(const std::uint8_t*& at, const std::uint8_t* end, std::uint8_t* report) noexcept {
-    bool found = std::exchange(frame_waits_, false);
-    while (!found && at != end) found = finder_.add(*at++);
-    // The stream may begin within a frame, so bytes before the first frame are no gap.
-    const bool gap = any_frame_ && finder_.skipped() != skipped_;
-    skipped_ = finder_.skipped();
-    any_frame_ = any_frame_ || found;
-    if (!found && finder_.other_version() != 0) {
-      const std::uint8_t header[4] = {0x50, 0x42, finder_.other_version(), bridge::kFromDevice};
-      std::memcpy(report, header, sizeof header);
-      finder_ = {};
-      skipped_ = 0;
-      return sizeof header;
+    while (at != end) {
+      const bridge::Found found = finder_.add(*at++);
+      if (found == bridge::Found::nothing) continue;
+      // The stream may begin within a frame, so bytes before the first frame are no gap.
+      const bool in_gap = std::exchange(in_gap_, found == bridge::Found::skipped) || !any_frame_;
+      if (in_gap_ && in_gap) continue;
+      any_frame_ = any_frame_ || found == bridge::Found::frame;
+      const unsigned size = in_gap_ ? 1 : (found == bridge::Found::frame ? bridge::kDeviceBytes : 4);
+      std::memcpy(report, finder_.frame(), size);
+      return static_cast<int>(size);
     }
-    if (gap) {
-      frame_waits_ = found;
-      report[0] = 0;
-      return 1;
-    }
-    if (!found) return 0;
-    std::memcpy(report, finder_.frame(), bridge::kDeviceBytes);
-    return static_cast<int>(bridge::kDeviceBytes);
+    return 0;
   }
   bool any_frame() const noexcept { return any_frame_; }
 
  private:
   bridge::FrameFinder<bridge::kDeviceBytes, bridge::kFromDevice> finder_;
-  std::uint32_t skipped_ = 0;  // skipped bytes that were reported
   bool any_frame_ = false;
-  bool frame_waits_ = false;  // a frame follows the gap that was reported
+  bool in_gap_ = false;  // the last bytes were skipped
 };
 
 class BridgeBus final : public DeviceBus {

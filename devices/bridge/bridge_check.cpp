@@ -27,35 +27,40 @@ class BridgeTest {
     const bool woke = wakes();
     const auto stands_still_s = silence_s && woke ? time_to_stop(Host::hung) : std::nullopt;
     wakes();
-    if (gone_) return Error{opened_.info.path + ": the line ended during the test; run the test again"};
-    const std::string start = opened_.info.path + ": ";
+    const std::string& path = opened_.info.path;
+    const std::string stopped = path + ": the device did not report within 100 ms that its watchdog stopped it after ";
+    const std::string advice = " (status bit 2); do not touch the device before this works";
+    if (gone_) return Error{path + ": the line ended during the test; run the test again"};
     if (round_trips_s_.empty()) {
-      return Error{start +
-                   "the device confirms no frame of the host; bytes 22 and 23 must be the low half of its sequence"};
+      return Error{path +
+                   ": the device confirms no frame of the host; bytes 22 and 23 must be the low half of its sequence"};
     }
-    if (!silence_s) return Error{start + no_stop("after the last frame")};
-    if (!woke)
-      return Error{start + "the device stays stopped after valid frames return; clear status bit 2 when they return"};
-    if (!stands_still_s) return Error{start + no_stop("after the heartbeat stood still")};
-    return text(*silence_s, *stands_still_s);
+    if (!silence_s) return Error{stopped + "the last frame" + advice};
+    if (!woke) {
+      return Error{path + ": the device stays stopped after valid frames return; clear status bit 2 when they return"};
+    }
+    if (!stands_still_s) return Error{stopped + "the heartbeat stood still" + advice};
+    const auto ms = [](double s) { return fixed(1e3 * s, 2) + " ms"; };
+    const double interval_s = part(intervals_s_, 0.5);
+    return path + "\n  samples     " + fixed(interval_s > 0.0 ? 1.0 / interval_s : 0.0, 0) +
+           " a second by the device's clock\n  round trip  median " + ms(part(round_trips_s_, 0.5)) +
+           ", 99th percentile " + ms(part(round_trips_s_, 0.99)) + "\n  position    " + fixed(1e-6 * last_.counts, 3) +
+           " mm\n  force       " +
+           (std::isfinite(last_.measured_N) ? fixed(last_.measured_N, 3) + " N measured" : "not measured") +
+           "\n  drive       " +
+           (driving_ ? "yes, it got a force of 0" : "no, the device never reported that it drives (status bit 1)") +
+           "\n  watchdog    stopped " + ms(*silence_s) + " after the last frame (limit 50 ms, reported with a sample)" +
+           "\n  heartbeat   stopped " + ms(*stands_still_s) + " after it stood still (limit 50 ms)\n";
   }
 
  private:
   // What the host sends: no frames; frames with a constant heartbeat, as when its haptics thread hangs; valid frames.
   enum class Host { silent, hung, alive };
 
-  static std::string no_stop(const std::string& when) {
-    return "the device did not report within 100 ms that its watchdog stopped it " + when +
-           " (status bit 2); do not touch the device before this works";
-  }
-
   void send(Host host) {
     if (host == Host::alive) ++heartbeat_;
-    DeviceCommand command;
-    command.sequence = ++sequence_;
-    command.heartbeat = heartbeat_;
-    command.drive = drive_;
-    const OutReports reports = kBridgeProtocol.encode_command(command);
+    const OutReports reports =
+        kBridgeProtocol.encode_command({.sequence = ++sequence_, .heartbeat = heartbeat_, .drive = drive_});
     opened_.connection->write(reports.bytes[0].data(), reports.sizes[0]);
     last_sent_s_ = steady_now_s();
     sent_at_s_[sequence_ & 0xFFFF] = last_sent_s_;
@@ -64,17 +69,14 @@ class BridgeTest {
   void take(const DeviceReading& reading) {
     driving_ = driving_ || reading.driving;
     stopped_ = reading.stopped;
-    if (frames_++ > 0) intervals_s_.push_back(1e-6 * (reading.time_us - last_.time_us));
-    lowest_nm_ = std::min(lowest_nm_, reading.counts);
-    highest_nm_ = std::max(highest_nm_, reading.counts);
+    intervals_s_.push_back(1e-6 * (reading.time_us - last_.time_us));
     if (reading.confirmed != last_.confirmed && sent_at_s_[reading.confirmed] > 0.0)
       round_trips_s_.push_back(steady_now_s() - sent_at_s_[reading.confirmed]);
     last_ = reading;
   }
 
   // Sends and reads for `span_s`. Returns true if `done` ended it.
-  template <typename Done>
-  bool step_until(double span_s, Host host, Done done) {
+  bool step_until(double span_s, Host host, const auto& done) {
     double next_s = steady_now_s();
     for (const double until_s = next_s + span_s; steady_now_s() < until_s && !gone_;) {
       if (host != Host::silent && steady_now_s() >= next_s) {
@@ -109,24 +111,8 @@ class BridgeTest {
   }
 
   static double part(std::vector<double>& values, double share) {
-    if (values.empty()) return 0.0;
     std::sort(values.begin(), values.end());
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-  }
-
-  std::string text(double silence_s, double stands_still_s) {
-    const auto ms = [](double s) { return fixed(1e3 * s, 2) + " ms"; };
-    const double mean_s = part(intervals_s_, 0.5);
-    return opened_.info.path + "\n  samples     " + fixed(mean_s > 0.0 ? 1.0 / mean_s : 0.0, 0) +
-           " a second by the device's clock, " + ms(part(intervals_s_, 0.01)) + " to " + ms(part(intervals_s_, 0.99)) +
-           " apart\n  round trip  " + "median " + ms(part(round_trips_s_, 0.5)) + ", 99th percentile " +
-           ms(part(round_trips_s_, 0.99)) + "\n  position    " + fixed(1e-6 * last_.counts, 3) + " mm; it moved by " +
-           fixed(1e-6 * (highest_nm_ - lowest_nm_), 3) + " mm in the test\n  force       " +
-           (std::isfinite(last_.measured_N) ? fixed(last_.measured_N, 3) + " N measured" : "not measured") +
-           "\n  drive       " +
-           (driving_ ? "yes, it got a force of 0" : "no, the device never reported that it drives (status bit 1)") +
-           "\n  watchdog    stopped " + ms(silence_s) + " after the last frame (limit 50 ms, reported with a sample)" +
-           "\n  heartbeat   stopped " + ms(stands_still_s) + " after it stood still (limit 50 ms)\n";
   }
 
   OpenedDevice opened_;
@@ -135,8 +121,6 @@ class BridgeTest {
   std::vector<double> sent_at_s_ = std::vector<double>(65536, 0.0);  // indexed by the low half of the sequence
   std::vector<double> intervals_s_, round_trips_s_;
   DeviceReading last_;
-  int frames_ = 0;
-  std::int32_t lowest_nm_ = INT32_MAX, highest_nm_ = INT32_MIN;
   double last_sent_s_ = 0.0;
   bool drive_ = true, driving_ = false, stopped_ = false, gone_ = false;
 };

@@ -38,10 +38,6 @@ int whole_number(const std::string& text, int most) {
   return read.ec == std::errc() && read.ptr == end && value >= 1 && value <= most ? value : 0;
 }
 
-Error wrong(const std::string& text, const std::string& expected) {
-  return Error{"--device bridge:" + text + ": expected " + expected + " (devices/README.md#bridge)"};
-}
-
 // A small send buffer, for about 50 commands, because commands that wait in it are late.
 constexpr int kQueueBytes = 1024;
 // Time that a child program has to end, at the end of its input and again after SIGTERM; that a socket has to close.
@@ -49,8 +45,13 @@ constexpr double kEnd_s = 0.5, kClosed_s = 0.1;
 
 using Opened = Result<std::unique_ptr<ByteStream>>;
 
-Error failure(const std::string& what, int error_number, const std::string& advice) {
-  return Error{what + ": " + std::strerror(error_number) + "; " + advice};
+Error wrong(const std::string& text, const std::string& expected) {
+  return Error{"--device bridge:" + text + ": expected " + expected + " (devices/README.md#bridge)"};
+}
+
+// Of the last system call.
+Error failure(const std::string& what, const std::string& advice) {
+  return Error{what + ": " + std::strerror(errno) + "; " + advice};
 }
 
 // `rest`, here and below: the target without its prefix in kLines.
@@ -70,10 +71,9 @@ Opened open_serial(const std::string& rest) {
   }
   const int line = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (line < 0) {
-    const bool denied = errno == EACCES || errno == EPERM;
-    return failure(path, errno,
-                   denied ? "join the group that owns it (sudo adduser $USER dialout), then log in again"
-                          : "check that the device is plugged in; ls /dev/tty* lists the ports");
+    return failure(path, errno == EACCES || errno == EPERM
+                             ? "join the group that owns it (sudo adduser $USER dialout), then log in again"
+                             : "check that the device is plugged in; ls /dev/tty* lists the ports");
   }
   auto stream = std::make_unique<ByteStream>(line);
   if (flock(line, LOCK_EX | LOCK_NB) != 0) return Error{path + ": in use by another program; close it"};
@@ -82,7 +82,7 @@ Opened open_serial(const std::string& rest) {
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | HUPCL);  // so that closing the line does not reset the board
   cfsetspeed(&settings, static_cast<speed_t>(baud));
-  if (tcsetattr(line, TCSANOW, &settings) != 0) return failure(path, errno, "choose another baud rate");
+  if (tcsetattr(line, TCSANOW, &settings) != 0) return failure(path, "choose another baud rate");
   // If the driver supports it, low latency: it passes bytes on at once instead of every 16 ms.
   serial_struct serial{};
   if (ioctl(line, TIOCGSERIAL, &serial) == 0) {
@@ -93,16 +93,20 @@ Opened open_serial(const std::string& rest) {
   return Opened(std::move(stream));
 }
 
-Status connect_within(int socket, const sockaddr* address, socklen_t size) {
-  if (connect(socket, address, size) == 0) return {};
-  if (errno != EINPROGRESS) return Error{std::strerror(errno)};
-  pollfd ready{socket, POLLOUT, 0};
-  int error_number = ETIMEDOUT;
-  if (poll(&ready, 1, ByteStream::kConnect_ms) == 1) {
-    socklen_t length = sizeof error_number;
-    getsockopt(socket, SOL_SOCKET, SO_ERROR, &error_number, &length);
+// A socket that is connected to `address`.
+Opened connected(const std::string& name, const sockaddr* address, socklen_t size) {
+  const int socket = ::socket(address->sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (socket < 0) return failure(name, "close other programs");
+  auto stream = std::make_unique<ByteStream>(socket);
+  int problem = connect(socket, address, size) == 0 ? 0 : errno;
+  if (problem == EINPROGRESS) {
+    problem = ETIMEDOUT;
+    pollfd ready{socket, POLLOUT, 0};
+    socklen_t length = sizeof problem;
+    if (poll(&ready, 1, ByteStream::kConnect_ms) == 1) getsockopt(socket, SOL_SOCKET, SO_ERROR, &problem, &length);
   }
-  return error_number == 0 ? Status() : Error{std::strerror(error_number)};
+  if (problem == 0) return Opened(std::move(stream));
+  return Error{name + ": " + std::strerror(problem) + "; start the device's program first"};
 }
 
 Opened open_unix(const std::string& path) {
@@ -112,12 +116,7 @@ Opened open_unix(const std::string& path) {
   if (path.empty() || path.size() > most)
     return wrong("unix:" + path, "unix:PATH, the path of a socket of 1 to " + std::to_string(most) + " bytes");
   std::copy(path.begin(), path.end(), address.sun_path);
-  const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return failure(path, errno, "close other programs");
-  auto stream = std::make_unique<ByteStream>(descriptor);
-  const Status status = connect_within(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address);
-  if (!status) return Error{path + ": " + status.error().message + "; start the device's program first"};
-  return Opened(std::move(stream));
+  return connected(path, reinterpret_cast<const sockaddr*>(&address), sizeof address);
 }
 
 bool is_loopback(const sockaddr* address) {
@@ -138,25 +137,18 @@ Opened open_tcp(const std::string& name, bool remote) {
   const int looked_up = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
   if (looked_up != 0) return Error{name + ": " + gai_strerror(looked_up) + "; check the host's name"};
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, freeaddrinfo);
-  std::string problem = "no address";
-  for (const addrinfo* one = list; one != nullptr; one = one->ai_next) {
+  Opened stream = Error{name + ": has no address; check the host's name"};
+  for (const addrinfo* one = list; one != nullptr && !stream; one = one->ai_next) {
     if (!remote && !is_loopback(one->ai_addr)) {
       return Error{name +
                    ": is another computer, so others on the network could move the device; use an SSH tunnel to "
                    "127.0.0.1, or allow it with --bridge-remote"};
     }
-    const int descriptor = socket(one->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (descriptor < 0) continue;
-    auto stream = std::make_unique<ByteStream>(descriptor);
-    const Status status = connect_within(descriptor, one->ai_addr, one->ai_addrlen);
-    if (status) {
-      const int on = 1;
-      setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-      return Opened(std::move(stream));
-    }
-    problem = status.error().message;
+    stream = connected(name, one->ai_addr, one->ai_addrlen);
   }
-  return Error{name + ": " + problem + "; start the device's program first"};
+  const int on = 1;
+  if (stream) setsockopt((*stream)->descriptor(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  return stream;
 }
 
 // Runs in the child after `fork`, where only async-signal-safe calls are allowed.
@@ -180,14 +172,13 @@ Opened open_tcp(const std::string& name, bool remote) {
 Opened open_command(const std::string& command) {
   if (command.find_first_not_of(' ') == std::string::npos) return wrong("exec:" + command, "a program, exec:COMMAND");
   int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    return failure(command, errno, "close other programs");
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return failure(command, "close other programs");
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child == 0) run_child(ends[1], command.c_str(), parent);
   ::close(ends[1]);
   auto stream = std::make_unique<ByteStream>(ends[0], std::max(0, child));
-  if (child < 0) return failure(command, errno, "close other programs");
+  if (child < 0) return failure(command, "close other programs");
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
   return Opened(std::move(stream));
 }

@@ -37,7 +37,7 @@ class Firmware {
     condition_ = board_.condition();
     uint8_t byte = 0;
     while (board_.receive(byte)) {
-      if (finder_.add(byte)) obey(finder_.frame());
+      if (finder_.add(byte) == Found::frame) obey(finder_.frame());
     }
     if (timed_out(board_.now_us())) stop();
     if (faulty()) push(0, false);

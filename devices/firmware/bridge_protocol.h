@@ -91,48 +91,38 @@ inline bool decode(const uint8_t* frame, FromHost& out) {
   return (out.flags & ~kDrive) == 0 && frame[15] == 0;
 }
 
+// `skipped`: bytes that belong to no frame.
+enum class Found : uint8_t { nothing, frame, other_version, skipped };
+
 // Finds the frames of one kind in a byte stream. A frame begins with magic bytes, version and kind and ends with its
 // checksum. After a false beginning the search continues at its second byte. Noise and a bit error in the version are
 // no other version, because their checksum is wrong.
 template <unsigned kBytes, uint8_t kKind>
 class FrameFinder {
  public:
-  // True: `frame` is complete, until the next call.
-  bool add(uint8_t byte) {
+  Found add(uint8_t byte) {
     bytes_[count_++] = byte;
-    while (count_ > 0) {
-      if (!may_be_frame()) {
-        drop_first();
-      } else if (count_ < kBytes) {
-        return false;
-      } else if (wire::crc32(bytes_, kBytes - 4) == wire::read32(bytes_ + kBytes - 4)) {
-        count_ = 0;
-        if (bytes_[2] == kVersion) return true;
-        other_version_ = bytes_[2];
-      } else {
-        drop_first();
-      }
+    Found found = Found::nothing;
+    while (count_ > 0 && !may_be_frame()) {
+      found = Found::skipped;
+      --count_;
+      for (unsigned i = 0; i < count_; ++i) bytes_[i] = bytes_[i + 1];
     }
-    return false;
+    if (count_ < kBytes) return found;
+    count_ = 0;
+    return bytes_[2] == kVersion ? Found::frame : Found::other_version;
   }
+  // The frame that `add` found, until its next call.
   const uint8_t* frame() const { return bytes_; }
-  uint32_t skipped() const { return skipped_; }             // number of bytes outside of frames, wraps
-  uint8_t other_version() const { return other_version_; }  // last other version of a whole frame; 0: none
 
  private:
   bool may_be_frame() const {
-    return bytes_[0] == 0x50 && (count_ < 2 || bytes_[1] == 0x42) && (count_ < 4 || bytes_[3] == kKind);
-  }
-  void drop_first() {
-    ++skipped_;
-    --count_;
-    for (unsigned i = 0; i < count_; ++i) bytes_[i] = bytes_[i + 1];
+    return bytes_[0] == 0x50 && (count_ < 2 || bytes_[1] == 0x42) && (count_ < 4 || bytes_[3] == kKind) &&
+           (count_ < kBytes || wire::crc32(bytes_, kBytes - 4) == wire::read32(bytes_ + kBytes - 4));
   }
 
   uint8_t bytes_[kBytes] = {};
   unsigned count_ = 0;
-  uint32_t skipped_ = 0;
-  uint8_t other_version_ = 0;
 };
 
 }  // namespace bridge
