@@ -77,13 +77,12 @@ std::vector<DeviceNode> HidapiBus::list() {
   std::vector<DeviceNode> all;
   hid_device_info* const first = hid_enumerate(0, 0);
   for (const hid_device_info* entry = first; entry != nullptr; entry = entry->next) {
-    DeviceNode info;
-    info.path = entry->path != nullptr ? entry->path : "";
-    info.product = narrow(entry->product_string);
-    info.vendor_id = entry->vendor_id;
-    info.product_id = entry->product_id;
-    info.usage_page = entry->usage_page;
-    info.usage = entry->usage;
+    const DeviceNode info{entry->path != nullptr ? entry->path : "",
+                          narrow(entry->product_string),
+                          entry->vendor_id,
+                          entry->product_id,
+                          entry->usage_page,
+                          entry->usage};
     // hidapi lists a node once for each usage in its descriptor, one after the other; one with a protocol is preferred.
     if (all.empty() || all.back().path != info.path) {
       all.push_back(info);
@@ -98,8 +97,7 @@ std::vector<DeviceNode> HidapiBus::list() {
 Result<std::unique_ptr<DeviceConnection>> HidapiBus::open(const DeviceNode& info) {
   if (info.path.empty()) return Error{open_error_words(info.product, ENOENT)};
   const int descriptor = ::open(info.path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return Error{open_error_words(info.path, errno)};
-  if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+  if (descriptor < 0 || flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     const int error_number = errno;
     ::close(descriptor);
     return Error{open_error_words(info.path, error_number)};

@@ -1,18 +1,9 @@
 #include "devices/link/device_endpoint.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <thread>
-
-#include "engine/live/pacer.h"
 
 namespace palpate {
-
-// The rate of an untimed device is measured over so many samples, for so long; one that sends none yet is not waited
-// for.
-constexpr std::uint64_t kMeasuredSamples = 20;
-constexpr double kMeasured_s = 0.3, kFirstSample_s = 0.1;
 
 DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration, std::string name) noexcept
     : calibration_(calibration), name_(std::move(name)), monitor_(calibration) {
@@ -100,8 +91,6 @@ OutReports DeviceEndpoint::next(double now_s) noexcept {
        .units = -calibration_.direction * safe_N / calibration_.force_N_per_unit});
 }
 
-void DeviceEndpoint::written(double now_s) noexcept { last_written_s_.store(now_s, std::memory_order_relaxed); }
-
 // After a pause of the haptics thread, skips old samples; `restart` is set if any of them began a new stream.
 bool DeviceEndpoint::read(double, DeviceSample& sample) noexcept {
   bool restart = false;
@@ -155,21 +144,6 @@ DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
   const double round_trip_s = std::max(health.round_trip_s > 0.0 ? health.round_trip_s : 2e-3, health.interval_s);
   health.lag_s = kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - health.interval_s);
   return health;
-}
-
-Status LinkedDevice::open() {
-  if (const Status started = link_.start(); !started || timed()) return started;
-  const double start_s = steady_now_s();
-  std::uint64_t samples = 0;
-  for (double past_s = 0.0; past_s < (samples > 0 ? kMeasured_s : kFirstSample_s) && samples < kMeasuredSamples;
-       past_s = steady_now_s() - start_s) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    samples = sample_count();
-  }
-  const double interval_s = health(steady_now_s()).interval_s;
-  if (!(interval_s > SampleRate::kLongestInterval_s)) return {};
-  close();
-  return too_slow(link_.description(), interval_s);
 }
 
 }  // namespace palpate

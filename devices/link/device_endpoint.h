@@ -1,12 +1,8 @@
 // A device that renders force (HID or bridge). DeviceEndpoint has neither threads nor I/O; LinkedDevice adds them. The
 // reader thread gives it reports, the writer thread fetches commands, the haptics thread reads samples and writes
-// forces. The threads exchange data by a TripleBuffer each way and an SpscRing of samples.
-//
-// A device with an incremental encoder gives neither samples nor force until it is zeroed: bring the tool to its marked
-// rest position (rest_position_m of the calibration), call `start_zeroing` and hold the tool still. `health` has the
-// progress; zeroing_words describes the next step. Zeroing is necessary again after the device was unplugged or
-// restarted, or its encoder jumped or was stuck.
-//
+// forces.
+// A device with an incremental encoder gives neither samples nor force until it is zeroed, as zeroing_words describes,
+// at rest_position_m of the calibration; again after it was unplugged or restarted, or its encoder jumped or was stuck.
 // The writer is a watchdog: when the haptics thread has not written for kHapticsSilent_s, the writer sends force 0. The
 // heartbeat in the frames of the bridge then stops, so that the board's watchdog acts as well.
 #pragma once
@@ -45,22 +41,17 @@ class DeviceEndpoint : public Device, public LinkListener {
   Holder holder() const noexcept override { return Holder::person; }
   ForceLimits limits() const noexcept override;
 
-  // Reader thread, wait-free. `now_s`: steady clock, non-decreasing.
+  // As LinkListener, wait-free.
   void connected(double now_s) noexcept override;
   void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
   void unplugged() noexcept override;
-
-  // Writer thread, wait-free. The reports to write now; empty when none is due.
   OutReports next(double now_s) noexcept override;
-  // Writer thread, wait-free: the reports were written.
-  void written(double now_s) noexcept override;
+  void written(double now_s) noexcept override { last_written_s_.store(now_s, std::memory_order_relaxed); }
 
-  // Haptics thread, wait-free; as Device.
+  // As Device, wait-free.
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override;
   DeviceHealth health(double now_s) noexcept override;
-
-  // Any thread, wait-free.
   void start_zeroing() noexcept override { zeroing_asked_.store(true, std::memory_order_relaxed); }
 
  private:
@@ -70,13 +61,6 @@ class DeviceEndpoint : public Device, public LinkListener {
   };
 
   bool stalled(const MonitorState& state, double now_s) const noexcept;
-
- protected:
-  bool timed() const noexcept { return calibration_.protocol->timed; }
-  // Any thread, wait-free: the number of accepted samples.
-  std::uint64_t sample_count() const noexcept { return accepted_.load(std::memory_order_relaxed); }
-
- private:
   // Reader thread.
   void publish_state() noexcept;
   void publish_sample() noexcept;
@@ -110,8 +94,7 @@ class DeviceEndpoint : public Device, public LinkListener {
 
 class LinkedDevice final : public DeviceEndpoint {
  public:
-  // `bus` outlives this, or is `own_bus`; `opened` has the calibration's protocol, which renders force; `name`: as in
-  // --device.
+  // `bus` outlives this, or is `own_bus`; `opened` has the calibration's protocol; `name`: as in --device.
   LinkedDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened, std::string name = "hid",
                std::unique_ptr<DeviceBus> own_bus = nullptr)
       : DeviceEndpoint(calibration, std::move(name)),
@@ -121,9 +104,8 @@ class LinkedDevice final : public DeviceEndpoint {
   ~LinkedDevice() override { close(); }
 
   bool measures_force() const noexcept override { return measures_force_; }
-  // Errors: a thread cannot be started; an untimed device sends fewer than 100 samples a second (that of a timed one
-  // was measured when it was identified).
-  Status open() override;
+  // Errors: a thread cannot be started.
+  Status open() override { return link_.start(); }
   void close() noexcept override { link_.stop(); }
   std::string note() const override { return link_.description(); }
 

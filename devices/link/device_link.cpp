@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kOpenTries = 6;
 constexpr auto kBetweenTries = std::chrono::milliseconds(100);
-constexpr auto kPause = std::chrono::milliseconds(10);
 // A device that takes no report for this time has stopped by its own watchdog.
 constexpr double kStopTaken_s = 0.05;
 // Real-time priority below the 80 of the haptics thread.
@@ -68,10 +67,9 @@ void DeviceLink::use(std::shared_ptr<DeviceConnection> next) noexcept {
   const int earlier = stop_slot_;
   const bool stops = next != nullptr && protocol_.renders_force && next->descriptor() >= 0;
   stop_slot_ = stops ? register_device_stop(next->descriptor(), protocol_.encode_stop()) : -1;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    connection_.swap(next);
-  }
+  std::unique_lock<std::mutex> lock(mutex_);
+  connection_.swap(next);
+  lock.unlock();
   unregister_device_stop(earlier);  // `next` keeps the earlier connection open until here
 }
 
@@ -126,7 +124,7 @@ void DeviceLink::read_all() noexcept {
 
 void DeviceLink::look_again() noexcept {
   for (double waited_s = 0.0; waited_s < kLookAgain_s; waited_s += 0.01) {
-    std::this_thread::sleep_for(kPause);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
     if (stop_.load(std::memory_order_relaxed)) return;
   }
   Result<OpenedDevice> opened = try_open(bus_, {&protocol_});

@@ -1,8 +1,6 @@
-// A DeviceBus lists devices and opens them. It is USB HID (devices/hid), a byte stream (devices/bridge), or a test
-// double.
-// A DeviceLink runs two threads between an open device and its listener. The reader takes all reports, so that none
-// queue up; the writer sends the newest command and skips older ones. Only they do blocking I/O. A device that was
-// unplugged is searched for and opened again until the link ends.
+// The threads between an open device and its listener: the reader takes all reports, so that none queue up; the writer
+// sends the newest command and skips older ones. Only they do blocking I/O. A device that was unplugged is searched for
+// and opened again until the link ends.
 #pragma once
 
 #include <atomic>
@@ -31,12 +29,12 @@ class DeviceConnection {
   virtual int descriptor() const noexcept { return -1; }
 };
 
+// USB HID (devices/hid), a byte stream (devices/bridge), or a test double. Slow side.
 class DeviceBus {
  public:
   virtual ~DeviceBus() = default;
-  // Slow side. One entry per node.
   virtual std::vector<DeviceNode> list() = 0;
-  // Slow side. Errors: the node cannot be opened; with the reason and what to do.
+  // Errors: the node cannot be opened; with the reason and what to do.
   virtual Result<std::unique_ptr<DeviceConnection>> open(const DeviceNode& node) = 0;
 };
 
@@ -80,8 +78,7 @@ class DeviceLink {
   Status start();
   // Slow side, blocking: ends the writer, sends the stop report, which removes the force, and closes the connection.
   void stop() noexcept;
-
-  // Slow side: protocol, product, node and what it was tested on, e.g. "OpenFFBoard, one axis: FFBoard, /dev/hidraw7".
+  // Protocol, product, node and what it was tested on, e.g. "OpenFFBoard, one axis: FFBoard, /dev/hidraw7".
   std::string description() const;
 
  private:

@@ -46,9 +46,7 @@ struct MonitorState {
 
 class StreamMonitor {
  public:
-  static constexpr double kHold_s = 0.1;
-  static constexpr double kTogether_s = 0.5e-3;
-  static constexpr double kPushing_N = 0.2;
+  static constexpr double kHold_s = 0.1, kTogether_s = 0.5e-3, kPushing_N = 0.2;
   // Largest acceleration: 50 N of hand and motor together on 50 g. A motion of 5 mm within 1 ms from rest is therefore
   // a fault even where fastest_m_per_s allows it.
   static constexpr double kQuickest_m_per_s2 = 1000.0;
@@ -66,7 +64,7 @@ class StreamMonitor {
 
   explicit StreamMonitor(const DeviceCalibration& calibration) noexcept;
 
-  // Processes a decoded report that arrived at `now_s` (non-decreasing). `force_N`: the commanded force.
+  // Takes a decoded report that arrived at `now_s` (non-decreasing). `force_N`: the commanded force.
   void update(ReportVerdict verdict, const DeviceReading& reading, double now_s, double force_N) noexcept;
   // The device was unplugged; the next report begins a new stream.
   void unplugged() noexcept;

@@ -16,25 +16,19 @@
 namespace palpate {
 namespace {
 
-std::vector<const DeviceProtocol*> protocols_that(bool render_force) {
-  std::vector<const DeviceProtocol*> protocols;
-  for (const DeviceProtocol* protocol : kHidProtocols)
-    if (protocol->renders_force == render_force) protocols.push_back(protocol);
-  return protocols;
-}
-
-DeviceBus& bus_of(const DeviceRequest& request) { return request.bus != nullptr ? *request.bus : system_hid_bus(); }
-
 // Opens the first HID device that renders forces, or does not, and makes a `T` of it with its calibration. Null: none
 // is plugged in.
 template <typename T, typename Made = T>
 Result<std::unique_ptr<Made>> make_hid_device(const DeviceRequest& request, bool renders_force) {
-  Result<OpenedDevice> opened = open_first(bus_of(request), protocols_that(renders_force));
+  DeviceBus& bus = request.bus != nullptr ? *request.bus : system_hid_bus();
+  std::vector<const DeviceProtocol*> protocols(kHidProtocols.begin(), kHidProtocols.end());
+  std::erase_if(protocols, [&](const DeviceProtocol* one) { return one->renders_force != renders_force; });
+  Result<OpenedDevice> opened = open_first(bus, protocols);
   if (!opened) return opened.error();
   if (opened->connection == nullptr) return std::unique_ptr<Made>();
   const Result<DeviceCalibration> calibration = read_calibration(request.calibrations, *opened->protocol);
   if (!calibration) return calibration.error();
-  return std::unique_ptr<Made>(std::make_unique<T>(bus_of(request), *calibration, std::move(*opened)));
+  return std::unique_ptr<Made>(std::make_unique<T>(bus, *calibration, std::move(*opened)));
 }
 
 MadeDevice make_hid(const std::string&, const DeviceRequest& request) {

@@ -41,10 +41,9 @@ const std::vector<DeviceEntry>& device_entries();
 // second when one cannot.
 std::vector<DeviceDescription> list_devices(const DeviceRequest& request = {});
 
-// Makes and opens the device of that name: auto, hand, mouse, hid, replay:FILE, bridge:TARGET.
-// "auto" is the first haptic HID device that can be opened. Without one it is an AutoDevice, and its `note` has the
-// reason. Errors: an unknown name (lists the known ones), a recording that cannot be read, a device that cannot be
-// opened.
+// Makes and opens the device of that name. "auto" is the first haptic HID device that can be opened. Without one it is
+// an AutoDevice, and its `note` has the reason. Errors: an unknown name (lists the known ones), a recording that cannot
+// be read, a device that cannot be opened.
 MadeDevice open_device(const std::string& name, const DeviceRequest& request = {},
                        const std::vector<DeviceEntry>& entries = device_entries());
 

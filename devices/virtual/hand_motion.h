@@ -4,9 +4,8 @@
 //   aim(u) = a + (b - a) (10 u^3 - 15 u^4 + 6 u^5),  u in 0..1,
 // plus a tremor of 8 to 12 Hz. The hand is a mass that a spring and a damper couple to the target:
 //   m a = k (aim - x) + c (d aim/dt - v) - F
-// The hand thus yields to the force F, and position, velocity and acceleration are consistent. For a press of F newtons
-// the target is the depth at which the block holds F, plus F / k. A derived class knows that depth from the material or
-// estimates it from the force.
+// For a press of F newtons the target is the depth at which the block holds F, plus F / k. A derived class knows that
+// depth from the material or estimates it from the force.
 // Deterministic: the same seed and forces give the same motion.
 // Thread guarantee: one thread at a time; `move` and `feel` are wait-free and allocate nothing.
 #pragma once

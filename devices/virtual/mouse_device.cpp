@@ -17,8 +17,6 @@ void MouseDevice::set_target(double position_m, double now_s) noexcept {
   last_input_s_.store(now_s, std::memory_order_relaxed);
 }
 
-void MouseDevice::nudge(double by_m, double now_s) noexcept { set_target(target_m() + by_m, now_s); }
-
 // A tick between the two stores sees the old velocity with the new limit. It is on the other side and stops the target.
 void MouseDevice::drive(double velocity_m_per_s, double limit_m, double now_s) noexcept {
   if (!std::isfinite(velocity_m_per_s) || !std::isfinite(limit_m)) return;

@@ -2,8 +2,7 @@
 // coupled to the low-pass filtered target by a spring and a damper:
 //   m a = k (y - x) + c (dy/dt - v) - F,   dy/dt = (y0 - y) / tau
 // The rendered force F therefore pushes the tool back, and a jump of the mouse is no jump of the tool. While a key is
-// held, every tick moves the target at the velocity of `drive`, so that the motion does not depend on the frame rate of
-// the window.
+// held, every tick moves the target, so that the motion does not depend on the frame rate of the window.
 #pragma once
 
 #include <atomic>
@@ -23,10 +22,9 @@ class MouseDevice : public SimulatedDevice, public ToolInput {
 
   ToolInput* tool_input() noexcept override { return this; }
 
-  // Any thread, wait-free. `now_s`: steady clock. A target that is not finite is ignored.
+  // As ToolInput.
   void set_target(double position_m, double now_s) noexcept override;
-  // The window's thread only, wait-free: a relative motion, by a wheel or a key.
-  void nudge(double by_m, double now_s) noexcept override;
+  void nudge(double by_m, double now_s) noexcept override { set_target(target_m() + by_m, now_s); }
   void drive(double velocity_m_per_s, double limit_m, double now_s) noexcept override;
   void release() noexcept override;
   bool hand_is_exploring() const noexcept override { return false; }

@@ -49,12 +49,8 @@ void ReplayDevice::go_to(double at_s) noexcept {
 void ReplayDevice::go_by(int rows) noexcept {
   const auto last = static_cast<long>(recording_.rows.size()) - 1;
   const long row = std::clamp(static_cast<long>(next_) - 1 + rows, 0L, last);
-  const double at_s = time_of(static_cast<std::size_t>(row));
-  if (rows < 0) {
-    go_to(at_s);
-  } else {
-    playhead_s_ = at_s;
-  }
+  playhead_s_ = time_of(static_cast<std::size_t>(row));
+  if (rows < 0) go_to(playhead_s_);
 }
 
 void ReplayDevice::move_playhead(double now_s) noexcept {

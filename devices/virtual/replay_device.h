@@ -14,8 +14,7 @@
 
 namespace palpate {
 
-inline constexpr double kSlowestReplay = 0.05;
-inline constexpr double kFastestReplay = 10.0;
+inline constexpr double kSlowestReplay = 0.05, kFastestReplay = 10.0;
 
 class ReplayDevice final : public Device, public ReplayControl {
  public:
@@ -37,8 +36,8 @@ class ReplayDevice final : public Device, public ReplayControl {
   }
   ReplayControl* replay() noexcept override { return this; }
 
-  // Any thread, wait-free. `speed`: relative to the recording's pace, clamped to kSlowestReplay .. kFastestReplay;
-  // `at_s`: from the beginning of the recording, clamped to its duration. Values that are not finite are ignored.
+  // As ReplayControl, any thread. `speed`: clamped to kSlowestReplay .. kFastestReplay. Values that are not finite are
+  // ignored.
   void pause(bool paused) noexcept override { paused_.store(paused, std::memory_order_relaxed); }
   void set_speed(double speed) noexcept override;
   void seek(double at_s) noexcept override;
@@ -47,7 +46,6 @@ class ReplayDevice final : public Device, public ReplayControl {
   double speed() const noexcept override { return speed_.load(std::memory_order_relaxed); }
   double playhead_s() const noexcept override { return shown_s_.load(std::memory_order_relaxed); }
   double duration_s() const noexcept override { return time_of(recording_.rows.size() - 1); }
-  // Any thread, wait-free; ignored when not finite.
   void move_surface(double offset_m) noexcept override;
   double surface_offset_m() const noexcept override { return surface_offset_m_.load(std::memory_order_relaxed); }
   const Recording& recording() const noexcept override { return recording_; }
