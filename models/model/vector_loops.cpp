@@ -234,28 +234,13 @@ HWY_EXPORT(get_target);
 KernelLoops kernel_loops(KernelKind kind, int dimension) { return HWY_DYNAMIC_DISPATCH(get_kernel)(kind, dimension); }
 NearestLoops nearest_loops(int dimension) { return HWY_DYNAMIC_DISPATCH(get_nearest)(dimension); }
 
-std::vector<std::string> target_names() {
-  std::vector<std::string> names;
-  const std::string chosen = target_name();
-  hwy::SetSupportedTargetsForTest(0);
-  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) names.emplace_back(hwy::TargetName(target));
-  choose_target(chosen);
-  return names;
-}
-
 std::string target_name() { return hwy::TargetName(HWY_DYNAMIC_DISPATCH(get_target)()); }
 
-bool choose_target(const std::string& name) {
-  hwy::SetSupportedTargetsForTest(0);
-  bool found = name.empty();
-  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    if (!found && name == hwy::TargetName(target)) {
-      hwy::SetSupportedTargetsForTest(target);
-      found = true;
-    }
-  }
+std::vector<std::int64_t> all_targets() { return hwy::SupportedAndGeneratedTargets(); }
+
+void use_target(std::int64_t target) {
+  hwy::SetSupportedTargetsForTest(target);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return found;
 }
 
 }  // namespace palpate::simd

@@ -84,13 +84,14 @@ struct NearestLoops {
 };
 // For dimensions 1 to 8.
 NearestLoops nearest_loops(int dimension);
+
 // ---- instruction sets ----
 
-// The names of the instruction sets of this processor, best first, and the one in use. choose_target selects one of
-// them, or the best for "", for objects built afterwards; false for an unknown name. For tests and benchmarks only,
-// and not while other threads build evaluators.
-std::vector<std::string> target_names();
+// The name of the instruction set in use.
 std::string target_name();
-bool choose_target(const std::string& name);
+// For tests, while no other thread builds evaluators: the instruction sets of this processor, best first; uses one of
+// them, or the best for 0, for objects built afterwards.
+std::vector<std::int64_t> all_targets();
+void use_target(std::int64_t target);
 
 }  // namespace palpate::simd

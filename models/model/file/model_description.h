@@ -44,7 +44,7 @@ void describe_drive(auto& file, DriveCurve& curve) {
 }
 
 void describe_feature(auto& file, FeatureSpec& spec) {
-  file.kind(spec.kind);
+  file.choice("kind", spec.kind, kFeatureKinds);
   if (has_time(spec.kind)) file.number("relaxation_time_s", spec.relaxation_time_s, kDivisor);
   if (spec.kind == FeatureKind::depth) describe_unless_0(file, "surface_position_m", spec.surface_position_m);
   if (is_branch(spec.kind)) describe_unless_0(file, "slowing", spec.slowing, kSlowing);
@@ -153,7 +153,7 @@ void describe_rest(auto& file, ModelData& data) {
 
 // The members of a correction by radial basis functions.
 void describe_rbf(auto& file, RbfFunction& function, Eigen::Index dimension) {
-  if (!file.choice("kernel", function.kernel, kernel_names())) return;
+  if (!file.choice("kernel", function.kernel, kKernels)) return;
   const int tail = tail_size(tail_degree(function.kernel), static_cast<int>(dimension));
   file.numbers("tail", function.tail, tail, "coefficients");
   file.points("centres", function.centres, dimension);

@@ -28,17 +28,6 @@ constexpr int kModelNesting = 16;  // limit of lists and objects inside each oth
 constexpr const char* kFitAgain = "; fit the model again";
 constexpr const char* kDamaged = "; the file is damaged: copy it again or fit the model again";
 
-// What is wrong with the name of a model or a method, empty if nothing. The name is the header of a column of a CSV
-// file, so it must not contain characters that separate columns.
-std::string name_fault(const std::string& name) {
-  if (name.empty()) return "an empty text";
-  if (name.size() > kModelNameBytes) return std::to_string(name.size()) + " bytes";
-  const bool plain = std::none_of(name.begin(), name.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"';
-  });
-  return plain ? "" : "a control character, comma or quote";
-}
-
 // Reads untrusted text: every value is checked.
 class ModelReader {
  public:
@@ -60,14 +49,16 @@ class ModelReader {
   // The members of the object that is being read. `has`: whether there is such a member.
   bool has(const char* key, bool) { return fields_.optional_member(at_, key).value != nullptr; }
   void text(const char* key, std::string& value) { value = fields_.text(at_, key); }
+  // The name of a model or a method: it is the header of a column of a CSV file.
   void name(const char* key, std::string& value) {
     text(key, value);
-    const std::string fault = name_fault(value);
-    if (fault.empty()) return;
-    fields_.complain(std::string("/") + key, "found " + fault + ", expected 1 to " + std::to_string(kModelNameBytes) +
+    const bool plain = std::none_of(value.begin(), value.end(), [](char c) {
+      return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"';
+    });
+    if (plain && !value.empty() && value.size() <= kModelNameBytes) return;
+    fields_.complain(std::string("/") + key, found(value) + ", expected 1 to " + std::to_string(kModelNameBytes) +
                                                  " bytes without control characters, commas and quotes");
   }
-  void flag(const char* key, bool& value) { value = fields_.boolean(at_, key); }
   void count(const char* key, std::uint64_t& value) { value = fields_.count(at_, key); }
   void number(const char* key, double& value, NumberRange range = {}) { value = fields_.number(at_, key, range); }
   template <std::size_t n>
@@ -104,18 +95,14 @@ class ModelReader {
     }
   }
 
-  // `names`: those of the enumerators, in their order.
+  // `facts`: those of the enumerators, in their order.
   template <typename Enum>
-  bool choice(const char* key, Enum& value, const std::vector<std::string>& names) {
+  bool choice(const char* key, Enum& value, const auto& facts) {
+    std::vector<std::string> names;
+    for (const auto& one : facts) names.emplace_back(one.name);
     const auto known = fields_.choice(fields_.member(at_, key, "a text"), names);
     if (known) value = static_cast<Enum>(*known);
     return known.has_value();
-  }
-
-  void kind(FeatureKind& value) {
-    std::vector<std::string> names;
-    for (const FeatureKindFacts& one : kFeatureKinds) names.emplace_back(one.name);
-    choice("kind", value, names);
   }
 
   void object(const char* key, const char* expected, const auto& body) {
@@ -240,7 +227,6 @@ class ModelWriter {
   bool has(const char*, bool there) { return there; }
   void text(const char* key, const std::string& value) { member(key) = value; }
   void name(const char* key, const std::string& value) { member(key) = value; }
-  void flag(const char* key, bool value) { member(key) = value; }
   void count(const char* key, std::uint64_t value) { member(key) = value; }
   void number(const char* key, double value, NumberRange = {}) { member(key) = value; }
   void list(const char* key, const auto& values, NumberRange = {}) { member(key) = values; }
@@ -252,12 +238,10 @@ class ModelWriter {
     for (const auto& point : values.colwise()) list.push_back(Document::array_t(point.begin(), point.end()));
   }
   void names(const char* key, const std::vector<std::string>& values) { member(key) = values; }
-  template <typename Enum>
-  bool choice(const char* key, Enum value, const std::vector<std::string>& names) {
-    member(key) = names[static_cast<std::size_t>(value)];
+  bool choice(const char* key, auto value, const auto& facts) {
+    member(key) = facts[static_cast<std::size_t>(value)].name;
     return true;
   }
-  void kind(FeatureKind value) { member("kind") = facts_of(value).name; }
 
   void object(const char* key, const char*, const auto& body) { inside(member(key), body); }
   void each(const char* key, std::size_t count, std::size_t, const auto& body) {
@@ -270,13 +254,10 @@ class ModelWriter {
       RbfFunction function = *rbf;
       describe_rbf(*this, function, dimension);
     } else if (const VoxelGrid* grid = grid_of(value)) {
-      object("grid", "", [&] {
-        member("nodes") = grid->nodes;
-        member("values_N") = grid->values_N;
-      });
+      member("grid") = {{"nodes", grid->nodes}, {"values_N", grid->values_N}};
     } else {
       if (value) std::abort();  // a kind without members: a mistake of the program
-      flag("trend_alone", true);
+      member("trend_alone") = true;
     }
   }
 
@@ -294,9 +275,6 @@ class ModelWriter {
   Document* at_ = &document_;  // the object that is being written
 };
 
-// File name without its folders.
-std::string stem_of(const std::string& name) { return name.substr(name.find_last_of("/\\") + 1); }
-
 }  // namespace
 
 Result<ModelData> read_model_text(std::string_view text, const std::string& path) {
@@ -311,8 +289,9 @@ Result<ModelData> read_model_text(std::string_view text, const std::string& path
 Result<std::string> write_model_text(const ModelData& data) {
   if (const Status status = check_forces(data); !status) return status.error();
   ModelData written = data;
-  for (std::string& name : written.provenance.recordings) name = stem_of(name);
-  for (RecordingOffset& surface : written.provenance.offsets) surface.name = stem_of(surface.name);
+  const auto without_folders = [](std::string& name) { name.erase(0, name.find_last_of("/\\") + 1); };
+  for (std::string& name : written.provenance.recordings) without_folders(name);
+  for (RecordingOffset& surface : written.provenance.offsets) without_folders(surface.name);
   std::string text = ModelWriter().write(written);
   // What cannot be read is not written.
   if (const auto back = read_model_text(text, "its text"); !back) return back.error();

@@ -79,10 +79,10 @@ DomainGuard guard_of(const Eigen::MatrixXd& points, double radius) {
 // Whether a point in the leaf of x is within the inner radius.
 bool is_near(const DomainGuard& guard, const double* x) { return guard.squared_distance(x, guard.leaf(x)) == 0.0; }
 
-class NearestPointsOnTarget : public testing::TestWithParam<std::string> {
+class NearestPointsOnTarget : public testing::TestWithParam<std::int64_t> {
  protected:
-  void SetUp() override { ASSERT_TRUE(simd::choose_target(GetParam())); }
-  void TearDown() override { simd::choose_target(""); }
+  void SetUp() override { simd::use_target(GetParam()); }
+  void TearDown() override { simd::use_target(0); }
 };
 
 TEST_P(NearestPointsOnTarget, TheDistanceIsThatOfABruteForceSearch) {
@@ -148,8 +148,12 @@ TEST_P(NearestPointsOnTarget, NothingIsNearFarAwayOrToWhatIsNoNumber) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, NearestPointsOnTarget, testing::ValuesIn(simd::target_names()),
-                         [](const auto& instance) { return instance.param; });
+INSTANTIATE_TEST_SUITE_P(All, NearestPointsOnTarget, testing::ValuesIn(simd::all_targets()), [](const auto& instance) {
+  simd::use_target(instance.param);
+  std::string name = simd::target_name();
+  simd::use_target(0);
+  return name;
+});
 
 }  // namespace
 }  // namespace palpate

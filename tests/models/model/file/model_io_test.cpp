@@ -150,9 +150,9 @@ TEST(ModelIo, WhatCannotBeReadIsNotWritten) {
     return status ? "" : status.error().message;
   };
   EXPECT_TRUE(test::has_parts(message([](ModelData& data) { data.name = "a,b"; }),
-                              {"m.json", "control character", "1 to 100 bytes"}));
+                              {"m.json", "found \"a,b\"", "1 to 100 bytes"}));
   EXPECT_TRUE(
-      test::has_parts(message([](ModelData& data) { data.method = ""; }), {"m.json", "empty", "1 to 100 bytes"}));
+      test::has_parts(message([](ModelData& data) { data.method = ""; }), {"m.json", "found \"\"", "1 to 100 bytes"}));
   EXPECT_TRUE(test::has_parts(message([](ModelData& data) {
                                 test::change_rbf(data, [](RbfFunction& f) {
                                   f.weights(3) = std::numeric_limits<double>::quiet_NaN();

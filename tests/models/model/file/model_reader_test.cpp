@@ -89,10 +89,10 @@ TEST(ModelReader, RefusesWhatIsNoModelOfThisVersion) {
 TEST(ModelReader, RefusesWrongNamesAndFeatures) {
   expect_all(small_text(),
              {
-                 {"\"small\"", "\"\"", {"m.json:4:11:", "name", "empty", "1 to 100 bytes", "; "}},
-                 {"\"small\"", "\"a,b\"", {"m.json:4:11:", "name", "control character", "1 to 100 bytes", "; "}},
+                 {"\"small\"", "\"\"", {"m.json:4:11:", "name", "found \"\"", "1 to 100 bytes", "; "}},
+                 {"\"small\"", "\"a,b\"", {"m.json:4:11:", "name", "found \"a,b\"", "1 to 100 bytes", "; "}},
                  {"\"small\"", "7", {"m.json:4:11:", "name", "found 7", "; "}},
-                 {"\"greedy\"", "\"\"", {"m.json:5:13:", "method", "empty", "1 to 100 bytes", "; "}},
+                 {"\"greedy\"", "\"\"", {"m.json:5:13:", "method", "found \"\"", "1 to 100 bytes", "; "}},
                  {"\"kind\": \"velocity\"",
                   "\"kind\": \"speed\"",
                   {"m.json:8:14:", "features[1].kind", "\"speed\"", "depth", "surface_lag", "; "}},
