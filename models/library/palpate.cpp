@@ -1,5 +1,4 @@
-// The C interface of models/library/palpate/palpate.h: handles around a fitted model, a
-// haptics tick with that one model, and the stages before an actuator. No exception leaves a function.
+// The C interface of models/library/palpate/palpate.h. No exception leaves a function.
 #include "models/library/palpate/palpate.h"
 
 #include <algorithm>
@@ -8,10 +7,12 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/json/json_fields.h"
 #include "engine/live/force_guard.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/live_tick.h"
@@ -78,27 +79,22 @@ struct OwnedRecording : palpate_recording {
   std::vector<std::vector<double>> columns;
 };
 
-// A number from the caller, and whether it may be 0 or infinite.
-struct GivenNumber {
-  const char* name;
-  double value;
-  bool zero = false, infinite = false;
-};
+constexpr NumberRange kAbove0{0.0, kLargestNumber, true};
 
-Status check_numbers(std::initializer_list<GivenNumber> numbers) {
-  for (const auto& [name, value, zero, infinite] : numbers) {
-    if ((value > 0.0 || (zero && value == 0.0)) && (infinite || std::isfinite(value))) continue;
-    return Error{std::string(name) + ": found " + std::to_string(value) + ", expected a " +
-                 (infinite ? "" : "finite ") + "number " + (zero ? "of 0 or more" : "above 0")};
+Status check_numbers(std::initializer_list<std::tuple<const char*, double, NumberRange>> numbers) {
+  for (const auto& [name, value, range] : numbers) {
+    if (!range.holds(value))
+      return Error{std::string(name) + ": found " + std::to_string(value) + ", expected " + range.words()};
   }
   return {};
 }
 
 Result<SensorSpec> sensor_spec(const palpate_sensor& sensor) {
-  const Status status = check_numbers({{"encoder_step_m", sensor.encoder_step_m, true},
-                                       {"position_noise_m", sensor.position_noise_m, true},
-                                       {"velocity_noise_m_per_s", sensor.velocity_noise_m_per_s, true},
-                                       {"acceleration_noise_m_per_s2", sensor.acceleration_noise_m_per_s2, true}});
+  const Status status =
+      check_numbers({{"encoder_step_m", sensor.encoder_step_m, kNotNegative},
+                     {"position_noise_m", sensor.position_noise_m, kNotNegative},
+                     {"velocity_noise_m_per_s", sensor.velocity_noise_m_per_s, kNotNegative},
+                     {"acceleration_noise_m_per_s2", sensor.acceleration_noise_m_per_s2, kNotNegative}});
   if (!status) return status.error();
   return SensorSpec{sensor.encoder_step_m,
                     sensor.position_noise_m,
@@ -114,13 +110,14 @@ palpate_sensor sensor_from(const SensorSpec& spec) {
 }
 
 Result<ForceLimits> force_limits(const palpate_limits& limits) {
-  const Status status = check_numbers({{"largest_N", limits.largest_N},
-                                       {"fastest_N_per_s", limits.fastest_N_per_s},
-                                       {"ramp_s", limits.ramp_s, true},
-                                       {"continuous_N", limits.continuous_N, false, true},
-                                       {"thermal_time_s", limits.thermal_time_s},
-                                       {"stale_after_s", limits.stale_after_s, false, true},
-                                       {"stop_s", limits.stop_s, true}});
+  constexpr NumberRange kEvenInfinite{0.0, HUGE_VAL, true};
+  const Status status = check_numbers({{"largest_N", limits.largest_N, kAbove0},
+                                       {"fastest_N_per_s", limits.fastest_N_per_s, kAbove0},
+                                       {"ramp_s", limits.ramp_s, kNotNegative},
+                                       {"continuous_N", limits.continuous_N, kEvenInfinite},
+                                       {"thermal_time_s", limits.thermal_time_s, kAbove0},
+                                       {"stale_after_s", limits.stale_after_s, kEvenInfinite},
+                                       {"stop_s", limits.stop_s, kNotNegative}});
   if (!status) return status.error();
   return ForceLimits{limits.largest_N,      limits.fastest_N_per_s, limits.ramp_s, limits.continuous_N,
                      limits.thermal_time_s, limits.stale_after_s,   limits.stop_s};

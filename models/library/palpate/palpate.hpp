@@ -2,15 +2,15 @@
 //
 //   palpate::Model model("block.json");
 //   palpate::Stream stream(model, 30e-6);                  // encoder step in metres
-//   palpate::Limiter limiter({.largest_N = 5.0});          // C++20; or set the field
+//   palpate::Limiter limiter;                              // or of a palpate::Limits
 //   for (;;) push(limiter.render(stream, time_s, position_m, step_s));
 //
 // With palpate::fit linked also
 //   palpate::fit({palpate::Recording("press.csv")}, "method=random centres=40").save("block.json");
 //
-// palpate.h describes the functions, which are inline here and call C, so that a program may use another compiler than the
-// library. Errors: a Failure is thrown; its text has the value found, the value expected and advice. Functions marked
-// noexcept never fail and may run in a haptics loop. Threads may share a Model; all else belongs to one thread at a time.
+// palpate.h describes the functions, which are inline here and call C, so that a program may use another compiler than
+// the library. Errors: a Failure is thrown. Functions marked noexcept never fail and may run in a haptics loop. Threads
+// may share a Model; all else belongs to one thread at a time.
 #ifndef PALPATE_PALPATE_HPP
 #define PALPATE_PALPATE_HPP
 
@@ -137,22 +137,9 @@ class Stream {
   std::unique_ptr<palpate_stream, detail::Free> stream_;
 };
 
-// As in palpate.h, with its defaults.
-struct Limits {
-  double largest_N = defaults().largest_N;
-  double fastest_N_per_s = defaults().fastest_N_per_s;
-  double ramp_s = defaults().ramp_s;
-  double continuous_N = defaults().continuous_N;
-  double thermal_time_s = defaults().thermal_time_s;
-  double stale_after_s = defaults().stale_after_s;
-  double stop_s = defaults().stop_s;
-
- private:
-  static palpate_limits defaults() noexcept {
-    palpate_limits limits;
-    palpate_limits_default(&limits);
-    return limits;
-  }
+// Fields as in palpate.h, initially its defaults.
+struct Limits : palpate_limits {
+  Limits() noexcept : palpate_limits{} { palpate_limits_default(this); }
 };
 
 // The stages before an actuator: stability limit and passivity controller (with `render`), force limiter.
@@ -160,12 +147,9 @@ class Limiter {
  public:
   // Throws: a limit is out of its range.
   explicit Limiter(const Limits& limits = {})
-      : limiter_(detail::checked([&](char* error, std::size_t size) {
-          const palpate_limits plain = {limits.largest_N,    limits.fastest_N_per_s, limits.ramp_s,
-                                        limits.continuous_N, limits.thermal_time_s,  limits.stale_after_s,
-                                        limits.stop_s};
-          return palpate_limiter_new(&plain, error, size);
-        })) {}
+      : limiter_(
+            detail::checked([&](char* error, std::size_t size) { return palpate_limiter_new(&limits, error, size); })) {
+  }
 
   double render(Stream& stream, double time_s, double position_m, double step_s) noexcept {
     return palpate_limiter_render(limiter_.get(), stream.handle(), time_s, position_m, step_s);

@@ -21,6 +21,20 @@ class Error(Exception):
     """
 
 
+class Handle:
+    """An object of the library, freed with its owner."""
+
+    def __init__(self, handle, free):
+        self._handle, self._free = handle, free
+
+    def __del__(self):
+        if getattr(self, "_handle", None):
+            self._free(self._handle)
+
+    def __reduce__(self):
+        raise Error("a palpate.%s cannot be pickled; save the model to a file" % type(self).__name__)
+
+
 class Sensor(ctypes.Structure):
     """The sensor of the tool.
 
@@ -58,12 +72,9 @@ class RecordingStruct(ctypes.Structure):
 
     @classmethod
     def of(cls, columns, name="recording"):
-        """`columns`: arrays of one length by their names, or None. Times and positions, and measured forces where
-        they are asked for, are necessary."""
-        for column in REQUIRED:
-            if column in columns and columns[column] is None:
-                raise Error("%s: found None, expected an array of numbers" % column)
-        arrays = {column: doubles(column, values) for column, values in columns.items() if values is not None}
+        """`columns`: arrays of one length by their names; None where there is no velocity or acceleration."""
+        arrays = {column: doubles(column, values) for column, values in columns.items()
+                  if values is not None or column in REQUIRED}
         size = len(arrays["position_m"])
         for column, array in arrays.items():
             if len(array) != size:
@@ -81,6 +92,7 @@ _ARRAY = ctypes.c_void_p
 _RECORDING = ctypes.POINTER(RecordingStruct)
 _MESSAGE = [ctypes.c_char_p, ctypes.c_size_t]
 Progress = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double, ctypes.c_void_p)
+
 
 class Limits(ctypes.Structure):
     """palpate_limits of palpate.h."""
@@ -157,12 +169,6 @@ def call(name, *arguments):
     return result
 
 
-def checked(name, *arguments):
-    """Calls a function that returns 0, or -1 without a message."""
-    if getattr(library(), name)(*arguments) != 0:
-        raise Error("%s: the arrays do not fit the stream, expected those of one motion" % name)
-
-
 def path_bytes(path):
     """The bytes of a file's name."""
     try:
@@ -173,12 +179,10 @@ def path_bytes(path):
 
 def doubles(name, values):
     """`values` as contiguous doubles in one dimension."""
-    if np.ma.is_masked(values):
-        raise Error("%s: found masked values, expected an array without a mask; leave those samples out, or fill them "
-                    "with NaN" % name)
     array = np.asarray(values)
-    if array.dtype.kind not in "fiu":
-        raise Error("%s: found dtype %s, expected numbers" % (name, array.dtype))
-    if array.ndim != 1:
-        raise Error("%s: found shape %s, expected one dimension" % (name, array.shape))
+    found = ("None" if values is None else "masked values" if np.ma.is_masked(values) else
+             "dtype %s" % array.dtype if array.dtype.kind not in "fiu" else
+             "shape %s" % (array.shape,) if array.ndim != 1 else None)
+    if found:
+        raise Error("%s: found %s, expected numbers in one dimension, without a mask" % (name, found))
     return np.ascontiguousarray(array, dtype=np.float64)

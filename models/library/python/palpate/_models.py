@@ -1,31 +1,25 @@
 """Fitted models: fits, files, batches of samples."""
+from __future__ import annotations
+
 import json
 import os
-from typing import Callable, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import Error, Progress, RecordingStruct, Sensor, as_sensor, call, checked, library, path_bytes
+from ._library import Error, Handle, Progress, RecordingStruct, Sensor, as_sensor, call, library, path_bytes
 from ._recordings import as_recording
 
 
-class Model:
+class Model(Handle):
     """A fitted force model: from `load` or `fit`. Immutable; threads may share it."""
 
     def __init__(self, handle: int):
-        self._handle = handle
-        self._free = library().palpate_model_free
-
-    def __del__(self):
-        if getattr(self, "_handle", None):
-            self._free(self._handle)
+        super().__init__(handle, library().palpate_model_free)
 
     def __repr__(self) -> str:
         return "<palpate.Model %s of %s>" % (self.name, ", ".join(self.feature_names))
-
-    def __reduce__(self):
-        raise Error("a model cannot be pickled; save it to a file")
 
     @property
     def name(self) -> str:
@@ -43,19 +37,19 @@ class Model:
         """The output of ``palpate fit --json`` for a model from `fit`; empty for one from `load`."""
         return json.loads(library().palpate_model_report(self._handle) or b"{}")
 
-    def render(self, time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: Optional[ArrayLike] = None,
-               acceleration_m_per_s2: Optional[ArrayLike] = None,
-               sensor: Union[Sensor, float, None] = None) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def render(self, time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: ArrayLike | None = None,
+               acceleration_m_per_s2: ArrayLike | None = None,
+               sensor: Sensor | float | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The forces along a motion: the tick of the live loop, bit for bit those of ``palpate replay``.
 
         Parameters
         ----------
         time_s, position_m : array_like, shape (n,)
-            Times [s] and positions [m] of the samples, in order. The filters begin at rest.
+            In s and m, in order. The filters begin at rest.
         velocity_m_per_s, acceleration_m_per_s2 : array_like, shape (n,), optional
             Measured velocity and acceleration.
         sensor : Sensor or float, optional
-            A number is the step of an encoder [m]. By default identified from the first 30,000 samples, as ``palpate replay`` does.
+            A number is the step of an encoder [m]. By default identified as ``palpate replay`` does.
 
         Returns
         -------
@@ -67,9 +61,9 @@ class Model:
         """
         return self._replay((time_s, position_m, velocity_m_per_s, acceleration_m_per_s2), sensor)[:2]
 
-    def features(self, time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: Optional[ArrayLike] = None,
-                 acceleration_m_per_s2: Optional[ArrayLike] = None,
-                 sensor: Union[Sensor, float, None] = None) -> NDArray[np.float64]:
+    def features(self, time_s: ArrayLike, position_m: ArrayLike, velocity_m_per_s: ArrayLike | None = None,
+                 acceleration_m_per_s2: ArrayLike | None = None,
+                 sensor: Sensor | float | None = None) -> NDArray[np.float64]:
         """The feature vectors along a motion, out of contact too; SI units. Parameters as for `render`.
 
         Returns an array of shape (n, d), one column for each of `feature_names`.
@@ -82,7 +76,7 @@ class Model:
         _check_times(motion.arrays["time_s"], np.asarray(columns[0]).dtype)
         if sensor is None:
             sensor = Sensor()
-            checked("palpate_sensor_of", motion, sensor)
+            library().palpate_sensor_of(motion, sensor)
         else:  # a channel without a column is not measured
             sensor = as_sensor(sensor)
             sensor = Sensor(sensor.encoder_step_m, sensor.position_noise_m,
@@ -91,17 +85,12 @@ class Model:
         force_N, bound_N = np.empty(motion.size), np.empty(motion.size)
         features = np.empty((motion.size, library().palpate_model_feature_count(self._handle)))
         stream = call("palpate_stream_new_with_sensor", self._handle, sensor)
-        try:
-            checked("palpate_stream_replay", stream, motion, *(a.ctypes.data for a in (force_N, bound_N, features)))
-        finally:
-            library().palpate_stream_free(stream)
+        library().palpate_stream_replay(stream, motion, *(a.ctypes.data for a in (force_N, bound_N, features)))
+        library().palpate_stream_free(stream)
         return force_N, bound_N, features
 
-    def save(self, path: Union[str, os.PathLike], overwrite: bool = False) -> None:
-        """Writes the model file, and replaces an existing one only with `overwrite`.
-
-        Raises `Error` if the file exists, or cannot be written.
-        """
+    def save(self, path: str | os.PathLike, overwrite: bool = False) -> None:
+        """Writes the model file. Raises `Error` if it exists, unless `overwrite`, or cannot be written."""
         call("palpate_model_save", self._handle, path_bytes(path), int(overwrite))
 
 
@@ -115,13 +104,13 @@ def _check_times(time_s, dtype):
                     % (stand, len(time_s)) + ("; %s cannot tell such times apart, use float64" % dtype if coarse else ""))
 
 
-def load(path: Union[str, os.PathLike]) -> Model:
+def load(path: str | os.PathLike) -> Model:
     """Reads a model file. Raises `Error`: no such file, not a model, damaged."""
     return Model(call("palpate_model_load", path_bytes(path)))
 
 
-def fit(recordings: object, method: str = "trend+greedy", centres: Optional[int] = None, *,
-        progress: Optional[Callable[[float], object]] = None, **options: object) -> Model:
+def fit(recordings: object, method: str = "trend+greedy", centres: int | None = None, *,
+        progress: Callable[[float], object] | None = None, **options: object) -> Model:
     """Fits one model to all recordings together: ``palpate fit``, with its options and defaults.
 
     Parameters
@@ -184,7 +173,5 @@ def fit(recordings: object, method: str = "trend+greedy", centres: Optional[int]
     try:
         return Model(call("palpate_fit", (RecordingStruct * len(structs))(*structs), len(structs),
                           " ".join(words).encode(), Progress(report), None))
-    except Error:
-        if failure:
-            raise failure[0] from None
-        raise
+    except Error as error:
+        raise (failure or [error])[0] from None

@@ -1,11 +1,12 @@
 """Recordings as structured arrays, and the error of a model along them."""
+from __future__ import annotations
+
 import os
-from typing import Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, call, checked, doubles, library, path_bytes
+from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, call, doubles, library, path_bytes
 
 # Hoever & Harders (2009).
 _JND_OFFSET_N, _JND_WEBER_FRACTION = 0.065, 0.0633
@@ -31,7 +32,7 @@ class Recording(np.ndarray):
 
 
 def make_recording(time_s: ArrayLike, position_m: ArrayLike, force_N: ArrayLike,
-                   velocity_m_per_s: Optional[ArrayLike] = None, acceleration_m_per_s2: Optional[ArrayLike] = None,
+                   velocity_m_per_s: ArrayLike | None = None, acceleration_m_per_s2: ArrayLike | None = None,
                    name: str = "recording") -> Recording:
     """Joins columns of shape (n,) to a recording: time [s], strictly increasing; position [m], inward; force [N],
     outward; measured velocity and acceleration, if there are any.
@@ -42,7 +43,7 @@ def make_recording(time_s: ArrayLike, position_m: ArrayLike, force_N: ArrayLike,
     return _recording(RecordingStruct.of(given, name))
 
 
-def read_recording(path: Union[str, os.PathLike]) -> Recording:
+def read_recording(path: str | os.PathLike) -> Recording:
     """Reads a recording file (CSV; see the manual for its columns).
 
     Raises `Error` with file, line and column, what was found and what was expected.
@@ -89,17 +90,17 @@ def in_contact(position_m: ArrayLike, force_N: ArrayLike) -> NDArray[np.bool_]:
     """
     recording = RecordingStruct.of({"position_m": position_m, "force_N": force_N})
     contact = np.empty(recording.size, np.bool_)
-    checked("palpate_in_contact", recording, contact.ctypes.data)
+    library().palpate_in_contact(recording, contact.ctypes.data)
     return contact
 
 
-def within_jnd(force_N: ArrayLike, measured_N: ArrayLike, in_contact: Optional[ArrayLike] = None) -> float:
+def within_jnd(force_N: ArrayLike, measured_N: ArrayLike, in_contact: ArrayLike | None = None) -> float:
     """The share of the samples in contact with an error of at most one JND.
 
     Parameters
     ----------
     force_N, measured_N : array_like, shape (n,)
-        Forces of a model, and measured forces.
+        Forces of a model, and measured forces; finite.
     in_contact : array_like of bool, shape (n,), optional
         The samples in contact; `palpate.in_contact` gives those of ``palpate replay``. By default those
         with a force of the model, or with a measured force above the JND at 0 N.
@@ -108,11 +109,6 @@ def within_jnd(force_N: ArrayLike, measured_N: ArrayLike, in_contact: Optional[A
     -------
     float
         0 to 1; NaN without a sample in contact.
-
-    Raises
-    ------
-    Error
-        A force is not finite, or the sizes differ.
     """
     force_N, measured_N = doubles("force_N", force_N), doubles("measured_N", measured_N)
     if force_N.shape != measured_N.shape:

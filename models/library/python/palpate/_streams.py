@@ -1,11 +1,11 @@
 """A loop that closes over a hand: a stream of samples, and the stages before an actuator."""
-from typing import Union
+from __future__ import annotations
 
-from ._library import Error, Limits, Sensor, as_sensor, call, library
+from ._library import Error, Handle, Limits, Sensor, as_sensor, call, library
 from ._models import Model
 
 
-class Stream:
+class Stream(Handle):
     """One tool in one material: palpate_stream of palpate.h. One thread at a time.
 
     Parameters
@@ -16,21 +16,13 @@ class Stream:
         A number is the step of an encoder [m]. By default the sensor of the model's recordings.
     """
 
-    def __init__(self, model: Model, sensor: Union[Sensor, float, None] = None):
+    def __init__(self, model: Model, sensor: Sensor | float | None = None):
         if not isinstance(model, Model):
             raise Error("model: found %s, expected a palpate.Model" % type(model).__name__)
-        if sensor is None:
-            self._handle = call("palpate_stream_new", model._handle, 0.0)
-        else:
-            self._handle = call("palpate_stream_new_with_sensor", model._handle, as_sensor(sensor))
         self._library = library()
-
-    def __del__(self):
-        if getattr(self, "_handle", None) and getattr(self, "_library", None):
-            self._library.palpate_stream_free(self._handle)
-
-    def __reduce__(self):
-        raise Error("a stream cannot be pickled")
+        super().__init__(call("palpate_stream_new", model._handle, 0.0) if sensor is None else
+                         call("palpate_stream_new_with_sensor", model._handle, as_sensor(sensor)),
+                         self._library.palpate_stream_free)
 
     def force(self, time_s: float, position_m: float) -> float:
         """Takes the next sample and returns the force of the material [N]; 0 if the sample is refused (see `accepted`).
@@ -58,7 +50,7 @@ class Stream:
         return self._library.palpate_stream_out_of_domain(self._handle) != 0
 
 
-class Limiter:
+class Limiter(Handle):
     """The stages before an actuator: palpate_limiter of palpate.h. One thread at a time.
 
     Parameters
@@ -79,16 +71,9 @@ class Limiter:
             if name not in names:
                 raise Error("found the limit %r, expected lag_s, %s" % (name, ", ".join(names)))
             setattr(given, name, value)
-        self._handle = call("palpate_limiter_new", given)
         self._library = library()
+        super().__init__(call("palpate_limiter_new", given), self._library.palpate_limiter_free)
         self._library.palpate_limiter_set_lag(self._handle, lag_s)
-
-    def __del__(self):
-        if getattr(self, "_handle", None) and getattr(self, "_library", None):
-            self._library.palpate_limiter_free(self._handle)
-
-    def __reduce__(self):
-        raise Error("a limiter cannot be pickled")
 
     def render(self, stream: Stream, time_s: float, position_m: float, step_s: float) -> float:
         """The force on a hand [N]: takes the next sample into the stream, then applies stability limit, passivity
