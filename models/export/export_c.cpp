@@ -20,7 +20,6 @@ class CText {
   bool single() const { return single_; }
   const std::string& text() const { return text_; }
 
-  // The shortest decimal that reads back as the same number, as a literal of type `real`.
   std::string number(double value) const { return literal(value, single_); }
 
   void add(std::string_view text) { text_ += text; }
@@ -46,13 +45,14 @@ class CText {
   }
 
  private:
-  // A value too small for a float becomes 0, because a literal that underflows is an error of the compiler.
+  // The shortest decimal that reads back as the same number. A value too small for a float becomes 0, because a literal
+  // that underflows is an error of the compiler.
   static std::string literal(double value, bool single) {
     char buffer[40];
     char* const end = buffer + sizeof buffer;
-    std::string text(
-        buffer,
-        (single ? std::to_chars(buffer, end, static_cast<float>(value)) : std::to_chars(buffer, end, value)).ptr);
+    const auto written =
+        single ? std::to_chars(buffer, end, static_cast<float>(value)) : std::to_chars(buffer, end, value);
+    std::string text(buffer, written.ptr);
     if (text.find_first_of(".e") == std::string::npos) text += ".0";
     return single ? text + "F" : text;
   }
@@ -72,10 +72,12 @@ PartRow row_of(double first, double second, const DriveCurve& drive) {
   return row;
 }
 
-void write_parts(CText& out, const std::string& name, const std::vector<PartRow>& rows) {
+// The table `name`, and the text of its functions.
+void write_parts(CText& out, const std::string& name, const std::vector<PartRow>& rows, const char* functions) {
   out.table(name + "[][3 + DRIVE_COEFFICIENTS + DRIVE_KNOTS]",
             Eigen::Map<const Eigen::MatrixXd>(rows.front().data(), std::tuple_size_v<PartRow>,
                                               static_cast<Eigen::Index>(rows.size())));
+  out.add(functions);
 }
 
 // The C expression of a feature. `range`: of its parts among all branches, or all bristles.
@@ -121,23 +123,19 @@ void write_features(CText& out, const std::vector<FeatureSpec>& features) {
             " */\n";
   }
   // Without branches the elastic response alone never holds the surface above the tool.
-  const bool lags = !elastic.empty() && !branches.empty();
-  if (!branches.empty()) out.add("\ntypedef real HELD_N(real surface_m);\n");
-  if (!branches.empty()) out.add(c_source::surface);
+  const bool branched = !branches.empty(), lags = !elastic.empty() && branched;
+  if (branched) out.add(std::string("\ntypedef real HELD_N(real surface_m);\n") + c_source::surface);
   out.add(c_source::state);
   out.add("\n/* ---- features ---- */\n\n");
   out.define("DRIVE_COEFFICIENTS", kDriveCoefficients);
   out.define("DRIVE_KNOTS", kDriveKnots);
   out.define("BRANCHES", branches.size());
   out.define("BRISTLES", bristles.size());
-  if (!branches.empty() || !bristles.empty()) out.add(c_source::curve);
-  if (!branches.empty() || body.find("filtered(") != std::string::npos) out.add(c_source::filter);
-  if (!branches.empty()) write_parts(out, "branch_part", branches);
-  if (!branches.empty()) out.add(c_source::branches);
-  if (lags) write_parts(out, "surface_elastic", elastic);
-  if (lags) out.add(c_source::surface_lag);
-  if (!bristles.empty()) write_parts(out, "bristle_part", bristles);
-  if (!bristles.empty()) out.add(c_source::bristles);
+  if (branched || !bristles.empty()) out.add(c_source::curve);
+  if (branched || body.find("filtered(") != std::string::npos) out.add(c_source::filter);
+  if (branched) write_parts(out, "branch_part", branches, c_source::branches);
+  if (lags) write_parts(out, "surface_elastic", elastic, c_source::surface_lag);
+  if (!bristles.empty()) write_parts(out, "bristle_part", bristles, c_source::bristles);
   out.add(
       "\n/* `first`: nothing came before, and every filter is at rest. */\n"
       "static void update_features(real step_s, int first) {\n  real s;\n"

@@ -73,14 +73,12 @@ T* made(char* error, std::size_t error_size, Work&& work) noexcept {
 // The same for functions that return 0, or -1 after an error. `work` returns a Status.
 template <typename Work>
 int status_of(char* error, std::size_t error_size, Work&& work) noexcept {
-  int done = -1;
-  made<int>(error, error_size, [&]() -> Result<int*> {
+  int done = 0;
+  const auto finished = [&]() -> Result<int*> {
     const Status status = work();
-    if (!status) return status.error();
-    done = 0;
-    return &done;
-  });
-  return done;
+    return status ? Result<int*>(&done) : status.error();
+  };
+  return made<int>(error, error_size, finished) != nullptr ? 0 : -1;
 }
 
 }  // namespace palpate::library

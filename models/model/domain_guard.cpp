@@ -37,6 +37,7 @@ std::vector<Eigen::Index> thinned(const Eigen::MatrixXd& sites, double radius) {
 // The share of a part by which its halves overlap. Of a thousand queries with a near point, 1 to 6 then miss it in
 // their leaf (14 with six features), instead of 28 to 200 without.
 constexpr double kOverlap = 0.1;
+
 std::vector<Eigen::Index> all_of(const Eigen::MatrixXd& points) {
   std::vector<Eigen::Index> all(static_cast<std::size_t>(points.cols()));
   std::iota(all.begin(), all.end(), Eigen::Index{0});
