@@ -11,15 +11,14 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kSlots = 8;
+constexpr int kFree = -1, kReserved = -2;
 
 struct Slot {
-  std::atomic<int> descriptor{-1};
-  std::atomic<bool> taken{false};
+  std::atomic<int> descriptor{kFree};
   OutReports reports;  // fixed while descriptor >= 0
 };
 static_assert(std::atomic<int>::is_always_lock_free);
-std::array<Slot, kSlots> slots;
+std::array<Slot, 8> slots;
 
 // The number of unfinished writes of forces, and whether new ones are refused. Both are sequentially consistent: all
 // threads see their changes in the same order.
@@ -52,8 +51,9 @@ void stop_all_devices() noexcept {
 int register_device_stop(int descriptor, const OutReports& reports) noexcept {
   stop_forces_by(stop_all_devices);
   install_signal_handlers();
-  for (std::size_t i = 0; i < kSlots; ++i) {
-    if (slots[i].taken.exchange(true)) continue;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    int free = kFree;
+    if (!slots[i].descriptor.compare_exchange_strong(free, kReserved)) continue;
     slots[i].reports = reports;
     slots[i].descriptor.store(descriptor, std::memory_order_release);
     return static_cast<int>(i);
@@ -62,10 +62,7 @@ int register_device_stop(int descriptor, const OutReports& reports) noexcept {
 }
 
 void unregister_device_stop(int slot) noexcept {
-  if (slot < 0) return;
-  Slot& one = slots[static_cast<std::size_t>(slot)];
-  one.descriptor.store(-1, std::memory_order_release);
-  one.taken.store(false, std::memory_order_release);
+  if (slot >= 0) slots[static_cast<std::size_t>(slot)].descriptor.store(kFree, std::memory_order_release);
 }
 
 bool begin_force_write() noexcept {

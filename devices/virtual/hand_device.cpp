@@ -5,14 +5,12 @@
 
 namespace palpate {
 
-// The hand's integration is accurate at 50 us (devices/virtual/hand_motion.h).
-constexpr double kSubstep_s = 50e-6;
+constexpr double kSubstep_s = 50e-6;  // see HandMotion::move
 constexpr double kLongestStep_s = 0.02;
 // The stiffness is not estimated from smaller forces.
 constexpr double kLeastForce_N = 0.1;
 constexpr double kLearning_s = 0.15;
-constexpr double kSoftest_N_per_m = 100.0;
-constexpr double kStiffest_N_per_m = 20e3;
+constexpr double kSoftest_N_per_m = 100.0, kStiffest_N_per_m = 20e3;
 
 SensorSpec SimulatedDevice::sensor() const noexcept {
   return {.position_noise_m = 1e-7, .has_velocity = true, .velocity_noise_m_per_s = 1e-4};

@@ -1,7 +1,6 @@
-// A simulated hand that explores: slow presses, taps, pokes, holds, rests. It is a mass on a spring and a damper
-// (devices/virtual/hand_motion.h), which the rendered force pushes back. It does not know the block and estimates its
-// stiffness from the rendered force.
-// Thread guarantee: as Device; deterministic: the same seed, times and forces give the same samples.
+// A simulated hand that explores (devices/virtual/hand_motion.h). It does not know the block and estimates its
+// stiffness from the rendered force. Thread guarantee: as Device; deterministic: the same seed, times and forces give
+// the same samples.
 #pragma once
 
 #include <cstdint>

@@ -86,10 +86,10 @@ TEST(DeviceStop, NoForceFollowsTheStopInAnyOrderOfTwoSignals) {
 
 TEST(DeviceStop, HoldsEightDevices) {
   int slots[9];
-  for (int& slot : slots) slot = register_device_stop(-1, {});
+  for (int& slot : slots) slot = register_device_stop(0, {});
   EXPECT_EQ(slots[8], -1);
   for (const int slot : slots) unregister_device_stop(slot);
-  const int again = register_device_stop(-1, {});
+  const int again = register_device_stop(0, {});
   EXPECT_GE(again, 0);
   unregister_device_stop(again);
 }
