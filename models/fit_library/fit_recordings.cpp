@@ -17,18 +17,6 @@ namespace {
 // The approximate time of the preparation, to compare with the expected time of the method.
 constexpr double kPreparation_s = 0.5;
 
-nlohmann::ordered_json offsets_json(const Provenance& provenance) {
-  auto list = nlohmann::ordered_json::array();
-  for (const RecordingOffset& one : provenance.offsets) {
-    list.push_back({{"name", one.name},
-                    {"surface_offset_m", one.offset_m},
-                    {"standard_error_m", one.standard_error_m},  // not finite: null
-                    {"identified", std::isfinite(one.standard_error_m)},
-                    {"force_zero_N", one.force_zero_N}});
-  }
-  return list;
-}
-
 }  // namespace
 
 Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingScene& scene,
@@ -48,8 +36,15 @@ Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const 
 nlohmann::ordered_json fit_json(const RecordingsFit& fitted) {
   const MethodFit& fit = fitted.fit;
   const ModelData& data = fit.data;
-  nlohmann::ordered_json features = nlohmann::ordered_json::array();
+  nlohmann::ordered_json features = nlohmann::ordered_json::array(), recordings = features;
   for (const FeatureSpec& spec : data.features) features.push_back(feature_name(spec));
+  for (const RecordingOffset& one : data.provenance.offsets) {
+    recordings.push_back({{"name", one.name},
+                          {"surface_offset_m", one.offset_m},
+                          {"standard_error_m", one.standard_error_m},  // not finite: null
+                          {"identified", std::isfinite(one.standard_error_m)},
+                          {"force_zero_N", one.force_zero_N}});
+  }
   return {{"name", data.name},
           {"method", data.method},
           {"centres", data.centre_count()},
@@ -62,7 +57,7 @@ nlohmann::ordered_json fit_json(const RecordingsFit& fitted) {
           {"fit_seconds", fitted.seconds},
           {"training_within_jnd", data.provenance.training_within_jnd},
           {"features", features},
-          {"recordings", offsets_json(data.provenance)},
+          {"recordings", recordings},
           {"notes", fit.notes}};
 }
 
