@@ -18,7 +18,6 @@
 #include <cmath>
 
 #include "scenes/material/hereditary_block.h"
-#include "scenes/material/sphere_contact.h"
 
 namespace palpate {
 
@@ -30,9 +29,7 @@ class FrictionBlock final : public HereditaryBlock {
   static constexpr double kGripped_m = 0.004;    // d_c
   static constexpr double kWeight = 0.03;        // of the box spectrum, per unit of ln tau
 
-  FrictionBlock() : HereditaryBlock(0.05, 2.0, [](double) { return kWeight; }) {}
-
-  double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
+  FrictionBlock() : HereditaryBlock(kContact, 0.05, 2.0, kWeight) {}
 
   // F_c(depth), newtons: the largest friction.
   static double friction_limit_N(double depth_m) noexcept { return kFriction_N * std::min(1.0, depth_m / kGripped_m); }

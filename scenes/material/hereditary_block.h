@@ -1,10 +1,12 @@
-// A block with an elastic response and a memory of it, quasi-linear viscoelasticity:
-//   F = E(s) + M,   M(t) = integral K(t - u) dE/du du,   K(t) = sum_i w_i exp(-t / tau_i),
-// with the elastic response E of the derived class and 48 times tau_i evenly spaced in log tau, which approximate
-// a continuous spectrum to within 0.1 % between its ends. Derived classes may add further forces. Each sub-step is
-// exact where E changes at a constant rate:
-//   M_i <- M_i exp(-h/tau_i) + w_i dE (1 - exp(-h/tau_i)) tau_i / h.
-// Passive for every E that rises with depth: see maxwell_block.h, with g_i = w_i E.
+// Soft rubber under a sphere, with a continuous spectrum of relaxation times: quasi-linear viscoelasticity,
+//   F = E(s) + M,   M(t) = integral K(t - u) dE/du du,   K(t) = c (E1(t / tau2) - E1(t / tau1)),
+// where E is the contact law of sphere_contact.h and K Fung's box spectrum: the same weight c for every ln tau between
+// tau1 and tau2. There are no discrete relaxation times that a fit could identify, and E ~ d^1.5 at the surface is no
+// polynomial. K is approximated to within 0.1 % by 48 times tau_i evenly spaced in log tau. Each sub-step is exact
+// where E changes at a constant rate:
+//   M_i <- M_i exp(-h/tau_i) + w dE (1 - exp(-h/tau_i)) tau_i / h.
+// Derived classes add further forces.
+// Passive for every E that rises with depth: see maxwell_block.h, with g_i = w E.
 // Source: Fung (1993), Biomechanics, section 7.6 (quasi-linear viscoelasticity).
 // Thread guarantee: as Block.
 #pragma once
@@ -14,34 +16,35 @@
 #include <cstddef>
 
 #include "scenes/material/block.h"
+#include "scenes/material/sphere_contact.h"
 
 namespace palpate {
 
 class HereditaryBlock : public Block {
  public:
+  // `weight`: c, of the spectrum from `shortest_s` (tau1) to `longest_s` (tau2), sampled by the midpoint rule.
+  HereditaryBlock(const SphereContact& contact, double shortest_s, double longest_s, double weight)
+      : contact_(contact) {
+    const double spacing = std::log(longest_s / shortest_s) / static_cast<double>(kTimes);
+    weight_ = weight * spacing;
+    for (std::size_t i = 0; i < kTimes; ++i) {
+      time_s_[i] = shortest_s * std::exp(spacing * (static_cast<double>(i) + 0.5));
+      total_weight_ += weight_;
+    }
+  }
+
   // E(depth), newtons; rises with the depth.
-  virtual double elastic_force_N(double depth_m) const noexcept = 0;
+  virtual double elastic_force_N(double depth_m) const noexcept { return contact_.force_N(depth_m); }
 
   double half_relaxed_force_N(double depth_m) const noexcept override {
     return elastic_force_N(depth_m) * (1.0 + 0.5 * total_weight_);
   }
 
  protected:
-  // `density(time_s)`: w per unit of ln tau, >= 0, sampled from `shortest_s` to `longest_s` by the midpoint rule.
-  template <typename Density>
-  HereditaryBlock(double shortest_s, double longest_s, Density density) {
-    const double spacing = std::log(longest_s / shortest_s) / static_cast<double>(kTimes);
-    for (std::size_t i = 0; i < kTimes; ++i) {
-      time_s_[i] = shortest_s * std::exp(spacing * (static_cast<double>(i) + 0.5));
-      weight_[i] = density(time_s_[i]) * spacing;
-      total_weight_ += weight_[i];
-    }
-  }
-
-  // share x E + M after a move of the surface to `surface_m`, newtons.
-  double hereditary_force_N(double surface_m, double share = 1.0) const noexcept {
+  // E + M after a move of the surface to `surface_m`, newtons.
+  double hereditary_force_N(double surface_m) const noexcept {
     const double elastic_N = elastic_force_N(surface_m);
-    return share * elastic_N + relaxed_N_ + gain_ * (elastic_N - elastic_N_);
+    return elastic_N + relaxed_N_ + gain_ * (elastic_N - elastic_N_);
   }
 
   void prepare() noexcept override {
@@ -50,7 +53,7 @@ class HereditaryBlock : public Block {
     for (std::size_t i = 0; i < kTimes; ++i) {
       const double ratio = substep_s() / time_s_[i];
       decay_[i] = std::exp(-ratio);
-      kick_[i] = weight_[i] * -std::expm1(-ratio) / ratio;
+      kick_[i] = weight_ * -std::expm1(-ratio) / ratio;
       gain_ += kick_[i];
     }
   }
@@ -84,7 +87,9 @@ class HereditaryBlock : public Block {
  private:
   static constexpr std::size_t kTimes = 48;
 
-  std::array<double, kTimes> time_s_{}, weight_{}, decay_{}, kick_{}, memory_N_{};
+  SphereContact contact_;
+  std::array<double, kTimes> time_s_{}, decay_{}, kick_{}, memory_N_{};
+  double weight_ = 0.0;        // w
   double total_weight_ = 0.0;  // K(0)
   double gain_ = 0.0;          // sum of kick_
   double relaxed_N_ = 0.0;     // sum of memory_N_ after the decay of this sub-step

@@ -15,7 +15,6 @@
 #include <cmath>
 
 #include "scenes/material/hereditary_block.h"
-#include "scenes/material/sphere_contact.h"
 
 namespace palpate {
 
@@ -29,9 +28,8 @@ class LayeredBlock final : public HereditaryBlock {
   static constexpr double kSupportTime_s = 0.3;             // tau_m
   static constexpr double kWeight = 0.06;                   // of the box spectrum, per unit of ln tau
 
-  LayeredBlock() : HereditaryBlock(0.02, 4.0, [](double) { return kWeight; }) {}
+  LayeredBlock() : HereditaryBlock(kTop, 0.02, 4.0, kWeight) {}
 
-  double elastic_force_N(double depth_m) const noexcept override { return kTop.force_N(depth_m); }
   double half_relaxed_force_N(double depth_m) const noexcept override {
     constexpr double kHalfRelaxed_N_per_m = kSupport_N_per_m + 0.5 * kSupportBranch_N_per_m;
     return HereditaryBlock::half_relaxed_force_N(depth_m) +

@@ -23,7 +23,7 @@
 
 namespace palpate {
 
-inline constexpr std::size_t kMaximumBranches = 3;
+inline constexpr std::size_t kMaximumBranches = 2;
 
 // One Maxwell branch: a spring that stiffens with depth, in series with a dashpot.
 struct RelaxationBranch {
@@ -82,14 +82,6 @@ inline constexpr MaxwellParameters kElastic = {
     .elastic_linear_N_per_m = 400.0, .elastic_quadratic_N_per_m2 = 1.5e4, .elastic_cubic_N_per_m3 = 2.0e6};
 
 inline constexpr MaxwellParameters kStiff = {.elastic_linear_N_per_m = 3000.0, .viscosity_Ns_per_m2 = 2000.0};
-
-inline constexpr MaxwellParameters kGel = {.elastic_linear_N_per_m = 170.0,
-                                           .elastic_quadratic_N_per_m2 = 6.0e3,
-                                           .elastic_cubic_N_per_m3 = 6.0e5,
-                                           .viscosity_Ns_per_m2 = 500.0,
-                                           .thick_fraction = 0.4,
-                                           .thinning_speed_m_per_s = 0.1,
-                                           .branches = {{{0.05, 60.0, 5.0e3}, {0.4, 60.0, 5.0e3}, {2.5, 50.0, 4.0e3}}}};
 
 class MaxwellBlock final : public Block {
  public:

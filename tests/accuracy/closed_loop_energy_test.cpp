@@ -44,10 +44,8 @@ const EnergyLimits kLimits[] = {
      .worst_return = kInfinity,
      .beyond_step_J = kInfinity},
     {.material = "friction", .least_damping_Ns_per_m = -2.0},
-    {.material = "softening", .least_damping_Ns_per_m = -2.0},
     {.material = "sponge", .least_damping_Ns_per_m = -2.0, .worst_return = 1.25, .beyond_step_J = 0.01},
     {.material = "layered", .least_damping_Ns_per_m = -2.0},
-    {.material = "tissue", .least_damping_Ns_per_m = -2.0},
 };
 
 HandPress press_of(const std::string& material, const ModelPtr& model) {

@@ -54,7 +54,7 @@ const std::vector<ModelPtr>& loop_models(const std::string& material);
 // Springs and dashpots, which come to rest within seconds. The material `silicone` creeps for minutes.
 inline const std::vector<ModelPtr>& silicone_models() { return loop_models("maxwell"); }
 inline const std::vector<ModelPtr>& stiff_models() { return loop_models("stiff"); }
-inline constexpr const char* kMaterialsWithMemory[] = {"friction", "softening", "sponge", "layered", "tissue"};
+inline constexpr const char* kMaterialsWithMemory[] = {"friction", "sponge", "layered"};
 
 // A force and the approximate depth that it causes.
 struct HandPress {

@@ -141,7 +141,7 @@ def block(seed, low_mm, high_mm, adhesion_N=0.0, rate_Hz=500.0, seconds=20.0):
 
 
 def virtual():
-    for material in ("silicone", "foam", "maxwell", "tissue", "gel", "stiff"):
+    for material in ("silicone", "foam", "maxwell", "stiff"):
         near = STIFF_MM if material == "stiff" else SOFT_MM
         base, other = synth(material, 1), synth(material, 2)
         first = write("first", base)

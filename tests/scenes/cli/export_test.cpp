@@ -93,9 +93,9 @@ TEST_F(ExportVerb, EveryMethodGivesReplaysForcesOfAnotherRecording) {
 }
 
 TEST_F(ExportVerb, AMaterialThatCreepsIsExportedWithItsMemory) {
-  const std::string text = exported(recording("softening", 15.0, 1), {"--method", "trend+greedy"});
+  const std::string text = exported(recording("layered", 15.0, 1), {"--method", "trend+greedy"});
   EXPECT_TRUE(has_feature(FeatureKind::creep));
-  EXPECT_LT(worst_N(recording("softening", 8.0, 2), text), 1e-9);
+  EXPECT_LT(worst_N(recording("layered", 8.0, 2), text), 1e-9);
 }
 
 // The estimated noise differs slightly between two recordings, but the identified sensor is the same.
@@ -110,7 +110,7 @@ TEST_F(ExportVerb, SinglePrecisionDiffersByLessThanTheJnd) {
   const auto over_limit = [&](double a_N, double b_N) {
     return std::abs(a_N - b_N) / std::max(1e-3, 0.02 * jnd.at(b_N));
   };
-  for (const char* material : {"friction", "softening"}) {
+  for (const char* material : {"friction", "layered"}) {
     const std::string text = exported(recording(material, 12.0, 1), {"--method", "trend+greedy"}, {"--float"});
     EXPECT_LT(worst<float>(recording(material, 8.0, 2), text, over_limit), 1.0) << material;
   }

@@ -21,14 +21,14 @@ TEST(Synth, ListsTheMaterialsWithTheirRelaxationTimes) {
 
 TEST(Synth, WritesTheRecordingOfTheLibrary) {
   const test::TemporaryFolder folder;
-  const std::string path = folder.file("gel.csv");
-  const auto run =
-      test::must_run({"synth", "--material", "gel", "--seed", "3", "--seconds", "2", "--rate", "500", "--out", path});
+  const std::string path = folder.file("maxwell.csv");
+  const auto run = test::must_run(
+      {"synth", "--material", "maxwell", "--seed", "3", "--seconds", "2", "--rate", "500", "--out", path});
   EXPECT_EQ(run.out, "written  " + path + ": 1000 rows, 1.998 s\n");
   EXPECT_EQ(run.err, "");
   const Recording read = test::must(read_recording(path));
   EXPECT_EQ(test::read_text(path).rfind("# virtual recording by palpate synth", 0), 0u);
-  const Recording rig = test::must(record_sensors({"gel", 3, 2.0, 500.0}));
+  const Recording rig = test::must(record_sensors({"maxwell", 3, 2.0, 500.0}));
   ASSERT_EQ(read.rows.size(), 1000u);
   EXPECT_TRUE(read.columns.acceleration);
   for (std::size_t i = 0; i < read.rows.size(); ++i) {

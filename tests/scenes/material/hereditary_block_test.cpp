@@ -10,8 +10,7 @@ namespace {
 // E(s) = 1 N/m s, so that the force is the depth plus the memory.
 class Straight final : public HereditaryBlock {
  public:
-  Straight(double shortest_s, double longest_s, double weight)
-      : HereditaryBlock(shortest_s, longest_s, [weight](double) { return weight; }) {
+  Straight(double shortest_s, double longest_s, double weight) : HereditaryBlock({}, shortest_s, longest_s, weight) {
     reset();
   }
   double elastic_force_N(double depth_m) const noexcept override { return depth_m; }

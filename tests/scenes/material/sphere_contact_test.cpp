@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 TEST(SphereContact, IsHertzNearTheSurface) {
-  const SphereContact contact{.radius_m = 0.01, .modulus_Pa = 20e3, .stiffening = 3.0};
+  const SphereContact contact{.radius_m = 0.01, .modulus_Pa = 20e3};
   // The next term is 0.2 a / R, here 0.2 %.
   const double depth_m = 1e-6;
   const double hertz_N = 16.0 / 9.0 * 20e3 * std::sqrt(0.01) * depth_m * std::sqrt(depth_m);
