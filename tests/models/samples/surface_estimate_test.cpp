@@ -65,7 +65,7 @@ TEST(SurfaceEstimate, FindsTheShiftAndTheForceZeroOfVirtualRecordings) {
 
 // With a sphere on a soft solid the force starts so softly that the accuracy is only about 0.05 mm.
 TEST(SurfaceEstimate, FindsLargerShiftsWhereForceBeginsSoftly) {
-  for (const char* material : {"silicone", "layered", "friction"}) {
+  for (const char* material : {"silicone", "layered"}) {
     for (const std::uint64_t seed : {1U, 2U}) {
       const SurfaceEstimate estimate = estimate_surface(moved(rig(material, seed), -0.3e-3));
       EXPECT_NEAR(estimate.offset_m, -0.3e-3, 0.05e-3) << material << ", seed " << seed;
