@@ -105,6 +105,10 @@ BlockView::BlockView(const Scene& scene, float magnified, Shaders shaders)
       dome_m_(scene.finish == Finish::dome ? kDomeRise * radius_m_ : 0.0F),
       rim_m_(0.5F * static_cast<float>(std::min(geometry_.width_m, geometry_.length_m))),
       middle_m_(std::min(kMoves * rim_m_, rim_m_ - kEdge_m)),
+      low_m_(-static_cast<float>(geometry_.height_m) * std::cos(kPitch_rad)),
+      high_m_(std::max((kToolLength * radius_m_ + kLift_m) * std::cos(kPitch_rad),
+                       0.5F * size_of(geometry_).y * std::sin(kPitch_rad))),
+      wide_m_(size_of(geometry_).x * std::cos(kYaw_rad) + 0.5F * size_of(geometry_).y * std::sin(kYaw_rad)),
       finish_(scene.finish),
       block_colour_(hex(scene.block_colour)),
       arrow_m_per_N_(kStrongestArrow * kToolLength * radius_m_ / static_cast<float>(scene.strongest_press_N)),
@@ -127,20 +131,23 @@ BlockView::BlockView(const Scene& scene, float magnified, Shaders shaders)
 // The arrangement in which the blocks are largest.
 BlockView::Cells BlockView::cells(std::size_t count, const glm::vec2& size) const {
   const float height = size.y * (1.0F - above_ - below_);
-  const float high_m = kToolLength * radius_m_ + kLift_m + static_cast<float>(geometry_.height_m);
   Cells best;
   float largest = 0.0F;
   for (std::size_t columns = 1; columns <= count; ++columns) {
     const std::size_t rows = (count + columns - 1) / columns;
     const glm::vec2 one =
         glm::floor(glm::vec2(size.x / static_cast<float>(columns), height / static_cast<float>(rows)));
-    const float label = kLabel * size.y;
-    const float scale = std::min(one.x / static_cast<float>(geometry_.width_m), (one.y - label) / high_m);
-    if (scale <= largest) continue;
-    largest = scale;
-    best = {columns, rows, one, std::round(size.y * above_), label};
+    const Cells now{columns, rows, one, std::round(size.y * above_), kLabel * size.y};
+    if (scale(now) <= largest) continue;
+    largest = scale(now);
+    best = now;
   }
   return best;
+}
+
+// Pixels per metre with which a block and its tool fill a cell; the margins are for perspective.
+float BlockView::scale(const Cells& cells) const {
+  return std::min((cells.size.y - cells.label) / (1.06F * (high_m_ - low_m_)), cells.size.x / (1.12F * wide_m_));
 }
 
 // The upper left corner of a cell. A row with fewer blocks is in the middle.
@@ -154,16 +161,9 @@ glm::vec2 BlockView::corner(std::size_t index, std::size_t count, const Cells& c
 
 void BlockView::show(std::size_t count, const glm::vec2& size, bool at_once) {
   const Cells grid = cells(count, size);
-  const auto half_x = 0.5F * static_cast<float>(geometry_.width_m),
-             half_z = 0.5F * static_cast<float>(geometry_.length_m);
-  // The extent seen from the camera, without perspective; the margins are for it.
-  const float high =
-      std::max((kToolLength * radius_m_ + kLift_m) * std::cos(kPitch_rad), half_z * std::sin(kPitch_rad));
-  const float low = -static_cast<float>(geometry_.height_m) * std::cos(kPitch_rad);
-  const float wide = 2.0F * (half_x * std::cos(kYaw_rad) + 0.5F * half_z * std::sin(kYaw_rad));
-  const float px_per_m = std::min((grid.size.y - grid.label) / (1.06F * (high - low)), grid.size.x / (1.12F * wide));
+  const float px_per_m = scale(grid);
   const float radius_m = 0.5F * std::min(grid.size.x, grid.size.y) / px_per_m;
-  const float height_m = (0.5F * (high + low) - 0.5F * grid.label / px_per_m) / std::cos(kPitch_rad);
+  const float height_m = (0.5F * (high_m_ + low_m_) - 0.5F * grid.label / px_per_m) / std::cos(kPitch_rad);
   camera_.frame(radius_m, height_m, kYaw_rad, kPitch_rad, at_once);
 }
 

@@ -94,6 +94,7 @@ class BlockView {
 
   BlockView(const Scene& scene, float magnified, Shaders shaders);
   Cells cells(std::size_t count, const glm::vec2& size) const;
+  float scale(const Cells& cells) const;
   glm::vec2 corner(std::size_t index, std::size_t count, const Cells& cells, const glm::vec2& size) const;
   float drawn_m(float depth_m) const;
   float outline_px() const;
@@ -124,6 +125,8 @@ class BlockView {
   float dome_m_;    // height of a dome over its block, whose flat top is lower by it
   float rim_m_;     // from the middle to the nearest side
   float middle_m_;  // radius of what moves of the top
+  // Extent of a block and its tool seen from the camera, without perspective, relative to the middle of the top.
+  float low_m_, high_m_, wide_m_;
   Finish finish_;
   Rgb block_colour_;
   float arrow_m_per_N_;
