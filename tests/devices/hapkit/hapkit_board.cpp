@@ -15,11 +15,14 @@
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
 #include <simavr/sim_elf.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -176,7 +179,11 @@ int main(int argc, char** argv) {
   cell.mask = 1 << 4;
   cell.value = block != nullptr ? 0 : 1 << 4;
   avr_ioctl(bench.avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &cell);
-  // Real-time priority, because a board does not wait for other programs.
+  // Real-time priority, because a board does not wait for other programs. The system ends it where it is too slow to
+  // sleep for so long, and when the test ends without closing its input.
+  constexpr rlimit kWithoutSleep_us{10'000'000, 10'000'000};
+  setrlimit(RLIMIT_RTTIME, &kWithoutSleep_us);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   palpate::make_this_thread_realtime(10, false);
   palpate::SteadyPacer pacer;
   std::int64_t start_ns = pacer.now_ns();
