@@ -12,8 +12,6 @@
 namespace palpate {
 namespace {
 
-// Rows that read_recording reads at a time, few enough for the cache.
-constexpr std::size_t kBatchRows = 4096;
 // The largest number of rows for which memory is reserved: untouched memory costs nothing, and a growing vector would
 // have its rows twice at times.
 constexpr std::size_t kMostExpected = 6000000;
@@ -95,13 +93,7 @@ Result<Recording> read_recording(const std::string& path, std::size_t most_rows)
   std::error_code unknown;  // then the size is the largest number
   recording.rows.reserve(
       std::min<std::size_t>(std::filesystem::file_size(path, unknown) / kShortestRow, kMostExpected));
-  std::vector<RecordingRow> batch(kBatchRows);
-  while (recording.rows.size() < most_rows) {
-    const auto count = reader->read(batch.data(), std::min(batch.size(), most_rows - recording.rows.size()));
-    if (!count) return count.error();
-    if (*count == 0) break;
-    recording.rows.insert(recording.rows.end(), batch.begin(), batch.begin() + static_cast<std::ptrdiff_t>(*count));
-  }
+  if (const auto count = reader->read(recording.rows, most_rows); !count) return count.error();
   return recording;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <charconv>
 #include <filesystem>
 #include <utility>
@@ -58,73 +57,49 @@ std::string_view bare(std::string_view text) {
   return text;
 }
 
-// The column (from 1) where the value of a field of `line` begins; of a blank field: where the field begins.
-std::size_t column_of(std::string_view line, std::string_view field) {
+// The value in a field; of a blank field the field itself.
+std::string_view value_of(std::string_view field) {
   const std::string_view value = trimmed(field);
-  return static_cast<std::size_t>((value.empty() ? field : value).data() - line.data()) + 1;
+  return value.empty() ? field : value;
 }
 
-// Why a line was refused, and the column.
+// Why a line was refused, and the part of the line at which a message points.
 struct LineFault {
-  std::size_t column = 1;
+  std::string_view at;
   std::string text;
 };
 
 // The fault of a line with semicolons or tabs between at least `fields` fields.
-std::optional<LineFault> foreign_separator(std::string_view text, std::size_t fields) {
+std::optional<LineFault> foreign_separator(std::string_view line, std::size_t fields) {
   for (const auto& [mark, name] : {std::pair{';', "semicolons"}, {'\t', "tabs"}}) {
-    if (static_cast<std::size_t>(std::count(text.begin(), text.end(), mark)) + 1 < fields) continue;
-    return LineFault{text.find(mark) + 1,
+    if (static_cast<std::size_t>(std::count(line.begin(), line.end(), mark)) + 1 < fields) continue;
+    return LineFault{line.substr(line.find(mark)),
                      std::string("found ") + name +
                          " between the fields, expected commas; save the file as comma separated with decimal points"};
   }
   return std::nullopt;
 }
 
-LineFault missing_columns(std::string_view text, const std::vector<std::string_view>& names,
-                          const std::vector<std::string_view>& missing) {
-  if (trimmed(text).empty())
-    return {1, "found a blank line, expected a header row with time_s, position_m and force_N; remove the blank line"};
-  if (missing.size() == kRequiredColumns) {
-    if (const auto separator = foreign_separator(text, kRequiredColumns)) return *separator;
-    if (std::all_of(names.begin(), names.end(), is_number)) {
-      return {1,
-              "found a row of numbers, expected a header row with time_s, position_m and force_N; add the header row"};
-    }
-  }
-  std::string all_missing;
-  for (const std::string_view wanted : missing) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (lower_ascii(bare(names[i])) != lower_ascii(wanted)) continue;
-      return {column_of(text, names[i]), "found column '" + printable(names[i]) + "', expected exactly " +
-                                             std::string(wanted) + "; rename the column"};
-    }
-    all_missing.append(all_missing.empty() ? "" : " and ").append(wanted);
-  }
-  return {1, "found columns " + printable(text, 80) + ", expected also " + all_missing +
-                 "; add what is missing or rename what holds the values"};
+std::string no_header(const std::string& found, const std::string& advice) {
+  return "found " + found + ", expected a header row with time_s, position_m and force_N; " + advice;
 }
 
-// The fault of a row that does not have the `expected` number of fields. `has_end`: it ends with a newline.
-LineFault field_count_fault(std::string_view line, bool has_end, std::size_t expected, bool header_ends_with_comma) {
-  const auto fields = fields_of(line);
-  const std::size_t found = fields.size();
-  const bool cut_off = found < expected && !has_end;
-  const char* advice = "write decimal points, not commas, and remove fields without a column";
-  if (cut_off)
-    advice = "the file was cut off, remove its last line";
-  else if (found + 1 == expected && header_ends_with_comma)
-    advice = "remove the comma at the end of the header";
-  else if (found < expected)
-    advice = "add the missing values or remove the row";
-  else if (found == expected + 1 && trimmed(line).ends_with(','))
-    advice = "remove the comma at the end of the row";
-  else if (line.find('"') != std::string_view::npos)
-    advice = "remove quotes and the commas inside them";
-  return {found < expected ? line.size() + 1 : column_of(line, fields[expected]),
-          "found " + std::to_string(found) + (found == 1 ? " field" : " fields") +
-              (cut_off ? " where the file ends" : "") + ", expected " + std::to_string(expected) +
-              " as in the header; " + advice};
+LineFault header_fault(std::string_view line, const std::vector<std::string_view>& names,
+                       const std::vector<std::string>& missing) {
+  if (trimmed(line).empty()) return {line, no_header("a blank line", "remove the blank line")};
+  if (missing.size() == kRequiredColumns) {
+    if (const auto separator = foreign_separator(line, kRequiredColumns)) return *separator;
+    if (std::ranges::all_of(names, is_number)) return {line, no_header("a row of numbers", "add the header row")};
+  }
+  for (const std::string& wanted : missing) {
+    for (const std::string_view name : names) {
+      if (lower_ascii(bare(name)) != lower_ascii(wanted)) continue;
+      return {value_of(name),
+              "found column '" + printable(name) + "', expected exactly " + wanted + "; rename the column"};
+    }
+  }
+  return {line, "found columns " + printable(line, 80) + ", expected also " + joined(missing, " and ") +
+                    "; add what is missing or rename what holds the values"};
 }
 
 // Explains why `field` is not a valid number for the column `name`.
@@ -152,37 +127,50 @@ std::string number_fault(std::string_view field, std::string_view name) {
   return "found " + found + ", expected a finite number in " + std::string(name) + "; " + advice;
 }
 
-// The fault of a row that cannot be parsed under a header of these columns.
+// The fault of a row that cannot be parsed under a header of these columns. `has_end`: it ends with a newline.
 LineFault row_fault(std::string_view line, bool has_end, const std::vector<ColumnRole>& roles,
                     bool header_ends_with_comma) {
-  const auto fields = fields_of(line);
   if (line.starts_with('#'))
-    return {1, "found a comment after the header, expected a row; move it above the header or remove it"};
-  if (fields.size() < roles.size()) {
-    if (const auto separator = foreign_separator(line, roles.size())) return *separator;
+    return {line, "found a comment after the header, expected a row; move it above the header or remove it"};
+  const auto fields = fields_of(line);
+  const std::size_t found = fields.size(), expected = roles.size();
+  if (found == expected) {
+    std::size_t bad = 0;
+    while (bad + 1 < found && (roles[bad] == ColumnRole::kIgnored || is_number(fields[bad]))) ++bad;
+    return {value_of(fields[bad]), number_fault(fields[bad], kColumnNames[static_cast<std::size_t>(roles[bad])])};
   }
-  if (fields.size() != roles.size()) return field_count_fault(line, has_end, roles.size(), header_ends_with_comma);
-  std::size_t bad = 0;
-  while (bad + 1 < fields.size() && (roles[bad] == ColumnRole::kIgnored || is_number(fields[bad]))) ++bad;
-  return {column_of(line, fields[bad]), number_fault(fields[bad], kColumnNames[static_cast<std::size_t>(roles[bad])])};
+  const auto separator = found < expected ? foreign_separator(line, expected) : std::nullopt;
+  if (separator) return *separator;
+  const bool cut_off = found < expected && !has_end;
+  const char* const advice =
+      cut_off                                                 ? "the file was cut off, remove its last line"
+      : found + 1 == expected && header_ends_with_comma       ? "remove the comma at the end of the header"
+      : found < expected                                      ? "add the missing values or remove the row"
+      : found == expected + 1 && trimmed(line).ends_with(',') ? "remove the comma at the end of the row"
+      : line.find('"') != std::string_view::npos
+          ? "remove quotes and the commas inside them"
+          : "write decimal points, not commas, and remove fields without a column";
+  return {found < expected ? line.substr(line.size()) : value_of(fields[expected]),
+          "found " + std::to_string(found) + (found == 1 ? " field" : " fields") +
+              (cut_off ? " where the file ends" : "") + ", expected " + std::to_string(expected) +
+              " as in the header; " + advice};
 }
 
 // The fault of a line of bytes that are no text.
 std::optional<LineFault> bytes_fault(std::string_view line) {
   if (const std::size_t nul = line.find('\0'); nul != std::string_view::npos) {
-    return LineFault{nul + 1,
+    return LineFault{line.substr(nul),
                      "found a NUL byte, expected UTF-8 text; this is a binary or UTF-16 file, save it as UTF-8 CSV"};
   }
   if (const std::size_t at = line.find('\r'); at < line.size() - 1) {
     return LineFault{
-        at + 1, "found a carriage return inside a line, expected lines that end in LF or CRLF; convert the line ends"};
+        line.substr(at),
+        "found a carriage return inside a line, expected lines that end in LF or CRLF; convert the line ends"};
   }
-  if (line.size() > kMaximumLineBytes) {
-    return LineFault{kMaximumLineBytes + 1,
-                     "found a line longer than " + std::to_string(kMaximumLineBytes) +
-                         " bytes, expected a row of a recording; check that this is a CSV file with line ends"};
-  }
-  return std::nullopt;
+  if (line.size() <= kMaximumLineBytes) return std::nullopt;
+  return LineFault{line.substr(kMaximumLineBytes),
+                   "found a line longer than " + std::to_string(kMaximumLineBytes) +
+                       " bytes, expected a row of a recording; check that this is a CSV file with line ends"};
 }
 
 }  // namespace
@@ -205,84 +193,79 @@ RecordingReader::RecordingReader(std::unique_ptr<std::istream> stream, std::stri
       name_(std::filesystem::path(label_).stem().string()),
       buffer_(kMaximumLineBytes + kBeyondLimit) {}
 
-bool RecordingReader::fail(std::uint64_t line, std::size_t column, const std::string& text) {
-  error_ = Error{label_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + text};
+std::string RecordingReader::place_of(std::string_view at) const {
+  return label_ + ":" + std::to_string(line_number_) + ":" + std::to_string(at.data() - line_.data() + 1) + ": ";
+}
+
+bool RecordingReader::fail(const std::string& message) {
+  error_ = Error{message};
   return false;
 }
 
 bool RecordingReader::fail(const RowFault& fault) {
-  switch (fault.place) {
-    case RowFault::Place::kEnd:
-      return fail(line_number_ + 1, 1, fault.text);
-    case RowFault::Place::kFirstRow:
-      return fail(first_row_line_, first_row_time_column_, fault.text);
-    case RowFault::Place::kThisRow:
-      break;
-  }
-  return fail(line_number_, column_of(line_, fields_of(line_)[index_of(fault.role)]), fault.text);
+  return fail((fault.place == RowFault::Place::kFirstRow ? first_time_ : place_of(value_of(field(fault.role)))) +
+              fault.text);
 }
 
 // Lines end with LF or CRLF; a UTF-8 byte order mark is skipped.
 bool RecordingReader::next_line() {
   stream_->getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-  if (stream_->bad()) {
-    error_ = unreadable(label_);
-    return false;
-  }
+  if (stream_->bad()) return fail(unreadable(label_).message);
   // The count includes the line feed, which is not stored.
   const auto count = static_cast<std::size_t>(stream_->gcount());
   line_has_end_ = stream_->good();
-  if (count == 0) return false;
   line_ = std::string_view(buffer_.data(), line_has_end_ ? count - 1 : count);
-  if (line_number_ == 0) {
-    if (line_.starts_with("\xFF\xFE") || line_.starts_with("\xFE\xFF"))
-      return fail(1, 1, "found UTF-16 text, expected UTF-8; save the file as UTF-8 CSV");
-    if (line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
-    if (line_.empty() && !line_has_end_) return false;
-  }
+  const bool is_first = line_number_ == 0;
+  if (is_first && line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
+  const bool ended = line_.empty() && !line_has_end_;
   ++line_number_;
+  if (ended) return false;
+  if (is_first && (line_.starts_with("\xFF\xFE") || line_.starts_with("\xFE\xFF")))
+    return fail(place_of(line_) + "found UTF-16 text, expected UTF-8; save the file as UTF-8 CSV");
   if (line_.ends_with('\r')) line_.remove_suffix(1);
   const auto fault = bytes_fault(line_);
-  return !fault || fail(line_number_, fault->column, fault->text);
+  return !fault || fail(place_of(fault->at) + fault->text);
 }
 
 bool RecordingReader::read_header() {
   while (next_line())
     if (!line_.starts_with('#')) return parse_header();
   if (error_) return false;
-  return fail(line_number_ + 1, 1,
-              std::string("found ") + (line_number_ == 0 ? "an empty file" : "the end of the file") +
-                  ", expected a header row with time_s, position_m and force_N; check that the recording was saved");
+  return fail(place_of(line_) + no_header(line_number_ == 1 ? "an empty file" : "the end of the file",
+                                          "check that the recording was saved"));
 }
 
 bool RecordingReader::parse_header() {
   if (const std::size_t good = utf8_bytes(line_); good < line_.size()) {
-    return fail(line_number_, good + 1,
-                "found byte " + printable(line_.substr(good, 1)) +
-                    ", expected UTF-8 text in the header; save the file as UTF-8 CSV");
+    return fail(place_of(line_.substr(good)) + "found byte " + printable(line_.substr(good, 1)) +
+                ", expected UTF-8 text in the header; save the file as UTF-8 CSV");
   }
   const auto names = fields_of(line_);
   for (const std::string_view name : names) {
     const auto known = std::find(kColumnNames.begin(), kColumnNames.end(), name);
     const auto role = static_cast<ColumnRole>(known - kColumnNames.begin());  // ignored if the name is unknown
     if (role != ColumnRole::kIgnored && has(role)) {
-      return fail(line_number_, column_of(line_, name),
-                  "found column " + std::string(name) + " twice, expected it once; remove or rename one of the two");
+      return fail(place_of(name) + "found column " + std::string(name) +
+                  " twice, expected it once; remove or rename one of the two");
     }
     roles_.push_back(role);
   }
   header_ends_with_comma_ = names.back().empty();
-  std::vector<std::string_view> missing;
+  std::vector<std::string> missing;
   for (std::size_t i = 0; i < kRequiredColumns; ++i)
-    if (!has(static_cast<ColumnRole>(i))) missing.push_back(kColumnNames[i]);
+    if (!has(static_cast<ColumnRole>(i))) missing.emplace_back(kColumnNames[i]);
   if (missing.empty()) return true;
   // Usually the file is that of another program, so every message recommends the import.
-  const LineFault fault = missing_columns(line_, names, missing);
-  return fail(line_number_, fault.column, fault.text + ", or let palpate import " + label_ + " --out REC.csv do it");
+  const LineFault fault = header_fault(line_, names, missing);
+  return fail(place_of(fault.at) + fault.text + ", or let palpate import " + label_ + " --out REC.csv do it");
 }
 
 std::size_t RecordingReader::index_of(ColumnRole role) const {
   return static_cast<std::size_t>(std::find(roles_.begin(), roles_.end(), role) - roles_.begin());
+}
+
+std::string_view RecordingReader::field(ColumnRole role) const {
+  return line_.empty() ? line_ : fields_of(line_)[index_of(role)];
 }
 
 RecordingColumns RecordingReader::columns() const {
@@ -308,18 +291,6 @@ bool RecordingReader::parse(RecordingRow& row) const {
   return true;
 }
 
-// Blank lines are allowed at the end of the file only.
-bool RecordingReader::skip_last_blank_lines() {
-  const std::uint64_t first = line_number_;
-  while (next_line()) {
-    if (trimmed(line_).empty()) continue;
-    return fail(
-        first, 1,
-        "found a blank line, expected a row with " + std::to_string(roles_.size()) + " fields; remove the blank line");
-  }
-  return finish();
-}
-
 bool RecordingReader::finish() {
   if (error_) return false;
   ended_ = true;
@@ -330,22 +301,26 @@ bool RecordingReader::finish() {
 bool RecordingReader::next(RecordingRow& row) {
   if (!next_line()) return finish();
   if (!parse(row)) {
-    if (trimmed(line_).empty()) return skip_last_blank_lines();
-    const LineFault fault = row_fault(line_, line_has_end_, roles_, header_ends_with_comma_);
-    return fail(line_number_, fault.column, fault.text);
+    if (!trimmed(line_).empty()) {
+      const LineFault fault = row_fault(line_, line_has_end_, roles_, header_ends_with_comma_);
+      return fail(place_of(fault.at) + fault.text);
+    }
+    // Blank lines are allowed at the end of the file only.
+    const std::string blank = place_of(line_);
+    while (next_line())
+      if (!trimmed(line_).empty())
+        return fail(blank + "found a blank line, expected a row with " + std::to_string(roles_.size()) +
+                    " fields; remove the blank line");
+    return finish();
   }
-  if (first_row_line_ == 0) {
-    first_row_line_ = line_number_;
-    first_row_time_column_ = column_of(line_, fields_of(line_)[index_of(ColumnRole::kTime)]);
-  }
+  if (rules_.rows() == 0) first_time_ = place_of(value_of(field(ColumnRole::kTime)));
   const auto fault = rules_.check(row);
   return !fault || fail(*fault);
 }
 
-Result<std::size_t> RecordingReader::read(RecordingRow* rows, std::size_t capacity) {
-  assert(capacity > 0);
+Result<std::size_t> RecordingReader::read(std::vector<RecordingRow>& rows, std::size_t most) {
   std::size_t count = 0;
-  while (!ended_ && !error_ && count < capacity && next(rows[count])) ++count;
+  for (RecordingRow row; !ended_ && !error_ && count < most && next(row); ++count) rows.push_back(row);
   if (error_) return *error_;
   return count;
 }

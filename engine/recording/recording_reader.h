@@ -27,9 +27,9 @@ class RecordingReader {
   const std::string& name() const { return name_; }
   RecordingColumns columns() const;
 
-  // Reads up to `capacity` rows (at least 1) into `rows`; returns their number, which is smaller only at the end.
-  // Errors: a row or recording that breaks a rule (RowRules). After an error each call returns it again.
-  Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
+  // Appends up to `most` rows to `rows`; returns their number, which is smaller only at the end. Errors: a row or
+  // recording that breaks a rule (RowRules). After an error each call returns it again.
+  Result<std::size_t> read(std::vector<RecordingRow>& rows, std::size_t most);
 
  private:
   RecordingReader(std::unique_ptr<std::istream> stream, std::string label);
@@ -38,26 +38,28 @@ class RecordingReader {
   bool read_header();
   bool parse_header();
   bool next(RecordingRow& row);
-  bool skip_last_blank_lines();
   bool finish();
+  // The beginning of a message about a part of the present line.
+  std::string place_of(std::string_view at) const;
   // Sets the error and returns false.
-  bool fail(std::uint64_t line, std::size_t column, const std::string& text);
+  bool fail(const std::string& message);
   bool fail(const RowFault& fault);
   bool parse(RecordingRow& row) const;
+  // The field of the present line; at the end of the file the empty line.
+  std::string_view field(ColumnRole role) const;
   std::size_t index_of(ColumnRole role) const;
   bool has(ColumnRole role) const { return index_of(role) < roles_.size(); }
 
   std::unique_ptr<std::istream> stream_;
   std::string label_, name_;
   std::vector<char> buffer_;  // holds the present line
-  std::string_view line_;     // without its line end
+  std::string_view line_;     // without its line end; empty at the end of the file
   std::uint64_t line_number_ = 0;
   bool line_has_end_ = false;      // false: the file ends here without a newline
   std::vector<ColumnRole> roles_;  // of the columns of the file, in its order
   bool header_ends_with_comma_ = false;
   RowRules rules_;
-  std::uint64_t first_row_line_ = 0;
-  std::size_t first_row_time_column_ = 1;
+  std::string first_time_;  // the place of the first time
   bool ended_ = false;
   std::optional<Error> error_;
 };

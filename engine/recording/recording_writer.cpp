@@ -48,22 +48,9 @@ std::string line_of(RecordingColumns columns, const Field& field) {
   return line + '\n';
 }
 
-}  // namespace
-
-Result<RecordingWriter> RecordingWriter::create(const std::string& path, RecordingColumns columns,
-                                                const std::vector<std::string>& comments, bool overwrite) {
-  auto file = AtomicFile::create(path, overwrite);
-  if (!file) return file.error();
-  auto claim = Claim::of(path);
-  if (!claim) return claim.error();
-  std::string head;
-  for (const std::string& comment : comments) append_comment(head, comment);
-  file->write(head + line_of(columns, [](std::size_t i) { return kColumnNames[i]; }));
-  return RecordingWriter(std::move(*claim), std::move(*file), path, columns);
-}
-
-// An abstract Unix address made of the file's folder, as the disk knows it, and its name.
-Result<RecordingWriter::Claim> RecordingWriter::Claim::of(const std::string& path) {
+// Reserves the name of a file by an abstract Unix address, which the system frees with its descriptor, made of the
+// file's folder, as the disk knows it, and its name. A system without such addresses reserves nothing.
+Result<std::shared_ptr<void>> claim_name(const std::string& path) {
   const std::filesystem::path file(path);
   struct stat folder {};
   stat(file.has_parent_path() ? file.parent_path().c_str() : ".", &folder);
@@ -73,15 +60,24 @@ Result<RecordingWriter::Claim> RecordingWriter::Claim::of(const std::string& pat
   address.sun_family = AF_UNIX;
   std::ranges::copy(name, address.sun_path + 1);
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  std::shared_ptr<void> claim(nullptr, [descriptor](void*) { ::close(descriptor); });
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), size) == 0 || errno != EADDRINUSE)
-    return Claim(descriptor);
-  ::close(descriptor);
+  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), size) == 0 || errno != EADDRINUSE) return claim;
   return Error{path + ": another recording is being written into it; choose another name, or end that one"};
 }
 
-RecordingWriter::Claim::~Claim() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+}  // namespace
+
+Result<RecordingWriter> RecordingWriter::create(const std::string& path, RecordingColumns columns,
+                                                const std::vector<std::string>& comments, bool overwrite) {
+  auto file = AtomicFile::create(path, overwrite);
+  if (!file) return file.error();
+  auto claim = claim_name(path);
+  if (!claim) return claim.error();
+  std::string head;
+  for (const std::string& comment : comments) append_comment(head, comment);
+  file->write(head + line_of(columns, [](std::size_t i) { return kColumnNames[i]; }));
+  return RecordingWriter(std::move(*claim), std::move(*file), path, columns);
 }
 
 Status RecordingWriter::add(const RecordingRow& row) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,22 +45,10 @@ class RecordingWriter {
   Status commit();
 
  private:
-  // Reserves the name of a file that has none yet: an address that the system frees with its descriptor.
-  class Claim {
-   public:
-    static Result<Claim> of(const std::string& path);
-    Claim(Claim&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-    ~Claim();
-
-   private:
-    explicit Claim(int descriptor) : descriptor_(descriptor) {}
-    int descriptor_;  // -1: the system has no such addresses
-  };
-
-  RecordingWriter(Claim claim, AtomicFile file, std::string path, RecordingColumns columns)
+  RecordingWriter(std::shared_ptr<void> claim, AtomicFile file, std::string path, RecordingColumns columns)
       : claim_(std::move(claim)), file_(std::move(file)), path_(std::move(path)), columns_(columns) {}
 
-  Claim claim_;
+  std::shared_ptr<void> claim_;  // reserves the name of a file that has none yet
   AtomicFile file_;
   std::string path_;
   RecordingColumns columns_;

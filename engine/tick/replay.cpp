@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "engine/tick/jnd.h"
@@ -41,25 +42,25 @@ double common_surface_m(const ForceModels& models) {
 class Replay {
  public:
   // `rows`: the first rows, from which sensor and noise are identified.
-  Replay(const ForceModels& models, const RecordingRow* rows, std::size_t count, RecordingColumns columns,
+  Replay(const ForceModels& models, const std::vector<RecordingRow>& rows, RecordingColumns columns,
          double surface_offset_m)
-      : summary_{identify_sensor(rows, count, columns)},
+      : summary_{identify_sensor(rows.data(), rows.size(), columns)},
         tick_(summary_.sensor, models),
         surface_offset_m_(surface_offset_m),
         surface_m_(common_surface_m(models)),
-        least_N_(least_contact_N(rows, count, surface_m_ + surface_offset_m)) {}
+        least_N_(least_contact_N(rows.data(), rows.size(), surface_m_ + surface_offset_m)) {}
 
   // To be called with all rows in order.
-  void run(const RecordingRow* rows, std::size_t count, const ReplayVisitor& visitor) {
-    for (std::size_t i = 0; i < count; ++i) {
-      ToolSample sample = tool_sample(rows[i]);
+  void run(const std::vector<RecordingRow>& rows, const ReplayVisitor& visitor) {
+    for (const RecordingRow& row : rows) {
+      ToolSample sample = tool_sample(row);
       sample.position_m -= surface_offset_m_;
       TickSnapshot snapshot = tick_.step(sample);
-      snapshot.in_contact = sample.position_m > surface_m_ || std::abs(rows[i].force_N) > least_N_;
-      ++summary_.samples;
+      snapshot.in_contact = sample.position_m > surface_m_ || std::abs(row.force_N) > least_N_;
       if (snapshot.in_contact) ++summary_.contact_samples;
-      if (visitor) visitor(rows[i], snapshot, tick_);
+      if (visitor) visitor(row, snapshot, tick_);
     }
+    summary_.samples += rows.size();
   }
   const ReplaySummary& summary() const { return summary_; }
 
@@ -78,25 +79,23 @@ double least_contact_N(const RecordingRow* rows, std::size_t count, double surfa
 
 ReplaySummary replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
                      double surface_offset_m) {
-  const std::vector<RecordingRow>& rows = recording.rows;
-  Replay replay(models, rows.data(), rows.size(), recording.columns, surface_offset_m);
-  replay.run(rows.data(), rows.size(), visitor);
+  Replay replay(models, recording.rows, recording.columns, surface_offset_m);
+  replay.run(recording.rows, visitor);
   return replay.summary();
 }
 
 Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor,
                              double surface_offset_m) {
-  // One buffer: the rows for the identification are also the first chunk.
-  std::vector<RecordingRow> rows(kSensorIdentificationRows);
-  Result<std::size_t> count = reader.read(rows.data(), rows.size());
-  if (!count) return count.error();
-  Replay replay(models, rows.data(), *count, reader.columns(), surface_offset_m);
-  while (*count > 0) {
-    replay.run(rows.data(), *count, visitor);
-    count = reader.read(rows.data(), rows.size());
+  std::vector<RecordingRow> rows;
+  std::optional<Replay> replay;
+  for (;;) {
+    rows.clear();
+    const auto count = reader.read(rows, kSensorIdentificationRows);
     if (!count) return count.error();
+    if (!replay) replay.emplace(models, rows, reader.columns(), surface_offset_m);
+    if (*count == 0) return replay->summary();
+    replay->run(rows, visitor);
   }
-  return replay.summary();
 }
 
 }  // namespace palpate

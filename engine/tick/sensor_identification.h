@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "engine/recording/recording_reader.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/tool_sample.h"
 

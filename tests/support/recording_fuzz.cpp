@@ -20,17 +20,17 @@ Outcome parse(const std::string& text, std::size_t batch_rows) {
   Outcome outcome;
   auto parser = RecordingReader::from(std::make_unique<std::istringstream>(text), "rec.csv");
   if (!parser) return {{}, parser.error().message};
-  std::vector<RecordingRow> batch(batch_rows);
   for (;;) {
-    const auto count = parser->read(batch.data(), batch.size());
+    const std::size_t before = outcome.rows.size();
+    const auto count = parser->read(outcome.rows, batch_rows);
     if (!count) {
       outcome.message = count.error().message;
-      require(!parser->read(batch.data(), batch.size()).ok(), "an error was forgotten");
+      require(!parser->read(outcome.rows, batch_rows).ok(), "an error was forgotten");
       return outcome;
     }
     if (*count == 0) return outcome;
-    require(*count <= batch.size(), "more rows than asked for");
-    outcome.rows.insert(outcome.rows.end(), batch.begin(), batch.begin() + static_cast<std::ptrdiff_t>(*count));
+    require(*count <= batch_rows, "more rows than asked for");
+    require(outcome.rows.size() == before + *count, "another number of rows than returned");
   }
 }
 
