@@ -43,8 +43,8 @@ Result<std::string> read_plain_file(const std::string& path, const std::string& 
     if ((*file)->bad()) return unreadable(path);
     text.append(chunk, 0, static_cast<std::size_t>((*file)->gcount()));
     if (text.size() > most_bytes)
-      return Error{path + ": found more than " + std::to_string(most_bytes) + " bytes, expected " + expected +
-                   "; name another file"};
+      return Error{path + ": found more than " + std::to_string(most_bytes >> 20) + " MiB, expected " + expected +
+                   "; split the file or name another one"};
   }
   return text;
 }

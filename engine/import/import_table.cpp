@@ -41,10 +41,10 @@ struct LeftOut {
   }
 };
 
-class Importer {
+class Importer : ImportMessages {
  public:
-  Importer(const ForeignText& foreign, std::string label, const ImportRequest& request)
-      : text_(foreign.text), label_(std::move(label)), request_(request) {
+  Importer(const ForeignText& foreign, const std::string& path, const ImportRequest& request)
+      : ImportMessages{path}, text_(foreign.text), request_(request) {
     table_.encoding = foreign.encoding;
   }
 
@@ -291,7 +291,7 @@ class Importer {
       request_.rate_Hz = 1.0 / table_.layout.step_s;
       note("the rows are evenly spaced by the Delta_X above the table");
     }
-    auto columns = find_table_columns(text_, label_, request_, table_.layout, table_.notes);
+    auto columns = find_table_columns(text_, request_, table_.layout, *this);
     if (!columns) return columns.error();
     columns_ = std::move(*columns);
     if (const Status status = read_rows(); !status) return status.error();
@@ -306,23 +306,18 @@ class Importer {
     if (request_.rate_Hz) table_.columns[0] = {};
     table_.layout.names.clear();
     table_.layout.units.clear();
-    table_.recording.name = std::filesystem::path(label_).stem().string();
+    table_.notes = std::move(notes);
+    table_.recording.name = std::filesystem::path(label).stem().string();
     return std::move(table_);
   }
 
  private:
-  Error fail(const std::string& text) const { return Error{label_ + ": " + text}; }
-  Error fail_at(std::uint64_t line, const std::string& text) const {
-    return Error{label_ + ":" + std::to_string(line) + ": " + text};
-  }
-  void note(const std::string& sentence) { table_.notes.push_back(sentence); }
   std::size_t index_of(std::size_t role) const { return columns_.index_of(role); }
   // The field of a column in the present row; empty if it is missing.
   std::string_view field(std::size_t index) const { return index < row_.size() ? row_[index] : std::string_view(); }
   bool is_empty(std::size_t index) const { return field(index).empty() || is_missing_value(field(index)); }
 
   std::string_view text_;
-  std::string label_;
   ImportRequest request_;
   ImportedTable table_;
   TableColumns columns_;

@@ -14,16 +14,8 @@ constexpr std::size_t kFirstRows = 200;
 
 class ColumnFinder {
  public:
-  ColumnFinder(std::string_view text, const std::string& label, const ImportRequest& request, TableLayout& layout,
-               std::vector<std::string>& notes)
-      : text_(text), label_(label), request_(request), layout_(layout), notes_(notes) {}
-
-  // The unit of `quantity`: that of the user, otherwise that of the header.
-  std::optional<Unit> unit_of(Quantity quantity, const ImportRequest& request, const ForeignColumn& column) {
-    for (const Unit& unit : request.units)
-      if (unit.quantity == quantity) return unit;
-    return column.parts.unit;
-  }
+  ColumnFinder(std::string_view text, const ImportRequest& request, TableLayout& layout, ImportMessages& messages)
+      : text_(text), request_(request), layout_(layout), messages_(messages) {}
 
   // Refuses a header that does not determine the columns, unless the user gives their numbers.
   Status check_header() {
@@ -37,10 +29,11 @@ class ColumnFinder {
     if (!layout_.misfit) {
       if (decided) return {};
       const auto [upper, lower] = std::minmax(layout_.header_line, layout_.rival_line);
-      return fail_at(upper, "found names of columns in this line and in line " + std::to_string(lower) +
-                                " that put the position and the force into different columns, expected one header; "
-                                "remove the wrong line, " +
-                                advice);
+      return messages_.fail_at(upper,
+                               "found names of columns in this line and in line " + std::to_string(lower) +
+                                   " that put the position and the force into different columns, expected one header; "
+                                   "remove the wrong line, " +
+                                   advice);
     }
     std::vector<std::string> names;
     std::array<std::string, kRoles> units;
@@ -53,103 +46,86 @@ class ColumnFinder {
                               std::to_string(layout_.data_line) + " have " + std::to_string(layout_.columns) +
                               " fields";
     if (decided) {
-      note("warning: the header in line " + std::to_string(layout_.header_line) + " is not used: it has " + found);
+      messages_.note("warning: the header in line " + std::to_string(layout_.header_line) + " is not used: it has " +
+                     found);
       layout_.names.clear();
       layout_.header_line = 0;
       return {};
     }
     std::vector<std::string> known(units.begin(), units.end());
     std::erase(known, "");
-    return fail_at(layout_.header_line,
-                   "found a header of " + found + ", expected a name for each field; correct the header, " + advice +
-                       (known.empty() ? "" : ", with the units of the header: --units " + joined(known, ",")));
+    return messages_.fail_at(
+        layout_.header_line,
+        "found a header of " + found + ", expected a name for each field; correct the header, " + advice +
+            (known.empty() ? "" : ", with the units of the header: --units " + joined(known, ",")));
   }
 
-  // The error of a column with an unknown unit.
-  Error unknown_unit(std::size_t role) const {
-    constexpr const char* kQuantities[] = {"time", "length", "force"};
-    const ForeignColumn& column = found_.header[found_.index_of(role)];
-    return fail_at(layout_.header_line,
-                   "found the unit \"" + printable(column.parts.foreign_unit) + "\" in column " +
-                       std::to_string(found_.index_of(role) + 1) + " \"" + printable(column.header) +
-                       "\", expected a unit of " + kQuantities[role] + " (" + unit_names(static_cast<Quantity>(role)) +
-                       "); convert the column to one of these, choose another column with --columns " +
-                       kRoleNames[role] + "=NAME, or give the unit of the numbers with --units if the header is wrong");
-  }
-
-  // A note where a unit of the user contradicts that of the header.
-  void compare_unit(std::size_t role, const Unit& used) {
-    const NameAndUnit& parts = found_.header[found_.index_of(role)].parts;
-    const bool same = parts.unit ? parts.unit->to_si == used.to_si : parts.foreign_unit.empty();
-    if (same) return;
-    note("warning: the " + std::string(kRoleNames[role]) + found_.quoted_name(found_.index_of(role)) + " is read in " +
-         std::string(used.name) + " as --units says, although its header says " +
-         (parts.unit ? std::string(parts.unit->name) : printable(parts.foreign_unit)));
-  }
-
-  // Finds the unit of position or force.
+  // The unit of a role: that of the user, otherwise that of the header. For the times those of a clock come first, and
+  // the only unit with a valid rate last; for the force a gain.
   Status find_unit_of(std::size_t role) {
-    const Quantity quantity = static_cast<Quantity>(role);
-    const auto& column = found_.header[found_.index_of(role)];
-    const std::optional<Unit> unit = unit_of(quantity, request_, column);
-    if (unit && unit->quantity != quantity) {
-      return fail("found the unit " + std::string(unit->name) + " in the column \"" + printable(column.header) +
-                  "\", expected one of a " + (role == 1 ? "length" : "force") + " for the " + kRoleNames[role] +
-                  "; choose another with --columns " + kRoleNames[role] + "=NAME; the columns are " +
-                  list_columns(found_.header));
-    }
-    const double volts = role == 2 ? volts_of(column.parts.foreign_unit) : 0.0;
-    if (role == 2 && request_.gain_N_per_V) {
-      use_unit(role, {"V", quantity, (volts > 0.0 ? volts : 1.0) * *request_.gain_N_per_V});
-      return {};
-    }
+    constexpr const char* kQuantities[] = {"time", "length", "force"};
+    const auto quantity = static_cast<Quantity>(role);
+    const std::size_t index = found_.index_of(role);
+    const NameAndUnit& parts = found_.header[index].parts;
+    const std::string header = " \"" + printable(found_.header[index].header) + "\"";
+    const std::string in_header = parts.unit ? std::string(parts.unit->name) : printable(parts.foreign_unit);
+    const double step = role == 0 ? examine_times() : 0.0;
+    if (role == 0 && found_.times.are_of_a_clock()) return use_unit(role, {"clock", quantity, 1.0});
+    std::optional<Unit> unit = parts.unit;
+    for (const Unit& given : request_.units)
+      if (given.quantity == quantity) unit = given;
+    const bool fits = unit && unit->quantity == quantity;
+    const double volts = role == 2 ? volts_of(parts.foreign_unit) : 0.0;
+    if (role == 2 && request_.gain_N_per_V && (fits || !unit))
+      return use_unit(role, {"V", quantity, (volts > 0.0 ? volts : 1.0) * *request_.gain_N_per_V});
     if (volts > 0.0) {
-      return fail("found volts in the column \"" + printable(column.header) +
-                  "\", expected a force; say how many newtons a volt is: --gain N_PER_V");
+      return messages_.fail("found volts in the column" + header +
+                            ", expected a force; say how many newtons a volt is: --gain N_PER_V");
     }
-    if (!unit && !column.parts.foreign_unit.empty()) return unknown_unit(role);
-    if (!unit) {
-      return fail("found no known unit of the " + std::string(kRoleNames[role]) +
-                  found_.quoted_name(found_.index_of(role)) + ", expected one of " + unit_names(quantity) +
-                  "; add the unit of the numbers with --units " + (role == 1 ? "mm" : "N") +
-                  ", with a comma between two units: --units mm,N");
+    if (fits) {
+      // A note where the unit of the user contradicts that of the header.
+      if (parts.unit ? parts.unit->to_si != unit->to_si : !in_header.empty()) {
+        messages_.note("warning: the " + std::string(kRoleNames[role]) + found_.quoted_name(index) + " is read in " +
+                       std::string(unit->name) + " as --units says, although its header says " + in_header);
+      }
+      return use_unit(role, *unit);
     }
-    compare_unit(role, *unit);
-    use_unit(role, *unit);
-    return {};
+    if (!parts.foreign_unit.empty() || (unit && role > 0)) {
+      return messages_.fail_at(layout_.header_line,
+                               "found the unit \"" + in_header + "\" in column " + std::to_string(index + 1) + header +
+                                   ", expected a unit of " + kQuantities[role] + " (" + unit_names(quantity) +
+                                   "); convert the column to one of these, choose another column with --columns " +
+                                   kRoleNames[role] +
+                                   "=NAME, or give the unit of the numbers with --units if the header is wrong");
+    }
+    if (role == 0) return guess_time_unit(step);
+    return messages_.fail("found no known unit of the " + std::string(kRoleNames[role]) + found_.quoted_name(index) +
+                          ", expected one of " + unit_names(quantity) + "; add the unit of the numbers with --units " +
+                          (role == 1 ? "mm" : "N") + ", with a comma between two units: --units mm,N");
   }
 
-  // The times are those of a clock, have a unit from the header or the user, or are in the only unit with a valid rate.
-  Status find_time_unit() {
+  // Returns the step of the times in the file.
+  double examine_times() {
     const std::size_t index = found_.index_of(0);
     std::vector<std::string_view> fields;
     for (const auto& row : first_rows_) fields.push_back(index < row.size() ? row[index] : std::string_view());
     found_.times = RowTimes(layout_.decimal);
-    const double step = found_.times.examine(fields);
-    std::optional<Unit> unit = unit_of(Quantity::time, request_, found_.header[index]);
-    if (found_.times.are_of_a_clock()) unit = Unit{"clock", Quantity::time, 1.0};
-    if (unit && unit->quantity == Quantity::time) {
-      if (!found_.times.are_of_a_clock()) compare_unit(0, *unit);
-      use_unit(0, *unit);
-      return {};
-    }
-    if (!found_.header[index].parts.foreign_unit.empty()) return unknown_unit(0);
-    std::vector<Unit> possible;
-    for (const char* name : {"s", "ms", "us", "ns"}) {
-      const Unit candidate = *find_unit(name);
-      if (step > 0.0 && rate_in_range(step * candidate.to_si)) possible.push_back(candidate);
-    }
+    return found_.times.examine(fields);
+  }
+
+  Status guess_time_unit(double step) {
+    std::vector<std::string> possible;
+    for (const char* unit : {"s", "ms", "us", "ns"})
+      if (step > 0.0 && rate_in_range(step * find_unit(unit)->to_si)) possible.emplace_back(unit);
     if (possible.size() != 1) {
-      const std::string choices = possible.empty()
-                                      ? "s, ms, us or ns"
-                                      : std::string(possible[0].name) + " or --units " + std::string(possible[1].name);
-      return fail("found no unit of the time" + found_.quoted_name(index) + " and steps of " + general(step, 6) +
-                  "; add --units " + choices + ", or --rate HZ if the rows are evenly spaced");
+      return messages_.fail("found no unit of the time" + found_.quoted_name(found_.index_of(0)) + " and steps of " +
+                            general(step, 6) + "; add --units " +
+                            (possible.empty() ? "s, ms, us or ns" : joined(possible, " or --units ")) +
+                            ", or --rate HZ if the rows are evenly spaced");
     }
-    use_unit(0, possible.front());
-    note("the header has no unit of time: taken as " + found_.roles[0].unit + ", the only unit in which steps of " +
-         general(step, 6) + " are a rate of 10 Hz to 20 kHz");
-    return {};
+    messages_.note("the header has no unit of time: taken as " + possible.front() +
+                   ", the only unit in which steps of " + general(step, 6) + " are a rate of 10 Hz to 20 kHz");
+    return use_unit(0, *find_unit(possible.front()));
   }
 
   Status choose() {
@@ -161,7 +137,7 @@ class ColumnFinder {
     auto choice = choose_columns(found_.header, request_.columns, has_header, true);
     // With a given rate the times of the file are only compared with it.
     if (request_.rate_Hz && !choice) choice = choose_columns(found_.header, request_.columns, has_header, false);
-    if (!choice) return fail(choice.error().message);
+    if (!choice) return messages_.fail(choice.error().message);
     found_.roles = std::move(*choice);
     found_.velocity = find_velocity(found_.header);
     return {};
@@ -171,11 +147,11 @@ class ColumnFinder {
     if (const Status status = check_header(); !status) return status.error();
     if (const Status status = choose(); !status) return status.error();
     if (found_.roles[0].number > 0) {
-      const std::size_t notes = notes_.size();
-      const Status status = find_time_unit();
+      const std::size_t notes = messages_.notes.size();
+      const Status status = find_unit_of(0);
       found_.own_time = status.ok();
       if (!status && !request_.rate_Hz) return status.error();
-      if (request_.rate_Hz) notes_.resize(notes);
+      if (request_.rate_Hz) messages_.notes.resize(notes);
     }
     for (const std::size_t role : {1u, 2u})
       if (const Status status = find_unit_of(role); !status) return status.error();
@@ -183,21 +159,16 @@ class ColumnFinder {
   }
 
  private:
-  Error fail(const std::string& text) const { return Error{label_ + ": " + text}; }
-  Error fail_at(std::uint64_t line, const std::string& text) const {
-    return Error{label_ + ":" + std::to_string(line) + ": " + text};
-  }
-  void note(const std::string& sentence) { notes_.push_back(sentence); }
-  void use_unit(std::size_t role, const Unit& unit) {
+  Status use_unit(std::size_t role, const Unit& unit) {
     found_.to_si[role] = unit.to_si;
     found_.roles[role].unit = unit.name;
+    return {};
   }
 
   std::string_view text_;
-  const std::string& label_;
   const ImportRequest& request_;
   TableLayout& layout_;
-  std::vector<std::string>& notes_;
+  ImportMessages& messages_;
   std::vector<std::vector<std::string_view>> first_rows_;  // their fields
   TableColumns found_;
 };
@@ -210,9 +181,9 @@ std::string TableColumns::quoted_name(std::size_t index) const {
   return named ? " \"" + printable(header[index].header) + "\"" : "";
 }
 
-Result<TableColumns> find_table_columns(std::string_view text, const std::string& label, const ImportRequest& request,
-                                        TableLayout& layout, std::vector<std::string>& notes) {
-  return ColumnFinder(text, label, request, layout, notes).run();
+Result<TableColumns> find_table_columns(std::string_view text, const ImportRequest& request, TableLayout& layout,
+                                        ImportMessages& messages) {
+  return ColumnFinder(text, request, layout, messages).run();
 }
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,18 @@
 #include "engine/import/table_cell.h"
 
 namespace palpate {
+
+// The messages about one file: errors with its name, and notes, sentences on guesses, omissions and advice.
+struct ImportMessages {
+  std::string label;
+  std::vector<std::string> notes{};
+
+  Error fail(const std::string& text) const { return Error{label + ": " + text}; }
+  Error fail_at(std::uint64_t line, const std::string& text) const {
+    return Error{label + ":" + std::to_string(line) + ": " + text};
+  }
+  void note(const std::string& sentence) { notes.push_back(sentence); }
+};
 
 struct TableColumns {
   std::vector<ForeignColumn> header;
@@ -29,10 +42,10 @@ struct TableColumns {
   std::string quoted_name(std::size_t index) const;
 };
 
-// `layout`: loses a header that does not fit if the user gives the numbers of the columns. `notes`: receives a sentence
-// for every guess. Errors, which begin with `label`: those of choose_columns; a header with too few names; two headers
-// that contradict each other; a unit that is missing, unknown or of another quantity.
-Result<TableColumns> find_table_columns(std::string_view text, const std::string& label, const ImportRequest& request,
-                                        TableLayout& layout, std::vector<std::string>& notes);
+// `layout`: loses a header that does not fit if the user gives the numbers of the columns. Errors: those of
+// choose_columns; a header with too few names; two headers that contradict each other; a unit that is missing, unknown
+// or of another quantity.
+Result<TableColumns> find_table_columns(std::string_view text, const ImportRequest& request, TableLayout& layout,
+                                        ImportMessages& messages);
 
 }  // namespace palpate

@@ -1,8 +1,6 @@
 #include "engine/import/table_layout.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -265,13 +263,7 @@ Result<TableLayout> find_table_layout(std::string_view text, std::optional<char>
 }
 
 Result<ForeignText> read_foreign_text(const std::string& path) {
-  constexpr const char* kExpected = "a table as text (CSV, TXT)";
-  std::error_code unknown;
-  if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown && bytes > kLargestTableBytes) {
-    return Error{path + ": found " + std::to_string(bytes >> 20) + " MiB, expected " + kExpected + " of at most " +
-                 std::to_string(kLargestTableBytes >> 20) + " MiB; split the file"};
-  }
-  auto file = read_plain_file(path, kExpected, "", kLargestTableBytes);
+  auto file = read_plain_file(path, "a table as text (CSV, TXT)", "", kLargestTableBytes);
   if (!file) return file.error();
   std::string& bytes = *file;
   if (bytes.empty()) return wrong_kind(path, "an empty file", "check that the recording was saved");
