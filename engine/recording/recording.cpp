@@ -4,6 +4,7 @@
 #include <bit>
 #include <filesystem>
 #include <system_error>
+#include <tuple>
 
 #include "engine/base/text.h"
 #include "engine/recording/recording_reader.h"
@@ -19,19 +20,12 @@ constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
 
 // The advice for a median step outside of the valid range.
 std::string rate_advice(double step_s) {
-  struct Unit {
-    const char* name;
-    const char* divisor;
-    double seconds;
-  };
-  static constexpr Unit kUnits[] = {
-      {"milliseconds", "1000", 1e-3}, {"microseconds", "1000000", 1e-6}, {"nanoseconds", "1000000000", 1e-9}};
   if (step_s < 1.0 / kMaximumRate_Hz) return "keep fewer samples, or check that time_s is in seconds";
-  for (const Unit& unit : kUnits) {
-    if (rate_in_range(step_s * unit.seconds)) {
-      return "if time_s is in " + std::string(unit.name) + ", divide it by " + unit.divisor +
-             ", otherwise record faster";
-    }
+  for (const auto& [name, divisor, seconds] : {std::tuple{"milliseconds", "1000", 1e-3},
+                                               {"microseconds", "1000000", 1e-6},
+                                               {"nanoseconds", "1000000000", 1e-9}}) {
+    if (rate_in_range(step_s * seconds))
+      return std::string("if time_s is in ") + name + ", divide it by " + divisor + ", otherwise record faster";
   }
   return "record faster, or check that time_s is in seconds";
 }
@@ -135,14 +129,6 @@ RowFault RowRules::explain(const RecordingRow& row) const {
   }
   return fault(ColumnRole::kForce, row.force_N,
                ", expected newtons, at most 1000000 either way; check the unit of the column");
-}
-
-// Accepts a row among the first ones, from which the rate is checked.
-std::optional<RowFault> RowRules::accept_early(const RecordingRow& row) {
-  if (rows_ > 0) steps_s_.push_back(row.time_s - last_time_s_);
-  last_time_s_ = row.time_s;
-  ++rows_;
-  return rows_ == kRateRows ? check_rate() : std::nullopt;
 }
 
 std::optional<RowFault> RowRules::check_rate() {

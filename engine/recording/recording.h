@@ -105,10 +105,9 @@ class RowRules {
                       std::abs(row.position_m) <= kMaximumPosition_m && std::abs(row.force_N) <= kMaximumForce_N &&
                       std::abs(row.velocity_m_per_s) < HUGE_VAL && std::abs(row.acceleration_m_per_s2) < HUGE_VAL;
     if (!sane) return explain(row);
-    if (rows_ < kRateRows) return accept_early(row);
+    if (rows_ > 0 && rows_ < kRateRows) steps_s_.push_back(row.time_s - last_time_s_);
     last_time_s_ = row.time_s;
-    ++rows_;
-    return std::nullopt;
+    return ++rows_ == kRateRows ? check_rate() : std::nullopt;
   }
 
   // To be called after the last row. Detects fewer than kRecordingMinimumRows rows, and a rate outside the range in a
@@ -119,7 +118,6 @@ class RowRules {
 
  private:
   RowFault explain(const RecordingRow& row) const;
-  std::optional<RowFault> accept_early(const RecordingRow& row);
   std::optional<RowFault> check_rate();
 
   double last_time_s_ = -HUGE_VAL;

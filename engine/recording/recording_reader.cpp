@@ -16,36 +16,16 @@ namespace {
 // is too long, and the terminator.
 constexpr std::size_t kBeyondLimit = 6;
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-const char* skip_blanks(const char* at, const char* end) {
-  while (at != end && is_blank(*at)) ++at;
-  return at;
-}
-
-// Parses one number with blanks around it. Returns its end (a comma or `end`), or nullptr if there is no finite number.
-const char* parse_field(const char* begin, const char* end, double& value) {
-  const char* at = parse_number(skip_blanks(begin, end), end, value);
-  if (at == nullptr) return nullptr;
-  at = skip_blanks(at, end);
-  return at == end || *at == ',' ? at : nullptr;
+bool parse_field(std::string_view field, double& value) {
+  field = trimmed(field);
+  return parse_number(field.data(), field.data() + field.size(), value) == field.data() + field.size();
 }
 
 // The functions below explain why a line was refused: slow, once a file.
 
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t begin = 0;;) {
-    const std::size_t comma = line.find(',', begin);
-    fields.push_back(line.substr(begin, comma - begin));
-    if (comma == std::string_view::npos) return fields;
-    begin = comma + 1;
-  }
-}
-
 bool is_number(std::string_view text) {
   double value = 0.0;
-  return parse_field(text.data(), text.data() + text.size(), value) == text.data() + text.size();
+  return parse_field(text, value);
 }
 
 // `text` without blanks and one pair of quotes around it.
@@ -128,11 +108,10 @@ std::string number_fault(std::string_view field, std::string_view name) {
 }
 
 // The fault of a row that cannot be parsed under a header of these columns. `has_end`: it ends with a newline.
-LineFault row_fault(std::string_view line, bool has_end, const std::vector<ColumnRole>& roles,
-                    bool header_ends_with_comma) {
+LineFault row_fault(std::string_view line, bool has_end, const std::vector<std::string_view>& fields,
+                    const std::vector<ColumnRole>& roles, bool header_ends_with_comma) {
   if (line.starts_with('#'))
     return {line, "found a comment after the header, expected a row; move it above the header or remove it"};
-  const auto fields = fields_of(line);
   const std::size_t found = fields.size(), expected = roles.size();
   if (found == expected) {
     std::size_t bad = 0;
@@ -203,8 +182,8 @@ bool RecordingReader::fail(const std::string& message) {
 }
 
 bool RecordingReader::fail(const RowFault& fault) {
-  return fail((fault.place == RowFault::Place::kFirstRow ? first_time_ : place_of(value_of(field(fault.role)))) +
-              fault.text);
+  const std::string_view at = line_.empty() ? line_ : value_of(fields_[index_of(fault.role)]);
+  return fail((fault.place == RowFault::Place::kFirstRow ? first_time_ : place_of(at)) + fault.text);
 }
 
 // Lines end with LF or CRLF; a UTF-8 byte order mark is skipped.
@@ -240,8 +219,8 @@ bool RecordingReader::parse_header() {
     return fail(place_of(line_.substr(good)) + "found byte " + printable(line_.substr(good, 1)) +
                 ", expected UTF-8 text in the header; save the file as UTF-8 CSV");
   }
-  const auto names = fields_of(line_);
-  for (const std::string_view name : names) {
+  split_line();
+  for (const std::string_view name : fields_) {
     const auto known = std::find(kColumnNames.begin(), kColumnNames.end(), name);
     const auto role = static_cast<ColumnRole>(known - kColumnNames.begin());  // ignored if the name is unknown
     if (role != ColumnRole::kIgnored && has(role)) {
@@ -250,13 +229,13 @@ bool RecordingReader::parse_header() {
     }
     roles_.push_back(role);
   }
-  header_ends_with_comma_ = names.back().empty();
+  header_ends_with_comma_ = fields_.back().empty();
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < kRequiredColumns; ++i)
     if (!has(static_cast<ColumnRole>(i))) missing.emplace_back(kColumnNames[i]);
   if (missing.empty()) return true;
   // Usually the file is that of another program, so every message recommends the import.
-  const LineFault fault = header_fault(line_, names, missing);
+  const LineFault fault = header_fault(line_, fields_, missing);
   return fail(place_of(fault.at) + fault.text + ", or let palpate import " + label_ + " --out REC.csv do it");
 }
 
@@ -264,29 +243,28 @@ std::size_t RecordingReader::index_of(ColumnRole role) const {
   return static_cast<std::size_t>(std::find(roles_.begin(), roles_.end(), role) - roles_.begin());
 }
 
-std::string_view RecordingReader::field(ColumnRole role) const {
-  return line_.empty() ? line_ : fields_of(line_)[index_of(role)];
-}
-
 RecordingColumns RecordingReader::columns() const {
   return {has(ColumnRole::kVelocity), has(ColumnRole::kAcceleration)};
 }
 
-// Parses every field of the present line. If false, row_fault gives the reason.
-bool RecordingReader::parse(RecordingRow& row) const {
-  std::array<double, kKnownColumns> values{};
-  const char* at = line_.data();
-  const char* const end = at + line_.size();
-  const std::size_t count = roles_.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const ColumnRole role = roles_[i];
-    at = role == ColumnRole::kIgnored ? std::find(at, end, ',')
-                                      : parse_field(at, end, values[static_cast<std::size_t>(role)]);
-    if (at == nullptr) return false;
-    const bool is_last = i + 1 == count;
-    if (is_last != (at == end)) return false;
-    if (!is_last) ++at;
+void RecordingReader::split_line() {
+  fields_.clear();
+  for (std::string_view rest = line_;;) {
+    const std::size_t comma = rest.find(',');
+    fields_.push_back(rest.substr(0, comma));
+    if (comma == std::string_view::npos) return;
+    rest.remove_prefix(comma + 1);
   }
+}
+
+// Parses every field of the present line. If false, row_fault gives the reason.
+bool RecordingReader::parse(RecordingRow& row) {
+  split_line();
+  if (fields_.size() != roles_.size()) return false;
+  std::array<double, kKnownColumns> values{};
+  for (std::size_t i = 0; i < fields_.size(); ++i)
+    if (roles_[i] != ColumnRole::kIgnored && !parse_field(fields_[i], values[static_cast<std::size_t>(roles_[i])]))
+      return false;
   row = {values[0], values[1], values[2], values[3], values[4]};
   return true;
 }
@@ -302,7 +280,7 @@ bool RecordingReader::next(RecordingRow& row) {
   if (!next_line()) return finish();
   if (!parse(row)) {
     if (!trimmed(line_).empty()) {
-      const LineFault fault = row_fault(line_, line_has_end_, roles_, header_ends_with_comma_);
+      const LineFault fault = row_fault(line_, line_has_end_, fields_, roles_, header_ends_with_comma_);
       return fail(place_of(fault.at) + fault.text);
     }
     // Blank lines are allowed at the end of the file only.
@@ -313,7 +291,7 @@ bool RecordingReader::next(RecordingRow& row) {
                     " fields; remove the blank line");
     return finish();
   }
-  if (rules_.rows() == 0) first_time_ = place_of(value_of(field(ColumnRole::kTime)));
+  if (rules_.rows() == 0) first_time_ = place_of(value_of(fields_[index_of(ColumnRole::kTime)]));
   const auto fault = rules_.check(row);
   return !fault || fail(*fault);
 }

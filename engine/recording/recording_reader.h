@@ -44,16 +44,16 @@ class RecordingReader {
   // Sets the error and returns false.
   bool fail(const std::string& message);
   bool fail(const RowFault& fault);
-  bool parse(RecordingRow& row) const;
-  // The field of the present line; at the end of the file the empty line.
-  std::string_view field(ColumnRole role) const;
+  void split_line();
+  bool parse(RecordingRow& row);
   std::size_t index_of(ColumnRole role) const;
   bool has(ColumnRole role) const { return index_of(role) < roles_.size(); }
 
   std::unique_ptr<std::istream> stream_;
   std::string label_, name_;
-  std::vector<char> buffer_;  // holds the present line
-  std::string_view line_;     // without its line end; empty at the end of the file
+  std::vector<char> buffer_;              // holds the present line
+  std::string_view line_;                 // without its line end; empty at the end of the file
+  std::vector<std::string_view> fields_;  // of the present line
   std::uint64_t line_number_ = 0;
   bool line_has_end_ = false;      // false: the file ends here without a newline
   std::vector<ColumnRole> roles_;  // of the columns of the file, in its order
