@@ -44,12 +44,8 @@ ReportVerdict decode_space_mouse(const std::uint8_t* bytes, std::size_t size, De
 const DeviceProtocol kSpaceMouseProtocol = {
     .name = "spacemouse",
     .description = "SpaceMouse, input only: no force",
-    .renders_force = false,
     .matches = is_space_mouse,
     .decode = decode_space_mouse,
-    .encode_start = []() noexcept { return OutReports{}; },
-    .encode_command = [](const DeviceCommand&) noexcept { return OutReports{}; },
-    .encode_stop = []() noexcept { return OutReports{}; },
 };
 
 Status SpaceMouse::start(MouseDevice& tool) {

@@ -69,12 +69,13 @@ struct DeviceProtocol {
   bool (*matches)(const DeviceNode& info) noexcept;
   // `bytes`: a report as the connection read it, with a report id where there is one; `reading`: default-constructed.
   ReportVerdict (*decode)(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept;
-  // The reports to send once after opening.
-  OutReports (*encode_start)() noexcept;
-  // A command. It also requests the position if the device does not send it unasked.
-  OutReports (*encode_command)(const DeviceCommand& command) noexcept;
-  // Removes the force.
-  OutReports (*encode_stop)() noexcept;
+  // The reports to send once after opening; a command, which also requests the position if the device does not send it
+  // unasked; the removal of the force. The default writes nothing.
+  OutReports (*encode_start)() noexcept = []() noexcept { return OutReports{}; };
+  OutReports (*encode_command)(const DeviceCommand&) noexcept = [](const DeviceCommand&) noexcept {
+    return OutReports{};
+  };
+  OutReports (*encode_stop)() noexcept = encode_start;
 };
 
 }  // namespace palpate

@@ -171,16 +171,15 @@ std::string flag_for(std::size_t role, const std::string& what) {
 
 Result<std::size_t> find_column(const std::vector<ForeignColumn>& columns, std::size_t role,
                                 const std::string& wanted) {
-  const auto with = [&](auto&& name_of) {
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      if (name_of(columns[i])) found.push_back(i);
-    return found;
-  };
   const std::string lower = lower_ascii(wanted);
-  std::vector<std::size_t> found = with([&](const ForeignColumn& c) { return c.header == wanted; });
-  if (found.empty()) found = with([&](const ForeignColumn& c) { return lower_ascii(c.header) == lower; });
-  if (found.empty()) found = with([&](const ForeignColumn& c) { return lower_ascii(c.parts.name) == lower; });
+  std::vector<std::size_t> found;
+  // The header as it is, else in any case, else without its unit.
+  for (int way = 0; way < 3 && found.empty(); ++way) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const auto& [header, parts, constant] = columns[i];
+      if (way == 0 ? header == wanted : lower_ascii(way == 1 ? header : parts.name) == lower) found.push_back(i);
+    }
+  }
   if (found.size() == 1) return found.front();
   if (found.size() > 1) {
     return Error{"found " + std::to_string(found.size()) + " columns called \"" + printable(wanted) +

@@ -1,9 +1,5 @@
 // Converts a text table of another program into a recording in SI units. Nothing is repaired without a note: what
 // cannot be determined is an error that shows the header and the option to add.
-//   table_layout   bytes to text, separator, decimal mark     table_header   names, units
-//   column_roles   time, position, force                       units          units in headers
-//   table_columns  roles with their units                      table_cell     numbers, times
-//   import_table   all rows, sign; descriptions of the result
 // Thread guarantee: slow side only (does I/O).
 #pragma once
 
