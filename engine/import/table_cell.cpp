@@ -5,6 +5,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -18,37 +19,6 @@ namespace {
 constexpr std::size_t kLongestNumber = 64;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-bool is_thousands_mark(char c, char decimal) {
-  return c == '\'' || c == ' ' || (c == ',' && decimal == '.') || (c == '.' && decimal == ',');
-}
-
-// Writes a number with a decimal point and without thousands marks to `buffer`; returns the length, or 0 if the marks
-// are ambiguous.
-std::size_t with_decimal_point(std::string_view text, char decimal, char* buffer) {
-  std::size_t length = 0, marks = 0;
-  std::size_t digits = 0;  // since the last mark
-  char mark = '\0';
-  bool behind_decimal = false;
-  for (const char c : text) {
-    if (!behind_decimal && is_thousands_mark(c, decimal)) {
-      if ((mark != '\0' && c != mark) || digits == 0 || digits > 3 || (marks > 0 && digits != 3)) return 0;
-      mark = c;
-      ++marks;
-      digits = 0;
-      continue;
-    }
-    const bool ends_groups = c == decimal;
-    if (ends_groups && marks > 0 && digits != 3) return 0;
-    behind_decimal = behind_decimal || ends_groups;
-    if (!behind_decimal && is_digit(c)) ++digits;
-    buffer[length++] = ends_groups ? '.' : c;
-  }
-  if (marks == 0) return length;
-  if (!behind_decimal && digits != 3) return 0;
-  const bool unmistakable = marks >= 2 || behind_decimal || mark == '\'';
-  return unmistakable ? length : 0;
-}
 
 constexpr std::int64_t kDay_s = 86400;
 
@@ -175,9 +145,23 @@ bool parse_table_number(std::string_view text, char decimal, double& value) {
   const bool negative = text.front() == '-';
   if (negative || text.front() == '+') text.remove_prefix(1);
   if (text.empty() || (!is_digit(text.front()) && text.front() != decimal)) return false;
+  const std::size_t point = std::min(text.find(decimal), text.size());
+  std::string_view whole = text.substr(0, point);
+  std::string plain;  // the whole part without thousands marks
+  if (const std::size_t at = whole.find_first_of(decimal == '.' ? ",' " : ".' "); at < point) {
+    const char mark = whole[at];
+    std::ranges::remove_copy(whole, std::back_inserter(plain), mark);
+    std::string grouped = with_thousands(plain);
+    std::ranges::replace(grouped, ',', mark);
+    const bool unmistakable = plain.size() + 2 <= point || point < text.size() || mark == '\'';
+    if (grouped != whole || !std::ranges::all_of(plain, is_digit) || !unmistakable) return false;
+    whole = plain;
+  }
   std::array<char, kLongestNumber> buffer;
-  const char* const end = buffer.data() + with_decimal_point(text, decimal, buffer.data());
-  if (end == buffer.data() || parse_number(buffer.data(), end, value) != end) return false;
+  char* end = std::ranges::copy(whole, buffer.data()).out;
+  if (point < text.size()) *end++ = '.';
+  end = std::ranges::copy(text.substr(std::min(point + 1, text.size())), end).out;
+  if (parse_number(buffer.data(), end, value) != end) return false;
   if (negative) value = -value;
   return true;
 }

@@ -164,19 +164,10 @@ Status check_decimal_comma(const Reading& reading, const std::vector<std::string
 constexpr std::size_t kEncodingSampleBytes = 64 * 1024;
 
 void append_utf8(std::string& out, unsigned code) {
-  const auto put = [&out](unsigned byte) { out += static_cast<char>(byte); };
-  if (code < 0x80) return put(code);
-  if (code < 0x800) {
-    put(0xC0 | code >> 6);
-  } else if (code < 0x10000) {
-    put(0xE0 | code >> 12);
-    put(0x80 | (code >> 6 & 0x3F));
-  } else {
-    put(0xF0 | code >> 18);
-    put(0x80 | (code >> 12 & 0x3F));
-    put(0x80 | (code >> 6 & 0x3F));
-  }
-  put(0x80 | (code & 0x3F));
+  constexpr unsigned kLead[] = {0, 0xC0, 0xE0, 0xF0};  // by the number of bytes that follow
+  const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+  out += static_cast<char>(kLead[more] | code >> (6 * more));
+  for (int i = more; i-- > 0;) out += static_cast<char>(0x80 | (code >> (6 * i) & 0x3F));
 }
 
 std::string decode_utf16(std::string_view bytes, bool big_endian) {
