@@ -25,8 +25,9 @@ constexpr std::size_t kLoopPoints = 1500;
 // Moves the scale of an axis towards a round number above `wanted`. It decreases only if it is more than twice as
 // large: an axis that moves is hard to read.
 double eased_scale(double scale, double wanted) {
+  constexpr double kSame = 0.01;  // a pixel of a plot: then it stops, because every motion is drawn
   const double target = round_up(wanted);
-  if (target > scale) return scale + 0.25 * (target - scale);
+  if (target > scale) return target - scale < kSame * target ? target : scale + 0.25 * (target - scale);
   return scale > 2.0 * target ? scale + 0.05 * (target - scale) : scale;
 }
 
