@@ -4,60 +4,28 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <glm/common.hpp>
-#include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/whole_file.h"
-#include "rendering/panels/panel_parts.h"
 #include "scenes/plot/draw.h"
 #include "scenes/scene/folders.h"
 
 namespace palpate {
+
+// The settings as JSON: a missing field is the default.
+NLOHMANN_JSON_SERIALIZE_ENUM(Theme, {{Theme::light, "light"}, {Theme::dark, "dark"}})
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CameraTurn, yaw_rad, pitch_rad, distance)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Settings, theme, block_count, difference, text_size, line_up, recent,
+                                                camera)
+
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The field, if it has the type of the default, else the default.
-template <typename T>
-T field(const Json& json, const char* name, const T& otherwise) {
-  try {
-    return json.value(name, otherwise);
-  } catch (const Json::type_error&) {
-    return otherwise;
-  }
-}
-
-constexpr double kMsPerUs = 1e-3;
-
 Json times_json(const TimePercentiles& times) {
   return {{"p50", times.p50_us}, {"p99", times.p99_us}, {"p99_9", times.p99_9_us}, {"max", times.max_us}};
-}
-
-Json haptics_json(const LiveSession& session) {
-  const LoopStatistics statistics = session.loop().statistics();
-  const RtStatus& granted = session.loop().scheduling();
-  return {{"ticks", statistics.ticks},
-          {"missed_deadlines", statistics.missed_deadlines},
-          {"lateness_us", times_json(statistics.lateness)},
-          {"tick_us", times_json(statistics.tick)},
-          {"scheduling", granted.scheduling},
-          {"scheduling_fix", granted.fix}};
-}
-
-Json graphics_json(const FrameFigures& frames) {
-  const TimePercentiles times = frames.times.percentiles();
-  return {{"frames", times.count},
-          {"fps", frames.seconds > 0.0 ? static_cast<double>(times.count) / frames.seconds : 0.0},
-          {"frame_ms",
-           {{"p50", kMsPerUs * times.p50_us}, {"p99", kMsPerUs * times.p99_us}, {"max", kMsPerUs * times.max_us}}}};
-}
-
-// When the comparison stood, in seconds since the session was opened. A NaN, not yet, becomes null.
-Json start_json(const LiveSession::StartTimes& times) {
-  return {{"first_row_s", times.first_model_s}, {"all_rows_s", times.all_models_s}, {"verdict_s", times.verdict_s}};
 }
 
 // Figures are null if there are no samples.
@@ -71,80 +39,64 @@ Json model_json(const ModelView& slot) {
           {"rms_error_N", known(slot.errors.rms_error_N)},
           {"max_error_over_jnd", known(slot.errors.max_error_over_jnd)},
           {"p99_error_over_jnd", known(slot.errors.p99_error_over_jnd)},
-          {"tick_ns", slot.tick_ns() > 0.0 ? slot.tick_ns() : kUnknown},
-          {"equals", slot.equals}};
-}
-
-Hue hue_of(const Rgb& colour) {
-  const glm::uvec3 parts(glm::round(255.0F * glm::clamp(colour, 0.0F, 1.0F)));
-  return parts.r << 16 | parts.g << 8 | parts.b;
+          {"tick_ns", slot.tick_ns() > 0.0 ? slot.tick_ns() : kUnknown}};
 }
 
 }  // namespace
 
 Result<Settings> read_settings(const std::string& path) {
-  Settings settings;
   const auto text = read_whole_file(path);
-  if (!text) return settings;
-  const Json json = Json::parse(*text, nullptr, false);
-  if (!json.is_object())
-    return Error{path + ": found no JSON object, expected the window's settings; the defaults are used"};
-  if (field<std::string>(json, "theme", "") == "dark") settings.theme = Theme::dark;
-  const double blocks = field(json, "blocks", static_cast<double>(kAllBlocks));
-  settings.block_count = blocks == 1.0 ? 1 : blocks == 2.0 ? 2 : kAllBlocks;
-  settings.difference = field(json, "difference", settings.difference);
-  settings.text_size = std::clamp(field(json, "text_size", 1.0F), kSmallestText, kLargestText);
-  settings.line_up = field(json, "line_up", settings.line_up);
-  settings.recent = field(json, "recent", settings.recent);
-  // The camera limits pitch and distance itself.
-  settings.camera = {std::clamp(field(json, "camera_yaw_rad", 0.0F), -6.3F, 6.3F),
-                     field(json, "camera_pitch_rad", 0.0F), field(json, "camera_distance", 1.0F)};
-  return settings;
+  if (!text) return Settings();
+  try {
+    Settings settings = nlohmann::json::parse(*text).get<Settings>();
+    settings.block_count = std::clamp<std::size_t>(settings.block_count, 1, kAllBlocks);
+    settings.text_size = std::clamp(settings.text_size, kSmallestText, kLargestText);
+    return settings;
+  } catch (const nlohmann::json::exception&) {
+    return Error{path + ": found no settings of the window; the defaults are used"};
+  }
 }
 
 Status write_settings(const std::string& path, const Settings& settings) {
-  const Json json = {{"theme", settings.theme == Theme::dark ? "dark" : "light"},
-                     {"blocks", settings.block_count},
-                     {"difference", settings.difference},
-                     {"text_size", settings.text_size},
-                     {"line_up", settings.line_up},
-                     {"recent", settings.recent},
-                     {"camera_yaw_rad", settings.camera.yaw_rad},
-                     {"camera_pitch_rad", settings.camera.pitch_rad},
-                     {"camera_distance", settings.camera.distance}};
-  return write_file_atomically(path, json.dump(2) + "\n", true);
+  return write_file_atomically(path, nlohmann::json(settings).dump(2) + "\n", true);
 }
 
 std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames) {
-  Json models = Json::array();
+  const LoopStatistics loop = session.loop().statistics();
+  const TimePercentiles frame = frames.times.percentiles();
+  const LiveSession::StartTimes& start = session.start_times();
+  Json models = Json::array(), faults = Json::array();
   for (const ModelView& model : shown.models.slots)
     if (model.state == SlotState::ready) models.push_back(model_json(model));
-  Json faults = Json::array();
-  for (const FaultEvent& fault : session.faults().events()) {
+  for (const FaultEvent& fault : session.faults().events())
     faults.push_back({{"loop_time_s", fault.loop_time_s}, {"text", fault.text}, {"count", fault.count}});
-  }
-  const Json all = {{"haptics", haptics_json(session)},
-                    {"graphics", graphics_json(frames)},
-                    {"start", start_json(session.start_times())},
-                    {"models", models},
-                    {"verdict", shown.models.verdict.headline},
-                    {"faults", faults},
-                    {"scene", session.scene().name},
-                    {"device", session.device_name()},
-                    {"reference", session.reference_words()}};
+  constexpr double kMsPerUs = 1e-3;
+  const Json all = {
+      {"haptics",
+       {{"ticks", loop.ticks},
+        {"missed_deadlines", loop.missed_deadlines},
+        {"lateness_us", times_json(loop.lateness)},
+        {"tick_us", times_json(loop.tick)},
+        {"scheduling", session.loop().scheduling().scheduling}}},
+      {"graphics",
+       {{"frames", frame.count},
+        {"fps", frames.seconds > 0.0 ? static_cast<double>(frame.count) / frames.seconds : 0.0},
+        {"frame_ms",
+         {{"p50", kMsPerUs * frame.p50_us}, {"p99", kMsPerUs * frame.p99_us}, {"max", kMsPerUs * frame.max_us}}}}},
+      // A NaN, not yet, becomes null.
+      {"start",
+       {{"first_row_s", start.first_model_s}, {"all_rows_s", start.all_models_s}, {"verdict_s", start.verdict_s}}},
+      {"models", models},
+      {"verdict", shown.models.verdict.headline},
+      {"faults", faults}};
   return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string DemoFiles::new_path(const char* name) {
   const auto folder = data_folder();
-  if (!folder) {
-    notify_(folder.error().message, true);
-    return {};
-  }
-  const std::string path = *folder + local_time_text(name);
-  same_second_ = path == timed_path_ ? same_second_ + 1 : 1;
-  timed_path_ = path;
-  return same_second_ == 1 ? path : path + "-" + std::to_string(same_second_);
+  if (folder) return *folder + local_time_text(name) + "-" + std::to_string(++saved_);
+  notify_(folder.error().message, true);
+  return {};
 }
 
 void DemoFiles::finish() {
@@ -216,7 +168,7 @@ void DemoFiles::open_recording(const std::string& path) {
         view_.dialogs.recording_roles.problem = offered.error().message;
         return;
       }
-      view_.dialogs.recording_roles.add({offered->path, offered->words});
+      view_.dialogs.recording_roles.add(*offered);
       remember(path);
     };
   }});
@@ -235,20 +187,9 @@ void DemoFiles::record(LiveSession& session) {
 void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns) {
   const std::string path = new_path("/curves-%Y%m%d-%H%M%S");
   if (path.empty()) return;
-  const double to_s = view_.time.end_s(shown.now_s);
-  CurveSource source{session.scene().title + ", " + session.device_name(),
-                     session.reference_words(),
-                     session.jnd(),
-                     view_.time.zero_s,
-                     to_s - view_.time.shown_s,
-                     to_s,
-                     {}};
-  for (const std::size_t slot : shown.models.drawn()) {
-    const Rgb colour = slot_colour(shown.models, slot, Theme::light);
-    source.models.push_back({slot, shown.models.slots[slot].name, hue_of(colour)});
-  }
-  const auto save = [this, path, table = curve_csv(session.comparison().history(), source),
-                     plot = curve_plot(columns, source)]() -> Finish {
+  const std::string source = session.scene().title + ", " + session.device_name();
+  const auto save = [this, path, table = curve_csv(shown, view_.time, source),
+                     plot = curve_plot(columns, shown, view_.time, source)]() -> Finish {
     if (const Status written = write_file_atomically(path + ".csv", table, false); !written)
       return [this, written] { notify_(written.error().message, true); };
     return [this, path, drawn = draw_plot(plot, path + ".svg", false)] {

@@ -16,13 +16,12 @@
 
 namespace palpate {
 
-// The settings that the window keeps between runs, a JSON file in the user's configuration folder.
-// A missing file, and a missing or invalid field, give the defaults. Errors: the file is no JSON object.
+// The settings that the window keeps between runs, a JSON file in the user's configuration folder; a missing file gives
+// the defaults. Errors: the file has no settings.
 Result<Settings> read_settings(const std::string& path);
 Status write_settings(const std::string& path, const Settings& settings);
 
-// The JSON text of --stats: figures of the loop, the graphics, the start and the models, under the keys haptics,
-// graphics, start, models, verdict, faults, scene, device and reference.
+// The JSON text of --stats: haptics, graphics, start (seconds until the comparison stood), models, verdict, faults.
 std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
 
 // Does this work and shows its results as notices.
@@ -62,16 +61,15 @@ class DemoFiles {
     bool saves = false;  // it is completed even if the window closes
   };
   void remember(const std::string& path);  // adds it to the recent files
-  // A path in the user's data folder, with a name made of the time and without extension; empty, after a notice, where
-  // there is no folder. Names of the same second get a number.
+  // A path in the user's data folder, with a name made of the time and a number and without extension; empty, after a
+  // notice, where there is no folder.
   std::string new_path(const char* name);
 
   ViewState& view_;
   Notify notify_;
   Read read_;
   std::string settings_file_;
-  std::string timed_path_;    // newest path of `new_path` without its number
-  int same_second_ = 0;       // number of paths of this name and second
+  int saved_ = 0;             // number of the newest path of `new_path`: two may be of the same second
   std::deque<Task> waiting_;  // `update` starts one after the other in the background
   std::future<Finish> running_;
   bool searching_ = false;  // a search for devices waits or runs

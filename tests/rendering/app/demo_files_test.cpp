@@ -109,7 +109,7 @@ TEST(DemoFiles, AnotherProgramsTableIsOfferedAsARecordingWithTheGuesses) {
   }
   EXPECT_EQ(view.dialogs.recording_roles.problem, "");
   ASSERT_EQ(view.dialogs.recording_roles.recordings.size(), 1u);
-  const OpenedRecording& offered = view.dialogs.recording_roles.recordings[0];
+  const ConvertedRecording& offered = view.dialogs.recording_roles.recordings[0];
   ASSERT_GE(offered.words.size(), 4u);
   EXPECT_EQ(offered.words[2].rfind("position: column 2 \"Weg [mm]\" ", 0), 0u) << offered.words[2];
   EXPECT_EQ(offered.path.rfind(folder.file("data/"), 0), 0u) << offered.path;
@@ -142,14 +142,17 @@ TEST(Settings, AreNoReasonNotToStart) {
   const auto missing = read_settings(folder.file("none.json"));
   ASSERT_TRUE(missing.ok());
   EXPECT_EQ(*missing, Settings{});
-  std::ofstream(folder.file("odd.json")) << R"({"blocks": 3, "theme": 7, "text_size": 99, "camera_distance": "far"})";
+  std::ofstream(folder.file("odd.json")) << R"({"block_count": 0, "theme": 7, "text_size": 99})";
   const auto odd = read_settings(folder.file("odd.json"));
   ASSERT_TRUE(odd.ok());
   Settings expected;
+  expected.block_count = 1;
   expected.text_size = kLargestText;
   EXPECT_EQ(*odd, expected);
-  std::ofstream(folder.file("broken.json")) << "{";
-  EXPECT_FALSE(read_settings(folder.file("broken.json")).ok());
+  for (const char* broken : {"{", "[]", R"({"camera": {"distance": "far"}})"}) {
+    std::ofstream(folder.file("broken.json")) << broken;
+    EXPECT_FALSE(read_settings(folder.file("broken.json")).ok()) << broken;
+  }
 }
 
 }  // namespace

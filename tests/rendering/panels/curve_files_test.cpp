@@ -23,12 +23,23 @@ ForceHistory example() {
   return history;
 }
 
+WindowView view_of(const ForceHistory& history) {
+  WindowView shown;
+  shown.history = &history;
+  shown.reference_words = "truth";
+  shown.models.slots.resize(1);
+  shown.models.slots[0].name = "model";
+  shown.models.slots[0].state = SlotState::ready;
+  return shown;
+}
+
+const CurveTime kTime{.zero_s = 100.0, .shown_s = 2.0, .paused = true, .paused_at_s = 102.0};
+
 TEST(CurveFiles, WhatIsEqualInTheTableIsEqualInTheFigure) {
   const ForceHistory history = example();
   CurveColumns columns;
   columns.gather(history, {}, 1, 100.0, 102.0, 100);
-  const CurveSource source{"scene, hand", "truth", {}, 100.0, 100.0, 102.0, {{0, "model", kInkColour}}};
-  const Plot plot = curve_plot(columns, source);
+  const Plot plot = curve_plot(columns, view_of(history), kTime, "scene, hand");
   const std::vector<Series>& force = plot.panels.at(0).series;
   ASSERT_EQ(force.size(), 3u) << "band, reference, model";
   ASSERT_GT(force[1].rows.size(), 90u);
@@ -40,8 +51,8 @@ TEST(CurveFiles, WhatIsEqualInTheTableIsEqualInTheFigure) {
 }
 
 TEST(CurveFiles, SaysWhatTheReferenceIs) {
-  const CurveSource source{"scene, hand", "truth", {}, 100.0, 100.0, 102.0, {{0, "model", kInkColour}}};
-  std::istringstream csv(curve_csv(example(), source));
+  const ForceHistory history = example();
+  std::istringstream csv(curve_csv(view_of(history), kTime, "scene, hand"));
   std::string line;
   std::getline(csv, line);
   EXPECT_EQ(line, "# scene, hand; compared with: truth");
