@@ -152,26 +152,17 @@ void Exhibit::let_go(LiveSession& session) {
 }
 
 void Exhibit::begin_reveal(const LiveSession& session) {
-  if (game_.state() != State::reveal) {
-    revealed_ = false;
-    return;
-  }
-  if (std::exchange(revealed_, true)) return;
+  if (std::exchange(revealed_, game_.state() == State::reveal) || !revealed_) return;
   reveal_.start(game_.trace(), session.jnd(), times_.slowness, session.newest().loop_time_s);
-  note_result();
+  // Each day has its own tally file. A tally that cannot be written is no error.
+  tally_ = read_tally(tally_path());
+  ++tally_.answers;
+  if (game_.round().correct()) ++tally_.as_expected;
+  (void)write_tally(tally_path(), tally_);
 }
 
 bool Exhibit::reveal_is_done(const LiveSession& session) const {
   return revealed_ && reveal_.done(session.newest().loop_time_s);
-}
-
-// Each day has its own tally file. A tally that cannot be written is no error.
-void Exhibit::note_result() {
-  const std::string path = tally_path();
-  if (!path.empty()) tally_ = read_tally(path);
-  ++tally_.answers;
-  if (game_.round().correct()) ++tally_.as_expected;
-  if (!path.empty()) (void)write_tally(path, tally_);
 }
 
 Rgb Exhibit::colour_of(bool first, const WindowView& shown, Theme theme) const {
@@ -198,7 +189,7 @@ std::vector<BlockPose> Exhibit::shown_poses(const LiveSession& session, const Wi
 }
 
 void Exhibit::begin(const LiveSession& session) {
-  if (ready_) (void)game_.begin(ready_models(session), has_reference(session), session.renders_force(), times_.press_s);
+  (void)game_.begin(ready_models(session), has_reference(session), session.renders_force(), times_.press_s);
 }
 
 void Exhibit::forget(LiveSession& session, ViewState& view) {
@@ -217,18 +208,9 @@ void Exhibit::press_key(int key, const LiveSession& session) {
   if (key == GLFW_KEY_L) language_ = (language_ + 1) % languages_.size();
   if (key == GLFW_KEY_KP_1 || key == GLFW_KEY_KP_2) key += GLFW_KEY_1 - GLFW_KEY_KP_1;
   const bool on = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER || key == GLFW_KEY_SPACE;
-  std::string button = on ? "Enter" : key_name(key);
+  pressed_ = on ? "Enter" : key_name(key);
   // Where there is nothing to choose, 1 and Enter are the same.
-  if (buttons_.count("2") == 0 && (on || key == GLFW_KEY_1)) button = buttons_.count("1") != 0 ? "1" : "Enter";
-  press_button(button);
-}
-
-void Exhibit::press_button(const std::string& key) {
-  const auto found = buttons_.find(key);
-  if (found == buttons_.end()) return;
-  const std::function<void()> press = found->second.press;
-  buttons_.clear();
-  press();
+  if (buttons_.count("2") == 0 && (on || key == GLFW_KEY_1)) pressed_ = buttons_.count("1") != 0 ? "1" : "Enter";
 }
 
 }  // namespace palpate

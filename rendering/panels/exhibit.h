@@ -16,7 +16,6 @@
 // Thread guarantee: the window's thread.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -64,12 +63,8 @@ class Exhibit {
   // Whether the last stroke is shown again with the worst model.
   bool shows_worst() const noexcept { return game_.state() == ExhibitGame::State::attract && repeats_; }
   const ExhibitTally& tally() const noexcept { return tally_; }
-  struct Button {
-    ImVec2 middle;
-    std::function<void()> press;
-  };
-  // The buttons of the last frame, by their keys.
-  const std::map<std::string, Button>& buttons() const noexcept { return buttons_; }
+  // The middles of the buttons of the last frame, by their keys.
+  const std::map<std::string, ImVec2>& buttons() const noexcept { return buttons_; }
   // The sentences of the last frame, from the top.
   const std::vector<std::string>& said() const noexcept { return said_; }
 
@@ -81,11 +76,9 @@ class Exhibit {
   void forget_strokes();
   void note_device(const LiveSession& session);
   void begin_reveal(const LiveSession& session);
-  void note_result();
   bool reveal_is_done(const LiveSession& session) const;
   std::string tally_path() const;  // today's file; empty: no tally is stored
   void begin(const LiveSession& session);
-  void press_button(const std::string& key);  // no effect without such a button
   // The two forces on the screen; null: too few models are ready.
   const ExhibitRound* pair() const noexcept;
   // The colour of the first or the second of the pair.
@@ -109,7 +102,8 @@ class Exhibit {
   std::size_t language_ = 0;
   std::string tally_folder_;
   ExhibitTally tally_;
-  std::map<std::string, Button> buttons_;
+  std::map<std::string, ImVec2> buttons_;
+  std::string pressed_;  // key of the button that the next frame takes as pressed; empty: none
   std::vector<std::string> said_;
   bool host_ = false, visitor_ = false;
   double moved_s_ = -1e9;     // loop time of the visitor's last action

@@ -1,47 +1,39 @@
-// The reveal of a round of the exhibit: the visitor's press with the largest difference, in slow motion. The blocks
-// show its motion and dents. Two arrows beside each other show the forces, in front of a band of one JND about the
-// first. Then the motion goes back to the moment of the largest difference and stands still there.
+// The reveal of a round of the exhibit: the visitor's press in slow motion up to its largest difference, where it
+// stands still. The blocks show its motion and dents. Two arrows beside each other show the forces, in front of a band
+// of one JND about the first.
 // Thread guarantee: the window's thread.
 #pragma once
-
-#include <imgui.h>
 
 #include <vector>
 
 #include "engine/tick/jnd.h"
 #include "rendering/panels/panel_parts.h"
-#include "rendering/ui/ui_style.h"
 #include "scenes/live/exhibit_game.h"
 
 namespace palpate {
 
 class ExhibitReveal {
  public:
-  // The second force is computed from `over_jnd`, the mean over 50 ms that decides the round, and not from its ticks.
   using Moment = ExhibitTrace::Column;
 
   // `slowness`: duration of the reveal / duration of the press. `now_s`, here and below: time of one steady clock, s.
   void start(const ExhibitTrace& trace, const JndLine& jnd, double slowness, double now_s);
-  bool done(double now_s) const noexcept;
+  bool done(double now_s) const noexcept { return playhead(now_s) >= static_cast<double>(moments_.size() - 1); }
   Moment at(double now_s) const noexcept;
-  // The second force, N: first_N + over_jnd JND(first_N).
-  double second_N(const Moment& moment) const noexcept;
+  // The second force, N: first_N + over_jnd JND(first_N). It is that of the mean over 50 ms that decides the round.
+  double second_N(const Moment& moment) const noexcept { return moment.first_N + moment.over_jnd * jnd_N(moment); }
 
-  // Draws both arrows, the first at the left if `first_is_left`, and the band into `area`. All moments of the press
-  // have the same scale. On the way back to the largest difference, the arrows grow until they fill the area.
+  // Draws both arrows, the first at the left if `first_is_left`, and the band into `area`, which they fill at the
+  // largest difference.
   void draw_arrows(const UiStyle& style, const SceneArea& area, double now_s, const Rgb& first, const Rgb& second,
                    bool first_is_left) const;
 
  private:
-  double end() const noexcept { return static_cast<double>(moments_.size() - 1); }  // the last index into moments_
-  double columns_since_start(double now_s) const noexcept;
-  // Share of the way back from the end of the press to the largest difference, 0 to 1, with a smooth start and end.
-  double way_back(double now_s) const noexcept;
-  double playhead(double now_s) const noexcept;  // index into moments_, with a fraction
-  double highest_N(const Moment& moment) const noexcept;
+  // Index into moments_, with a fraction; grows beyond its end.
+  double playhead(double now_s) const noexcept { return (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s; }
+  double jnd_N(const Moment& moment) const noexcept { return jnd_.at(moment.first_N); }
 
-  std::vector<Moment> moments_{1};  // one for each column of the trace
-  std::size_t largest_at_ = 0;
+  std::vector<Moment> moments_{1};  // the columns of the trace up to the largest difference
   JndLine jnd_;
   double slowness_ = 1.0, began_s_ = 0.0;
 };

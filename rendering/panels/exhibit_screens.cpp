@@ -1,7 +1,6 @@
 // Draws the screens of the exhibit.
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "engine/base/text.h"
 #include "rendering/panels/exhibit.h"
@@ -30,7 +29,6 @@ struct Exhibit::Screens {
   const BlockView& blocks;
   const UiStyle& style;
   const WindowLayout& layout;
-  std::string pressed = {};  // the key of the button that was pressed; empty: none
 
   const ExhibitWords& words() const { return exhibit.words(); }
   // The end of the panel above the foot.
@@ -78,21 +76,20 @@ struct Exhibit::Screens {
     say_quietly(words()("round", std::to_string(game.number()), std::to_string(game.rounds().size())));
   }
 
-  // A button that is high enough for a finger, with its key in the corner. It is pressed at the end of the frame.
-  void button(const std::string& text, const std::string& key, std::function<void()> press, ImVec2 size = {-1.0F, 0.0F},
-              bool down = false) {
+  // Whether the button, which is high enough for a finger, or the key in its corner was pressed.
+  bool button(const std::string& text, const std::string& key, ImVec2 size = {-1.0F, 0.0F}, bool down = false) {
     size.y = std::max(size.y, 2.2F * height_of(style.fonts().heading));
     if (down) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-    if (ImGui::Button(text.c_str(), size)) pressed = key;
+    const bool clicked = ImGui::Button(text.c_str(), size);
     if (down) ImGui::PopStyleColor();
-    const ImVec2 low = ImGui::GetItemRectMin();
-    const ImVec2 corner = ImGui::GetItemRectMax();
+    const ImVec2 low = ImGui::GetItemRectMin(), corner = ImGui::GetItemRectMax();
     ImFont* font = style.fonts().body;
     const float line = body();
-    const float wide = text_size(font, key).x;
-    ImGui::GetWindowDrawList()->AddText(font, line, {corner.x - wide - 0.4F * line, corner.y - 1.2F * line},
+    ImGui::GetWindowDrawList()->AddText(font, line,
+                                        {corner.x - text_size(font, key).x - 0.4F * line, corner.y - 1.2F * line},
                                         ink(style.colours().quiet), key.c_str());
-    exhibit.buttons_[key] = {{0.5F * (low.x + corner.x), 0.5F * (low.y + corner.y)}, std::move(press)};
+    exhibit.buttons_[key] = {0.5F * (low.x + corner.x), 0.5F * (low.y + corner.y)};
+    return clicked || exhibit.pressed_ == key;
   }
 
   void draw_difference(const ExhibitTrace& trace) {
@@ -126,17 +123,13 @@ struct Exhibit::Screens {
     flush();
   }
 
-  std::function<void()> begin() const {
-    return [&exhibit = exhibit, &session = session] { exhibit.begin(session); };
-  }
-
   void draw_attract() {
     say(words()("attract"));
     space(0.3F);
     say_quietly(words()("attract_more"));
     space(0.6F);
     if (exhibit.pair() == nullptr) return draw_learning();
-    button(words()("play"), "1", begin());
+    if (button(words()("play"), "1")) return exhibit.begin(session);
     space(0.6F);
     say(words()(exhibit.shows_worst() ? "attract_worst" : "attract_best"));
     draw_difference(exhibit.attract_trace());
@@ -159,10 +152,9 @@ struct Exhibit::Screens {
     say(words()("question_guess"));
     space(0.4F);
     const ImVec2 half(-1.0F, 0.5F * (bottom() - ImGui::GetCursorScreenPos().y - ImGui::GetStyle().ItemSpacing.y));
-    const auto guess = [this](bool noticed) { return [&game = game, noticed] { game.guess(noticed); }; };
     ImGui::PushFont(style.fonts().big);
-    button(words()("yes"), "1", guess(true), half);
-    button(words()("no"), "2", guess(false), half);
+    if (button(words()("yes"), "1", half)) game.guess(true);
+    if (button(words()("no"), "2", half)) game.guess(false);
     ImGui::PopFont();
   }
 
@@ -178,14 +170,13 @@ struct Exhibit::Screens {
     say_quietly(words()(game.pressed_both() ? "answer" : "feel_both"));
     space(0.4F);
     const ImVec2 half(0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x), 0.0F);
-    const auto choose = [this](int key) { return [&game = game, key] { game.choose(key); }; };
-    button(words()("block_1"), "1", choose(1), half, game.chosen() == 1);
+    if (button(words()("block_1"), "1", half, game.chosen() == 1)) game.choose(1);
     ImGui::SameLine();
-    button(words()("block_2"), "2", choose(2), half, game.chosen() == 2);
+    if (button(words()("block_2"), "2", half, game.chosen() == 2)) game.choose(2);
     if (!game.pressed_both()) return;
     space(0.8F);
-    button(words()("differ"), words()("key_differ"), [&game = game] { game.answer(true); });
-    button(words()("same"), words()("key_same"), [&game = game] { game.answer(false); });
+    if (button(words()("differ"), words()("key_differ"))) return game.answer(true);
+    if (button(words()("same"), words()("key_same"))) game.answer(false);
   }
 
   void draw_key(const ExhibitModel& model, const char* block) {
@@ -214,8 +205,7 @@ struct Exhibit::Screens {
     say_in(style.fonts().big, style.colours().text, words()(edge ? "edge" : round.correct() ? "right" : "wrong"));
     say(verdict());
     space(0.4F);
-    button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter",
-           [&game = game] { game.go_on(); });
+    if (button(words()(game.number() < game.rounds().size() ? "next" : "to_score"), "Enter")) return game.go_on();
     if (game.has_force()) {  // shows which model had which key
       space(0.4F);
       draw_key(*round.first, "block_1");
@@ -254,7 +244,7 @@ struct Exhibit::Screens {
     say(game.has_force() ? words()("take_home_felt", used_us)
                          : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
     space(0.4F);
-    button(words()("again"), "Enter", begin());
+    if (button(words()("again"), "Enter")) exhibit.begin(session);
   }
 
   void draw_foot() {
@@ -342,7 +332,7 @@ void Exhibit::draw(const LiveSession& session, const WindowView& shown, const Bl
   if (host_) screens.draw_host();
   ImGui::End();
   screens.draw_names();
-  press_button(screens.pressed);
+  pressed_.clear();
 }
 
 }  // namespace palpate
