@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "rendering/panels/panel_parts.h"
@@ -50,33 +51,28 @@ bool list_entry(const std::string& text, bool selected = false, bool enabled = t
   return chosen || (enabled && ImGui::IsItemFocused() && enter_pressed());
 }
 
-void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands) {
+// Explains the picture, and lists the commands in two columns.
+void draw_help(ViewState& view, const std::vector<WindowCommand>& commands) {
   if (!begin_dialog("Help", view.dialogs.help)) return;
+  const float unit = ImGui::GetFontSize(), all = dialog_room().x;
   float keys = 0.0F, text = 0.0F;
   for (const WindowCommand& command : commands) {
     keys = std::max(keys, ImGui::CalcTextSize(shown_keys(command).c_str()).x);
     text = std::max(text, ImGui::CalcTextSize(command.help.c_str()).x);
   }
-  ImGui::PushTextWrapPos(0.9F * dialog_room().x);
+  text = std::min(text, 0.5F * all - 4.0F * unit - keys);
+  ImGui::PushTextWrapPos(0.9F * all);
   for (const char* sentence : kPictureHelp) ImGui::TextWrapped("%s", sentence);
   ImGui::PopTextWrapPos();
   ImGui::Separator();
-  // Two columns if one is too high for the window.
-  const ImVec2 all = dialog_room();
-  const float high = (static_cast<float>(commands.size()) + 11.0F) * ImGui::GetTextLineHeightWithSpacing();
-  const std::size_t columns = high > all.y ? 2 : 1;
-  const float room =
-      (all.x - 4.0F * ImGui::GetFontSize()) / static_cast<float>(columns) - keys - 2.0F * ImGui::GetFontSize();
-  const std::size_t rows = (commands.size() + columns - 1) / columns;
-  if (ImGui::BeginTable("keys", 2 * static_cast<int>(columns), ImGuiTableFlags_NoSavedSettings)) {
-    for (std::size_t column = 0; column < columns; ++column) {
-      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, keys + 0.5F * ImGui::GetFontSize());
-      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, std::min(text, room));
-    }
+  if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_NoSavedSettings)) {
+    for (const float width : {keys + 0.5F * unit, text, keys + 0.5F * unit, text})
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, width);
+    const std::size_t rows = (commands.size() + 1) / 2;
     for (std::size_t row = 0; row < rows; ++row) {
       for (std::size_t i = row; i < commands.size(); i += rows) {
         ImGui::TableNextColumn();
-        ImGui::TextColored(paint(style.colours().text), "%s", shown_keys(commands[i]).c_str());
+        ImGui::TextUnformatted(shown_keys(commands[i]).c_str());
         ImGui::TableNextColumn();
         ImGui::TextWrapped("%s", commands[i].help.c_str());
       }
@@ -122,17 +118,14 @@ void draw_view_list(ViewState& view, const OverlayActions& actions) {
   ImGui::End();
 }
 
-void draw_role(RecordingRoles& roles, std::size_t index) {
-  using Role = OpenedRecording::Role;
-  OpenedRecording& one = roles.recordings[index];
-  ImGui::PushID(static_cast<int>(index));
-  if (ImGui::RadioButton("train", one.role == Role::train)) one.role = Role::train;
+void draw_role(RecordingRoles& roles, const ConvertedRecording& one) {
+  ImGui::PushID(one.path.c_str());
+  const bool test = roles.tested == one.path;
+  if (ImGui::RadioButton("train", !test) && test) roles.tested.clear();
   tip("Models are fitted to it; several are one training set");
   ImGui::SameLine();
-  if (ImGui::RadioButton("test", one.role == Role::test)) roles.make_test(index);
+  if (ImGui::RadioButton("test", test)) roles.tested = one.path;
   tip("It is replayed, and the models are judged on it; none is fitted to it");
-  ImGui::SameLine();
-  if (ImGui::RadioButton("leave", one.role == Role::none)) one.role = Role::none;
   ImGui::PopID();
   ImGui::SameLine();
   ImGui::TextUnformatted(fs::path(one.path).filename().c_str());
@@ -142,13 +135,10 @@ void draw_role(RecordingRoles& roles, std::size_t index) {
 
 std::string recording_roles_words(const RecordingRoles& roles) {
   const std::size_t training = roles.training().size();
-  const bool test = !roles.test().empty();
-  if (training == 0 && !test) return "Choose a recording to train on, or one to test on.";
   if (training == 0) return "Tests the models that are here on it. None is fitted again.";
-  const std::string fits =
-      "Fits models to " + std::to_string(training) + (training == 1 ? " recording" : " recordings");
-  return fits + (test ? ", and tests them on the other."
-                      : " without the end, and tests them on that. Drop a second recording to test on it.");
+  return "Fits models to " + std::to_string(training) + (training == 1 ? " recording" : " recordings") +
+         (roles.tested.empty() ? " without the end, and tests them on that. Drop a second recording to test on it."
+                               : ", and tests them on the other.");
 }
 
 void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
@@ -162,11 +152,10 @@ void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
         "What it asks for is an option of `palpate import FILE --out REC.csv`; drop that recording here.");
     if (roles.recordings.empty() && (ImGui::Button("OK (Enter)") || enter_pressed())) open = false;
   }
-  for (std::size_t i = 0; i < roles.recordings.size(); ++i) draw_role(roles, i);
+  for (const ConvertedRecording& one : roles.recordings) draw_role(roles, one);
   if (!roles.recordings.empty()) {
     ImGui::TextUnformatted(recording_roles_words(roles).c_str());
-    const bool ready = !roles.training().empty() || !roles.test().empty();
-    if ((ImGui::Button("Start (Enter)") || (!ImGui::GetIO().WantTextInput && enter_pressed())) && ready) {
+    if (ImGui::Button("Start (Enter)") || (!ImGui::GetIO().WantTextInput && enter_pressed())) {
       actions.use_recording_roles();
       open = false;
     }
@@ -176,55 +165,46 @@ void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
   if (!open) roles = {};
 }
 
-void go_to(FilePicker& picker, const fs::path& folder) {
-  picker.folder = folder.string();
+// Enters a folder, or opens a file. Returns whether `path` was a file.
+bool pick(FilePicker& picker, const fs::path& path, const OverlayActions& actions) {
+  std::error_code missing;
+  if (!fs::is_directory(path, missing)) {
+    if (!path.empty()) actions.open(path.string());
+    return !path.empty();
+  }
+  picker.folder = path.string();
   picker.files = pickable_files(picker.folder);
   picker.takes_focus = true;
-}
-
-// Enters a folder, or opens a file. Returns whether `path` was a file.
-bool pick(FilePicker& picker, const std::string& path, const OverlayActions& actions) {
-  if (path.empty()) return false;
-  std::error_code missing;
-  if (fs::is_directory(path, missing)) {
-    go_to(picker, path);
-    return false;
-  }
-  actions.open(path);
-  return true;
+  return false;
 }
 
 void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   FilePicker& picker = view.dialogs.picker;
   if (!begin_dialog("Open a file", view.dialogs.file_list)) return picker.folder.clear();
   std::error_code error;
-  if (picker.folder.empty()) go_to(picker, fs::current_path(error));
+  if (picker.folder.empty()) (void)pick(picker, fs::current_path(error), actions);
   const ImVec2 all = dialog_room();
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const float width = std::min(0.85F * all.x, 44.0F * ImGui::GetFontSize());
-  bool done = false;
+  std::optional<fs::path> chosen;
   ImGui::TextDisabled("A recording, another program's table, or a model (.json). A path, then Enter:");
   ImGui::SetNextItemWidth(width);
   if (std::exchange(picker.takes_focus, false)) ImGui::SetKeyboardFocusHere();
   if (ImGui::InputText("##path", picker.path.data(), picker.path.size(),
                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
-    done = pick(picker, picker.path.data(), actions);
-  for (const std::string& file : std::vector<std::string>(view.settings.recent))
-    if (list_entry("recently opened: " + fs::path(file).filename().string() + "###" + file))
-      done = pick(picker, file, actions);
+    chosen = picker.path.data();
+  for (const std::string& file : view.settings.recent)
+    if (list_entry("recently opened: " + fs::path(file).filename().string() + "###" + file)) chosen = file;
   ImGui::TextUnformatted(fitting(picker.folder, width).c_str());
   tip(picker.folder.c_str());
   ImGui::BeginChild("files", {width, std::min(14.0F * line, 0.5F * all.y)}, true, ImGuiWindowFlags_NavFlattened);
-  std::string chosen;
-  if (list_entry("../")) chosen = fs::path(picker.folder).parent_path().string();
+  if (list_entry("../")) chosen = fs::path(picker.folder).parent_path();
   for (const std::string& name : picker.files)
-    if (list_entry(name)) chosen = (fs::path(picker.folder) / name).string();
+    if (list_entry(name)) chosen = fs::path(picker.folder) / name.substr(0, name.find('/'));
   if (picker.files.empty()) ImGui::TextDisabled("nothing here that can be opened");
   ImGui::EndChild();
   ImGui::End();
-  if (!chosen.empty())
-    done = pick(picker, chosen.back() == '/' ? chosen.substr(0, chosen.size() - 1) : chosen, actions);
-  if (done) view.dialogs.file_list = false;
+  if (chosen && pick(picker, *chosen, actions)) view.dialogs.file_list = false;
 }
 
 void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions) {
@@ -248,32 +228,29 @@ void draw_device_list(ViewState& view, const std::string& in_use, const OverlayA
 }  // namespace
 
 std::vector<std::string> pickable_files(const std::string& folder) {
-  std::vector<std::string> folders, files;
+  std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    const std::string ending = entry->path().extension().string();
+    const std::string name = entry->path().filename().string(), ending = entry->path().extension().string();
     std::error_code unknown;
     if (name.front() == '.') continue;
     if (entry->is_directory(unknown)) {
-      folders.push_back(name + "/");
+      names.push_back(name + "/");
     } else if (ending == ".json" || ending == ".csv" || ending == ".tsv" || ending == ".txt" || ending == ".dat") {
-      files.push_back(name);
+      names.push_back(name);
     }
   }
-  std::sort(folders.begin(), folders.end());
-  std::sort(files.begin(), files.end());
-  folders.insert(folders.end(), files.begin(), files.end());
-  return folders;
+  std::ranges::sort(names, {}, [](const std::string& name) { return std::pair(name.back() != '/', name); });
+  return names;
 }
 
-void draw_dialogs(LiveSession& session, ViewState& view, const UiStyle& style, const OverlayActions& actions) {
+void draw_dialogs(const LiveSession& session, ViewState& view, const OverlayActions& actions) {
   draw_file_picker(view, actions);
   draw_device_list(view, session.device_name(), actions);
   draw_scene_list(session, view, actions);
   draw_view_list(view, actions);
   draw_recording_roles(view, actions);
-  draw_help(view, style, *actions.commands);
+  draw_help(view, *actions.commands);
 }
 
 }  // namespace palpate

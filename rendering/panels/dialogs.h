@@ -8,7 +8,6 @@
 
 #include "rendering/panels/view_state.h"
 #include "rendering/panels/window_command.h"
-#include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
@@ -21,7 +20,7 @@ struct OverlayActions {
   std::function<void()> use_recording_roles;  // trains and tests as Dialogs::recording_roles says
 };
 
-void draw_dialogs(LiveSession& session, ViewState& view, const UiStyle& style, const OverlayActions& actions);
+void draw_dialogs(const LiveSession& session, ViewState& view, const OverlayActions& actions);
 
 // The entries of a folder that can be opened: its folders ("name/"), then its files.
 std::vector<std::string> pickable_files(const std::string& folder);

@@ -15,29 +15,13 @@ using Slot = std::size_t;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// The values of the columns; NaN: none. Forces are those of the last tick of the curves.
-double force_now_N(const ModelsView& models, Slot slot) { return models.now.force_N[slot]; }
+double with_samples(const ModelView& model, double value) { return model.errors.samples > 0 ? value : kNone; }
 
+// Forces are those of the last tick of the curves.
 double error_now_N(const ModelsView& models, Slot slot) {
   if (std::isnan(models.now.difference_over_jnd(slot, models.jnd))) return kNone;
-  return models.now.in_contact ? force_now_N(models, slot) - models.now.reference_N : 0.0;
+  return models.now.in_contact ? models.now.force_N[slot] - models.now.reference_N : 0.0;
 }
-
-double p99_over_jnd(const ModelsView& models, Slot slot) {
-  const ErrorSummary& errors = models.slots[slot].errors;
-  return errors.samples > 0 ? errors.p99_error_over_jnd : kNone;
-}
-
-double percent_within(const ModelsView& models, Slot slot) {
-  const ErrorSummary& errors = models.slots[slot].errors;
-  return errors.samples > 0 ? 100.0 * errors.within_jnd : kNone;
-}
-
-double tick_ns(const ModelsView& models, Slot slot) {
-  return models.slots[slot].tick_ns() > 0.0 ? models.slots[slot].tick_ns() : kNone;
-}
-
-double centres(const ModelsView& models, Slot slot) { return models.slots[slot].centres; }
 
 std::string whole(double value) { return with_thousands(fixed(value, 0)); }
 std::string two_decimals(double value) { return fixed(value, 2); }
@@ -51,28 +35,42 @@ struct Column {
   const char* tip;
   const char* widest;                                    // the widest text of the column
   int dropped;                                           // order of removal in a narrow panel, from 1; 0: never
-  double (*value)(const ModelsView& models, Slot slot);  // null: the name
+  double (*value)(const ModelsView& models, Slot slot);  // NaN: none; null: the name
   std::string (*text)(double value);
 };
-constexpr int kName = 0, kColumns = 7;
+constexpr int kName = 0, kErrorNow = 2, kP99 = 3, kColumns = 7;
 constexpr Column kTable[kColumns] = {
     {"model", "Click, or press its number, to make a model the active one.", "      trend+greedy-100", 0, nullptr,
      nullptr},
-    {"N", "Force at the right edge of the curves, newtons", "12.34", 3, force_now_N, two_decimals},
+    {"N", "Force at the right edge of the curves, newtons", "12.34", 3,
+     [](const ModelsView& models, Slot slot) -> double { return models.now.force_N[slot]; }, two_decimals},
     {"error mN", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},
     {"99 % error / JND",
      "99 % of the samples in contact are off by at most so many just noticeable differences (JND).\n"
      "Above 1 a hand could feel it. The headline, the big number and the plot below are this one.",
-     "12.34", 0, p99_over_jnd, jnd_text},
+     "12.34", 0,
+     [](const ModelsView& models, Slot slot) {
+       return with_samples(models.slots[slot], models.slots[slot].errors.p99_error_over_jnd);
+     },
+     jnd_text},
     {"% in JND",
      "Share of the samples in contact whose error a hand cannot feel, of the test that the line below names.\n"
      "With more centres it mostly grows, while the largest errors (99 %) may grow, too.",
-     "100.00", 4, percent_within, two_decimals},
+     "100.00", 4,
+     [](const ModelsView& models, Slot slot) {
+       return with_samples(models.slots[slot], 100.0 * models.slots[slot].errors.within_jnd);
+     },
+     two_decimals},
     {"ns",
      "Time of a whole tick of this model alone (motion, features, force), nanoseconds: the median of six\n"
      "interleaved measurements. The report, the plot below and the headline have the same",
-     "12,345", 0, tick_ns, whole},
-    {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2, centres, whole}};
+     "12,345", 0,
+     [](const ModelsView& models, Slot slot) {
+       return models.slots[slot].tick_ns() > 0.0 ? models.slots[slot].tick_ns() : kNone;
+     },
+     whole},
+    {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2,
+     [](const ModelsView& models, Slot slot) -> double { return models.slots[slot].centres; }, whole}};
 
 // Sorts by magnitude; missing values come first.
 std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableState& sort) {
@@ -96,7 +94,7 @@ void right_aligned(const std::string& text, const Rgb& colour) {
   ImGui::TextColored(paint(colour), "%s", text.c_str());
 }
 
-// Draws a heading, right-aligned except for the name. Clicks sort in descending, ascending and original order.
+// Draws a heading, right-aligned except for the name. Clicks sort in one order, the other, and by slot.
 void draw_heading(int column, TableState& sort) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float room = ImGui::GetContentRegionAvail().x;
@@ -104,14 +102,10 @@ void draw_heading(int column, TableState& sort) {
   const float width = ImGui::CalcTextSize(kTable[column].heading).x;
   ImGui::PushID(column);
   if (ImGui::InvisibleButton("sort", {std::max(room, 1.0F), ImGui::GetTextLineHeight() + sign})) {
-    if (sort.column != column) {
-      sort.column = column;
-      sort.rising = column == kName;
-    } else if (sort.rising == (column == kName)) {
-      sort.rising = !sort.rising;
-    } else {
-      sort.column = -1;
-    }
+    const bool rises_first = column == kName;
+    const bool ends = sort.column == column && sort.rising != rises_first;
+    sort.rising = (sort.column == column) != rises_first;
+    sort.column = ends ? -1 : column;
   }
   ImGui::PopID();
   tip(kTable[column].tip);
@@ -189,10 +183,9 @@ void draw_figures(const ModelsView& models, std::size_t index, const UiStyle& st
     const Column& one = kTable[column];
     if (!ImGui::TableSetColumnIndex(column)) continue;
     const double value = one.value(models, index);
-    const bool above = one.value == p99_over_jnd && value > 1.0;
-    const Rgb colour = above                      ? text_colour(kAboveJndColour, style.theme())
-                       : one.value == error_now_N ? style.colours().quiet
-                                                  : style.colours().text;
+    const Rgb colour = column == kP99 && value > 1.0 ? text_colour(kAboveJndColour, style.theme())
+                       : column == kErrorNow         ? style.colours().quiet
+                                                     : style.colours().text;
     right_aligned(std::isnan(value) ? "–" : one.text(value), colour);
   }
 }

@@ -142,18 +142,6 @@ struct Overlay {
     return at.y + size.y + 2.0F * pad;
   }
 
-  // Draws the hint how to press, until the user has pressed with half a newton. Returns the y below it.
-  float draw_hint(float top_px) const {
-    constexpr double kPressed_N = 0.5;
-    if (session.tool_input() == nullptr) return top_px;
-    const bool alone = session.tool_input()->hand_is_exploring();
-    if (!alone && session.newest().rendered_N > kPressed_N) view.has_pressed = true;
-    if (!alone && view.has_pressed) return top_px;
-    const std::string hint = alone ? "The hand moves by itself. Move the mouse down over the block to press it."
-                                   : "Move the mouse down over the block to press it. No button is needed.";
-    return draw_plated(hint, top_px);
-  }
-
   // The error and the time of a model, as in the table.
   std::string figures_of(const ModelView& model) const {
     std::string text;
@@ -339,11 +327,12 @@ struct Overlay {
       if (!models().slots.empty()) draw_big_number(bars);
       draw_title();
       top_px = draw_headline();
-      top_px = draw_plated(data_warning(models()), top_px);
+      const std::string warning = data_warning(models());
+      top_px = draw_plated(warning, top_px);
       if (view.scales_force) {
         top_px = draw_feel(top_px);
-      } else if (data_warning(models()).empty()) {
-        top_px = draw_hint(top_px);
+      } else if (warning.empty() && session.tool_input() != nullptr && session.tool_input()->hand_is_exploring()) {
+        top_px = draw_plated("The hand moves by itself. Move the mouse down over the block to press it.", top_px);
       }
     }
     draw_recording();
@@ -381,7 +370,7 @@ std::string recording_words(const RecordingStatus& recording) {
 void draw_overlay(LiveSession& session, const WindowView& shown, const BlockView& blocks, ViewState& view,
                   const UiStyle& style, const SceneArea& area, const OverlayActions& actions) {
   Overlay{session, shown, blocks, view, style, area, *actions.commands}.draw();
-  draw_dialogs(session, view, style, actions);
+  draw_dialogs(session, view, actions);
 }
 
 }  // namespace palpate

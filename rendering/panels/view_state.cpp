@@ -5,29 +5,17 @@
 
 namespace palpate {
 
-void RecordingRoles::add(OpenedRecording recording) {
-  std::erase_if(recordings, [&](const OpenedRecording& other) { return other.path == recording.path; });
+void RecordingRoles::add(ConvertedRecording recording) {
+  std::erase_if(recordings, [&](const ConvertedRecording& other) { return other.path == recording.path; });
   recordings.push_back(std::move(recording));
-  if (recordings.size() > 1) make_test(recordings.size() - 1);
-}
-
-void RecordingRoles::make_test(std::size_t index) {
-  for (OpenedRecording& one : recordings)
-    if (one.role == OpenedRecording::Role::test) one.role = OpenedRecording::Role::train;
-  recordings[index].role = OpenedRecording::Role::test;
+  if (recordings.size() > 1) tested = recordings.back().path;
 }
 
 std::vector<std::string> RecordingRoles::training() const {
   std::vector<std::string> paths;
-  for (const OpenedRecording& one : recordings)
-    if (one.role == OpenedRecording::Role::train) paths.push_back(one.path);
+  for (const ConvertedRecording& one : recordings)
+    if (one.path != tested) paths.push_back(one.path);
   return paths;
-}
-
-std::string RecordingRoles::test() const {
-  for (const OpenedRecording& one : recordings)
-    if (one.role == OpenedRecording::Role::test) return one.path;
-  return {};
 }
 
 void CurveTime::pause(double at_s) noexcept {

@@ -13,6 +13,7 @@
 #include "rendering/picture/block_view.h"
 #include "rendering/ui/colours.h"
 #include "scenes/live/live_session.h"
+#include "scenes/live/session_recordings.h"
 
 namespace palpate {
 
@@ -55,24 +56,16 @@ struct TableState {
   std::array<char, 64> name{};  // the name that is being typed
 };
 
-// A recording that the user opened, and its role.
-struct OpenedRecording {
-  enum class Role : std::uint8_t { train, test, none };
-  std::string path;
-  std::vector<std::string> words;  // columns and guesses of an import
-  Role role = Role::train;
-};
-
-// Recordings whose roles the user has to confirm.
+// Recordings that the user opened; models are fitted to all but the test. The user has to confirm it.
 struct RecordingRoles {
-  std::vector<OpenedRecording> recordings;
+  std::vector<ConvertedRecording> recordings;
+  std::string tested;   // path of the test; empty: none
   std::string problem;  // why a file could not be read
   bool any() const noexcept { return !recordings.empty() || !problem.empty(); }
   // Adds a recording. If there are several, the last one becomes the test.
-  void add(OpenedRecording recording);
+  void add(ConvertedRecording recording);
   std::vector<std::string> training() const;
-  std::string test() const;           // empty: none
-  void make_test(std::size_t index);  // makes it the only test
+  const std::string& test() const noexcept { return tested; }
 };
 
 struct FilePicker {
@@ -146,7 +139,6 @@ struct ViewState {
   bool exaggerated = false;                            // arrows show ten times the difference
   int requested_centres = 0;                           // last value of the slider of centres
   bool details = false;                                // shows the figures and faults of the loop
-  bool has_pressed = false;                            // the user has pressed a block, so that the hint is hidden
   std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse; its curves are labelled
   bool verdict = true;                                 // plots error against time of a tick; else error against force
 };

@@ -141,7 +141,7 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   EXPECT_EQ(app_->session().figures(best).errors.samples, samples);
   // With another test recording, no model is fitted again.
   const std::size_t models = app_->session().models().size();
-  app_->view().dialogs.recording_roles.add({train, {}, OpenedRecording::Role::test});
+  app_->view().dialogs.recording_roles = {{{train, {}}}, train};
   frames(1);
   press(GLFW_KEY_ENTER);
   ASSERT_TRUE(until([&] { return app_->session().replay() != nullptr && app_->session().tests_training(); }));
@@ -153,7 +153,7 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
 TEST_F(DemoAppTest, ASessionThatCannotBeReopenedEndsTheProgram) {
   open("hand");
   setenv("PALPATE_ASSETS", folder_.file("gone").c_str(), 1);
-  app_->view().dialogs.recording_roles.add({folder_.file("none.csv"), {}, OpenedRecording::Role::test});
+  app_->view().dialogs.recording_roles = {{{folder_.file("none.csv"), {}}}, folder_.file("none.csv")};
   frames(1);
   press(GLFW_KEY_ENTER);
   unsetenv("PALPATE_ASSETS");
