@@ -24,9 +24,6 @@
 namespace palpate {
 namespace {
 
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kWrongUsage = 2;
 // Time of a screenshot without --seconds, when all models are fitted and the curves are full.
 constexpr double kPictureAfter_s = 12.0;
 // This scene has no block; the study presents two forces.
@@ -38,13 +35,12 @@ struct Arguments {
   std::string screenshot, stats;
   bool force = false, bridge_remote = false;
   std::optional<std::string> discriminate;  // the recording; empty: a virtual one
-  std::string test;                         // the recording to replay; empty: none
   std::vector<std::string> files;
 };
 
-int fail(const std::string& message) {
+int fail(const std::string& message, int code = 1) {
   std::fprintf(stderr, "error: %s\n", message.c_str());
-  return kFailed;
+  return code;
 }
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -59,13 +55,6 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("FILE_OR_METHOD");
   app.add_option("files", arguments.files, "Models, or recordings or other programs' tables to train or to test on")
       ->type_name("FILE");
-  app.add_option(
-         "--train", session.recordings,
-         "Recordings that models are fitted to, as one training set; without --test, the end of the last is the test")
-      ->type_name("REC.csv");
-  app.add_option("--test", arguments.test, "Replay this recording; models are judged on it, and not fitted to it")
-      ->type_name("REC.csv")
-      ->excludes("--device");
   app.add_option_function<std::string>(
          "--discriminate", [&arguments](const std::string& recording) { arguments.discriminate = recording; },
          "Blind test: can a person tell model from recording? A stroke of this recording [a virtual one], rendered by "
@@ -96,13 +85,8 @@ Status check_outputs(const Arguments& arguments) {
 // The window asks for the role of recordings; all other files are models.
 void sort_files(Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
-  for (const std::string& file : arguments.files) {
-    if (may_be_recording(file)) {
-      arguments.demo.recordings.push_back(file);
-    } else {
-      session.models.push_back(file);
-    }
-  }
+  for (const std::string& file : arguments.files)
+    (may_be_recording(file) ? arguments.demo.recordings : session.models).push_back(file);
   if (session.models.empty() && !arguments.demo.exhibit) session.line_up = line_ups().front().name;
 }
 
@@ -145,10 +129,6 @@ Status run_demo(Arguments& arguments) {
     arguments.demo.settings_file = *folder + "/window.json";
   sort_files(arguments);
   arguments.demo.session.ready_models = ready_models_folder();
-  if (!arguments.test.empty()) device = "replay:" + arguments.test;
-  // Without a test recording, the end of the last training recording is replayed.
-  const std::vector<std::string>& training = arguments.demo.session.recordings;
-  if (!training.empty() && device == "auto") device = "replay:" + training.back();
   auto created = DemoApp::create(arguments.demo);
   if (!created) return created.error();
   // It is not destroyed, because it would wait for a fit; `main` ends the program.
@@ -188,7 +168,7 @@ int run_program(int argc, char** argv) {
   CLI::App app("Palpate: press a recorded block, and see which model differs from it by more than a hand can notice",
                "palpate-demo");
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
-  app.footer("Example:\n  palpate-demo --train rec.csv --test test.csv");
+  app.footer("Example:\n  palpate-demo rec.csv test.csv");
   Arguments arguments;
   add_options(app, arguments);
   try {
@@ -196,12 +176,10 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
     const std::string unknown = unknown_option(app, argc, argv);
-    std::fprintf(stderr, "error: %s (palpate-demo --help explains)\n",
-                 unknown.empty() ? error.what() : unknown.c_str());
-    return kWrongUsage;
+    return fail((unknown.empty() ? error.what() : unknown) + " (palpate-demo --help explains)", 2);
   }
   const Status status = run_demo(arguments);
-  return status ? kDone : fail(status.error().message);
+  return status ? 0 : fail(status.error().message);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "engine/base/text.h"
 #include "rendering/panels/exhibit.h"
-#include "rendering/panels/panel_health.h"
+#include "rendering/panels/panel.h"
 #include "rendering/panels/panel_parts.h"
 
 namespace palpate {

@@ -63,7 +63,6 @@ struct HealthView {
 };
 
 struct WindowView {
-  std::uint64_t number = 0;  // number of the view, from 1
   ModelsView models;
   HealthView health;
   // The slots that have a block, in ascending order. If there is too little room, the active model and that of the

@@ -108,16 +108,6 @@ TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
   EXPECT_EQ(session.models().selected(), 1u) << "keys count what is listed";
 }
 
-// Blocks, texts, panels and exhibit use one view, which is made once per frame.
-TEST_F(DemoAppTest, WhatIsShownIsMadeOnceAFrame) {
-  open("hand");
-  app_->view().settings.block_count = kAllBlocks;
-  frames(2);
-  const std::uint64_t before = app_->shown().number;
-  frames(10);
-  EXPECT_EQ(app_->shown().number, before + 10);
-}
-
 // Two recordings: models are fitted to one and tested on the whole other one, independent of the playhead.
 TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   open("hand");
@@ -141,7 +131,7 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   EXPECT_EQ(app_->session().figures(best).errors.samples, samples);
   // With another test recording, no model is fitted again.
   const std::size_t models = app_->session().models().size();
-  app_->view().dialogs.recording_roles = {{{train, {}}}, train};
+  app_->view().dialogs.recording_roles = {{{train, {}}}, train, {}};
   frames(1);
   press(GLFW_KEY_ENTER);
   ASSERT_TRUE(until([&] { return app_->session().replay() != nullptr && app_->session().tests_training(); }));
@@ -153,7 +143,7 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
 TEST_F(DemoAppTest, ASessionThatCannotBeReopenedEndsTheProgram) {
   open("hand");
   setenv("PALPATE_ASSETS", folder_.file("gone").c_str(), 1);
-  app_->view().dialogs.recording_roles = {{{folder_.file("none.csv"), {}}}, folder_.file("none.csv")};
+  app_->view().dialogs.recording_roles = {{{folder_.file("none.csv"), {}}}, folder_.file("none.csv"), {}};
   frames(1);
   press(GLFW_KEY_ENTER);
   unsetenv("PALPATE_ASSETS");
