@@ -1,4 +1,3 @@
-// Keyboard and mouse of the window.
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
@@ -24,11 +23,12 @@ constexpr float kClick_px = 4.0F;
 // The share of the distance from the surface to the lower edge at which the tool is at the largest trained depth.
 constexpr float kReach = 0.8F;
 
-// Whether ImGui uses the key to move through a list or to choose in it.
-bool moves_in_lists(int key) {
-  constexpr int kKeys[] = {GLFW_KEY_UP,    GLFW_KEY_DOWN,      GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_PAGE_UP,
-                           GLFW_KEY_SPACE, GLFW_KEY_PAGE_DOWN, GLFW_KEY_HOME, GLFW_KEY_END,   GLFW_KEY_ENTER};
-  return std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys);
+// Whether the key runs the command; not if ImGui uses it to move through an open list or to choose in it.
+bool runs(int key, const WindowCommand& command, const KeyContext& context) {
+  constexpr int kOfLists[] = {GLFW_KEY_UP,    GLFW_KEY_DOWN,      GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_PAGE_UP,
+                              GLFW_KEY_SPACE, GLFW_KEY_PAGE_DOWN, GLFW_KEY_HOME, GLFW_KEY_END,   GLFW_KEY_ENTER};
+  if (command.replay && !context.replays) return false;
+  return !context.in_list || std::ranges::find(kOfLists, key) == std::end(kOfLists);
 }
 
 // Limits a depth smoothly to 8 % beyond the depth up to which the models were trained.
@@ -38,14 +38,6 @@ double limited_depth_m(const LiveSession& session, double requested_m) {
   if (requested_m <= known_m) return requested_m;
   const double margin_m = kMargin * known_m;
   return known_m + margin_m * (1.0 - std::exp((known_m - requested_m) / margin_m));
-}
-
-// Moves the tool inwards by `by_m`; no effect on a device that is no ToolInput.
-void nudge_tool(const LiveSession& session, double by_m) {
-  ToolInput* tool = session.tool_input();
-  const double at_m = session.newest().tick.position_m;
-  if (tool != nullptr && (by_m < 0.0 || limited_depth_m(session, at_m + by_m) > at_m))
-    tool->nudge(by_m, steady_now_s());
 }
 
 // Index in WindowView::blocks of the block nearest to `point`. With `aimed`: empty unless the point is on or near it.
@@ -125,28 +117,23 @@ std::vector<int> DemoInput::tapped() const {
 
 void DemoInput::run_held(const std::vector<KeyPress>& pressed, const std::vector<WindowCommand>& commands,
                          const KeyContext& context) const {
-  const auto was_pressed = [&](int key) {
-    return std::any_of(pressed.begin(), pressed.end(), [&](const KeyPress& press) { return press.key == key; });
-  };
   for (const WindowCommand& command : commands) {
-    if (command.when != WindowCommand::When::held || (command.replay && !context.replays)) continue;
+    if (command.when != WindowCommand::When::held) continue;
     for (std::size_t i = 0; i < command.keys.size(); ++i) {
-      if (context.in_list && moves_in_lists(command.keys[i])) continue;
-      if (is_down(command.keys[i]) || was_pressed(command.keys[i])) command.run(i);
+      const int key = command.keys[i];
+      const bool down = is_down(key) || std::ranges::find(pressed, key, &KeyPress::key) != pressed.end();
+      if (down && runs(key, command, context)) command.run(i);
     }
   }
 }
 
 void DemoInput::run(const KeyPress& press, const std::vector<WindowCommand>& commands, const KeyContext& context) {
-  if (context.in_list && moves_in_lists(press.key)) return;
   const bool control = (press.modifiers & GLFW_MOD_CONTROL) != 0;
   for (const WindowCommand& command : commands) {
-    const auto key = std::find(command.keys.begin(), command.keys.end(), press.key);
-    if (key == command.keys.end() || command.control != control) continue;
-    if (command.replay && !context.replays) continue;
-    const bool wanted =
-        command.when == WindowCommand::When::repeated || (command.when == WindowCommand::When::pressed && !press.again);
-    if (wanted) command.run(static_cast<std::size_t>(key - command.keys.begin()));
+    const auto key = std::ranges::find(command.keys, press.key);
+    if (key == command.keys.end() || command.control != control || !runs(press.key, command, context)) continue;
+    if (command.when == WindowCommand::When::repeated || (command.when == WindowCommand::When::pressed && !press.again))
+      command.run(static_cast<std::size_t>(key - command.keys.begin()));
   }
 }
 
@@ -173,8 +160,9 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
   if (!over_scene) return false;
   if (io.KeyCtrl) {
     blocks.camera().zoom(std::pow(kZoom_per_step, io.MouseWheel));
-  } else if (io.MouseWheel != 0.0F) {
-    nudge_tool(session, -kWheelStep_m * io.MouseWheel);
+  } else if (io.MouseWheel != 0.0F && tool != nullptr) {
+    const double at_m = session.newest().tick.position_m, by_m = -kWheelStep_m * io.MouseWheel;
+    if (by_m < 0.0 || limited_depth_m(session, at_m + by_m) > at_m) tool->nudge(by_m, steady_now_s());
   }
   if (!view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {

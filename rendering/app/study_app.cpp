@@ -17,12 +17,6 @@ constexpr float kColumnShare = 0.62F;     // of the window's width
 constexpr std::size_t kLongestCode = 12;  // longer than valid codes, so that a code that is too long is reported
 constexpr Theme kTheme = Theme::dark;     // avoids glare in a dim room
 
-// Replaces a key of the keypad by the usual key.
-int usual_key(int key) {
-  if (key == GLFW_KEY_KP_ENTER) return GLFW_KEY_ENTER;
-  return key == GLFW_KEY_KP_1 || key == GLFW_KEY_KP_2 ? GLFW_KEY_1 + key - GLFW_KEY_KP_1 : key;
-}
-
 void gap() { ImGui::Dummy({1.0F, 0.6F * ImGui::GetFontSize()}); }
 
 }  // namespace
@@ -68,7 +62,9 @@ Status StudyApp::screenshot(const std::string& path, bool overwrite) {
 
 void StudyApp::press_key(int key) {
   if (key == GLFW_KEY_BACKSPACE && !code_.empty()) code_.pop_back();
-  pressed_.push_back(usual_key(key));
+  // The keypad has the same keys.
+  if (key == GLFW_KEY_KP_1 || key == GLFW_KEY_KP_2) key += GLFW_KEY_1 - GLFW_KEY_KP_1;
+  pressed_.push_back(key == GLFW_KEY_KP_ENTER ? GLFW_KEY_ENTER : key);
 }
 
 void StudyApp::type(char letter) {

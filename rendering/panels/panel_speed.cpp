@@ -108,25 +108,17 @@ struct SpeedPlot {
       list().AddCircleFilled(path.back(), 2.0F * size, colour(slot, 0.6F));
     }
     plot.line(path, colour(slot, 0.6F), size);
-    if (one.path.size() > 1) {
-      for (const auto* end : {&*one.path.begin(), &*one.path.rbegin()}) {
-        if (end->first == one.centres) continue;
-        const ImVec2 by = at(end->second.first, end->second.second);
-        list().AddText({by.x + 3.0F * size, by.y - line()}, ink(style.colours().quiet),
-                       std::to_string(end->first).c_str());
-      }
-    }
     if (one.p99_interval.known()) {
       list().AddLine({dot.x, plot.y_px(log_error(one.p99_interval.low))},
                      {dot.x, plot.y_px(log_error(one.p99_interval.high))}, colour(slot), 1.5F * size);
     }
-    list().AddLine({plot.x_px(std::log10(one.tick.low_ns)), dot.y},
-                   {plot.x_px(std::log10(drawn_high_ns(one.tick))), dot.y}, colour(slot), 1.5F * size);
+    const ImVec2 low = at(one.tick.low_ns, one.errors.p99_error_over_jnd);
+    const ImVec2 high = at(drawn_high_ns(one.tick), one.errors.p99_error_over_jnd);
+    list().AddLine(low, high, colour(slot), 1.5F * size);
     const float radius = (slot == models.verdict.chosen ? 7.0F : 5.0F) * size;
     draw_mark(list(), dot, radius, one.paper, colour(slot), style);
     placed.push_back({dot.x - radius, dot.y - radius, dot.x + radius, dot.y + radius});
-    placed.push_back({plot.x_px(std::log10(one.tick.low_ns)), dot.y - 1.0F,
-                      plot.x_px(std::log10(drawn_high_ns(one.tick))), dot.y + 1.0F});
+    placed.push_back({low.x, dot.y - 1.0F, high.x, dot.y + 1.0F});
   }
 
   bool is_free(const ImVec4& box) const {
@@ -156,15 +148,14 @@ struct SpeedPlot {
     const float gap = 0.6F * line();
     const float right = std::max(dot.x, plot.x_px(std::log10(drawn_high_ns(one.tick))) - 0.3F * line()) + gap;
     const float left_end = std::min(dot.x, plot.x_px(std::log10(one.tick.low_ns)) + 0.3F * line()) - gap;
-    ImVec4 box(right, dot.y - 0.5F * size.y, right + size.x, dot.y + 0.5F * size.y);
-    for (int step = 0; step < 24; ++step) {
+    const auto box_of = [&](int step) {
       const float shift = static_cast<float>((step / 4 + 1) / 2) * (step / 4 % 2 == 0 ? 0.7F : -0.7F) * size.y;
-      const float left = step % 2 == 0 ? right : left_end - size.x;
-      const ImVec4 tried(left, dot.y - 0.5F * size.y + shift, left + size.x, dot.y + 0.5F * size.y + shift);
-      if (!is_free(tried)) continue;
-      box = tried;
-      break;
-    }
+      const float left = step % 2 == 0 ? right : left_end - size.x, top = dot.y - 0.5F * size.y + shift;
+      return ImVec4(left, top, left + size.x, top + size.y);
+    };
+    int step = 0;
+    while (step < 24 && !is_free(box_of(step))) ++step;
+    const ImVec4 box = box_of(step < 24 ? step : 0);
     placed.push_back(box);
     const float edge = box.x > dot.x ? box.x : box.z, middle = 0.5F * (box.y + box.w);
     if (std::abs(middle - dot.y) > 0.5F * size.y) list().AddLine(dot, {edge, middle}, colour(slot, 0.5F));

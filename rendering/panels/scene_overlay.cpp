@@ -103,14 +103,18 @@ struct Overlay {
     ImGui::Begin("title", nullptr, kFloating);
     ImGui::TextUnformatted(session.scene().title.c_str());
     tip(session.scene().description.c_str());
-    if (!view.scales_force) {
-      ImGui::SameLine(0.0F, ImGui::GetFontSize());
+    ImGui::SameLine(0.0F, ImGui::GetFontSize());
+    const ForceScale& scale = session.controls().scale;
+    const ImVec4 warning = paint(text_colour(kAboveJndColour, style.theme()));
+    if (view.scales_force) {
+      ImGui::TextColored(warning, "in the hand: stiffness x %.2f, damping + %.1f", scale.stiffness,
+                         scale.damping_Ns_per_m);
+    } else {
       ImGui::TextDisabled("drawn twice as deep");
-    }
-    if (view.scales_force || view.exaggerated) {
-      ImGui::SameLine(0.0F, ImGui::GetFontSize());
-      ImGui::TextColored(paint(text_colour(kAboveJndColour, style.theme())), "%s",
-                         view.scales_force ? scale_words(session.controls().scale).c_str() : "arrows: difference x 10");
+      if (view.exaggerated) {
+        ImGui::SameLine(0.0F, ImGui::GetFontSize());
+        ImGui::TextColored(warning, "arrows: difference x 10");
+      }
     }
     ImGui::End();
   }
@@ -353,10 +357,6 @@ SceneArea stage_of(const LiveSession& session, const Verdict& verdict, const Vie
   const float above = std::max(usual, headline_of(verdict, style, area).below_px - area.at.y);
   const float below = big_number_height(style, buttons_height(style) + replay_height(session, style));
   return {{area.at.x, area.at.y + above}, {area.size.x, std::max(1.0F, area.size.y - above - below)}};
-}
-
-std::string scale_words(const ForceScale& scale) {
-  return "in the hand: stiffness x " + fixed(scale.stiffness, 2) + ", damping + " + fixed(scale.damping_Ns_per_m, 1);
 }
 
 std::string recording_words(const RecordingStatus& recording) {

@@ -12,8 +12,7 @@
 
 namespace palpate {
 
-// Sentences of the overlay; `recording_words` is empty without a recording.
-std::string scale_words(const ForceScale& scale);
+// The state of a recording; empty without one.
 std::string recording_words(const RecordingStatus& recording);
 
 // The part of the picture between the headline and the big number, for the blocks.
