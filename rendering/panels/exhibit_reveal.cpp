@@ -9,9 +9,13 @@
 namespace palpate {
 namespace {
 
-// In columns: the longest part of the press that is shown, and the approach before it.
-constexpr std::size_t kPress = static_cast<std::size_t>(1.0 / ExhibitTrace::kColumn_s);
+// In columns: the longest parts of the press before and after the largest difference that are shown, and the approach
+// before it.
+constexpr std::size_t kBefore = static_cast<std::size_t>(1.0 / ExhibitTrace::kColumn_s);
+constexpr std::size_t kAfter = static_cast<std::size_t>(0.6 / ExhibitTrace::kColumn_s);
 constexpr std::size_t kApproach = static_cast<std::size_t>(0.15 / ExhibitTrace::kColumn_s);
+
+bool is_pressed(const ExhibitTrace::Column& column) { return column.ticks > 0 && column.position_m > 0.0; }
 
 }  // namespace
 
@@ -19,20 +23,29 @@ void ExhibitReveal::start(const ExhibitTrace& trace, const JndLine& jnd, double 
   jnd_ = jnd;
   slowness_ = slowness;
   began_s_ = now_s;
+  moments_.assign(1, {});
+  largest_at_ = 0;
   const std::vector<Moment>& columns = trace.columns();
-  const std::size_t last = trace.largest_at();
-  std::size_t first = last;
-  const auto before = [&](auto shown) {
-    return first > 0 && columns[first - 1].ticks > 0 && shown(columns[first - 1]);
-  };
-  while (last - first < kPress && before([](const Moment& moment) { return moment.position_m > 0.0; })) --first;
-  for (std::size_t i = 0; i < kApproach && before([](const Moment&) { return true; }); ++i) --first;
-  moments_ = {1, Moment()};
-  if (!columns.empty()) moments_ = {&columns[first], &columns[last] + 1};
+  if (columns.empty()) return;
+  const std::size_t largest = trace.largest_at();
+  std::size_t first = largest, last = largest;
+  while (first > 0 && largest - first < kBefore && is_pressed(columns[first - 1])) --first;
+  while (last + 1 < columns.size() && last - largest < kAfter && is_pressed(columns[last + 1])) ++last;
+  for (std::size_t i = 0; i < kApproach && first > 0 && columns[first - 1].ticks > 0; ++i) --first;
+  moments_ = {columns.begin() + static_cast<std::ptrdiff_t>(first),
+              columns.begin() + static_cast<std::ptrdiff_t>(last + 1)};
+  largest_at_ = largest - first;
+}
+
+double ExhibitReveal::playhead(double now_s) const noexcept {
+  const double pressed = columns_since_start(now_s);
+  if (pressed < end()) return std::max(0.0, pressed);
+  const double share = std::min((pressed - end()) / kBack, 1.0);  // of the way back, with a smooth start and end
+  return std::lerp(end(), static_cast<double>(largest_at_), share * share * (3.0 - 2.0 * share));
 }
 
 ExhibitReveal::Moment ExhibitReveal::at(double now_s) const noexcept {
-  const double at = std::clamp(playhead(now_s), 0.0, static_cast<double>(moments_.size() - 1));
+  const double at = playhead(now_s);
   const auto below = static_cast<std::size_t>(at);
   const Moment& above = moments_[std::min(below + 1, moments_.size() - 1)];
   const double share = at - static_cast<double>(below);
@@ -47,7 +60,7 @@ void ExhibitReveal::draw_arrows(const UiStyle& style, const SceneArea& area, dou
                                 const Rgb& second, bool first_is_left) const {
   const Moment moment = at(now_s);
   double most_N = 0.1;
-  for (const Moment& one : {moment, moments_.back()})
+  for (const Moment& one : {moment, moments_[largest_at_]})
     most_N = std::max({most_N, one.first_N + jnd_N(one), second_N(one)});
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float right = area.at.x + area.size.x, ground = area.at.y + area.size.y;

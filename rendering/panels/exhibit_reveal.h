@@ -1,6 +1,6 @@
-// The reveal of a round of the exhibit: the visitor's press in slow motion up to its largest difference, where it
-// stands still. The blocks show its motion and dents. Two arrows beside each other show the forces, in front of a band
-// of one JND about the first.
+// The reveal of a round of the exhibit: the visitor's press with the largest difference, in slow motion. The blocks
+// show its motion and dents. Two arrows beside each other show the forces, in front of a band of one JND about the
+// first. Then the motion goes back to the moment of the largest difference and stands still there.
 // Thread guarantee: the window's thread.
 #pragma once
 
@@ -18,7 +18,7 @@ class ExhibitReveal {
 
   // `slowness`: duration of the reveal / duration of the press. `now_s`, here and below: time of one steady clock, s.
   void start(const ExhibitTrace& trace, const JndLine& jnd, double slowness, double now_s);
-  bool done(double now_s) const noexcept { return playhead(now_s) >= static_cast<double>(moments_.size() - 1); }
+  bool done(double now_s) const noexcept { return columns_since_start(now_s) >= end() + kBack; }
   Moment at(double now_s) const noexcept;
   // The second force, N: first_N + over_jnd JND(first_N). It is that of the mean over 50 ms that decides the round.
   double second_N(const Moment& moment) const noexcept { return moment.first_N + moment.over_jnd * jnd_N(moment); }
@@ -29,11 +29,17 @@ class ExhibitReveal {
                    bool first_is_left) const;
 
  private:
-  // Index into moments_, with a fraction; grows beyond its end.
-  double playhead(double now_s) const noexcept { return (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s; }
+  static constexpr double kBack = 0.25 / ExhibitTrace::kColumn_s;  // duration of the way back, in columns
+
+  double end() const noexcept { return static_cast<double>(moments_.size() - 1); }  // the last index into moments_
+  double columns_since_start(double now_s) const noexcept {
+    return (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s;
+  }
+  double playhead(double now_s) const noexcept;  // index into moments_, with a fraction
   double jnd_N(const Moment& moment) const noexcept { return jnd_.at(moment.first_N); }
 
-  std::vector<Moment> moments_{1};  // the columns of the trace up to the largest difference
+  std::vector<Moment> moments_{1};  // one for each column of the trace
+  std::size_t largest_at_ = 0;
   JndLine jnd_;
   double slowness_ = 1.0, began_s_ = 0.0;
 };

@@ -54,7 +54,7 @@ TEST(PanelWords, MissedDeadlinesAreNamed) {
   EXPECT_FALSE(health_words(health, 20.0, true).problem) << "nothing that is felt is late";
   health.loop.ticks = 5000;
   health.loop.missed_deadlines = 41;
-  EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"20 fps", "missed 41"}));
+  EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"missed 41", "20 fps"}));
   health.missed_of_late = 0.025;
   EXPECT_FALSE(health_words(health, 20.0, false).problem) << "a visitor cannot change it";
   EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"2.5 %", "real-time priority"}));
