@@ -39,7 +39,8 @@ Json model_json(const ModelView& slot) {
           {"rms_error_N", known(slot.errors.rms_error_N)},
           {"max_error_over_jnd", known(slot.errors.max_error_over_jnd)},
           {"p99_error_over_jnd", known(slot.errors.p99_error_over_jnd)},
-          {"tick_ns", slot.tick_ns() > 0.0 ? slot.tick_ns() : kUnknown}};
+          {"tick_ns", slot.tick_ns() > 0.0 ? slot.tick_ns() : kUnknown},
+          {"equals", slot.equals}};
 }
 
 }  // namespace
@@ -77,7 +78,8 @@ std::string stats_text(const LiveSession& session, const WindowView& shown, cons
         {"missed_deadlines", loop.missed_deadlines},
         {"lateness_us", times_json(loop.lateness)},
         {"tick_us", times_json(loop.tick)},
-        {"scheduling", session.loop().scheduling().scheduling}}},
+        {"scheduling", session.loop().scheduling().scheduling},
+        {"scheduling_fix", session.loop().scheduling().fix}}},
       {"graphics",
        {{"frames", frame.count},
         {"fps", frames.seconds > 0.0 ? static_cast<double>(frame.count) / frames.seconds : 0.0},
@@ -88,7 +90,10 @@ std::string stats_text(const LiveSession& session, const WindowView& shown, cons
        {{"first_row_s", start.first_model_s}, {"all_rows_s", start.all_models_s}, {"verdict_s", start.verdict_s}}},
       {"models", models},
       {"verdict", shown.models.verdict.headline},
-      {"faults", faults}};
+      {"faults", faults},
+      {"scene", session.scene().name},
+      {"device", session.device_name()},
+      {"reference", session.reference_words()}};
   return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -21,7 +21,8 @@ namespace palpate {
 Result<Settings> read_settings(const std::string& path);
 Status write_settings(const std::string& path, const Settings& settings);
 
-// The JSON text of --stats: haptics, graphics, start (seconds until the comparison stood), models, verdict, faults.
+// The JSON text of --stats: haptics, graphics, start (seconds until the comparison stood), models, verdict, faults,
+// scene, device, reference.
 std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
 
 // Does this work and shows its results as notices.

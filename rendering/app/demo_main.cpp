@@ -35,6 +35,7 @@ struct Arguments {
   std::string screenshot, stats;
   bool force = false, bridge_remote = false;
   std::optional<std::string> discriminate;  // the recording; empty: a virtual one
+  std::string test;                         // the recording to replay; empty: none
   std::vector<std::string> files;
 };
 
@@ -55,6 +56,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("FILE_OR_METHOD");
   app.add_option("files", arguments.files, "Models, or recordings or other programs' tables to train or to test on")
       ->type_name("FILE");
+  app.add_option(
+         "--train", session.recordings,
+         "Recordings that models are fitted to, as one training set; without --test, the end of the last is the test")
+      ->type_name("REC.csv");
+  app.add_option("--test", arguments.test, "Replay this recording; models are judged on it, and not fitted to it")
+      ->type_name("REC.csv")
+      ->excludes("--device");
   app.add_option_function<std::string>(
          "--discriminate", [&arguments](const std::string& recording) { arguments.discriminate = recording; },
          "Blind test: can a person tell model from recording? A stroke of this recording [a virtual one], rendered by "
@@ -129,6 +137,10 @@ Status run_demo(Arguments& arguments) {
     arguments.demo.settings_file = *folder + "/window.json";
   sort_files(arguments);
   arguments.demo.session.ready_models = ready_models_folder();
+  // Without a test recording, the end of the last training recording is replayed.
+  const std::vector<std::string>& training = arguments.demo.session.recordings;
+  if (arguments.test.empty() && !training.empty() && device == "auto") arguments.test = training.back();
+  if (!arguments.test.empty()) device = "replay:" + arguments.test;
   auto created = DemoApp::create(arguments.demo);
   if (!created) return created.error();
   // It is not destroyed, because it would wait for a fit; `main` ends the program.
@@ -168,7 +180,7 @@ int run_program(int argc, char** argv) {
   CLI::App app("Palpate: press a recorded block, and see which model differs from it by more than a hand can notice",
                "palpate-demo");
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
-  app.footer("Example:\n  palpate-demo rec.csv test.csv");
+  app.footer("Example:\n  palpate-demo --train rec.csv --test test.csv");
   Arguments arguments;
   add_options(app, arguments);
   try {

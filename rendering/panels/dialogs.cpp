@@ -118,7 +118,8 @@ void draw_view_list(ViewState& view, const OverlayActions& actions) {
   ImGui::End();
 }
 
-void draw_role(RecordingRoles& roles, const ConvertedRecording& one) {
+// Returns whether the user takes the recording out of the list.
+bool draw_role(RecordingRoles& roles, const ConvertedRecording& one) {
   ImGui::PushID(one.path.c_str());
   const bool test = roles.tested == one.path;
   if (ImGui::RadioButton("train", !test) && test) roles.tested.clear();
@@ -126,11 +127,16 @@ void draw_role(RecordingRoles& roles, const ConvertedRecording& one) {
   ImGui::SameLine();
   if (ImGui::RadioButton("test", test)) roles.tested = one.path;
   tip("It is replayed, and the models are judged on it; none is fitted to it");
+  ImGui::SameLine();
+  const bool out = ImGui::SmallButton("leave");
+  if (out && test) roles.tested.clear();
+  tip("It is neither: takes it out of this list");
   ImGui::PopID();
   ImGui::SameLine();
   ImGui::TextUnformatted(fs::path(one.path).filename().c_str());
   tip(one.path.c_str());
   for (const std::string& line : one.words) ImGui::TextDisabled("%s", line.c_str());
+  return out;
 }
 
 std::string recording_roles_words(const RecordingRoles& roles) {
@@ -152,7 +158,7 @@ void draw_recording_roles(ViewState& view, const OverlayActions& actions) {
         "What it asks for is an option of `palpate import FILE --out REC.csv`; drop that recording here.");
     if (roles.recordings.empty() && (ImGui::Button("OK (Enter)") || enter_pressed())) open = false;
   }
-  for (const ConvertedRecording& one : roles.recordings) draw_role(roles, one);
+  std::erase_if(roles.recordings, [&](const ConvertedRecording& one) { return draw_role(roles, one); });
   if (!roles.recordings.empty()) {
     ImGui::TextUnformatted(recording_roles_words(roles).c_str());
     if (ImGui::Button("Start (Enter)") || (!ImGui::GetIO().WantTextInput && enter_pressed())) {

@@ -155,10 +155,11 @@ void Exhibit::begin_reveal(const LiveSession& session) {
   if (std::exchange(revealed_, game_.state() == State::reveal) || !revealed_) return;
   reveal_.start(game_.trace(), session.jnd(), times_.slowness, session.newest().loop_time_s);
   // Each day has its own tally file. A tally that cannot be written is no error.
-  tally_ = read_tally(tally_path());
+  const std::string path = tally_path();
+  if (!path.empty()) tally_ = read_tally(path);
   ++tally_.answers;
   if (game_.round().correct()) ++tally_.as_expected;
-  (void)write_tally(tally_path(), tally_);
+  if (!path.empty()) (void)write_tally(path, tally_);
 }
 
 bool Exhibit::reveal_is_done(const LiveSession& session) const {

@@ -37,11 +37,14 @@ void ExhibitReveal::start(const ExhibitTrace& trace, const JndLine& jnd, double 
   largest_at_ = largest - first;
 }
 
+double ExhibitReveal::way_back(double now_s) const noexcept {
+  const double share = std::clamp((columns_since_start(now_s) - end()) / kBack, 0.0, 1.0);
+  return share * share * (3.0 - 2.0 * share);
+}
+
 double ExhibitReveal::playhead(double now_s) const noexcept {
-  const double pressed = columns_since_start(now_s);
-  if (pressed < end()) return std::max(0.0, pressed);
-  const double share = std::min((pressed - end()) / kBack, 1.0);  // of the way back, with a smooth start and end
-  return std::lerp(end(), static_cast<double>(largest_at_), share * share * (3.0 - 2.0 * share));
+  const double pressed = std::clamp(columns_since_start(now_s), 0.0, end());
+  return std::lerp(pressed, static_cast<double>(largest_at_), way_back(now_s));
 }
 
 ExhibitReveal::Moment ExhibitReveal::at(double now_s) const noexcept {
@@ -59,9 +62,12 @@ ExhibitReveal::Moment ExhibitReveal::at(double now_s) const noexcept {
 void ExhibitReveal::draw_arrows(const UiStyle& style, const SceneArea& area, double now_s, const Rgb& first,
                                 const Rgb& second, bool first_is_left) const {
   const Moment moment = at(now_s);
-  double most_N = 0.1;
-  for (const Moment& one : {moment, moments_[largest_at_]})
-    most_N = std::max({most_N, one.first_N + jnd_N(one), second_N(one)});
+  const auto highest_N = [this](const Moment& one) { return std::max({0.1, one.first_N + jnd_N(one), second_N(one)}); };
+  double press_N = 0.1;
+  for (const Moment& one : moments_) press_N = std::max(press_N, highest_N(one));
+  // During the way back the present arrows may be higher than both.
+  const double most_N =
+      std::max(std::lerp(press_N, highest_N(moments_[largest_at_]), way_back(now_s)), highest_N(moment));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float right = area.at.x + area.size.x, ground = area.at.y + area.size.y;
   const auto y_of = [&](double force_N) {

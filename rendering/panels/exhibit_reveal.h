@@ -23,8 +23,8 @@ class ExhibitReveal {
   // The second force, N: first_N + over_jnd JND(first_N). It is that of the mean over 50 ms that decides the round.
   double second_N(const Moment& moment) const noexcept { return moment.first_N + moment.over_jnd * jnd_N(moment); }
 
-  // Draws both arrows, the first at the left if `first_is_left`, and the band into `area`, which they fill at the
-  // largest difference.
+  // Draws both arrows, the first at the left if `first_is_left`, and the band into `area`. All moments of the press
+  // have the same scale. On the way back to the largest difference, the arrows grow until they fill the area.
   void draw_arrows(const UiStyle& style, const SceneArea& area, double now_s, const Rgb& first, const Rgb& second,
                    bool first_is_left) const;
 
@@ -35,6 +35,8 @@ class ExhibitReveal {
   double columns_since_start(double now_s) const noexcept {
     return (now_s - began_s_) / slowness_ / ExhibitTrace::kColumn_s;
   }
+  // Share of the way back from the end of the press to the largest difference, 0 to 1, with a smooth start and end.
+  double way_back(double now_s) const noexcept;
   double playhead(double now_s) const noexcept;  // index into moments_, with a fraction
   double jnd_N(const Moment& moment) const noexcept { return jnd_.at(moment.first_N); }
 

@@ -98,7 +98,7 @@ void draw_error_bins(const ModelsView& models, const UiStyle& style, float heigh
 }
 
 constexpr std::size_t kFaultsShown = 6;
-constexpr double kStall_s = 0.05;
+constexpr double kFewFrames_per_s = 50.0;
 // A larger share of missed deadlines is reported.
 constexpr double kManyMissed = 0.01;
 
@@ -166,6 +166,7 @@ void draw_health(const HealthView& health, ViewState& view, const UiStyle& style
   if (!scheduling.fix.empty()) {
     ImGui::SameLine();
     ImGui::TextDisabled(view.details ? "" : "(L: how to get better)");
+    tip(scheduling.fix.c_str());
   }
   if (const std::string line = device_line(health); !line.empty()) {
     wrapped(p.quiet, line);
@@ -199,7 +200,7 @@ std::string device_line(const HealthView& health) {
 
 HealthWords health_words(const HealthView& health, double recent_fps, bool details) {
   const LoopStatistics& statistics = health.loop;
-  if (statistics.ticks > 0 && statistics.age_s > kStall_s)
+  if (statistics.ticks > 0 && statistics.age_s > FaultLog::kStall_s)
     return {text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s), true};
   if (const auto words = device_fault_words(health.newest.device.faults); !words.empty())
     return {"Device: " + words.front(), true};
@@ -212,6 +213,13 @@ HealthWords health_words(const HealthView& health, double recent_fps, bool detai
     return {text_of("%.1f %% of the recent deadlines missed: close other programs", 100.0 * missed) +
                 (health.scheduling.realtime ? "" : ", or allow real-time priority"),
             true};
+  }
+  if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s) {
+    // A slow picture does not affect the force, so it is not a fault.
+    return {text_of("%.0f frames a second: a slow picture, ", recent_fps) +
+                (statistics.missed_deadlines == 0 ? "the force is not affected"
+                                                  : std::to_string(statistics.missed_deadlines) + " deadlines missed"),
+            false};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
               ", missed " + std::to_string(statistics.missed_deadlines) + text_of(", %.0f fps", recent_fps),

@@ -108,6 +108,12 @@ struct SpeedPlot {
       list().AddCircleFilled(path.back(), 2.0F * size, colour(slot, 0.6F));
     }
     plot.line(path, colour(slot, 0.6F), size);
+    for (const auto& [centres, figures] : one.path) {
+      const bool is_end = centres == one.path.begin()->first || centres == one.path.rbegin()->first;
+      if (!is_end || centres == one.centres) continue;
+      const ImVec2 by = at(figures.first, figures.second);
+      list().AddText({by.x + 3.0F * size, by.y - line()}, ink(style.colours().quiet), std::to_string(centres).c_str());
+    }
     if (one.p99_interval.known()) {
       list().AddLine({dot.x, plot.y_px(log_error(one.p99_interval.low))},
                      {dot.x, plot.y_px(log_error(one.p99_interval.high))}, colour(slot), 1.5F * size);

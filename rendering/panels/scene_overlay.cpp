@@ -146,6 +146,16 @@ struct Overlay {
     return at.y + size.y + 2.0F * pad;
   }
 
+  // The hint how to press, until the user has pressed with half a newton; else empty.
+  std::string hint() const {
+    constexpr double kPressed_N = 0.5;
+    const ToolInput* tool = session.tool_input();
+    if (tool == nullptr) return {};
+    if (tool->hand_is_exploring()) return "The hand moves by itself. Move the mouse down over the block to press it.";
+    if (session.newest().rendered_N > kPressed_N) view.has_pressed = true;
+    return view.has_pressed ? "" : "Move the mouse down over the block to press it. No button is needed.";
+  }
+
   // The error and the time of a model, as in the table.
   std::string figures_of(const ModelView& model) const {
     std::string text;
@@ -335,8 +345,8 @@ struct Overlay {
       top_px = draw_plated(warning, top_px);
       if (view.scales_force) {
         top_px = draw_feel(top_px);
-      } else if (warning.empty() && session.tool_input() != nullptr && session.tool_input()->hand_is_exploring()) {
-        top_px = draw_plated("The hand moves by itself. Move the mouse down over the block to press it.", top_px);
+      } else if (warning.empty()) {
+        top_px = draw_plated(hint(), top_px);
       }
     }
     draw_recording();

@@ -140,6 +140,7 @@ struct ViewState {
   int requested_centres = 0;                           // last value of the slider of centres
   bool details = false;                                // shows the figures and faults of the loop
   float health_px = 0.0F;                              // height of the lines about the loop in the last frame
+  bool has_pressed = false;                            // the user has pressed a block, so that the hint is hidden
   std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse; its curves are labelled
   bool verdict = true;                                 // plots error against time of a tick; else error against force
 };

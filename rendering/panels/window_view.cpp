@@ -134,7 +134,9 @@ BigNumber big_number(const ModelsView& models) {
 }
 
 WindowView window_view(const LiveSession& session, const ViewState& view) {
+  static std::uint64_t made = 0;
   WindowView shown;
+  shown.number = ++made;
   shown.models = models_view(session, view.time.end_s(std::numeric_limits<double>::infinity()));
   shown.health = {.loop = session.loop().statistics(),
                   .scheduling = session.loop().scheduling(),

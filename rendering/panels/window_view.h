@@ -63,6 +63,7 @@ struct HealthView {
 };
 
 struct WindowView {
+  std::uint64_t number = 0;  // of the views that were made, from 1
   ModelsView models;
   HealthView health;
   // The slots that have a block, in ascending order. If there is too little room, the active model and that of the

@@ -108,6 +108,16 @@ TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
   EXPECT_EQ(session.models().selected(), 1u) << "keys count what is listed";
 }
 
+// Blocks, texts, panels and exhibit use one view, which is made once per frame.
+TEST_F(DemoAppTest, WhatIsShownIsMadeOnceAFrame) {
+  open("hand");
+  app_->view().settings.block_count = kAllBlocks;
+  frames(2);
+  const std::uint64_t before = app_->shown().number;
+  frames(10);
+  EXPECT_EQ(app_->shown().number, before + 10);
+}
+
 // Two recordings: models are fitted to one and tested on the whole other one, independent of the playhead.
 TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   open("hand");

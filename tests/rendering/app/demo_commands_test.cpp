@@ -280,6 +280,17 @@ TEST_F(DemoCommandsTest, FromAReplayBackToTheHandWithTheSameMaterial) {
     EXPECT_EQ(app_->session().comparison().figures(i).errors.samples, 0u);
 }
 
+TEST_F(DemoCommandsTest, APressIsExplainedUntilItWasDone) {
+  open("mouse");
+  frames(5);
+  EXPECT_FALSE(app_->view().has_pressed);
+  app_->session().tool_input()->set_target(-0.004, steady_now_s());
+  frames(20);
+  EXPECT_FALSE(app_->view().has_pressed) << "above the block there is nothing to feel";
+  app_->session().tool_input()->set_target(0.005, steady_now_s());
+  EXPECT_TRUE(until([&] { return app_->view().has_pressed; }));
+}
+
 TEST_F(DemoCommandsTest, SaysWhatThereIsNotForAKey) {
   open("hand");
   for (int i = 0; i < 3; ++i) press(GLFW_KEY_D);

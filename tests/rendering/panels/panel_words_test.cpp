@@ -49,17 +49,20 @@ TEST(PanelWords, AStallComesBeforeAFaultAndAFaultBeforeAlarmsThatAreOver) {
   EXPECT_TRUE(over.problem && over.past);
 }
 
-TEST(PanelWords, MissedDeadlinesAreNamed) {
+TEST(PanelWords, MissedDeadlinesAndSlowPicturesAreNamed) {
   HealthView health;
   EXPECT_FALSE(health_words(health, 20.0, true).problem) << "nothing that is felt is late";
+  EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"20 frames"}));
   health.loop.ticks = 5000;
   health.loop.missed_deadlines = 41;
-  EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"missed 41", "20 fps"}));
+  EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"20 frames", "41 deadlines"}));
   health.missed_of_late = 0.025;
   EXPECT_FALSE(health_words(health, 20.0, false).problem) << "a visitor cannot change it";
   EXPECT_TRUE(test::has_parts(health_words(health, 20.0, true).text, {"2.5 %", "real-time priority"}));
   health.scheduling.realtime = true;
   EXPECT_EQ(health_words(health, 20.0, true).text.find("real-time priority"), std::string::npos);
+  health.missed_of_late = 0.0;
+  EXPECT_FALSE(health_words(health, 0.0, true).problem);
 }
 
 TEST(PanelWords, OnlyAZeroedDeviceHasALine) {
