@@ -1,5 +1,3 @@
-#include "rendering/panels/dialogs.h"
-
 #include <imgui.h>
 
 #include <algorithm>
@@ -7,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/scene_overlay.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {

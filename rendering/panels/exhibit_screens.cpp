@@ -5,7 +5,6 @@
 #include "engine/base/text.h"
 #include "rendering/panels/exhibit.h"
 #include "rendering/panels/panel.h"
-#include "rendering/panels/panel_parts.h"
 
 namespace palpate {
 namespace {

@@ -5,9 +5,6 @@
 #include <cstdio>
 #include <vector>
 
-#include "rendering/panels/panel_models.h"
-#include "rendering/panels/panel_speed.h"
-#include "rendering/ui/plot.h"
 #include "scenes/worker/model_request.h"
 
 namespace palpate {

@@ -2,8 +2,7 @@
 #include <cmath>
 
 #include "engine/base/text.h"
-#include "rendering/panels/panel_force.h"
-#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel.h"
 #include "rendering/panels/time_plot.h"
 
 namespace palpate {

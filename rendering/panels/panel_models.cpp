@@ -4,9 +4,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "rendering/panels/panel_models.h"
-#include "rendering/panels/panel_parts.h"
-#include "scenes/live/live_session.h"
+#include "rendering/panels/panel.h"
 
 namespace palpate {
 namespace {

@@ -1,12 +1,10 @@
-#include "rendering/panels/panel_speed.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "engine/base/text.h"
-#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel.h"
 
 namespace palpate {
 namespace {

@@ -19,8 +19,6 @@ class Pixels {
   // Copies `from` to `to` of another one, or to `to` of the window (`other` null) with the origin at the lower left
   // corner of the window. Interpolates if the sizes differ. The target of drawing is undefined afterwards.
   void copy_to(const Pixels* other, const Viewport& from, const Viewport& to) const;
-  int width() const noexcept { return width_; }
-  int height() const noexcept { return height_; }
   unsigned colour() const noexcept { return colour_; }
 
  private:

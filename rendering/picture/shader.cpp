@@ -66,7 +66,6 @@ Shader::~Shader() {
 void Shader::use() const { glUseProgram(program_); }
 int Shader::uniform(const char* name) const { return glGetUniformLocation(program_, name); }
 void Shader::set(const char* name, float value) const { glUniform1f(uniform(name), value); }
-void Shader::set(const char* name, int value) const { glUniform1i(uniform(name), value); }
 void Shader::set(const char* name, const glm::vec2& value) const {
   glUniform2fv(uniform(name), 1, glm::value_ptr(value));
 }
@@ -75,9 +74,6 @@ void Shader::set(const char* name, const glm::vec3& value) const {
 }
 void Shader::set(const char* name, const glm::mat4& value) const {
   glUniformMatrix4fv(uniform(name), 1, GL_FALSE, glm::value_ptr(value));
-}
-void Shader::set(const char* name, const glm::vec2* values, int count) const {
-  glUniform2fv(uniform(name), count, glm::value_ptr(*values));
 }
 
 }  // namespace palpate

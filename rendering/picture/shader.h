@@ -26,11 +26,9 @@ class Shader {
   void use() const;
   // Set a uniform of the shader in use. A uniform that does not exist is ignored.
   void set(const char* name, float value) const;
-  void set(const char* name, int value) const;
   void set(const char* name, const glm::vec2& value) const;
   void set(const char* name, const glm::vec3& value) const;
   void set(const char* name, const glm::mat4& value) const;
-  void set(const char* name, const glm::vec2* values, int count) const;
 
  private:
   explicit Shader(unsigned program) : program_(program) {}

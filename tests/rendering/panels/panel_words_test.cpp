@@ -6,9 +6,6 @@
 #include <utility>
 
 #include "rendering/panels/panel.h"
-#include "rendering/panels/panel_models.h"
-#include "rendering/panels/panel_parts.h"
-#include "rendering/panels/panel_speed.h"
 #include "rendering/panels/scene_overlay.h"
 #include "rendering/panels/window_command.h"
 #include "tests/support/message_parts.h"

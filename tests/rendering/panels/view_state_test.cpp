@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rendering/panels/panel_models.h"
-#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel.h"
 #include "rendering/ui/ui_style.h"
 
 namespace palpate {
