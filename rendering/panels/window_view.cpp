@@ -44,7 +44,7 @@ std::string counted_words(const LiveSession& session) {
 // While a replay is paused, the history gets no ticks. Shows the forces at its playhead of models that became ready
 // since, and a new reference.
 void show_newest(const LiveSession& session, ModelsView& view) {
-  view.now.reference_N = static_cast<float>(session.comparison().reference_N());
+  view.now.reference_N = static_cast<float>(session.comparison().reference_in(session.newest()));
   for (std::size_t i = 0; i < view.slots.size(); ++i)
     if (view.slots[i].state == SlotState::ready) view.now.force_N[i] = static_cast<float>(view.slots[i].force_N);
 }

@@ -38,7 +38,7 @@ struct ModelsView {
   bool replays_training = false;                // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
-  HistoryPoint now = no_forces();  // the last tick that the curves show; without one all forces are NaN
+  HistoryPoint now;  // the last tick that the curves show; without one all forces are NaN
 
   // The slots that are not hidden, in order. Keys and tables number them.
   std::vector<std::size_t> listed() const;

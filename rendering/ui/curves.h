@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "engine/tick/haptics_tick.h"
@@ -14,26 +13,14 @@
 
 namespace palpate {
 
-constexpr std::array<float, kMaxModels> no_values() {
-  std::array<float, kMaxModels> values{};
-  values.fill(std::numeric_limits<float>::quiet_NaN());
-  return values;
-}
-inline HistoryPoint no_forces() {
-  HistoryPoint tick;
-  tick.force_N = no_values();
-  tick.reference_N = std::numeric_limits<float>::quiet_NaN();
-  return tick;
-}
-
 struct CurveColumn {
   double time_s = 0.0;                                // loop time of its middle
   bool any = false;                                   // whether it has ticks
   TickFaultLevel fault_level = TickFaultLevel::none;  // the worst of its ticks
   // The tick in which a model is farthest from the reference. All forces that are drawn are of this one tick, so that
   // no difference is shown that did not occur.
-  HistoryPoint tick = no_forces();
-  float jnd_N = std::numeric_limits<float>::quiet_NaN();  // at that tick; NaN: no reference
+  HistoryPoint tick;
+  float jnd_N = kMissing;  // at that tick; NaN: no reference
   // By slot: extremes of (model - reference) / JND, signed; 0 out of contact, NaN without a force or a comparison.
   std::array<float, kMaxModels> low_over_jnd = no_values();
   std::array<float, kMaxModels> high_over_jnd = no_values();

@@ -29,7 +29,7 @@ void Comparison::forget_slot(std::size_t slot) {
 
 ModelFigures Comparison::figures(std::size_t slot) const {
   const Slot& one = slots_[slot];
-  ModelFigures figures = one.newest;
+  ModelFigures figures;
   figures.errors = one.errors.summary(jnd_);
   figures.press_samples = figures.errors.samples;
   figures.press_p99_over_jnd = figures.errors.p99_error_over_jnd;
@@ -73,15 +73,12 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
   point.time_s = snapshot.tick.time_s;
   point.position_m = static_cast<float>(snapshot.tick.position_m);
   point.depth_m = static_cast<float>(snapshot.tick.depth_m);
-  point.reference_N = static_cast<float>(reference_in(snapshot, set));
+  point.reference_N = static_cast<float>(reference_in(snapshot));
   point.rendered_N = static_cast<float>(snapshot.rendered_N);
   point.in_contact = snapshot.tick.in_contact;
   point.counts = settled_ && snapshot.tick.in_contact &&
                  (snapshot.tick.fault == TickFault::none || snapshot.tick.fault == TickFault::force_not_finite);
   point.out_of_domain = (snapshot.tick.out_of_domain_mask >> snapshot.selected & 1U) != 0;
-  point.force_N.fill(std::nanf(""));
-  point.sustained_over_jnd.fill(std::nanf(""));
-  point.predicted_error_N = std::nanf("");
   if (set == nullptr) return point;
   for (const auto& [slot, i] : set->models) {
     if (i == snapshot.selected) {
@@ -112,21 +109,10 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
       slots_[slot].errors.add(point.force_N[slot], point.reference_N, jnd_);
 }
 
-void Comparison::show(const LoopSnapshot& newest) {
-  const PublishedSet* set = models_.set_of(newest);
-  reference_N_ = reference_in(newest, set);
-  if (set == nullptr) return;
-  for (const auto& [slot, i] : set->models) {
-    ModelFigures& figures = slots_[slot].newest;
-    figures.force_N = newest.tick.force_N[i];
-    figures.predicted_error_N = newest.tick.predicted_error_N[i];
-    figures.out_of_domain = (newest.tick.out_of_domain_mask >> i & 1U) != 0;
-  }
-}
-
-double Comparison::reference_in(const LoopSnapshot& snapshot, const PublishedSet* set) const noexcept {
+double Comparison::reference_in(const LoopSnapshot& snapshot) const noexcept {
   if (reference_ == ReferenceKind::measured) return snapshot.measured_N;
   if (reference_ == ReferenceKind::truth) return snapshot.reference_N;
+  const PublishedSet* set = models_.set_of(snapshot);
   if (set == nullptr || !models_.reference()) return kNoForce;
   const std::size_t index = set->index_of(*models_.reference());
   return index < kMaxModels ? snapshot.tick.force_N[index] : kNoForce;

@@ -54,7 +54,7 @@ class Comparison {
   Comparison(const SessionModels& models, ReferenceKind reference, const JndLine& jnd);
 
   ReferenceKind reference() const noexcept { return reference_; }
-  double reference_N() const noexcept { return reference_N_; }  // in the newest tick; NaN: none
+  double reference_in(const LoopSnapshot& snapshot) const noexcept;  // NaN: none
   const ForceHistory& history() const noexcept { return history_; }
 
   // `time_s`: device time of the first sample of the replayed recording. Filters that start there have settled.
@@ -63,18 +63,16 @@ class Comparison {
   void forget_slot(std::size_t slot);  // its model was removed
   // Call it for every snapshot in order, with the return value of FaultLog::update.
   void add(const LoopSnapshot& snapshot, TickFaultLevel fault_level);
-  // Call it once a frame, after `add`: sets the figures of the newest tick.
-  void show(const LoopSnapshot& newest);
   // Clears the errors, but not the history.
   void forget_errors();
   // The duration of contact that counts, since the last clearing.
   double counted_s() const noexcept { return counted_s_; }
 
-  ModelFigures figures(std::size_t slot) const;  // without those of the test
+  // Without those of the newest tick and of the test.
+  ModelFigures figures(std::size_t slot) const;
 
  private:
   struct Slot {
-    ModelFigures newest;  // without errors
     Dent dent;
     SustainedError sustained;
     double sustained_over_jnd = 0.0;  // in the last snapshot; ticks without a reference count as 0
@@ -82,12 +80,10 @@ class Comparison {
   };
   HistoryPoint point_of(const LoopSnapshot& snapshot, const PublishedSet* set);
   void count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s);
-  double reference_in(const LoopSnapshot& snapshot, const PublishedSet* set) const noexcept;
 
   const SessionModels& models_;
   JndLine jnd_;
   ReferenceKind reference_;
-  double reference_N_ = kNoForce;
   std::vector<Slot> slots_{kMaxModels};
   double counted_s_ = 0.0;
   bool settled_ = false;         // the feature filters have settled

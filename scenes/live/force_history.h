@@ -25,22 +25,30 @@ enum class ReferenceKind : std::uint8_t {
   model,     // of the model SessionModels::reference: there is no true force
 };
 
+inline constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+constexpr std::array<float, kMaxModels> no_values() noexcept {
+  std::array<float, kMaxModels> values{};
+  values.fill(kMissing);
+  return values;
+}
+
+// Values are NaN where there is none.
 struct HistoryPoint {
   double loop_time_s = 0.0;  // steady clock
   double time_s = 0.0;       // device time; the time in the recording where one is replayed
   float position_m = 0.0F;   // of the tool; negative in the air
   float depth_m = 0.0F;
-  float reference_N = 0.0F;  // NaN: none
+  float reference_N = kMissing;
   float rendered_N = 0.0F;
-  float predicted_error_N = 0.0F;  // 95 %, of the active model; NaN: none
+  float predicted_error_N = kMissing;  // 95 %, of the active model
   bool in_contact = false;
   bool counts = true;          // in contact, valid sample, filters settled; see comparison.h for the rest
   bool out_of_domain = false;  // of the active model
   std::uint8_t active = 0;     // its slot
   TickFaultLevel fault_level = TickFaultLevel::none;
-  std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready
-  // By slot: mean over 50 ms of (model - reference) / JND (stream_errors.h), signed; NaN without a comparison.
-  std::array<float, kMaxModels> sustained_over_jnd{};
+  std::array<float, kMaxModels> force_N = no_values();  // by slot
+  // By slot: mean over 50 ms of (model - reference) / JND (stream_errors.h), signed.
+  std::array<float, kMaxModels> sustained_over_jnd = no_values();
   std::uint16_t other_material = 0;  // bit per slot: a model of another material, which is not compared
 
   // (model - reference) / JND of this tick; 0 in the air, NaN without a comparison.
@@ -79,7 +87,7 @@ class ForceHistory {
     return next > 0 ? &(*this)[next - 1] : nullptr;
   }
   void forget(std::size_t slot) noexcept {
-    for (HistoryPoint& point : points_) point.force_N[slot] = point.sustained_over_jnd[slot] = std::nanf("");
+    for (HistoryPoint& point : points_) point.force_N[slot] = point.sustained_over_jnd[slot] = kMissing;
   }
   void append(const HistoryPoint& point) {
     if (size_ < points_.size()) {

@@ -191,7 +191,6 @@ void LiveSession::update() {
   if (test_.update(models_) && test_.move(test_.moved())) comparison_.forget_errors();
   loop_->collect_models();
   newest_ = loop_->newest();
-  comparison_.show(newest_);
   update_verdict();
   const LoopStatistics statistics = loop_->statistics();
   faults_.update_window(statistics.dropped_snapshots, statistics.age_s, steady_now_s());
@@ -269,6 +268,12 @@ bool LiveSession::tests_training() const {
 
 ModelFigures LiveSession::figures(std::size_t slot) const {
   ModelFigures figures = comparison_.figures(slot);
+  const PublishedSet* set = models_.set_of(newest_);
+  if (const std::size_t i = set != nullptr ? set->index_of(slot) : kMaxModels; i < kMaxModels) {
+    figures.force_N = newest_.tick.force_N[i];
+    figures.predicted_error_N = newest_.tick.predicted_error_N[i];
+    figures.out_of_domain = (newest_.tick.out_of_domain_mask >> i & 1U) != 0;
+  }
   const ModelTest::Tested* tested = test_.find(models_.model(slot).get());
   if (tested != nullptr) figures.tick = tested->tick;
   if (!test_.has_recording()) return figures;

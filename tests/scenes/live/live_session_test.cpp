@@ -174,7 +174,7 @@ TEST_F(SessionOfFiles, LoadsAFileAndKeepsTheChoice) {
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_EQ(session->comparison().reference(), ReferenceKind::model);
   EXPECT_EQ(session->reference_words(), "no truth to compare with");
-  EXPECT_TRUE(std::isnan(session->comparison().reference_N()));
+  EXPECT_TRUE(std::isnan(session->comparison().reference_in(session->newest())));
   ModelData other = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 3);
   other.name = "first";
   ASSERT_TRUE(save_model(folder.file("c.json"), other, false).ok());
