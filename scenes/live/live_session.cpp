@@ -121,6 +121,8 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   Result<std::vector<ModelRequest>> plans = std::vector<ModelRequest>();
   if (request.refits) plans = requested_models(*scene, line_up != nullptr ? line_up->models : request.models);
   if (!plans) return plans.error();
+  // Files that the user names together with a scene count as models of it, whatever their provenance.
+  for (ModelRequest& plan : *plans) plan.of_this_material = !request.scene.empty();
   for (const ModelRequest& plan : request.kept) {
     // A plan without a model needs a material to fit to.
     if (plans->size() < kMaxModels && (plan.loaded != nullptr || scene->has_material())) plans->push_back(plan);
@@ -169,7 +171,7 @@ Status LiveSession::begin(const std::vector<ModelRequest>& plans) {
   if (set_apart_)
     notices_.push_back(
         {"The end of " + test_file() + " is set apart: models are fitted to the rest and tested on it.", false});
-  if (Status status = models_.start(plans, !request_.scene.empty()); !status) return status;
+  if (Status status = models_.start(plans); !status) return status;
   // The first set has the true force only, so that the material is rendered before any model is ready.
   if (truth_ != nullptr) publish();
   return loop_->start();

@@ -43,12 +43,8 @@ SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& no
                              const std::string& ready)
     : scene_(scene), notices_(notices), worker_(scene_, seed, std::move(training), ready) {}
 
-Status SessionModels::start(const std::vector<ModelRequest>& requests, bool claimed) {
-  for (const ModelRequest& request : requests) {
-    Slot& slot = slots_[add_slot(request)];
-    slot.claimed = claimed;
-    worker_.add_job(slot.job, request);
-  }
+Status SessionModels::start(const std::vector<ModelRequest>& requests) {
+  for (const ModelRequest& request : requests) worker_.add_job(slots_[add_slot(request)].job, request);
   return worker_.start();
 }
 
@@ -136,8 +132,7 @@ std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noe
 // A model file of another material is not compared with the true force of this one. If the user named recordings, there
 // is no true force, and no model counts as one of another material.
 bool SessionModels::is_of_other_material(const Slot& slot) const {
-  const bool claimed = slot.claimed || slot.request.of_this_material;
-  if (!scene_.material || claimed || !slot.request.is_file()) return false;
+  if (!scene_.material || slot.request.of_this_material || !slot.request.is_file()) return false;
   const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
   return std::ranges::any_of(recordings, [&](const std::string& name) {
     const std::string start = *scene_.material + "_";  // the rig names its recordings MATERIAL_SEED

@@ -68,9 +68,8 @@ class SessionModels {
   SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training = {},
                 const std::string& ready = "");
 
-  // Makes a slot for each request. `claimed`: model files count as models of this material, whatever their provenance.
-  // Errors: a thread cannot be started.
-  Status start(const std::vector<ModelRequest>& requests, bool claimed);
+  // Makes a slot for each request. Errors: a thread cannot be started.
+  Status start(const std::vector<ModelRequest>& requests);
   // Interrupts fits; does not wait.
   void cancel() noexcept { worker_.cancel(); }
   // Call it once a frame. Returns the slots whose models became ready. If there are any, publish a new set.
@@ -149,7 +148,6 @@ class SessionModels {
     std::shared_ptr<const FittedModel> model;  // null until ready
     std::vector<double> forces_N;              // of the model, over its test_strokes
     bool removed = false, renamed = false;
-    bool claimed = false;  // see `start`
 
     bool hidden() const { return info.state == SlotState::hidden; }
     bool takes_part() const { return model != nullptr && info.state == SlotState::ready; }

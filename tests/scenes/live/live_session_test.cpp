@@ -306,6 +306,12 @@ TEST_F(SessionOfFiles, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().all_settled(); }));
   EXPECT_FALSE(beside->models().info(beside->models().size() - 1).other_material);
   EXPECT_EQ(beside->models().info(beside->models().size() - 1).state, SlotState::equal) << "it is there already";
+
+  // A model that the next session keeps stays one of another material, although its scene was named.
+  request.kept = {{.plan = {}, .path = folder.file("a.json"), .loaded = must(load_model(folder.file("a.json")))}};
+  const Session next = must(LiveSession::open(request));
+  ASSERT_TRUE(frames_until(*next, [&] { return next->models().all_settled(); }));
+  EXPECT_TRUE(next->models().info(next->models().size() - 1).other_material);
 }
 
 // A paused replay adds no samples, and single steps count like a running replay.
