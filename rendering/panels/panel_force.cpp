@@ -152,28 +152,32 @@ struct Drawing {
     const LivePlot plot(style, size,
                         {{-0.04 * deepest_mm, round_up(deepest_mm)}, {-0.04 * scale_N, scale_N}, "mm", "N"});
     const std::size_t step = std::max<std::size_t>(1, (end - first) / kLoopPoints);
-    // Draws the presses of one force. Points that are closer to the last one than a pixel are not visible.
-    const auto draw_presses = [&](auto force_N, ImU32 in, float thickness) {
-      std::vector<ImVec2> points;
-      for (std::size_t i = first; i < end; i += step) {
-        const HistoryPoint& point = history[i];
-        if (!point.in_contact) {
-          plot.line(points, in, thickness);
-          points.clear();
-        } else if (!std::isnan(force_N(point))) {
-          const ImVec2 at(plot.x_px(1e3 * point.depth_m), plot.y_px(force_N(point)));
-          if (points.empty() || std::abs(at.x - points.back().x) >= 1.0F || std::abs(at.y - points.back().y) >= 1.0F)
-            points.push_back(at);
-        }
-      }
-      plot.line(points, in, thickness);
+    std::vector<ImVec2> reference_points, model_points;
+    // Points that are closer to the last one than a pixel are not visible.
+    const auto extend = [&plot](std::vector<ImVec2>& points, float depth_m, float force_N) {
+      if (std::isnan(force_N)) return;
+      const ImVec2 at(plot.x_px(1e3 * depth_m), plot.y_px(force_N));
+      const bool close =
+          !points.empty() && std::abs(at.x - points.back().x) < 1.0F && std::abs(at.y - points.back().y) < 1.0F;
+      if (!close) points.push_back(at);
     };
-    const std::size_t active = models().selected;
-    if (models().active() != nullptr)
-      draw_presses([active](const HistoryPoint& point) { return point.force_N[active]; }, ink(colour(active)),
-                   kSelectedLine_px * scale());
-    draw_presses([](const HistoryPoint& point) { return point.reference_N; }, ink(reference()),
-                 kModelLine_px * scale());
+    const auto flush = [&] {
+      if (models().active() != nullptr)
+        plot.line(model_points, ink(colour(models().selected)), kSelectedLine_px * scale());
+      plot.line(reference_points, ink(reference()), kModelLine_px * scale());
+      reference_points.clear();
+      model_points.clear();
+    };
+    for (std::size_t i = first; i < end; i += step) {
+      const HistoryPoint& point = history[i];
+      if (!point.in_contact) {
+        flush();
+        continue;
+      }
+      extend(reference_points, point.depth_m, point.reference_N);
+      extend(model_points, point.depth_m, point.force_N[models().selected]);
+    }
+    flush();
   }
 
   void draw_force(const ImVec2& size, double scale_N) {
