@@ -50,7 +50,7 @@ Result<Settings> read_settings(const std::string& path) {
   if (!text) return Settings();
   try {
     Settings settings = nlohmann::json::parse(*text).get<Settings>();
-    settings.block_count = std::clamp<std::size_t>(settings.block_count, 1, kAllBlocks);
+    if (settings.block_count != 1 && settings.block_count != 2) settings.block_count = kAllBlocks;
     settings.text_size = std::clamp(settings.text_size, kSmallestText, kLargestText);
     return settings;
   } catch (const nlohmann::json::exception&) {
