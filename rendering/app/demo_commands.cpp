@@ -83,7 +83,7 @@ std::vector<WindowChoice> DemoApp::choices() {
   const auto first_is = [](bool& value) { return [&value](std::size_t i) { value = i == 0; }; };
   return {
       {GLFW_KEY_B, "Blocks", "one block, two, or one of each model and of the truth", names("1", "2", "all"),
-       std::min<std::size_t>(settings.block_count - 1, 2),
+       std::min<std::size_t>(settings.blocks - 1, 2),
        [this](std::size_t i) { use_block_count(i < 2 ? i + 1 : kAllBlocks); }},
       {GLFW_KEY_N, "Models", "the next set of models: comparison, sizes, corrections, direct", models, line_up,
        [this](std::size_t i) { use_line_up(line_ups()[i]); },
@@ -210,7 +210,7 @@ void DemoApp::select_listed(std::size_t number) {
 }
 
 void DemoApp::use_block_count(std::size_t wanted) {
-  view_.settings.block_count = wanted;
+  view_.settings.blocks = wanted;
   // Says why there are fewer blocks than the user selected.
   const bool reference = shown_.models.compared && shown_.models.reference == kReferenceBlock && wanted > 1;
   const std::size_t shown = shown_.models.drawn().size() + (reference ? 1 : 0);

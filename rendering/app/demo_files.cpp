@@ -17,8 +17,7 @@ namespace palpate {
 // The settings as JSON: a missing field is the default.
 NLOHMANN_JSON_SERIALIZE_ENUM(Theme, {{Theme::light, "light"}, {Theme::dark, "dark"}})
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(CameraTurn, yaw_rad, pitch_rad, distance)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Settings, theme, block_count, difference, text_size, line_up, recent,
-                                                camera)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Settings, theme, blocks, difference, text_size, line_up, recent, camera)
 
 namespace {
 
@@ -50,7 +49,7 @@ Result<Settings> read_settings(const std::string& path) {
   if (!text) return Settings();
   try {
     Settings settings = nlohmann::json::parse(*text).get<Settings>();
-    if (settings.block_count != 1 && settings.block_count != 2) settings.block_count = kAllBlocks;
+    if (settings.blocks != 1 && settings.blocks != 2) settings.blocks = kAllBlocks;
     settings.text_size = std::clamp(settings.text_size, kSmallestText, kLargestText);
     return settings;
   } catch (const nlohmann::json::exception&) {

@@ -85,7 +85,7 @@ bool Exhibit::update(LiveSession& session, ViewState& view) {
   view.exhibit.blind = blind;
   view.exhibit.close_up = game_.state() == State::reveal;
   const bool one_block = game_.has_force() && game_.state() != State::attract && game_.state() != State::reveal;
-  view.settings.block_count = one_block ? 1 : 2;
+  view.settings.blocks = one_block ? 1 : 2;
   if (now != nullptr) session.models().select(blind ? game_.rendered().slot : now->second.slot);
   return left;
 }

@@ -78,7 +78,7 @@ struct FilePicker {
 // Settings that are kept between runs.
 struct Settings {
   Theme theme = Theme::light;
-  std::size_t block_count = kAllBlocks;  // 1, 2 or all
+  std::size_t blocks = kAllBlocks;  // 1, 2 or all
   bool difference = true;                // the lower curves show the difference of every tick; else its mean over 50 ms
   float text_size = 1.0F;                // factor
   std::string line_up;                   // empty: the default

@@ -145,7 +145,7 @@ WindowView window_view(const LiveSession& session, const ViewState& view) {
                   .faults = session.faults().events(),
                   .alarms = session.alarms(),
                   .device_name = session.device_name()};
-  const std::size_t blocks = view.settings.block_count;
+  const std::size_t blocks = view.settings.blocks;
   const bool reference = blocks > 1 && session.comparison().reference() != ReferenceKind::model;
   shown.blocks = slots_of_blocks(shown.models, reference, blocks);
   shown.reference_block = reference_block(session);

@@ -64,7 +64,7 @@ class DemoWindowTest : public ::testing::Test {
   // Opens a scene without a virtual material, so that no fit runs during the test.
   void open(const std::string& device) {
     start(request("skin", device));
-    app_->view().settings.block_count = 1;
+    app_->view().settings.blocks = 1;
     ASSERT_TRUE(until([&] { return app_->session().models().all_settled(); }));
   }
 

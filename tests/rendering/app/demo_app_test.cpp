@@ -111,7 +111,7 @@ TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
 // Blocks, texts, panels and exhibit use one view, which is made once per frame.
 TEST_F(DemoAppTest, WhatIsShownIsMadeOnceAFrame) {
   open("hand");
-  app_->view().settings.block_count = kAllBlocks;
+  app_->view().settings.blocks = kAllBlocks;
   frames(2);
   const std::uint64_t before = app_->shown().number;
   frames(10);

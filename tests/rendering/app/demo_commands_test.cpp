@@ -148,7 +148,7 @@ TEST_F(DemoCommandsTest, ListsAreUsedWithKeysAlone) {
   open_list(GLFW_KEY_W);
   press(GLFW_KEY_RIGHT);
   press(GLFW_KEY_SPACE);
-  EXPECT_EQ(app_->view().settings.block_count, 2u);
+  EXPECT_EQ(app_->view().settings.blocks, 2u);
   EXPECT_FALSE(app_->view().time.paused) << "the space bar belongs to the list";
   const double before_m = app_->session().newest().tick.position_m;
   press(GLFW_KEY_DOWN);
@@ -187,7 +187,7 @@ TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
   press(GLFW_KEY_T);
   EXPECT_EQ(app_->view().settings.theme, Theme::dark);
   press(GLFW_KEY_B);
-  EXPECT_EQ(app_->view().settings.block_count, 2u);
+  EXPECT_EQ(app_->view().settings.blocks, 2u);
   press(GLFW_KEY_SPACE);
   EXPECT_TRUE(app_->view().time.paused);
   press(GLFW_KEY_SPACE);
@@ -299,7 +299,7 @@ TEST_F(DemoCommandsTest, SaysWhatThereIsNotForAKey) {
   EXPECT_EQ(app_->view().toasts.size(), 1u) << "the same notice is there once";
   press(GLFW_KEY_B);
   press(GLFW_KEY_B);
-  EXPECT_EQ(app_->view().settings.block_count, kAllBlocks);
+  EXPECT_EQ(app_->view().settings.blocks, kAllBlocks);
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST(Settings, ComeBackAsTheyWere) {
   const test::TemporaryFolder folder;
   Settings settings;
   settings.theme = Theme::dark;
-  settings.block_count = 2;
+  settings.blocks = 2;
   settings.difference = false;
   settings.text_size = 1.25F;
   settings.line_up = "2009";
@@ -142,7 +142,7 @@ TEST(Settings, AreNoReasonNotToStart) {
   const auto missing = read_settings(folder.file("none.json"));
   ASSERT_TRUE(missing.ok());
   EXPECT_EQ(*missing, Settings{});
-  std::ofstream(folder.file("odd.json")) << R"({"block_count": 3, "theme": 7, "text_size": 99})";
+  std::ofstream(folder.file("odd.json")) << R"({"blocks": 3, "theme": 7, "text_size": 99})";
   const auto odd = read_settings(folder.file("odd.json"));
   ASSERT_TRUE(odd.ok());
   Settings expected;

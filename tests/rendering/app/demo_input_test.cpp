@@ -136,7 +136,7 @@ TEST_F(DemoInputTest, ATapOfAKeyIsNotLostOnASlowFrame) {
 // the data end, and it is lifted when the mouse leaves the picture.
 TEST_F(DemoInputTest, TheProbeFollowsTheMouseInAllOfThePicture) {
   open("mouse");
-  app_->view().settings.block_count = kAllBlocks;
+  app_->view().settings.blocks = kAllBlocks;
   point_at(384.0, 300.0);
   move_mouse(700.0, 640.0);
   const double known_m = app_->session().models().trained_depth_m();

@@ -164,7 +164,7 @@ class ExhibitTest : public test::DemoWindowTest {
 TEST_F(ExhibitTest, IsPlayedWithAMouseAlone) {
   open_exhibit({});
   EXPECT_TRUE(says("Can you tell the computer from the block?"));
-  EXPECT_EQ(app_->view().settings.block_count, 2u) << "the comparison, not an empty block";
+  EXPECT_EQ(app_->view().settings.blocks, 2u) << "the comparison, not an empty block";
   visit_with_mouse();
   click_on("Enter");
   EXPECT_EQ(state(), State::guess) << "once more";
@@ -340,7 +340,7 @@ TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
     ASSERT_EQ(state(), State::press) << "no guess before a hand has felt anything";
     EXPECT_TRUE(says("feel a difference"));
     EXPECT_TRUE(app_->view().exhibit.blind);
-    EXPECT_EQ(app_->view().settings.block_count, 1u);
+    EXPECT_EQ(app_->view().settings.blocks, 1u);
     stroke_device();
     press(GLFW_KEY_D);
     EXPECT_EQ(state(), State::press) << "both have to be pressed";
