@@ -57,7 +57,7 @@ struct SpeedPlot {
   const UiStyle& style;
   const LivePlot& plot;
   const SpeedRanges& ranges;
-  std::vector<ImVec4> placed{};  // rectangles of dots and names
+  std::vector<ImVec4> placed{}, spreads{};  // rectangles of dots and names; of the lines of times
 
   float line() const { return ImGui::GetFontSize(); }
   ImDrawList& list() const { return plot.list(); }
@@ -122,14 +122,15 @@ struct SpeedPlot {
     const float radius = (slot == models.verdict.chosen ? 7.0F : 5.0F) * size;
     draw_mark(list(), dot, radius, one.paper, colour(slot), style);
     placed.push_back({dot.x - radius, dot.y - radius, dot.x + radius, dot.y + radius});
-    placed.push_back({low.x, dot.y - 1.0F, high.x, dot.y + 1.0F});
+    spreads.push_back({low.x, dot.y - 1.0F, high.x, dot.y + 1.0F});
   }
 
-  bool is_free(const ImVec4& box) const {
+  bool is_free(const ImVec4& box, bool over_spreads = false) const {
     if (box.x < plot.left() || box.z > plot.right() || box.y < plot.top() || box.w > plot.bottom()) return false;
-    return std::none_of(placed.begin(), placed.end(), [&](const ImVec4& other) {
+    const auto covers = [&](const ImVec4& other) {
       return box.x < other.z && other.x < box.z && box.y < other.w && other.y < box.w;
-    });
+    };
+    return std::ranges::none_of(placed, covers) && (over_spreads || std::ranges::none_of(spreads, covers));
   }
 
   // Draws what the JND is above its line, at the left or the right, where no model is.
@@ -143,7 +144,8 @@ struct SpeedPlot {
     list().AddText({box.x, box.y}, ink(style.colours().quiet), text);
   }
 
-  // Draws the name beside its dot, on the side and at the height that are free; else joined to it by a line.
+  // Draws the name beside, above or below its dot where it is free, if need be over the spreads of others; far from the
+  // dot, joined to it by a line.
   void draw_name(std::size_t slot) {
     const ModelView& one = models.slots[slot];
     const ImVec2 dot = at(one.tick_ns(), one.errors.p99_error_over_jnd);
@@ -152,17 +154,21 @@ struct SpeedPlot {
     const float gap = 0.6F * line();
     const float right = std::max(dot.x, plot.x_px(std::log10(drawn_high_ns(one.tick))) - 0.3F * line()) + gap;
     const float left_end = std::min(dot.x, plot.x_px(std::log10(one.tick.low_ns)) + 0.3F * line()) - gap;
+    constexpr int kPlaces = 27;
     const auto box_of = [&](int step) {
-      const float shift = static_cast<float>((step / 4 + 1) / 2) * (step / 4 % 2 == 0 ? 0.7F : -0.7F) * size.y;
-      const float left = step % 2 == 0 ? right : left_end - size.x, top = dot.y - 0.5F * size.y + shift;
+      const int row = step / 3;
+      const float shift = static_cast<float>((row + 1) / 2) * (row % 2 == 0 ? 0.7F : -0.7F) * size.y;
+      const float left = step % 3 == 0 ? right : step % 3 == 1 ? left_end - size.x : dot.x - 0.5F * size.x;
+      const float top = dot.y - 0.5F * size.y + shift;
       return ImVec4(left, top, left + size.x, top + size.y);
     };
     int step = 0;
-    while (step < 24 && !is_free(box_of(step))) ++step;
-    const ImVec4 box = box_of(step < 24 ? step : 0);
+    while (step < 2 * kPlaces && !is_free(box_of(step % kPlaces), step >= kPlaces)) ++step;
+    const ImVec4 box = box_of(step % kPlaces);
     placed.push_back(box);
     const float edge = box.x > dot.x ? box.x : box.z, middle = 0.5F * (box.y + box.w);
-    if (std::abs(middle - dot.y) > 0.5F * size.y) list().AddLine(dot, {edge, middle}, colour(slot, 0.5F));
+    const bool beside = box.x > dot.x || box.z < dot.x;
+    if (beside && std::abs(middle - dot.y) > 0.5F * size.y) list().AddLine(dot, {edge, middle}, colour(slot, 0.5F));
     list().AddText({box.x, box.y}, ink(text_colour(slot_colour(models, slot, style.theme()), style.theme())),
                    one.name.c_str());
   }
