@@ -72,10 +72,9 @@ std::string training_contradiction(const std::vector<CheckedFile>& files, const 
       if (snapshot.in_contact) errors.add(snapshot.force_N[0], row.force_N, false, data.jnd);
     });
   }
-  const double as_recorded = errors.within_jnd();
   const double printed = data.provenance.training_within_jnd;
-  if (!(std::abs(as_recorded - printed) > kContradiction)) return {};
-  return "in training, " + fixed(100.0 * as_recorded, 2) + " % within one JND as recorded, " +
+  if (!(std::abs(errors.within_jnd() - printed) > kContradiction)) return {};
+  return "in training, " + fixed(100.0 * errors.within_jnd(), 2) + " % within one JND as recorded, " +
          fixed(100.0 * printed, 2) + " % after correction";
 }
 

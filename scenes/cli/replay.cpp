@@ -207,9 +207,13 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
 Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vector<LoadedModel>& models,
                                      const std::string& forces_path, const std::string& plot_path, bool overwrite) {
   std::vector<EvaluatedModel> evaluated;
-  for (const LoadedModel& one : models) evaluated.push_back({one.model, one.model->data().jnd});
+  std::vector<ModelPointer> pointers;
+  for (const LoadedModel& one : models) {
+    evaluated.push_back({one.model, one.model->data().jnd});
+    pointers.push_back(one.model);
+  }
   std::optional<ForcesFile> forces;
-  ReplayPlot plot(models);
+  std::vector<ComparedMoment> moments;
   if (!forces_path.empty()) {
     Result<ForcesFile> file = ForcesFile::create(forces_path, overwrite, models);
     if (!file) return file.error();
@@ -218,27 +222,30 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vect
   EvaluationRequest request;
   request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
     if (forces) forces->add(row, snapshot, tick);
-    if (!plot_path.empty()) plot.add(row, snapshot);
+    const auto begin = snapshot.force_N.begin();
+    if (!plot_path.empty())
+      moments.push_back({row.time_s, row.force_N, snapshot.in_contact, {begin, begin + snapshot.model_count}});
   };
-  const RowSource rows = checked.whole ? rows_of(checked.recording()) : rows_of_file(checked.path);
-  const auto evaluation = evaluate(rows, evaluated, request);
+  Result<Recording> whole = Recording{};  // of a recording that was checked in part
+  if (!checked.whole) whole = read_recording(checked.path);
+  if (!whole) return whole.error();
+  const auto evaluation = evaluate(checked.whole ? checked.recording() : *whole, evaluated, request);
   if (!evaluation) return evaluation.error();
   if (forces) {
     if (const Status status = forces->commit(); !status) return status.error();
   }
-  ReplayedRecording replayed{checked.path, evaluation->samples, evaluation->contact_samples, {}};
-  std::vector<ModelPointer> pointers;
-  for (const LoadedModel& one : models) pointers.push_back(one.model);
-  const std::vector<ModelTiming> times = time_models(pointers, {evaluation->timing});
+  ReplayedRecording replayed{checked.path, evaluation->samples, evaluation->no_force.summary().samples, {}};
+  const std::vector<ModelTiming> times = time_models(pointers, evaluation->timing);
   std::vector<ErrorSummary> errors;
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const ModelEvaluation& one = evaluation->models[i];
-    errors.push_back(one.as_recorded.summary());
-    replayed.models.push_back({models[i], errors.back(), one.surface_moved.summary(), one.bound_as_recorded.figures(),
-                               one.bound_surface_moved.figures(), one.surface, times[i]});
+    const auto& [recorded, moved, surfaces] = evaluation->models[i];
+    errors.push_back(recorded.summary());
+    replayed.models.push_back(
+        {models[i], errors.back(), moved.summary(), recorded.bounds(), moved.bounds(), surfaces.front(), times[i]});
   }
   if (plot_path.empty()) return replayed;
-  const Status drawn = plot.draw(plot_path, fs::path(checked.path).filename().string(), errors, overwrite);
+  const Status drawn =
+      draw_replay(plot_path, fs::path(checked.path).filename().string(), models, moments, errors, overwrite);
   return drawn ? Result<ReplayedRecording>(std::move(replayed)) : drawn.error();
 }
 

@@ -1,7 +1,6 @@
 #include "scenes/cli/replay_files.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "engine/base/text.h"
@@ -11,32 +10,6 @@
 #include "scenes/scene/scene.h"
 
 namespace palpate::cli {
-namespace {
-
-bool same_rows(const Series& one, const Series& other) {
-  return std::ranges::equal(one.rows, other.rows, [](const PlotRow& a, const PlotRow& b) {
-    return a.y == b.y || (std::isnan(a.y) && std::isnan(b.y));
-  });
-}
-
-// Merges curves that are equal, because only one of them would be visible. Areas stay.
-void merge_equal(std::vector<Series>& series) {
-  for (std::size_t i = series.size(); i-- > 0;) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (series[k].mark == Mark::area || !same_rows(series[i], series[k])) continue;
-      series[k].name += ", " + series[i].name;
-      series.erase(series.begin() + static_cast<std::ptrdiff_t>(i));
-      break;
-    }
-  }
-}
-
-constexpr std::size_t kMostMoments = 3000;
-constexpr double kLeastScale_jnd = 1.6;
-constexpr double kMostScale_jnd = 5.0;
-
-}  // namespace
-
 std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
   std::vector<std::string> distinct;
   for (const std::string& name : names) {
@@ -60,7 +33,7 @@ Result<ForcesFile> ForcesFile::create(const std::string& path, bool overwrite, c
       if (std::ranges::count(specs, spec) > 0) continue;
       specs.push_back(spec);
       feature_names.push_back(feature_name(spec));
-      forces.columns_.push_back({m, i});
+      forces.columns_.emplace_back(m, i);
     }
   }
   std::string header = "time_s,position_m,force_N,depth_m";
@@ -74,7 +47,7 @@ void ForcesFile::add(const RecordingRow& row, const TickSnapshot& snapshot, cons
   std::string line;
   const auto append = [&](double value) { (line += line.empty() ? "" : ",") += shortest(value); };
   for (const double value : {row.time_s, row.position_m, row.force_N, snapshot.depth_m}) append(value);
-  for (const FeatureColumn& column : columns_) append(tick.features_of(column.model).values[column.index]);
+  for (const auto& [model, index] : columns_) append(tick.features_of(model).values[index]);
   for (std::size_t m = 0; m < tick.model_count(); ++m) append(snapshot.force_N[m]);
 
   file_.write(line + "\n");
@@ -106,72 +79,33 @@ Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& pat
   return models;
 }
 
-void ReplayPlot::add(const RecordingRow& row, const TickSnapshot& snapshot) {
-  Moment moment{row.time_s, row.force_N, snapshot.in_contact, {}};
-  for (std::size_t i = 0; i < models_.size(); ++i) {
-    const JndLine& jnd = models_[i].model->data().jnd;
-    moment.over_jnd.push_back(static_cast<float>((snapshot.force_N[i] - row.force_N) / jnd.at(row.force_N)));
-  }
-  moments_.push_back(std::move(moment));
-}
-
-Status ReplayPlot::draw(const std::string& path, const std::string& recording, const std::vector<ErrorSummary>& errors,
-                        bool overwrite) const {
-  Plot plot;
-  plot.name = "replay";
-  plot.height = 0.7;
-  Panel force;
-  force.title = recording;
-  force.y.title = "Force [N]";
-  force.series = {{"measured", kMeasuredColour, Mark::line, {}}};
-  Panel difference;
-  difference.y.title = "Difference [JND]";
-  difference.series = {{"within 1 JND", kMutedColour, Mark::area, {}}};
-  force.names_at_ends = difference.names_at_ends = true;
-  for (const LoadedModel& one : models_) {
-    difference.series.push_back({one.name, method_rgb(one.model->method()), Mark::line, {}});
-  }
-  double largest = kLeastScale_jnd;
-  const std::size_t group = moments_.size() / kMostMoments + 1;
-  const auto worst_of = [](const Moment& moment) {
-    float worst = 0.0F;
-    for (const float over : moment.over_jnd) worst = std::max(worst, std::abs(over));
-    return moment.in_contact ? static_cast<double>(worst) : -1.0;
-  };
-  // Draws the moment with the largest error of each group, so that a bad sample is visible.
-  for (std::size_t first = 0; first < moments_.size(); first += group) {
-    const auto begin = moments_.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = moments_.begin() + static_cast<std::ptrdiff_t>(std::min(first + group, moments_.size()));
-    const Moment& shown = *std::ranges::max_element(begin, end, {}, worst_of);
-    largest = std::max(largest, 1.1 * worst_of(shown));
-    force.series[0].rows.push_back({shown.time_s, shown.measured_N});
-    difference.series[0].rows.push_back({shown.time_s, 0.0, -1.0, 1.0});
-    for (std::size_t i = 0; i < models_.size(); ++i) {
-      const double over = static_cast<double>(shown.over_jnd[i]);
-      difference.series[i + 1].rows.push_back({shown.time_s, shown.in_contact ? over : kNoValue});
-    }
-  }
-  merge_equal(difference.series);
-  difference.y.high = std::min(largest, kMostScale_jnd);
-  difference.y.low = -difference.y.high;
-  difference.x.title = "Time [s]";
+Status draw_replay(const std::string& path, const std::string& recording, const std::vector<LoadedModel>& models,
+                   const std::vector<ComparedMoment>& moments, const std::vector<ErrorSummary>& errors,
+                   bool overwrite) {
+  std::vector<ComparedModel> compared;
   Panel against;
   against.x.title = "Measured force [N]";
   against.y = {"Mean error + deviation", "N", true};
   against.names_at_ends = true;
   Series jnd{"JND", kMutedColour, Mark::dashed, {}};
-  for (std::size_t i = 0; i < models_.size(); ++i) {
-    Series series{models_[i].name, method_rgb(models_[i].model->method()), Mark::curve, {}};
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const FittedModel& model = *models[i].model;
+    compared.push_back({{models[i].name, method_rgb(model.method()), Mark::line, {}}, model.data().jnd});
+    Series& series = against.series.emplace_back(compared.back().curve);
+    series.mark = Mark::curve;
     for (const ForceBin& bin : errors[i].bins) {
       if (bin.force_N.count() > 0)
         series.rows.push_back({bin.force_N.mean(), bin.error_N.mean() + bin.error_N.deviation()});
       if (i == 0) jnd.rows.push_back({0.5 * (bin.force_from_N + bin.force_to_N), bin.jnd_N});
     }
-    against.series.push_back(std::move(series));
   }
   merge_equal(against.series);
   against.series.push_back(std::move(jnd));
-  plot.panels = {std::move(force), std::move(difference), std::move(against)};
+  Plot plot;
+  plot.name = "replay";
+  plot.height = 0.7;
+  plot.panels = compared_forces(recording, compared, moments);
+  plot.panels.push_back(std::move(against));
   return draw_plot(plot, path, overwrite);
 }
 

@@ -24,18 +24,6 @@ void Moments::add(double value) {
   largest_ = std::max(largest_, value);
 }
 
-void Moments::add(const Moments& other) {
-  if (other.count_ == 0) return;
-  const double change = other.mean_ - mean_;
-  const auto count = static_cast<double>(count_);
-  const auto other_count = static_cast<double>(other.count_);
-  const double all = count + other_count;
-  count_ += other.count_;
-  mean_ += change * other_count / all;
-  squares_ += other.squares_ + change * change * count * other_count / all;
-  largest_ = std::max(largest_, other.largest_);
-}
-
 double Moments::deviation() const noexcept {
   return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0.0;
 }
@@ -58,24 +46,6 @@ void ErrorFigures::add(double model_N, double reference_N, bool out_of_domain, c
   bin.error_N.add(error_N);
   bin.over_jnd.add(ratio);
   if (reference_N != 0.0) bin.relative.add(error_N / std::abs(reference_N));
-}
-
-void ErrorFigures::add(const ErrorFigures& other) {
-  sum_.samples += other.sum_.samples;
-  within_ += other.within_;
-  sum_.out_of_domain_samples += other.sum_.out_of_domain_samples;
-  squares_N2_ += other.squares_N2_;
-  ratios_ += other.ratios_;
-  sum_.max_error_N = std::max(sum_.max_error_N, other.sum_.max_error_N);
-  sum_.max_error_over_jnd = std::max(sum_.max_error_over_jnd, other.sum_.max_error_over_jnd);
-  const std::vector<ForceBin>& bins = other.sum_.bins;
-  if (sum_.bins.size() < bins.size()) sum_.bins.resize(bins.size());
-  for (std::size_t i = 0; i < bins.size(); ++i) {
-    sum_.bins[i].force_N.add(bins[i].force_N);
-    sum_.bins[i].error_N.add(bins[i].error_N);
-    sum_.bins[i].over_jnd.add(bins[i].over_jnd);
-    sum_.bins[i].relative.add(bins[i].relative);
-  }
 }
 
 ErrorSummary ErrorFigures::summary(const JndLine& jnd) const {

@@ -28,11 +28,10 @@ double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept;
 
 // Mean, population standard deviation and maximum of non-negative values, updated without cancellation. Without values
 // all are 0.
-// Source: Welford (1962); Chan, Golub & LeVeque (1983) for merging two of them.
+// Source: Welford (1962).
 class Moments {
  public:
   void add(double value);
-  void add(const Moments& other);
 
   std::uint64_t count() const noexcept { return count_; }
   double mean() const noexcept { return mean_; }
@@ -73,8 +72,6 @@ class ErrorFigures {
  public:
   // Adds one sample in contact. Both forces are finite, and `jnd` is the same in every call.
   void add(double model_N, double reference_N, bool out_of_domain, const JndLine& jnd);
-  // Adds all samples of `other`, which has the same JND line.
-  void add(const ErrorFigures& other);
 
   std::uint64_t samples() const noexcept { return sum_.samples; }
   // Without samples the following figures are 0.

@@ -13,11 +13,9 @@ namespace {
 
 constexpr double kOneSided = 0.05;  // probability beyond a one-sided bound; beyond each end of an interval: half
 
-// The smallest of the values from `begin` to `end` that at least 99 % of them do not exceed.
-double percentile_99(std::vector<float>::const_iterator begin, std::vector<float>::const_iterator end) {
-  std::vector<float> values(begin, end);
-  const std::size_t rank = (values.size() * 99 + 99) / 100;  // rounded up, from 1
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+// The value of this rank, from 0 in ascending order.
+double ranked(std::vector<float> values, std::size_t rank) {
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), nth, values.end());
   return static_cast<double>(*nth);
 }
@@ -126,35 +124,36 @@ bool StrokeCounter::begins_stroke(double time_s, bool in_contact) {
   return begins;
 }
 
-void ModelErrors::add(double model_N, double measured_N, bool out_of_domain) {
-  if (recordings_.empty()) recordings_.push_back(0);
+void ModelErrors::add(double model_N, double measured_N, bool out_of_domain, double bound_N) {
   if (strokes_.empty()) begin_stroke();
   figures_.add(model_N, measured_N, out_of_domain, jnd_);
   ratios_.push_back(static_cast<float>(jnd_.error_over_jnd(model_N, measured_N)));
-}
-
-void ModelErrors::append(const ModelErrors& other) {
-  const std::size_t before = ratios_.size();
-  figures_.add(other.figures_);
-  for (const std::size_t first : other.strokes_) strokes_.push_back(before + first);
-  for (const std::size_t first : other.recordings_) recordings_.push_back(before + first);
-  ratios_.insert(ratios_.end(), other.ratios_.begin(), other.ratios_.end());
+  if (std::isnan(bound_N)) return;
+  bounds_N_.push_back(static_cast<float>(bound_N));
+  bounds_over_jnd_.push_back(static_cast<float>(bound_N / jnd_.at(measured_N)));
+  if (std::abs(model_N - measured_N) <= bound_N) ++covered_;
+  largest_force_N_ = std::max(largest_force_N_, std::abs(measured_N));
 }
 
 ErrorSummary ModelErrors::summary() const {
   ErrorSummary summary = figures_.summary(jnd_);
-  if (summary.samples > 0) summary.p99_error_over_jnd = percentile_99(ratios_.begin(), ratios_.end());
+  if (summary.samples > 0) summary.p99_error_over_jnd = ranked(ratios_, (ratios_.size() * 99 + 99) / 100 - 1);
   return summary;
 }
 
 UnitErrors ModelErrors::unit_errors() const {
   UnitErrors unit_errors;
   static_cast<ErrorSummary&>(unit_errors) = summary();
-  unit_errors.units_are_recordings = recordings_.size() > 1;
-  std::vector<std::size_t> bounds = unit_errors.units_are_recordings ? recordings_ : strokes_;
-  bounds.push_back(ratios_.size());
-  // A stroke that ended before the counted time has no samples.
-  bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
+  // The first sample of each unit, and their number. A recording without contact has no samples, as has a stroke that
+  // ended before the counted time.
+  const auto bounds_of = [&](std::vector<std::size_t> bounds) {
+    bounds.push_back(ratios_.size());
+    bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
+    return bounds;
+  };
+  std::vector<std::size_t> bounds = bounds_of(recordings_);
+  unit_errors.units_are_recordings = bounds.size() > 2;
+  if (!unit_errors.units_are_recordings) bounds = bounds_of(strokes_);
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
     const auto begin = ratios_.begin() + static_cast<std::ptrdiff_t>(bounds[i]);
     const auto end = ratios_.begin() + static_cast<std::ptrdiff_t>(bounds[i + 1]);
@@ -165,6 +164,14 @@ UnitErrors ModelErrors::unit_errors() const {
   }
   unit_errors.resampled_p99 = resample(ratios_, bounds);
   return unit_errors;
+}
+
+BoundFigures ModelErrors::bounds() const {
+  if (bounds_N_.empty()) return {};
+  const std::size_t middle = bounds_N_.size() / 2;
+  const double median_N = ranked(bounds_N_, middle);
+  return {static_cast<double>(covered_) / static_cast<double>(bounds_N_.size()), median_N,
+          median_N <= largest_force_N_ ? ranked(bounds_over_jnd_, middle) : kUnknown};
 }
 
 }  // namespace palpate

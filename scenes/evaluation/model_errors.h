@@ -12,8 +12,7 @@
 //                    between the quantiles of these 99 % errors at Phi(-sqrt(n / (n - 1)) t) and at 1 minus this, with
 //                    t the 97.5 % quantile of Student's t with n - 1 degrees of freedom.
 //   within the JND   the standard error of a ratio of means, and Student's t. If no unit has an error above one JND,
-//   the
-//                    exact binomial bound applies: at the 95 % level at most 1 - 0.05^(1/n) of all units have one.
+//                    the exact binomial bound applies: at the 95 % level at most 1 - 0.05^(1/n) of all units have one.
 // All models draw the same units, so the 99 % errors of two models are compared draw by draw.
 // Sources: Davison & Hinkley (1997), Bootstrap Methods and their Application, 2.4 and 3.8; Hesterberg (2015), The
 // American Statistician 69; Cochran (1977), Sampling Techniques, 6.4; Clopper & Pearson (1934).
@@ -69,6 +68,15 @@ struct PairedDifference {
 };
 PairedDifference paired_difference(const UnitErrors& one, const UnitErrors& other);
 
+// A model's predicted 95 % error bounds. All figures are NaN for a model without bounds.
+struct BoundFigures {
+  double coverage = kUnknown;         // share of the errors within the bound
+  double median_N = kUnknown;         // of the bounds
+  double median_over_jnd = kUnknown;  // of bound / JND; NaN where `median_N` exceeds the largest force: it says nothing
+
+  bool has_bounds() const { return std::isfinite(coverage); }
+};
+
 // Detects the beginnings of strokes in one recording.
 class StrokeCounter {
  public:
@@ -80,29 +88,31 @@ class StrokeCounter {
   bool in_air_ = true;  // since the last row in contact
 };
 
-// Collects the errors of one model. It stores 4 bytes per sample, so that the 99 % error is exact.
+// Collects the errors of one model. It stores 4 bytes per sample, so that the 99 % error is exact, and 8 for a bound.
 class ModelErrors {
  public:
   explicit ModelErrors(const JndLine& jnd) : jnd_(jnd) {}
 
+  void begin_recording() { recordings_.push_back(ratios_.size()); }
   void begin_stroke() { strokes_.push_back(ratios_.size()); }
-  // Adds one sample in contact to the stroke that began last. Both forces are finite.
-  void add(double model_N, double measured_N, bool out_of_domain);
-  // Adds the samples of another recording.
-  void append(const ModelErrors& other);
+  // Adds one sample in contact to the stroke that began last. Both forces are finite. `bound_N`: the predicted bound of
+  // the error; NaN: the model has none.
+  void add(double model_N, double measured_N, bool out_of_domain, double bound_N = kUnknown);
 
   ErrorSummary summary() const;
   UnitErrors unit_errors() const;
+  BoundFigures bounds() const;
   // Whether error / JND is the same at every sample.
   bool equals(const ModelErrors& other) const { return ratios_ == other.ratios_; }
 
  private:
   JndLine jnd_;
   ErrorFigures figures_;
-  std::vector<float> ratios_;
-  // For each stroke and recording: the index in `ratios_` of its first sample.
-  std::vector<std::size_t> strokes_;
-  std::vector<std::size_t> recordings_;
+  std::vector<float> ratios_, bounds_N_, bounds_over_jnd_;
+  std::size_t covered_ = 0;  // errors within the bound
+  double largest_force_N_ = 0.0;
+  // The index in `ratios_` of the first sample of each.
+  std::vector<std::size_t> strokes_, recordings_;
 };
 
 }  // namespace palpate

@@ -58,7 +58,7 @@ ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed, d
     EvaluationRequest request;
     request.control.progress = progress;
     request.move_surface = replay_ != nullptr;
-    auto result = evaluate(rows_of(*recording), evaluated, request);
+    auto result = evaluate(*recording, evaluated, request);
     if (!result) return outcome;
     const auto errors_of = [](const ModelErrors& errors) -> Errors {
       const UnitErrors of_units = errors.unit_errors();
@@ -68,7 +68,7 @@ ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed, d
       const auto& one = result->models[i];
       outcome.tested.push_back({untested[i], errors_of(one.as_recorded), errors_of(one.surface_moved), {}});
     }
-    samples_ = std::move(result->timing);
+    samples_ = std::move(result->timing.front());
   }
   if (replay_ != nullptr) outcome.surface = locate_surface(thinned_rows(*recording, kSearchRows), timed, jnd_);
   outcome.timed = timed;

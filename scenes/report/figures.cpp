@@ -120,50 +120,18 @@ Figure speed_figure(const ReportData& data) {
 Figure worst_figure(const ReportData& data) {
   Figure figure;
   const WorstStretch& worst = data.worst;
-  Panel force;
-  Panel difference;
-  force.title = worst.recording;
-  force.names_at_ends = difference.names_at_ends = true;
-  force.y.title = "Force [N]";
-  difference.x.title = "Time [s]";
-  difference.y.title = "Difference [JND]";
-  force.series = {{"measured", kMeasuredColour, Mark::line, {}}};
-  difference.series = {{"within 1 JND", kMutedColour, Mark::area, {}}};
-  // The recommended model, the first one, is drawn last, on top of the others.
-  for (std::size_t i = worst.models.size(); i-- > 0;) {
-    const ModelResult& model = data.models[worst.models[i]];
-    const Mark mark = mark_of(model, Mark::dashed, Mark::line);
-    for (Panel* panel : {&force, &difference}) panel->series.push_back({model.name, model_colour(model), mark, {}});
-  }
-  double largest = 1.2;
-  for (const StretchRow& row : worst.rows) {
-    force.series[0].rows.push_back({row.time_s, row.measured_N});
-    difference.series[0].rows.push_back({row.time_s, 0.0, -1.0, 1.0});
-    for (std::size_t i = 0; i < worst.models.size(); ++i) {
-      const double over = (row.force_N[i] - row.measured_N) / data.scene.jnd.at(row.measured_N);
-      const std::size_t drawn = worst.models.size() - i;
-      force.series[drawn].rows.push_back({row.time_s, row.force_N[i]});
-      difference.series[drawn].rows.push_back({row.time_s, row.in_contact ? over : kNoValue});
-      if (i == 0 && row.in_contact) largest = std::max(largest, std::abs(over));
-    }
-  }
-  // The recommended model determines the scale. Larger differences of other models are cut and marked.
-  difference.y.low = -1.5 * largest;
-  difference.y.high = 1.5 * largest;
-  if (!worst.rows.empty()) {
-    for (Panel* panel : {&force, &difference}) {
-      panel->x.low = worst.rows.front().time_s;
-      panel->x.high = worst.rows.back().time_s;
-    }
+  std::vector<ComparedModel> models;
+  for (const std::size_t i : worst.models) {
+    const ModelResult& model = data.models[i];
+    models.push_back({{model.name, model_colour(model), mark_of(model, Mark::dashed, Mark::line), {}}, data.scene.jnd});
   }
   figure.plot.name = "worst_stretch";
-  figure.plot.panels = {std::move(force), std::move(difference)};
+  figure.plot.panels = compared_forces(worst.recording, models, worst.rows);
   figure.plot.height = 0.8;
-  figure.caption =
-      "The worst " + three_digits(worst.rows.empty() ? 0.0 : worst.rows.back().time_s - worst.rows.front().time_s) +
-      " s of " + data.models[data.choice.recommended].name + " (largest mean squared error over the JND): RMS " +
-      three_digits(std::sqrt(std::max(0.0, worst.score))) +
-      " JND. Below: model minus measurement; grey: below the just noticeable difference.";
+  figure.caption = "The worst " + three_digits(worst.rows.back().time_s - worst.rows.front().time_s) + " s of " +
+                   data.models[data.choice.recommended].name + " (largest mean squared error over the JND): RMS " +
+                   three_digits(std::sqrt(std::max(0.0, worst.score))) +
+                   " JND. Below: model minus measurement; grey: below the just noticeable difference.";
   return figure;
 }
 

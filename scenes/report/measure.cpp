@@ -1,10 +1,10 @@
 #include "scenes/report/measure.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "models/correction/methods.h"
-#include "scenes/evaluation/ranking.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
@@ -49,17 +49,14 @@ class Measurement {
       if (const Status status = run_fold(fold); !status) return status;
     }
     for (ModelResult& one : models_) finish(one);
+    models_.front().errors = evaluation_.no_force.unit_errors();
+    models_.front().moved = evaluation_.no_force.summary();
     data_.floor = noise_floor(tested_, data_.scene.jnd);
     merge_seeds();
     merge_equal();
     time_all();
     data_.choice = choose(models_);
     find_worst();
-    // Frees the samples, hundreds of MB for long recordings: the figures are computed.
-    for (ModelResult& one : models_) {
-      one.recorded_samples = one.moved_samples = ModelErrors(data_.scene.jnd);
-      one.recorded_bounds = one.moved_bounds = {};
-    }
     return progress_.next(0.0).may_continue(1.0) ? Status{} : Status{interrupted()};
   }
 
@@ -74,6 +71,7 @@ class Measurement {
         if (selects && (quick || !plan.selects_centres())) continue;
         for (std::uint64_t seed = 1; seed <= (plan.method->can_take(kTakesSeed) ? kSeeds : 1); ++seed) {
           ModelResult& model = models_.emplace_back();
+          model.place = models_.size() - 2;  // the first model has none
           model.plan = plan;
           model.plan->seed = seed;
           model.selects_size = selects;
@@ -81,7 +79,6 @@ class Measurement {
         }
       }
     }
-    for (ModelResult& model : models_) model.recorded_samples = model.moved_samples = ModelErrors(data_.scene.jnd);
     return static_cast<double>(data_.recordings.folds.size()) * total;
   }
 
@@ -155,12 +152,13 @@ class Measurement {
     return {};
   }
 
-  static void finish(ModelResult& result) {
-    result.errors = result.recorded_samples.unit_errors();
-    result.moved = result.moved_samples.summary();
-    result.bound = result.recorded_bounds.figures();
-    result.bound_moved = result.moved_bounds.figures();
+  void finish(ModelResult& result) const {
     if (!result.plan) return;
+    const auto& [recorded, moved, surfaces] = evaluation_.models[result.place];
+    result.errors = recorded.unit_errors();
+    result.moved = moved.summary();
+    result.bound = recorded.bounds();
+    result.bound_moved = moved.bounds();
     result.name = plan_name(*result.plan);
     if (!result.plan->selects_centres() || result.size == 0) return;
     // A fit has at most as many centres as sites; the name has the actual number.
@@ -180,32 +178,21 @@ class Measurement {
   }
 
   Status evaluate_test(const PreparedRecordingPointer& tested, double counted_from_s) {
-    std::vector<EvaluatedModel> models;  // no two are the same
+    std::vector<EvaluatedModel> models;
     EvaluationRequest request;
     request.counted_from_s = counted_from_s;
     for (const ModelResult& one : models_) {
-      if (!one.model || std::ranges::count(models, one.model, &EvaluatedModel::model) > 0) continue;
+      if (!one.model) continue;
       models.push_back({one.model, data_.scene.jnd});
-      if (one.plan->base == Base::trend && is_main(*one.plan)) request.surface_models.push_back(one.model);
+      if (one.plan->base == Base::trend && is_main(*one.plan) &&
+          std::ranges::count(request.surface_models, ModelPointer(one.model)) == 0)
+        request.surface_models.push_back(one.model);
     }
     request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
-    const auto result = evaluate(rows_of(tested->recording), models, request);
-    if (!result) return result.error();
-    for (ModelResult& one : models_) {
-      if (!one.model) {
-        one.recorded_samples.append(result->no_force);
-        one.moved_samples.append(result->no_force);
-        continue;
-      }
-      const auto at = std::ranges::find(models, one.model, &EvaluatedModel::model) - models.begin();
-      const ModelEvaluation& errors = result->models[static_cast<std::size_t>(at)];
-      one.recorded_samples.append(errors.as_recorded);
-      one.moved_samples.append(errors.surface_moved);
-      one.recorded_bounds.append(errors.bound_as_recorded);
-      one.moved_bounds.append(errors.bound_surface_moved);
-    }
-    timing_.push_back(result->timing);
-    data_.tested.push_back({tested->recording.name, result->models.front().surface.at});
+    auto evaluated = evaluate(tested->recording, models, request, std::move(evaluation_));
+    if (!evaluated) return evaluated.error();
+    evaluation_ = std::move(*evaluated);
+    data_.tested.push_back({tested->recording.name, evaluation_.models.front().surfaces.back().at});
     tested_.push_back(tested.get());
     return {};
   }
@@ -216,7 +203,7 @@ class Measurement {
     for (const ModelResult& one : models_) {
       if (one.model) fitted.push_back(one.model);
     }
-    const std::vector<ModelTiming> times = time_models(fitted, timing_);
+    const std::vector<ModelTiming> times = time_models(fitted, evaluation_.timing);
     auto time = times.begin();
     for (ModelResult& one : models_) {
       if (one.model) one.time = *time++;
@@ -251,7 +238,8 @@ class Measurement {
     std::vector<ModelResult> kept;
     for (ModelResult& one : models_) {
       const auto first = std::ranges::find_if(kept, [&](const ModelResult& other) {
-        return one.model && other.model && other.recorded_samples.equals(one.recorded_samples);
+        return one.model && other.model &&
+               evaluation_.models[other.place].as_recorded.equals(evaluation_.models[one.place].as_recorded);
       });
       if (first == kept.end()) {
         kept.push_back(std::move(one));
@@ -264,9 +252,9 @@ class Measurement {
 
   // Finds the worst stretch of the recommended model. Shows it with the greedy method of the paper and the best model.
   void find_worst() {
-    const Choice& choice = data_.choice;
+    const Ranking& choice = data_.choice;
     std::vector<std::size_t> shown{choice.recommended};
-    for (const std::size_t i : choice.candidates) {
+    for (std::size_t i = 1; i < models_.size(); ++i) {
       const ModelResult& one = models_[i];
       const bool papers = one.plan->base == Base::force && one.plan->method == &kGreedyMethod && !one.selects_size;
       if (i != choice.recommended && (i == choice.best || papers)) shown.push_back(i);
@@ -288,14 +276,14 @@ class Measurement {
   Progress progress_;
   std::vector<Fitted> fitted_;  // of the current fold
   std::vector<const PreparedRecording*> tested_;
-  std::vector<TimedSamples> timing_;  // one per test recording
+  Evaluation evaluation_;  // of all models but the first on all test recordings
 };
 
 }  // namespace
 
 WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
                            double from_s) {
-  std::vector<StretchRow> rows;
+  std::vector<ComparedMoment> rows;
   // Over the rows before each: the sum of (error / JND)^2 of the first model, and the samples in contact.
   std::vector<double> squares{0.0};
   std::vector<std::size_t> contacts{0};
@@ -305,8 +293,8 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
     const double ratio = contact ? jnd.error_over_jnd(snapshot.force_N[0], row.force_N) : 0.0;
     squares.push_back(squares.back() + ratio * ratio);
     contacts.push_back(contacts.back() + (contact ? 1 : 0));
-    rows.push_back({row.time_s, row.force_N, contact, {}});
-    rows.back().force_N.assign(snapshot.force_N.begin(), snapshot.force_N.begin() + snapshot.model_count);
+    const auto begin = snapshot.force_N.begin();
+    rows.push_back({row.time_s, row.force_N, contact, {begin, begin + snapshot.model_count}});
   };
   WorstStretch worst;
   worst.recording = recording.name;
@@ -342,27 +330,22 @@ bool is_main(const ModelPlan& plan) {
          (plan.base == Base::force ? plan.method != &kDirectMethod : plan.method == &kTrendMethod);
 }
 
-Choice choose(const std::vector<ModelResult>& models) {
-  Choice choice;
+Ranking choose(const std::vector<ModelResult>& models) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
   std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    const ModelResult& one = models[i];
-    if (!one.model) continue;
-    choice.candidates.push_back(i);
-    candidates.push_back({family_name(*one.plan), one.errors.p99_error_over_jnd, one.time.tick.median_ns});
+  for (const ModelResult& one : models) {
+    if (one.model) {
+      candidates.push_back({family_name(*one.plan), one.errors.p99_error_over_jnd, one.time.tick.median_ns});
+    } else {
+      candidates.push_back({"", kNever, kNever});
+    }
   }
-  const Ranking ranking = rank(candidates);
-  choice.best = choice.candidates[ranking.best];
-  choice.recommended = choice.candidates[ranking.recommended];
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (ranking.near_best[i]) choice.near_best.push_back(choice.candidates[i]);
-  }
-  return choice;
+  return rank(candidates);
 }
 
 std::vector<std::size_t> headline_models(const ReportData& data) {
   std::vector<std::size_t> rows{0};
-  for (const std::size_t i : data.choice.candidates) {
+  for (std::size_t i = 1; i < data.models.size(); ++i) {
     if (is_main(*data.models[i].plan) || i == data.choice.best || i == data.choice.recommended) rows.push_back(i);
   }
   return rows;

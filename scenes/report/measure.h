@@ -10,7 +10,8 @@
 #include "models/fit/fit.h"
 #include "models/model/fitted_model.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/evaluation/model_timing.h"
+#include "scenes/evaluation/ranking.h"
+#include "scenes/plot/compared_forces.h"
 #include "scenes/report/recordings.h"
 #include "scenes/scene/scene.h"
 
@@ -18,17 +19,10 @@ namespace palpate {
 
 inline constexpr double kStretchSeconds = 5.0;
 
-struct StretchRow {
-  double time_s = 0.0;
-  double measured_N = 0.0;
-  bool in_contact = false;
-  std::vector<double> force_N;  // one per model
-};
-
 struct WorstStretch {
   std::string recording;
   double score = -1.0;  // mean of (error / JND)^2 of the first model; below 0: none was found
-  std::vector<StretchRow> rows;
+  std::vector<ComparedMoment> rows;
   std::vector<std::size_t> models;  // indices of ReportData::models; set by `measure`
 };
 
@@ -66,33 +60,17 @@ struct ModelResult {
   ModelTiming time;                          // of the last fold's model, on all test recordings
   std::shared_ptr<const FittedModel> model;  // of the last fold; null: no force
   std::vector<ModelPointer> fits;            // of each fold; empty: no force
-  // Every sample during `measure`, which computes the figures above from them; empty in its result.
-  ModelErrors recorded_samples{JndLine{}}, moved_samples{JndLine{}};
-  BoundErrors recorded_bounds, moved_bounds;
-  std::vector<std::string> same;  // names of further planned models with the same forces
-};
-
-// A test recording with its estimated surface offset; 0: none.
-struct MovedSurface {
-  std::string name;
-  double offset_m = 0.0;
-};
-
-// The choice of a model by rank(). All numbers are indices of ReportData::models.
-struct Choice {
-  std::vector<std::size_t> candidates;  // all models
-  std::vector<std::size_t> near_best;
-  std::size_t best = 0;  // the candidate with the lowest 99 % error
-  std::size_t recommended = 0;
+  std::size_t place = 0;                     // in the evaluation
+  std::vector<std::string> same;             // names of further planned models with the same forces
 };
 
 struct ReportData {
   Scene scene;
   RecordingSet recordings;
-  std::vector<MovedSurface> tested;  // every test recording
-  NoiseFloor floor;                  // of all test recordings together
-  std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces
-  Choice choice;
+  std::vector<RecordingOffset> tested;    // every test recording, and its estimated surface offset; 0: none
+  NoiseFloor floor;                       // of all test recordings together
+  std::vector<ModelResult> models;        // the first is always 0 N; no two have the same forces
+  Ranking choice;                         // of `models`
   WorstStretch worst;                     // of the recommended model
   std::vector<RecordingOffset> surfaces;  // of the training recordings; this and the following: of the first fold
   std::vector<double> papers_times_s;     // relaxation times identified for the methods on the measured force
@@ -107,7 +85,8 @@ struct ReportData {
 // names; interrupted.
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control);
 
-Choice choose(const std::vector<ModelResult>& models);
+// Every model but no force is a candidate.
+Ranking choose(const std::vector<ModelResult>& models);
 // The models of the page's first table: no force, the main models, the best and the recommended one.
 std::vector<std::size_t> headline_models(const ReportData& data);
 

@@ -180,21 +180,14 @@ Table bins_table(const PaperData& data) {
   return table;
 }
 
-std::string protocol_words(const PaperData& data) {
-  std::string text =
-      "Samples at steps of 50 mN; depth, velocity and two low-passed velocities; rows scaled by 1/f; linear polynomial "
-      "tail; pseudo-inverses by truncated singular values, of the interpolation a smoothed Cholesky factor; a grid of "
-      "25x11x11x11 nodes, half way between even steps and quantiles of the samples; 100 centres; no trend, trust or "
-      "surface search. The paper leaves kernel, normalisation and truncation open: they have the lowest "
-      "cross-validated error in the training recording. Other recordings: the two are exchanged. Times of fits are "
-      "processor times, of the fastest of several rounds. Forces are cut at 0 and at 1.2 times the largest measured "
-      "one, as of every model here. Bins are two JND wide, those of fewer than 20 samples in contact are left out.";
+std::string runs_words(const PaperData& data) {
+  std::string text;
   for (const PaperRun& run : data.runs) {
-    text.append(" ").append(run_name(run)).append(": ").append(with_thousands(std::to_string(run.trained)));
+    text.append(run_name(run)).append(": ").append(with_thousands(std::to_string(run.trained)));
     text.append(" samples to train, ").append(with_thousands(std::to_string(run.tested)));
     text.append(" to test, relaxation times");
     for (const double time_s : run.times_s) text.append(" ").append(three_digits(time_s)).append(" s");
-    text.append("; ").append(run.choices).append(".");
+    text.append("; ").append(run.choices).append(". ");
   }
   return text;
 }
@@ -235,7 +228,7 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
   for (const Table& table : tables) report["tables"][table.name] = table_json(table);
   const Status written = write_report(*folder, "paper.html", tables, paper_figures(*data),
                                       {{"answer", escape_html(answer)},
-                                       {"protocol", escape_html(protocol_words(*data))},
+                                       {"runs", escape_html(runs_words(*data))},
                                        {"origin", escape_html(request.origin)}},
                                       report, control);
   if (!written) return written.error();

@@ -176,7 +176,7 @@ class PaperMeasurement {
     }
     EvaluationRequest as_recorded;
     as_recorded.move_surface = false;
-    const auto result = evaluate(rows_of(tested), evaluated, as_recorded);
+    const auto result = evaluate(tested, evaluated, as_recorded);
     if (!result) return result.error();
     auto one = result->models.begin();
     for (std::vector<PaperModel>* list : {&run.models, &run.repeated, &run.settings}) {
@@ -186,7 +186,7 @@ class PaperMeasurement {
       }
     }
     models.resize(kPaperMethods);
-    const std::vector<ModelTiming> times = time_models(models, {result->timing});
+    const std::vector<ModelTiming> times = time_models(models, result->timing);
     for (std::size_t i = 0; i < kPaperMethods; ++i) run.models[i].time = times[i];
     return {};
   }

@@ -19,22 +19,15 @@ constexpr std::size_t kLeakValues = 12;
 constexpr std::size_t kSmallestRecording = 1000;  // rows; a shorter recording is not divided
 constexpr double kKeptShare = 0.6;                // of a single recording
 
-// Makes at most `most` folds: each recording is tested once, with models that are fitted to the other folds.
-std::vector<Split> folds_of(const std::vector<PreparedRecordingPointer>& all, std::size_t most) {
-  std::vector<Split> folds(std::min(most, all.size()));
+// Each recording is tested once, with models that are fitted to the other folds.
+std::vector<Split> folds_of(const std::vector<PreparedRecordingPointer>& all) {
+  std::vector<Split> folds(std::min(kMostFolds, all.size()));
   for (Split& fold : folds) fold.words = std::to_string(folds.size()) + "-fold cross-validation over the training";
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t f = 0; f < folds.size(); ++f)
       (i % folds.size() == f ? folds[f].tested : folds[f].train).push_back(all[i]);
   }
   return folds;
-}
-
-// Sorts by name and content, so that the result does not depend on the order in which the recordings are given.
-void sort_recordings(std::vector<PreparedRecordingPointer>& recordings) {
-  std::sort(recordings.begin(), recordings.end(), [](const auto& a, const auto& b) {
-    return std::tie(a->recording.name, a->content_hash) < std::tie(b->recording.name, b->content_hash);
-  });
 }
 
 using Forces = std::vector<double>;
@@ -114,17 +107,6 @@ Status refuse_leakage(const std::vector<PreparedRecordingPointer>& all, std::siz
 
 }  // namespace
 
-Presses presses_of(const Recording& recording) {
-  Presses presses;
-  for (const RecordingRow& row : recording.rows) {
-    if (row.position_m <= 0.0) continue;
-    ++presses.samples;
-    presses.deepest_m = std::max(presses.deepest_m, row.position_m);
-    presses.largest_force_N = std::max(presses.largest_force_N, row.force_N);
-  }
-  return presses;
-}
-
 Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share) {
   std::vector<PreparedRecordingPointer> made;
   for (const double seconds : {41.499, 45.272}) {
@@ -154,8 +136,12 @@ Result<RecordingSet> split_recordings(std::vector<PreparedRecordingPointer> trai
                                       std::vector<PreparedRecordingPointer> test) {
   RecordingSet set;
   const bool is_virtual = train.empty();
-  sort_recordings(train);
-  sort_recordings(test);
+  // The result does not depend on the order in which the recordings are given.
+  for (auto* recordings : {&train, &test}) {
+    std::ranges::sort(*recordings, {}, [](const PreparedRecordingPointer& one) {
+      return std::tie(one->recording.name, one->content_hash);
+    });
+  }
   std::vector<PreparedRecordingPointer>& all = set.all = std::move(train);
   if (is_virtual) {
     auto made = virtual_recordings("silicone");
@@ -169,7 +155,7 @@ Result<RecordingSet> split_recordings(std::vector<PreparedRecordingPointer> trai
     Split& split = set.folds.emplace_back();
     for (std::size_t i = 0; i < all.size(); ++i) (set.is_tested(i) ? split.tested : split.train).push_back(all[i]);
   } else {
-    set.folds = all.size() == 1 ? std::vector<Split>{leave_out(all.front())} : folds_of(all, kMostFolds);
+    set.folds = all.size() == 1 ? std::vector<Split>{leave_out(all.front())} : folds_of(all);
   }
   if (set.folds.front().tested.empty()) {
     const Recording& only = all.front()->recording;
@@ -178,7 +164,7 @@ Result<RecordingSet> split_recordings(std::vector<PreparedRecordingPointer> trai
                  " to leave a part out; give another recording with --test"};
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!set.is_tested(i) || presses_of(all[i]->recording).samples > 0) continue;
+    if (!set.is_tested(i) || std::ranges::any_of(all[i]->recording.rows, is_pressed)) continue;
     return Error{all[i]->recording.name +
                  ": no sample is in contact (position_m > 0), expected a press to test on; check the "
                  "sign and zero of position_m"};

@@ -3,7 +3,7 @@
 // Thread guarantee: slow side (allocates).
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -16,13 +16,10 @@ namespace palpate {
 // test. `share`: of both durations. Errors: those of record_sensors.
 Result<std::vector<PreparedRecordingPointer>> virtual_recordings(const std::string& material, double share = 1.0);
 
-// The samples with position_m > 0; all values are 0 without any.
-struct Presses {
-  std::uint64_t samples = 0;
-  double deepest_m = 0.0;
-  double largest_force_N = 0.0;
-};
-Presses presses_of(const Recording& recording);
+inline bool is_pressed(const RecordingRow& row) { return row.position_m > 0.0; }
+inline double largest_force_N(const Recording& recording) {
+  return std::ranges::max_element(recording.rows, {}, &RecordingRow::force_N)->force_N;
+}
 
 // Training and test data of one fold.
 struct Split {

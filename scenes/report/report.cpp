@@ -67,8 +67,8 @@ std::string best_text(const ModelResult& best, const ModelResult& use) {
 // Names the test recording whose surface is farthest from the models'.
 std::string surface_text(const ReportData& data, const ModelResult& model) {
   if (model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return {};
-  const MovedSurface& surface =
-      *std::ranges::max_element(data.tested, {}, [](const MovedSurface& one) { return std::abs(one.offset_m); });
+  const RecordingOffset& surface =
+      *std::ranges::max_element(data.tested, {}, [](const RecordingOffset& one) { return std::abs(one.offset_m); });
   return " The surface of " + surface.name + " is at " + three_digits(1e3 * surface.offset_m) +
          " mm for these models; with it moved, which uses the forces of the test, " + percent(model.moved.within_jnd) +
          " of the test is within the JND.";
@@ -84,7 +84,7 @@ std::string answer(const ReportData& data) {
          " ns, the error is below the just noticeable difference in " + percent(errors.within_jnd) +
          " of the test, and 99 % of the errors are below " + three_digits(errors.p99_error_over_jnd) + " JND" +
          interval_text(errors.p99_interval()) + (&best != &use ? best_text(best, use) : "") +
-         "; this test chose it among " + std::to_string(data.choice.candidates.size()) +
+         "; this test chose it among " + std::to_string(data.models.size() - 1) +
          " models, so another recording has to confirm these figures." + surface_text(data, use);
 }
 
@@ -97,13 +97,13 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
   for (const Table& table : tables) (table.has_times ? times : numbers)[table.name] = table_json(table);
   OrderedJson list = OrderedJson::array();
   for (const Figure& figure : figures) list.push_back(figure.plot.name);
-  const auto named = [&](const std::vector<std::size_t>& models) {
-    OrderedJson names = OrderedJson::array();
-    for (const std::size_t index : models) names.push_back(data.models[index].name);
-    return names;
-  };
+  OrderedJson candidates = OrderedJson::array(), near_best = OrderedJson::array();
+  for (std::size_t i = 1; i < data.models.size(); ++i) {
+    candidates.push_back(data.models[i].name);
+    if (data.choice.near_best[i]) near_best.push_back(data.models[i].name);
+  }
   OrderedJson offsets = OrderedJson::array();
-  for (const MovedSurface& one : data.tested) offsets.push_back(one.offset_m);
+  for (const RecordingOffset& one : data.tested) offsets.push_back(one.offset_m);
   return {{"format", "palpate-report"},
           {"version", 1},
           {"scene", data.scene.name},
@@ -125,8 +125,8 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
             {"seconds", seconds},
             {"answer", answer},
             {"recommended", data.models[data.choice.recommended].name},
-            {"candidates", named(data.choice.candidates)},
-            {"near_best", named(data.choice.near_best)},
+            {"candidates", candidates},
+            {"near_best", near_best},
             {"tables", times}}},
           {"program", {{"version", request.version}, {"compiler", kCompiler}}},
           {"command_line", request.command_line}};
@@ -163,14 +163,11 @@ std::string bound_note(const ModelResult& use) {
 std::string notes_html(const ReportData& data) {
   std::vector<std::string> notes;
   notes.push_back("Recommended: of the models whose 99 % error is at most " + general(kMargin_jnd, 3) +
-                  " JND above the lowest (" + std::to_string(data.choice.near_best.size()) + " of " +
-                  std::to_string(data.choice.candidates.size()) +
+                  " JND above the lowest (" + std::to_string(std::ranges::count(data.choice.near_best, true)) + " of " +
+                  std::to_string(data.models.size() - 1) +
                   "), the one with the shortest tick, or the simplest that takes at most " +
                   general(100.0 * kEqualTime, 3) + " % longer. In a choice between two forces " +
                   general(kMargin_jnd, 3) + " JND apart 57 % of the answers are correct; guessing gives 50 %.");
-  notes.push_back(
-      "The lowest error was found, and the models are compared, on the same test. Intervals are those of one "
-      "model or one pair and do not include this choice.");
   for (const ModelResult& one : data.models) {
     if (!one.same.empty()) notes.push_back("The same forces as " + one.name + ": " + joined(one.same) + ".");
   }
@@ -182,7 +179,7 @@ std::string notes_html(const ReportData& data) {
   double largest_N = 0.0;
   bool accelerometer = false;
   for (const PreparedRecordingPointer& one : data.recordings.all) {
-    largest_N = std::max(largest_N, presses_of(one->recording).largest_force_N);
+    largest_N = std::max(largest_N, largest_force_N(one->recording));
     accelerometer = accelerometer || one->recording.columns.acceleration;
   }
   const JndLine paper;
@@ -243,21 +240,6 @@ std::string learnt_html(const ReportData& data) {
   return html + "</table>\n";
 }
 
-// The parts of the page beside tables and figures. `origin`: command line, version and machine.
-std::map<std::string, std::string> page_parts(const ReportData& data, const std::string& answer,
-                                              const std::string& origin) {
-  std::vector<std::string> tests;
-  for (std::size_t i = 0; i < data.recordings.all.size(); ++i) {
-    if (data.recordings.is_tested(i)) tests.push_back(data.recordings.all[i]->recording.name);
-  }
-  return {{"title", escape_html(joined(tests))},
-          {"answer", escape_html(answer)},
-          {"headline", table_html(headline_table(data))},
-          {"notes", notes_html(data)},
-          {"learnt", learnt_html(data)},
-          {"origin", escape_html(origin)}};
-}
-
 }  // namespace
 
 Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl& control) {
@@ -279,8 +261,16 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
                              " · " + three_digits(seconds) + " s";
   const OrderedJson json = report_json(*data, request, words, tables, figures, machine, seconds);
-  const Status written =
-      write_report(*folder, "page.html", tables, figures, page_parts(*data, words, origin), json, control);
+  std::vector<std::string> tests;
+  for (const RecordingOffset& one : data->tested) tests.push_back(one.name);
+  const Status written = write_report(*folder, "page.html", tables, figures,
+                                      {{"title", escape_html(joined(tests))},
+                                       {"answer", escape_html(words)},
+                                       {"headline", table_html(headline_table(*data))},
+                                       {"notes", notes_html(*data)},
+                                       {"learnt", learnt_html(*data)},
+                                       {"origin", escape_html(origin)}},
+                                      json, control);
   if (!written) return written.error();
   return ReportAnswer{table_text(headline_table(*data)), words};
 }

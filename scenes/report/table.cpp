@@ -85,7 +85,7 @@ Table models_table(const ReportData& data) {
     table.add({"rms_error_N", "RMS [mN]", kInMilli}, errors.rms_error_N);
     table.add({"max_error_N", "worst [mN]", kInMilli}, errors.max_error_N);
     table.add({"max_error_over_jnd", "worst [JND]"}, errors.max_error_over_jnd);
-    table.add({"units", std::string(unit_name(errors)) + "s"}, errors.units());
+    table.add({"units", errors.units_are_recordings ? "recordings" : "strokes"}, errors.units());
     table.add({"beyond_units", "beyond"}, errors.units_above_jnd);
     table.add({"out_of_domain_samples", ""}, errors.out_of_domain_samples);
     table.add({"moved_within_jnd", "moved: ≤ JND [%]", kInPercent, 2}, one.moved.within_jnd);
@@ -124,18 +124,18 @@ Table recordings_table(const ReportData& data) {
   for (std::size_t i = 0; i < set.all.size(); ++i) {
     const auto& [name, columns, rows] = set.all[i]->recording;
     const double seconds = rows.back().time_s - rows.front().time_s;
-    const Presses presses = presses_of(set.all[i]->recording);
     char hash[24];
     std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(set.all[i]->content_hash));
     table.begin_row();
     table.add({"role", "role"}, i >= set.trained ? "test" : set.is_tested(i) ? "both" : "train");
     table.add({"name", "recording"}, name);
     table.add({"samples", "samples"}, rows.size());
-    table.add({"contact_samples", "in contact"}, presses.samples);
+    table.add({"contact_samples", "in contact"}, std::ranges::count_if(rows, is_pressed));
     table.add({"seconds", "[s]"}, seconds);
     table.add({"rate_Hz", "[Hz]"}, static_cast<double>(rows.size() - 1) / seconds);
-    table.add({"deepest_m", "deepest [mm]", kInMilli}, presses.deepest_m);
-    table.add({"largest_force_N", "largest [N]"}, presses.largest_force_N);
+    table.add({"deepest_m", "deepest [mm]", kInMilli},
+              std::ranges::max_element(rows, {}, &RecordingRow::position_m)->position_m);
+    table.add({"largest_force_N", "largest [N]"}, largest_force_N(set.all[i]->recording));
     table.add({"force_noise_N", "force noise [mN]", kInMilli}, set.all[i]->force_noise_N);
     table.add({"accelerometer", "accelerometer"}, yes_or_no(columns.acceleration));
     table.add({"content_hash", ""}, hash);
@@ -183,8 +183,6 @@ std::string name_with_same(const ModelResult& model) {
 }
 
 }  // namespace
-
-const char* unit_name(const UnitErrors& errors) { return errors.units_are_recordings ? "recording" : "stroke"; }
 
 std::string table_csv(const Table& table) {
   std::string text;

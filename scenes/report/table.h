@@ -23,7 +23,8 @@ struct TableColumn {
   static constexpr int kThreeDigits = -1;  // three significant digits
 };
 
-// Text, a count, a truth value, or a number. A number that is not finite becomes an empty cell, null in JSON, a dash on the page.
+// Text, a count, a truth value, or a number. A number that is not finite becomes an empty cell, null in JSON, a dash on
+// the page.
 using TableCell = nlohmann::ordered_json;
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInPercent = 100.0;
@@ -60,9 +61,6 @@ std::vector<std::vector<std::string>> table_text(const Table& table);
 
 // <div><table>...</table></div> with all text escaped.
 std::string table_html(const Table& table);
-
-// The independent units of the confidence intervals: "recording" or "stroke".
-const char* unit_name(const UnitErrors& errors);
 
 // The first table of the page, which the terminal shows too: the models of headline_models.
 Table headline_table(const ReportData& data);

@@ -28,9 +28,7 @@ ErrorSummary judged(const PreparedTraining& prepared, const Method* method, cons
 UnitErrors strokes_of(const RecordingPtr& recording, const ModelPtr& model) {
   EvaluationRequest request;
   request.move_surface = false;
-  return must(evaluate(rows_of(*recording), {{model, model->data().jnd}}, request))
-      .models.front()
-      .as_recorded.unit_errors();
+  return must(evaluate(*recording, {{model, model->data().jnd}}, request)).models.front().as_recorded.unit_errors();
 }
 
 TEST(SyntheticAccuracy, SiliconeWithAccelerometer) {

@@ -108,11 +108,11 @@ std::vector<ModelPtr> fit_all(const PreparedTraining& prepared) {
 ErrorSummary judge(const Recording& recording, const ModelPtr& model) {
   EvaluationRequest request;
   request.move_surface = false;
-  return must(evaluate(rows_of(recording), {{model, model->data().jnd}}, request)).models.front().as_recorded.summary();
+  return must(evaluate(recording, {{model, model->data().jnd}}, request)).models.front().as_recorded.summary();
 }
 
 ErrorSummary judge_moved(const Recording& recording, const ModelPtr& model) {
-  return must(evaluate(rows_of(recording), {{model, model->data().jnd}})).models.front().surface_moved.summary();
+  return must(evaluate(recording, {{model, model->data().jnd}})).models.front().surface_moved.summary();
 }
 
 double worst_bin_over_jnd(const ErrorSummary& summary, double from_N) {

@@ -55,33 +55,6 @@ TEST(ErrorFigures, AddUp) {
   EXPECT_NEAR(bins[1].jnd_N, 0.5, kRounding);
 }
 
-TEST(ErrorFigures, OfTwoPartsAreThoseOfTheWhole) {
-  const JndLine jnd;
-  ErrorFigures whole, first, second;
-  for (int i = 0; i < 600; ++i) {
-    const double measured_N = 0.01 * (i % 300);
-    const double model_N = measured_N + 0.05 * std::sin(0.37 * i);
-    whole.add(model_N, measured_N, i % 7 == 0, jnd);
-    (i < 200 ? first : second).add(model_N, measured_N, i % 7 == 0, jnd);
-  }
-  first.add(second);
-  const ErrorSummary merged = first.summary(jnd);
-  const ErrorSummary at_once = whole.summary(jnd);
-  EXPECT_EQ(merged.samples, at_once.samples);
-  EXPECT_EQ(merged.within_jnd, at_once.within_jnd);
-  EXPECT_EQ(merged.out_of_domain_samples, at_once.out_of_domain_samples);
-  EXPECT_NEAR(merged.rms_error_N, at_once.rms_error_N, kRounding);
-  const std::vector<ForceBin>& bins = merged.bins;
-  const std::vector<ForceBin>& expected = at_once.bins;
-  ASSERT_EQ(bins.size(), expected.size());
-  for (std::size_t i = 0; i < bins.size(); ++i) {
-    EXPECT_EQ(bins[i].force_N.count(), expected[i].force_N.count());
-    EXPECT_NEAR(bins[i].force_N.mean(), expected[i].force_N.mean(), kRounding);
-    EXPECT_NEAR(bins[i].error_N.mean(), expected[i].error_N.mean(), kRounding);
-    EXPECT_NEAR(bins[i].over_jnd.deviation(), expected[i].over_jnd.deviation(), kRounding);
-  }
-}
-
 TEST(ErrorFigures, HaveNoMoreBinsThanTheMost) {
   ErrorFigures figures;
   figures.add(0.0, 1e9, false, {0.01, 0.0});

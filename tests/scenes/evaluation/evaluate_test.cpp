@@ -4,7 +4,6 @@
 
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
-#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -19,7 +18,7 @@ std::vector<EvaluatedModel> example_list() {
 
 TEST(Evaluate, TakesMoreModelsThanOneTick) {
   std::vector<EvaluatedModel> models = example_list();
-  while (models.size() < 20) models.push_back(models.front());
+  while (models.size() < 20) models.push_back(example_list().front());
   const Recording recording = test::example_recording(500, 1000.0);
   int rows = 0;
   EvaluationRequest request;
@@ -27,16 +26,16 @@ TEST(Evaluate, TakesMoreModelsThanOneTick) {
     ++rows;
     EXPECT_EQ(snapshot.model_count, 16u);
   };
-  const auto result = test::must(evaluate(rows_of(recording), models, request));
+  const auto result = test::must(evaluate(recording, models, request));
   ASSERT_EQ(result.models.size(), 20u);
   EXPECT_EQ(result.samples, 500u);
   EXPECT_EQ(rows, 500);
   const ErrorSummary first = result.models[0].as_recorded.summary();
   const ErrorSummary last = result.models[19].as_recorded.summary();
-  EXPECT_EQ(first.samples, result.contact_samples);
+  EXPECT_EQ(first.samples, result.no_force.summary().samples);
   EXPECT_EQ(first.rms_error_N, last.rms_error_N) << "the same model";
   EXPECT_EQ(first.rms_error_N == result.models[0].surface_moved.summary().rms_error_N,
-            result.models[0].surface.at == 0.0);
+            result.models[0].surfaces[0].at == 0.0);
 }
 
 TEST(Evaluate, EveryModelHasItsOwnDomain) {
@@ -47,9 +46,9 @@ TEST(Evaluate, EveryModelHasItsOwnDomain) {
     data.upper *= share;
     models.push_back({std::make_shared<const FittedModel>(data), data.jnd});
   }
-  const auto together = test::must(evaluate(rows_of(recording), models));
+  const auto together = test::must(evaluate(recording, models));
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const auto alone = test::must(evaluate(rows_of(recording), {models[i]}));
+    const auto alone = test::must(evaluate(recording, {models[i]}));
     EXPECT_EQ(together.models[i].as_recorded.summary().out_of_domain_samples,
               alone.models[0].as_recorded.summary().out_of_domain_samples);
   }
@@ -57,16 +56,27 @@ TEST(Evaluate, EveryModelHasItsOwnDomain) {
             together.models[1].as_recorded.summary().out_of_domain_samples);
 }
 
-TEST(Evaluate, AFileAndItsRecordingGiveTheSame) {
-  const Recording recording = test::example_recording(800, 1000.0);
-  const test::TemporaryFolder folder;
-  ASSERT_TRUE(write_recording(folder.file("r.csv"), recording, {}, false).ok());
-  const auto memory = evaluate(rows_of(recording), example_list());
-  const auto file = evaluate(rows_of_file(folder.file("r.csv")), example_list());
-  ASSERT_TRUE(memory.ok() && file.ok());
-  EXPECT_EQ(file->models[2].as_recorded.summary().rms_error_N, memory->models[2].as_recorded.summary().rms_error_N);
-  EXPECT_EQ(file->models[2].surface.at, memory->models[2].surface.at);
-  EXPECT_FALSE(evaluate(rows_of_file(folder.file("none.csv")), example_list()).ok());
+TEST(Evaluate, RecordingsArePooledWithASurfaceEach) {
+  const Recording first = test::example_recording(800, 1000.0);
+  Recording second = test::example_recording(600, 1000.0);
+  for (RecordingRow& row : second.rows) row.position_m += 0.3e-3;
+  const auto one = test::must(evaluate(first, example_list()));
+  const auto other = test::must(evaluate(second, example_list()));
+  const auto both = test::must(evaluate(second, example_list(), {}, one));
+  EXPECT_EQ(both.samples, 1400u);
+  ASSERT_EQ(both.timing.size(), 2u);
+  for (std::size_t i = 0; i < both.models.size(); ++i) {
+    const ModelEvaluation& pooled = both.models[i];
+    ASSERT_EQ(pooled.surfaces.size(), 2u);
+    EXPECT_EQ(pooled.surfaces[0].at, one.models[i].surfaces[0].at);
+    EXPECT_EQ(pooled.surfaces[1].at, other.models[i].surfaces[0].at);
+    for (const auto& errors : {&ModelEvaluation::as_recorded, &ModelEvaluation::surface_moved}) {
+      const ErrorSummary whole = (pooled.*errors).summary();
+      const ErrorSummary parts[] = {(one.models[i].*errors).summary(), (other.models[i].*errors).summary()};
+      EXPECT_EQ(whole.samples, parts[0].samples + parts[1].samples);
+      EXPECT_EQ(whole.max_error_N, std::max(parts[0].max_error_N, parts[1].max_error_N));
+    }
+  }
 }
 
 TEST(Evaluate, SamplesThatAreNotCountedAreReplayed) {
@@ -80,16 +90,31 @@ TEST(Evaluate, SamplesThatAreNotCountedAreReplayed) {
     ++counted;
     largest_N = std::max(largest_N, std::abs(snapshot.force_N[0] - row.force_N));
   };
-  const auto result = test::must(evaluate(rows_of(recording), example_list(), request));
+  const auto result = test::must(evaluate(recording, example_list(), request));
   EXPECT_EQ(result.samples, 800u);
   EXPECT_GT(counted, 0u);
-  EXPECT_EQ(result.contact_samples, counted);
+  EXPECT_EQ(result.no_force.summary().samples, counted);
   EXPECT_EQ(result.models[0].as_recorded.summary().max_error_N, largest_N);
+}
+
+TEST(Evaluate, AModelThatIsGivenTwiceIsReplayedOnce) {
+  const Recording recording = test::example_recording(500, 1000.0);
+  std::vector<EvaluatedModel> models = example_list();
+  const std::size_t different = models.size();
+  models.push_back(models.front());
+  EvaluationRequest request;
+  request.also = [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
+    EXPECT_EQ(snapshot.model_count, different);
+  };
+  const auto result = test::must(evaluate(recording, models, request));
+  EXPECT_TRUE(result.models.back().as_recorded.equals(result.models.front().as_recorded));
+  EXPECT_TRUE(result.models.back().surface_moved.equals(result.models.front().surface_moved));
+  EXPECT_EQ(result.models.back().surfaces[0].at, result.models.front().surfaces[0].at);
 }
 
 TEST(Evaluate, NoForceErrsByTheWholeForce) {
   const Recording recording = test::example_recording(300, 1000.0);
-  const auto result = test::must(evaluate(rows_of(recording), example_list()));
+  const auto result = test::must(evaluate(recording, example_list()));
   double largest_N = 0.0;
   for (const RecordingRow& row : recording.rows) {
     if (row.position_m > 0.0) largest_N = std::max(largest_N, std::abs(row.force_N));
@@ -97,25 +122,23 @@ TEST(Evaluate, NoForceErrsByTheWholeForce) {
   EXPECT_EQ(result.no_force.summary().max_error_N, largest_N);
 }
 
-TEST(BoundErrors, CountErrorsWithinTheBoundAndKnowWhenItSaysNothing) {
+TEST(ModelErrors, CountErrorsWithinTheBoundAndKnowWhenItSaysNothing) {
   const JndLine jnd{0.1, 0.0};
-  BoundErrors bounds;
-  EXPECT_FALSE(bounds.figures().has_bounds());
-  bounds.add(kUnknown, 1.0, 1.0, jnd);
-  EXPECT_FALSE(bounds.figures().has_bounds()) << "a model without bounds";
-  for (const double error_N : {0.0, 0.1, 0.2, 0.3}) bounds.add(0.25, 1.0 + error_N, 1.0, jnd);
-  EXPECT_EQ(bounds.figures().coverage, 0.75);
-  EXPECT_NEAR(bounds.figures().median_N, 0.25, 1e-7);
-  EXPECT_NEAR(bounds.figures().median_over_jnd, 2.5, 1e-6);
-  BoundErrors wide;
-  for (int i = 0; i < 7; ++i) wide.add(2.0, 1.0, -1.5, jnd);
-  bounds.append(wide);
-  EXPECT_EQ(bounds.figures().coverage, 3.0 / 11.0);
-  EXPECT_EQ(bounds.figures().median_N, 2.0);
-  EXPECT_TRUE(std::isnan(bounds.figures().median_over_jnd)) << "wider than the largest force, 1.5 N";
-  BoundErrors pulling;
-  pulling.add(1.25, 0.0, -1.5, jnd);
-  EXPECT_NEAR(pulling.figures().median_over_jnd, 12.5, 1e-6) << "the largest force is that of a material that pulls";
+  ModelErrors errors(jnd);
+  EXPECT_FALSE(errors.bounds().has_bounds());
+  errors.add(1.0, 1.0, false);
+  EXPECT_FALSE(errors.bounds().has_bounds()) << "a model without bounds";
+  for (const double error_N : {0.0, 0.1, 0.2, 0.3}) errors.add(1.0 + error_N, 1.0, false, 0.25);
+  EXPECT_EQ(errors.bounds().coverage, 0.75);
+  EXPECT_NEAR(errors.bounds().median_N, 0.25, 1e-7);
+  EXPECT_NEAR(errors.bounds().median_over_jnd, 2.5, 1e-6);
+  for (int i = 0; i < 7; ++i) errors.add(1.0, -1.5, false, 2.0);
+  EXPECT_EQ(errors.bounds().coverage, 3.0 / 11.0);
+  EXPECT_EQ(errors.bounds().median_N, 2.0);
+  EXPECT_TRUE(std::isnan(errors.bounds().median_over_jnd)) << "wider than the largest force, 1.5 N";
+  ModelErrors pulling(jnd);
+  pulling.add(0.0, -1.5, false, 1.25);
+  EXPECT_NEAR(pulling.bounds().median_over_jnd, 12.5, 1e-6) << "the largest force is that of a material that pulls";
 }
 
 }  // namespace

@@ -20,9 +20,9 @@ TEST(StrokeCounter, AStrokeGoesFromTouchToRelease) {
   EXPECT_EQ(strokes, 10);
 }
 
-// Strokes of 100 samples, with `beyond` errors above the JND in each.
-ModelErrors strokes_with(const std::vector<int>& beyond) {
-  ModelErrors errors(JndLine{});
+// Adds a recording with strokes of 100 samples, with `beyond` errors above the JND in each.
+ModelErrors strokes_with(const std::vector<int>& beyond, ModelErrors errors = ModelErrors(JndLine{})) {
+  errors.begin_recording();
   for (const int count : beyond) {
     errors.begin_stroke();
     for (int i = 0; i < 100; ++i) errors.add(i < count ? 1.5 : 1.0, 1.0, false);
@@ -35,16 +35,15 @@ TEST(ModelErrors, StrokesAreTheUnitsOfOneRecordingAndRecordingsOfSeveral) {
   EXPECT_EQ(several.unit_errors().units(), 4u);
   EXPECT_FALSE(several.unit_errors().units_are_recordings);
   EXPECT_EQ(several.unit_errors().units_above_jnd, 1u);
-  several.append(strokes_with({1, 0}));
-  several.append(strokes_with({0}));
+  several = strokes_with({}, several);
+  EXPECT_FALSE(several.unit_errors().units_are_recordings) << "the second recording has no contact";
+  several = strokes_with({0}, strokes_with({1, 0}, several));
   EXPECT_TRUE(several.unit_errors().units_are_recordings);
   EXPECT_EQ(several.unit_errors().unit_within, (std::vector<double>{393.0, 199.0, 100.0}));
 }
 
 TEST(ModelErrors, ThreeSpotsThatDifferBoundTheShareAsStudentsTHasIt) {
-  ModelErrors errors = strokes_with({21});
-  errors.append(strokes_with({51}));
-  errors.append(strokes_with({15}));
+  const ModelErrors errors = strokes_with({15}, strokes_with({51}, strokes_with({21})));
   EXPECT_NEAR(errors.unit_errors().within_at_least(), 0.384, 1e-3);
 }
 

@@ -154,7 +154,8 @@ TEST_F(SessionOfFiles, RecommendsTheModelThatAReportRecommends) {
   ASSERT_TRUE(frames_until(*session, [&] { return session->test().complete() && session->verdict().chosen; }));
   std::vector<EvaluatedModel> models;
   for (std::size_t i = 0; i < 3; ++i) models.push_back({session->models().model(i), session->jnd()});
-  const auto evaluation = must(evaluate(rows_of(must(read_recording(folder.file("shifted.csv")))), models));
+  const Recording replayed = must(read_recording(folder.file("shifted.csv")));
+  const auto evaluation = must(evaluate(replayed, models));
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < 3; ++i) {
     const double p99 = evaluation.models[i].as_recorded.summary().p99_error_over_jnd;

@@ -24,10 +24,9 @@ ModelResult result(const char* name, double p99, double tick_ns) {
 }
 
 TEST(Choose, EveryModelIsACandidateAndTheFastestNearTheBestIsTaken) {
-  const Choice choice = choose({ModelResult{}, result("trend", 2.0, 100.0), result("trend+greedy-100", 0.5, 300.0),
-                                result("trend+greedy-20", 0.6, 150.0), result("voxel", 0.4, 200.0)});
-  EXPECT_EQ(choice.candidates, (std::vector<std::size_t>{1, 2, 3, 4}));
-  EXPECT_EQ(choice.near_best, (std::vector<std::size_t>{2, 3, 4}));
+  const Ranking choice = choose({ModelResult{}, result("trend", 2.0, 100.0), result("trend+greedy-100", 0.5, 300.0),
+                                 result("trend+greedy-20", 0.6, 150.0), result("voxel", 0.4, 200.0)});
+  EXPECT_EQ(choice.near_best, (std::vector<bool>{false, false, true, true, true})) << "no force is none";
   EXPECT_EQ(choice.best, 4u);
   EXPECT_EQ(choice.recommended, 3u);
 }
