@@ -80,7 +80,16 @@ const HardExpectation& HardCase::expectation(const ModelPlan& plan) const {
   return expected.at(plan.base == Base::force ? "force" : "corrected");
 }
 
-void HardMeasure::add(double force_N, double true_N, bool counts) {
+void HardMeasure::add(double force_N, double true_N, bool counts, double position_m) {
+  if (std::isfinite(last_m_)) {
+    // The trapezoidal rule. A force that pushes the tool out (towards smaller positions) gives out energy.
+    const double way_m = position_m - last_m_;
+    given_J_ -= 0.5 * (force_N + last_N_) * way_m;
+    truly_given_J_ -= 0.5 * (true_N + last_true_N_) * way_m;
+    energy_J_ = std::max(energy_J_, given_J_ - std::max(0.0, truly_given_J_));
+  }
+  last_m_ = position_m;
+  last_true_N_ = true_N;
   // A force that is not finite is never within the JND, and an infinite error.
   const double error_N = std::isfinite(force_N) ? std::abs(force_N - true_N) : HardExpectation::kAny;
   if (counts) {
@@ -94,20 +103,6 @@ void HardMeasure::add(double force_N, double true_N, bool counts) {
   ++ticks_;
 }
 
-void HardMeasure::add(double force_N, double true_N, bool counts, double position_m) {
-  if (has_energy_) {
-    // The trapezoidal rule. A force that pushes the tool out (towards smaller positions) gives out energy.
-    const double way_m = position_m - last_m_;
-    given_J_ -= 0.5 * (force_N + last_N_) * way_m;
-    truly_given_J_ -= 0.5 * (true_N + last_true_N_) * way_m;
-    energy_J_ = std::max(energy_J_, given_J_ - std::max(0.0, truly_given_J_));
-  }
-  has_energy_ = true;
-  last_m_ = position_m;
-  last_true_N_ = true_N;
-  add(force_N, true_N, counts);
-}
-
 HardFigures HardMeasure::figures() const {
   HardFigures figures;
   if (counted_ > 0) {
@@ -115,7 +110,7 @@ HardFigures HardMeasure::figures() const {
     figures.worst_error_N = worst_N_;
   }
   if (ticks_ > 1) figures.worst_step_N = step_N_;
-  if (has_energy_) figures.energy_J = energy_J_;
+  if (std::isfinite(last_m_)) figures.energy_J = energy_J_;
   return figures;
 }
 

@@ -84,17 +84,15 @@ struct HardCase {
 // Collects the figures of one model, tick by tick.
 class HardMeasure {
  public:
-  // `counts`: the tick is in contact.
-  void add(double force_N, double true_N, bool counts);
-  // The same with the position of the tool, for the energy.
-  void add(double force_N, double true_N, bool counts, double position_m);
+  // `counts`: the tick is in contact. `position_m`: of the tool, for the energy; NaN: the energy does not count.
+  void add(double force_N, double true_N, bool counts, double position_m = HardFigures::kNotMeasured);
   HardFigures figures() const;
 
  private:
   std::size_t ticks_ = 0, counted_ = 0, within_ = 0;
   double worst_N_ = 0.0, step_N_ = 0.0, last_N_ = 0.0;
-  bool has_energy_ = false;
-  double last_m_ = 0.0, last_true_N_ = 0.0, given_J_ = 0.0, truly_given_J_ = 0.0, energy_J_ = 0.0;
+  double last_m_ = HardFigures::kNotMeasured, last_true_N_ = 0.0;
+  double given_J_ = 0.0, truly_given_J_ = 0.0, energy_J_ = 0.0;
 };
 
 // The cases of each kind, in the order of the table, without reason and expectation.

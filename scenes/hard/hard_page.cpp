@@ -34,30 +34,6 @@ Table marks_table(const std::vector<HardRow>& rows, std::size_t kind) {
   return table;
 }
 
-// The share within the JND against the condition number: one point for each fit.
-Figure condition_figure(const std::vector<HardRow>& rows) {
-  Figure figure;
-  figure.plot.name = "condition";
-  figure.caption =
-      "Share of the samples within the JND of the true force against the condition number of the equations, after the "
-      "truncation or with the smoothing. Hard sites and faulty recordings; one point for each fit.";
-  Panel& panel = figure.plot.panels.emplace_back();
-  panel.x = {"Condition number", "", true};
-  panel.y = {"Within the JND [%]", "", false, 0.0, 100.0};
-  const std::vector<ModelPlan> plans = hard_plans();
-  for (std::size_t k = 0; k < plans.size(); ++k) {
-    Series series{plan_name(plans[k]), colour_of(plans[k]), Mark::bars, {}};
-    for (const HardRow& row : rows) {
-      const HardCell& cell = row.cells[k];
-      if (row.of.kind != HardKind::sites && row.of.kind != HardKind::recording) continue;
-      if (cell.rank > 0 && std::isfinite(cell.condition_number) && !std::isnan(cell.figures.within_jnd))
-        series.rows.push_back({cell.condition_number, 100.0 * cell.figures.within_jnd});
-    }
-    if (!series.rows.empty()) panel.series.push_back(std::move(series));
-  }
-  return figure;
-}
-
 std::string list_html(const std::vector<std::string>& lines) {
   std::string html;
   for (const std::string& line : lines) html += "<li>" + escape_html(line) + "</li>\n";
@@ -74,7 +50,7 @@ Status write_hard_page(const std::vector<HardRow>& rows, const HardPage& page, c
   tables.push_back(cells_table(rows));
   nlohmann::ordered_json report{{"format", "palpate-hard"}, {"version", 1}, {"answer", hard_answer(rows)}};
   report.update(hard_json(rows));
-  return write_report(*folder, "hard.html", tables, {condition_figure(rows)},
+  return write_report(*folder, "hard.html", tables, {},
                       {{"answer", escape_html(hard_answer(rows))},
                        {"missed", list_html(missed_cells(rows))},
                        {"origin", escape_html(page.origin)}},

@@ -71,11 +71,7 @@ HardFigures measure_press(const Press& press, const std::shared_ptr<const Fitted
     const double true_N = press.true_N[row++];
     // In contact, for the model or in truth.
     const bool counts = snapshot.in_contact || true_N > 0.0;
-    if (from_air) {
-      measured.add(snapshot.force_N[0], true_N, counts, at.position_m);
-    } else {
-      measured.add(snapshot.force_N[0], true_N, counts);
-    }
+    measured.add(snapshot.force_N[0], true_N, counts, from_air ? at.position_m : HardFigures::kNotMeasured);
   });
   return measured.figures();
 }

@@ -15,33 +15,27 @@ namespace {
 constexpr double kMaterialSeconds = 12.0;
 constexpr double kMaterialRate_Hz = 250.0;
 
-// The training on each material, made when it is first needed, and its greatest depth.
-class Trainings {
- public:
-  struct One {
-    std::shared_ptr<HardTraining> training;
-    double depth_m = 0.0, force_N = 0.0;
-  };
-  const One& of(const std::string& material) {
-    One& one = made_[material];
-    if (one.training) return one;
-    RigSettings settings;
-    settings.material = material;
-    settings.seconds = kMaterialSeconds;
-    settings.rate_Hz = kMaterialRate_Hz;
-    Recording recording = std::move(*record_sensors(settings));
-    for (const RecordingRow& row : recording.rows) {
-      one.depth_m = std::max(one.depth_m, row.position_m);
-      one.force_N = std::max(one.force_N, row.force_N);
-    }
-    one.training = train_on(std::move(recording));
-    return one;
-  }
-
- private:
-  std::map<std::string, One> made_;
+// The training on a material, and its greatest depth and force.
+struct Training {
+  std::shared_ptr<HardTraining> fits;
+  double depth_m = 0.0, force_N = 0.0;
 };
-using TrainingsPointer = std::shared_ptr<Trainings>;
+using Trainings = std::map<std::string, Training>;
+
+// Makes the training when it is first needed.
+const Training& training_on(const std::string& material, Trainings& made) {
+  Training& one = made[material];
+  if (one.fits) return one;
+  RigSettings settings;
+  settings.material = material;
+  settings.seconds = kMaterialSeconds;
+  settings.rate_Hz = kMaterialRate_Hz;
+  Recording recording = std::move(*record_sensors(settings));
+  one.depth_m = std::ranges::max_element(recording.rows, {}, &RecordingRow::position_m)->position_m;
+  one.force_N = std::ranges::max_element(recording.rows, {}, &RecordingRow::force_N)->force_N;
+  one.fits = train_on(std::move(recording));
+  return one;
+}
 
 constexpr double kSlow_m_per_s = 0.05;  // of the sudden stop and of the endless press, at the size of the training
 
@@ -76,16 +70,16 @@ const Motion kMotions[] = {
 };
 
 // Springs and dashpots, dry friction, a fluid in pores, a stiff inclusion at 6 mm.
-void add_motions(std::vector<HardCase>& cases, const TrainingsPointer& trainings) {
+void add_motions(std::vector<HardCase>& cases, const std::shared_ptr<Trainings>& trainings) {
   for (const std::string material : {"maxwell", "friction", "sponge", "layered"}) {
     for (const Motion& motion : kMotions) {
       cases.push_back(
           {material + ": " + motion.name, HardKind::motion, [=] {
-             const Trainings::One& one = trainings->of(material);
+             const Training& one = training_on(material, *trainings);
              const auto block = find_material(material)->make_block();
              const auto press = std::make_shared<const Press>(
                  press_into(*block, motion.path(one.depth_m / kTrainingDepth_m), even_times(motion.seconds, 1000.0)));
-             return HardTrial{one.training, [press](const auto& model) { return measure_press(*press, model); }};
+             return HardTrial{one.fits, [press](const auto& model) { return measure_press(*press, model); }};
            }});
     }
   }
@@ -94,15 +88,15 @@ void add_motions(std::vector<HardCase>& cases, const TrainingsPointer& trainings
 constexpr double kEncoder_m = 10e-6;
 constexpr double kPress = 0.3;  // of the largest force of the training
 
-HardCase hand_case(const TrainingsPointer& trainings, const std::string& material, const std::string& name,
+HardCase hand_case(const std::shared_ptr<Trainings>& trainings, const std::string& material, const std::string& name,
                    const HandTrial& trial) {
   return {material + ": " + name, HardKind::loop, [=] {
-            const Trainings::One& one = trainings->of(material);
+            const Training& one = training_on(material, *trainings);
             HandTrial at = trial;
             at.depth_m = std::sqrt(kPress) * one.depth_m;
             at.force_N = kPress * one.force_N;
-            if (at.exchange_s > 0.0) at.other = one.training->fit(*parse_plan("trend"), {})->model;
-            return HardTrial{one.training, [=](const auto& model) {
+            if (at.exchange_s > 0.0) at.other = one.fits->fit(*parse_plan("trend"), {})->model;
+            return HardTrial{one.fits, [=](const auto& model) {
                                const auto block = find_material(material)->make_block();
                                return measure_hand(at, *block, model);
                              }};
@@ -121,7 +115,7 @@ constexpr Line kLines[] = {{"10 kHz, no delay", 0.0, 1e-4},  {"1 kHz, no delay",
                            {"100 Hz, no delay", 0.0, 10e-3}, {"100 Hz, 10 ms late", 10e-3, 10e-3}};
 
 // A finger in light contact, and a clenched fist (closed_loop.h).
-void add_hands(std::vector<HardCase>& cases, const TrainingsPointer& trainings, const std::string& material,
+void add_hands(std::vector<HardCase>& cases, const std::shared_ptr<Trainings>& trainings, const std::string& material,
                const Line& line) {
   for (const auto& [hand, grip] :
        {std::pair{"light hand, ", Grip{"a light hand", 0.05, 100.0, 2.2}}, {"heavy hand, ", kGrips[2]}}) {
