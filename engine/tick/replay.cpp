@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "engine/tick/jnd.h"
@@ -38,38 +37,6 @@ double common_surface_m(const ForceModels& models) {
   return std::isfinite(outermost_m) ? outermost_m : 0.0;
 }
 
-// Steps a tick through the rows of one recording.
-class Replay {
- public:
-  // `rows`: the first rows, from which sensor and noise are identified.
-  Replay(const ForceModels& models, const std::vector<RecordingRow>& rows, RecordingColumns columns,
-         double surface_offset_m)
-      : summary_{identify_sensor(rows.data(), rows.size(), columns)},
-        tick_(summary_.sensor, models),
-        surface_offset_m_(surface_offset_m),
-        surface_m_(common_surface_m(models)),
-        least_N_(least_contact_N(rows.data(), rows.size(), surface_m_ + surface_offset_m)) {}
-
-  // To be called with all rows in order.
-  void run(const std::vector<RecordingRow>& rows, const ReplayVisitor& visitor) {
-    for (const RecordingRow& row : rows) {
-      ToolSample sample = tool_sample(row);
-      sample.position_m -= surface_offset_m_;
-      TickSnapshot snapshot = tick_.step(sample);
-      snapshot.in_contact = sample.position_m > surface_m_ || std::abs(row.force_N) > least_N_;
-      if (snapshot.in_contact) ++summary_.contact_samples;
-      if (visitor) visitor(row, snapshot, tick_);
-    }
-    summary_.samples += rows.size();
-  }
-  const ReplaySummary& summary() const { return summary_; }
-
- private:
-  ReplaySummary summary_;
-  HapticsTick tick_;
-  double surface_offset_m_, surface_m_, least_N_;
-};
-
 }  // namespace
 
 double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m) {
@@ -79,23 +46,21 @@ double least_contact_N(const RecordingRow* rows, std::size_t count, double surfa
 
 ReplaySummary replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
                      double surface_offset_m) {
-  Replay replay(models, recording.rows, recording.columns, surface_offset_m);
-  replay.run(recording.rows, visitor);
-  return replay.summary();
-}
-
-Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor,
-                             double surface_offset_m) {
-  std::vector<RecordingRow> rows;
-  std::optional<Replay> replay;
-  for (;;) {
-    rows.clear();
-    const auto count = reader.read(rows, kSensorIdentificationRows);
-    if (!count) return count.error();
-    if (!replay) replay.emplace(models, rows, reader.columns(), surface_offset_m);
-    if (*count == 0) return replay->summary();
-    replay->run(rows, visitor);
+  const std::vector<RecordingRow>& rows = recording.rows;
+  ReplaySummary summary{identify_sensor(rows.data(), rows.size(), recording.columns)};
+  HapticsTick tick(summary.sensor, models);
+  const double surface_m = common_surface_m(models);
+  const double least_N = least_contact_N(rows.data(), rows.size(), surface_m + surface_offset_m);
+  for (const RecordingRow& row : rows) {
+    ToolSample sample = tool_sample(row);
+    sample.position_m -= surface_offset_m;
+    TickSnapshot snapshot = tick.step(sample);
+    snapshot.in_contact = sample.position_m > surface_m || std::abs(row.force_N) > least_N;
+    ++summary.samples;
+    if (snapshot.in_contact) ++summary.contact_samples;
+    if (visitor) visitor(row, snapshot, tick);
   }
+  return summary;
 }
 
 }  // namespace palpate

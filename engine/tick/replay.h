@@ -1,5 +1,5 @@
 // Replays a recording through the tick of the live loop, without clock and device, as fast as possible. The same rows
-// and models give the same bits, from memory or read in chunks.
+// and models give the same bits.
 //
 // For the visitor, a sample is in contact if it is beyond the surface, the outermost of those surfaces of the models
 // that are not at 0, or if the measured force exceeds both the JND at 0 N and five times its noise, because an adhesive
@@ -9,8 +9,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "engine/base/result.h"
-#include "engine/recording/recording_reader.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/haptics_tick.h"
 
 namespace palpate {
@@ -33,10 +32,5 @@ double least_contact_N(const RecordingRow* rows, std::size_t count, double surfa
 // receives the row as recorded.
 ReplaySummary replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
                      double surface_offset_m = 0.0);
-
-// The same for the remaining rows of `reader`, in bounded memory. Errors: those of the reader, after the visits of the
-// rows before the fault.
-Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor,
-                             double surface_offset_m = 0.0);
 
 }  // namespace palpate

@@ -4,11 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 
 #include "engine/tick/sensor_identification.h"
 #include "tests/support/example_model.h"
-#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -80,36 +78,6 @@ TEST(Replay, MovesTheSurface) {
   replay(recording, models, plain.visitor());
   replay(shifted, models, moved.visitor(), offset_m);
   EXPECT_EQ(plain.values, moved.values);
-}
-
-// Longer than the rows used for identification, so that chunks follow.
-TEST(Replay, InChunksEqualsTheWhole) {
-  const test::TemporaryFolder folder;
-  const Recording recording = example_recording(kSensorIdentificationRows * 2 + 17, 1000.0, 30e-6);
-  ASSERT_TRUE(write_recording(folder.file("r.csv"), recording, {}, false).ok());
-  const ForceModels models = {std::make_shared<FittedModel>(test::example_models().front())};
-  Trace whole;
-  const ReplaySummary in_memory = replay(recording, models, whole.visitor());
-  auto reader = RecordingReader::open(folder.file("r.csv"));
-  ASSERT_TRUE(reader.ok());
-  Trace chunked;
-  const auto streamed = replay(*reader, models, chunked.visitor());
-  ASSERT_TRUE(streamed.ok());
-  EXPECT_TRUE(whole.values == chunked.values);
-  EXPECT_EQ(in_memory.samples, streamed->samples);
-  EXPECT_EQ(in_memory.contact_samples, streamed->contact_samples);
-}
-
-TEST(Replay, HandsOnTheReadersError) {
-  const test::TemporaryFolder folder;
-  std::string text = "time_s,position_m,force_N\n";
-  for (int i = 0; i < 20; ++i) text.append(std::to_string(i)).append("e-3,0,0\n");
-  const std::string path = folder.with_file("r.csv", text + "5e-3,0,0\n");
-  auto reader = RecordingReader::open(path);
-  ASSERT_TRUE(reader.ok());
-  const auto summary = replay(*reader, {}, {});
-  ASSERT_FALSE(summary.ok());
-  EXPECT_EQ(summary.error().message.rfind(path + ":22:1: ", 0), 0u) << summary.error().message;
 }
 
 }  // namespace
