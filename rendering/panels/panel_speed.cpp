@@ -57,7 +57,7 @@ struct SpeedPlot {
   const UiStyle& style;
   const LivePlot& plot;
   const SpeedRanges& ranges;
-  std::vector<ImVec4> placed{}, spreads{};  // rectangles of dots and names; of the lines of times
+  std::vector<ImVec4> placed{}, lines{};  // rectangles of dots and names; of lines
 
   float line() const { return ImGui::GetFontSize(); }
   ImDrawList& list() const { return plot.list(); }
@@ -122,15 +122,15 @@ struct SpeedPlot {
     const float radius = (slot == models.verdict.chosen ? 7.0F : 5.0F) * size;
     draw_mark(list(), dot, radius, one.paper, colour(slot), style);
     placed.push_back({dot.x - radius, dot.y - radius, dot.x + radius, dot.y + radius});
-    spreads.push_back({low.x, dot.y - 1.0F, high.x, dot.y + 1.0F});
+    lines.push_back({low.x, dot.y - 1.0F, high.x, dot.y + 1.0F});
   }
 
-  bool is_free(const ImVec4& box, bool over_spreads = false) const {
+  bool is_free(const ImVec4& box, bool over_lines = false) const {
     if (box.x < plot.left() || box.z > plot.right() || box.y < plot.top() || box.w > plot.bottom()) return false;
     const auto covers = [&](const ImVec4& other) {
       return box.x < other.z && other.x < box.z && box.y < other.w && other.y < box.w;
     };
-    return std::ranges::none_of(placed, covers) && (over_spreads || std::ranges::none_of(spreads, covers));
+    return std::ranges::none_of(placed, covers) && (over_lines || std::ranges::none_of(lines, covers));
   }
 
   // Draws what the JND is above its line, at the left or the right, where no model is.
@@ -144,8 +144,8 @@ struct SpeedPlot {
     list().AddText({box.x, box.y}, ink(style.colours().quiet), text);
   }
 
-  // Draws the name beside, above or below its dot where it is free, if need be over the spreads of others; far from the
-  // dot, joined to it by a line.
+  // Draws the name beside, above or below its dot where it is free, if need be over lines; far from the dot, joined to
+  // it by a line.
   void draw_name(std::size_t slot) {
     const ModelView& one = models.slots[slot];
     const ImVec2 dot = at(one.tick_ns(), one.errors.p99_error_over_jnd);
@@ -227,6 +227,8 @@ void draw_speed(const ModelsView& models, const UiStyle& style, float height) {
     std::erase_if(dots, [&](std::size_t slot) { return !has_dot(models, slot); });
     for (const std::size_t slot : dots) drawing.draw_dot(slot);
     drawing.draw_caption();
+    const float jnd_px = plot.y_px(0.0);
+    drawing.lines.push_back({plot.left(), jnd_px - 1.0F, plot.right(), jnd_px + 1.0F});
     std::ranges::sort(dots, {}, [&](std::size_t slot) { return models.slots[slot].errors.p99_error_over_jnd; });
     for (const std::size_t slot : dots) drawing.draw_name(slot);
   }
