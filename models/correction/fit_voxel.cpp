@@ -6,7 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include "models/correction/fill_grid.h"
 #include "models/correction/methods.h"
 #include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"

@@ -2,8 +2,8 @@
 //
 // With S = diag(scale), K = sign S Phi S, q an orthonormal basis of the columns of S G and P = I - q q^T: if u = P u,
 // the weights w = sign S u satisfy the side condition G^T w = 0, and their roughness w^T (sign Phi) w is u^T P K P u >=
-// 0. With all sites as centres (fit_direct.h) the smoothing spline solves (P K P + smoothing I) u = P S f; with some
-// (solve_weights.h) the matrix of the centres, with S = I, is the penalty.
+// 0. With all sites as centres the smoothing spline solves (P K P + smoothing I) u = P S f; with some the matrix of the
+// centres, with S = I, is the penalty.
 // Source: Hoever & Harders (2009), eqs. 2-8; Wahba (1990) for the form. Thread guarantee: slow side.
 #pragma once
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "models/correction/fill_grid.h"
 #include "models/model/fitted_model.h"
 #include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"

@@ -7,8 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "models/correction/fill_grid.h"
-#include "models/correction/fit_direct.h"
+#include "models/correction/solve_weights.h"
 #include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "tests/bench/bench_data.h"
@@ -42,7 +41,7 @@ Status fill(VoxelGrid& grid, const RbfFunction& function) {
 }
 
 Result<RbfFunction> direct_and_grid(const Sites& sites, const Eigen::VectorXd&) {
-  Result<SolvedWeights> fitted = fit_direct(sites);
+  Result<SolvedWeights> fitted = solve_direct(sites);
   if (!fitted) return fitted.error();
   VoxelGrid grid = even_grid(sites, {25, 11, 11, 11});
   if (const Status filled = fill(grid, fitted->function); !filled) return filled.error();

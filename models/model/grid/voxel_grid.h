@@ -4,10 +4,14 @@
 // Source: Hoever & Harders (2009), section 3.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "engine/base/parallel.h"
+#include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "models/model/correction.h"
 
@@ -19,6 +23,11 @@ struct VoxelGrid {
   // Values at the nodes, the last dimension fastest.
   std::vector<double> values_N;
 };
+
+// Sets out[i] to the value at points.col(i), for a batch of points, d x M.
+using BatchFunction = std::function<void(const Eigen::MatrixXd& points, Eigen::VectorXd& out)>;
+// Sets the values of a grid to those of the function at its nodes. Errors: interrupted. Slow side.
+Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitControl& control = {});
 
 // The grid as the correction of a model. Immutable.
 class GridCorrection final : public Correction {

@@ -1,4 +1,4 @@
-#include "models/correction/fit_direct.h"
+#include "models/correction/solve_weights.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/correction/methods.h"
 #include "models/correction/projected_kernel.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "tests/support/message_parts.h"
@@ -25,7 +26,7 @@ double rms_error(const RbfFunction& function, const Sites& truth) {
 }
 
 Result<RbfFunction> function_of(const Sites& sites) {
-  auto solved = fit_direct(sites);
+  auto solved = solve_direct(sites);
   if (!solved) return solved.error();
   return std::move(solved->function);
 }
@@ -118,14 +119,14 @@ TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
   Sites large;
   large.points = Eigen::MatrixXd::Zero(1, kMostDirectSites + 1);
   large.target_N = large.row_scale = Eigen::VectorXd::Ones(kMostDirectSites + 1);
-  EXPECT_TRUE(test::has_parts(fit_direct(large).error().message, {"20001", "too large", "20000", "; "}));
+  EXPECT_TRUE(test::has_parts(solve_direct(large).error().message, {"20001", "too large", "20000", "; "}));
   const Sites sites = smooth_sites(2, 300, 0, 1);
   std::vector<double> asked;
-  ASSERT_TRUE(fit_direct(sites, {[&](double f) { return asked.push_back(f), true; }}).ok());
+  ASSERT_TRUE(solve_direct(sites, {[&](double f) { return asked.push_back(f), true; }}).ok());
   EXPECT_TRUE(std::is_sorted(asked.begin(), asked.end()));
   EXPECT_EQ(asked.size(), 5u) << "at the start, before and within the factorisation (two blocks), and after it";
   for (const double fraction : asked) {
-    const auto stopped = fit_direct(sites, {[&](double f) { return f < fraction; }});
+    const auto stopped = solve_direct(sites, {[&](double f) { return f < fraction; }});
     ASSERT_FALSE(stopped.ok());
     EXPECT_EQ(stopped.error().message, "interrupted") << fraction;
   }
@@ -142,7 +143,7 @@ TEST(FitDirect, TellsRankAndConditionNumber) {
     matrix.triangularView<Eigen::StrictlyUpper>() = matrix.transpose();
     const auto norm = [](const Eigen::MatrixXd& a) { return a.cwiseAbs().colwise().sum().maxCoeff(); };
     const double expected = norm(matrix) * norm(matrix.inverse());
-    const auto solved = fit_direct(sites);
+    const auto solved = solve_direct(sites);
     ASSERT_TRUE(solved.ok());
     EXPECT_EQ(solved->rank, 80);
     // The estimate is a lower bound, rarely below a third (Higham 1988).

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "models/correction/fit_direct.h"
 #include "models/correction/projected_kernel.h"
+#include "models/correction/solve_weights.h"
 #include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
@@ -75,7 +75,7 @@ TEST_F(AgainstScipy, FitsTheSameWeightsTailAndValues) {
     const double smoothing = item.at("smoothing").get<double>();
     sites.smoothing = smoothing;
     sites.kernel = *kernel_from_name(name);
-    const auto solved = fit_direct(sites);
+    const auto solved = solve_direct(sites);
     ASSERT_TRUE(solved.ok());
     const RbfFunction& fitted = solved->function;
     SCOPED_TRACE(name + ", " + std::to_string(sites.dimension()) + "-D, smoothing " + std::to_string(smoothing));

@@ -5,7 +5,6 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "models/correction/fit_direct.h"
 #include "models/correction/projected_kernel.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
@@ -124,7 +123,7 @@ TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {
       sites.kernel = kernel;
       sites.smoothing = smoothing;
       const auto some = solved(sites, sites.points);
-      const auto all = fit_direct(sites);
+      const auto all = solve_direct(sites);
       ASSERT_TRUE(all.ok());
       // Two algorithms for systems with condition numbers up to some 1e6.
       EXPECT_LT(test::largest_difference(some, all->function, sites.points), 1e-7) << kernel_name(kernel);

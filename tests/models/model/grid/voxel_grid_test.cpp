@@ -1,5 +1,4 @@
 #include "models/model/grid/voxel_grid.h"
-#include "models/correction/fill_grid.h"
 
 #include <gtest/gtest.h>
 
