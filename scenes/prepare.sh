@@ -33,7 +33,8 @@ quietly() {
   return "$status"
 }
 
-is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+# One line for each architecture of the package.
+is_installed() { dpkg-query -W -f='${db:Status-Status}\n' "$1" 2>/dev/null | grep -x installed >/dev/null; }
 
 # install_packages NAME...: installs the missing ones, as root or with sudo.
 install_packages() {
