@@ -79,10 +79,10 @@ struct FilePicker {
 struct Settings {
   Theme theme = Theme::light;
   std::size_t blocks = kAllBlocks;  // 1, 2 or all
-  bool difference = true;                // the lower curves show the difference of every tick; else its mean over 50 ms
-  float text_size = 1.0F;                // factor
-  std::string line_up;                   // empty: the default
-  std::vector<std::string> recent;       // files that were opened, the newest first
+  bool difference = true;           // the lower curves show the difference of every tick; else its mean over 50 ms
+  float text_size = 1.0F;           // factor
+  std::string line_up;              // empty: the default
+  std::vector<std::string> recent;  // files that were opened, the newest first
   CameraTurn camera;
   bool operator==(const Settings&) const = default;
 };
