@@ -235,18 +235,8 @@ class Checker {
 
   void check_lag() {
     // Without an onset of force, a lag cannot be distinguished from the material's memory.
-    if (!surface_.air.found || prepared_.motion.empty()) return;
-    std::vector<Sample> rows;
-    for (std::size_t i = 0; i < prepared_.motion.size(); ++i) {
-      const RecordingRow& row = recording_.rows[i];
-      rows.push_back({tool_sample(row), prepared_.motion[i], row.force_N});
-    }
-    const OffsetEstimate lag = find_force_lag(rows, noise_N_);
-    if (lag.not_zero && !lag.identified) {
-      add("lag_unknown", Severity::note, 0.0,
-          "the force may lag or lead the position, but this lag cannot be identified",
-          "record both with the same clock");
-    }
+    if (!surface_.air.found) return;
+    const OffsetEstimate lag = find_force_lag(prepared_.rows, noise_N_);
     if (lag.at == 0.0) return;
     add("lag", Severity::warning, lag.at,
         words("the force %s the position by %.3g ms (+- %.2g)", lag.at > 0.0 ? "lags" : "leads", 1e3 * std::abs(lag.at),
@@ -281,14 +271,8 @@ class Checker {
                 first_N),
           "begin outside of the material, after it has rested");
     }
-    if (surface_.air.tool_mass_kg > 0.0) {
-      add("tool_mass", Severity::note, surface_.air.tool_mass_kg,
-          words("the force sensor carries a mass of %.3g g: in free air the force follows the acceleration",
-                1e3 * surface_.air.tool_mass_kg),
-          "");
-    }
     const double pull_N = surface_.force_zero_N - measures_.lowest_force_N;
-    if (surface_.air.found && !(surface_.air.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
+    if (surface_.air.found && pull_N > certain_force_N(noise_N_)) {
       add("adhesion", Severity::note, pull_N,
           words("the material pulls the tool with up to %.3g N: a fitted model renders this adhesion", pull_N), "");
     }

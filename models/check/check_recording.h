@@ -72,8 +72,7 @@ struct CheckedFile {
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request);
 // The median difference of the forces of two recordings of one set, second minus first, N, if no single model can
 // render both; else none: the central 90 % of their forces do not overlap in four of five bins of their positions, and
-// the median difference exceeds two JND (force_curve.h). Positions count from the surfaces where both are clear, as in
-// a fit.
+// the median difference exceeds two JND. Positions count from the surfaces where both are clear, as in a fit.
 std::optional<double> find_contradiction_N(const PreparedRecording& first, const PreparedRecording& second,
                                            const JndLine& jnd);
 // Checks several recordings of one set. Equal rows, and forces that contradict those of another recording, are findings

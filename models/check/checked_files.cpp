@@ -1,17 +1,57 @@
 // Reads and checks recordings for the commands of the program.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "engine/base/text.h"
 #include "models/check/check_recording.h"
-#include "models/check/force_curve.h"
+#include "models/samples/sample.h"
 
 namespace palpate {
 namespace {
 
+// Of two recordings, in bins of their positions.
+constexpr double kBins = 60.0;         // in the smaller range
+constexpr double kMostBins = 6000.0;   // in the larger one
+constexpr double kLeastOverlap = 0.3;  // of the smaller number of bins
 constexpr double kApartShare = 0.8;
 constexpr double kLeastJnds = 2.0;
+
+double range_m(const std::vector<RecordingRow>& rows) {
+  const auto [low, high] = std::ranges::minmax(rows, {}, &RecordingRow::position_m);
+  return high.position_m - low.position_m;
+}
+
+// The forces in a bin during loading and unloading: a higher speed raises the first and lowers the second, which no
+// shift does.
+using BinForces = std::array<std::vector<double>, 2>;
+
+// A reversal by less than the width of a bin counts as noise.
+std::map<long, BinForces> binned_forces_N(const std::vector<RecordingRow>& rows, double surface_m, double bin_m) {
+  std::map<long, BinForces> bins;
+  double turn_m = rows.front().position_m;
+  bool inward = true;
+  for (const RecordingRow& row : rows) {
+    turn_m = inward ? std::max(turn_m, row.position_m) : std::min(turn_m, row.position_m);
+    if (std::abs(row.position_m - turn_m) > bin_m) {
+      inward = !inward;
+      turn_m = row.position_m;
+    }
+    bins[std::lround((row.position_m - surface_m) / bin_m)][inward ? 0 : 1].push_back(row.force_N);
+  }
+  return bins;
+}
+
+// The central 90 % of the forces in a bin.
+std::pair<double, double> central_N(const BinForces& forces_N) {
+  std::vector<double> all_N = forces_N[0];
+  all_N.insert(all_N.end(), forces_N[1].begin(), forces_N[1].end());
+  std::ranges::sort(all_N);
+  const double last = static_cast<double>(all_N.size() - 1);
+  return {all_N[static_cast<std::size_t>(0.05 * last)], all_N[static_cast<std::size_t>(0.95 * last)]};
+}
 
 // Inserts a finding before those of its severity.
 void add_finding(CheckedFile& file, Finding finding) {
@@ -56,15 +96,35 @@ void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
 std::optional<double> find_contradiction_N(const PreparedRecording& first, const PreparedRecording& second,
                                            const JndLine& jnd) {
   const std::vector<RecordingRow>&a = first.recording.rows, &b = second.recording.rows;
-  const double bin_m = common_bin_m(a, b);
+  const auto [smaller_m, larger_m] = std::minmax({range_m(a), range_m(b)});
+  const double bin_m = std::max(smaller_m / kBins, larger_m / kMostBins);
   if (!(bin_m > 0.0)) return std::nullopt;
-  const ForceCurve one(a, bin_m);
-  const ForceCurve other(b, bin_m);
   const bool clear = first.surface.identified() && second.surface.identified();
-  const double shift_m = clear ? second.surface.raw_offset_m - first.surface.raw_offset_m : 0.0;
-  const auto found = difference(one, other, shift_m, jnd);
-  if (!found || found->apart_share < kApartShare || !(found->median_jnds > kLeastJnds)) return std::nullopt;
-  return found->median_N;
+  const auto bins_a = binned_forces_N(a, clear ? first.surface.raw_offset_m : 0.0, bin_m);
+  const auto bins_b = binned_forces_N(b, clear ? second.surface.raw_offset_m : 0.0, bin_m);
+  std::vector<double> differences_N, jnds;
+  double compared = 0.0, apart = 0.0;
+  for (const auto& [bin, of_b] : bins_b) {
+    const auto of_a = bins_a.find(bin);
+    if (of_a == bins_a.end()) continue;
+    const std::size_t before = differences_N.size();
+    for (const std::size_t direction : {0u, 1u}) {
+      if (of_a->second[direction].empty() || of_b[direction].empty()) continue;
+      const double a_N = median_of(of_a->second[direction]), b_N = median_of(of_b[direction]);
+      differences_N.push_back(b_N - a_N);
+      // In air all forces are equal.
+      if (std::max(std::abs(a_N), std::abs(b_N)) > jnd.at(0.0))
+        jnds.push_back(std::abs(b_N - a_N) / jnd.at(0.5 * (a_N + b_N)));
+    }
+    if (differences_N.size() == before) continue;
+    const auto [low_a_N, high_a_N] = central_N(of_a->second);
+    const auto [low_b_N, high_b_N] = central_N(of_b);
+    compared += 1.0;
+    if (low_b_N > high_a_N || low_a_N > high_b_N) apart += 1.0;
+  }
+  const bool overlap = compared >= kLeastOverlap * static_cast<double>(std::min(bins_a.size(), bins_b.size()));
+  if (!overlap || apart < kApartShare * compared || !(median_of(std::move(jnds)) > kLeastJnds)) return std::nullopt;
+  return median_of(std::move(differences_N));
 }
 
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request) {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
@@ -14,139 +13,66 @@ namespace {
 constexpr std::size_t kSlices = 100;    // of the range of positions
 constexpr std::size_t kLeastRows = 10;  // of the stretch
 
-// Differences of velocities over 10 ms where no acceleration is measured.
-std::vector<double> accelerations(const std::vector<Sample>& rows) {
-  const bool measured =
-      std::ranges::any_of(rows, [](const Sample& row) { return row.tool.acceleration_m_per_s2 != 0.0; });
-  std::vector<double> result(rows.size(), 0.0);
-  std::size_t from = 0, to = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (measured) {
-      result[i] = rows[i].tool.acceleration_m_per_s2;
-      continue;
-    }
-    while (to + 1 < rows.size() && rows[to].tool.time_s < rows[i].tool.time_s + 0.01) ++to;
-    while (rows[from].tool.time_s < rows[i].tool.time_s - 0.01) ++from;
-    const double step_s = rows[to].tool.time_s - rows[from].tool.time_s;
-    if (step_s > 0.0) result[i] = (rows[to].motion.velocity_m_per_s - rows[from].motion.velocity_m_per_s) / step_s;
-  }
-  return result;
+// The mean of the forces within three standard deviations of their median, estimated by the median of the deviations:
+// the median of a quantised force is one of its steps, and rows in the material would bias the mean of all.
+void set_zero(FreeAir& air, std::vector<double> forces_N, double flat_N) {
+  const auto third = static_cast<std::ptrdiff_t>(forces_N.size() / 3);
+  air.drift_N =
+      median_of({forces_N.end() - third, forces_N.end()}) - median_of({forces_N.begin(), forces_N.begin() + third});
+  const double middle_N = median_of(forces_N);
+  std::vector<double> deviations_N;
+  for (const double force_N : forces_N) deviations_N.push_back(std::abs(force_N - middle_N));
+  // The standard deviation of normal errors is 1.4826 times the median of their sizes.
+  const double limit_N = std::max(flat_N, 3.0 * 1.4826 * median_of(std::move(deviations_N)));
+  std::erase_if(forces_N, [&](double force_N) { return std::abs(force_N - middle_N) > limit_N; });
+  const auto count = static_cast<double>(forces_N.size());
+  double mean_N = 0.0, squares = 0.0;
+  for (const double force_N : forces_N) mean_N += (force_N - middle_N) / count;
+  for (const double force_N : forces_N) squares += (force_N - middle_N) * (force_N - middle_N);
+  air.zero_N = middle_N + mean_N;
+  air.zero_error_N = std::sqrt(squares) / count;
 }
 
-class AirSearch {
- public:
-  AirSearch(const std::vector<Sample>& rows, double force_noise_N)
-      : rows_(rows), noise_N_(force_noise_N), acceleration_m_per_s2_(accelerations(rows)), slices_(kSlices) {
-    std::tie(low_m_, high_m_) = position_range_m(rows);
-    const auto [low, high] = std::ranges::minmax_element(rows, {}, &Sample::force_N);
-    range_N_ = high->force_N - low->force_N;
-    // The medians of the slices stay within this, because sensors drift and encoders are coarse.
-    flat_N_ = std::max({3.0 * force_noise_N, 0.003 * range_N_, 2e-3});
-    for (std::size_t i = 0; i < rows.size() && high_m_ > low_m_; ++i) {
-      const double share = (rows[i].motion.position_m - low_m_) / (high_m_ - low_m_);
-      slices_[std::min(kSlices - 1, static_cast<std::size_t>(share * kSlices))].push_back(i);
-    }
+// The outermost slices of the positions whose force is flat during loading.
+FreeAir find_air(const std::vector<Sample>& rows, double noise_N) {
+  FreeAir air;
+  const auto [low_m, high_m] = position_range_m(rows);
+  if (!(high_m > low_m)) return air;
+  const auto [weakest, strongest] = std::ranges::minmax(rows, {}, &Sample::force_N);
+  const double range_N = strongest.force_N - weakest.force_N;
+  // The medians of the slices stay within this, because sensors drift and encoders are coarse.
+  const double flat_N = std::max({3.0 * noise_N, 0.003 * range_N, 2e-3});
+  std::vector<std::vector<double>> slices_N(kSlices);
+  for (const Sample& row : rows) {
+    if (!(row.motion.velocity_m_per_s >= 0.0)) continue;
+    const double share = (row.motion.position_m - low_m) / (high_m - low_m);
+    slices_N[std::min(kSlices - 1, static_cast<std::size_t>(share * kSlices))].push_back(row.force_N);
   }
-
-  FreeAir run() {
-    FreeAir air = stretch(0.0);
-    // The inertia of the tool may hide the flat slices.
-    const double mass_kg = mass();
-    if (mass_kg > 0.0) {
-      FreeAir without = stretch(mass_kg);
-      if (without.found && (!air.found || without.inner_end_m >= air.inner_end_m)) {
-        air = without;
-        air.tool_mass_kg = mass_kg;
-      }
-    }
-    return air;
+  double lowest_N = HUGE_VAL, highest_N = -HUGE_VAL;
+  std::size_t end = 0;
+  for (; end < kSlices; ++end) {
+    if (slices_N[end].empty()) continue;
+    // The median of a few rows is noisy itself.
+    const double margin_N = 4.0 * noise_N / std::sqrt(static_cast<double>(slices_N[end].size()));
+    const double middle_N = median_of(std::move(slices_N[end]));
+    lowest_N = std::min(lowest_N, middle_N + margin_N);
+    highest_N = std::max(highest_N, middle_N - margin_N);
+    if (highest_N - lowest_N > flat_N) break;
   }
-
- private:
-  double force_N(std::size_t i, double mass_kg) const { return rows_[i].force_N - mass_kg * acceleration_m_per_s2_[i]; }
-
-  // Finds the outermost slices whose force is flat during loading.
-  FreeAir stretch(double mass_kg) const {
-    FreeAir air;
-    double lowest_N = HUGE_VAL, highest_N = -HUGE_VAL;
-    std::size_t end = 0;
-    for (; end < kSlices; ++end) {
-      std::vector<double> forces_N;
-      for (const std::size_t i : slices_[end])
-        if (rows_[i].motion.velocity_m_per_s >= 0.0) forces_N.push_back(force_N(i, mass_kg));
-      if (forces_N.empty()) continue;
-      // The median of a few rows is noisy itself.
-      const double middle_N = median_of(forces_N);
-      const double margin_N = 4.0 * noise_N_ / std::sqrt(static_cast<double>(forces_N.size()));
-      lowest_N = std::min(lowest_N, middle_N + margin_N);
-      highest_N = std::max(highest_N, middle_N - margin_N);
-      if (highest_N - lowest_N > flat_N_) break;
-    }
-    const double span_m = static_cast<double>(end) / kSlices * (high_m_ - low_m_);
-    const double stiffness_N_per_m = range_N_ / std::max(high_m_ - low_m_ - span_m, 1e-9);
-    // Materials begin ten times softer than they end.
-    const bool evident = end >= 2 && end < kSlices && stiffness_N_per_m * span_m > 20.0 * flat_N_;
-    if (!evident) return air;
-    // If the force begins softly, the inner half may be in the material already.
-    air.inner_end_m = low_m_ + 0.5 * span_m;
-    std::vector<double> forces_N;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const MotionEstimate& motion = rows_[i].motion;
-      if (motion.position_m < air.inner_end_m && motion.velocity_m_per_s >= 0.0)
-        forces_N.push_back(force_N(i, mass_kg));
-    }
-    if (forces_N.size() < kLeastRows) return air;
-    air.found = true;
-    put_zero(air, forces_N);
-    return air;
-  }
-
-  // The mean of the forces within three standard deviations of their median, estimated by the median of the deviations:
-  // the median of a quantised force is one of its steps, and rows in the material would bias the mean of all.
-  void put_zero(FreeAir& air, std::vector<double> forces_N) const {
-    const auto third = static_cast<std::ptrdiff_t>(forces_N.size() / 3);
-    air.drift_N =
-        median_of({forces_N.end() - third, forces_N.end()}) - median_of({forces_N.begin(), forces_N.begin() + third});
-    const double middle_N = median_of(forces_N);
-    std::vector<double> deviations_N;
-    for (const double force_N : forces_N) deviations_N.push_back(std::abs(force_N - middle_N));
-    // The standard deviation of normal errors is 1.4826 times the median of their sizes.
-    const double limit_N = std::max(flat_N_, 3.0 * 1.4826 * median_of(std::move(deviations_N)));
-    std::erase_if(forces_N, [&](double force_N) { return std::abs(force_N - middle_N) > limit_N; });
-    const auto count = static_cast<double>(forces_N.size());
-    double mean_N = 0.0, squares = 0.0;
-    for (const double force_N : forces_N) mean_N += (force_N - middle_N) / count;
-    for (const double force_N : forces_N) squares += (force_N - middle_N) * (force_N - middle_N);
-    air.zero_N = middle_N + mean_N;
-    air.zero_error_N = std::sqrt(squares) / count;
-  }
-
-  // The mass of the tool, by a regression of the force on the acceleration in the outermost tenth of the slices; 0 if
-  // the slope is not significant.
-  double mass() const {
-    double count = 0.0, a = 0.0, f = 0.0, aa = 0.0, af = 0.0, ff = 0.0;
-    for (std::size_t s = 0; s < kSlices / 10; ++s) {
-      for (const std::size_t i : slices_[s]) {
-        const double x = acceleration_m_per_s2_[i], y = rows_[i].force_N;
-        count += 1.0, a += x, f += y;
-        aa += x * x, af += x * y, ff += y * y;
-      }
-    }
-    if (count < 3.0 * kLeastRows) return 0.0;
-    const double xx = aa - a * a / count, xy = af - a * f / count, yy = ff - f * f / count;
-    if (!(xx > 0.0)) return 0.0;
-    const double mass_kg = xy / xx;
-    const double error_kg = std::sqrt(std::max(0.0, yy - mass_kg * xy) / xx / count);
-    const bool follows = xy * mass_kg > 0.5 * yy;
-    return follows && mass_kg > std::max(1e-3, 5.0 * error_kg) ? mass_kg : 0.0;
-  }
-
-  const std::vector<Sample>& rows_;
-  double noise_N_;
-  std::vector<double> acceleration_m_per_s2_;
-  std::vector<std::vector<std::size_t>> slices_;
-  double low_m_ = 0.0, high_m_ = 0.0, range_N_ = 0.0, flat_N_ = 0.0;
-};
+  const double span_m = static_cast<double>(end) / kSlices * (high_m - low_m);
+  const double stiffness_N_per_m = range_N / std::max(high_m - low_m - span_m, 1e-9);
+  // Materials begin ten times softer than they end.
+  const bool evident = end >= 2 && end < kSlices && stiffness_N_per_m * span_m > 20.0 * flat_N;
+  if (!evident) return air;
+  // If the force begins softly, the inner half may be in the material already.
+  air.inner_end_m = low_m + 0.5 * span_m;
+  std::vector<double> forces_N;
+  for (const Sample& row : rows)
+    if (row.motion.position_m < air.inner_end_m && row.motion.velocity_m_per_s >= 0.0) forces_N.push_back(row.force_N);
+  air.found = forces_N.size() >= kLeastRows;
+  if (air.found) set_zero(air, std::move(forces_N), flat_N);
+  return air;
+}
 
 constexpr double kTouchOut_m = 1e-3;  // a touch begins so far outside of its first force
 constexpr double kCoarseStep_m = 0.05e-3;
@@ -163,6 +89,8 @@ constexpr std::size_t kForceRun = 3;
 struct Touch {
   std::size_t begin = 0, end = 0;
   double first_force_m = 0.0;  // position where the force leaves the noise: too deep if the onset is soft
+
+  std::size_t stride() const { return (end - begin) / 300 + 1; }
 };
 
 struct Onset {
@@ -171,53 +99,26 @@ struct Onset {
   double misfit_m = 0.0;          // additional error if the force follows neither law
 };
 
-class OnsetCost {
- public:
-  OnsetCost(const std::vector<Sample>& rows, const std::vector<Touch>& touches, double zero_N, double exponent)
-      : zero_N_(zero_N), exponent_(exponent) {
-    for (const Touch& touch : touches) {
-      const std::size_t stride = (touch.end - touch.begin) / 300 + 1;  // a slow touch is thinned
-      std::vector<const Sample*> kept;
-      for (std::size_t i = touch.begin; i < touch.end; i += stride) kept.push_back(&rows[i]);
-      count_ += static_cast<double>(kept.size());
-      touches_.push_back(std::move(kept));
-    }
+// The squared error of a touch, N^2, with the best coefficients a and b. A slow touch is thinned to some 300 rows.
+double touch_cost(const std::vector<Sample>& rows, const Touch& touch, double zero_N, double exponent,
+                  double offset_m) {
+  Eigen::Matrix<double, kTerms, kTerms> gram = Eigen::Matrix<double, kTerms, kTerms>::Zero();
+  Eigen::Matrix<double, kTerms, 1> right_side = Eigen::Matrix<double, kTerms, 1>::Zero();
+  double squares = 0.0;
+  const double bend = exponent / ((exponent + 1.0) * 3.0);  // the slope is 0 at 3 mm
+  for (std::size_t i = touch.begin; i < touch.end; i += touch.stride()) {
+    const double force_N = rows[i].force_N - zero_N;
+    squares += force_N * force_N;
+    const double x = (rows[i].motion.position_m - offset_m) / 1e-3;  // mm: columns of similar size
+    if (!(x > 0.0)) continue;
+    const double power = exponent == kLinear ? x : x * std::sqrt(x);
+    const Eigen::Matrix<double, kTerms, 1> term(power * (1.0 - bend * x), power * bend * x);
+    gram += term * term.transpose();
+    right_side += term * force_N;
   }
-
-  // J(d0), N^2.
-  double at(double offset_m) const {
-    double cost = 0.0;
-    for (const auto& touch : touches_) cost += touch_cost(touch, offset_m);
-    return cost;
-  }
-
-  double degrees_of_freedom() const {
-    return std::max(1.0, count_ - 1.0 - static_cast<double>(kTerms) * static_cast<double>(touches_.size()));
-  }
-
- private:
-  double touch_cost(const std::vector<const Sample*>& touch, double offset_m) const {
-    Eigen::Matrix<double, kTerms, kTerms> gram = Eigen::Matrix<double, kTerms, kTerms>::Zero();
-    Eigen::Matrix<double, kTerms, 1> right_side = Eigen::Matrix<double, kTerms, 1>::Zero();
-    double squares = 0.0;
-    const double bend = exponent_ / ((exponent_ + 1.0) * 3.0);  // the slope is 0 at 3 mm
-    for (const Sample* row : touch) {
-      const double force_N = row->force_N - zero_N_;
-      squares += force_N * force_N;
-      const double x = (row->motion.position_m - offset_m) / 1e-3;  // mm: columns of similar size
-      if (!(x > 0.0)) continue;
-      const double power = exponent_ == kLinear ? x : x * std::sqrt(x);
-      const Eigen::Matrix<double, kTerms, 1> term(power * (1.0 - bend * x), power * bend * x);
-      gram += term * term.transpose();
-      right_side += term * force_N;
-    }
-    const Eigen::VectorXd best = solve_non_negative(gram, right_side);
-    return squares - 2.0 * right_side.dot(best) + best.dot(gram * best);
-  }
-
-  double zero_N_, exponent_, count_ = 0.0;
-  std::vector<std::vector<const Sample*>> touches_;
-};
+  const Eigen::VectorXd best = solve_non_negative(gram, right_side);
+  return squares - 2.0 * right_side.dot(best) + best.dot(gram * best);
+}
 
 // A retreat slower than 2 mm/s is jitter of an approach.
 bool approaches(const Sample& row) { return row.motion.velocity_m_per_s > -2e-3; }
@@ -229,11 +130,23 @@ struct FormOnset {
   double degrees_of_freedom = 1.0;
 };
 
-FormOnset onset_of_form(const OnsetCost& cost, double first_force_m) {
-  FormOnset onset{first_force_m, kUnknownError, 0.0, cost.degrees_of_freedom()};
+// The common onset of at least one touch with this exponent.
+FormOnset onset_of_form(const std::vector<Sample>& rows, const std::vector<Touch>& touches, double zero_N,
+                        double exponent) {
+  // J(d0), N^2.
+  const auto cost_at = [&](double offset_m) {
+    double cost = 0.0;
+    for (const Touch& touch : touches) cost += touch_cost(rows, touch, zero_N, exponent, offset_m);
+    return cost;
+  };
+  double count = -1.0;  // one degree of freedom less for the onset
+  for (const Touch& touch : touches)
+    count += static_cast<double>((touch.end - touch.begin - 1) / touch.stride() + 1) - static_cast<double>(kTerms);
+  const double first_force_m = touches.front().first_force_m;
+  FormOnset onset{first_force_m, kUnknownError, 0.0, std::max(1.0, count)};
   const auto scan = [&](double from_m, double to_m, double step_m) {
     for (double at_m = from_m; at_m < to_m + 0.5 * step_m; at_m += step_m) {
-      const double value = cost.at(at_m);
+      const double value = cost_at(at_m);
       if (value >= onset.cost) continue;
       onset.cost = value;
       onset.at_m = at_m;
@@ -246,7 +159,7 @@ FormOnset onset_of_form(const OnsetCost& cost, double first_force_m) {
     step_m *= 0.25;
     scan(around_m - 4.0 * step_m, around_m + 4.0 * step_m, step_m);
   }
-  onset.curvature = (cost.at(onset.at_m - kLeastOffset_m) + cost.at(onset.at_m + kLeastOffset_m) - 2.0 * onset.cost) /
+  onset.curvature = (cost_at(onset.at_m - kLeastOffset_m) + cost_at(onset.at_m + kLeastOffset_m) - 2.0 * onset.cost) /
                     (kLeastOffset_m * kLeastOffset_m);
   return onset;
 }
@@ -291,8 +204,8 @@ std::vector<Touch> touches_at_rest(const std::vector<Sample>& rows, double zero_
 // The common onset of at least one touch; the coefficients a and b of each touch are its own.
 Onset find_onset(const std::vector<Sample>& rows, const std::vector<Touch>& touches, double zero_N,
                  double force_noise_N) {
-  const FormOnset linear = onset_of_form(OnsetCost(rows, touches, zero_N, kLinear), touches.front().first_force_m);
-  const FormOnset ball = onset_of_form(OnsetCost(rows, touches, zero_N, kBall), touches.front().first_force_m);
+  const FormOnset linear = onset_of_form(rows, touches, zero_N, kLinear);
+  const FormOnset ball = onset_of_form(rows, touches, zero_N, kBall);
   const double variance =
       std::max(std::min(linear.cost, ball.cost) / linear.degrees_of_freedom, force_noise_N * force_noise_N);
   const double drop = (ball.cost - linear.cost) / std::max(variance, 1e-18);
@@ -321,44 +234,30 @@ void estimate_drift(SurfaceEstimate& estimate, const std::vector<Sample>& rows, 
   if (std::abs(drift_m) > kSignificantErrors * estimate.offset_drift_error_m) estimate.offset_drift_m = drift_m;
 }
 
-}  // namespace
-
+// `rows`: of a recording, in time order.
 SurfaceEstimate estimate_surface(const std::vector<Sample>& rows, double force_noise_N) {
   SurfaceEstimate estimate;
   if (rows.size() < kLeastRows) return estimate;
-  const FreeAir& air = estimate.air = AirSearch(rows, force_noise_N).run();
+  const FreeAir& air = estimate.air = find_air(rows, force_noise_N);
   if (!air.found) return estimate;
   // A force zero that drifts by more than its size is not identified.
   const double least_N = std::max({1e-3, kSignificantErrors * air.zero_error_N, std::abs(air.drift_N)});
   if (std::abs(air.zero_N) >= least_N) estimate.force_zero_N = air.zero_N;
-
-  std::vector<Sample> still;
-  const std::vector<Sample>* material = &rows;
-  if (air.tool_mass_kg > 0.0) {
-    still = rows;
-    const std::vector<double> acceleration_m_per_s2 = accelerations(rows);
-    for (std::size_t i = 0; i < rows.size(); ++i) still[i].force_N -= air.tool_mass_kg * acceleration_m_per_s2[i];
-    material = &still;
-  }
   const double threshold_N = std::max(0.02, 5.0 * force_noise_N);
-  const auto touches = touches_at_rest(*material, air.zero_N, threshold_N, air.inner_end_m);
+  const auto touches = touches_at_rest(rows, air.zero_N, threshold_N, air.inner_end_m);
   if (touches.empty()) return estimate;
-  Onset onset = find_onset(*material, touches, air.zero_N, force_noise_N);
+  Onset onset = find_onset(rows, touches, air.zero_N, force_noise_N);
   onset.standard_error_m = std::hypot(onset.standard_error_m, onset.misfit_m);
   if (kSignificantErrors * onset.standard_error_m > kWidestSurface_m) return estimate;
   estimate.raw_offset_m = onset.at_m;
   estimate.standard_error_m = onset.standard_error_m;
   const bool significant = std::abs(onset.at_m) > std::max(kLeastOffset_m, kSignificantErrors * onset.standard_error_m);
   if (significant) estimate.offset_m = onset.at_m;
-  estimate_drift(estimate, *material, touches, air.zero_N, force_noise_N);
+  estimate_drift(estimate, rows, touches, air.zero_N, force_noise_N);
   return estimate;
 }
 
-SurfaceEstimate estimate_surface(const Recording& recording) {
-  // 30 minutes at 1 kHz keep every row.
-  return estimate_surface(thinned_rows(recording, 2000000),
-                          identify_force_noise_N(recording.rows.data(), recording.rows.size()));
-}
+}  // namespace
 
 PreparedRecordingPointer prepare_recording(Recording recording) {
   const auto prepared = std::make_shared<PreparedRecording>();
@@ -368,16 +267,13 @@ PreparedRecordingPointer prepare_recording(Recording recording) {
   prepared->sensor = identify_sensor(given.rows.data(), given.rows.size(), given.columns);
   prepared->force_noise_N = identify_force_noise_N(given.rows.data(), given.rows.size());
   MotionEstimator estimator(prepared->sensor);
-  GrowingStride rows(kOnsetRows, kCoarsestOnset_s);
-  const bool keeps_motion = given.rows.size() <= kOnsetRows;
-  if (keeps_motion) prepared->motion.reserve(given.rows.size());
-  for (const RecordingRow& row : given.rows) {
-    const ToolSample sample = tool_sample(row);
-    const MotionEstimate motion = estimator.update(sample);
-    if (keeps_motion) prepared->motion.push_back(motion);
-    rows.add({sample, motion, row.force_N});
+  const std::size_t count = std::min(given.rows.size(), kOnsetRows);
+  prepared->rows.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ToolSample sample = tool_sample(given.rows[i]);
+    prepared->rows.push_back({sample, estimator.update(sample), given.rows[i].force_N});
   }
-  prepared->surface = estimate_surface(rows.rows(), prepared->force_noise_N);
+  prepared->surface = estimate_surface(prepared->rows, prepared->force_noise_N);
   return prepared;
 }
 

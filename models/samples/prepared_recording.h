@@ -30,8 +30,7 @@ struct FreeAir {
   double inner_end_m = 0.0;  // free air is certain for positions below
   double zero_N = 0.0;
   double zero_error_N = kUnknownError;  // standard error
-  double drift_N = 0.0;       // of the zero: median of the last third of the rows in air minus that of the first
-  double tool_mass_kg = 0.0;  // mass carried by the force sensor; 0 if not identified
+  double drift_N = 0.0;  // of the zero: median of the last third of the rows in air minus that of the first
 };
 
 struct SurfaceEstimate {
@@ -48,22 +47,15 @@ struct SurfaceEstimate {
   bool identified() const { return std::isfinite(standard_error_m); }
 };
 
-// `rows`: a whole recording in time order. `force_noise_N`: standard deviation.
-SurfaceEstimate estimate_surface(const std::vector<Sample>& rows, double force_noise_N);
-// The same from a recording in memory.
-SurfaceEstimate estimate_surface(const Recording& recording);
-
-// The maximum number of rows from which a surface is estimated, and their largest interval: an approach with fewer rows
-// does not identify the onset. A longer recording at 1 kHz contributes its first seven minutes.
+// The maximum number of rows from which a surface is estimated: the first seven minutes at 1 kHz.
 inline constexpr std::size_t kOnsetRows = 400000;
-inline constexpr double kCoarsestOnset_s = 1.5e-3;
 
 struct PreparedRecording {
   Recording recording;
   std::uint64_t content_hash = 0;  // engine/recording/recording.h
   SensorSpec sensor;
-  double force_noise_N = 0.0;          // standard deviation
-  std::vector<MotionEstimate> motion;  // of every row; empty for more than kOnsetRows rows
+  double force_noise_N = 0.0;  // standard deviation
+  std::vector<Sample> rows;    // with their motion; the first kOnsetRows of a longer recording
   SurfaceEstimate surface;
 };
 

@@ -8,11 +8,9 @@
 namespace palpate {
 
 void GrowingStride::add(const Sample& row) {
-  if (rows_.size() == most_ || seen_++ % stride_ != 0) return;
+  if (seen_++ % stride_ != 0) return;
   rows_.push_back(row);
   if (rows_.size() < most_) return;
-  const double apart_s = (row.tool.time_s - rows_.front().tool.time_s) / static_cast<double>(rows_.size() - 1);
-  if (2.0 * apart_s > coarsest_s_) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < rows_.size(); i += 2) rows_[kept++] = rows_[i];
   rows_.resize(kept);

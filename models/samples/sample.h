@@ -2,7 +2,6 @@
 // Thread guarantee: value types and pure functions, slow side.
 #pragma once
 
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -22,18 +21,16 @@ struct Sample {
 };
 
 // Keeps rows in bounded memory. Whenever there are `most`, it drops every other one and keeps later rows at half the
-// rate. If the kept rows would be further apart than `coarsest_s`, it drops all later rows instead.
+// rate.
 class GrowingStride {
  public:
-  explicit GrowingStride(std::size_t most, double coarsest_s = std::numeric_limits<double>::infinity())
-      : most_(most), coarsest_s_(coarsest_s) {}
+  explicit GrowingStride(std::size_t most) : most_(most) {}
 
   void add(const Sample& row);
   const std::vector<Sample>& rows() const { return rows_; }
 
  private:
   std::size_t most_;
-  double coarsest_s_;
   std::size_t stride_ = 1, seen_ = 0;
   std::vector<Sample> rows_;
 };

@@ -38,11 +38,13 @@ Status add_rows(Samples& samples, const PreparedRecording& prepared, std::size_t
   const double surface_m = samples.surface_m + offset.offset_m;
   const std::vector<RecordingRow>& recorded = prepared.recording.rows;
   MotionEstimator estimator(prepared.sensor);
+  const bool all_known = prepared.rows.size() == recorded.size();
   for (std::size_t i = 0; i < recorded.size(); ++i) {
     if (i % kRowsPerQuestion == 0 && !control.may_continue()) return interrupted();
-    Sample sample{tool_sample(recorded[i]), {}, recorded[i].force_N - offset.force_zero_N};
-    sample.motion = prepared.motion.empty() ? estimator.update(sample.tool) : prepared.motion[i];
+    Sample sample{tool_sample(recorded[i]), {}, recorded[i].force_N};
+    sample.motion = all_known ? prepared.rows[i].motion : estimator.update(sample.tool);
     if (i % stride != 0) continue;
+    sample.force_N -= offset.force_zero_N;
     sample.tool.position_m -= surface_m;
     sample.motion.position_m -= surface_m;
     samples.rows.push_back(sample);

@@ -70,7 +70,7 @@ ImportRequest import_request(const ImportOptions& options) {
 Status move_origin(const std::string& origin, Recording& recording) {
   double at_m = recording.rows.front().position_m;
   if (origin == "contact") {
-    const SurfaceEstimate surface = estimate_surface(recording);
+    const SurfaceEstimate surface = prepare_recording(recording)->surface;
     if (!surface.identified()) {
       return Error{std::string("the position where the force begins cannot be identified") +
                    (surface.air.found ? "" : ", because there is no free air") +
