@@ -8,8 +8,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "models/samples/cross_validation.h"
-
 namespace palpate {
 namespace {
 

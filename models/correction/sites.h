@@ -55,6 +55,9 @@ std::vector<Eigen::Index> distinct_sites(const Sites& sites);
 // number of drawn ones.
 std::size_t draw_first(std::vector<Eigen::Index>& indices, Eigen::Index most, SplitMix64& random);
 
+// The step of the paper's reduction, which separates no forces below it.
+inline constexpr double kReductionForce_N = 0.05;
+
 enum class Thinning { coverage, force, none };
 // In commands and model files, in the order of the values.
 inline constexpr std::array<const char*, 3> kThinningNames{"coverage", "force", "none"};

@@ -1,10 +1,8 @@
 #include "models/fit/fit.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "engine/base/text.h"
 #include "models/correction/methods.h"
@@ -25,21 +23,13 @@ std::vector<FeatureSpec> with_filters(std::vector<FeatureSpec> features, const s
   return features;
 }
 
-// The scene's features with the relaxation times of the scene, of the plan, or identified ones.
+// The scene's features, of the paper's methods with two identified relaxation times.
 Result<FeatureList> scene_list(const Samples& samples, const TrainingScene& scene, const ModelPlan& plan,
                                const FitControl& control) {
   const bool velocity = has_kind(scene.features, FeatureKind::velocity);
   const std::vector<double> times_s = relaxation_times_s(scene.features);
-  const bool papers = plan.features == FeatureChoice::automatic;
-  if (!papers && plan.relaxation == Relaxation::scene) return single_times(velocity, times_s);
-  if (times_s.empty()) {
-    if (papers) return single_times(velocity, times_s);
-    return Error{"scene \"" + scene.name +
-                 "\" has no relaxation features; leave out --relaxation, or use a scene "
-                 "that has them (palpate scenes)"};
-  }
-  if (!papers && plan.relaxation == Relaxation::given) return single_times(velocity, plan.relaxation_times_s);
-  const auto identified = identify_relaxation(samples, {scene.jnd}, velocity, papers ? 2 : 0, control);
+  if (plan.features == FeatureChoice::scene || times_s.empty()) return single_times(velocity, times_s);
+  const auto identified = identify_relaxation(samples, scene.jnd, velocity, 2, control);
   if (!identified) return identified.error();
   return single_times(velocity, *identified);
 }
@@ -64,12 +54,12 @@ struct TrendFit {
   Eigen::MatrixXd left_out;  // the weights of the trends fitted without each fold
 };
 
-Result<TrendFit> fit_trend(const Samples& samples, FeatureList list, const TrendWeights& weights, bool selects,
+Result<TrendFit> fit_trend(const Samples& samples, FeatureList list, const JndLine& jnd, bool selects,
                            std::vector<PartGain>& gains, const FitControl& control) {
   // Enough rows to average out the noise.
   auto columns = TrendColumns::make(samples, std::move(list), 8000, control);
   if (!columns) return columns.error();
-  const TrendEstimator estimator(*columns, weights);
+  const TrendEstimator estimator(*columns, jnd);
   const CrossValidated left_out = estimator.cross_validate(estimator.all_columns());
   const Eigen::VectorXd x = estimator.fit(estimator.all_columns());
   if (selects) add_gains(gains, *columns, estimator, left_out, x);
@@ -90,8 +80,10 @@ void finish_sites(PreparedTraining& prepared, const ModelPlan& plan) {
     // Where no force is measured and the trend is below 0, no correction is needed.
     const bool needless = std::abs(force_N) <= no_force_N && trend_N < 0.0;
     sites.target_N(k) = needless ? 0.0 : force_N - trend_N;
-    // A dwell of many samples counts as at most 16.
-    sites.row_scale(k) = row_scale(plan.weights(), common.jnd, force_N) * std::sqrt(std::min(sites.samples(k), 16.0));
+    // With the force, eq. 8 of the paper. A dwell of many samples counts as at most 16.
+    const double unit_N =
+        plan.base == Base::trend ? common.jnd.at(force_N) : std::max(std::abs(force_N), kReductionForce_N);
+    sites.row_scale(k) = 1.0 / unit_N * std::sqrt(std::min(sites.samples(k), 16.0));
   }
   common.cover = make_cover(sites.points);
   common.correction_limit_N =
@@ -112,12 +104,10 @@ void set_provenance(PreparedTraining& prepared, const TrainingScene& scene, cons
   provenance.samples = samples.recorded_rows;
   provenance.contact_samples = samples.contact.size();
   provenance.samples_after_reduction = static_cast<std::uint64_t>(prepared.sites.count());
-  provenance.weighting = kWeightingNames[static_cast<std::size_t>(plan.weights())];
+  provenance.weighting = plan.base == Base::trend ? "jnd" : "relative";
   provenance.thinning = kThinningNames[static_cast<std::size_t>(plan.thins())];
-  const Relaxation relaxation = plan.features == FeatureChoice::automatic ? Relaxation::automatic
-                                : plan.features == FeatureChoice::given   ? Relaxation::given
-                                                                          : plan.relaxation;
-  provenance.relaxation = kRelaxationNames[static_cast<std::size_t>(relaxation)];
+  constexpr const char* kFeatureNames[] = {"auto", "scene", "given"};
+  provenance.relaxation = kFeatureNames[static_cast<std::size_t>(plan.features)];
 }
 
 // The finished fraction of a fit after its choices, and after the method. The fits without each fold follow.
@@ -128,19 +118,14 @@ constexpr double kFitted = 0.6;
 double share_within_jnd(const PreparedTraining& prepared, const ModelData& data) {
   const FittedModel model(data);
   const Samples& samples = *prepared.samples;
-  const std::size_t stride = samples.contact.size() / 100000 + 1;
-  const std::size_t count = (samples.contact.size() + stride - 1) / stride;
-  std::array<std::size_t, 4> within{};
-  parallel_for(4, [&](int part) {
-    const auto p = static_cast<std::size_t>(part);
-    for (std::size_t i = count * p / within.size(); i < count * (p + 1) / within.size(); ++i) {
-      const Eigen::VectorXd x = prepared.features.col(static_cast<Eigen::Index>(i * stride));
-      const double measured_N = samples.rows[samples.contact[i * stride]].force_N;
-      if (data.jnd.error_over_jnd(model.evaluate(x.data()).force_N, measured_N) <= 1.0) ++within[p];
-    }
-  });
-  return static_cast<double>(std::accumulate(within.begin(), within.end(), std::size_t{0})) /
-         static_cast<double>(count);
+  double within = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < samples.contact.size(); i += samples.contact.size() / 100000 + 1) {
+    const Eigen::VectorXd x = prepared.features.col(static_cast<Eigen::Index>(i));
+    const double measured_N = samples.rows[samples.contact[i]].force_N;
+    if (data.jnd.error_over_jnd(model.evaluate(x.data()).force_N, measured_N) <= 1.0) within += 1.0;
+    count += 1.0;
+  }
+  return within / count;
 }
 
 MethodTask task_of(const ModelPlan& plan, const Sites& sites, const Eigen::VectorXd& jnd_N, CorrectionPtr base) {
@@ -182,10 +167,9 @@ Result<PreparedTraining> prepare_training(SamplesPointer samples, const Training
   PreparedTraining prepared;
   prepared.samples = std::move(samples);
   const Samples& table = *prepared.samples;
-  const TrendWeights weights{scene.jnd, plan.weights()};
   auto list = plan.features == FeatureChoice::given ? Result<FeatureList>(plan.list)
               : selects_features(plan)
-                  ? select_memory_law(table, weights, dictionary(table), prepared.gains, control.at(0.1))
+                  ? select_memory_law(table, scene.jnd, dictionary(table), prepared.gains, control.at(0.1))
                   : scene_list(table, scene, plan, control.at(0.1));
   if (!list) return list.error();
   ModelData& common = prepared.common;
@@ -197,7 +181,8 @@ Result<PreparedTraining> prepare_training(SamplesPointer samples, const Training
   common.trend.reference_depth_m = table.depth_m;
   std::optional<TrendFit> trend;
   if (plan.base == Base::trend) {
-    auto fitted = fit_trend(table, std::move(*list), weights, selects_features(plan), prepared.gains, control.at(0.3));
+    auto fitted =
+        fit_trend(table, std::move(*list), scene.jnd, selects_features(plan), prepared.gains, control.at(0.3));
     if (!fitted) return fitted.error();
     trend = std::move(*fitted);
     common.trend = trend->fitted.trend;
@@ -214,7 +199,7 @@ Result<PreparedTraining> prepare_training(SamplesPointer samples, const Training
   finish_sites(prepared, plan);
   if (!control.may_continue(0.7)) return interrupted();
   if (trend) {
-    prepared.left_out = residual_rows(common, trend->columns, weights, prepared.features, trend->left_out);
+    prepared.left_out = residual_rows(common, trend->columns, prepared.features, trend->left_out);
     prepared.left_out->kernel = prepared.sites.kernel;
     const CorrectionChoice choice = choose_correction(*prepared.left_out, common);
     prepared.correction = choice;
@@ -291,9 +276,10 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
       if (!of_fold) return of_fold.error();
       of_folds.push_back(std::move(*of_fold));
     }
-    BoundEstimator bound(data.jnd, data.largest_force_N, prepared.left_out->strokes);
-    fit.error_over_jnd = bound.add(*prepared.left_out, data, of_folds).rms_at_mean_score();
-    data.error_bound = bound.fit();
+    FoldErrors errors;
+    const auto predictions = predictions_of(*prepared.left_out, data, of_folds, errors);
+    fit.error_over_jnd = errors.rms_at_mean_score();
+    data.error_bound = fit_bound(predictions, data, prepared.left_out->strokes);
   }
   if (const Status valid = check_forces(data); !valid) {
     return Error{"the " + data.name + " fit did not give a usable model (" + valid.error().message +

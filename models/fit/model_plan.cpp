@@ -70,15 +70,6 @@ Status add_item(std::string_view item, FeatureList& list) {
   return Error{found(item, "depth, velocity, maxwell:, stops: and creep:, where only maxwell: may be repeated")};
 }
 
-// Sets `value` to the enumerator of a name.
-template <typename Value, typename Names>
-Status set_one_of(std::optional<Value>& value, const Names& names, const std::string& text) {
-  const auto name = std::find(names.begin(), names.end(), text);
-  if (name == names.end()) return Error{found(text, "one of " + joined({names.begin(), names.end()}))};
-  value = static_cast<Value>(name - names.begin());
-  return {};
-}
-
 std::optional<std::uint64_t> whole_number(const std::string& text, std::uint64_t least, std::uint64_t most) {
   std::uint64_t value = 0;
   const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -99,9 +90,8 @@ bool ModelPlan::selects_centres() const { return method->can_take(kTakesCentres)
 
 bool same_preparation(const ModelPlan& one, const ModelPlan& other) {
   const bool same_kernel = one.base == Base::force || one.kernel == other.kernel;
-  return one.base == other.base && same_kernel && one.weights() == other.weights() && one.thins() == other.thins() &&
-         one.features == other.features && one.list == other.list && one.relaxation == other.relaxation &&
-         one.relaxation_times_s == other.relaxation_times_s;
+  return one.base == other.base && same_kernel && one.thins() == other.thins() && one.features == other.features &&
+         one.list == other.list;
 }
 
 std::string family_name(const ModelPlan& plan) {
@@ -186,20 +176,6 @@ const std::vector<PlanOption>& plan_options() {
          plan.list = std::move(*list);
          return Status();
        }},
-      {"relaxation", "scene|auto|S,S",
-       "Use the scene's features with these relaxation times: scene (the scene's), auto (identified) or a list in s",
-       "", 0,
-       [](ModelPlan& plan, const std::string& text) {
-         std::vector<double> times_s = parse_values(text, ',');
-         if (text != "scene" && text != "auto" && (times_s.empty() || times_s.size() > 6))
-           return Status(Error{found(text, "scene, auto, or one to six times in seconds such as 0.17,1.27")});
-         plan.features = FeatureChoice::scene;
-         plan.relaxation = text == "scene"  ? Relaxation::scene
-                           : text == "auto" ? Relaxation::automatic
-                                            : Relaxation::given;
-         plan.relaxation_times_s = std::move(times_s);
-         return Status();
-       }},
       {"kernel", "auto|cubic|linear|thin-plate",
        "Kernel; auto: cubic with the trend, selected by cross-validation with the force", "auto", kTakesKernel,
        [](ModelPlan& plan, const std::string& text) {
@@ -216,15 +192,6 @@ const std::vector<PlanOption>& plan_options() {
          plan.grid.assign(sizes.begin(), sizes.end());
          return Status();
        }},
-      {"weighting", "jnd|relative|none",
-       "Weight of an error: jnd (1/JND, the default with the trend), relative (1/force, the default with the force) or "
-       "none (1)",
-       "", 0,
-       [](ModelPlan& plan, const std::string& text) { return set_one_of(plan.weighting, kWeightingNames, text); }},
-      {"thinning", "coverage|force|none",
-       "Samples that become sites: coverage of the feature space (the default with the trend), force (steps of 50 mN, "
-       "the default with the force) or none (all)",
-       "", 0, [](ModelPlan& plan, const std::string& text) { return set_one_of(plan.thinning, kThinningNames, text); }},
       {"seed", "N", "Seed of the random numbers", "1", kTakesSeed, [](ModelPlan& plan, const std::string& text) {
          const auto number = whole_number(text, 0, std::numeric_limits<std::uint64_t>::max());
          plan.seed = number.value_or(plan.seed);
@@ -245,7 +212,6 @@ Result<ModelPlan> plan_of(std::vector<OptionText> texts) {
   const auto option_of = [&](const OptionText& one) { return std::ranges::find(options, one.name, &PlanOption::name); };
   std::ranges::stable_sort(texts, {}, option_of);
   bool numbered = false;  // the name of the method has a number of centres
-  const auto given = [&](std::string_view name) { return std::ranges::count(texts, name, &OptionText::name) > 0; };
   for (const OptionText& one : texts) {
     const auto option = option_of(one);
     if (option == options.end()) {
@@ -263,13 +229,6 @@ Result<ModelPlan> plan_of(std::vector<OptionText> texts) {
     if (one.name == "method") numbered = one.value != family_name(plan);
     if (one.name == "centres" && numbered && named != plan.centres)
       return Error{"centres: " + found(one.value, std::to_string(named) + ", the number in the name of the method")};
-  }
-  if (given("relaxation") && given("features")) {
-    const auto features = std::ranges::find(texts, std::string("features"), &OptionText::name)->value;
-    if (features != "scene") {
-      return Error{"relaxation: found the features \"" + features +
-                   "\", expected the scene's features; leave one of the two out"};
-    }
   }
   const bool bristles = std::ranges::any_of(plan.list.features, &is_bristle, &FeatureSpec::kind);
   if (plan.base == Base::force && bristles)

@@ -19,7 +19,6 @@
 #include "models/correction/methods.h"
 #include "models/correction/sites.h"
 #include "models/model/rbf/kernels.h"
-#include "models/samples/cross_validation.h"
 #include "models/trend/trend_columns.h"
 
 namespace palpate {
@@ -28,12 +27,8 @@ namespace palpate {
 enum class Base : std::uint8_t { force, trend };
 
 // The features: automatic (with the trend, those of the dictionary of models/trend/trend_columns.h that the regression
-// weights; with the force, the scene's with identified relaxation times), those of the scene, or a list.
+// weights; with the force, the scene's with two identified relaxation times), those of the scene, or a list.
 enum class FeatureChoice : std::uint8_t { automatic, scene, given };
-// The relaxation times of FeatureChoice::scene: the scene's, identified ones, or a list.
-enum class Relaxation : std::uint8_t { scene, automatic, given };
-// In model files, in the order of the values.
-inline constexpr std::array<const char*, 3> kRelaxationNames{"scene", "auto", "given"};
 
 // The time to select centres grows with the square of their number, to half a minute at this limit. The method
 // `direct`, with every site as a centre, hardly has more.
@@ -46,15 +41,11 @@ struct ModelPlan {
   int candidates = 100;                   // per greedy step; 0: every site
   std::vector<int> grid{};                // nodes per feature; empty: the default of the method
   std::uint64_t seed = 1;
-  std::optional<KernelKind> kernel{};    // none: cubic with the trend, selected by cross-validation with the force
-  std::optional<Weighting> weighting{};  // none: jnd with the trend, relative with the force
-  std::optional<Thinning> thinning{};    // none: coverage with the trend, force with the force
+  std::optional<KernelKind> kernel{};  // none: cubic with the trend, selected by cross-validation with the force
+  std::optional<Thinning> thinning{};  // none: coverage with the trend, force with the force
   FeatureChoice features = FeatureChoice::automatic;
   FeatureList list{};  // for FeatureChoice::given
-  Relaxation relaxation = Relaxation::scene;
-  std::vector<double> relaxation_times_s{};  // for Relaxation::given
 
-  Weighting weights() const { return weighting.value_or(base == Base::trend ? Weighting::jnd : Weighting::relative); }
   Thinning thins() const { return thinning.value_or(base == Base::trend ? Thinning::coverage : Thinning::force); }
   bool selects_centres() const;
   bool operator==(const ModelPlan&) const = default;

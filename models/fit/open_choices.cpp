@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <vector>
 
@@ -20,8 +21,8 @@ namespace palpate {
 namespace {
 
 // More of either give the same selection.
-constexpr std::size_t kMostTrained = 3000;
-constexpr std::size_t kMostTested = 3000;
+constexpr Eigen::Index kMostTrained = 3000;
+constexpr Eigen::Index kMostTested = 3000;
 constexpr Eigen::Index kMostCentres = 200;  // of the direct interpolation
 constexpr Eigen::Index kMostRandom = 500;
 constexpr std::array kRangeExponents{0.5, 1.0};
@@ -34,7 +35,7 @@ struct Table {
   Eigen::MatrixXd features;  // SI, one column a row
   Eigen::VectorXd force_N;
   Eigen::VectorXd row_scale;
-  std::vector<int> fold;  // ascending
+  std::vector<int> fold{};  // ascending
 
   // The rows of a fold: first and count.
   std::pair<Eigen::Index, Eigen::Index> rows_of(int wanted) const {
@@ -43,10 +44,10 @@ struct Table {
   }
 };
 
-// `indices`: sorted by fold.
-std::vector<std::size_t> by_fold(std::size_t count, std::size_t most, const auto& fold_of) {
-  std::vector<std::size_t> indices;
-  for (std::size_t i = 0; i < count; i += count / most + 1) indices.push_back(i);
+// At most `most` of the indices below `count`, evenly spaced, sorted by fold. `fold_of`: the fold of an index.
+std::vector<Eigen::Index> by_fold(Eigen::Index count, Eigen::Index most, const auto& fold_of) {
+  std::vector<Eigen::Index> indices;
+  for (Eigen::Index i = 0; i < count; i += count / most + 1) indices.push_back(i);
   std::ranges::stable_sort(indices, {}, fold_of);
   return indices;
 }
@@ -56,25 +57,18 @@ class Selection {
   Selection(const Samples& samples, const Eigen::MatrixXd& features, const Normalisation& normalisation,
             const Sites& sites, const ModelData& common, int centres)
       : normalisation_(normalisation), common_(common), truncates_(centres > 0), folds_(samples.folds) {
-    const auto site_order = by_fold(sites.fold.size(), kMostTrained, [&](std::size_t i) { return sites.fold[i]; });
-    resize(train_, features.rows(), site_order.size());
-    for (std::size_t k = 0; k < site_order.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(k), site = static_cast<Eigen::Index>(site_order[k]);
-      train_.features.col(column) = normalisation.offset + normalisation.scale.cwiseProduct(sites.points.col(site));
-      train_.force_N(column) = sites.target_N(site);
-      train_.row_scale(column) = sites.row_scale(site);
-      train_.fold.push_back(sites.fold[site_order[k]]);
-    }
-    const auto& contact = samples.contact;
-    const auto row_order =
-        by_fold(contact.size(), kMostTested, [&](std::size_t i) { return samples.fold[contact[i]]; });
-    resize(tested_, features.rows(), row_order.size());
-    for (std::size_t k = 0; k < row_order.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      tested_.features.col(column) = features.col(static_cast<Eigen::Index>(row_order[k]));
-      tested_.force_N(column) = samples.rows[contact[row_order[k]]].force_N;
-      tested_.fold.push_back(samples.fold[contact[row_order[k]]]);
-    }
+    const auto site_fold = [&](Eigen::Index i) { return sites.fold[static_cast<std::size_t>(i)]; };
+    const auto trained = by_fold(sites.count(), kMostTrained, site_fold);
+    train_ = {normalisation.scale.asDiagonal() * sites.points(Eigen::all, trained), sites.target_N(trained),
+              sites.row_scale(trained)};
+    train_.features.colwise() += normalisation.offset;
+    std::ranges::transform(trained, std::back_inserter(train_.fold), site_fold);
+    const auto row_of = [&](Eigen::Index i) { return samples.contact[static_cast<std::size_t>(i)]; };
+    const auto row_fold = [&](Eigen::Index i) { return samples.fold[row_of(i)]; };
+    const auto tested = by_fold(features.cols(), kMostTested, row_fold);
+    tested_ = {features(Eigen::all, tested), Eigen::VectorXd(static_cast<Eigen::Index>(tested.size())), {}};
+    std::ranges::transform(tested, tested_.force_N.begin(), [&](auto i) { return samples.rows[row_of(i)].force_N; });
+    std::ranges::transform(tested, std::back_inserter(tested_.fold), row_fold);
     const Eigen::Index most = truncates_ ? centres : kMostCentres;
     order_.resize(train_.fold.size());
     std::iota(order_.begin(), order_.end(), Eigen::Index{0});
@@ -84,8 +78,6 @@ class Selection {
     const std::vector<double> depth_m(tested_.features.row(0).begin(), tested_.features.row(0).end());
     deepest_m_ = deepest_elsewhere_m(tested_.fold, depth_m, folds_);
   }
-
-  int folds() const { return folds_; }
 
   struct ScoredChoices {
     OpenChoices choices;
@@ -129,12 +121,6 @@ class Selection {
   }
 
  private:
-  static void resize(Table& table, Eigen::Index features, std::size_t rows) {
-    table.features.resize(features, static_cast<Eigen::Index>(rows));
-    table.force_N.resize(static_cast<Eigen::Index>(rows));
-    table.row_scale.resize(static_cast<Eigen::Index>(rows));
-  }
-
   Eigen::MatrixXd normalised(const Eigen::MatrixXd& features, const Eigen::VectorXd& scale) const {
     return (features.colwise() - normalisation_.offset).array().colwise() / scale.array();
   }

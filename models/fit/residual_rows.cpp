@@ -153,8 +153,8 @@ void ResidualRows::find_distances() {
   });
 }
 
-ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns, const TrendWeights& weights,
-                           const Eigen::MatrixXd& features, const Eigen::MatrixXd& left_out_trends) {
+ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns, const Eigen::MatrixXd& features,
+                           const Eigen::MatrixXd& left_out_trends) {
   const double no_force_N = columns.samples().no_force_N();
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < columns.count(); i += columns.count() / 2500 + 1) order.push_back(i);
@@ -170,7 +170,7 @@ ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns,
     out.points.col(k) = (features.col(in_contact) - common.offset).cwiseQuotient(common.scale);
     out.force_N(k) = columns.force_N(row);
     out.depth_m(k) = columns.depth_m(row);
-    out.row_scale(k) = row_scale(weights.weighting, weights.jnd, out.force_N(k));
+    out.row_scale(k) = 1.0 / common.jnd.at(out.force_N(k));
     out.trend_N.row(k) = columns.terms().row(static_cast<Eigen::Index>(row)) * left_out_trends;
     out.fold.push_back(columns.fold(row));
     out.no_force.push_back(std::abs(out.force_N(k)) <= no_force_N ? 1 : 0);
@@ -180,10 +180,11 @@ ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns,
   return out;
 }
 
-FoldErrors BoundEstimator::add(const ResidualRows& rows, const ModelData& common,
-                               const std::vector<CorrectionPtr>& corrections) {
+std::vector<Prediction> predictions_of(const ResidualRows& rows, const ModelData& common,
+                                       const std::vector<CorrectionPtr>& corrections, FoldErrors& errors) {
   const double inner_radius = common.cover.inner_radius;
-  FoldErrors errors(static_cast<std::size_t>(rows.folds()));
+  errors = FoldErrors(static_cast<std::size_t>(rows.folds()));
+  std::vector<Prediction> predictions;
   for (std::size_t i = 0; i < rows.fold.size(); ++i) {
     if (!std::isfinite(rows.distance[i])) continue;  // there is no other fold
     const auto row = static_cast<Eigen::Index>(i);
@@ -195,27 +196,29 @@ FoldErrors BoundEstimator::add(const ResidualRows& rows, const ModelData& common
     const double force_N = rows.predicted_N(common, i, inner_radius, correction_N);
     const double error = common.jnd.error_over_jnd(force_N, rows.force_N(row));
     errors.add(static_cast<std::size_t>(rows.fold[i]), error * robust_scale(error));
-    add(std::abs(force_N - rows.force_N(row)), force_N, std::max(0.0, rows.distance[i] - inner_radius));
+    predictions.push_back(
+        {std::abs(force_N - rows.force_N(row)), force_N, std::max(0.0, rows.distance[i] - inner_radius)});
   }
-  return errors;
+  return predictions;
 }
 
-std::optional<ErrorBound> BoundEstimator::fit() const {
-  if (rows_.size() < 50) return std::nullopt;
+std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, const ModelData& common,
+                                    std::size_t strokes) {
+  if (predictions.size() < 50) return std::nullopt;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(3, 3);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
-  for (const Row& one : rows_) {
-    const double scale = 1.0 / jnd_.at(one.predicted_N);
+  for (const Prediction& one : predictions) {
+    const double scale = 1.0 / common.jnd.at(one.predicted_N);
     const Eigen::Vector3d row = scale * Eigen::Vector3d(1.0, std::abs(one.predicted_N), one.beyond);
     gram += row * row.transpose();
     right += row * scale * one.error_N;
   }
   const Eigen::VectorXd shape = solve_non_negative(gram, right);
-  const double least_per_distance_N = 0.25 * largest_force_N_;
+  const double least_per_distance_N = 0.25 * common.largest_force_N;
   // Above 0, so that the factor enlarges it.
   ErrorBound bound{std::max(shape(0), 1e-3), shape(1), std::max(shape(2), least_per_distance_N)};
   std::vector<double> ratios;
-  for (const Row& one : rows_) ratios.push_back(one.error_N / bound.at(one.predicted_N, one.beyond));
+  for (const Prediction& one : predictions) ratios.push_back(one.error_N / bound.at(one.predicted_N, one.beyond));
   // The smallest factor that covers ceil((n + 1) 97.5 %) of them.
   const auto n = static_cast<double>(ratios.size());
   const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * 0.975)) - 1);
@@ -223,10 +226,10 @@ std::optional<ErrorBound> BoundEstimator::fit() const {
   bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);
   // One or two strokes do not show how the next one differs. 5 % of the force is the difference between two specimens
   // of a cast silicone (Dawood et al. 2026).
-  bound.per_force = std::max(factor * bound.per_force, strokes_ < 3 ? 0.05 : 0.0);
+  bound.per_force = std::max(factor * bound.per_force, strokes < 3 ? 0.05 : 0.0);
   // One unit beyond the data nothing is known but the range of the force.
-  bound.per_distance_N =
-      std::clamp(factor * bound.per_distance_N, least_per_distance_N, std::max(least_per_distance_N, largest_force_N_));
+  bound.per_distance_N = std::clamp(factor * bound.per_distance_N, least_per_distance_N,
+                                    std::max(least_per_distance_N, common.largest_force_N));
   return bound;
 }
 

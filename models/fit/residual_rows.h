@@ -19,7 +19,7 @@ struct ResidualRows {
   Eigen::MatrixXd points;   // normalised features, one column a row
   Eigen::VectorXd force_N;  // measured
   Eigen::VectorXd depth_m;
-  Eigen::VectorXd row_scale;  // factor of the residual
+  Eigen::VectorXd row_scale;  // factor of the residual: 1 / JND
   Eigen::MatrixXd trend_N;    // rows x folds: column k by the trend fitted without fold k
   std::vector<int> fold;
   std::vector<char> no_force;    // no measured force: the force is not positive
@@ -43,39 +43,27 @@ struct ResidualRows {
   std::vector<Eigen::Index> outside(int without) const;
 };
 
-// Rows of the regression of the trend, at most 2500 of them. `common`: with the normalisation. `features`: at the
-// samples in contact, SI. `left_out_trends`: columns x folds, the weights of the trends fitted without each fold.
-ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns, const TrendWeights& weights,
-                           const Eigen::MatrixXd& features, const Eigen::MatrixXd& left_out_trends);
+// Rows of the regression of the trend, at most 2500 of them. `common`: with the normalisation and the JND. `features`:
+// at the samples in contact, SI. `left_out_trends`: columns x folds, the weights of the trends fitted without each
+// fold.
+ResidualRows residual_rows(const ModelData& common, const TrendColumns& columns, const Eigen::MatrixXd& features,
+                           const Eigen::MatrixXd& left_out_trends);
 
+// The prediction of a row by a model that was fitted without its fold. `beyond`: its distance to the nearest row of
+// another fold, beyond the inner radius.
+struct Prediction {
+  double error_N = 0.0, predicted_N = 0.0, beyond = 0.0;
+};
+// Of all rows that have another fold. `corrections`: fitted to the sites without each fold; empty: none, the errors are
+// those of the trend. `errors`: receives the errors by fold.
+std::vector<Prediction> predictions_of(const ResidualRows& rows, const ModelData& common,
+                                       const std::vector<CorrectionPtr>& corrections, FoldErrors& errors);
 // Fits the error bound of a model (models/model/fitted_model.h) to cross-validated errors: non-negative least squares
 // with rows scaled by 1 / JND, then all coefficients times the quantile of error over bound that covers 97.5 % of the
 // rows. The floor is at least kForceFloor_N: without it the coverage was 77 to 90 % on skin and 83 % on one trial of
-// silicone, with it 97 to 100 %.
-class BoundEstimator {
- public:
-  BoundEstimator(const JndLine& jnd, double largest_force_N, std::size_t strokes)
-      : jnd_(jnd), largest_force_N_(largest_force_N), strokes_(strokes) {}
-
-  // Adds the prediction of one row by a model that was fitted without its fold. `beyond`: its distance to the nearest
-  // row of another fold, beyond the inner radius.
-  void add(double error_N, double predicted_N, double beyond) { rows_.push_back({error_N, predicted_N, beyond}); }
-  // Adds all rows. `corrections`: fitted to the sites without each fold; empty: none, the errors are those of the
-  // trend. Returns the errors by fold.
-  FoldErrors add(const ResidualRows& rows, const ModelData& common, const std::vector<CorrectionPtr>& corrections);
-
-  // Empty with fewer than 50 predictions.
-  std::optional<ErrorBound> fit() const;
-
- private:
-  struct Row {
-    double error_N = 0.0, predicted_N = 0.0, beyond = 0.0;
-  };
-  JndLine jnd_;
-  double largest_force_N_;
-  std::size_t strokes_;
-  std::vector<Row> rows_;
-};
+// silicone, with it 97 to 100 %. `common`: with the JND and the largest force. Empty with fewer than 50 predictions.
+std::optional<ErrorBound> fit_bound(const std::vector<Prediction>& predictions, const ModelData& common,
+                                    std::size_t strokes);
 
 struct CorrectionChoice {
   bool used = false;

@@ -1,5 +1,6 @@
 #include "models/samples/cross_validation.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace palpate {

@@ -1,4 +1,4 @@
-// The weight of an error in a fit, the errors of candidates in cross-validation, and the rules that choose among them.
+// The errors of candidates in cross-validation, and the rules that choose among them.
 // Every candidate predicts the samples of each fold (samples.h) from the other folds. The score of a fold is
 //   l_k = ln(mean_i (e_i / JND_i)^2 + kUnnoticed_jnd^2):
 // the logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below the
@@ -9,34 +9,11 @@
 // Thread guarantee: value types and pure functions, slow side.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
 
-#include "engine/tick/jnd.h"
-
 namespace palpate {
-
-// The factor of a residual.
-enum class Weighting {
-  jnd,       // 1 / JND(f), errors relative to perception (default)
-  relative,  // 1 / max(|f|, kReductionForce_N), eq. (8) of the paper
-  none,      // 1
-};
-
-// Names in commands and model files, in the order of the values.
-inline constexpr std::array<const char*, 3> kWeightingNames{"jnd", "relative", "none"};
-
-// The step of the paper's reduction (models/correction/sites.h), below which it separates no forces: 1 / |f| is
-// constant there.
-inline constexpr double kReductionForce_N = 0.05;
-
-inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N) noexcept {
-  if (weighting == Weighting::none) return 1.0;
-  return 1.0 / (weighting == Weighting::jnd ? jnd.at(force_N) : std::max(std::abs(force_N), kReductionForce_N));
-}
 
 // The factor robust_scale is the square root of the weight of a Cauchy likelihood (Holland & Welsch 1977): 1 for small
 // errors, less for errors well above the JND, which would otherwise bend the fit elsewhere.

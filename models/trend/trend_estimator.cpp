@@ -65,8 +65,8 @@ double error_of(const Law& law) { return law.errors.rms_at_mean_score(); }
 
 // The surface_lag and the branches of the trend that is fitted to the rows. Friction and creep do not make the surface
 // lag.
-std::vector<FeatureSpec> surface_of(const TrendColumns& columns, const TrendWeights& weights) {
-  const TrendEstimator estimator(columns, weights, TrendEstimator::Smoothness::fixed);
+std::vector<FeatureSpec> surface_of(const TrendColumns& columns, const JndLine& jnd) {
+  const TrendEstimator estimator(columns, jnd, TrendEstimator::Smoothness::fixed);
   const auto without = columns.columns_of([&](std::size_t f) { return !is_bristle(columns.list().features[f].kind); });
   const FittedTrend fitted = fitted_trend(columns, estimator.fit(without), true);
   std::vector<FeatureSpec> surface{surface_lag_of(fitted.trend.elastic, columns.samples().depth_m)};
@@ -76,64 +76,23 @@ std::vector<FeatureSpec> surface_of(const TrendColumns& columns, const TrendWeig
 
 // Scores a law. With `lags` its surface is searched first, beginning with that of `list`, which may have none: it
 // depends on the branches and they on the surface, so two passes of a fixed-point iteration. `samples`: thinned.
-Result<Law> scored(const Samples& samples, const TrendWeights& weights, FeatureList list, bool lags,
-                   const FitControl& control) {
+Result<Law> scored(const Samples& samples, const JndLine& jnd, FeatureList list, bool lags, const FitControl& control) {
   for (int pass = 0;; ++pass) {
     const auto columns = TrendColumns::make(samples, list, kSearchRows, control);
     if (!columns) return columns.error();
     if (!lags || pass == 2) {
-      const TrendEstimator estimator(*columns, weights, TrendEstimator::Smoothness::fixed);
+      const TrendEstimator estimator(*columns, jnd, TrendEstimator::Smoothness::fixed);
       return Law{std::move(list), estimator.cross_validate(estimator.all_columns()).errors};
     }
-    list.surface = surface_of(*columns, weights);
+    list.surface = surface_of(*columns, jnd);
   }
-}
-
-struct SelectedTimes {
-  std::vector<int> times;  // indices of the candidates, ascending
-  FoldErrors errors;
-};
-
-// Adds the time with the lowest RMS error, then moves single times to the next candidate while the error falls.
-SelectedTimes with_one_more(const TrendEstimator& estimator, const TrendColumns& rows, const SelectedTimes& last) {
-  SelectedTimes best;
-  const auto candidates = static_cast<int>(relaxation_times_s(rows.list().features).size());
-  const int first = static_cast<int>(rows.list().features.size()) - candidates;
-  const auto attempt = [&](std::vector<int> times) {
-    std::ranges::sort(times);
-    if (std::ranges::adjacent_find(times) != times.end() || times.front() < 0 || times.back() >= candidates) return;
-    // Elastic response, viscosity and the branches with these times.
-    const auto columns = rows.columns_of([&](std::size_t f) {
-      const int time = static_cast<int>(f) - first;
-      return time < 0 || std::ranges::binary_search(times, time);
-    });
-    const FoldErrors errors = estimator.cross_validate(columns).errors;
-    if (best.times.empty() || errors.rms() < best.errors.rms()) best = {std::move(times), errors};
-  };
-  for (int added = 0; added < candidates; ++added) {
-    std::vector<int> times = last.times;
-    times.push_back(added);
-    attempt(std::move(times));
-  }
-  for (bool moved = !last.times.empty(); moved;) {
-    const std::vector<int> from = best.times;
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      for (const int step : {-1, 1}) {
-        std::vector<int> times = from;
-        times[i] += step;
-        attempt(std::move(times));
-      }
-    }
-    moved = best.times != from;
-  }
-  return best;
 }
 
 }  // namespace
 
-TrendEstimator::TrendEstimator(const TrendColumns& columns, const TrendWeights& weights, Smoothness smoothness)
+TrendEstimator::TrendEstimator(const TrendColumns& columns, const JndLine& jnd, Smoothness smoothness)
     : columns_(columns),
-      weights_(weights),
+      jnd_(jnd),
       part_error_(has_kind(columns.list().features, FeatureKind::creep) ? kPartError : kPartErrorOfFew),
       smoothness_(kFirstSmoothness),
       equations_(static_cast<std::size_t>(columns.samples().folds) + 1) {
@@ -161,7 +120,7 @@ TrendEstimator::Equations TrendEstimator::gather(int left_out) const {
   const double no_force_N = columns_.samples().no_force_N();
   std::vector<double> plain(columns_.count());
   for (std::size_t i = 0; i < plain.size(); ++i)
-    plain[i] = columns_.fold(i) == left_out ? 0.0 : row_scale(weights_.weighting, weights_.jnd, columns_.force_N(i));
+    plain[i] = columns_.fold(i) == left_out ? 0.0 : 1.0 / jnd_.at(columns_.force_N(i));
   std::vector<double> scale = plain;
   Equations equations = sum(scale);
   for (int pass = 0; pass < kPasses; ++pass) {
@@ -171,7 +130,7 @@ TrendEstimator::Equations TrendEstimator::gather(int left_out) const {
     for (std::size_t i = 0; i < scale.size(); ++i) {
       const double force_N = trend_N(static_cast<Eigen::Index>(i));
       const bool idle = std::abs(columns_.force_N(i)) <= no_force_N && force_N <= 0.0;
-      const double robust = robust_scale(weights_.jnd.error_over_jnd(force_N, columns_.force_N(i)));
+      const double robust = robust_scale(jnd_.error_over_jnd(force_N, columns_.force_N(i)));
       const double now = idle ? 0.0 : plain[i] * robust;
       changed = changed || std::abs(now - scale[i]) > 0.1 * plain[i];
       scale[i] = now;
@@ -237,20 +196,19 @@ CrossValidated TrendEstimator::cross_validate(const ColumnList& columns, double 
     const auto fold = static_cast<std::size_t>(columns_.fold(i));
     if (columns_.depth_m(i) > deepest_elsewhere_m_[fold]) continue;
     const double force_N = trend_N(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(fold));
-    result.errors.add(fold,
-                      weights_.jnd.error_over_jnd(one_sided ? std::max(0.0, force_N) : force_N, columns_.force_N(i)));
+    result.errors.add(fold, jnd_.error_over_jnd(one_sided ? std::max(0.0, force_N) : force_N, columns_.force_N(i)));
   }
   return result;
 }
 
-Result<FeatureList> select_memory_law(const Samples& samples, const TrendWeights& weights, const FeatureList& list,
+Result<FeatureList> select_memory_law(const Samples& samples, const JndLine& jnd, const FeatureList& list,
                                       std::vector<PartGain>& gains, const FitControl& control) {
   if (!has_kind(list.features, FeatureKind::maxwell_spectrum)) return list;
   // The filters are exact for steps of any length, and a hand moves little in 4 ms.
   const Samples few = thinned(samples, 3.9e-3);
   std::vector<Law> surfaces;
   for (const bool lags : {false, true}) {
-    auto law = scored(few, weights, shortened(list), lags, control);
+    auto law = scored(few, jnd, shortened(list), lags, control);
     if (!law) return law.error();
     surfaces.push_back(std::move(*law));
   }
@@ -260,7 +218,7 @@ Result<FeatureList> select_memory_law(const Samples& samples, const TrendWeights
 
   std::vector<Law> laws{surfaces[found]};
   for (const double slowing : kSlowings) {
-    auto law = scored(few, weights, with_slowing(surfaces[found].list, slowing), lags, control);
+    auto law = scored(few, jnd, with_slowing(surfaces[found].list, slowing), lags, control);
     if (!law) return law.error();
     laws.push_back(std::move(*law));
   }
@@ -273,25 +231,55 @@ Result<FeatureList> select_memory_law(const Samples& samples, const TrendWeights
   return result;
 }
 
-Result<std::vector<double>> identify_relaxation(const Samples& samples, const TrendWeights& weights, bool velocity,
+Result<std::vector<double>> identify_relaxation(const Samples& samples, const JndLine& jnd, bool velocity,
                                                 std::size_t count, const FitControl& control) {
   const std::vector<double> candidates_s = dictionary_times_s(samples);
   if (candidates_s.empty()) {
     return Error{
-        "the recordings are too short to identify a relaxation time; record for longer, or pass --relaxation scene"};
+        "the recordings are too short to identify a relaxation time; record for longer, or pass --features scene"};
   }
   const auto rows = TrendColumns::make(samples, single_times(velocity, candidates_s), kSearchRows, control);
   if (!rows) return rows.error();
-  const TrendEstimator estimator(*rows, weights, TrendEstimator::Smoothness::fixed);
-  SelectedTimes best = with_one_more(estimator, *rows, {});
-  while (best.times.size() < std::min<std::size_t>(count > 0 ? count : 3, candidates_s.size())) {
+  const TrendEstimator estimator(*rows, jnd, TrendEstimator::Smoothness::fixed);
+  const auto candidates = static_cast<int>(candidates_s.size());
+  const int first = static_cast<int>(rows->list().features.size()) - candidates;
+  std::vector<int> best;  // indices of the candidates, ascending
+  double least = 0.0;     // the RMS error with these
+  const auto attempt = [&](std::vector<int> times) {
+    std::ranges::sort(times);
+    if (std::ranges::adjacent_find(times) != times.end() || times.front() < 0 || times.back() >= candidates) return;
+    // Elastic response, viscosity and the branches with these times.
+    const auto columns = rows->columns_of([&](std::size_t f) {
+      const int time = static_cast<int>(f) - first;
+      return time < 0 || std::ranges::binary_search(times, time);
+    });
+    const double error = estimator.cross_validate(columns).errors.rms();
+    if (times.size() == best.size() && error >= least) return;
+    best = std::move(times);
+    least = error;
+  };
+  while (best.size() < std::min(count, candidates_s.size())) {
     if (!control.may_continue()) return interrupted();
-    SelectedTimes more = with_one_more(estimator, *rows, best);
-    if (count == 0 && simplest_adequate(std::vector{best.errors, more.errors}) == 0) break;
-    best = std::move(more);
+    const std::vector<int> last = best;
+    for (int added = 0; added < candidates; ++added) {
+      std::vector<int> times = last;
+      times.push_back(added);
+      attempt(std::move(times));
+    }
+    for (bool moved = !last.empty(); moved;) {
+      const std::vector<int> from = best;
+      for (std::size_t i = 0; i < from.size(); ++i) {
+        for (const int step : {-1, 1}) {
+          std::vector<int> times = from;
+          times[i] += step;
+          attempt(std::move(times));
+        }
+      }
+      moved = best != from;
+    }
   }
   std::vector<double> times_s;
-  for (const int time : best.times) times_s.push_back(candidates_s[static_cast<std::size_t>(time)]);
+  for (const int time : best) times_s.push_back(candidates_s[static_cast<std::size_t>(time)]);
   return times_s;
 }
 

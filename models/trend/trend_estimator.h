@@ -4,17 +4,19 @@
 //            + lambda S n sum_k (c_k+1 - c_k)^2,       all c_j >= 0,
 //   g_jj = sum_i s_i^2 t_ij^2,  S = sum_i s_i^2,  n = kElasticPieces
 //
-// t_ij: term j at row i (trend_columns.h), f_i: force, k: index of an elastic term. s_i: the weighting times that of a
-// Cauchy likelihood; a sample without measured force counts only while the trend there is positive. Both are iterated
-// within the training rows of each fold. The elastic response is a P-spline (Eilers & Marx 1996). alpha is the relative
-// error of all other columns, of which repeated measurements agree to about a tenth (errors in variables; Golub & Van
-// Loan 1980); columns that the recording cannot separate then share their effect. Thread guarantee: slow side, pure.
+// t_ij: term j at row i (trend_columns.h), f_i: force, k: index of an elastic term. s_i: 1 / JND(f_i) times the weight
+// of a Cauchy likelihood; a sample without measured force counts only while the trend there is positive. Both are
+// iterated within the training rows of each fold. The elastic response is a P-spline (Eilers & Marx 1996). alpha is the
+// relative error of all other columns, of which repeated measurements agree to about a tenth (errors in variables;
+// Golub & Van Loan 1980); columns that the recording cannot separate then share their effect. Thread guarantee: slow
+// side, pure.
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "engine/tick/jnd.h"
 #include "models/samples/cross_validation.h"
 #include "models/trend/trend_columns.h"
 
@@ -30,19 +32,12 @@ struct CrossValidated {
   Eigen::MatrixXd solutions;  // columns x folds: the weights from the other folds; 0 outside `columns`
 };
 
-// How errors of the force count.
-struct TrendWeights {
-  JndLine jnd{};
-  Weighting weighting = Weighting::jnd;
-};
-
 class TrendEstimator {
  public:
   enum class Smoothness { selected, fixed };
 
   // `fixed`: lambda is 1e-8, for comparisons of many regressions.
-  TrendEstimator(const TrendColumns& columns, const TrendWeights& weights,
-                 Smoothness smoothness = Smoothness::selected);
+  TrendEstimator(const TrendColumns& columns, const JndLine& jnd, Smoothness smoothness = Smoothness::selected);
 
   // Errors of the trend with these columns (ascending). Rows deeper than all rows of the other folds do not count:
   // they would be extrapolated.
@@ -67,7 +62,7 @@ class TrendEstimator {
   CrossValidated cross_validate(const ColumnList& columns, double smoothness) const;
 
   const TrendColumns& columns_;
-  TrendWeights weights_;
+  JndLine jnd_;
   double part_error_, smoothness_;
   std::vector<double> deepest_elsewhere_m_;  // by fold
   std::vector<Equations> equations_;         // index: the fold that is left out; the last of all rows
@@ -87,13 +82,13 @@ struct PartGain {
 };
 
 // Returns `list` with the selected surface and slowing, and appends their gains to `gains`. Errors: interrupted.
-Result<FeatureList> select_memory_law(const Samples& samples, const TrendWeights& weights, const FeatureList& list,
+Result<FeatureList> select_memory_law(const Samples& samples, const JndLine& jnd, const FeatureList& list,
                                       std::vector<PartGain>& gains, const FitControl& control);
-// Selects relaxation times from those of the dictionary (ascending, in s). Each candidate is a feature of one
+// Selects `count` relaxation times from those of the dictionary (ascending, in s). Each candidate is a feature of one
 // regression. Times are added one by one, by the lowest cross-validated error; after each addition, times move to
-// neighbouring candidates while the error falls. `count`: 1 to 3, or 0: a further time is kept if the selection rule
-// prefers it. `velocity`: whether the trend has viscosity. Errors: no candidates (recordings too short); interrupted.
-Result<std::vector<double>> identify_relaxation(const Samples& samples, const TrendWeights& weights, bool velocity,
+// neighbouring candidates while the error falls. `velocity`: whether the trend has viscosity. Errors: no candidates
+// (recordings too short); interrupted.
+Result<std::vector<double>> identify_relaxation(const Samples& samples, const JndLine& jnd, bool velocity,
                                                 std::size_t count, const FitControl& control);
 
 }  // namespace palpate

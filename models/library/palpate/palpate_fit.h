@@ -19,11 +19,8 @@ extern "C" {
  *   centres     of random, kdtree and greedy: 1 to 2000 [100]
  *   candidates  of greedy: candidate sites per step, or all [100]
  *   features    auto, scene (those of 2009), or a list such as depth,velocity,maxwell:0.17 [auto]
- *   relaxation  of the scene's features: scene, auto, or times in s such as 0.17,1.27 [none]
  *   kernel      auto, cubic, linear, thin-plate [auto]
  *   grid        of voxel: nodes per feature such as 25x11x11x11 [automatic]
- *   weighting   weight of an error: jnd, relative, none [jnd with the trend, relative with the force]
- *   thinning    samples that become sites: coverage, force, none [coverage with the trend, force with the force]
  *   seed        of random and greedy [1]
  * progress: called from time to time with the finished fraction and `context`; returns 0 to interrupt; may be NULL.
  *

@@ -8,11 +8,10 @@
 namespace palpate {
 namespace {
 
-Result<MethodFit> fit_trend_alone(Weighting weighting, Thinning thinning) {
+Result<MethodFit> fit_trend_alone(Thinning thinning) {
   auto samples = make_samples({prepare_recording(test::example_recording(1500, 250.0))}, JndLine{});
   if (!samples) return samples.error();
-  const ModelPlan plan{
-      .method = &kTrendMethod, .weighting = weighting, .thinning = thinning, .features = FeatureChoice::scene};
+  const ModelPlan plan{.method = &kTrendMethod, .thinning = thinning, .features = FeatureChoice::scene};
   const auto prepared = prepare_training(std::make_shared<const Samples>(std::move(*samples)),
                                          {"test", test::paper_features(), {}}, plan);
   if (!prepared) return prepared.error();
@@ -20,9 +19,8 @@ Result<MethodFit> fit_trend_alone(Weighting weighting, Thinning thinning) {
 }
 
 TEST(TrendMethod, IsTheTrendEverywhereAndHasNoCentres) {
-  for (const auto& [weighting, thinning] :
-       {std::pair{Weighting::jnd, Thinning::coverage}, std::pair{Weighting::relative, Thinning::force}}) {
-    const auto fit = fit_trend_alone(weighting, thinning);
+  for (const Thinning thinning : {Thinning::coverage, Thinning::force}) {
+    const auto fit = fit_trend_alone(thinning);
     ASSERT_TRUE(fit.ok()) << fit.error().message;
     const ModelData& data = fit->data;
     EXPECT_EQ(data.name, "trend");
@@ -39,7 +37,7 @@ TEST(TrendMethod, IsTheTrendEverywhereAndHasNoCentres) {
 }
 
 TEST(TrendMethod, ComesBackFromItsFile) {
-  const auto fit = fit_trend_alone(Weighting::jnd, Thinning::coverage);
+  const auto fit = fit_trend_alone(Thinning::coverage);
   ASSERT_TRUE(fit.ok()) << fit.error().message;
   const auto text = write_model_text(fit->data);
   ASSERT_TRUE(text.ok());
@@ -52,9 +50,9 @@ TEST(TrendMethod, ComesBackFromItsFile) {
 
 // The fit, not the command line, fills in the provenance, so that live fits have it too.
 TEST(TrendMethod, ProvenanceSaysHowTheDataWerePrepared) {
-  const auto fit = fit_trend_alone(Weighting::relative, Thinning::force);
+  const auto fit = fit_trend_alone(Thinning::force);
   ASSERT_TRUE(fit.ok()) << fit.error().message;
-  EXPECT_EQ(fit->data.provenance.weighting, "relative");
+  EXPECT_EQ(fit->data.provenance.weighting, "jnd");
   EXPECT_EQ(fit->data.provenance.thinning, "force");
   EXPECT_EQ(fit->data.provenance.relaxation, "scene");
 }

@@ -172,27 +172,24 @@ TEST(Fit, MoreCentresThanSites) {
   }
 }
 
-TEST(Fit, EveryKernelWeightingAndThinning) {
+TEST(Fit, EveryKernelAndThinning) {
   const Recording recording = test::example_recording(800, 250.0);
-  for (const Weighting weighting : {Weighting::jnd, Weighting::relative, Weighting::none}) {
-    for (const Thinning thinning : {Thinning::coverage, Thinning::force, Thinning::none}) {
-      Asked asked = asked_for(test::paper_features());
-      asked.plan.weighting = weighting;
-      asked.plan.thinning = thinning;
-      asked.plan.centres = 30;
-      for (const KernelKind kernel : kKernelKinds) {
-        asked.plan.kernel = kernel;
-        auto prepared = prepare({recording}, asked);
-        ASSERT_TRUE(prepared.ok());
-        prepared->correction->used = true;  // a correction regardless of cross-validation
-        const auto fit = fit_method(*prepared, asked.plan);
-        ASSERT_TRUE(fit.ok()) << fit.error().message;
-        EXPECT_EQ(rbf_of(fit->data.correction)->kernel, kernel);
-        EXPECT_EQ(fit->kernel, kernel);
-        EXPECT_GT(fit->rank, 1);
-        EXPECT_GE(fit->condition_number, 1.0);
-        expect_safe(fit->data);
-      }
+  for (const Thinning thinning : {Thinning::coverage, Thinning::force, Thinning::none}) {
+    Asked asked = asked_for(test::paper_features());
+    asked.plan.thinning = thinning;
+    asked.plan.centres = 30;
+    for (const KernelKind kernel : kKernelKinds) {
+      asked.plan.kernel = kernel;
+      auto prepared = prepare({recording}, asked);
+      ASSERT_TRUE(prepared.ok());
+      prepared->correction->used = true;  // a correction regardless of cross-validation
+      const auto fit = fit_method(*prepared, asked.plan);
+      ASSERT_TRUE(fit.ok()) << fit.error().message;
+      EXPECT_EQ(rbf_of(fit->data.correction)->kernel, kernel);
+      EXPECT_EQ(fit->kernel, kernel);
+      EXPECT_GT(fit->rank, 1);
+      EXPECT_GE(fit->condition_number, 1.0);
+      expect_safe(fit->data);
     }
   }
 }
@@ -201,10 +198,6 @@ TEST(Fit, EachRefusalSaysWhy) {
   const Recording recording = test::example_recording(1000, 1000.0);
   EXPECT_TRUE(test::has_parts(prepare({constant(50, -1e-3, 0.0)}, asked_for(test::paper_features())).error().message,
                               {"in contact (position_m > 0)", "; ", "palpate import FILE --origin contact"}));
-  Asked timed = asked_for(test::position_features());
-  timed.plan.relaxation = Relaxation::automatic;
-  EXPECT_TRUE(test::has_parts(prepare({recording}, timed).error().message,
-                              {"\"test\"", "relaxation features", "--relaxation", "palpate scenes"}));
   Asked voxel = asked_for(test::paper_features());
   auto prepared = prepare({recording}, voxel);
   ASSERT_TRUE(prepared.ok());
@@ -216,18 +209,6 @@ TEST(Fit, EachRefusalSaysWhy) {
   EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel.plan).error().message, {"2", "1"}));
   voxel.plan.grid = {1000, 1000, 1000, 1000};
   EXPECT_TRUE(test::has_parts(fit_method(*prepared, voxel.plan).error().message, {"1e+12", "1e7", "; "}));
-}
-
-TEST(Fit, GivenTimesReplaceTheScenes) {
-  Asked asked = asked_for(test::paper_features());
-  asked.plan.relaxation = Relaxation::given;
-  asked.plan.relaxation_times_s = {0.1, 0.5, 2.0};
-  const auto prepared = prepare({test::example_recording(1000, 250.0)}, asked);
-  ASSERT_TRUE(prepared.ok());
-  ASSERT_EQ(prepared->common.features.size(), 5u);
-  EXPECT_EQ(prepared->common.features[4].parts[0].relaxation_time_s, 2.0);
-  EXPECT_EQ(relaxation_times_s(prepared->common.features).size(), 3u);
-  EXPECT_EQ(prepared->common.provenance.relaxation, "given");
 }
 
 // Returning false from any progress call interrupts the fit.

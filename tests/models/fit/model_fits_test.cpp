@@ -38,15 +38,15 @@ TEST(ModelFits, PlansThatDifferInTheMethodShareTheirPreparation) {
   const PreparedTraining* const on_force = must(fits.prepare(plan_for(Base::force, kGreedyMethod), {}));
   EXPECT_NE(on_force, first);
   ModelPlan other = plan_for(Base::trend, kGreedyMethod);
-  other.weighting = Weighting::none;
+  other.thinning = Thinning::none;
   EXPECT_NE(must(fits.prepare(other, {})), first);
-  other.weighting = Weighting::jnd;
-  EXPECT_EQ(must(fits.prepare(other, {})), first) << "jnd is the default with the trend";
+  other.thinning = Thinning::coverage;
+  EXPECT_EQ(must(fits.prepare(other, {})), first) << "coverage is the default with the trend";
   // The kernel belongs to the residual of the trend, but not to the force.
   other.kernel = KernelKind::linear;
   EXPECT_NE(must(fits.prepare(other, {})), first);
   other.base = Base::force;
-  other.weighting.reset();
+  other.thinning.reset();
   EXPECT_EQ(must(fits.prepare(other, {})), on_force);
   // Every preparation has the same samples, and stays valid.
   EXPECT_EQ(first->samples, on_force->samples);

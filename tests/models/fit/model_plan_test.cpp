@@ -63,14 +63,10 @@ TEST(ModelPlan, HasTheColourOfItsMethod) {
 TEST(ModelPlan, DefaultsFollowTheBase) {
   const ModelPlan trend = must(parse_plan("trend"));
   const ModelPlan force = must(parse_plan("greedy"));
-  EXPECT_EQ(trend.weights(), Weighting::jnd);
   EXPECT_EQ(trend.thins(), Thinning::coverage);
-  EXPECT_EQ(force.weights(), Weighting::relative);
   EXPECT_EQ(force.thins(), Thinning::force);
   ModelPlan given = force;
-  given.weighting = Weighting::none;
   given.thinning = Thinning::none;
-  EXPECT_EQ(given.weights(), Weighting::none);
   EXPECT_EQ(given.thins(), Thinning::none);
 }
 
@@ -80,34 +76,26 @@ TEST(ModelPlan, SharesItsPreparationWithPlansOfOtherMethods) {
   };
   EXPECT_TRUE(same("method=trend", "method=trend+voxel grid=5x5"));
   EXPECT_TRUE(same("method=random centres=7", "method=greedy candidates=all"));
-  EXPECT_TRUE(same("method=greedy", "method=greedy kernel=linear weighting=relative thinning=force"));
+  EXPECT_TRUE(same("method=greedy", "method=greedy kernel=linear"));
   EXPECT_FALSE(same("method=greedy", "method=trend+greedy"));
-  EXPECT_FALSE(same("method=greedy", "method=greedy weighting=jnd"));
-  EXPECT_FALSE(same("method=greedy", "method=greedy thinning=none"));
   EXPECT_FALSE(same("", "kernel=linear"));
   EXPECT_FALSE(same("", "features=scene"));
   EXPECT_FALSE(same("features=depth", "features=depth,velocity"));
-  EXPECT_FALSE(same("features=scene", "relaxation=auto"));
-  EXPECT_FALSE(same("relaxation=0.1", "relaxation=0.2"));
 }
 
 TEST(PlanOptions, AreReadInAnyOrder) {
   const ModelPlan plan =
       must(parse_plan_options(" seed=7 candidates=all centres=40   method=greedy features=depth,velocity "
-                              "kernel=thin-plate weighting=none thinning=coverage "));
+                              "kernel=thin-plate "));
   EXPECT_EQ(plan_name(plan), "greedy-40");
   EXPECT_EQ(plan.candidates, 0);
   EXPECT_EQ(plan.seed, 7u);
   EXPECT_EQ(plan.kernel, KernelKind::thin_plate);
-  EXPECT_EQ(plan.weights(), Weighting::none);
-  EXPECT_EQ(plan.thins(), Thinning::coverage);
   EXPECT_EQ(plan.features, FeatureChoice::given);
   EXPECT_EQ(plan.list.features.size(), 2u);
-  const ModelPlan grid = must(parse_plan_options("grid=25x11x11x11 method=trend+voxel relaxation=0.17,1.27"));
+  const ModelPlan grid = must(parse_plan_options("grid=25x11x11x11 method=trend+voxel features=scene"));
   EXPECT_EQ(grid.grid, (std::vector{25, 11, 11, 11}));
-  EXPECT_EQ(grid.relaxation, Relaxation::given);
-  EXPECT_EQ(grid.relaxation_times_s, (std::vector{0.17, 1.27}));
-  EXPECT_EQ(grid.features, FeatureChoice::scene) << "relaxation times are of the scene's features";
+  EXPECT_EQ(grid.features, FeatureChoice::scene);
   EXPECT_EQ(must(parse_plan_options("")), ModelPlan{});
   EXPECT_EQ(must(parse_plan_options("kernel=auto features=auto")), ModelPlan{});
   EXPECT_EQ(must(parse_plan_options("seed=18446744073709551615")).seed, 18446744073709551615u);
@@ -138,21 +126,14 @@ TEST(PlanOptions, NameEachWrongOne) {
       {"method=voxel grid=1x2", "grid: found \"1x2\", expected sizes such as 25x11x11x11"},
       {"method=voxel grid=5x", "grid: found \"5x\", expected sizes such as 25x11x11x11"},
       {"method=voxel grid=2.5x3", "grid: found \"2.5x3\", expected sizes such as 25x11x11x11"},
-      {"weighting=force", "weighting: found \"force\", expected one of jnd, relative, none"},
-      {"thinning=all", "thinning: found \"all\", expected one of coverage, force, none"},
       {"method=random seed=-1", "seed: found \"-1\", expected a whole number"},
       {"method=random seed=18446744073709551616", "seed: found \"18446744073709551616\", expected a whole number"},
-      {"relaxation=", "relaxation: found \"\", expected scene, auto, or one to six times in seconds such as 0.17,1.27"},
-      {"relaxation=0.1,0",
-       "relaxation: found \"0.1,0\", expected scene, auto, or one to six times in seconds such as 0.17,1.27"},
-      {"relaxation=1,2,3,4,5,6,7",
-       "relaxation: found \"1,2,3,4,5,6,7\", expected scene, auto, or one to six times in seconds such as 0.17,1.27"},
       {"features=speed",
        "features: found \"speed\", expected depth, velocity, maxwell:, stops: and creep:, where only maxwell: may be "
        "repeated; or auto, or scene"},
       {"speed=1",
-       "found \"speed\", expected NAME=VALUE with a name of method, centres, candidates, features, relaxation, kernel, "
-       "grid, weighting, thinning, seed"},
+       "found \"speed\", expected NAME=VALUE with a name of method, centres, candidates, features, kernel, grid, "
+       "seed"},
       {"method",
        "method: found \"\", expected one of " + family_names() + ", where a number of centres may follow: greedy-40"},
   };
@@ -163,10 +144,6 @@ TEST(PlanOptions, RefuseThoseThatExcludeEachOther) {
   const std::pair<const char*, const char*> wrong[] = {
       {"method=greedy-40 centres=50", "centres: found \"50\", expected 40, the number in the name of the method"},
       {"method=greedy-100 centres=50", "centres: found \"50\", expected 100, the number in the name of the method"},
-      {"features=depth relaxation=0.1",
-       "relaxation: found the features \"depth\", expected the scene's features; leave one of the two out"},
-      {"relaxation=scene features=auto",
-       "relaxation: found the features \"auto\", expected the scene's features; leave one of the two out"},
       {"method=greedy features=depth,stops:0.1mm",
        "features: found stops or creep, expected depth, velocity and maxwell: with a method on the measured force; use "
        "trend+greedy"},
@@ -177,7 +154,6 @@ TEST(PlanOptions, RefuseThoseThatExcludeEachOther) {
   for (const auto& [text, message] : wrong) EXPECT_EQ(message_of(parse_plan_options(text)), message);
   // These agree.
   EXPECT_EQ(plan_name(must(parse_plan_options("method=greedy-40 centres=40"))), "greedy-40");
-  EXPECT_EQ(must(parse_plan_options("features=scene relaxation=0.1")).relaxation_times_s, std::vector{0.1});
   EXPECT_TRUE(parse_plan_options("method=trend features=depth,stops:0.1mm").ok());
 }
 

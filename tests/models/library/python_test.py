@@ -57,8 +57,8 @@ class AsThePrograms(Case):
     def test_a_fit_writes_the_bytes_of_the_program(self):
         for options in (dict(method="random", centres=30, seed=4),
                         dict(method="voxel", grid=[9, 5], features=["depth", "velocity"]),
-                        dict(method="greedy", centres=10, candidates="all", relaxation=[0.1, 0.5]),
-                        dict(method="trend+random", thinning="none"), dict(method="trend")):
+                        dict(method="greedy", centres=10, candidates="all", features=["depth", "maxwell:0.1+0.5"]),
+                        dict(method="trend+random"), dict(method="trend")):
             path, expected = self.folder / "model.json", self.folder / "expected.json"
             words = []
             for name, value in options.items():

@@ -54,9 +54,8 @@ TEST(IdentifyRelaxation, RefusesRecordingsWithoutCandidatesAndCanBeInterrupted) 
   const FitControl stop{[](double) { return false; }};
   EXPECT_EQ(test::message_of(identify_relaxation(samples, {}, true, 2, stop)), "interrupted");
   samples.longest_recording_s = 0.01;
-  EXPECT_EQ(
-      test::message_of(identify_relaxation(samples, {}, true, 1, {})),
-      "the recordings are too short to identify a relaxation time; record for longer, or pass --relaxation scene");
+  EXPECT_EQ(test::message_of(identify_relaxation(samples, {}, true, 1, {})),
+            "the recordings are too short to identify a relaxation time; record for longer, or pass --features scene");
 }
 
 TEST(SelectMemoryLaw, OfAListWithoutBranchesChangesNothing) {

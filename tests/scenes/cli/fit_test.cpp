@@ -127,19 +127,9 @@ TEST_F(FitVerb, RefusesAnOptionThatTheMethodHasNoUseFor) {
 }
 
 TEST_F(FitVerb, EveryOptionHasAUse) {
-  const Arguments options[] = {{"--kernel", "linear"},
-                               {"--kernel", "thin-plate"},
-                               {"--weighting", "relative"},
-                               {"--weighting", "none"},
-                               {"--thinning", "force"},
-                               {"--thinning", "none"},
-                               {"--relaxation", "auto"},
-                               {"--relaxation", "0.1,0.5"},
-                               {"--candidates", "all"},
-                               {"--scene", "elastic_block"},
-                               {"--centres", "2000"},
-                               {"--seed", "7"},
-                               {"--thinning", "force", "--weighting", "relative"}};
+  const Arguments options[] = {{"--kernel", "linear"},  {"--kernel", "thin-plate"},   {"--features", "scene"},
+                               {"--candidates", "all"}, {"--scene", "elastic_block"}, {"--centres", "2000"},
+                               {"--seed", "7"}};
   for (Arguments option : options) {
     SCOPED_TRACE(option[0] + " " + option[1]);
     option.push_back("--force");
@@ -186,17 +176,9 @@ TEST_F(FitVerb, WrongUsageListsTheKnownNames) {
   expect_refused(fit({}, "greedy-0"), 2, {"greedy-0", "1 to 2000"});
   expect_refused(fit({"--centres", "30"}, "greedy-40"), 2, {"--centres", "30", "40"});
   expect_refused(fit({"--kernel", "gauss"}), 2, {"auto", "cubic, linear, thin-plate"});
-  expect_refused(fit({"--weighting", "x"}), 2, {"jnd, relative, none"});
-  expect_refused(fit({"--thinning", "x"}), 2, {"coverage, force, none"});
   expect_refused(fit({"--centres", "0"}), 2, {"2000"});
   expect_refused(fit({"--centres", "100000"}), 2, {"2000"});
-  for (const char* features : {"auto", "depth"}) {
-    expect_refused(fit({"--features", features, "--relaxation", "0.1,1"}), 2, {"--relaxation", features});
-  }
   expect_refused(fit({"--candidates", "some"}), 2, {"--candidates", "1", "all"});
-  for (const char* times : {"0.1,", "0", "nan", "soon", "1,2,3,4,5,6,7"}) {
-    expect_refused(fit({"--relaxation", times}), 2, {"--relaxation", "scene", "auto"});
-  }
   for (const char* grid : {"25x", "1x2x3x4", "axb", "9999999999x2"}) {
     expect_refused(fit({"--grid", grid}, "voxel"), 2, {"--grid", "25x11x11x11"});
   }
@@ -207,7 +189,6 @@ TEST_F(FitVerb, FailuresAreOneErrorLine) {
   expect_refused(fit({"--scene", "marble"}), 1, {"marble", "silicone_block"});
   expect_refused(fit({"--grid", "25", "--features", "scene"}, "voxel"), 1, {"1", "4"});
   expect_refused(fit({"--grid", "1000x1000x1000x1000"}, "voxel"), 1, {"at most 1e7"});
-  expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, {"--relaxation"});
   expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, {"none.csv"});
 }
 

@@ -127,16 +127,10 @@ def fit(recordings: object, method: str = "trend+greedy", centres: int | None = 
         Of greedy: sites tried per step [100].
     features : str or list of str, optional
         ``auto``, ``scene`` (those of 2009), or a list such as ``["depth", "velocity", "maxwell:0.17"]`` [auto].
-    relaxation : str or list of float, optional
-        Relaxation times of the features of 2009: ``scene`` (0.17 s and 1.27 s), ``auto``, or times [s].
     kernel : str, optional
         ``auto``, ``cubic``, ``linear`` or ``thin-plate`` [auto].
     grid : str or list of int, optional
         Of voxel: nodes per feature, e.g. ``[25, 11, 11, 11]``.
-    weighting : str, optional
-        Weight of an error: ``jnd``, ``relative`` or ``none`` [jnd with the trend, relative with the force].
-    thinning : str, optional
-        Samples that become sites: ``coverage``, ``force`` or ``none`` [coverage with the trend, force with the force].
     seed : int, optional
         Of random and greedy [1].
     progress : callable, optional
