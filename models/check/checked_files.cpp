@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -12,26 +12,35 @@
 namespace palpate {
 namespace {
 
-// Of two recordings, in bins of their positions.
-constexpr double kBins = 60.0;         // in the smaller range
-constexpr double kMostBins = 6000.0;   // in the larger one
+constexpr double kBins = 60.0;         // of the smaller of two ranges of positions
+constexpr double kMostBins = 6000.0;   // of the larger one
 constexpr double kLeastOverlap = 0.3;  // of the smaller number of bins
+constexpr double kTail = 0.05;         // of the forces in a bin, on either side
 constexpr double kApartShare = 0.8;
 constexpr double kLeastJnds = 2.0;
+
+// The forces of a recording in bins of its positions, from the lowest one on.
+struct Bins {
+  struct Bin {
+    // During loading and unloading; none without rows. A higher speed raises the first and lowers the second, which no
+    // shift does.
+    std::array<std::optional<double>, 2> median_N;
+    double low_N = 0.0, high_N = 0.0;  // the central 90 % of all forces
+  };
+  double first_m = 0.0;  // the middle of the first bin
+  std::vector<Bin> bins{};
+};
 
 double range_m(const std::vector<RecordingRow>& rows) {
   const auto [low, high] = std::ranges::minmax(rows, {}, &RecordingRow::position_m);
   return high.position_m - low.position_m;
 }
 
-// The forces in a bin during loading and unloading: a higher speed raises the first and lowers the second, which no
-// shift does.
-using BinForces = std::array<std::vector<double>, 2>;
-
 // A reversal by less than the width of a bin counts as noise.
-std::map<long, BinForces> binned_forces_N(const std::vector<RecordingRow>& rows, double surface_m, double bin_m) {
-  std::map<long, BinForces> bins;
-  double turn_m = rows.front().position_m;
+Bins binned(const std::vector<RecordingRow>& rows, double bin_m) {
+  const double low_m = std::ranges::min(rows, {}, &RecordingRow::position_m).position_m;
+  std::vector<std::array<std::vector<double>, 2>> forces_N(static_cast<std::size_t>(range_m(rows) / bin_m) + 1);
+  double turn_m = low_m;
   bool inward = true;
   for (const RecordingRow& row : rows) {
     turn_m = inward ? std::max(turn_m, row.position_m) : std::min(turn_m, row.position_m);
@@ -39,18 +48,22 @@ std::map<long, BinForces> binned_forces_N(const std::vector<RecordingRow>& rows,
       inward = !inward;
       turn_m = row.position_m;
     }
-    bins[std::lround((row.position_m - surface_m) / bin_m)][inward ? 0 : 1].push_back(row.force_N);
+    forces_N[static_cast<std::size_t>((row.position_m - low_m) / bin_m)][inward ? 0 : 1].push_back(row.force_N);
   }
-  return bins;
-}
-
-// The central 90 % of the forces in a bin.
-std::pair<double, double> central_N(const BinForces& forces_N) {
-  std::vector<double> all_N = forces_N[0];
-  all_N.insert(all_N.end(), forces_N[1].begin(), forces_N[1].end());
-  std::ranges::sort(all_N);
-  const double last = static_cast<double>(all_N.size() - 1);
-  return {all_N[static_cast<std::size_t>(0.05 * last)], all_N[static_cast<std::size_t>(0.95 * last)]};
+  Bins made{low_m + 0.5 * bin_m};
+  for (const auto& [loading_N, unloading_N] : forces_N) {
+    Bins::Bin& bin = made.bins.emplace_back();
+    if (!loading_N.empty()) bin.median_N[0] = median_of(loading_N);
+    if (!unloading_N.empty()) bin.median_N[1] = median_of(unloading_N);
+    std::vector<double> all_N = loading_N;
+    all_N.insert(all_N.end(), unloading_N.begin(), unloading_N.end());
+    if (all_N.empty()) continue;
+    std::ranges::sort(all_N);
+    const double last = static_cast<double>(all_N.size() - 1);
+    bin.low_N = all_N[static_cast<std::size_t>(kTail * last)];
+    bin.high_N = all_N[static_cast<std::size_t>((1.0 - kTail) * last)];
+  }
+  return made;
 }
 
 // Inserts a finding before those of its severity.
@@ -95,35 +108,40 @@ void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
 
 std::optional<double> find_contradiction_N(const PreparedRecording& first, const PreparedRecording& second,
                                            const JndLine& jnd) {
-  const std::vector<RecordingRow>&a = first.recording.rows, &b = second.recording.rows;
-  const auto [smaller_m, larger_m] = std::minmax({range_m(a), range_m(b)});
+  const auto [smaller_m, larger_m] = std::minmax({range_m(first.recording.rows), range_m(second.recording.rows)});
   const double bin_m = std::max(smaller_m / kBins, larger_m / kMostBins);
   if (!(bin_m > 0.0)) return std::nullopt;
+  const Bins a = binned(first.recording.rows, bin_m), b = binned(second.recording.rows, bin_m);
   const bool clear = first.surface.identified() && second.surface.identified();
-  const auto bins_a = binned_forces_N(a, clear ? first.surface.raw_offset_m : 0.0, bin_m);
-  const auto bins_b = binned_forces_N(b, clear ? second.surface.raw_offset_m : 0.0, bin_m);
+  const double shift_m = clear ? second.surface.raw_offset_m - first.surface.raw_offset_m : 0.0;
   std::vector<double> differences_N, jnds;
   double compared = 0.0, apart = 0.0;
-  for (const auto& [bin, of_b] : bins_b) {
-    const auto of_a = bins_a.find(bin);
-    if (of_a == bins_a.end()) continue;
+  for (std::size_t i = 0; i < b.bins.size(); ++i) {
+    const Bins::Bin& bin = b.bins[i];
+    // Where the middle of this bin is between two of the first recording, whose forces are interpolated.
+    const double at = (b.first_m + static_cast<double>(i) * bin_m - shift_m - a.first_m) / bin_m;
+    if (!(at >= 0.0) || at + 1.0 >= static_cast<double>(a.bins.size())) continue;
+    const auto below = static_cast<std::size_t>(at);
     const std::size_t before = differences_N.size();
     for (const std::size_t direction : {0u, 1u}) {
-      if (of_a->second[direction].empty() || of_b[direction].empty()) continue;
-      const double a_N = median_of(of_a->second[direction]), b_N = median_of(of_b[direction]);
+      const auto& low_N = a.bins[below].median_N[direction];
+      const auto& high_N = a.bins[below + 1].median_N[direction];
+      if (!low_N || !high_N || !bin.median_N[direction]) continue;
+      const double a_N = *low_N + (at - static_cast<double>(below)) * (*high_N - *low_N);
+      const double b_N = *bin.median_N[direction];
       differences_N.push_back(b_N - a_N);
       // In air all forces are equal.
       if (std::max(std::abs(a_N), std::abs(b_N)) > jnd.at(0.0))
         jnds.push_back(std::abs(b_N - a_N) / jnd.at(0.5 * (a_N + b_N)));
     }
     if (differences_N.size() == before) continue;
-    const auto [low_a_N, high_a_N] = central_N(of_a->second);
-    const auto [low_b_N, high_b_N] = central_N(of_b);
     compared += 1.0;
-    if (low_b_N > high_a_N || low_a_N > high_b_N) apart += 1.0;
+    const Bins::Bin& nearest = a.bins[static_cast<std::size_t>(at + 0.5)];
+    if (bin.low_N > nearest.high_N || nearest.low_N > bin.high_N) apart += 1.0;
   }
-  const bool overlap = compared >= kLeastOverlap * static_cast<double>(std::min(bins_a.size(), bins_b.size()));
-  if (!overlap || apart < kApartShare * compared || !(median_of(std::move(jnds)) > kLeastJnds)) return std::nullopt;
+  const double least = kLeastOverlap * static_cast<double>(std::min(a.bins.size(), b.bins.size()));
+  if (compared < std::max(1.0, least) || apart < kApartShare * compared) return std::nullopt;
+  if (!(median_of(std::move(jnds)) > kLeastJnds)) return std::nullopt;
   return median_of(std::move(differences_N));
 }
 

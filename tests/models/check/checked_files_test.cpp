@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"
@@ -70,6 +71,13 @@ TEST(Contradiction, NeedsCommonPositions) {
   Recording rest = strokes(1000.0);
   for (RecordingRow& row : rest.rows) row.position_m = 1e-3;
   EXPECT_FALSE(contradiction_N(rest, rest));
+  // So few rows that most bins are empty.
+  Recording first = strokes(1000.0), second = strokes(3000.0);
+  for (Recording* one : {&first, &second}) {
+    const std::vector<RecordingRow> all = std::exchange(one->rows, {});
+    for (std::size_t i = 0; i < 750; i += 25) one->rows.push_back(all[i]);
+  }
+  EXPECT_FALSE(contradiction_N(first, second));
 }
 
 }  // namespace
