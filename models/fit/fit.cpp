@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "engine/base/text.h"
 #include "models/correction/methods.h"
@@ -113,6 +114,9 @@ void set_provenance(PreparedTraining& prepared, const TrainingScene& scene, cons
 // The finished fraction of a fit after its choices, and after the method. The fits without each fold follow.
 constexpr double kChosen = 0.15;
 constexpr double kFitted = 0.6;
+
+// The approximate time of the preparation, to compare with the expected time of the method.
+constexpr double kPreparation_s = 0.5;
 
 // The share of the training within the JND, of at most 100,000 samples, evenly spaced.
 double share_within_jnd(const PreparedTraining& prepared, const ModelData& data) {
@@ -291,6 +295,33 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
   return fit;
 }
 
+nlohmann::ordered_json fit_json(const MethodFit& fit, double seconds) {
+  const ModelData& data = fit.data;
+  nlohmann::ordered_json features = nlohmann::ordered_json::array(), recordings = features;
+  for (const FeatureSpec& spec : data.features) features.push_back(feature_name(spec));
+  for (const RecordingOffset& one : data.provenance.offsets) {
+    recordings.push_back({{"name", one.name},
+                          {"surface_offset_m", one.offset_m},
+                          {"standard_error_m", one.standard_error_m},  // not finite: null
+                          {"identified", std::isfinite(one.standard_error_m)},
+                          {"force_zero_N", one.force_zero_N}});
+  }
+  return {{"name", data.name},
+          {"method", data.method},
+          {"centres", data.centre_count()},
+          {"kernel", kernel_name(fit.kernel)},
+          {"weighting", data.provenance.weighting},
+          {"samples", data.provenance.samples},
+          {"samples_after_reduction", data.provenance.samples_after_reduction},
+          {"rank", fit.rank},
+          {"condition_number", fit.condition_number},
+          {"fit_seconds", seconds},
+          {"training_within_jnd", data.provenance.training_within_jnd},
+          {"features", features},
+          {"recordings", recordings},
+          {"notes", fit.notes}};
+}
+
 Result<SamplesPointer> ModelFits::samples(const FitControl& control) {
   if (samples_ == nullptr) {
     auto made = make_samples(recordings_, scene_.jnd, control);
@@ -300,9 +331,14 @@ Result<SamplesPointer> ModelFits::samples(const FitControl& control) {
   return samples_;
 }
 
-Result<const PreparedTraining*> ModelFits::prepare(const ModelPlan& plan, const FitControl& control) {
+const PreparedTraining* ModelFits::prepared_for(const ModelPlan& plan) const {
   for (const auto& [other, prepared] : prepared_)
     if (same_preparation(plan, other)) return prepared.get();
+  return nullptr;
+}
+
+Result<const PreparedTraining*> ModelFits::prepare(const ModelPlan& plan, const FitControl& control) {
+  if (const PreparedTraining* const done = prepared_for(plan)) return done;
   const auto table = samples(control.at(0.0));
   if (!table) return table.error();
   auto made = prepare_training(*table, scene_, plan, control);
@@ -312,7 +348,9 @@ Result<const PreparedTraining*> ModelFits::prepare(const ModelPlan& plan, const 
 }
 
 Result<ModelFits::Fit> ModelFits::fit(const ModelPlan& plan, const FitControl& control) {
-  const auto prepared = prepare(plan, control);
+  const double all_s = kPreparation_s + expected_seconds(*plan.method);
+  const double prepared_at = prepared_for(plan) == nullptr ? kPreparation_s / all_s : 0.0;
+  const auto prepared = prepare(plan, control.part(0.0, prepared_at));
   if (!prepared) return prepared.error();
   const MethodFit* base = nullptr;
   const OpenChoices* choices = nullptr;
@@ -327,7 +365,7 @@ Result<ModelFits::Fit> ModelFits::fit(const ModelPlan& plan, const FitControl& c
     seconds = fit.seconds;
   }
   const auto start = std::chrono::steady_clock::now();
-  auto made = fit_method(**prepared, plan, control, base, choices);
+  auto made = fit_method(**prepared, plan, control.part(prepared_at, 1.0), base, choices);
   if (!made) return made.error();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   Fit fit{std::move(*made), elapsed.count() + seconds};

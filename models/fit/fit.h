@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,10 @@ Eigen::VectorXd site_thresholds(const PreparedTraining& prepared);
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& plan, const FitControl& control = {},
                              const MethodFit* base = nullptr, const OpenChoices* choices = nullptr);
 
+// The JSON object that `palpate fit --json` prints.
+nlohmann::ordered_json fit_json(const MethodFit& fit, double seconds);
+
+// The fits of several plans to the same recordings: what plans have in common is done once.
 class ModelFits {
  public:
   ModelFits(std::vector<PreparedRecordingPointer> recordings, TrainingScene scene)
@@ -81,10 +86,12 @@ class ModelFits {
   struct Fit : MethodFit {
     double seconds = 0.0;  // with its base, without the preparation
   };
-  // Errors: those of prepare and fit_method.
+  // Prepares the plan, if that has not been done, and fits its method. Errors: those of prepare and fit_method.
   Result<Fit> fit(const ModelPlan& plan, const FitControl& control);
 
  private:
+  const PreparedTraining* prepared_for(const ModelPlan& plan) const;  // null: not prepared
+
   std::vector<PreparedRecordingPointer> recordings_;
   TrainingScene scene_;
   SamplesPointer samples_;

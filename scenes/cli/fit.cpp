@@ -13,7 +13,8 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/tick/replay.h"
-#include "models/fit_library/fit_recordings.h"
+#include "models/check/check_recording.h"
+#include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
 #include "models/model/fitted_model.h"
 #include "scenes/cli/progress.h"
@@ -121,10 +122,10 @@ std::string relaxation_bands(const std::vector<FeatureSpec>& features) {
 }
 
 // `out`: the file that was written.
-void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::string& out) {
-  const auto& [gains, correction, fit, seconds] = fitted;
+void print_fit(const PreparedTraining& prepared, const MethodFit& fit, double seconds, bool accelerometer,
+               const std::string& out) {
   const Provenance& provenance = fit.data.provenance;
-  print_gains(gains);
+  print_gains(prepared.gains);
   print_line("model", fit.data.name + ", fitted in " + fixed(seconds, 2) + " s");
   print_line("samples", std::to_string(provenance.samples) + ", " + std::to_string(provenance.contact_samples) +
                             " in contact, " + std::to_string(provenance.samples_after_reduction) + " after thinning");
@@ -134,7 +135,7 @@ void print_fit(const RecordingsFit& fitted, bool accelerometer, const std::strin
     print_line("depth starts", "at " + fixed(1e3 * begins_m, 3) + " mm, where the force of the recordings begins");
   if (const std::string bands = relaxation_bands(fit.data.features); !bands.empty())
     print_line("relaxation times", bands);
-  if (correction) print_line("correction", correction_text(*correction));
+  if (prepared.correction) print_line("correction", correction_text(*prepared.correction));
   for (const std::string& note : fit.notes)
     print_line(fit.choices && note == choices_text(*fit.choices) ? "selected" : "note", note);
   print_line("training <= JND", fixed(100.0 * provenance.training_within_jnd, 2) + " %" +
@@ -158,18 +159,19 @@ Status run_fit(const FitArguments& arguments) {
   // An accelerometer reduces the training error, and a device may have none.
   const bool accelerometer =
       std::ranges::any_of(*checked, [](const CheckedFile& one) { return one.recording().columns.acceleration; });
-  const auto fitted = fit_recordings(*checked, training_scene(*scene), arguments.plan, began,
-                                     [&](double fraction) { return line->update(fraction); });
+  ModelFits fits(training_recordings(*checked), training_scene(*scene));
+  const auto fitted = fits.fit(arguments.plan, {[&](double fraction) { return line->update(fraction); }});
   if (!fitted) return fitted.error();
-  const ModelData& data = fitted->fit.data;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  const ModelData& data = fitted->data;
   const std::string contradiction = training_contradiction(*checked, data);
   if (Status status = save_model(arguments.out, data, arguments.force); !status) return status;
   line.reset();  // ends the progress line
   if (!contradiction.empty()) std::cerr << "note: " << contradiction << "\n";
   if (arguments.json) {
-    print_json(fit_json(*fitted));
+    print_json(fit_json(*fitted, seconds));
   } else {
-    print_fit(*fitted, accelerometer, arguments.out);
+    print_fit(**fits.prepare(arguments.plan, {}), *fitted, seconds, accelerometer, arguments.out);
   }
   return {};
 }

@@ -18,9 +18,8 @@ namespace {
 
 // Niceness of fits, so that graphics and haptics have priority where there are few cores.
 constexpr int kNice = 5;
-// Progress of a fit when the recording, and when the preparation is done; both are done once.
+// Progress of a fit when the virtual recording is done, which is done once.
 constexpr double kRecorded = 0.2;
-constexpr double kPrepared = 0.7;
 
 // Additional time of the first fit of a Base.
 constexpr double kPreparation_s = 1.0;
@@ -157,9 +156,7 @@ Result<ModelData> ModelWorker::fit(Lane& lane, const ModelPlan& asked) {
   if (const Status status = prepare_recordings(lane); !status) return status.error();
   ModelPlan plan = asked;
   plan.seed = seed_;
-  if (const auto prepared = lane.fits->prepare(plan, control(lane, kRecorded, kPrepared)); !prepared)
-    return prepared.error();
-  // The progress of the preparation, or 0 if it was done before.
+  // The progress of the virtual recording, or 0 if it was done before.
   const double done = lane.share.load(std::memory_order_relaxed);
   auto fitted = lane.fits->fit(plan, control(lane, done, 1.0));
   if (!fitted) return fitted.error();

@@ -1,69 +1,19 @@
-#include "models/fit_library/fit_recordings.h"
+// The C interface of models/library/palpate/palpate_fit.h.
+#include "models/library/palpate/palpate_fit.h"
 
-#include <cmath>
+#include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "engine/recording/recording.h"
+#include "models/check/check_recording.h"
+#include "models/fit/fit.h"
 #include "models/library/c_interface.h"
-#include "models/library/palpate/palpate_fit.h"
 #include "models/samples/recording_faults.h"
 
-namespace palpate {
-namespace {
-
-// The approximate time of the preparation, to compare with the expected time of the method.
-constexpr double kPreparation_s = 0.5;
-
-}  // namespace
-
-Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingScene& scene,
-                                     const ModelPlan& plan, std::chrono::steady_clock::time_point began,
-                                     const std::function<bool(double)>& progress) {
-  ModelFits fits(training_recordings(std::move(recordings)), scene);
-  const FitControl control{progress};
-  const double prepared_at = kPreparation_s / (kPreparation_s + expected_seconds(*plan.method));
-  const auto prepared = fits.prepare(plan, control.part(0.0, prepared_at));
-  if (!prepared) return prepared.error();
-  auto fit = fits.fit(plan, control.part(prepared_at, 1.0));
-  if (!fit) return fit.error();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  return RecordingsFit{(*prepared)->gains, (*prepared)->correction, std::move(*fit), seconds};
-}
-
-nlohmann::ordered_json fit_json(const RecordingsFit& fitted) {
-  const MethodFit& fit = fitted.fit;
-  const ModelData& data = fit.data;
-  nlohmann::ordered_json features = nlohmann::ordered_json::array(), recordings = features;
-  for (const FeatureSpec& spec : data.features) features.push_back(feature_name(spec));
-  for (const RecordingOffset& one : data.provenance.offsets) {
-    recordings.push_back({{"name", one.name},
-                          {"surface_offset_m", one.offset_m},
-                          {"standard_error_m", one.standard_error_m},  // not finite: null
-                          {"identified", std::isfinite(one.standard_error_m)},
-                          {"force_zero_N", one.force_zero_N}});
-  }
-  return {{"name", data.name},
-          {"method", data.method},
-          {"centres", data.centre_count()},
-          {"kernel", kernel_name(fit.kernel)},
-          {"weighting", data.provenance.weighting},
-          {"samples", data.provenance.samples},
-          {"samples_after_reduction", data.provenance.samples_after_reduction},
-          {"rank", fit.rank},
-          {"condition_number", fit.condition_number},
-          {"fit_seconds", fitted.seconds},
-          {"training_within_jnd", data.provenance.training_within_jnd},
-          {"features", features},
-          {"recordings", recordings},
-          {"notes", fit.notes}};
-}
-
-}  // namespace palpate
-
-// The C interface of models/library/palpate/palpate_fit.h.
 namespace palpate::library {
 namespace {
 
@@ -123,11 +73,12 @@ palpate_model* palpate_fit(const palpate_recording* recordings, size_t recording
       files.push_back(std::move(*file));
     }
     if (Status status = refuse_unusable(files); !status) return status.error();
-    std::function<bool(double)> report;
-    if (progress != nullptr) report = [&](double fraction) { return progress(fraction, context) != 0; };
-    auto fitted = fit_recordings(std::move(files), scene, *plan, began, report);
+    FitControl control;
+    if (progress != nullptr) control.progress = [&](double fraction) { return progress(fraction, context) != 0; };
+    auto fitted = ModelFits(training_recordings(std::move(files)), scene).fit(*plan, control);
     if (!fitted) return fitted.error();
-    const std::string figures = fit_json(*fitted).dump();
-    return new palpate_model(std::make_shared<const FittedModel>(std::move(fitted->fit.data)), figures);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+    const std::string figures = fit_json(*fitted, elapsed.count()).dump();
+    return new palpate_model(std::make_shared<const FittedModel>(std::move(fitted->data)), figures);
   });
 }
