@@ -271,8 +271,14 @@ class Checker {
                 first_N),
           "begin outside of the material, after it has rested");
     }
+    if (surface_.air.tool_mass_kg > 0.0) {
+      add("tool_mass", Severity::note, surface_.air.tool_mass_kg,
+          words("the force sensor carries a mass of %.3g g: in free air the force follows the acceleration",
+                1e3 * surface_.air.tool_mass_kg),
+          "");
+    }
     const double pull_N = surface_.force_zero_N - measures_.lowest_force_N;
-    if (surface_.air.found && pull_N > certain_force_N(noise_N_)) {
+    if (surface_.air.found && !(surface_.air.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
       add("adhesion", Severity::note, pull_N,
           words("the material pulls the tool with up to %.3g N: a fitted model renders this adhesion", pull_N), "");
     }

@@ -33,6 +33,45 @@ void set_zero(FreeAir& air, std::vector<double> forces_N, double flat_N) {
   air.zero_error_N = std::sqrt(squares) / count;
 }
 
+// Differences of velocities over 10 ms where no acceleration is measured.
+std::vector<double> accelerations_m_per_s2(const std::vector<Sample>& rows) {
+  const bool measured =
+      std::ranges::any_of(rows, [](const Sample& row) { return row.tool.acceleration_m_per_s2 != 0.0; });
+  std::vector<double> result(rows.size(), 0.0);
+  std::size_t from = 0, to = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (measured) {
+      result[i] = rows[i].tool.acceleration_m_per_s2;
+      continue;
+    }
+    while (to + 1 < rows.size() && rows[to].tool.time_s < rows[i].tool.time_s + 0.01) ++to;
+    while (rows[from].tool.time_s < rows[i].tool.time_s - 0.01) ++from;
+    const double step_s = rows[to].tool.time_s - rows[from].tool.time_s;
+    if (step_s > 0.0) result[i] = (rows[to].motion.velocity_m_per_s - rows[from].motion.velocity_m_per_s) / step_s;
+  }
+  return result;
+}
+
+// The mass that the force sensor carries, by a regression of the force on the acceleration in the outermost tenth of
+// the positions; 0 if the slope is not significant.
+double tool_mass_kg(const std::vector<Sample>& rows, const std::vector<double>& acceleration_m_per_s2) {
+  const auto [low_m, high_m] = position_range_m(rows);
+  double count = 0.0, a = 0.0, f = 0.0, aa = 0.0, af = 0.0, ff = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].motion.position_m - low_m >= 0.1 * (high_m - low_m)) continue;
+    const double x = acceleration_m_per_s2[i], y = rows[i].force_N;
+    count += 1.0, a += x, f += y;
+    aa += x * x, af += x * y, ff += y * y;
+  }
+  if (count < 3.0 * kLeastRows) return 0.0;
+  const double xx = aa - a * a / count, xy = af - a * f / count, yy = ff - f * f / count;
+  if (!(xx > 0.0)) return 0.0;
+  const double mass_kg = xy / xx;
+  const double error_kg = std::sqrt(std::max(0.0, yy - mass_kg * xy) / xx / count);
+  const bool follows = xy * mass_kg > 0.5 * yy;
+  return follows && mass_kg > std::max(1e-3, 5.0 * error_kg) ? mass_kg : 0.0;
+}
+
 // The outermost slices of the positions whose force is flat during loading.
 FreeAir find_air(const std::vector<Sample>& rows, double noise_N) {
   FreeAir air;
@@ -234,12 +273,23 @@ void estimate_drift(SurfaceEstimate& estimate, const std::vector<Sample>& rows, 
   if (std::abs(drift_m) > kSignificantErrors * estimate.offset_drift_error_m) estimate.offset_drift_m = drift_m;
 }
 
-// `rows`: of a recording, in time order.
-SurfaceEstimate estimate_surface(const std::vector<Sample>& rows, double force_noise_N) {
+// `recorded`: rows of a recording, in time order.
+SurfaceEstimate estimate_surface(const std::vector<Sample>& recorded, double force_noise_N) {
   SurfaceEstimate estimate;
-  if (rows.size() < kLeastRows) return estimate;
-  const FreeAir& air = estimate.air = find_air(rows, force_noise_N);
+  if (recorded.size() < kLeastRows) return estimate;
+  FreeAir& air = estimate.air = find_air(recorded, force_noise_N);
+  // The inertia of the tool may hide the free air.
+  std::vector<Sample> still;
+  const std::vector<double> acceleration_m_per_s2 = accelerations_m_per_s2(recorded);
+  if (const double mass_kg = tool_mass_kg(recorded, acceleration_m_per_s2); mass_kg > 0.0) {
+    still = recorded;
+    for (std::size_t i = 0; i < still.size(); ++i) still[i].force_N -= mass_kg * acceleration_m_per_s2[i];
+    FreeAir without = find_air(still, force_noise_N);
+    without.tool_mass_kg = mass_kg;
+    if (without.found && (!air.found || without.inner_end_m >= air.inner_end_m)) air = without;
+  }
   if (!air.found) return estimate;
+  const std::vector<Sample>& rows = air.tool_mass_kg > 0.0 ? still : recorded;
   // A force zero that drifts by more than its size is not identified.
   const double least_N = std::max({1e-3, kSignificantErrors * air.zero_error_N, std::abs(air.drift_N)});
   if (std::abs(air.zero_N) >= least_N) estimate.force_zero_N = air.zero_N;
@@ -267,11 +317,15 @@ PreparedRecordingPointer prepare_recording(Recording recording) {
   prepared->sensor = identify_sensor(given.rows.data(), given.rows.size(), given.columns);
   prepared->force_noise_N = identify_force_noise_N(given.rows.data(), given.rows.size());
   MotionEstimator estimator(prepared->sensor);
-  const std::size_t count = std::min(given.rows.size(), kOnsetRows);
-  prepared->rows.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  const std::size_t count = given.rows.size();
+  const double step_s = (given.rows.back().time_s - given.rows.front().time_s) / static_cast<double>(count);
+  const std::size_t stride =
+      std::min(count / (kOnsetRows + 1), static_cast<std::size_t>(kCoarsestOnset_s / std::max(step_s, 1e-6))) + 1;
+  prepared->rows.reserve(std::min(count / stride + 1, kOnsetRows));
+  for (std::size_t i = 0; i < count && prepared->rows.size() < kOnsetRows; ++i) {
     const ToolSample sample = tool_sample(given.rows[i]);
-    prepared->rows.push_back({sample, estimator.update(sample), given.rows[i].force_N});
+    const MotionEstimate motion = estimator.update(sample);
+    if (i % stride == 0) prepared->rows.push_back({sample, motion, given.rows[i].force_N});
   }
   prepared->surface = estimate_surface(prepared->rows, prepared->force_noise_N);
   return prepared;

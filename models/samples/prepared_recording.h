@@ -30,7 +30,8 @@ struct FreeAir {
   double inner_end_m = 0.0;  // free air is certain for positions below
   double zero_N = 0.0;
   double zero_error_N = kUnknownError;  // standard error
-  double drift_N = 0.0;  // of the zero: median of the last third of the rows in air minus that of the first
+  double drift_N = 0.0;       // of the zero: median of the last third of the rows in air minus that of the first
+  double tool_mass_kg = 0.0;  // mass carried by the force sensor; 0 if not identified
 };
 
 struct SurfaceEstimate {
@@ -47,15 +48,17 @@ struct SurfaceEstimate {
   bool identified() const { return std::isfinite(standard_error_m); }
 };
 
-// The maximum number of rows from which a surface is estimated: the first seven minutes at 1 kHz.
+// The maximum number of rows from which a surface is estimated, and their largest interval: an approach with fewer rows
+// does not identify the onset. A longer recording at 1 kHz contributes its first seven minutes.
 inline constexpr std::size_t kOnsetRows = 400000;
+inline constexpr double kCoarsestOnset_s = 1.5e-3;
 
 struct PreparedRecording {
   Recording recording;
   std::uint64_t content_hash = 0;  // engine/recording/recording.h
   SensorSpec sensor;
   double force_noise_N = 0.0;  // standard deviation
-  std::vector<Sample> rows;    // with their motion; the first kOnsetRows of a longer recording
+  std::vector<Sample> rows;    // with their motion; at most kOnsetRows
   SurfaceEstimate surface;
 };
 

@@ -121,12 +121,13 @@ TEST(SurfaceEstimate, MeasuresADriftingForceZero) {
   EXPECT_NEAR(estimate_surface(recording).air.drift_N, 0.02, 0.005);
 }
 
-// The inertial force of a tool on the sensor hides the free air, and must not be taken for contact.
-TEST(SurfaceEstimate, InertiaIsNoContact) {
+// The inertial force of the tool must not be taken for contact.
+TEST(SurfaceEstimate, TellsInertiaFromContact) {
   Recording recording = rig("silicone", 2);
   for (RecordingRow& row : recording.rows) row.force_N += 0.06 * row.acceleration_m_per_s2;
   const SurfaceEstimate estimate = estimate_surface(recording);
-  EXPECT_EQ(estimate.offset_m, 0.0);
+  EXPECT_NEAR(estimate.air.tool_mass_kg, 0.06, 0.01);
+  EXPECT_NEAR(estimate.raw_offset_m, 0.0, 0.1e-3);
   EXPECT_EQ(estimate.force_zero_N, 0.0);
 }
 
