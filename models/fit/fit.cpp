@@ -296,8 +296,9 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
 }
 
 nlohmann::ordered_json fit_json(const MethodFit& fit, double seconds) {
+  using Json = nlohmann::ordered_json;
   const ModelData& data = fit.data;
-  nlohmann::ordered_json features = nlohmann::ordered_json::array(), recordings = features;
+  Json features = Json::array(), recordings = features;
   for (const FeatureSpec& spec : data.features) features.push_back(feature_name(spec));
   for (const RecordingOffset& one : data.provenance.offsets) {
     recordings.push_back({{"name", one.name},
@@ -313,8 +314,8 @@ nlohmann::ordered_json fit_json(const MethodFit& fit, double seconds) {
           {"weighting", data.provenance.weighting},
           {"samples", data.provenance.samples},
           {"samples_after_reduction", data.provenance.samples_after_reduction},
-          {"rank", fit.rank},
-          {"condition_number", fit.condition_number},
+          {"rank", fit.rank > 0 ? Json(fit.rank) : Json()},  // without equations: null
+          {"condition_number", fit.rank > 0 ? Json(fit.condition_number) : Json()},
           {"fit_seconds", seconds},
           {"training_within_jnd", data.provenance.training_within_jnd},
           {"features", features},

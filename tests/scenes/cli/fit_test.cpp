@@ -114,6 +114,8 @@ TEST_F(FitVerb, TheTrendAloneHasNoCentres) {
   const ProgramRun run = fit({"--json"}, "trend");
   expect_model(run);
   const auto object = nlohmann::json::parse(run.out);
+  EXPECT_TRUE(object.at("rank").is_null());
+  EXPECT_TRUE(object.at("condition_number").is_null());
   EXPECT_EQ(object.at("method"), "trend");
   EXPECT_EQ(object.at("name"), "trend");
   EXPECT_EQ(object.at("centres"), 0);
