@@ -6,8 +6,7 @@
 
 #include "engine/base/text.h"
 #include "models/export/c_sources.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "engine/json/json_fields.h"
 #include "engine/recording/recording.h"
+#include "models/model/correction.h"
 #include "models/model/fitted_model.h"
-#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate::model_file {
 

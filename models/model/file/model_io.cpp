@@ -14,9 +14,8 @@
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "engine/json/json_fields.h"
+#include "models/model/correction.h"
 #include "models/model/file/model_description.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
 namespace {
