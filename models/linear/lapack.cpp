@@ -254,17 +254,11 @@ Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::Vec
   const auto move_to_minimum = [&] {
     Eigen::VectorXd candidate = unconstrained();
     for (Eigen::Index leaving = 0; leaving < size; ++leaving) {
-      double step = 1.0;
-      Eigen::Index blocking = -1;
-      for (Eigen::Index i = 0; i < size; ++i) {
-        if (!passive(i) || candidate(i) > 0.0) continue;
-        const double reach = x(i) / std::max(x(i) - candidate(i), 1e-300);
-        if (blocking >= 0 && !(reach < step)) continue;
-        step = std::min(1.0, reach);
-        blocking = i;
-      }
-      if (blocking < 0) break;
-      x += step * (candidate - x);
+      const auto negative = passive && !(candidate.array() > 0.0);
+      if (!negative.any()) break;
+      const Eigen::ArrayXd reach = negative.select(x.array() / (x - candidate).array().max(1e-300), 2.0);
+      Eigen::Index blocking = 0;
+      x += reach.minCoeff(&blocking) * (candidate - x);
       x(blocking) = 0.0;
       passive(blocking) = false;
       candidate = unconstrained();
