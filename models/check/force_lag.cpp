@@ -38,8 +38,7 @@ constexpr double kIdleScale = 0.1;
 
 // Integral of a hat: rises from 0 to 1 within one knot to either side.
 double rise(double u) {
-  if (u <= -1.0) return 0.0;
-  if (u >= 1.0) return 1.0;
+  u = std::clamp(u, -1.0, 1.0);
   return u < 0.0 ? 0.5 * (u + 1.0) * (u + 1.0) : 1.0 - 0.5 * (1.0 - u) * (1.0 - u);
 }
 
@@ -75,13 +74,9 @@ class LagRegression {
   LagRegression(const std::vector<Sample>& rows, double noise_N)
       : rows_(rows), noise_N_(noise_N), block_(blocks_by_path(rows)) {
     std::tie(low_m_, high_m_) = position_range_m(rows);
-    const auto count = static_cast<Eigen::Index>(rows.size());
-    force_N_.resize(count);
-    scale_.resize(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      force_N_(i) = rows[static_cast<std::size_t>(i)].force_N;
-      scale_(i) = 1.0 / (no_force_N(noise_N) + kForceShare * std::abs(force_N_(i)));
-    }
+    const auto force_N = [&](Eigen::Index i) { return rows[static_cast<std::size_t>(i)].force_N; };
+    force_N_ = Eigen::VectorXd::NullaryExpr(static_cast<Eigen::Index>(rows.size()), force_N);
+    scale_ = 1.0 / (no_force_N(noise_N) + kForceShare * force_N_.array().abs());
   }
 
   // The cost J of the fit at this lag, by blocks of equal path length.
