@@ -48,7 +48,7 @@ const std::map<std::string, Names>& rooms() {
   return all;
 }
 
-// The room of a path such as "models/model/rbf/kernels.h"; empty if there is none.
+// The room of a path such as "models/model/file/model_io.h"; empty if there is none.
 std::string room_of(const std::string& path) {
   const std::size_t top = path.find('/');
   const std::size_t end = top == std::string::npos ? top : path.find('/', top + 1);

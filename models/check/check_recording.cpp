@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <utility>
 
+#include "engine/base/text.h"
 #include "engine/recording/recording.h"
 #include "engine/tick/sensor_identification.h"
-#include "models/check/force_lag.h"
 
 namespace palpate {
 namespace {
@@ -51,12 +51,7 @@ std::string words(const char* format, Values... values) {
 class Checker {
  public:
   Checker(const PreparedRecording& prepared, const CheckRequest& request, const RecordingFaults& faults)
-      : prepared_(prepared),
-        recording_(prepared.recording),
-        surface_(prepared.surface),
-        noise_N_(prepared.force_noise_N),
-        request_(request),
-        faults_(faults) {}
+      : prepared_(prepared), request_(request), faults_(faults) {}
 
   RecordingCheck run() {
     measures_ = measure_recording(recording_, 0.0);
@@ -308,7 +303,10 @@ class Checker {
     if (!(pressed_m > 0.0)) return;
     int empty = 0;
     std::string where;
-    const auto bands = speed_band_names(measures_);
+    const std::string low = general(1e3 * kSpeedEdges_per_s[0] * pressed_m, 2);
+    const std::string high = general(1e3 * kSpeedEdges_per_s[1] * pressed_m, 2);
+    const std::string bands[kSpeedBands] = {"below " + low + " mm/s", low + " to " + high + " mm/s",
+                                            "above " + high + " mm/s"};
     for (std::size_t band = 0; band < kSpeedBands; ++band) {
       std::string quarters;
       for (std::size_t quarter = 0; quarter < kDepthQuarters; ++quarter) {
@@ -350,11 +348,11 @@ class Checker {
   }
 
   const PreparedRecording& prepared_;
-  const Recording& recording_;
-  const SurfaceEstimate& surface_;
-  const double noise_N_;
   const CheckRequest& request_;
   const RecordingFaults& faults_;
+  const Recording& recording_ = prepared_.recording;
+  const SurfaceEstimate& surface_ = prepared_.surface;
+  const double noise_N_ = prepared_.force_noise_N;
   RecordingCheck check_;
   RecordingMeasures& measures_ = check_.measures;
 };

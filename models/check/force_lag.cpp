@@ -1,4 +1,9 @@
-#include "models/check/force_lag.h"
+// The lag of the force channel of a recording behind its position channel. The memory of a material makes the force
+// lead the depth, never lag. A regression with non-negative weights,
+//   F(t) ~ c + E(p) + sum_t b_t + eta(p) v,   p, v: position and velocity at t - lag, c: force zero,
+// therefore has a larger residual where the force is late. A force that is early looks like viscosity, unless it begins
+// before contact. E and the spring of each Maxwell branch b_t are rising splines over the positions, all 0 in air.
+// Residuals are divided by the noise plus 3 % of the force, with a Huber loss beyond 3.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -7,6 +12,7 @@
 #include <tuple>
 
 #include "engine/tick/sensor_identification.h"
+#include "models/check/recording_measures.h"
 #include "models/linear/lapack.h"
 
 namespace palpate {
@@ -15,6 +21,9 @@ namespace {
 constexpr double kMostLag_s = 0.05;
 constexpr double kCoarse_s = 0.005;  // between lags, and at least between rows
 constexpr double kFine_s = 0.2e-3;
+// The required accuracy: a lag with two standard errors above it is not identified; lags that differ by at most this
+// agree. Rows that are more than ten times this apart identify no lag.
+constexpr double kAccuracy_s = 0.002;
 constexpr int kElastic = 24;
 constexpr int kBranch = 6;
 constexpr int kViscous = 6;
@@ -29,8 +38,7 @@ constexpr double kIdleScale = 0.1;
 
 // Integral of a hat: rises from 0 to 1 within one knot to either side.
 double rise(double u) {
-  if (u <= -1.0) return 0.0;
-  if (u >= 1.0) return 1.0;
+  u = std::clamp(u, -1.0, 1.0);
   return u < 0.0 ? 0.5 * (u + 1.0) * (u + 1.0) : 1.0 - 0.5 * (1.0 - u) * (1.0 - u);
 }
 
@@ -66,13 +74,9 @@ class LagRegression {
   LagRegression(const std::vector<Sample>& rows, double noise_N)
       : rows_(rows), noise_N_(noise_N), block_(blocks_by_path(rows)) {
     std::tie(low_m_, high_m_) = position_range_m(rows);
-    const auto count = static_cast<Eigen::Index>(rows.size());
-    force_N_.resize(count);
-    scale_.resize(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      force_N_(i) = rows[static_cast<std::size_t>(i)].force_N;
-      scale_(i) = 1.0 / (no_force_N(noise_N) + kForceShare * std::abs(force_N_(i)));
-    }
+    const auto force_N = [&](Eigen::Index i) { return rows[static_cast<std::size_t>(i)].force_N; };
+    force_N_ = Eigen::VectorXd::NullaryExpr(static_cast<Eigen::Index>(rows.size()), force_N);
+    scale_ = 1.0 / (no_force_N(noise_N) + kForceShare * force_N_.array().abs());
   }
 
   // The cost J of the fit at this lag, by blocks of equal path length.
@@ -157,28 +161,22 @@ int strokes_of(const std::vector<Sample>& rows, double middle_m) {
   return strokes;
 }
 
-// The first kSearchRows rows with at least kCoarse_s between them.
-std::vector<Sample> first_rows(const std::vector<Sample>& rows) {
-  std::vector<Sample> kept;
-  for (const Sample& row : rows) {
-    if (kept.size() == kSearchRows) break;
-    if (kept.empty() || row.tool.time_s >= kept.back().tool.time_s + kCoarse_s) kept.push_back(row);
-  }
-  return kept;
-}
-
 }  // namespace
 
 OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_noise_N) {
-  const std::vector<Sample> some = first_rows(rows);
+  std::vector<Sample> some;
+  for (const Sample& row : rows) {
+    if (some.size() == kSearchRows) break;
+    if (some.empty() || row.tool.time_s >= some.back().tool.time_s + kCoarse_s) some.push_back(row);
+  }
   if (some.size() < 100) return {};
   const double step_s = (some.back().tool.time_s - some.front().tool.time_s) / static_cast<double>(some.size() - 1);
-  if (step_s > 10.0 * kLagAccuracy_s) return {};
+  if (step_s > 10.0 * kAccuracy_s) return {};
   const auto [low_m, high_m] = position_range_m(some);
   if (!(high_m > low_m) || strokes_of(some, 0.5 * (low_m + high_m)) < kLeastStrokes) return {};
   const LagRegression regression(some, force_noise_N);
   return estimate_offset([&](double lag_s) { return regression.costs(lag_s); },
-                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kLagAccuracy_s, kLagAccuracy_s});
+                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kAccuracy_s, kAccuracy_s});
 }
 
 }  // namespace palpate

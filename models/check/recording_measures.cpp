@@ -5,9 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "engine/base/text.h"
-#include "models/samples/sample.h"
-
 namespace palpate {
 namespace {
 
@@ -25,6 +22,7 @@ constexpr double kStrokeShare = 0.15;
 constexpr std::size_t kShortestFlat = 3;
 constexpr double kHighForces = 0.5;  // of the greatest
 constexpr double kMostSteps = 0.9;
+constexpr std::size_t kMostSamples = 10000;  // of a recording in the noise floor; of a longer one every n-th is used
 
 void measure_sampling(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
   std::vector<double> steps_s;
@@ -134,8 +132,6 @@ void measure_motion(const std::vector<RecordingRow>& rows, RecordingMeasures& me
   measures.hold_change_N = measures.hold_end_N - mean_force_N(rows, longest_first + held / 2 + averaged, averaged);
 }
 
-constexpr std::size_t kMostSamples = 10000;  // of a recording; of a longer one every n-th is used
-
 }  // namespace
 
 RecordingMeasures measure_recording(const Recording& recording, double surface_m) {
@@ -152,13 +148,6 @@ RecordingMeasures measure_recording(const Recording& recording, double surface_m
   measures.outermost_contact_m = std::max(surface_m, measures.lowest_position_m);
   measure_motion(rows, measures);
   return measures;
-}
-
-std::array<std::string, kSpeedBands> speed_band_names(const RecordingMeasures& measures) {
-  const double pressed_mm = 1e3 * (measures.highest_position_m - measures.outermost_contact_m);
-  const std::string low = general(kSpeedEdges_per_s[0] * pressed_mm, 2);
-  const std::string high = general(kSpeedEdges_per_s[1] * pressed_mm, 2);
-  return {"below " + low + " mm/s", low + " to " + high + " mm/s", "above " + high + " mm/s"};
 }
 
 NoiseFloor noise_floor(const std::vector<const PreparedRecording*>& recordings, const JndLine& jnd) {

@@ -3,12 +3,13 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
 #include "models/samples/prepared_recording.h"
+#include "models/samples/profile_search.h"
+#include "models/samples/sample.h"
 
 namespace palpate {
 
@@ -43,8 +44,11 @@ struct RecordingMeasures {
 };
 
 RecordingMeasures measure_recording(const Recording& recording, double surface_m);
-// "below 10 mm/s", "10 to 50 mm/s", "above 50 mm/s".
-std::array<std::string, kSpeedBands> speed_band_names(const RecordingMeasures& measures);
+
+// The lag of the force behind the position (force_lag.cpp), of -50 to 50 ms. `rows`: of a recording, in time order;
+// uses the first 4000 that are at least 5 ms apart. `at` > 0 s: the force is late; 0 if the data do not identify a lag
+// (profile_search.h), with fewer than 100 rows or three strokes, or with rows too far apart.
+OffsetEstimate find_force_lag(const std::vector<Sample>& rows, double force_noise_N);
 
 // The figures of merit of a perfect model, whose error e is normal with the standard deviation s of the force sensor:
 //   within the JND = mean over the samples of P(|e| <= JND(f));  99 % error: the q with mean P(|e| <= q JND(f)) = 0.99

@@ -18,7 +18,7 @@
 #include "models/correction/methods.h"
 #include "models/correction/orthogonal_basis.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate {
 namespace {

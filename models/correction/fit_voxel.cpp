@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "models/correction/methods.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate {
 namespace {

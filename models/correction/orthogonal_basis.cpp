@@ -5,7 +5,7 @@
 
 #include "engine/base/parallel.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/polynomial_tail.h"
+#include "models/model/kernels.h"
 
 namespace palpate {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "models/correction/sites.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/base/parallel.h"
-#include "models/model/rbf/polynomial_tail.h"
+#include "models/model/kernels.h"
 
 namespace palpate {
 

@@ -13,7 +13,7 @@
 
 #include "models/correction/sites.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate {
 

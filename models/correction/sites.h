@@ -18,7 +18,7 @@
 
 #include "engine/base/random_stream.h"
 #include "engine/base/result.h"
-#include "models/model/rbf/kernels.h"
+#include "models/model/kernels.h"
 #include "models/samples/samples.h"
 
 namespace palpate {

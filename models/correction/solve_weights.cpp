@@ -9,7 +9,7 @@
 #include "engine/base/parallel.h"
 #include "models/correction/projected_kernel.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/polynomial_tail.h"
+#include "models/model/kernels.h"
 
 namespace palpate {
 namespace {

@@ -19,7 +19,7 @@
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "models/correction/sites.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate {
 

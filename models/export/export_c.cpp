@@ -6,8 +6,7 @@
 
 #include "engine/base/text.h"
 #include "models/export/c_sources.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate {
 namespace {
@@ -263,12 +262,10 @@ std::string export_c(const ModelData& data, const SensorSpec& sensor, bool singl
   out.define("MOTION_STATES", std::size_t{3});
   out.define("FEATURES", data.features.size());
   out.define("SURFACE_POSITION_M", surface_position_m(data.features));
-  // A press deeper than the recorded ones, as in the library. Infinity has no literal in C.
-  std::size_t depth = 0;
-  const double deepest_m = std::min(deepest_in_domain_m(data, depth), 1e30);
-  out.define("DEPTH_FEATURE", depth);
-  out.define("DEEPEST_M", deepest_m);
-  out.define("SHALLOWEST_M", shallowest_in_domain_m(data));
+  const FittedModel model(data);
+  out.define("DEPTH_FEATURE", model.depth_feature());
+  out.define("DEEPEST_M", std::min(model.deepest_m(), 1e30));  // infinity has no literal in C
+  out.define("SHALLOWEST_M", model.shallowest_m());
   out.add(c_source::declarations);
   out.add(c_source::motion_filter);
   write_features(out, data.features);

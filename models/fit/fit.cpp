@@ -261,7 +261,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const ModelPlan& 
   }
   if (data.surface_step_N > 0.0) {
     fit.notes.push_back("the recordings never leave the material: above a depth of " +
-                        general(1e3 * shallowest_in_domain_m(data), 3) +
+                        general(1e3 * FittedModel(data).shallowest_m(), 3) +
                         " mm the model is out of its domain, and at the surface its force steps from 0 to " +
                         general(data.surface_step_N, 3) + " N");
   }

@@ -18,7 +18,7 @@
 #include "engine/base/result.h"
 #include "models/correction/methods.h"
 #include "models/correction/sites.h"
-#include "models/model/rbf/kernels.h"
+#include "models/model/kernels.h"
 #include "models/trend/trend_columns.h"
 
 namespace palpate {

@@ -13,8 +13,8 @@
 #include "models/correction/projected_kernel.h"
 #include "models/correction/solve_weights.h"
 #include "models/linear/lapack.h"
-#include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
+#include "models/model/kernels.h"
 #include "models/samples/cross_validation.h"
 
 namespace palpate {

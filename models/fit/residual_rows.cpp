@@ -11,9 +11,9 @@
 #include "engine/tick/sensor_identification.h"
 #include "models/correction/projected_kernel.h"
 #include "models/linear/lapack.h"
+#include "models/model/correction.h"
 #include "models/model/domain_guard.h"
-#include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/kernels.h"
 
 namespace palpate {
 namespace {

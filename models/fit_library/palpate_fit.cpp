@@ -60,7 +60,7 @@ using namespace palpate;
 palpate_model* palpate_fit(const palpate_recording* recordings, size_t recording_count, const char* options,
                            int (*progress)(double fraction, void* context), void* context, char* error,
                            size_t error_size) {
-  return library::made<palpate_model>(error, error_size, [&]() -> Result<palpate_model*> {
+  return library::made<palpate_model*>(nullptr, error, error_size, [&]() -> Result<palpate_model*> {
     const auto began = std::chrono::steady_clock::now();
     if (recordings == nullptr || recording_count == 0) return Error{"found no recording, expected one or more"};
     const auto plan = parse_plan_options(options == nullptr ? "" : options);

@@ -53,13 +53,13 @@ inline void write_text(char* text, std::size_t size, std::string_view message) n
   text[count] = '\0';
 }
 
-// For functions that return a handle: returns the value of the Result that `work` returns. If it has an error or `work`
-// throws, returns null and writes the error to `error`, which is otherwise empty.
+// Returns the value of the Result that `work` returns. If it has an error or `work` throws, returns `failed` and writes
+// the error to `error`, which is otherwise empty.
 template <typename T, typename Work>
-T* made(char* error, std::size_t error_size, Work&& work) noexcept {
+T made(T failed, char* error, std::size_t error_size, Work&& work) noexcept {
   write_text(error, error_size, "");
   try {
-    const Result<T*> done = work();
+    const Result<T> done = work();
     if (done) return *done;
     write_text(error, error_size, done.error().message);
   } catch (const std::exception& exception) {
@@ -67,18 +67,7 @@ T* made(char* error, std::size_t error_size, Work&& work) noexcept {
   } catch (...) {
     write_text(error, error_size, "an exception that is not a std::exception");
   }
-  return nullptr;
-}
-
-// The same for functions that return 0, or -1 after an error. `work` returns a Status.
-template <typename Work>
-int status_of(char* error, std::size_t error_size, Work&& work) noexcept {
-  int done = 0;
-  const auto finished = [&]() -> Result<int*> {
-    const Status status = work();
-    return status ? Result<int*>(&done) : status.error();
-  };
-  return made<int>(error, error_size, finished) != nullptr ? 0 : -1;
+  return failed;
 }
 
 }  // namespace palpate::library

@@ -33,11 +33,9 @@ struct palpate_stream {
   palpate::SensorSpec sensor;
   palpate::HapticsTick tick;
   palpate::Impedance impedance;
-  bool accepted = false;  // the last sample
-  bool restarted = true;  // before the first sample
-  // The values of the last accepted sample.
-  bool out_of_domain = false;
-  double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
+  bool accepted = false;                                                // the last sample
+  bool restarted = true;                                                // before the first sample
+  double predicted_error_N = std::numeric_limits<double>::quiet_NaN();  // at the last accepted sample
 };
 
 struct palpate_limiter {
@@ -123,15 +121,6 @@ Result<ForceLimits> force_limits(const palpate_limits& limits) {
                      limits.thermal_time_s, limits.stale_after_s,   limits.stop_s};
 }
 
-double step(palpate_stream& stream, const ToolSample& sample) noexcept {
-  const TickSnapshot& snapshot = stream.tick.step(sample);
-  stream.accepted = snapshot.fault != TickFault::bad_sample && snapshot.fault != TickFault::time_not_later;
-  if (!stream.accepted) return 0.0;
-  stream.out_of_domain = (snapshot.out_of_domain_mask & 1U) != 0;
-  stream.predicted_error_N = snapshot.predicted_error_N[0];
-  return snapshot.force_N[0];
-}
-
 // A longer interval counts as this, because a pause is no rate.
 constexpr double kPause_s = 0.1;
 
@@ -170,7 +159,7 @@ using namespace palpate::library;
 int palpate_abi_version(void) { return PALPATE_ABI_VERSION; }
 
 palpate_model* palpate_model_load(const char* path, char* error, size_t error_size) {
-  return made<palpate_model>(error, error_size, [&]() -> Result<palpate_model*> {
+  return made<palpate_model*>(nullptr, error, error_size, [&]() -> Result<palpate_model*> {
     if (path == nullptr) return Error{"found no path, expected that of a model file"};
     auto model = load_model(path);
     if (!model) return model.error();
@@ -187,9 +176,10 @@ const char* palpate_model_name(const palpate_model* model) {
 const char* palpate_model_report(const palpate_model* model) { return model == nullptr ? "" : model->report.c_str(); }
 
 int palpate_model_save(const palpate_model* model, const char* path, int overwrite, char* error, size_t error_size) {
-  return status_of(error, error_size, [&]() -> Status {
+  return made<int>(-1, error, error_size, [&]() -> Result<int> {
     if (model == nullptr || path == nullptr) return Error{"found no model or no path, expected both"};
-    return save_model(path, model->model->data(), overwrite != 0);
+    const Status saved = save_model(path, model->model->data(), overwrite != 0);
+    return saved ? Result<int>(0) : saved.error();
   });
 }
 
@@ -202,7 +192,7 @@ const char* palpate_model_feature_name(const palpate_model* model, size_t index)
 }
 
 palpate_recording* palpate_recording_load(const char* path, char* error, size_t error_size) {
-  return made<palpate_recording>(error, error_size, [&]() -> Result<palpate_recording*> {
+  return made<palpate_recording*>(nullptr, error, error_size, [&]() -> Result<palpate_recording*> {
     if (path == nullptr) return Error{"found no path, expected that of a recording"};
     auto recording = read_recording(path);
     if (!recording) return recording.error();
@@ -214,7 +204,7 @@ void palpate_recording_free(palpate_recording* recording) { delete static_cast<O
 
 int palpate_in_contact(const palpate_recording* given, unsigned char* in_contact) {
   if (given == nullptr || in_contact == nullptr || given->position_m == nullptr || given->force_N == nullptr) return -1;
-  return status_of(nullptr, 0, [&]() -> Status {
+  return made<int>(-1, nullptr, 0, [&]() -> Result<int> {
     const Recording recording = recording_of(*given);
     // As in a replay, which reads long recordings in chunks, from the first rows.
     const std::size_t first_rows = std::min(recording.rows.size(), kSensorIdentificationRows);
@@ -222,7 +212,7 @@ int palpate_in_contact(const palpate_recording* given, unsigned char* in_contact
     std::ranges::transform(recording.rows, in_contact, [&](const RecordingRow& row) {
       return row.position_m > 0.0 || std::abs(row.force_N) > least_N ? 1 : 0;
     });
-    return {};
+    return 0;
   });
 }
 
@@ -234,7 +224,7 @@ palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_st
 
 palpate_stream* palpate_stream_new_with_sensor(const palpate_model* model, const palpate_sensor* sensor, char* error,
                                                size_t error_size) {
-  return made<palpate_stream>(error, error_size, [&]() -> Result<palpate_stream*> {
+  return made<palpate_stream*>(nullptr, error, error_size, [&]() -> Result<palpate_stream*> {
     if (model == nullptr) return Error{"found no model, expected one that palpate_model_load gave"};
     if (sensor == nullptr) return Error{"found no sensor, expected a palpate_sensor"};
     const auto spec = sensor_spec(*sensor);
@@ -245,10 +235,10 @@ palpate_stream* palpate_stream_new_with_sensor(const palpate_model* model, const
 
 int palpate_sensor_of(const palpate_recording* given, palpate_sensor* sensor) {
   if (given == nullptr || sensor == nullptr || given->position_m == nullptr) return -1;
-  return status_of(nullptr, 0, [&]() -> Status {
+  return made<int>(-1, nullptr, 0, [&]() -> Result<int> {
     const Recording recording = recording_of(*given);
     *sensor = sensor_from(identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns));
-    return {};
+    return 0;
   });
 }
 
@@ -257,7 +247,7 @@ void palpate_stream_free(palpate_stream* stream) { delete stream; }
 void palpate_stream_reset(palpate_stream* stream) {
   if (stream == nullptr) return;
   stream->tick.reset();
-  stream->accepted = stream->out_of_domain = false;
+  stream->accepted = false;
   stream->restarted = true;
   stream->predicted_error_N = std::numeric_limits<double>::quiet_NaN();
 }
@@ -269,8 +259,13 @@ double palpate_stream_force(palpate_stream* stream, double time_s, double positi
 double palpate_stream_force_with_motion(palpate_stream* stream, double time_s, double position_m,
                                         double velocity_m_per_s, double acceleration_m_per_s2) {
   if (stream == nullptr) return 0.0;
-  return step(*stream, {time_s, position_m, stream->sensor.has_velocity ? velocity_m_per_s : 0.0,
-                        stream->sensor.has_acceleration ? acceleration_m_per_s2 : 0.0});
+  const TickSnapshot& tick =
+      stream->tick.step({time_s, position_m, stream->sensor.has_velocity ? velocity_m_per_s : 0.0,
+                         stream->sensor.has_acceleration ? acceleration_m_per_s2 : 0.0});
+  stream->accepted = tick.fault != TickFault::bad_sample && tick.fault != TickFault::time_not_later;
+  if (!stream->accepted) return 0.0;
+  stream->predicted_error_N = tick.predicted_error_N[0];
+  return tick.force_N[0];
 }
 
 int palpate_stream_forces(palpate_stream* stream, size_t n, const double* time_s, const double* position_m,
@@ -298,7 +293,7 @@ int palpate_stream_replay(palpate_stream* stream, const palpate_recording* motio
 int palpate_stream_accepted(const palpate_stream* stream) { return stream != nullptr && stream->accepted ? 1 : 0; }
 
 int palpate_stream_out_of_domain(const palpate_stream* stream) {
-  return stream != nullptr && stream->out_of_domain ? 1 : 0;
+  return stream != nullptr && (stream->tick.snapshot().out_of_domain_mask & 1U) != 0 ? 1 : 0;
 }
 
 double palpate_stream_predicted_error(const palpate_stream* stream) {
@@ -313,7 +308,7 @@ void palpate_limits_default(palpate_limits* limits) {
 }
 
 palpate_limiter* palpate_limiter_new(const palpate_limits* limits, char* error, size_t error_size) {
-  return made<palpate_limiter>(error, error_size, [&]() -> Result<palpate_limiter*> {
+  return made<palpate_limiter*>(nullptr, error, error_size, [&]() -> Result<palpate_limiter*> {
     palpate_limits chosen;
     palpate_limits_default(&chosen);
     if (limits != nullptr) chosen = *limits;

@@ -61,9 +61,21 @@ std::recursive_mutex& blas_mutex() {
 
 int to_int(Eigen::Index value) { return static_cast<int>(value); }
 
-template <typename Matrix>
-int leading(const Matrix& a) {
-  return std::max(1, to_int(a.outerStride()));
+int leading(const auto& a) { return std::max(1, to_int(a.outerStride())); }
+
+void rank_update(const char* transpose, Eigen::Index size, Eigen::Index depth, const ConstMatrixRef& a, MatrixRef c) {
+  assert(c.rows() == size && c.cols() == size);
+  if (size == 0) return;
+  const int n = to_int(size), k = to_int(depth);
+  const double one = 1.0, zero = 0.0;
+  const int lda = leading(a), ldc = leading(c);
+  dsyrk_("L", transpose, &n, &k, &one, a.data(), &lda, &zero, c.data(), &ldc);
+}
+
+// 1 / sqrt(d_i), and 0 where d_i is not above 0: scales a matrix with this diagonal to a diagonal of ones.
+Eigen::VectorXd inverse_roots(Eigen::VectorXd diagonal) {
+  for (double& value : diagonal) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
+  return diagonal;
 }
 
 }  // namespace
@@ -108,19 +120,6 @@ void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b
   dgemm_(transpose_a ? "T" : "N", transpose_b ? "T" : "N", &m, &n, &k, &alpha, a.data(), &lda, b.data(), &ldb, &beta,
          c.data(), &ldc);
 }
-
-namespace {
-
-void rank_update(const char* transpose, Eigen::Index size, Eigen::Index depth, const ConstMatrixRef& a, MatrixRef c) {
-  assert(c.rows() == size && c.cols() == size);
-  if (size == 0) return;
-  const int n = to_int(size), k = to_int(depth);
-  const double one = 1.0, zero = 0.0;
-  const int lda = leading(a), ldc = leading(c);
-  dsyrk_("L", transpose, &n, &k, &one, a.data(), &lda, &zero, c.data(), &ldc);
-}
-
-}  // namespace
 
 void gram(const ConstMatrixRef& a, MatrixRef c) { rank_update("T", a.cols(), a.rows(), a, c); }
 
@@ -217,8 +216,7 @@ void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) {
 }
 
 Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double ridge) {
-  Eigen::VectorXd scale = a.diagonal();
-  for (double& value : scale) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
+  const Eigen::VectorXd scale = inverse_roots(a.diagonal());
   const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
   for (; ridge < 1.0; ridge *= 100.0) {
     Eigen::MatrixXd factor = scaled;
@@ -233,20 +231,18 @@ Eigen::VectorXd solve_with_ridge(const Eigen::MatrixXd& a, const Eigen::VectorXd
 
 Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right_side,
                                    const Eigen::VectorXd& start) {
-  Eigen::VectorXd inverse_norm = gram.diagonal();
-  for (double& value : inverse_norm) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
+  const Eigen::VectorXd inverse_norm = inverse_roots(gram.diagonal());
   Eigen::MatrixXd scaled = inverse_norm.asDiagonal() * gram * inverse_norm.asDiagonal();
   // Far below the information in a recording and far above rounding: decides only between equal columns.
   scaled.diagonal().array() += 1e-8;
   const Eigen::VectorXd right = right_side.cwiseProduct(inverse_norm);
   const Eigen::Index size = right.size();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
-  std::vector<bool> passive(static_cast<std::size_t>(size), false);
-  const auto is_passive = [&](Eigen::Index i) { return passive[static_cast<std::size_t>(i)]; };
+  Eigen::Array<bool, Eigen::Dynamic, 1> passive = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(size, false);
   const auto unconstrained = [&] {
     std::vector<Eigen::Index> index;
     for (Eigen::Index i = 0; i < size; ++i)
-      if (is_passive(i)) index.push_back(i);
+      if (passive(i)) index.push_back(i);
     Eigen::VectorXd full = Eigen::VectorXd::Zero(size);
     const Eigen::MatrixXd part = scaled(index, index);
     const Eigen::VectorXd part_right = right(index);
@@ -258,19 +254,13 @@ Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::Vec
   const auto move_to_minimum = [&] {
     Eigen::VectorXd candidate = unconstrained();
     for (Eigen::Index leaving = 0; leaving < size; ++leaving) {
-      double step = 1.0;
-      Eigen::Index blocking = -1;
-      for (Eigen::Index i = 0; i < size; ++i) {
-        if (!is_passive(i) || candidate(i) > 0.0) continue;
-        const double reach = x(i) / std::max(x(i) - candidate(i), 1e-300);
-        if (blocking >= 0 && !(reach < step)) continue;
-        step = std::min(1.0, reach);
-        blocking = i;
-      }
-      if (blocking < 0) break;
-      x += step * (candidate - x);
+      const auto negative = passive && !(candidate.array() > 0.0);
+      if (!negative.any()) break;
+      const Eigen::ArrayXd reach = negative.select(x.array() / (x - candidate).array().max(1e-300), 2.0);
+      Eigen::Index blocking = 0;
+      x += reach.minCoeff(&blocking) * (candidate - x);
       x(blocking) = 0.0;
-      passive[static_cast<std::size_t>(blocking)] = false;
+      passive(blocking) = false;
       candidate = unconstrained();
     }
     x = candidate;
@@ -278,20 +268,16 @@ Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::Vec
   if (start.size() > 0 && (start.array() > 0.0).any()) {
     const auto moving = inverse_norm.array() > 0.0;
     x = moving.select(start.array() / moving.select(inverse_norm.array(), 1.0), 0.0).matrix();
-    for (Eigen::Index i = 0; i < size; ++i) passive[static_cast<std::size_t>(i)] = x(i) > 0.0;
+    passive = x.array() > 0.0;
     move_to_minimum();
   }
   // The method ends after a few changes; 3 n is the limit of its authors.
   for (Eigen::Index change = 0; change < 3 * size; ++change) {
     const Eigen::VectorXd gradient = right - scaled * x;
     const double tolerance = 1e-12 * std::max(1e-300, right.cwiseAbs().maxCoeff());
-    Eigen::Index entering = -1;
-    for (Eigen::Index i = 0; i < size; ++i) {
-      if (is_passive(i) || gradient(i) <= tolerance) continue;
-      if (entering < 0 || gradient(i) > gradient(entering)) entering = i;
-    }
-    if (entering < 0) break;
-    passive[static_cast<std::size_t>(entering)] = true;
+    Eigen::Index entering = 0;
+    if (!(passive.select(0.0, gradient.array()).maxCoeff(&entering) > tolerance)) break;
+    passive(entering) = true;
     move_to_minimum();
   }
   return x.cwiseMax(0.0).cwiseProduct(inverse_norm);

@@ -58,8 +58,7 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
   return cover;
 }
 
-NearestDistance::NearestDistance(const Eigen::MatrixXd& points)
-    : loops_(simd::nearest_loops(static_cast<int>(points.rows()))) {
+NearestDistance::NearestDistance(const Eigen::MatrixXd& points) : loops_(simd::loops(static_cast<int>(points.rows()))) {
   std::vector<Eigen::Index> order = all_of(points);
   order.resize(simd::whole_vectors(order.size(), simd::kSimdPadFloat), order.back());
   rows_ = points(Eigen::all, order).transpose().unaryExpr(&simd::nearest_float);
@@ -79,7 +78,7 @@ DomainGuard::DomainGuard(const DomainCover& cover)
       outer_radius_(cover.outer_radius),
       near_squared_(std::nextafter(static_cast<float>(cover.inner_radius * cover.inner_radius), 0.0F)),
       all_(cover.points),
-      leaf_(simd::nearest_loops(static_cast<int>(cover.points.rows())).leaf) {
+      leaf_(simd::loops(static_cast<int>(cover.points.rows())).leaf) {
   split(cover.points, all_of(cover.points), 0);
 }
 

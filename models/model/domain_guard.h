@@ -44,7 +44,7 @@ class NearestDistance {
 
  private:
   Eigen::MatrixXf rows_;  // one column for each coordinate, padded
-  simd::NearestLoops loops_;
+  simd::Loops loops_;
 };
 
 // The trust around a cover. A query examines the points of one leaf of a tree of five median splits; if none of them is
@@ -81,7 +81,7 @@ class DomainGuard {
   NearestDistance all_;
   simd::Splits splits_;
   std::vector<NearestDistance> leaves_;
-  simd::LeafFunction leaf_ = nullptr;
+  decltype(simd::Loops::leaf) leaf_ = nullptr;
 };
 
 }  // namespace palpate

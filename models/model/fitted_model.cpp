@@ -1,6 +1,5 @@
 #include "models/model/fitted_model.h"
 
-#include <limits>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -54,32 +53,18 @@ SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m) {
   return theirs ? *data.sensor : SensorSpec{encoder_step_m, 0.0};
 }
 
-double deepest_in_domain_m(const ModelData& data, std::size_t& feature) {
-  double deepest_m = std::numeric_limits<double>::infinity();
-  feature = 0;
-  for (std::size_t i = 0; i < data.features.size(); ++i) {
-    if (data.features[i].kind != FeatureKind::depth) continue;
-    const auto k = static_cast<Eigen::Index>(i);
-    feature = i;
-    deepest_m = data.upper(k) + kDeeper * (data.upper(k) - data.lower(k));
-  }
-  return deepest_m;
-}
-
-double shallowest_in_domain_m(const ModelData& data) {
-  std::size_t depth = 0;
-  if (!(data.surface_step_N > 0.0) || !std::isfinite(deepest_in_domain_m(data, depth))) return 0.0;
-  return std::max(data.lower(static_cast<Eigen::Index>(depth)), std::numeric_limits<double>::min());
-}
-
 FittedModel::FittedModel(ModelData data)
     : data_(std::move(data)), trend_inputs_(data_.features), guard_(data_.cover), dimension_(data_.features.size()) {
   for (std::size_t i = 0; i < dimension_; ++i) {
     offset_[i] = data_.offset(static_cast<Eigen::Index>(i));
     inverse_scale_[i] = 1.0 / data_.scale(static_cast<Eigen::Index>(i));
   }
-  deepest_m_ = deepest_in_domain_m(data_, depth_);
-  shallowest_m_ = shallowest_in_domain_m(data_);
+  if (trend_inputs_.depth != TrendInputs::kNone) {
+    depth_ = trend_inputs_.depth;
+    const double lower_m = data_.lower(trend_inputs_.depth), upper_m = data_.upper(trend_inputs_.depth);
+    deepest_m_ = upper_m + kDeeper * (upper_m - lower_m);
+    if (data_.surface_step_N > 0.0) shallowest_m_ = std::max(lower_m, std::numeric_limits<double>::min());
+  }
   trusts_everywhere_ = data_.cover.inner_radius >= kEverywhere && !data_.error_bound;
 }
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -111,11 +112,6 @@ Status check_forces(const ModelData& data);
 // The sensor of a tool with this encoder step: the sensor of the training recordings if the step is theirs or 0 (not
 // known), else one with this step and no noise.
 SensorSpec sensor_with_step(const ModelData& data, double encoder_step_m);
-// The greatest depth in the domain, m; a greater one is out of it at any distance from the data. Infinite without a
-// depth feature. `feature`: receives the index of the depth feature, or 0.
-double deepest_in_domain_m(const ModelData& data, std::size_t& feature);
-// The least depth in the domain, m: above 0 only with a step at the surface.
-double shallowest_in_domain_m(const ModelData& data);
 
 class FittedModel final : public ForceModel {
  public:
@@ -124,6 +120,8 @@ class FittedModel final : public ForceModel {
 
   ForceEstimate evaluate(const double* features) const noexcept override;
   const std::vector<FeatureSpec>& features() const noexcept override { return data_.features; }
+  // The greatest depth in the domain; a greater one is out of it at any distance from the data. Infinite without a
+  // depth feature.
   double deepest_m() const noexcept override { return deepest_m_; }
   double shallowest_m() const noexcept override { return shallowest_m_; }
   const std::string& name() const noexcept override { return data_.name; }
@@ -131,15 +129,16 @@ class FittedModel final : public ForceModel {
   int centre_count() const noexcept override { return data_.centre_count(); }
 
   const ModelData& data() const noexcept { return data_; }
+  // The index of the depth feature; 0 without one.
+  std::size_t depth_feature() const noexcept { return depth_; }
 
  private:
   ModelData data_;
   TrendInputs trend_inputs_;
   DomainGuard guard_;
   std::size_t dimension_ = 0;
-  std::size_t depth_ = 0;   // index of the depth feature
-  double deepest_m_ = 0.0;  // deepest_in_domain_m
-  double shallowest_m_ = 0.0;
+  std::size_t depth_ = 0;
+  double deepest_m_ = std::numeric_limits<double>::infinity(), shallowest_m_ = 0.0;
   bool trusts_everywhere_ = false;  // no distance to the data is needed
   std::array<double, kMaxFeatures> offset_{};
   std::array<double, kMaxFeatures> inverse_scale_{};

@@ -16,8 +16,6 @@ std::array<Quadratic, 3> b_splines(std::size_t piece) {
 
 }  // namespace
 
-double ElasticSpline::at(double u) const noexcept { return trend_equation::elastic_at(pieces_N.data(), u); }
-
 std::vector<ElasticSpline> spline_basis() {
   std::vector<ElasticSpline> basis(kElasticTerms);
   for (std::size_t i = 0; i < kElasticTerms; ++i) {

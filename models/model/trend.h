@@ -18,25 +18,6 @@ namespace palpate {
 inline constexpr std::size_t kElasticPieces = 32;
 inline constexpr std::size_t kElasticCoefficients = 4;  // of a piece
 
-// The elastic response, a cubic spline on equal pieces of the recorded depth,
-//   E(u) = sum_j c_ij t^j,  i = floor(n u),  t = n u - i,  n = kElasticPieces,
-// with u = depth / reference depth >= 0. Beyond u = 1 it continues along its tangent there. An evaluation takes one
-// look-up and one polynomial, independent of the number of pieces.
-struct ElasticSpline {
-  // The coefficients of t^0 to t^3 of every piece, N.
-  std::array<double, kElasticPieces * kElasticCoefficients> pieces_N{};
-
-  double at(double u) const noexcept;
-  bool operator==(const ElasticSpline&) const = default;
-};
-
-// The kElasticTerms basis splines are the integrals from 0 to u of the quadratic B-splines on the pieces. E therefore
-// increases if all weights, in newtons, are non-negative. With a penalty on the differences of neighbouring weights it
-// is a P-spline (Eilers & Marx 1996).
-inline constexpr std::size_t kElasticTerms = kElasticPieces + 2;
-std::vector<ElasticSpline> spline_basis();
-ElasticSpline combined_spline(const std::vector<ElasticSpline>& basis, const double* weights);
-
 inline constexpr std::size_t kViscosityCoefficients = 3;
 
 // The source text that exported models share with the library.
@@ -51,6 +32,25 @@ static_assert(kViscosityCoefficients == 3 && kElasticCoefficients == 4);
 #undef ELASTIC_PIECES
 #undef R
 }  // namespace trend_equation
+
+// The elastic response, a cubic spline on equal pieces of the recorded depth,
+//   E(u) = sum_j c_ij t^j,  i = floor(n u),  t = n u - i,  n = kElasticPieces,
+// with u = depth / reference depth >= 0. Beyond u = 1 it continues along its tangent there. An evaluation takes one
+// look-up and one polynomial, independent of the number of pieces.
+struct ElasticSpline {
+  // The coefficients of t^0 to t^3 of every piece, N.
+  std::array<double, kElasticPieces * kElasticCoefficients> pieces_N{};
+
+  double at(double u) const noexcept { return trend_equation::elastic_at(pieces_N.data(), u); }
+  bool operator==(const ElasticSpline&) const = default;
+};
+
+// The kElasticTerms basis splines are the integrals from 0 to u of the quadratic B-splines on the pieces. E therefore
+// increases if all weights, in newtons, are non-negative. With a penalty on the differences of neighbouring weights it
+// is a P-spline (Eilers & Marx 1996).
+inline constexpr std::size_t kElasticTerms = kElasticPieces + 2;
+std::vector<ElasticSpline> spline_basis();
+ElasticSpline combined_spline(const std::vector<ElasticSpline>& basis, const double* weights);
 
 // The indices of the trend's inputs among the features, determined once outside the tick.
 struct TrendInputs {

@@ -15,8 +15,6 @@
 #include <limits>
 #include <utility>
 
-#include "models/model/rbf/polynomial_tail.h"
-
 HWY_BEFORE_NAMESPACE();
 namespace palpate::simd {
 namespace HWY_NAMESPACE {
@@ -25,17 +23,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 // A point with every coordinate in all lanes.
 template <int kDimension, typename D>
 struct Broadcast {
-  // Not defaulted: g++ compiles a defaulted constructor for the baseline instruction set only.
-  HWY_INLINE Broadcast() {}
+  HWY_INLINE Broadcast(D d, const hn::TFromD<D>* x) {
+    for (int k = 0; k < kDimension; ++k) coordinate[k] = hn::Set(d, x[k]);
+  }
   hn::Vec<D> coordinate[kDimension];
 };
-
-template <int kDimension, typename D>
-HWY_INLINE Broadcast<kDimension, D> broadcast(D d, const hn::TFromD<D>* x) {
-  Broadcast<kDimension, D> point;
-  for (int k = 0; k < kDimension; ++k) point.coordinate[k] = hn::Set(d, x[k]);
-  return point;
-}
 
 // |x - point_i|^2 for the next points from `coordinates` on.
 template <int kDimension, typename D>
@@ -101,7 +93,7 @@ double evaluate(const Points& points, const double* weights, const double* tail,
   const size_t lanes = hn::Lanes(d);
   double x[kDimension];
   for (int k = 0; k < kDimension; ++k) x[k] = without_denormals(query_point[k]);
-  const auto query = broadcast<kDimension>(d, x);
+  const Broadcast<kDimension, Doubles> query(d, x);
   const double tail_part = tail_value(tail, tail_degree(kKind), kDimension, x);
   Vector sum = hn::IfThenElseZero(hn::FirstN(d, 1), hn::Set(d, tail_part));
   Vector more = hn::Zero(d);
@@ -120,7 +112,7 @@ template <KernelKind kKind, int kDimension>
 void column(const Points& points, size_t count, const double* centre, double* out) noexcept {
   const Doubles d;
   const size_t lanes = hn::Lanes(d);
-  const auto query = broadcast<kDimension>(d, centre);
+  const Broadcast<kDimension, Doubles> query(d, centre);
   size_t i = 0;
   for (; i + lanes <= count; i += lanes) hn::StoreU(kernel_at<kKind, kDimension>(points, i, query), d, out + i);
   if (i == count) return;
@@ -134,7 +126,7 @@ using Floats = hn::CappedTag<float, kSimdPadFloat>;
 template <int kDimension>
 HWY_INLINE hn::Vec<Floats> smallest_squared(const float* coordinates, size_t count, const float* x) {
   const Floats d;
-  const auto query = broadcast<kDimension>(d, x);
+  const Broadcast<kDimension, Floats> query(d, x);
   hn::Vec<Floats> smallest = hn::Set(d, std::numeric_limits<float>::infinity());
   for (size_t i = 0; i < count; i += kSimdPadFloat)
     for (size_t k = i; k < i + kSimdPadFloat; k += hn::Lanes(d))
@@ -199,24 +191,17 @@ size_t leaf_of(const Splits& splits, const double* x, float* rounded) noexcept {
 
 // The loops of kernel k and dimension d + 1 are at index 8 k + d.
 template <int... kIndex>
-KernelLoops pick_kernel(size_t place, std::integer_sequence<int, kIndex...>) {
-  static constexpr KernelLoops kTable[] = {{&evaluate<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>,
-                                            &column<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>}...};
-  return kTable[place];
+Loops pick(size_t index, std::integer_sequence<int, kIndex...>) {
+  static constexpr Loops kTable[] = {{&evaluate<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>,
+                                      &column<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>,
+                                      &nearest<kIndex % 8 + 1>, &within<kIndex % 8 + 1>, &leaf_of<kIndex % 8 + 1>}...};
+  return kTable[index];
 }
 
-KernelLoops get_kernel(KernelKind kind, int dimension) {
-  return pick_kernel(8 * static_cast<size_t>(kind) + static_cast<size_t>(dimension - 1),
-                     std::make_integer_sequence<int, 8 * static_cast<int>(kKernelKinds.size())>{});
+Loops get_loops(int dimension, KernelKind kernel) {
+  return pick(8 * static_cast<size_t>(kernel) + static_cast<size_t>(dimension - 1),
+              std::make_integer_sequence<int, 8 * static_cast<int>(kKernelKinds.size())>{});
 }
-
-template <int... kIndex>
-NearestLoops pick_nearest(int dimension, std::integer_sequence<int, kIndex...>) {
-  static constexpr NearestLoops kTable[] = {{&nearest<kIndex + 1>, &within<kIndex + 1>, &leaf_of<kIndex + 1>}...};
-  return kTable[dimension - 1];
-}
-
-NearestLoops get_nearest(int dimension) { return pick_nearest(dimension, std::make_integer_sequence<int, 8>{}); }
 
 int64_t get_target() { return HWY_TARGET; }
 
@@ -227,12 +212,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::simd {
 
-HWY_EXPORT(get_kernel);
-HWY_EXPORT(get_nearest);
+HWY_EXPORT(get_loops);
 HWY_EXPORT(get_target);
 
-KernelLoops kernel_loops(KernelKind kind, int dimension) { return HWY_DYNAMIC_DISPATCH(get_kernel)(kind, dimension); }
-NearestLoops nearest_loops(int dimension) { return HWY_DYNAMIC_DISPATCH(get_nearest)(dimension); }
+Loops loops(int dimension, KernelKind kernel) { return HWY_DYNAMIC_DISPATCH(get_loops)(dimension, kernel); }
 
 std::string target_name() { return hwy::TargetName(HWY_DYNAMIC_DISPATCH(get_target)()); }
 

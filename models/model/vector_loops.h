@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "models/model/rbf/kernels.h"
+#include "models/model/kernels.h"
 
 namespace palpate::simd {
 
@@ -17,7 +17,7 @@ constexpr std::size_t whole_vectors(std::size_t count, std::size_t lanes) noexce
   return (count + lanes - 1) / lanes * lanes;
 }
 
-// ---- radial basis functions (rbf_evaluate.h), in double precision ----
+// ---- radial basis functions (correction.h), in double precision ----
 
 // The number of doubles in the widest vector; the number in every narrower one divides it.
 inline constexpr std::size_t kSimdPad = 8;
@@ -32,20 +32,6 @@ struct Points {
   std::size_t padded = 0;  // a multiple of kSimdPad, reached with points of weight 0
   int dimension = 0;
 };
-
-// sum_j weights[j] phi(|x - point_j|) + sum_k tail[k] g_k(x), with the tail of the kernel's degree (polynomial_tail.h).
-// Coordinates of x below kTiny count as 0.
-using EvaluateFunction = double (*)(const Points& points, const double* weights, const double* tail,
-                                    const double* x) noexcept;
-// out[i] = phi(|point_i - centre|) for i < count.
-using ColumnFunction = void (*)(const Points& points, std::size_t count, const double* centre, double* out) noexcept;
-
-struct KernelLoops {
-  EvaluateFunction evaluate = nullptr;
-  ColumnFunction column = nullptr;
-};
-// The loops for this kernel and dimension (1 to 8) on the selected instruction set.
-KernelLoops kernel_loops(KernelKind kind, int dimension);
 
 // ---- the nearest of a set of points (domain_guard.h), in single precision ----
 
@@ -70,22 +56,24 @@ struct Splits {
   std::array<float, kLeaves> at{};
 };
 
-// min_i |x - point_i|^2 of `count` points, a multiple of kSimdPadFloat and their stride.
-using NearestFunction = float (*)(const float* coordinates, std::size_t count, const float* x) noexcept;
-// Whether one of these points is within the distance whose square is `squared`; false when x is not finite.
-using WithinFunction = bool (*)(const float* coordinates, std::size_t count, const float* x, float squared) noexcept;
-// The number of the leaf of x. `rounded`: receives the nearest_float of each coordinate; has room for 8.
-using LeafFunction = std::size_t (*)(const Splits& splits, const double* x, float* rounded) noexcept;
+// ---- the loops ----
 
-struct NearestLoops {
-  NearestFunction nearest = nullptr;
-  WithinFunction within = nullptr;
-  LeafFunction leaf = nullptr;
+// Compiled for one dimension and, the first two, for one kernel.
+struct Loops {
+  // sum_j weights[j] phi(|x - point_j|) + sum_k tail[k] g_k(x), with the tail of the kernel's degree (kernels.h).
+  // Coordinates of x below kTiny count as 0.
+  double (*evaluate)(const Points& points, const double* weights, const double* tail, const double* x) noexcept;
+  // out[i] = phi(|point_i - centre|) for i < count.
+  void (*column)(const Points& points, std::size_t count, const double* centre, double* out) noexcept;
+  // min_i |x - point_i|^2 of `count` points, a multiple of kSimdPadFloat and their stride.
+  float (*nearest)(const float* coordinates, std::size_t count, const float* x) noexcept;
+  // Whether one of these points is within the distance whose square is `squared`; false when x is not finite.
+  bool (*within)(const float* coordinates, std::size_t count, const float* x, float squared) noexcept;
+  // The number of the leaf of x. `rounded`: receives the nearest_float of each coordinate; has room for 8.
+  std::size_t (*leaf)(const Splits& splits, const double* x, float* rounded) noexcept;
 };
-// For dimensions 1 to 8.
-NearestLoops nearest_loops(int dimension);
-
-// ---- instruction sets ----
+// On the selected instruction set. `dimension`: 1 to 8.
+Loops loops(int dimension, KernelKind kernel = KernelKind::cubic);
 
 // The name of the instruction set in use.
 std::string target_name();

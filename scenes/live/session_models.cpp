@@ -13,8 +13,7 @@ namespace palpate {
 namespace {
 
 std::vector<double> forces_over_strokes(const std::shared_ptr<const FittedModel>& model) {
-  std::size_t feature = 0;
-  const TimedSamples strokes = test_strokes(deepest_in_domain_m(model->data(), feature));
+  const TimedSamples strokes = test_strokes(model->deepest_m());
   HapticsTick tick(strokes.sensor, {model});
   std::vector<double> forces_N;
   for (const ToolSample& sample : strokes.samples) forces_N.push_back(tick.step(sample).force_N[0]);

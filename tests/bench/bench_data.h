@@ -7,8 +7,7 @@
 #include <functional>
 
 #include "models/fit/fit.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate::bench {
 

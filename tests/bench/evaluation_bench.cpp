@@ -4,9 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "models/model/correction.h"
 #include "models/model/fitted_model.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
 

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "models/correction/solve_weights.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
 #include "tests/support/fit_centres.h"

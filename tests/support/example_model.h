@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "engine/recording/recording.h"
+#include "models/model/correction.h"
 #include "models/model/fitted_model.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate::test {
 

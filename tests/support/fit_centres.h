@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/correction/methods.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate::test {
 

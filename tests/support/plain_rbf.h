@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
+#include "models/model/kernels.h"
 
 namespace palpate {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "models/correction/sites.h"
-#include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
+#include "models/model/kernels.h"
 
 namespace palpate::test {
 

@@ -34,13 +34,16 @@ class Failure : public std::runtime_error {
 
 namespace detail {
 
-// Returns the result of `make(error, size)`; if that is null or false, throws the text in `error`.
-template <typename Make>
-auto checked(Make&& make) {
+inline bool failed(const void* handle) { return handle == nullptr; }
+inline bool failed(int status) { return status != 0; }
+
+// Calls a function of palpate.h that can fail and returns its result; if it failed, throws its error.
+template <typename Function, typename... Arguments>
+auto checked(Function function, Arguments... arguments) {
   char error[1024];
-  const auto made = make(error, sizeof error);
-  if (!made) throw Failure(error);
-  return made;
+  const auto result = function(arguments..., error, sizeof error);
+  if (failed(result)) throw Failure(error);
+  return result;
 }
 
 struct Free {
@@ -56,15 +59,14 @@ struct Free {
 class Model {
  public:
   // Throws: no such file, not a model, damaged; a library of another ABI version.
-  explicit Model(const std::string& path)
-      : Model(detail::checked([&](char* error, std::size_t size) {
-          if (palpate_abi_version() != PALPATE_ABI_VERSION) {
-            throw Failure("found ABI version " + std::to_string(palpate_abi_version()) +
-                          " of the palpate library, expected " + std::to_string(PALPATE_ABI_VERSION) +
-                          "; build the program again");
-          }
-          return palpate_model_load(path.c_str(), error, size);
-        })) {}
+  explicit Model(const std::string& path) {
+    if (palpate_abi_version() != PALPATE_ABI_VERSION) {
+      throw Failure("found ABI version " + std::to_string(palpate_abi_version()) +
+                    " of the palpate library, expected " + std::to_string(PALPATE_ABI_VERSION) +
+                    "; build the program again");
+    }
+    model_.reset(detail::checked(palpate_model_load, path.c_str()), detail::Free{});
+  }
   // Takes over a handle.
   explicit Model(palpate_model* model) : model_(model, detail::Free{}) {}
 
@@ -72,9 +74,7 @@ class Model {
   std::string name() const { return palpate_model_name(model_.get()); }
   // Writes the model file atomically. Throws: the file exists and is not to be replaced; it cannot be written.
   void save(const std::string& path, bool overwrite = false) const {
-    detail::checked([&](char* error, std::size_t size) {
-      return palpate_model_save(model_.get(), path.c_str(), overwrite, error, size) == 0;
-    });
+    detail::checked(palpate_model_save, model_.get(), path.c_str(), overwrite);
   }
   const palpate_model* handle() const noexcept { return model_.get(); }
 
@@ -87,10 +87,7 @@ class Recording {
  public:
   // Throws: not a recording; with file, line and column.
   explicit Recording(const std::string& path)
-      : recording_(detail::checked([&](char* error, std::size_t size) {
-                     return palpate_recording_load(path.c_str(), error, size);
-                   }),
-                   detail::Free{}) {}
+      : recording_(detail::checked(palpate_recording_load, path.c_str()), detail::Free{}) {}
 
   // Size and columns.
   const palpate_recording& operator*() const noexcept { return *recording_; }
@@ -112,14 +109,10 @@ struct Sensor : palpate_sensor {
 class Stream {
  public:
   // The sensor is that of the training recordings.
-  explicit Stream(const Model& model)
-      : stream_(detail::checked(
-            [&](char* error, std::size_t size) { return palpate_stream_new(model.handle(), 0.0, error, size); })) {}
+  explicit Stream(const Model& model) : stream_(detail::checked(palpate_stream_new, model.handle(), 0.0)) {}
   // Throws: a number of the sensor is out of its range or not finite.
   Stream(const Model& model, const Sensor& sensor)
-      : stream_(detail::checked([&](char* error, std::size_t size) {
-          return palpate_stream_new_with_sensor(model.handle(), &sensor, error, size);
-        })) {}
+      : stream_(detail::checked(palpate_stream_new_with_sensor, model.handle(), &sensor)) {}
 
   double force(double time_s, double position_m) noexcept {
     return palpate_stream_force(stream_.get(), time_s, position_m);
@@ -146,10 +139,7 @@ struct Limits : palpate_limits {
 class Limiter {
  public:
   // Throws: a limit is out of its range.
-  explicit Limiter(const Limits& limits = {})
-      : limiter_(
-            detail::checked([&](char* error, std::size_t size) { return palpate_limiter_new(&limits, error, size); })) {
-  }
+  explicit Limiter(const Limits& limits = {}) : limiter_(detail::checked(palpate_limiter_new, &limits)) {}
 
   double render(Stream& stream, double time_s, double position_m, double step_s) noexcept {
     return palpate_limiter_render(limiter_.get(), stream.handle(), time_s, position_m, step_s);
@@ -178,9 +168,7 @@ inline std::vector<double> replay(const Model& model, const Recording& recording
 inline Model fit(const std::vector<Recording>& recordings, const std::string& options = "") {
   std::vector<palpate_recording> plain;
   for (const Recording& recording : recordings) plain.push_back(*recording);
-  return Model(detail::checked([&](char* error, std::size_t size) {
-    return palpate_fit(plain.data(), plain.size(), options.c_str(), nullptr, nullptr, error, size);
-  }));
+  return Model(detail::checked(palpate_fit, plain.data(), plain.size(), options.c_str(), nullptr, nullptr));
 }
 
 }  // namespace api

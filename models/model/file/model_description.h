@@ -7,8 +7,8 @@
 
 #include "engine/json/json_fields.h"
 #include "engine/recording/recording.h"
+#include "models/model/correction.h"
 #include "models/model/fitted_model.h"
-#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate::model_file {
 
@@ -21,9 +21,10 @@ inline constexpr NumberRange kSlowing{-20.0, 20.0};
 inline constexpr NumberRange kDivisor{1e-12, kLargestNumber, true};
 inline constexpr const char* kOnePerFeature = "numbers, one per feature";
 
-void describe_each(auto& file, const char* key, auto& items, std::size_t most, const auto& body) {
+// False after an error in the list.
+bool describe_each(auto& file, const char* key, auto& items, std::size_t most, const auto& body) {
   std::size_t count = items.size();
-  file.each(key, count, most, [&](std::size_t i) {
+  return file.each(key, count, most, [&](std::size_t i) {
     if (i == items.size()) items.emplace_back();
     body(items[i]);
   });
@@ -31,29 +32,29 @@ void describe_each(auto& file, const char* key, auto& items, std::size_t most, c
 
 // A number that is written only if it is not 0.
 void describe_unless_0(auto& file, const char* key, double& value, NumberRange range = {}) {
-  if (file.has(key, value != 0.0)) file.number(key, value, range);
+  if (file.has(key, value != 0.0)) file.value(key, value, range);
 }
 
 void describe_drive(auto& file, DriveCurve& curve) {
   file.object("drive", "an object with reference_depth_m and coefficient_N", [&] {
-    file.number("reference_depth_m", curve.reference_depth_m, kDivisor);
-    file.list("coefficient_N", curve.coefficient_N, kDriveForce_N);
+    file.value("reference_depth_m", curve.reference_depth_m, kDivisor);
+    file.value("coefficient_N", curve.coefficient_N, kDriveForce_N);
     curve.has_knots = file.has("knot_N", curve.has_knots);
-    if (curve.has_knots) file.list("knot_N", curve.knot_N, kDriveForce_N);
+    if (curve.has_knots) file.value("knot_N", curve.knot_N, kDriveForce_N);
   });
 }
 
 void describe_feature(auto& file, FeatureSpec& spec) {
   file.choice("kind", spec.kind, kFeatureKinds);
-  if (has_time(spec.kind)) file.number("relaxation_time_s", spec.relaxation_time_s, kDivisor);
+  if (has_time(spec.kind)) file.value("relaxation_time_s", spec.relaxation_time_s, kDivisor);
   if (spec.kind == FeatureKind::depth) describe_unless_0(file, "surface_position_m", spec.surface_position_m);
   if (is_branch(spec.kind)) describe_unless_0(file, "slowing", spec.slowing, kSlowing);
   if (has_drive(spec.kind)) describe_drive(file, spec.drive);
   if (!has_parts(spec.kind)) return;
   const auto describe_part = [&](std::size_t p) {
     FeaturePart& part = spec.parts[p];
-    if (is_bristle(spec.kind)) file.number("threshold_m", part.threshold_m, kDivisor);
-    if (spec.kind != FeatureKind::stops) file.number("relaxation_time_s", part.relaxation_time_s, kDivisor);
+    if (is_bristle(spec.kind)) file.value("threshold_m", part.threshold_m, kDivisor);
+    if (spec.kind != FeatureKind::stops) file.value("relaxation_time_s", part.relaxation_time_s, kDivisor);
     describe_drive(file, part.drive);
   };
   file.each("parts", spec.part_count, kMaxFeatureParts, describe_part);
@@ -61,74 +62,68 @@ void describe_feature(auto& file, FeatureSpec& spec) {
 
 void describe_trend(auto& file, Trend& trend) {
   file.object("trend", "an object", [&] {
-    file.number("reference_depth_m", trend.reference_depth_m, kDivisor);
-    file.list("elastic_pieces_N", trend.elastic.pieces_N);
-    file.list("viscosity_Ns_per_m", trend.viscosity_Ns_per_m);
-    file.list("thinning_Ns_per_m", trend.thinning_Ns_per_m);
-    file.number("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, kDivisor);
-    file.number("velocity_limit_m_per_s", trend.velocity_limit_m_per_s, kNotNegative);
+    file.value("reference_depth_m", trend.reference_depth_m, kDivisor);
+    file.value("elastic_pieces_N", trend.elastic.pieces_N);
+    file.value("viscosity_Ns_per_m", trend.viscosity_Ns_per_m);
+    file.value("thinning_Ns_per_m", trend.thinning_Ns_per_m);
+    file.value("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, kDivisor);
+    file.value("velocity_limit_m_per_s", trend.velocity_limit_m_per_s, kNotNegative);
   });
 }
 
 void describe_surface(auto& file, RecordingOffset& surface) {
-  file.text("name", surface.name);
-  file.number("surface_offset_m", surface.offset_m);
+  file.value("name", surface.name);
+  file.value("surface_offset_m", surface.offset_m);
   if (file.has("standard_error_m", std::isfinite(surface.standard_error_m)))
-    file.number("standard_error_m", surface.standard_error_m, kNotNegative);
+    file.value("standard_error_m", surface.standard_error_m, kNotNegative);
   else
     surface.standard_error_m = HUGE_VAL;
-  file.number("force_zero_N", surface.force_zero_N);
+  file.value("force_zero_N", surface.force_zero_N);
 }
 
 void describe_provenance(auto& file, Provenance& from) {
   file.object("provenance", "an object", [&] {
-    file.names("recordings", from.recordings);
+    file.value("recordings", from.recordings);
     // Models fitted to positions as recorded have no such list.
     if (file.has("surfaces", !from.offsets.empty()))
       describe_each(file, "surfaces", from.offsets, 0,
                     [&](RecordingOffset& surface) { describe_surface(file, surface); });
-    file.text("scene", from.scene);
-    file.count("samples", from.samples);
-    file.count("contact_samples", from.contact_samples);
-    file.count("samples_after_reduction", from.samples_after_reduction);
-    file.count("seed", from.seed);
-    file.text("weighting", from.weighting);
-    file.text("thinning", from.thinning);
-    file.text("relaxation", from.relaxation);
-    file.number("training_within_jnd", from.training_within_jnd, {0.0, 1.0});
+    file.value("scene", from.scene);
+    file.value("samples", from.samples);
+    file.value("contact_samples", from.contact_samples);
+    file.value("samples_after_reduction", from.samples_after_reduction);
+    file.value("seed", from.seed);
+    file.value("weighting", from.weighting);
+    file.value("thinning", from.thinning);
+    file.value("relaxation", from.relaxation);
+    file.value("training_within_jnd", from.training_within_jnd, {0.0, 1.0});
   });
 }
 
-void describe_names(auto& file, ModelData& data) {
+void describe_model(auto& file, ModelData& data) {
   file.name("name", data.name);
   file.name("method", data.method);
-}
-
-void describe_features(auto& file, ModelData& data) {
-  describe_each(file, "features", data.features, kMaxFeatures,
-                [&](FeatureSpec& spec) { describe_feature(file, spec); });
-}
-
-// All other members; the size of some depends on the features.
-void describe_rest(auto& file, ModelData& data) {
+  // The size of some members depends on the features.
+  const auto describe_one = [&](FeatureSpec& spec) { describe_feature(file, spec); };
+  if (!describe_each(file, "features", data.features, kMaxFeatures, describe_one)) return;
   const auto dimension = static_cast<Eigen::Index>(data.features.size());
   file.object("normalisation", "an object with offset and scale", [&] {
     file.numbers("offset", data.offset, dimension, kOnePerFeature);
     file.numbers("scale", data.scale, dimension, kOnePerFeature, kDivisor);
   });
   describe_trend(file, data.trend);
-  file.number("correction_limit_N", data.correction_limit_N, {0.0, kMaximumForce_N});
-  file.number("largest_force_N", data.largest_force_N, {0.0, kMaximumForce_N});
+  file.value("correction_limit_N", data.correction_limit_N, {0.0, kMaximumForce_N});
+  file.value("largest_force_N", data.largest_force_N, {0.0, kMaximumForce_N});
   file.object("jnd", "an object with offset_N and weber_fraction", [&] {
-    file.number("offset_N", data.jnd.offset_N, kDivisor);
-    file.number("weber_fraction", data.jnd.weber_fraction, kNotNegative);
+    file.value("offset_N", data.jnd.offset_N, kDivisor);
+    file.value("weber_fraction", data.jnd.weber_fraction, kNotNegative);
   });
   describe_provenance(file, data.provenance);
   file.object("domain", "an object", [&] {
     file.numbers("lower", data.lower, dimension, kOnePerFeature);
     file.numbers("upper", data.upper, dimension, kOnePerFeature);
-    file.number("inner_radius", data.cover.inner_radius, kNotNegative);
-    file.number("outer_radius", data.cover.outer_radius, {data.cover.inner_radius, kLargestNumber, true});
+    file.value("inner_radius", data.cover.inner_radius, kNotNegative);
+    file.value("outer_radius", data.cover.outer_radius, {data.cover.inner_radius, kLargestNumber, true});
     file.points("points", data.cover.points, dimension);
   });
   describe_unless_0(file, "surface_step_N", data.surface_step_N, kNotNegative);
@@ -136,16 +131,16 @@ void describe_rest(auto& file, ModelData& data) {
   if (file.has("sensor", data.sensor.has_value())) {
     SensorSpec& sensor = data.sensor ? *data.sensor : data.sensor.emplace();
     file.object("sensor", "an object", [&] {
-      file.number("encoder_step_m", sensor.encoder_step_m, kNotNegative);
-      file.number("position_noise_m", sensor.position_noise_m, kNotNegative);
+      file.value("encoder_step_m", sensor.encoder_step_m, kNotNegative);
+      file.value("position_noise_m", sensor.position_noise_m, kNotNegative);
     });
   }
   if (file.has("error_bound", data.error_bound.has_value())) {
     ErrorBound& bound = data.error_bound ? *data.error_bound : data.error_bound.emplace();
     file.object("error_bound", "an object", [&] {
-      file.number("floor_N", bound.floor_N, kNotNegative);
-      file.number("per_force", bound.per_force, kNotNegative);
-      file.number("per_distance_N", bound.per_distance_N, kNotNegative);
+      file.value("floor_N", bound.floor_N, kNotNegative);
+      file.value("per_force", bound.per_force, kNotNegative);
+      file.value("per_distance_N", bound.per_distance_N, kNotNegative);
     });
   }
   file.correction(data.correction, dimension);

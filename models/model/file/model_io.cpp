@@ -14,9 +14,8 @@
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "engine/json/json_fields.h"
+#include "models/model/correction.h"
 #include "models/model/file/model_description.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
 namespace {
@@ -36,11 +35,7 @@ class ModelReader {
 
   std::optional<Error> read(ModelData& data) {
     if (!read_format()) return fields_.error();
-    describe_names(*this, data);
-    const std::size_t named = fields_.error_count();
-    describe_features(*this, data);
-    if (fields_.error_count() > named) return fields_.error();  // every size below depends on the features
-    describe_rest(*this, data);
+    describe_model(*this, data);
     // After another error some known members were not read and would seem unknown.
     if (fields_.error_count() == 0) fields_.refuse_unknown(top_);
     return fields_.error();
@@ -48,22 +43,29 @@ class ModelReader {
 
   // The members of the object that is being read. `has`: whether there is such a member.
   bool has(const char* key, bool) { return fields_.optional_member(at_, key).value != nullptr; }
-  void text(const char* key, std::string& value) { value = fields_.text(at_, key); }
-  // The name of a model or a method: it is the header of a column of a CSV file.
-  void name(const char* key, std::string& value) {
-    text(key, value);
-    const bool plain = std::none_of(value.begin(), value.end(), [](char c) {
-      return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"';
-    });
-    if (plain && !value.empty() && value.size() <= kModelNameBytes) return;
-    fields_.complain(std::string("/") + key, found(value) + ", expected 1 to " + std::to_string(kModelNameBytes) +
-                                                 " bytes without control characters, commas and quotes");
-  }
-  void count(const char* key, std::uint64_t& value) { value = fields_.count(at_, key); }
-  void number(const char* key, double& value, NumberRange range = {}) { value = fields_.number(at_, key, range); }
+  void value(const char* key, std::string& text) { text = fields_.text(at_, key); }
+  void value(const char* key, std::uint64_t& count) { count = fields_.count(at_, key); }
+  void value(const char* key, double& number, NumberRange range = {}) { number = fields_.number(at_, key, range); }
   template <std::size_t n>
-  void list(const char* key, std::array<double, n>& values, NumberRange range = {}) {
+  void value(const char* key, std::array<double, n>& values, NumberRange range = {}) {
     fields_.fill(fields_.member(at_, key, "a list of numbers"), n, "coefficients", values.data(), range);
+  }
+  void value(const char* key, std::vector<std::string>& values) {
+    const JsonNode list = fields_.list(at_, key, "a list of names");
+    for (std::size_t i = 0; list.value != nullptr && i < list.value->size(); ++i) {
+      const JsonNode name = JsonFields::entry(list, i);
+      if (!name.value->is_string()) return fields_.complain(name.pointer, found(*name.value) + ", expected a text");
+      values.push_back(name.value->get<std::string>());
+    }
+  }
+  // The name of a model or a method: it is the header of a column of a CSV file.
+  void name(const char* key, std::string& text) {
+    value(key, text);
+    const bool plain = std::ranges::none_of(
+        text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"'; });
+    if (plain && !text.empty() && text.size() <= kModelNameBytes) return;
+    fields_.complain(std::string("/") + key, found(text) + ", expected 1 to " + std::to_string(kModelNameBytes) +
+                                                 " bytes without control characters, commas and quotes");
   }
   // Exactly `size` numbers, which error messages call `words`.
   void numbers(const char* key, Eigen::VectorXd& values, Eigen::Index size, const char* words, NumberRange range = {}) {
@@ -86,15 +88,6 @@ class ModelReader {
     }
   }
 
-  void names(const char* key, std::vector<std::string>& values) {
-    const JsonNode list = fields_.list(at_, key, "a list of names");
-    for (std::size_t i = 0; list.value != nullptr && i < list.value->size(); ++i) {
-      const JsonNode name = JsonFields::entry(list, i);
-      if (!name.value->is_string()) return fields_.complain(name.pointer, found(*name.value) + ", expected a text");
-      values.push_back(name.value->get<std::string>());
-    }
-  }
-
   // `facts`: those of the enumerators, in their order.
   template <typename Enum>
   bool choice(const char* key, Enum& value, const auto& facts) {
@@ -109,8 +102,9 @@ class ModelReader {
     inside(fields_.member(at_, key, expected), body);
   }
 
-  // `most`: the largest number of items; 0: any number, or none.
-  void each(const char* key, std::size_t& count, std::size_t most, const auto& body) {
+  // `most`: the largest number of items; 0: any number, or none. False after an error in the list.
+  bool each(const char* key, std::size_t& count, std::size_t most, const auto& body) {
+    const std::size_t before = fields_.error_count();
     const std::string expected = most == 0 ? "a list" : "a list of 1 to " + std::to_string(most) + " " + key;
     const JsonNode list = fields_.list(at_, key, expected);
     count = list.value != nullptr ? list.value->size() : 0;
@@ -119,6 +113,7 @@ class ModelReader {
       count = 0;
     }
     for (std::size_t i = 0; i < count; ++i) inside(JsonFields::entry(list, i), [&] { body(i); });
+    return fields_.error_count() == before;
   }
 
   // Reads the correction from the one member that identifies its kind.
@@ -135,8 +130,8 @@ class ModelReader {
       if (!fields_.error()) value = std::make_shared<const RbfCorrection>(std::move(function));
     } else if (present[0] == "grid") {
       VoxelGrid grid;
-      if (read_grid(grid, static_cast<std::size_t>(dimension)))
-        value = std::make_shared<const GridCorrection>(std::move(grid));
+      read_grid(grid, static_cast<std::size_t>(dimension));
+      if (!fields_.error()) value = std::make_shared<const GridCorrection>(std::move(grid));
     } else if (!fields_.boolean(at_, "trend_alone")) {
       fields_.complain("/trend_alone", "found false, expected true, or another correction");
     }
@@ -166,32 +161,29 @@ class ModelReader {
     return !fields_.error();
   }
 
-  // False after an error.
-  bool read_grid(VoxelGrid& grid, std::size_t dimension) {
+  void read_grid(VoxelGrid& grid, std::size_t dimension) {
     const JsonNode node = fields_.member(at_, "grid", "an object");
     const JsonNode axes = fields_.list(node, "nodes", "a list of axes");
-    if (axes.value == nullptr) return false;
+    if (axes.value == nullptr) return;
     if (axes.value->size() != dimension) {
-      fields_.complain(axes.pointer,
-                       found(*axes.value) + " axes, expected " + std::to_string(dimension) + ", one per feature");
-      return false;
+      const std::string expected = " axes, expected " + std::to_string(dimension) + ", one per feature";
+      return fields_.complain(axes.pointer, found(*axes.value) + expected);
     }
     const JsonNode values = fields_.list(node, "values_N", "a list of numbers");
-    if (values.value == nullptr) return false;
+    if (values.value == nullptr) return;
     std::size_t product = 1;
     // Compared at every step, because the product of eight sizes may overflow.
     for (std::size_t k = 0; k < dimension && product <= values.value->size(); ++k) {
-      if (!read_axis(JsonFields::entry(axes, k), grid.nodes.emplace_back())) return false;
+      if (!read_axis(JsonFields::entry(axes, k), grid.nodes.emplace_back())) return;
       product *= grid.nodes.back().size();
     }
-    if (product != values.value->size()) {
-      fields_.complain(values.pointer, found(*values.value) + ", expected as many as the grid has nodes");
-      return false;
-    }
+    if (product != values.value->size())
+      return fields_.complain(values.pointer, found(*values.value) + ", expected as many as the grid has nodes");
     grid.values_N.resize(product);
-    return fields_.fill(values, product, "numbers", grid.values_N.data());
+    fields_.fill(values, product, "numbers", grid.values_N.data());
   }
 
+  // False after an error.
   bool read_axis(const JsonNode& node, std::vector<double>& axis) {
     const std::string expected = ", expected at least 2 numbers, each above the last";
     if (!node.value->is_array() || node.value->size() < 2) {
@@ -216,20 +208,15 @@ class ModelWriter {
  public:
   // One number a line, so that models can be compared by lines. Numbers read back as the same double.
   std::string write(ModelData& data) {
-    text("format", "palpate-model");
-    count("version", kModelVersion);
-    describe_names(*this, data);
-    describe_features(*this, data);
-    describe_rest(*this, data);
+    value("format", "palpate-model");
+    value("version", kModelVersion);
+    describe_model(*this, data);
     return document_.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   }
 
   bool has(const char*, bool there) { return there; }
-  void text(const char* key, const std::string& value) { member(key) = value; }
-  void name(const char* key, const std::string& value) { member(key) = value; }
-  void count(const char* key, std::uint64_t value) { member(key) = value; }
-  void number(const char* key, double value, NumberRange = {}) { member(key) = value; }
-  void list(const char* key, const auto& values, NumberRange = {}) { member(key) = values; }
+  void value(const char* key, const auto& value, NumberRange = {}) { member(key) = value; }
+  void name(const char* key, const std::string& name) { member(key) = name; }
   void numbers(const char* key, const Eigen::VectorXd& values, Eigen::Index, const char*, NumberRange = {}) {
     member(key) = Document::array_t(values.begin(), values.end());
   }
@@ -237,16 +224,16 @@ class ModelWriter {
     Document& list = member(key) = Document::array();
     for (const auto& point : values.colwise()) list.push_back(Document::array_t(point.begin(), point.end()));
   }
-  void names(const char* key, const std::vector<std::string>& values) { member(key) = values; }
   bool choice(const char* key, auto value, const auto& facts) {
     member(key) = facts[static_cast<std::size_t>(value)].name;
     return true;
   }
 
   void object(const char* key, const char*, const auto& body) { inside(member(key), body); }
-  void each(const char* key, std::size_t count, std::size_t, const auto& body) {
+  bool each(const char* key, std::size_t count, std::size_t, const auto& body) {
     Document& list = member(key) = Document::array();
     for (std::size_t i = 0; i < count; ++i) inside(list.emplace_back(), [&] { body(i); });
+    return true;
   }
 
   void correction(const CorrectionPtr& value, Eigen::Index dimension) {

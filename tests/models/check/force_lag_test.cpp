@@ -1,5 +1,4 @@
 // Identification of a force lag, separately from viscosity (a force lead), and without false alarms.
-#include "models/check/force_lag.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
+#include "models/check/recording_measures.h"
 #include "scenes/material/material.h"
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "models/model/rbf/polynomial_tail.h"
+#include "models/model/kernels.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 
 #include "models/correction/methods.h"
 #include "models/correction/projected_kernel.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "models/model/grid/voxel_grid.h"
+#include "models/model/correction.h"
 #include "tests/support/fit_centres.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"

@@ -10,7 +10,7 @@
 
 #include "models/correction/projected_kernel.h"
 #include "models/correction/solve_weights.h"
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 namespace palpate {
 namespace {

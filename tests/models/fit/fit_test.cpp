@@ -8,9 +8,8 @@
 #include <numbers>
 
 #include "models/correction/methods.h"
+#include "models/model/correction.h"
 #include "models/model/file/model_io.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/rbf/rbf_evaluate.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/random_points.h"

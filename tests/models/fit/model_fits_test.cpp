@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "models/model/correction.h"
 #include "models/model/file/model_io.h"
-#include "models/model/grid/voxel_grid.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 

@@ -1,4 +1,4 @@
-#include "models/model/grid/voxel_grid.h"
+#include "models/model/correction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/correction.h"
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Targets, RbfCorrectionOnTarget, ::testing::ValuesIn(sim
                            return name;
                          });
 
-// The error bound of rbf_evaluate.h: 32 eps times the sum of absolute terms.
+// The error bound of correction.h: 32 eps times the sum of absolute terms.
 TEST_P(RbfCorrectionOnTarget, AgreesWithALongDoubleReferenceForEveryKernelAndDimension) {
   for (const KernelKind kernel : kKernelKinds)
     for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)

@@ -1,8 +1,10 @@
-// The radial kernels phi(r) of Hoever & Harders (2009), eq. 2: polyharmonic splines, which have no shape parameter to
-// tune. With a tail of at least its degree the kernel times its sign is positive definite on every weight vector
-// orthogonal to the tail (Micchelli 1986). Thread guarantee: pure functions, any thread.
+// The radial kernels phi(r) of Hoever & Harders (2009), eq. 2, and their polynomial tails: polyharmonic splines, which
+// have no shape parameter to tune. With a tail of at least its degree the kernel times its sign is positive definite on
+// every weight vector orthogonal to the tail (Micchelli 1986). The basis of a tail in d variables is 1 for degree 0,
+// and 1, x_1 ... x_d for degree 1. Thread guarantee: pure functions, any thread; tail_value is wait-free.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <string>
@@ -48,6 +50,24 @@ inline std::vector<std::string> kernel_names() {
   std::vector<std::string> names;
   for (const KernelFacts& kernel : kKernels) names.emplace_back(kernel.name);
   return names;
+}
+
+// Number of monomials, L: 1 or 1 + d.
+constexpr int tail_size(int degree, int dimension) noexcept { return degree <= 0 ? 1 : 1 + dimension; }
+
+// The tail at a point. `coefficients`: tail_size values, `x`: d values.
+inline double tail_value(const double* coefficients, int degree, int dimension, const double* x) noexcept {
+  double sum = coefficients[0];
+  for (int k = 0; degree > 0 && k < dimension; ++k) sum += coefficients[1 + k] * x[k];
+  return sum;
+}
+
+// The matrix G of eq. 6: N x L, one row per point. `points`: d x N.
+inline Eigen::MatrixXd tail_matrix(int degree, const Eigen::MatrixXd& points) {
+  Eigen::MatrixXd matrix(points.cols(), tail_size(degree, static_cast<int>(points.rows())));
+  matrix.col(0).setOnes();
+  if (degree > 0) matrix.rightCols(points.rows()) = points.transpose();
+  return matrix;
 }
 
 }  // namespace palpate
