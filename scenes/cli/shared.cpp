@@ -7,7 +7,7 @@
 
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
-#include "engine/recording/recording_reader.h"
+#include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
 
 namespace palpate::cli {
@@ -72,7 +72,7 @@ std::string next_fit(const std::vector<std::string>& recordings) {
 
 Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& path, const std::string& advice) {
   auto model = load_model(path);
-  if (model || !RecordingReader::open(path)) return model;
+  if (model || !read_recording(path, 0)) return model;
   return Error{path + " is a recording, expected a model file (JSON, made by palpate fit); " + advice};
 }
 
