@@ -6,7 +6,6 @@
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "engine/import/table_cell.h"
-#include "engine/import/table_header.h"
 
 namespace palpate {
 namespace {
