@@ -1,7 +1,7 @@
-// The verbs (subcommands) of the headless program. Each has a source file, which adds the subcommand and the function
-// to run. A failed Status ends the program with one "error: ..." block on stderr and exit code 1. Wrong usage that
-// CLI11 does not detect throws CLI::ValidationError, during parsing or the run: exit code 2. The functions that several
-// verbs share follow below. Main thread only.
+// The verbs (subcommands) of the headless program, and functions that several of them share. Each verb adds its
+// subcommand and the function to run. A failed Status ends the program with one "error: ..." block on stderr and exit
+// code 1. Wrong usage that CLI11 does not detect throws CLI::ValidationError, during parsing or the run: exit code 2.
+// Main thread only.
 #pragma once
 
 #include <CLI/CLI.hpp>
