@@ -61,9 +61,6 @@ std::size_t split_table_fields(std::string_view line, const Delimiter& delimiter
 // Removes the first line from `text` and returns it without its line end.
 std::string_view next_line(std::string_view& text);
 
-// The largest table, which is read as a whole: six million rows, as many as are checked and fitted, of 89 bytes.
-inline constexpr std::size_t kLargestTableBytes = std::size_t{512} << 20;
-
 struct ForeignText {
   std::string text;                     // UTF-8 without byte order mark
   std::string_view encoding = "UTF-8";  // of the file: UTF-8, Latin-1 or UTF-16
