@@ -70,16 +70,11 @@ class Importer : ImportMessages {
   }
 
   // Whether the present row has numbers, so that it is no line of text.
-  bool has_numbers() const {
-    const auto has_digits = [&](std::size_t role) {
-      return field(index_of(role)).find_first_of("0123456789") != std::string_view::npos;
-    };
-    return has_digits(1) && has_digits(2);
-  }
+  bool has_numbers() const { return has_digits(1) && has_digits(2); }
 
   // Counts the present row, which has a time, for each channel without a value.
   void count_missing(std::array<std::uint64_t, kRoles>& missing) const {
-    if (columns_.own_time && field(index_of(0)).find_first_of("0123456789") == std::string_view::npos) return;
+    if (columns_.own_time && !has_digits(0)) return;
     for (const std::size_t role : {1u, 2u})
       if (is_empty(index_of(role))) ++missing[role];
   }
@@ -315,6 +310,9 @@ class Importer : ImportMessages {
   std::size_t index_of(std::size_t role) const { return columns_.index_of(role); }
   // The field of a column in the present row; empty if it is missing.
   std::string_view field(std::size_t index) const { return index < row_.size() ? row_[index] : std::string_view(); }
+  bool has_digits(std::size_t role) const {
+    return field(index_of(role)).find_first_of("0123456789") != std::string_view::npos;
+  }
   bool is_empty(std::size_t index) const { return field(index).empty() || is_missing_value(field(index)); }
 
   std::string_view text_;

@@ -1,5 +1,4 @@
-#include "engine/import/table_header.h"
-
+// The lines of names and of units above a table.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -7,6 +6,7 @@
 #include "engine/base/text.h"
 #include "engine/import/column_roles.h"
 #include "engine/import/table_cell.h"
+#include "engine/import/table_layout.h"
 #include "engine/import/units.h"
 
 namespace palpate {

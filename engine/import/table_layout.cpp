@@ -6,11 +6,12 @@
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "engine/import/table_cell.h"
-#include "engine/import/table_header.h"
 
 namespace palpate {
 namespace {
 
+// The largest table, which is read as a whole: six million rows, as many as are checked and fitted, of 89 bytes.
+constexpr std::size_t kLargestTableBytes = std::size_t{512} << 20;
 // Preambles of testing machines are some hundred lines long at most.
 constexpr std::size_t kSampleLines = 2000;
 constexpr std::size_t kSampleBytes = 1024 * 1024;

@@ -1,7 +1,7 @@
 // Reads a file of another program as text, and determines the layout of its table. Every pair of separator and decimal
 // mark is tried on the first lines: preferred are those in which no field begins like a number without being one, then
 // the one with the most numbers. The longest run of rows of numbers is the table; its header is above it
-// (table_header.h). Thread guarantee: slow side only (does I/O).
+// (table_header.cpp). Thread guarantee: slow side only (does I/O).
 #pragma once
 
 #include <array>
@@ -47,15 +47,19 @@ struct TableLayout {
 // `given_decimal`: the decimal mark if the user has given it. Errors (without the file's name): no rows of numbers; a
 // comma that may be a decimal mark or a thousands mark.
 Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> given_decimal);
+// Finds the lines of names and of units shortly above a table and sets them in `layout`, which describes the rows from
+// lines[first]. Preferred: a line that names at least two of time, position and force (boards print their status below
+// the header); among these one split by the separator of the table, and then the one with more names and units; then
+// the nearest. In a line of units most fields are units. `widest`: the fields of the widest rows; a header with as many
+// names determines the number of columns.
+void find_table_header(const std::vector<std::string_view>& lines, std::size_t first, std::size_t widest,
+                       TableLayout& layout);
 // The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
 // line are omitted. Returns the number of fields with these.
 std::size_t split_table_fields(std::string_view line, const Delimiter& delimiter,
                                std::vector<std::string_view>& fields);
 // Removes the first line from `text` and returns it without its line end.
 std::string_view next_line(std::string_view& text);
-
-// The largest table, which is read as a whole: six million rows, as many as are checked and fitted, of 89 bytes.
-inline constexpr std::size_t kLargestTableBytes = std::size_t{512} << 20;
 
 struct ForeignText {
   std::string text;                     // UTF-8 without byte order mark

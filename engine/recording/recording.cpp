@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <filesystem>
-#include <system_error>
 #include <tuple>
 
 #include "engine/base/text.h"
-#include "engine/recording/recording_reader.h"
 #include "engine/recording/recording_writer.h"
 
 namespace palpate {
 namespace {
-
-// The largest number of rows for which memory is reserved: untouched memory costs nothing, and a growing vector would
-// have its rows twice at times.
-constexpr std::size_t kMostExpected = 6000000;
-constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
 
 // The advice for a median step outside of the valid range.
 std::string rate_advice(double step_s) {
@@ -78,17 +70,6 @@ std::uint64_t content_hash(const Recording& recording) {
     }
   }
   return hash;
-}
-
-Result<Recording> read_recording(const std::string& path, std::size_t most_rows) {
-  auto reader = RecordingReader::open(path);
-  if (!reader) return reader.error();
-  Recording recording{reader->name(), reader->columns(), {}};
-  std::error_code unknown;  // then the size is the largest number
-  recording.rows.reserve(
-      std::min<std::size_t>(std::filesystem::file_size(path, unknown) / kShortestRow, kMostExpected));
-  if (const auto count = reader->read(recording.rows, most_rows); !count) return count.error();
-  return recording;
 }
 
 Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,

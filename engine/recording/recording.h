@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <istream>
 #include <limits>
 #include <optional>
 #include <string>
@@ -50,8 +51,11 @@ double nth_smallest(std::vector<double> values, std::size_t n);
 inline constexpr std::size_t kRecordingMinimumRows = 10;
 inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
 
-// Reads a recording into memory, at most its first `most_rows` rows. Errors: those of RecordingReader.
+// Reads a recording, at most its first `most_rows` rows; 0: the header alone. Errors: no such file, a folder, a pipe or
+// a device, not readable, not text, no header, a missing or duplicate column, a broken rule (RowRules).
 Result<Recording> read_recording(const std::string& path, std::size_t most_rows = kAllRows);
+// The same for any stream; `label` replaces the path.
+Result<Recording> read_recording(std::istream& stream, const std::string& label, std::size_t most_rows = kAllRows);
 
 // Writes `recording` to `path` atomically (AtomicFile). Numbers read back as the same doubles. `comments` become '#'
 // lines, one for each line of text. Errors: those of AtomicFile; a row or recording that breaks the rules above. Then
@@ -81,7 +85,7 @@ inline constexpr double kMaximumRate_Hz = 20000.0;
 inline constexpr double kRateTolerance = 0.05;
 // Whether rows with this time step have a rate in that range.
 bool rate_in_range(double step_s);
-// Limit of the length of a line, bytes; it bounds the memory of the reader.
+// Limit of the length of a line, bytes.
 inline constexpr std::size_t kMaximumLineBytes = 64 * 1024;
 // The rate is checked once, after this many rows, so that rows can be streamed.
 inline constexpr std::size_t kRateRows = 1000;

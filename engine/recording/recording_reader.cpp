@@ -1,16 +1,22 @@
-#include "engine/recording/recording_reader.h"
-
+// Reads recordings, with the messages of all faults.
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
+#include "engine/recording/recording.h"
 
 namespace palpate {
 namespace {
+
+// The largest number of rows for which memory is reserved: untouched memory costs nothing, and a growing vector would
+// have its rows twice at times.
+constexpr std::size_t kMostExpected = 6000000;
+constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
 
 // Bytes beyond the longest line that are read: a byte order mark, a carriage return, one byte that shows that the line
 // is too long, and the terminator.
@@ -152,155 +158,172 @@ std::optional<LineFault> bytes_fault(std::string_view line) {
                        " bytes, expected a row of a recording; check that this is a CSV file with line ends"};
 }
 
+class RecordingReader {
+ public:
+  RecordingReader(std::istream& stream, std::string label)
+      : stream_(stream), label_(std::move(label)), buffer_(kMaximumLineBytes + kBeyondLimit) {}
+
+  Result<Recording> read(std::size_t most_rows, std::size_t expected_rows) {
+    if (!read_header()) return *error_;
+    Recording recording{std::filesystem::path(label_).stem().string(),
+                        {has(ColumnRole::kVelocity), has(ColumnRole::kAcceleration)},
+                        {}};
+    recording.rows.reserve(std::min(most_rows, expected_rows));
+    for (RecordingRow row; recording.rows.size() < most_rows && next(row);) recording.rows.push_back(row);
+    if (error_) return *error_;
+    return recording;
+  }
+
+ private:
+  // The beginning of a message about a part of the present line.
+  std::string place_of(std::string_view at) const {
+    return label_ + ":" + std::to_string(line_number_) + ":" + std::to_string(at.data() - line_.data() + 1) + ": ";
+  }
+
+  // Sets the error and returns false.
+  bool fail(const std::string& message) {
+    error_ = Error{message};
+    return false;
+  }
+  bool fail(const LineFault& fault) { return fail(place_of(fault.at) + fault.text); }
+  bool fail(const RowFault& fault) {
+    const std::string_view at = line_.empty() ? line_ : value_of(fields_[index_of(fault.role)]);
+    return fail((fault.place == RowFault::Place::kFirstRow ? first_time_ : place_of(at)) + fault.text);
+  }
+
+  // The functions below return false at the end of the file and after an error.
+
+  // Lines end with LF or CRLF; a UTF-8 byte order mark is skipped.
+  bool next_line() {
+    stream_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    if (stream_.bad()) return fail(unreadable(label_).message);
+    // The count includes the line feed, which is not stored.
+    const auto count = static_cast<std::size_t>(stream_.gcount());
+    line_has_end_ = stream_.good();
+    line_ = std::string_view(buffer_.data(), line_has_end_ ? count - 1 : count);
+    const bool is_first = line_number_ == 0;
+    if (is_first && line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
+    const bool ended = line_.empty() && !line_has_end_;
+    ++line_number_;
+    if (ended) return false;
+    if (is_first && (line_.starts_with("\xFF\xFE") || line_.starts_with("\xFE\xFF")))
+      return fail({line_, "found UTF-16 text, expected UTF-8; save the file as UTF-8 CSV"});
+    if (line_.ends_with('\r')) line_.remove_suffix(1);
+    const auto fault = bytes_fault(line_);
+    return !fault || fail(*fault);
+  }
+
+  bool read_header() {
+    while (next_line())
+      if (!line_.starts_with('#')) return parse_header();
+    if (error_) return false;
+    return fail({line_, no_header(line_number_ == 1 ? "an empty file" : "the end of the file",
+                                  "check that the recording was saved")});
+  }
+
+  bool parse_header() {
+    if (const std::size_t good = utf8_bytes(line_); good < line_.size()) {
+      return fail({line_.substr(good), "found byte " + printable(line_.substr(good, 1)) +
+                                           ", expected UTF-8 text in the header; save the file as UTF-8 CSV"});
+    }
+    split_line();
+    for (const std::string_view name : fields_) {
+      const auto known = std::find(kColumnNames.begin(), kColumnNames.end(), name);
+      const auto role = static_cast<ColumnRole>(known - kColumnNames.begin());  // ignored if the name is unknown
+      if (role != ColumnRole::kIgnored && has(role)) {
+        return fail(
+            {name, "found column " + std::string(name) + " twice, expected it once; remove or rename one of the two"});
+      }
+      roles_.push_back(role);
+    }
+    header_ends_with_comma_ = fields_.back().empty();
+    std::vector<std::string> missing;
+    for (std::size_t i = 0; i < kRequiredColumns; ++i)
+      if (!has(static_cast<ColumnRole>(i))) missing.emplace_back(kColumnNames[i]);
+    if (missing.empty()) return true;
+    // Usually the file is that of another program, so every message recommends the import.
+    LineFault fault = header_fault(line_, fields_, missing);
+    fault.text += ", or let palpate import " + label_ + " --out REC.csv do it";
+    return fail(fault);
+  }
+
+  bool next(RecordingRow& row) {
+    if (!next_line()) return finish();
+    if (!parse(row)) {
+      if (!trimmed(line_).empty())
+        return fail(row_fault(line_, line_has_end_, fields_, roles_, header_ends_with_comma_));
+      // Blank lines are allowed at the end of the file only.
+      const std::string blank = place_of(line_);
+      while (next_line())
+        if (!trimmed(line_).empty())
+          return fail(blank + "found a blank line, expected a row with " + std::to_string(roles_.size()) +
+                      " fields; remove the blank line");
+      return finish();
+    }
+    if (rules_.rows() == 0) first_time_ = place_of(value_of(fields_[index_of(ColumnRole::kTime)]));
+    const auto fault = rules_.check(row);
+    return !fault || fail(*fault);
+  }
+
+  bool finish() {
+    if (error_) return false;
+    const auto fault = rules_.finish();
+    return fault && fail(*fault);
+  }
+
+  // Parses every field of the present line. If false, row_fault gives the reason.
+  bool parse(RecordingRow& row) {
+    split_line();
+    if (fields_.size() != roles_.size()) return false;
+    std::array<double, kKnownColumns> values{};
+    for (std::size_t i = 0; i < fields_.size(); ++i)
+      if (roles_[i] != ColumnRole::kIgnored && !parse_field(fields_[i], values[static_cast<std::size_t>(roles_[i])]))
+        return false;
+    row = {values[0], values[1], values[2], values[3], values[4]};
+    return true;
+  }
+
+  void split_line() {
+    fields_.clear();
+    for (std::string_view rest = line_;;) {
+      const std::size_t comma = rest.find(',');
+      fields_.push_back(rest.substr(0, comma));
+      if (comma == std::string_view::npos) return;
+      rest.remove_prefix(comma + 1);
+    }
+  }
+
+  std::size_t index_of(ColumnRole role) const {
+    return static_cast<std::size_t>(std::find(roles_.begin(), roles_.end(), role) - roles_.begin());
+  }
+  bool has(ColumnRole role) const { return index_of(role) < roles_.size(); }
+
+  std::istream& stream_;
+  std::string label_;
+  std::vector<char> buffer_;              // holds the present line
+  std::string_view line_;                 // without its line end; empty at the end of the file
+  std::vector<std::string_view> fields_;  // of the present line
+  std::uint64_t line_number_ = 0;
+  bool line_has_end_ = false;      // false: the file ends here without a newline
+  std::vector<ColumnRole> roles_;  // of the columns of the file, in its order
+  bool header_ends_with_comma_ = false;
+  RowRules rules_;
+  std::string first_time_;  // the place of the first time
+  std::optional<Error> error_;
+};
+
 }  // namespace
 
-Result<RecordingReader> RecordingReader::open(const std::string& path) {
-  auto file = open_plain_file(path, "a recording (CSV)");
+Result<Recording> read_recording(std::istream& stream, const std::string& label, std::size_t most_rows) {
+  return RecordingReader(stream, label).read(most_rows, 0);
+}
+
+Result<Recording> read_recording(const std::string& path, std::size_t most_rows) {
+  const auto file = open_plain_file(path, "a recording (CSV)");
   if (!file) return file.error();
-  return from(std::move(*file), path);
-}
-
-Result<RecordingReader> RecordingReader::from(std::unique_ptr<std::istream> stream, std::string label) {
-  RecordingReader reader(std::move(stream), std::move(label));
-  if (!reader.read_header()) return *reader.error_;
-  return reader;
-}
-
-RecordingReader::RecordingReader(std::unique_ptr<std::istream> stream, std::string label)
-    : stream_(std::move(stream)),
-      label_(std::move(label)),
-      name_(std::filesystem::path(label_).stem().string()),
-      buffer_(kMaximumLineBytes + kBeyondLimit) {}
-
-std::string RecordingReader::place_of(std::string_view at) const {
-  return label_ + ":" + std::to_string(line_number_) + ":" + std::to_string(at.data() - line_.data() + 1) + ": ";
-}
-
-bool RecordingReader::fail(const std::string& message) {
-  error_ = Error{message};
-  return false;
-}
-
-bool RecordingReader::fail(const RowFault& fault) {
-  const std::string_view at = line_.empty() ? line_ : value_of(fields_[index_of(fault.role)]);
-  return fail((fault.place == RowFault::Place::kFirstRow ? first_time_ : place_of(at)) + fault.text);
-}
-
-// Lines end with LF or CRLF; a UTF-8 byte order mark is skipped.
-bool RecordingReader::next_line() {
-  stream_->getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-  if (stream_->bad()) return fail(unreadable(label_).message);
-  // The count includes the line feed, which is not stored.
-  const auto count = static_cast<std::size_t>(stream_->gcount());
-  line_has_end_ = stream_->good();
-  line_ = std::string_view(buffer_.data(), line_has_end_ ? count - 1 : count);
-  const bool is_first = line_number_ == 0;
-  if (is_first && line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
-  const bool ended = line_.empty() && !line_has_end_;
-  ++line_number_;
-  if (ended) return false;
-  if (is_first && (line_.starts_with("\xFF\xFE") || line_.starts_with("\xFE\xFF")))
-    return fail(place_of(line_) + "found UTF-16 text, expected UTF-8; save the file as UTF-8 CSV");
-  if (line_.ends_with('\r')) line_.remove_suffix(1);
-  const auto fault = bytes_fault(line_);
-  return !fault || fail(place_of(fault->at) + fault->text);
-}
-
-bool RecordingReader::read_header() {
-  while (next_line())
-    if (!line_.starts_with('#')) return parse_header();
-  if (error_) return false;
-  return fail(place_of(line_) + no_header(line_number_ == 1 ? "an empty file" : "the end of the file",
-                                          "check that the recording was saved"));
-}
-
-bool RecordingReader::parse_header() {
-  if (const std::size_t good = utf8_bytes(line_); good < line_.size()) {
-    return fail(place_of(line_.substr(good)) + "found byte " + printable(line_.substr(good, 1)) +
-                ", expected UTF-8 text in the header; save the file as UTF-8 CSV");
-  }
-  split_line();
-  for (const std::string_view name : fields_) {
-    const auto known = std::find(kColumnNames.begin(), kColumnNames.end(), name);
-    const auto role = static_cast<ColumnRole>(known - kColumnNames.begin());  // ignored if the name is unknown
-    if (role != ColumnRole::kIgnored && has(role)) {
-      return fail(place_of(name) + "found column " + std::string(name) +
-                  " twice, expected it once; remove or rename one of the two");
-    }
-    roles_.push_back(role);
-  }
-  header_ends_with_comma_ = fields_.back().empty();
-  std::vector<std::string> missing;
-  for (std::size_t i = 0; i < kRequiredColumns; ++i)
-    if (!has(static_cast<ColumnRole>(i))) missing.emplace_back(kColumnNames[i]);
-  if (missing.empty()) return true;
-  // Usually the file is that of another program, so every message recommends the import.
-  const LineFault fault = header_fault(line_, fields_, missing);
-  return fail(place_of(fault.at) + fault.text + ", or let palpate import " + label_ + " --out REC.csv do it");
-}
-
-std::size_t RecordingReader::index_of(ColumnRole role) const {
-  return static_cast<std::size_t>(std::find(roles_.begin(), roles_.end(), role) - roles_.begin());
-}
-
-RecordingColumns RecordingReader::columns() const {
-  return {has(ColumnRole::kVelocity), has(ColumnRole::kAcceleration)};
-}
-
-void RecordingReader::split_line() {
-  fields_.clear();
-  for (std::string_view rest = line_;;) {
-    const std::size_t comma = rest.find(',');
-    fields_.push_back(rest.substr(0, comma));
-    if (comma == std::string_view::npos) return;
-    rest.remove_prefix(comma + 1);
-  }
-}
-
-// Parses every field of the present line. If false, row_fault gives the reason.
-bool RecordingReader::parse(RecordingRow& row) {
-  split_line();
-  if (fields_.size() != roles_.size()) return false;
-  std::array<double, kKnownColumns> values{};
-  for (std::size_t i = 0; i < fields_.size(); ++i)
-    if (roles_[i] != ColumnRole::kIgnored && !parse_field(fields_[i], values[static_cast<std::size_t>(roles_[i])]))
-      return false;
-  row = {values[0], values[1], values[2], values[3], values[4]};
-  return true;
-}
-
-bool RecordingReader::finish() {
-  if (error_) return false;
-  ended_ = true;
-  const auto fault = rules_.finish();
-  return fault && fail(*fault);
-}
-
-bool RecordingReader::next(RecordingRow& row) {
-  if (!next_line()) return finish();
-  if (!parse(row)) {
-    if (!trimmed(line_).empty()) {
-      const LineFault fault = row_fault(line_, line_has_end_, fields_, roles_, header_ends_with_comma_);
-      return fail(place_of(fault.at) + fault.text);
-    }
-    // Blank lines are allowed at the end of the file only.
-    const std::string blank = place_of(line_);
-    while (next_line())
-      if (!trimmed(line_).empty())
-        return fail(blank + "found a blank line, expected a row with " + std::to_string(roles_.size()) +
-                    " fields; remove the blank line");
-    return finish();
-  }
-  if (rules_.rows() == 0) first_time_ = place_of(value_of(fields_[index_of(ColumnRole::kTime)]));
-  const auto fault = rules_.check(row);
-  return !fault || fail(*fault);
-}
-
-Result<std::size_t> RecordingReader::read(std::vector<RecordingRow>& rows, std::size_t most) {
-  std::size_t count = 0;
-  for (RecordingRow row; !ended_ && !error_ && count < most && next(row); ++count) rows.push_back(row);
-  if (error_) return *error_;
-  return count;
+  std::error_code unknown;  // then the size is the largest number
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  return RecordingReader(**file, path).read(most_rows, std::min<std::size_t>(bytes / kShortestRow, kMostExpected));
 }
 
 }  // namespace palpate

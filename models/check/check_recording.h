@@ -68,7 +68,7 @@ struct CheckedFile {
   const Recording& recording() const { return prepared->recording; }
 };
 
-// Errors: those of RecordingReader.
+// Errors: those of read_recording.
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request);
 // The median difference of the forces of two recordings of one set, second minus first, N, if no single model can
 // render both; else none: the central 90 % of their forces do not overlap in four of five bins of their positions, and

@@ -1,10 +1,8 @@
 // palpate check: checks whether a recording is suitable for a fit.
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -21,12 +19,7 @@ Status run_check(const CheckOptions& options) {
   if (!scene) return scene.error();
   const auto files = check_recording_files(options.recordings, check_request(*scene));
   if (!files) return files.error();
-  if (options.json) {
-    print_check_json(*files);
-  } else {
-    for (const CheckedFile& file : *files) std::cout << check_text(file);
-    if (refuse_unusable(*files)) std::cout << next_fit(options.recordings);
-  }
+  print_check(*files, options.json);
   return refuse_unusable(*files);
 }
 

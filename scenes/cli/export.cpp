@@ -6,7 +6,6 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "models/export/export_c.h"
-#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {

@@ -10,7 +10,6 @@
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
 #include "models/samples/prepared_recording.h"
-#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {

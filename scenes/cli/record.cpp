@@ -14,7 +14,6 @@
 #include "engine/base/text.h"
 #include "engine/live/haptics_loop.h"
 #include "scenes/cli/record_guide.h"
-#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/scene/folders.h"
@@ -145,7 +144,7 @@ Status run_record(const RecordOptions& options) {
   std::fprintf(options.json ? stderr : stdout, "%s\n", recorded->c_str());
   if (!(*device)->measures_force()) {
     if (options.json) {
-      print_check_json({});
+      print_check({}, true);
     } else {
       std::printf("%s has no force: before a fit, add a column force_N with the force of a sensor\n",
                   options.out.c_str());
@@ -154,12 +153,7 @@ Status run_record(const RecordOptions& options) {
   }
   const auto file = check_recording_file(options.out, check_request(*scene));
   if (!file) return file.error();
-  if (options.json) {
-    print_check_json({*file});
-    return {};
-  }
-  std::printf("%s", check_text(*file).c_str());
-  if (refuse_unusable({*file})) std::printf("%s", next_fit({options.out}).c_str());
+  print_check({*file}, options.json);
   return {};
 }
 

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
-#include "scenes/cli/replay_files.h"
-#include "scenes/cli/shared.h"
+#include "engine/tick/haptics_tick.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
+#include "scenes/plot/compared_forces.h"
 #include "scenes/plot/draw.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate::cli {
 namespace {
@@ -28,6 +30,11 @@ struct Options {
 
 // The output has a note if moving the surface changes the share within the JND by more.
 constexpr double kShareThatMatters = 0.005;
+
+struct LoadedModel {
+  std::string name;  // unique among the models of one run
+  std::shared_ptr<const FittedModel> model;
+};
 
 struct ReplayedModel {
   LoadedModel loaded;
@@ -59,12 +66,51 @@ constexpr ErrorColumn kFigures[] = {{"rms_error_N", "RMS mN", &ErrorSummary::rms
                                     {"p99_error_over_jnd", "P99 JND", &ErrorSummary::p99_error_over_jnd, 1.0, 2, true},
                                     {"max_error_over_jnd", "MAX JND", &ErrorSummary::max_error_over_jnd, 1.0, 2, true}};
 
+// `names` with suffixes -2, -3 ... for repeated names.
+std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
+  std::vector<std::string> distinct;
+  for (const std::string& name : names) {
+    std::string candidate = name;
+    for (int i = 2; std::ranges::count(distinct, candidate) > 0; ++i) candidate = name + "-" + std::to_string(i);
+    distinct.push_back(candidate);
+  }
+  return distinct;
+}
+
+// `given`: a name for each file. Empty: the names in the files, or the file names where those are equal.
+Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
+                                             const std::vector<std::string>& given) {
+  if (paths.size() > kMaxModels) {
+    return Error{"found " + std::to_string(paths.size()) + " models, expected at most " + std::to_string(kMaxModels) +
+                 "; replay them in several runs"};
+  }
+  if (!given.empty() && given.size() != paths.size()) {
+    return Error{"found " + std::to_string(given.size()) + " names for " + std::to_string(paths.size()) +
+                 " models, expected one each; give --name once for every --model"};
+  }
+  std::vector<std::shared_ptr<const FittedModel>> models;
+  for (const std::string& path : paths) {
+    auto model = load_model_file(path, "give it with --recording");
+    if (!model) return model.error();
+    models.push_back(*model);
+  }
+  std::vector<std::string> names = given;
+  for (std::size_t i = 0; given.empty() && i < models.size(); ++i) {
+    const bool unique = std::ranges::count(models, models[i]->name(), &FittedModel::name) == 1;
+    names.push_back(unique ? models[i]->name() : fs::path(paths[i]).stem().string());
+  }
+  names = distinct_names(names);
+  std::vector<LoadedModel> loaded;
+  for (std::size_t i = 0; i < models.size(); ++i) loaded.push_back({names[i], models[i]});
+  return loaded;
+}
+
 // The output file of each recording: `path` for one, NAME_RECORDING.csv for several; empty if `path` is empty.
 std::vector<std::string> outputs(const std::string& path, const std::vector<std::string>& recordings) {
   if (path.empty() || recordings.size() == 1) return std::vector<std::string>(recordings.size(), path);
+  const fs::path given(path);
   std::vector<std::string> names;
   for (const std::string& recording : recordings) names.push_back(fs::path(recording).stem().string());
-  const fs::path given(path);
   std::vector<std::string> paths;
   for (const std::string& name : distinct_names(names)) {
     paths.push_back((given.parent_path() / (given.stem().string() + "_" + name + given.extension().string())).string());
@@ -152,37 +198,30 @@ std::vector<std::pair<std::string, std::string>> table_cells(const ReplayedModel
   return cells;
 }
 
-// Says, for the first such model, that the recording does not distinguish an offset of the surface and of the force.
-std::string ambiguity_remark(const ReplayedRecording& replayed) {
-  for (const ReplayedModel& one : replayed.models) {
-    if (one.surface.force_offset_N == 0.0) continue;
-    char text[320];
-    std::snprintf(text, sizeof text,
-                  "a surface at %+.3f mm for %s and a force offset of %+.3f N explain this recording equally well: "
-                  "neither is corrected",
-                  1e3 * one.surface.minimum_at, one.loaded.name.substr(0, 64).c_str(), one.surface.force_offset_N);
-    return text;
-  }
-  return {};
-}
-
-// Describes the largest change of a share within the JND by moving the surface; empty if it is small.
-std::string surface_remark(const ReplayedRecording& replayed) {
+// The largest change of a share within the JND by moving the surface, unless it is small.
+void print_surface_note(const std::vector<ReplayedModel>& models) {
   const auto change = [](const ReplayedModel& one) {
     return std::abs(one.surface_moved.within_jnd - one.as_recorded.within_jnd);
   };
-  const ReplayedModel& most = *std::ranges::max_element(replayed.models, {}, change);
-  if (change(most) <= kShareThatMatters) return {};
-  const ErrorSummary& plain = most.as_recorded;
-  const ErrorSummary& moved = most.surface_moved;
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "the surface of this recording is at %+.3f mm for %s, which changes the figures: "
-                "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface aligned; "
-                "that is estimated from these same forces",
-                1e3 * most.surface.at, most.loaded.name.substr(0, 64).c_str(), 1e2 * plain.within_jnd,
-                1e3 * plain.rms_error_N, 1e2 * moved.within_jnd, 1e3 * moved.rms_error_N);
-  return text;
+  const ReplayedModel& most = *std::ranges::max_element(models, {}, change);
+  if (change(most) <= kShareThatMatters) return;
+  std::printf(
+      "note: the surface of this recording is at %+.3f mm for %.64s, which changes the figures: "
+      "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface aligned; "
+      "that is estimated from these same forces\n",
+      1e3 * most.surface.at, most.loaded.name.c_str(), 1e2 * most.as_recorded.within_jnd,
+      1e3 * most.as_recorded.rms_error_N, 1e2 * most.surface_moved.within_jnd, 1e3 * most.surface_moved.rms_error_N);
+}
+
+// Says, for the first such model, that the recording does not distinguish an offset of the surface and of the force.
+void print_ambiguity_note(const std::vector<ReplayedModel>& models) {
+  const auto ambiguous = [](const ReplayedModel& one) { return one.surface.force_offset_N != 0.0; };
+  const auto first = std::ranges::find_if(models, ambiguous);
+  if (first == models.end()) return;
+  std::printf(
+      "note: a surface at %+.3f mm for %.64s and a force offset of %+.3f N explain this recording equally well: "
+      "neither is corrected\n",
+      1e3 * first->surface.minimum_at, first->loaded.name.c_str(), first->surface.force_offset_N);
 }
 
 void print_recording(const ReplayedRecording& replayed, bool all) {
@@ -199,8 +238,84 @@ void print_recording(const ReplayedRecording& replayed, bool all) {
     }
   }
   print_table(rows, true);
-  for (const std::string& remark : {surface_remark(replayed), ambiguity_remark(replayed)})
-    if (!remark.empty()) std::printf("note: %s\n", remark.c_str());
+  print_surface_note(replayed.models);
+  print_ambiguity_note(replayed.models);
+}
+
+// FORCES.csv with one row per sample: time_s, position_m, force_N, depth_m, each distinct feature of the models, then
+// "<model name>_N" for each model.
+class ForcesFile {
+ public:
+  static Result<ForcesFile> create(const std::string& path, bool overwrite, const std::vector<LoadedModel>& models) {
+    Result<AtomicFile> file = AtomicFile::create(path, overwrite);
+    if (!file) return file.error();
+    ForcesFile forces(std::move(*file));
+    std::vector<FeatureSpec> specs;
+    std::vector<std::string> feature_names;
+    for (std::size_t m = 0; m < models.size(); ++m) {
+      const std::vector<FeatureSpec>& features = models[m].model->features();
+      for (std::size_t i = 0; i < features.size(); ++i) {
+        const FeatureSpec& spec = features[i];
+        if (std::ranges::count(specs, spec) > 0) continue;
+        specs.push_back(spec);
+        feature_names.push_back(feature_name(spec));
+        forces.columns_.emplace_back(m, i);
+      }
+    }
+    std::string header = "time_s,position_m,force_N,depth_m";
+    for (const std::string& name : distinct_names(feature_names)) header += "," + name;
+    for (const LoadedModel& one : models) header += "," + one.name + "_N";
+    forces.file_.write(header + "\n");
+    return forces;
+  }
+
+  void add(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+    std::string line;
+    const auto append = [&](double value) { (line += line.empty() ? "" : ",") += shortest(value); };
+    for (const double value : {row.time_s, row.position_m, row.force_N, snapshot.depth_m}) append(value);
+    for (const auto& [model, index] : columns_) append(tick.features_of(model).values[index]);
+    for (std::size_t m = 0; m < tick.model_count(); ++m) append(snapshot.force_N[m]);
+    file_.write(line + "\n");
+  }
+
+  Status commit() { return file_.commit(); }
+
+ private:
+  explicit ForcesFile(AtomicFile file) : file_(std::move(file)) {}
+
+  AtomicFile file_;
+  // The first model with each feature, and the place in its feature vector.
+  std::vector<std::pair<std::size_t, std::size_t>> columns_;
+};
+
+// Draws the measured force, every model's difference from it over the JND, and the error against the force.
+Status draw_replay(const std::string& path, const std::string& recording, const std::vector<ReplayedModel>& models,
+                   const std::vector<ComparedMoment>& moments, bool overwrite) {
+  std::vector<ComparedModel> compared;
+  Panel against;
+  against.x.title = "Measured force [N]";
+  against.y = {"Mean error + deviation", "N", true};
+  against.names_at_ends = true;
+  Series jnd{"JND", kMutedColour, Mark::dashed, {}};
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const auto& [name, model] = models[i].loaded;
+    compared.push_back({{name, method_rgb(model->method()), Mark::line, {}}, model->data().jnd});
+    Series& series = against.series.emplace_back(compared.back().curve);
+    series.mark = Mark::curve;
+    for (const ForceBin& bin : models[i].as_recorded.bins) {
+      if (bin.force_N.count() > 0)
+        series.rows.push_back({bin.force_N.mean(), bin.error_N.mean() + bin.error_N.deviation()});
+      if (i == 0) jnd.rows.push_back({0.5 * (bin.force_from_N + bin.force_to_N), bin.jnd_N});
+    }
+  }
+  merge_equal(against.series);
+  against.series.push_back(std::move(jnd));
+  Plot plot;
+  plot.name = "replay";
+  plot.height = 0.7;
+  plot.panels = compared_forces(recording, compared, moments);
+  plot.panels.push_back(std::move(against));
+  return draw_plot(plot, path, overwrite);
 }
 
 // `forces_path`: features and forces; `plot_path`: a figure. Empty: not requested.
@@ -236,16 +351,14 @@ Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vect
   }
   ReplayedRecording replayed{checked.path, evaluation->samples, evaluation->no_force.summary().samples, {}};
   const std::vector<ModelTiming> times = time_models(pointers, evaluation->timing);
-  std::vector<ErrorSummary> errors;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const auto& [recorded, moved, surfaces] = evaluation->models[i];
-    errors.push_back(recorded.summary());
-    replayed.models.push_back(
-        {models[i], errors.back(), moved.summary(), recorded.bounds(), moved.bounds(), surfaces.front(), times[i]});
+    replayed.models.push_back({models[i], recorded.summary(), moved.summary(), recorded.bounds(), moved.bounds(),
+                               surfaces.front(), times[i]});
   }
   if (plot_path.empty()) return replayed;
   const Status drawn =
-      draw_replay(plot_path, fs::path(checked.path).filename().string(), models, moments, errors, overwrite);
+      draw_replay(plot_path, fs::path(checked.path).filename().string(), replayed.models, moments, overwrite);
   return drawn ? Result<ReplayedRecording>(std::move(replayed)) : drawn.error();
 }
 
@@ -256,8 +369,8 @@ Status run(const Options& options) {
   const std::vector<std::string> plots = outputs(options.plot, options.recordings);
   for (std::size_t i = 0; i < options.recordings.size(); ++i) {
     for (const auto& [option, path] : {std::pair{"--out", forces[i]}, {"--plot", plots[i]}}) {
-      if (path.empty()) continue;
-      if (const Status status = refuse_input_as_output(path, inputs, option); !status) return status;
+      const Status status = path.empty() ? Status() : refuse_input_as_output(path, inputs, option);
+      if (!status) return status;
     }
     if (plots[i].empty()) continue;
     if (const Status status = check_plot_path(plots[i], options.force); !status) return status;

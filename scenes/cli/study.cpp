@@ -8,7 +8,6 @@
 
 #include "engine/base/atomic_file.h"
 #include "scenes/cli/progress.h"
-#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/study/simulated_subject.h"

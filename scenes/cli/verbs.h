@@ -1,14 +1,25 @@
-// The verbs (subcommands) of the headless program. Each has a source file, which adds the subcommand and the function
-// to run. A failed Status ends the program with one "error: ..." block on stderr and exit code 1. Wrong usage that
-// CLI11 does not detect throws CLI::ValidationError, during parsing or the run: exit code 2. Main thread only.
+// The verbs (subcommands) of the headless program, and functions that several of them share. Each verb adds its
+// subcommand and the function to run. A failed Status ends the program with one "error: ..." block on stderr and exit
+// code 1. Wrong usage that CLI11 does not detect throws CLI::ValidationError, during parsing or the run: exit code 2.
+// Main thread only.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/base/result.h"
+#include "models/check/check_recording.h"
+#include "models/model/fitted_model.h"
+#include "scenes/scene/scene.h"
+
+namespace palpate {
+class DeviceBus;
+}
 
 namespace palpate::cli {
 
@@ -27,5 +38,31 @@ void add_report(CLI::App& app, Verbs& verbs);
 void add_paper(CLI::App& app, Verbs& verbs);
 void add_hard(CLI::App& app, Verbs& verbs);
 void add_study(CLI::App& app, Verbs& verbs);
+
+// The JND line of the scene, and whether its force has a memory.
+CheckRequest check_request(const Scene& scene);
+
+// Reads and checks `paths` and prints a line on stderr for each warning. Errors: a file cannot be read or is unusable.
+Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request);
+
+// The output of `palpate check`; as text with the command that fits the recordings if they are usable, ready to copy.
+void print_check(const std::vector<CheckedFile>& files, bool json);
+
+// The text of `palpate devices` about the devices on `bus`. Opens each supported one; if that fails, says why and how
+// to fix it, with the udev rule in the folder `assets`.
+std::string plugged_in_text(DeviceBus& bus, const std::string& assets);
+
+// Loads a model file. Errors: as load_model; for a recording, that it is one, and `advice`.
+Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& path, const std::string& advice);
+
+// Errors: `out` is one of the files that are read. `option`: the option that named it, for the message.
+Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,
+                              const std::string& option);
+
+// Prints to stdout. Bytes that are not UTF-8, as in paths, are replaced.
+void print_json(const nlohmann::ordered_json& json);
+
+// Prints rows of cells in aligned columns, left-aligned; with `numbers` all but the first are right-aligned.
+void print_table(const std::vector<std::vector<std::string>>& rows, bool numbers);
 
 }  // namespace palpate::cli

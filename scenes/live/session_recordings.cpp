@@ -6,7 +6,6 @@
 
 #include "engine/base/text.h"
 #include "engine/import/import_table.h"
-#include "engine/recording/recording_reader.h"
 #include "scenes/scene/folders.h"
 
 namespace palpate {
@@ -21,7 +20,7 @@ Result<ConvertedRecording> convert_recording(const std::string& path, const std:
   if (recording) return ConvertedRecording{path, {}};
   // A file with the header of a recording is no table of another program.
   std::error_code missing;
-  if (RecordingReader::open(path) || !std::filesystem::exists(path, missing)) return recording.error();
+  if (read_recording(path, 0) || !std::filesystem::exists(path, missing)) return recording.error();
   const ImportRequest request;
   const auto table = import_table(path, request);
   if (!table) return table.error();

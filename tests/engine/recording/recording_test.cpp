@@ -5,7 +5,6 @@
 #include <clocale>
 
 #include "engine/base/text.h"
-#include "engine/recording/recording_reader.h"
 #include "tests/support/broken_recordings.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/temporary_folder.h"
@@ -30,7 +29,7 @@ void expect_good_rows(const Recording& recording) {
   EXPECT_EQ(recording.rows[11].force_N, 0.5);
 }
 
-TEST(RecordingReader, NamesThePlaceOfAFaultAndSaysWhatToDo) {
+TEST(Recording, NamesThePlaceOfAFaultAndSaysWhatToDo) {
   const TemporaryFolder folder;
   for (const auto& broken : test::broken_recordings()) {
     SCOPED_TRACE(broken.name);
@@ -74,11 +73,12 @@ TEST(Recording, AcceptsALineOf64KiB) {
     expect_good_rows(accepted(start + longest + "\r\n" + test::good_recording()));
 }
 
-TEST(RecordingReader, ReportsAStreamThatFails) {
+TEST(Recording, ReportsAStreamThatFails) {
   // A folder can be opened as a file, but not be read.
-  const auto reader = RecordingReader::from(std::make_unique<std::ifstream>("/"), "x.csv");
-  ASSERT_FALSE(reader.ok());
-  EXPECT_TRUE(test::has_parts(reader.error().message, {"x.csv: ", "Is a"}));
+  std::ifstream folder("/");
+  const auto recording = read_recording(folder, "x.csv");
+  ASSERT_FALSE(recording.ok());
+  EXPECT_TRUE(test::has_parts(recording.error().message, {"x.csv: ", "Is a"}));
 }
 
 TEST(Recording, AcceptsColumnsInAnyOrderAndIgnoresFurtherOnes) {

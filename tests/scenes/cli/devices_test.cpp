@@ -1,8 +1,7 @@
 // What palpate devices says about the devices that are plugged in.
-#include "scenes/cli/devices.h"
-
 #include <gtest/gtest.h>
 
+#include "scenes/cli/verbs.h"
 #include "tests/support/fake_device_bus.h"
 #include "tests/support/message_parts.h"
 

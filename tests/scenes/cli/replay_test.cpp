@@ -8,7 +8,6 @@
 
 #include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
-#include "scenes/cli/replay_files.h"
 #include "tests/support/example_model.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
@@ -269,9 +268,11 @@ TEST_F(ReplayVerb, NothingIsLostWithoutForceOrAfterAnError) {
   EXPECT_NE(test::read_text(out), "mine");
 }
 
-TEST(DistinctNames, CountUpPastNamesThatAreTaken) {
-  EXPECT_EQ(cli::distinct_names({"a", "a-2", "a", "b", "a"}),
-            (std::vector<std::string>{"a", "a-2", "a-3", "b", "a-4"}));
+TEST_F(ReplayVerb, EqualNamesCountUpPastNamesThatAreTaken) {
+  const Json object = results(std::vector<std::string>(5, models_[0]), {"--name", "a", "a-2", "a", "b", "a"});
+  std::vector<std::string> names;
+  for (const Json& model : object["models"]) names.push_back(model["name"]);
+  EXPECT_EQ(names, (std::vector<std::string>{"a", "a-2", "a-3", "b", "a-4"}));
 }
 
 }  // namespace

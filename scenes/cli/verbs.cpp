@@ -1,13 +1,11 @@
-#include "scenes/cli/shared.h"
+#include "scenes/cli/verbs.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <sstream>
 
 #include "engine/base/text.h"
-#include "engine/base/whole_file.h"
-#include "engine/recording/recording_reader.h"
+#include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
 
 namespace palpate::cli {
@@ -22,23 +20,23 @@ Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>
   return files;
 }
 
-std::string check_text(const CheckedFile& file) {
+namespace {
+
+void print_check_text(const CheckedFile& file) {
   const std::string verdict = file.check.verdict();
-  std::ostringstream text;
-  text << file.path << ": "
-       << (verdict == "care"       ? "usable with care"
-           : verdict == "unusable" ? "not usable"
-                                   : "usable")
-       << "\n";
+  std::printf("%s: %s\n", file.path.c_str(),
+              verdict == "care"       ? "usable with care"
+              : verdict == "unusable" ? "not usable"
+                                      : "usable");
   for (const Finding& finding : file.check.findings) {
-    const std::string severity = severity_name(finding.severity);
-    text << "  " << severity << std::string(9 - severity.size(), ' ') << finding.code
-         << std::string(finding.code.size() < 17 ? 17 - finding.code.size() : 1, ' ') << finding.text
-         << (finding.advice.empty() ? "" : "; " + finding.advice) << "\n";
+    std::printf("  %-8s %-16s %s%s%s\n", severity_name(finding.severity), finding.code.c_str(), finding.text.c_str(),
+                finding.advice.empty() ? "" : "; ", finding.advice.c_str());
   }
-  text << "  the noise of the force sensor alone leaves " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
-       << " % of the contact samples within the JND; this says nothing about a model\n";
-  return text.str();
+  std::printf(
+      "  the noise of the force sensor alone leaves %s %% of the contact samples within the JND; this says nothing "
+      "about "
+      "a model\n",
+      fixed(100.0 * file.check.noise_floor_within_jnd, 1).c_str());
 }
 
 void print_check_json(const std::vector<CheckedFile>& files) {
@@ -64,15 +62,20 @@ void print_check_json(const std::vector<CheckedFile>& files) {
   print_json({{"recordings", list}});
 }
 
-std::string next_fit(const std::vector<std::string>& recordings) {
-  std::string text = "next: palpate fit --recording";
-  for (const std::string& one : recordings) text += " " + shell_word(one);
-  return text + " --out model.json\n";
+}  // namespace
+
+void print_check(const std::vector<CheckedFile>& files, bool json) {
+  if (json) return print_check_json(files);
+  for (const CheckedFile& file : files) print_check_text(file);
+  if (!refuse_unusable(files)) return;
+  std::string next = "next: palpate fit --recording";
+  for (const CheckedFile& file : files) next += " " + shell_word(file.path);
+  std::printf("%s --out model.json\n", next.c_str());
 }
 
 Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& path, const std::string& advice) {
   auto model = load_model(path);
-  if (model || !RecordingReader::open(path)) return model;
+  if (model || !read_recording(path, 0)) return model;
   return Error{path + " is a recording, expected a model file (JSON, made by palpate fit); " + advice};
 }
 
@@ -88,13 +91,6 @@ Status refuse_input_as_output(const std::string& out, const std::vector<std::str
 
 void print_json(const nlohmann::ordered_json& json) {
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
-}
-
-Status print_file(const std::string& path) {
-  const Result<std::string> text = read_plain_file(path, "the results");
-  if (!text) return text.error();
-  std::fputs(text->c_str(), stdout);
-  return {};
 }
 
 // The number of characters of UTF-8 text.

@@ -1,8 +1,7 @@
-// palpate devices: lists the devices, and the reason if one cannot be opened.
-#include "scenes/cli/devices.h"
-
+// palpate devices and palpate scenes: list what there is, and why a device cannot be opened.
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,10 +9,11 @@
 #include "devices/bridge/byte_stream.h"
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
+#include "devices/link/device_link.h"
 #include "devices/registry/device_registry.h"
-#include "scenes/cli/shared.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/folders.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate::cli {
 
@@ -77,6 +77,19 @@ Status run_devices(const DevicesOptions& options) {
   return {};
 }
 
+Status list_scenes() {
+  const Result<std::vector<std::string>> names = scene_names();
+  if (!names) return names.error();
+  std::vector<std::vector<std::string>> rows = {{"SCENE", "TITLE", "MATERIAL", "FEATURES"}};
+  for (const std::string& name : *names) {
+    const Result<Scene> scene = load_scene(name);
+    if (!scene) return scene.error();
+    rows.push_back({name, scene->title, scene->material.value_or("-"), describe_features(*scene)});
+  }
+  print_table(rows, false);
+  return {};
+}
+
 }  // namespace
 
 void add_devices(CLI::App& app, Verbs& verbs) {
@@ -86,6 +99,10 @@ void add_devices(CLI::App& app, Verbs& verbs) {
       ->type_name("bridge:TARGET");
   command->add_flag("--bridge-remote", options->bridge_remote, "Allow bridge:tcp: to name another computer");
   verbs.emplace_back(command, [options] { return run_devices(*options); });
+}
+
+void add_scenes(CLI::App& app, Verbs& verbs) {
+  verbs.emplace_back(app.add_subcommand("scenes", "List the scenes"), list_scenes);
 }
 
 }  // namespace palpate::cli
