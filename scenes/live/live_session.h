@@ -44,7 +44,7 @@ struct SessionRequest {
   bool refits = true;
   std::uint64_t seed = 1;      // of the training recording and the fits; the hand and the test have seed + 1
   bool realtime = true;        // asks for real-time scheduling
-  std::string ready_models{};  // a folder (scenes/worker/ready_models.h); empty: every model is fitted
+  std::string ready_models{};  // a folder (scenes/worker/model_worker.h); empty: every model is fitted
   std::string data_folder{};   // for fault files; empty: the working directory
   DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
 };

@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -22,7 +23,6 @@
 #include "models/model/fitted_model.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/model_request.h"
-#include "scenes/worker/ready_models.h"
 
 namespace palpate {
 
@@ -37,8 +37,8 @@ void lower_thread_priority() noexcept;
 
 class ModelWorker {
  public:
-  // `training`: recordings; empty: that of the scene's virtual material. `ready`: a folder of models that need no fit
-  // to that material (ready_models.h); may be empty.
+  // `training`: recordings; empty: that of the scene's virtual material. `ready`: the folder of make_ready_models,
+  // whose models of that material need no fit; may be empty.
   ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training = {}, const std::string& ready = "");
   // Interrupts the running fits and waits for the threads.
   ~ModelWorker();
@@ -46,6 +46,9 @@ class ModelWorker {
   // Makes the model of one request in the calling thread; call it before `start`. Errors: those of the fit; the scene
   // has no material to fit to.
   Result<std::shared_ptr<const FittedModel>> make(const ModelRequest& request);
+
+  // The file of a ready model of this plan; empty: there is none for this scene and seed.
+  std::string ready_file(const ModelPlan& plan) const;
 
   // Errors: a thread cannot be started.
   Status start();
@@ -92,7 +95,7 @@ class ModelWorker {
 
   Scene scene_;
   std::uint64_t seed_;
-  ReadyModels ready_;
+  std::string ready_;  // folder of the ready models of this scene and seed; empty: there are none
   std::atomic<bool> cancelled_{false};
   std::mutex recordings_mutex_;
   // Guarded by recordings_mutex_.
@@ -103,6 +106,13 @@ class ModelWorker {
   std::vector<FinishedModel> finished_;  // guarded by mutex_
   std::array<Lane, 2> lanes_;
 };
+
+// Fits the models with which a window of this scene may start, with seed 1, when the program is built
+// (ready_models_main.cpp):
+//   FOLDER/SCENE/NAME.json    a model, as `palpate fit` writes it
+//   FOLDER/SCENE/inputs.txt   what the fits depend on, beside the program itself, on which their build depends
+// Errors: those of load_scene, the fits and save_model; the folder cannot be created.
+Status make_ready_models(const std::string& folder, const std::string& scene);
 
 // Calls prepare_blas (models/linear/lapack.h), for programs that may not include models/. Call it first in main.
 void prepare_to_fit();
