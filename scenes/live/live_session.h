@@ -20,7 +20,6 @@
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/model_test.h"
-#include "scenes/live/notices.h"
 #include "scenes/live/session_models.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/live/verdict.h"
@@ -133,13 +132,9 @@ class LiveSession {
   Notices read_notices() { return std::exchange(notices_, {}); }
 
  private:
-  struct Parts {
-    Scene scene;
-    std::unique_ptr<Device> device;
-    std::vector<Recording> training;
-    std::optional<Recording> test_part;  // that was set apart from them
-  };
-  LiveSession(const SessionRequest& request, Parts parts);
+  // `part`: the test, if it was set apart from `training`.
+  LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device,
+              std::vector<Recording> training, std::optional<Recording> part);
   ModelTest::MakeRecording make_test(std::optional<Recording> part) const;
   Status begin(const std::vector<ModelRequest>& plans);
   void update_models();

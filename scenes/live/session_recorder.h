@@ -21,7 +21,6 @@
 #include "engine/live/haptics_loop.h"
 #include "engine/recording/recording_writer.h"
 #include "scenes/live/force_history.h"
-#include "scenes/live/notices.h"
 
 namespace palpate {
 
