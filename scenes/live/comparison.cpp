@@ -106,9 +106,6 @@ void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
   }
   if (!fresh) return;
   last_time_s_ = time_s;
-  for (std::size_t i = 0; i < slots_.size(); ++i)
-    if (!std::isnan(point.difference_over_jnd(i, jnd_)))
-      point.sustained_over_jnd[i] = static_cast<float>(slots_[i].sustained_over_jnd);
   history_.append(point);
   fault_level_ = TickFaultLevel::none;
 }
@@ -137,15 +134,16 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
   return point;
 }
 
-void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set,
-                       double step_s) {
+void Comparison::count(HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s) {
   // Where one model is outside its training domain, the sample counts for no model.
   bool outside = false;
   for (const auto& [slot, i] : set.models) {
     if (!models_.info(slot).other_material && (snapshot.tick.out_of_domain_mask >> i & 1U) != 0) outside = true;
     const double difference = point.difference_over_jnd(slot, jnd_);
-    slots_[slot].sustained_over_jnd =
-        slots_[slot].sustained.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
+    const bool known = !std::isnan(difference);
+    Slot& its = slots_[slot];
+    its.sustained_over_jnd = its.sustained.add(point.time_s, known ? difference : 0.0);
+    if (known) point.sustained_over_jnd[slot] = static_cast<float>(its.sustained_over_jnd);
   }
   // A snapshot of an earlier set lacks the models that joined since.
   if (&set != models_.newest_set() || std::isnan(point.reference_N) || outside || !point.counts) return;

@@ -141,7 +141,7 @@ class Comparison {
     StreamErrors errors;
   };
   HistoryPoint point_of(const LoopSnapshot& snapshot, const PublishedSet* set);
-  void count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s);
+  void count(HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s);
 
   const SessionModels& models_;
   JndLine jnd_;

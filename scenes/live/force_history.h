@@ -46,9 +46,8 @@ struct HistoryPoint {
   bool out_of_domain = false;  // of the active model
   std::uint8_t active = 0;     // its slot
   TickFaultLevel fault_level = TickFaultLevel::none;
-  std::array<float, kMaxModels> force_N = no_values();  // by slot
-  // By slot: mean over 50 ms of (model - reference) / JND (SustainedError), signed.
-  std::array<float, kMaxModels> sustained_over_jnd = no_values();
+  // By slot: the force, and the mean over 50 ms of (model - reference) / JND (SustainedError), signed.
+  std::array<float, kMaxModels> force_N = no_values(), sustained_over_jnd = no_values();
   std::uint16_t other_material = 0;  // bit per slot: a model of another material, which is not compared
 
   // (model - reference) / JND of this tick; 0 in the air, NaN without a comparison.

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -49,7 +50,7 @@ SessionRecorder::~SessionRecorder() {
 }
 
 Status SessionRecorder::start(const RecorderRequest& request) {
-  if (thread_.joinable()) return Error{"already recording into " + request_.path + "; stop that one first"};
+  if (running_.valid()) return Error{"already recording into " + request_.path + "; stop that one first"};
   Result<RecordingWriter> writer =
       RecordingWriter::create(request.path, request.columns, request.comments, request.overwrite);
   if (!writer) return writer.error();
@@ -64,7 +65,7 @@ Status SessionRecorder::start(const RecorderRequest& request) {
   seconds_.store(0.0, std::memory_order_relaxed);
   stop_ = false;
   try {
-    thread_ = std::thread([this] { work(); });
+    running_ = std::async(std::launch::async, [this] { return work(); });
   } catch (const std::system_error& error) {
     writer_.reset();
     return Error{std::string("cannot start the recorder's thread: ") + error.what() + "; close other programs"};
@@ -72,31 +73,18 @@ Status SessionRecorder::start(const RecorderRequest& request) {
   return {};
 }
 
-void SessionRecorder::stop() {
-  const std::lock_guard lock(mutex_);
-  stop_ = true;
-  wake_.notify_one();
-}
-
-void SessionRecorder::wait() {
-  if (thread_.joinable()) thread_.join();
-}
-
-void SessionRecorder::work() {
+Notice SessionRecorder::work() {
   int rounds = 0;
   for (bool last = false; !last && !writer_->failed();) {
-    {
-      std::unique_lock lock(mutex_);
-      last = wake_.wait_for(lock, kPause, [this] { return stop_; });
-    }
+    std::this_thread::sleep_for(kPause);
+    last = stop_;
     drain();
     // A write error is persistent: this loop ends, and `finish` reports it.
     if (++rounds % kRoundsToDisk == 0) static_cast<void>(writer_->publish());
   }
   Notice outcome = finish();
   writer_.reset();
-  const std::lock_guard lock(mutex_);
-  outcome_ = std::move(outcome);
+  return outcome;
 }
 
 void SessionRecorder::drain() {
@@ -157,19 +145,14 @@ Notice SessionRecorder::finish() {
 }
 
 RecordingStatus SessionRecorder::status() const {
-  if (!thread_.joinable()) return {};
+  if (!running_.valid()) return {};
   return {!stop_, stop_, request_.path, rows_.load(std::memory_order_relaxed),
           seconds_.load(std::memory_order_relaxed)};
 }
 
 std::optional<Notice> SessionRecorder::read_outcome() {
-  std::optional<Notice> outcome;
-  {
-    const std::lock_guard lock(mutex_);
-    outcome = std::exchange(outcome_, std::nullopt);
-  }
-  if (outcome) wait();
-  return outcome;
+  if (!running_.valid() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
+  return running_.get();
 }
 
 }  // namespace palpate

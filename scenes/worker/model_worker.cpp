@@ -60,19 +60,9 @@ ModelWorker::ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording>
       ready_(training.empty() && !ready.empty() ? ready_folder(ready, scene_, seed) : ""),
       training_(std::move(training)) {}
 
-ModelWorker::~ModelWorker() {
-  cancel();
-  {
-    const std::lock_guard lock(mutex_);
-    wake_.notify_all();
-  }
-  for (Lane& lane : lanes_)
-    if (lane.thread.joinable()) lane.thread.join();
-}
-
 Status ModelWorker::start() {
   try {
-    for (Lane& lane : lanes_) lane.thread = std::thread([this, &lane] { work(lane); });
+    for (Lane& lane : lanes_) lane.thread = std::jthread([this, &lane] { work(lane); });
   } catch (const std::system_error& error) {
     return Error{std::string("cannot start a thread that fits models: ") + error.what() + "; close other programs"};
   }
@@ -135,8 +125,8 @@ void ModelWorker::work(Lane& lane) {
   lower_thread_priority();
   for (std::unique_lock lock(mutex_);;) {
     lane.working_on.reset();
-    wake_.wait(lock, [&] { return !lane.jobs.empty() || cancelled_.load(std::memory_order_relaxed); });
-    if (cancelled_.load(std::memory_order_relaxed)) return;
+    wake_.wait(lock, stop_.get_token(), [&] { return !lane.jobs.empty(); });
+    if (stop_.stop_requested()) return;
     const Job job = std::move(lane.jobs.extract(lane.jobs.begin()).mapped());
     lane.working_on = job.job_id;
     lane.began_s = steady_now_s();
@@ -164,7 +154,7 @@ Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const ModelRequest&
 FitControl ModelWorker::control(Lane& lane, double from, double to) {
   return {[this, &lane, from, to](double fraction) {
     lane.share.store(from + (to - from) * fraction, std::memory_order_relaxed);
-    return !cancelled_.load(std::memory_order_relaxed);
+    return !stop_.stop_requested();
   }};
 }
 

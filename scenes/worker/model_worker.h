@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,7 +42,7 @@ class ModelWorker {
   // whose models of that material need no fit; may be empty.
   ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training = {}, const std::string& ready = "");
   // Interrupts the running fits and waits for the threads.
-  ~ModelWorker();
+  ~ModelWorker() { cancel(); }
 
   // Makes the model of one request in the calling thread; call it before `start`. Errors: those of the fit; the scene
   // has no material to fit to.
@@ -67,7 +68,7 @@ class ModelWorker {
   double left_s() const;
 
   // Interrupts the running fits and starts no other. Does not wait.
-  void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
+  void cancel() noexcept { stop_.request_stop(); }
 
  private:
   struct Job {
@@ -77,7 +78,7 @@ class ModelWorker {
   // The fits of one Base.
   struct Lane {
     std::optional<ModelFits> fits;  // used by its thread only; none before the first fit
-    std::thread thread;
+    std::jthread thread;
     std::atomic<double> share{0.0};
     // Guarded by mutex_.
     std::multimap<double, Job> jobs;  // by expected time, s; below 0: at once
@@ -96,15 +97,15 @@ class ModelWorker {
   Scene scene_;
   std::uint64_t seed_;
   std::string ready_;  // folder of the ready models of this scene and seed; empty: there are none
-  std::atomic<bool> cancelled_{false};
+  std::stop_source stop_;
   std::mutex recordings_mutex_;
   // Guarded by recordings_mutex_.
   std::vector<Recording> training_;  // until the first fit
   std::vector<PreparedRecordingPointer> recordings_;
   mutable std::mutex mutex_;
-  std::condition_variable wake_;
+  std::condition_variable_any wake_;
   std::vector<FinishedModel> finished_;  // guarded by mutex_
-  std::array<Lane, 2> lanes_;
+  std::array<Lane, 2> lanes_;  // last: their threads end before the rest
 };
 
 // Fits the models with which a window of this scene may start, with seed 1, when the program is built
