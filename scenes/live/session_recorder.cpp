@@ -26,18 +26,15 @@ std::string counted(std::uint64_t count, const char* words) {
 }  // namespace
 
 std::optional<double> RecordingTime::file_time_s(double time_s, bool restart) noexcept {
-  const double at_s = start_s_ + (time_s - origin_s_);
-  if (!started_ || (restart && !(at_s > last_s_))) {
-    if (started_) {
-      start_s_ = last_s_ + kStreamGap_s;
-      gaps_s_ += kStreamGap_s;
-    }
-    started_ = true;
+  if (!started_) origin_s_ = time_s;
+  double at_s = start_s_ + (time_s - origin_s_);
+  if (started_ && !(at_s > last_s_)) {
+    if (!restart) return std::nullopt;
+    at_s = start_s_ = last_s_ + kStreamGap_s;
+    gaps_s_ += kStreamGap_s;
     origin_s_ = time_s;
-    last_s_ = start_s_;
-    return start_s_;
   }
-  if (!(at_s > last_s_)) return std::nullopt;
+  started_ = true;
   last_s_ = at_s;
   return at_s;
 }

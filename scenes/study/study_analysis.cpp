@@ -90,9 +90,8 @@ Result<SubjectJnd> jnds_of(const StudyData& data) {
       ++result.unusable;
       continue;
     }
-    const auto r =
-        static_cast<std::size_t>(std::find(kReferenceForces_N.begin(), kReferenceForces_N.end(), trial.reference_N) -
-                                 kReferenceForces_N.begin());
+    const auto* const found = std::ranges::find(kReferenceForces_N, trial.reference_N);
+    const auto r = static_cast<std::size_t>(found - kReferenceForces_N.begin());
     rendered_N.at(r).add(record.reference_rendered_N());
     answers.push_back(
         {r, record.rendered_difference(), trial.comparison_first, record.comparison_judged_larger() ? 1.0 : 0.0, 1.0});

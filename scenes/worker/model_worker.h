@@ -105,7 +105,7 @@ class ModelWorker {
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<FinishedModel> finished_;  // guarded by mutex_
-  std::array<Lane, 2> lanes_;  // last: their threads end before the rest
+  std::array<Lane, 2> lanes_;            // last: their threads end before the rest
 };
 
 // Fits the models with which a window of this scene may start, with seed 1, when the program is built
