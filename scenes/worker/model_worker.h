@@ -78,7 +78,6 @@ class ModelWorker {
   // The fits of one Base.
   struct Lane {
     std::optional<ModelFits> fits;  // used by its thread only; none before the first fit
-    std::jthread thread;
     std::atomic<double> share{0.0};
     // Guarded by mutex_.
     std::multimap<double, Job> jobs;  // by expected time, s; below 0: at once
@@ -86,6 +85,7 @@ class ModelWorker {
     double began_s = 0.0;                        // of the running job; steady clock
     double expected_s = 0.0;                     // its expected duration
     double done_s = 0.0, done_expected_s = 0.0;  // of all jobs before
+    std::jthread thread;                         // last: it ends before what it uses
   };
   Lane& lane_of(const ModelRequest& request) { return lanes_[request.plan.base == Base::force ? 0 : 1]; }
   void work(Lane& lane);  // until cancelled
@@ -105,7 +105,7 @@ class ModelWorker {
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<FinishedModel> finished_;  // guarded by mutex_
-  std::array<Lane, 2> lanes_;            // last: their threads end before the rest
+  std::array<Lane, 2> lanes_;            // last, for the same reason
 };
 
 // Fits the models with which a window of this scene may start, with seed 1, when the program is built
