@@ -27,7 +27,6 @@
 #include "rendering/ui/plot.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/exhibit_game.h"
-#include "scenes/live/exhibit_words.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {

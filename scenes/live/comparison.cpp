@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/trend/trend_columns.h"
+
 namespace palpate {
 
 // A longer gap between two snapshots is a stall; only this part of it counts as time.
@@ -11,6 +13,50 @@ constexpr double kLongestStep_s = 0.1;
 constexpr double kBeginning_s = 0.05;
 // After 5 time constants a first-order filter has less than 1 % of its initial error.
 constexpr double kSettled_memories = 5.0;
+
+void StreamErrors::add(double model_N, double reference_N, const JndLine& jnd) {
+  figures_.add(model_N, reference_N, false, jnd);
+  const double bin = kPerOctave * std::log2(std::max(jnd.error_over_jnd(model_N, reference_N), 1e-9)) + kBelow;
+  ++counts_[static_cast<std::size_t>(std::clamp(std::ceil(bin - 1e-9), 0.0, kBins - 1.0))];
+}
+
+ErrorSummary StreamErrors::summary(const JndLine& jnd) const {
+  ErrorSummary summary = figures_.summary(jnd);
+  std::uint64_t beyond = summary.samples / 100;  // number of samples that may lie above
+  std::size_t bin = counts_.size() - 1;
+  for (; bin > 0 && counts_[bin] <= beyond; --bin) beyond -= counts_[bin];
+  summary.p99_error_over_jnd = bin > 0 ? std::exp2((static_cast<double>(bin) - kBelow) / kPerOctave) : 0.0;
+  return summary;
+}
+
+double SustainedError::add(double time_s, double difference_over_jnd) {
+  if (!samples_.empty() && (time_s < samples_.back().time_s || time_s - samples_.back().time_s > kSpan_s))
+    samples_.clear();
+  if (samples_.empty()) sum_ = 0.0;  // discards accumulated rounding errors
+  while (!samples_.empty() && samples_.front().time_s <= time_s - kSpan_s) {
+    sum_ -= samples_.front().difference;
+    samples_.pop_front();
+  }
+  samples_.push_back({time_s, difference_over_jnd});
+  sum_ += difference_over_jnd;
+  return sum_ / static_cast<double>(samples_.size());
+}
+
+Dent::Dent(const std::vector<FeatureSpec>& features) {
+  for (const double time_s : relaxation_times_s(features)) branches_.push_back({time_s, 0.0});
+}
+
+void Dent::step(double depth_m, double force_N, double error_over_jnd, double step_s) {
+  constexpr double kFading_s = 0.3;
+  double sum_m = 0.0;
+  for (Branch& branch : branches_) {
+    branch.depth_m = force_N > 0.0 ? depth_m : branch.depth_m * std::exp(-step_s / branch.relaxation_time_s);
+    sum_m += branch.depth_m;
+  }
+  const double mean_m = branches_.empty() ? 0.0 : sum_m / static_cast<double>(branches_.size());
+  dent_m_ = std::max(depth_m, mean_m);
+  error_over_jnd_ = std::max(error_over_jnd, error_over_jnd_ * std::exp(-step_s / kFading_s));
+}
 
 Comparison::Comparison(const SessionModels& models, ReferenceKind reference, const JndLine& jnd)
     : models_(models), jnd_(jnd), reference_(reference) {}
@@ -60,9 +106,6 @@ void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
   }
   if (!fresh) return;
   last_time_s_ = time_s;
-  for (std::size_t i = 0; i < slots_.size(); ++i)
-    if (!std::isnan(point.difference_over_jnd(i, jnd_)))
-      point.sustained_over_jnd[i] = static_cast<float>(slots_[i].sustained_over_jnd);
   history_.append(point);
   fault_level_ = TickFaultLevel::none;
 }
@@ -91,15 +134,16 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
   return point;
 }
 
-void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set,
-                       double step_s) {
+void Comparison::count(HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s) {
   // Where one model is outside its training domain, the sample counts for no model.
   bool outside = false;
   for (const auto& [slot, i] : set.models) {
     if (!models_.info(slot).other_material && (snapshot.tick.out_of_domain_mask >> i & 1U) != 0) outside = true;
     const double difference = point.difference_over_jnd(slot, jnd_);
-    slots_[slot].sustained_over_jnd =
-        slots_[slot].sustained.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
+    const bool known = !std::isnan(difference);
+    Slot& its = slots_[slot];
+    its.sustained_over_jnd = its.sustained.add(point.time_s, known ? difference : 0.0);
+    if (known) point.sustained_over_jnd[slot] = static_cast<float>(its.sustained_over_jnd);
   }
   // A snapshot of an earlier set lacks the models that joined since.
   if (&set != models_.newest_set() || std::isnan(point.reference_N) || outside || !point.counts) return;

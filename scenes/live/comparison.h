@@ -1,29 +1,88 @@
 // Compares the models of a session with a reference force, tick by tick. It has, for every slot, the errors of these
 // ticks, the sustained error and the dent that is drawn.
-// A sample counts if it is in contact and valid, the reference is known, no compared model is outside its training
-// domain, and the feature filters have settled: a sample of the stream was out of contact, the stream began with the
-// recording, or it has run for 5 times the longest relaxation time of the models.
 // Thread guarantee: one thread.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "engine/live/live_tick.h"
+#include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
+#include "scenes/evaluation/error_figures.h"
 #include "scenes/evaluation/model_errors.h"
 #include "scenes/evaluation/model_timing.h"
-#include "scenes/live/dent.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/force_history.h"
 #include "scenes/live/session_models.h"
-#include "scenes/live/stream_errors.h"
 
 namespace palpate {
+
+// The errors of one model over an endless stream of ticks: constant time per tick and bounded memory. The 99 % error
+// (scenes/evaluation/model_errors.h) is rounded up by at most 1.1 %, never across 1.
+class StreamErrors {
+ public:
+  // Adds one sample in contact. Both forces are finite.
+  void add(double model_N, double reference_N, const JndLine& jnd);
+  ErrorSummary summary(const JndLine& jnd) const;
+
+ private:
+  // The number of errors over the JND in logarithmic bins from 1/1024 to 1024 JND; 1 is the edge of a bin.
+  static constexpr double kPerOctave = 64.0;
+  static constexpr double kBelow = 10.0 * kPerOctave;
+  static constexpr double kBins = 2.0 * kBelow + 1.0;
+  std::array<std::uint32_t, static_cast<std::size_t>(kBins)> counts_{};
+  ErrorFigures figures_;
+};
+
+// The perceivable error: the mean of (model - reference) / JND over the last 50 ms. A difference of a single
+// millisecond moves neither hand nor skin, but one that lasts does.
+class SustainedError {
+ public:
+  static constexpr double kSpan_s = 0.05;
+
+  // `difference_over_jnd`: signed, finite. The window restarts where `time_s` decreases or has a gap longer than
+  // the span. Returns the mean, signed.
+  double add(double time_s, double difference_over_jnd);
+
+ private:
+  struct Sample {
+    double time_s = 0.0, difference = 0.0;
+  };
+  std::deque<Sample> samples_;
+  double sum_ = 0.0;
+};
+
+// The depth and the error colour of the dent that is drawn for one model. While the model pushes the tool, its surface
+// is at the tool, so the dent has the tool's depth d. When the force ends, the surface recovers from there with the
+// relaxation times tau_b of the model's features, and the tool dents it again where it is deeper:
+//   dent = max(d, mean_b m_b),   m_b <- d while the force is above 0, else m_b exp(-h / tau_b)
+// A model without relaxation times has the dent d. The colour is that of the largest recent error, which decays with
+// a time constant of 0.3 s. No force depends on the dent.
+class Dent {
+ public:
+  Dent() = default;
+  explicit Dent(const std::vector<FeatureSpec>& features);
+
+  // `force_N`: of the model; NaN: unknown. `error_over_jnd`: >= 0. `step_s`: time since the last call, s.
+  void step(double depth_m, double force_N, double error_over_jnd, double step_s);
+
+  double depth_m() const noexcept { return dent_m_; }
+  double error_over_jnd() const noexcept { return error_over_jnd_; }
+
+ private:
+  struct Branch {
+    double relaxation_time_s = 0.0, depth_m = 0.0;
+  };
+  std::vector<Branch> branches_;
+  double dent_m_ = 0.0, error_over_jnd_ = 0.0;
+};
 
 // Time of a tick, ns, and 99 % error over the JND of a model with each number of centres that was tested.
 using CentresPath = std::map<int, std::pair<double, double>>;
@@ -35,7 +94,7 @@ struct ModelFigures {
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();  // of the force, 95 %; NaN: unknown
   bool out_of_domain = false;
   // Over the same samples for all compared models: those of the test (model_test.h); without a recording to test on,
-  // those of the ticks, whose 99 % error has a resolution of 1.1 % (stream_errors.h).
+  // those of the ticks (StreamErrors).
   ErrorSummary errors;
   Interval p99_interval{kUnknown, kUnknown};  // of the test
   Timing tick;                                // a whole tick with this model alone
@@ -44,10 +103,13 @@ struct ModelFigures {
   // Of the ticks, the user's own presses.
   std::uint64_t press_samples = 0;
   double press_p99_over_jnd = 0.0;
-  // For drawing (dent.h): depth of the dent, and the largest recent magnitude of the sustained error.
+  // Of the Dent: its depth, and the largest recent magnitude of the sustained error.
   double dent_m = 0.0, recent_error_over_jnd = 0.0;
 };
 
+// A sample counts if it is in contact and valid, the reference is known, no compared model is outside its training
+// domain, and the feature filters have settled: a sample of the stream was out of contact, the stream began with the
+// recording, or it has run for 5 times the longest relaxation time of the models.
 class Comparison {
  public:
   // `models` outlive this.
@@ -79,7 +141,7 @@ class Comparison {
     StreamErrors errors;
   };
   HistoryPoint point_of(const LoopSnapshot& snapshot, const PublishedSet* set);
-  void count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s);
+  void count(HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set, double step_s);
 
   const SessionModels& models_;
   JndLine jnd_;

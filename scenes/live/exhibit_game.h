@@ -1,4 +1,5 @@
-// The rules of the exhibit's game, without graphics: up to three rounds, a visitor's answers and the score.
+// The exhibit without graphics: its texts, the tally of all visitors' answers, and the rules of its game: up to three
+// rounds, a visitor's answers and the score.
 // Without a force device the difficulty rises. The visitor guesses whether a hand would notice a difference, then
 // presses two blocks with one stroke for 15 s: one renders the reference, the other a model. Then the result is shown:
 //   attract -> guess -> press -> reveal -> guess ... -> score
@@ -8,17 +9,21 @@
 // A difference is noticeable when the magnitude of the mean over 50 ms of difference / JND (HistoryPoint) exceeded 1
 // anywhere in the visitor's own strokes within the models' training domain. From 0.8 to 1.25 either answer is correct.
 // The same seed and the same models give the same rounds.
-// Thread guarantee: one thread; `add` allocates nothing after the first minute.
+// Thread guarantee: one thread, slow side; `add` allocates nothing after the first minute.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/random_stream.h"
+#include "engine/base/result.h"
 
 namespace palpate {
 
@@ -134,5 +139,29 @@ class ExhibitGame {
   int chosen_ = 1;
   std::array<bool, 2> pressed_{};
 };
+
+// The texts in one language: a JSON file in assets/exhibit with a text for each key.
+class ExhibitWords {
+ public:
+  // Errors: those of parse_json (a key twice); a member that is no text, as "path:line:column: ...".
+  static Result<ExhibitWords> parse(std::string_view text, const std::string& path);
+
+  // The text of a key, with %1 and %2 replaced by `one` and `two`; the key itself where it has no text.
+  std::string operator()(const std::string& key, const std::string& one = "", const std::string& two = "") const;
+
+ private:
+  std::map<std::string, std::string> texts_;
+};
+
+// All languages of a folder, sorted by the text of their key "order". Errors: no file; those of `parse`.
+Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder);
+
+// Answers of all visitors, kept across restarts.
+struct ExhibitTally {
+  std::uint64_t answers = 0, as_expected = 0;
+};
+// Zero where the file is missing or invalid.
+ExhibitTally read_tally(const std::string& path);
+Status write_tally(const std::string& path, const ExhibitTally& tally);
 
 }  // namespace palpate

@@ -1,5 +1,4 @@
-// Log of the faults of loop, device and window in words, newest last. A fault that follows one of the same kind within
-// a second increments the count of that one. The action of the limiter while the force ramps up is not a fault.
+// What a session tells the user: notices, and the log of the faults of loop, device and window in words.
 // Thread guarantee: one thread.
 #pragma once
 
@@ -11,6 +10,12 @@
 #include "engine/live/live_tick.h"
 
 namespace palpate {
+
+struct Notice {
+  std::string text;
+  bool problem = false;  // an error or a warning, not information
+};
+using Notices = std::vector<Notice>;  // oldest first
 
 struct FaultEvent {
   double loop_time_s = 0.0;  // of the first
@@ -26,6 +31,8 @@ enum class TickFaultLevel : std::uint8_t {
   alarm,  // a fault of the loop or the device
 };
 
+// Newest last. A fault that follows one of the same kind within a second increments the count of that one. The action
+// of the limiter while the force ramps up is not a fault.
 class FaultLog {
  public:
   static constexpr std::size_t kMost = 200;

@@ -82,18 +82,19 @@ std::vector<DeviceDescription> device_choices() {
   return choices;
 }
 
-LiveSession::LiveSession(const SessionRequest& request, Parts parts)
+LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device,
+                         std::vector<Recording> training, std::optional<Recording> part)
     : request_(request),
-      scene_(std::move(parts.scene)),
-      device_(std::move(parts.device)),
-      set_apart_(parts.test_part.has_value()),
-      models_(scene_, request.seed, notices_, std::move(parts.training), request.ready_models),
+      scene_(std::move(scene)),
+      device_(std::move(device)),
+      set_apart_(part.has_value()),
+      models_(scene_, request.seed, notices_, std::move(training), request.ready_models),
       comparison_(models_,
                   device_->measures_force() ? ReferenceKind::measured
                   : scene_.material         ? ReferenceKind::truth
                                             : ReferenceKind::model,
                   scene_.jnd),
-      test_(device_->replay(), make_test(std::move(parts.test_part)), scene_.jnd),
+      test_(device_->replay(), make_test(std::move(part)), scene_.jnd),
       buffer_(kSnapshotsAtOnce) {}
 
 ModelTest::MakeRecording LiveSession::make_test(std::optional<Recording> part) const {
@@ -147,7 +148,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   }
   if (!device) return device.error();
   std::unique_ptr<LiveSession> session(
-      new LiveSession(request, {std::move(*scene), std::move(*device), std::move(*training), std::move(part)}));
+      new LiveSession(request, std::move(*scene), std::move(*device), std::move(*training), std::move(part)));
   session->began_s_ = began_s;
   if (line_up == nullptr) session->request_.line_up.clear();
   if (const Status status = session->begin(*plans); !status) return status.error();

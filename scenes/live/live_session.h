@@ -20,7 +20,6 @@
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/model_test.h"
-#include "scenes/live/notices.h"
 #include "scenes/live/session_models.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/live/verdict.h"
@@ -44,7 +43,7 @@ struct SessionRequest {
   bool refits = true;
   std::uint64_t seed = 1;      // of the training recording and the fits; the hand and the test have seed + 1
   bool realtime = true;        // asks for real-time scheduling
-  std::string ready_models{};  // a folder (scenes/worker/ready_models.h); empty: every model is fitted
+  std::string ready_models{};  // a folder (scenes/worker/model_worker.h); empty: every model is fitted
   std::string data_folder{};   // for fault files; empty: the working directory
   DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
 };
@@ -133,13 +132,9 @@ class LiveSession {
   Notices read_notices() { return std::exchange(notices_, {}); }
 
  private:
-  struct Parts {
-    Scene scene;
-    std::unique_ptr<Device> device;
-    std::vector<Recording> training;
-    std::optional<Recording> test_part;  // that was set apart from them
-  };
-  LiveSession(const SessionRequest& request, Parts parts);
+  // `part`: the test, if it was set apart from `training`.
+  LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device,
+              std::vector<Recording> training, std::optional<Recording> part);
   ModelTest::MakeRecording make_test(std::optional<Recording> part) const;
   Status begin(const std::vector<ModelRequest>& plans);
   void update_models();

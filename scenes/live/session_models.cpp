@@ -284,13 +284,8 @@ std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
                                                     std::shared_ptr<ReferenceForce> reference) {
   PublishedSet set;
   set.id = sets_.empty() ? 1 : sets_.back().id + 1;
-  std::vector<std::shared_ptr<const ForceModel>> models;
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (!slots_[i].takes_part()) continue;
-    set.models[i] = models.size();
-    models.push_back(slots_[i].model);
-  }
-  auto next = std::make_unique<LiveModels>(set.id, sensor, std::move(models), std::move(reference));
+  for (const std::size_t slot : ready_slots()) set.models.emplace(slot, set.models.size());
+  auto next = std::make_unique<LiveModels>(set.id, sensor, ready_models(), std::move(reference));
   next->selected = static_cast<std::uint32_t>(set.models.contains(selected_) ? set.index_of(selected_) : 0);
   if (const auto model = this->reference(); model && set.models.contains(*model))
     next->written_model = static_cast<std::uint32_t>(set.index_of(*model));

@@ -15,7 +15,7 @@
 
 #include "engine/live/live_tick.h"
 #include "scenes/evaluation/model_timing.h"
-#include "scenes/live/notices.h"
+#include "scenes/live/fault_log.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/model_request.h"
 #include "scenes/worker/model_worker.h"

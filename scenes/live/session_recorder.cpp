@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -25,18 +26,15 @@ std::string counted(std::uint64_t count, const char* words) {
 }  // namespace
 
 std::optional<double> RecordingTime::file_time_s(double time_s, bool restart) noexcept {
-  const double at_s = start_s_ + (time_s - origin_s_);
-  if (!started_ || (restart && !(at_s > last_s_))) {
-    if (started_) {
-      start_s_ = last_s_ + kStreamGap_s;
-      gaps_s_ += kStreamGap_s;
-    }
-    started_ = true;
+  if (!started_) origin_s_ = time_s;
+  double at_s = start_s_ + (time_s - origin_s_);
+  if (started_ && !(at_s > last_s_)) {
+    if (!restart) return std::nullopt;
+    at_s = start_s_ = last_s_ + kStreamGap_s;
+    gaps_s_ += kStreamGap_s;
     origin_s_ = time_s;
-    last_s_ = start_s_;
-    return start_s_;
   }
-  if (!(at_s > last_s_)) return std::nullopt;
+  started_ = true;
   last_s_ = at_s;
   return at_s;
 }
@@ -49,7 +47,7 @@ SessionRecorder::~SessionRecorder() {
 }
 
 Status SessionRecorder::start(const RecorderRequest& request) {
-  if (thread_.joinable()) return Error{"already recording into " + request_.path + "; stop that one first"};
+  if (running_.valid()) return Error{"already recording into " + request_.path + "; stop that one first"};
   Result<RecordingWriter> writer =
       RecordingWriter::create(request.path, request.columns, request.comments, request.overwrite);
   if (!writer) return writer.error();
@@ -64,7 +62,7 @@ Status SessionRecorder::start(const RecorderRequest& request) {
   seconds_.store(0.0, std::memory_order_relaxed);
   stop_ = false;
   try {
-    thread_ = std::thread([this] { work(); });
+    running_ = std::async(std::launch::async, [this] { return work(); });
   } catch (const std::system_error& error) {
     writer_.reset();
     return Error{std::string("cannot start the recorder's thread: ") + error.what() + "; close other programs"};
@@ -72,31 +70,18 @@ Status SessionRecorder::start(const RecorderRequest& request) {
   return {};
 }
 
-void SessionRecorder::stop() {
-  const std::lock_guard lock(mutex_);
-  stop_ = true;
-  wake_.notify_one();
-}
-
-void SessionRecorder::wait() {
-  if (thread_.joinable()) thread_.join();
-}
-
-void SessionRecorder::work() {
+Notice SessionRecorder::work() {
   int rounds = 0;
   for (bool last = false; !last && !writer_->failed();) {
-    {
-      std::unique_lock lock(mutex_);
-      last = wake_.wait_for(lock, kPause, [this] { return stop_; });
-    }
+    std::this_thread::sleep_for(kPause);
+    last = stop_;
     drain();
     // A write error is persistent: this loop ends, and `finish` reports it.
     if (++rounds % kRoundsToDisk == 0) static_cast<void>(writer_->publish());
   }
   Notice outcome = finish();
   writer_.reset();
-  const std::lock_guard lock(mutex_);
-  outcome_ = std::move(outcome);
+  return outcome;
 }
 
 void SessionRecorder::drain() {
@@ -157,19 +142,14 @@ Notice SessionRecorder::finish() {
 }
 
 RecordingStatus SessionRecorder::status() const {
-  if (!thread_.joinable()) return {};
+  if (!running_.valid()) return {};
   return {!stop_, stop_, request_.path, rows_.load(std::memory_order_relaxed),
           seconds_.load(std::memory_order_relaxed)};
 }
 
 std::optional<Notice> SessionRecorder::read_outcome() {
-  std::optional<Notice> outcome;
-  {
-    const std::lock_guard lock(mutex_);
-    outcome = std::exchange(outcome_, std::nullopt);
-  }
-  if (outcome) wait();
-  return outcome;
+  if (!running_.valid() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
+  return running_.get();
 }
 
 }  // namespace palpate

@@ -9,19 +9,16 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
+#include <future>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "engine/base/result.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/recording/recording_writer.h"
 #include "scenes/live/force_history.h"
-#include "scenes/live/notices.h"
 
 namespace palpate {
 
@@ -72,16 +69,18 @@ class SessionRecorder {
   std::uint32_t number() const noexcept { return status().active ? number_ : 0; }
 
   // Ends the recording with the samples that the loop has published so far; does not wait.
-  void stop();
+  void stop() { stop_ = true; }
   // Blocks until a recording that was stopped or has failed is finished.
-  void wait();
+  void wait() {
+    if (running_.valid()) running_.wait();
+  }
 
   RecordingStatus status() const;
   // The outcome of a recording, once, after it ended by `stop` or by a write error.
   std::optional<Notice> read_outcome();
 
  private:
-  void work();
+  Notice work();
   void drain();
   void write(const RecordedSample& sample);
   Notice finish();
@@ -95,11 +94,8 @@ class SessionRecorder {
   bool restart_pending_ = false;
   std::uint64_t dropped_before_ = 0;
   std::vector<RecordedSample> buffer_;
-  std::thread thread_;
-  mutable std::mutex mutex_;
-  std::condition_variable wake_;
-  bool stop_ = false;              // guarded by mutex_; only the slow side changes it
-  std::optional<Notice> outcome_;  // guarded by mutex_
+  std::future<Notice> running_;
+  std::atomic<bool> stop_{false};
   std::atomic<std::uint64_t> rows_{0};
   std::atomic<double> seconds_{0.0};
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
@@ -10,17 +11,6 @@ namespace palpate {
 namespace {
 
 constexpr double kTick_ns = 1e6;
-
-// The most accurate of the models that `matches`, except `but`; null: there is none.
-template <typename Matches>
-const JudgedModel* most_accurate(const std::vector<JudgedModel>& judged, const JudgedModel& but, Matches matches) {
-  const JudgedModel* best = nullptr;
-  for (const JudgedModel& one : judged) {
-    if (&one == &but || !matches(one)) continue;
-    if (best == nullptr || one.p99_error_over_jnd < best->p99_error_over_jnd) best = &one;
-  }
-  return best;
-}
 
 bool is_noticeable(const JudgedModel& one) { return one.p99_error_over_jnd > 1.0; }
 
@@ -59,16 +49,16 @@ Verdict judge(const std::vector<JudgedModel>& judged, const std::string& referen
   verdict.chosen = chosen.slot;
   verdict.noticeable = is_noticeable(chosen);
   verdict.headline = chosen.name + quality(chosen, reference) + ".";
-  const auto other_kind = [&](const JudgedModel& one) { return one.paper != chosen.paper; };
-  const JudgedModel* rival = most_accurate(judged, chosen, other_kind);
-  if (rival == nullptr) rival = most_accurate(judged, chosen, [](const JudgedModel&) { return true; });
-  if (rival == nullptr) {
+  const JudgedModel& rival = *std::ranges::min_element(judged, {}, [&](const JudgedModel& one) {
+    return std::tuple(&one == &chosen, one.paper == chosen.paper, one.p99_error_over_jnd);
+  });
+  if (&rival == &chosen) {
     verdict.headline += " It uses " + tick_share(chosen.tick.median_ns) + " of the 1 ms of a tick.";
     return verdict;
   }
-  const bool both = reference.empty() && !is_noticeable(chosen) && !is_noticeable(*rival);
-  verdict.headline += (both ? " So does " + rival->name : " " + rival->name + quality(*rival, reference)) + ", " +
-                      time_words(rival->tick, chosen.tick) + ".";
+  const bool both = reference.empty() && !is_noticeable(chosen) && !is_noticeable(rival);
+  verdict.headline += (both ? " So does " + rival.name : " " + rival.name + quality(rival, reference)) + ", " +
+                      time_words(rival.tick, chosen.tick) + ".";
   return verdict;
 }
 

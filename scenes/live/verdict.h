@@ -37,7 +37,7 @@ Verdict judge(const std::vector<JudgedModel>& judged, const std::string& referen
 std::string time_words(const Timing& one, const Timing& other);
 // The share of the period of 1 ms that a tick takes, as "0.04 %".
 std::string tick_share(double tick_ns);
-// An error over the JND with two digits: a quantile of a stream is rounded up by at most 1.1 % (stream_errors.h).
+// An error over the JND with two digits: a quantile of a stream is rounded up by at most 1.1 % (StreamErrors).
 std::string jnd_text(double error_over_jnd);
 
 }  // namespace palpate

@@ -59,9 +59,8 @@ Result<std::string> find_assets() {
 std::string ready_models_folder() {
   const fs::path program = program_folder();
   std::error_code error;
-  for (const fs::path& folder : {program.parent_path() / "share" / "palpate" / "ready", program / "ready"}) {
+  for (const fs::path& folder : {program.parent_path() / "share" / "palpate" / "ready", program / "ready"})
     if (fs::is_directory(folder, error)) return folder.string();
-  }
   return "";
 }
 

@@ -15,7 +15,7 @@ namespace palpate {
 // Errors: none of these folders has a subfolder `scenes`; the message lists the folders.
 Result<std::string> find_assets();
 
-// The folder of the models that the build has fitted (scenes/worker/ready_models.h): `../share/palpate/ready` or
+// The folder of the models that the build has fitted (scenes/worker/model_worker.h): `../share/palpate/ready` or
 // `ready`, relative to the folder of the executable; empty where there is none.
 std::string ready_models_folder();
 

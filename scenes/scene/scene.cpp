@@ -55,18 +55,6 @@ class SceneReader : private JsonFields {
   }
 
  private:
-  std::uint32_t colour(const JsonNode& object, const char* key) {
-    const std::string expected = "a colour such as \"#56B4E9\"";
-    const JsonNode node = member(object, key, expected);
-    if (node.value == nullptr) return 0;
-    const std::string code = node.value->is_string() ? node.value->get<std::string>() : "";
-    std::uint32_t rgb = 0;
-    const char* const end = code.data() + code.size();
-    if (code.size() != 7 || code[0] != '#' || std::from_chars(code.data() + 1, end, rgb, 16).ptr != end)
-      complain(node.pointer, found(*node.value) + ", expected " + expected);
-    return rgb;
-  }
-
   void read_material() {
     const JsonNode node = member(top_, "material", "the name of a virtual material, or null");
     if (node.value == nullptr || node.value->is_null()) return;
@@ -83,14 +71,9 @@ class SceneReader : private JsonFields {
       complain(node.pointer, found(*node.value) + ", expected " + expected);
       return;
     }
-    bool has_depth = false;
-    for (std::size_t i = 0; i < node.value->size(); ++i) {
-      read_feature(entry(node, i));
-      has_depth = has_depth || scene_.features.back().kind == FeatureKind::depth;
-    }
-    if (!has_depth) {
+    for (std::size_t i = 0; i < node.value->size(); ++i) read_feature(entry(node, i));
+    if (std::ranges::count(scene_.features, FeatureKind::depth, &FeatureSpec::kind) == 0)
       complain("/features", "found no feature of kind \"depth\", expected one: every force depends on the depth");
-    }
   }
 
   void read_feature(const JsonNode& node) {
@@ -105,20 +88,20 @@ class SceneReader : private JsonFields {
     } else if (kind && time.value != nullptr) {
       complain(time.pointer, "found a relaxation time, expected none for the kind \"" + kNames[*kind] + "\"");
     }
-    const bool again = std::any_of(scene_.features.begin(), scene_.features.end(), [&](const FeatureSpec& other) {
+    const bool again = std::ranges::any_of(scene_.features, [&](const FeatureSpec& other) {
       return other.kind == feature.kind && other.relaxation_time_s == feature.relaxation_time_s;
     });
     if (kind && again) complain(node.pointer, "found the same feature twice, expected each once");
     scene_.features.push_back(feature);
   }
 
+  // "jnd_file" names a file beside the scene, instead of the member "jnd".
   void read_jnd() {
-    if (optional_member(top_, "jnd_file").value != nullptr) return read_jnd_file_of_scene();
-    scene_.jnd = jnd_line(*this, member(top_, "jnd", "an object with offset_N and weber_fraction, or a \"jnd_file\""));
-  }
-
-  // Reads the JND line from a file beside the scene, instead of the member "jnd".
-  void read_jnd_file_of_scene() {
+    if (optional_member(top_, "jnd_file").value == nullptr) {
+      const std::string expected = "an object with offset_N and weber_fraction, or a \"jnd_file\"";
+      scene_.jnd = jnd_line(*this, member(top_, "jnd", expected));
+      return;
+    }
     const std::string name = filled_text(top_, "jnd_file");
     const JsonNode line = optional_member(top_, "jnd");
     if (line.value != nullptr) complain(line.pointer, "found a \"jnd\" and a \"jnd_file\", expected one of them");
@@ -138,8 +121,15 @@ class SceneReader : private JsonFields {
   }
 
   void read_colours() {
-    const JsonNode node = member(top_, "colours", "an object with the colour of the block");
-    scene_.block_colour = colour(node, "block");
+    const std::string expected = "a colour such as \"#56B4E9\"";
+    const JsonNode node = member(member(top_, "colours", "an object with the colour of the block"), "block", expected);
+    if (node.value != nullptr) {
+      const std::string code = node.value->is_string() ? node.value->get<std::string>() : "";
+      const char* const end = code.data() + code.size();
+      if (code.size() != 7 || code[0] != '#' ||
+          std::from_chars(code.data() + 1, end, scene_.block_colour, 16).ptr != end)
+        complain(node.pointer, found(*node.value) + ", expected " + expected);
+    }
     const JsonNode finish = optional_member(top_, "finish");
     if (finish.value == nullptr) return;
     static const std::vector<std::string> kFinishes = {"silicone", "foam", "gel", "rubber", "skin", "dome"};
@@ -159,7 +149,7 @@ Result<std::string> scenes_folder() {
 }  // namespace
 
 Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path) {
-  const Result<nlohmann::json> document = parse_json(text, path, kNesting, {kJndAdvice, kJndAdvice});
+  const Result<Json> document = parse_json(text, path, kNesting, {kJndAdvice, kJndAdvice});
   if (!document) return document.error();
   JsonFields fields(text, path, kJndAdvice);
   const JsonNode top{&*document, ""};
@@ -200,14 +190,14 @@ Result<std::vector<std::string>> scene_names() {
   for (fs::directory_iterator entry(*folder, error), end; !error && entry != end; entry.increment(error))
     if (entry->path().extension() == ".json") names.push_back(entry->path().stem().string());
   if (error) return Error{"cannot list the scenes in " + *folder + ": " + error.message()};
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   return names;
 }
 
 Result<Scene> load_scene(const std::string& name) {
   const Result<std::vector<std::string>> names = scene_names();
   if (!names) return names.error();
-  if (std::find(names->begin(), names->end(), name) == names->end())
+  if (std::ranges::count(*names, name) == 0)
     return Error{"unknown scene \"" + name + "\"; known scenes: " + joined(*names)};
   const std::string path = *scenes_folder() + "/" + name + ".json";
   const Result<std::string> text = read_plain_file(path, "a scene");

@@ -16,7 +16,7 @@
 #include "engine/base/result.h"
 #include "engine/recording/recording.h"
 #include "engine/tick/force_model.h"
-#include "scenes/study/study_plan.h"
+#include "scenes/study/study_file.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "scenes/study/psychometrics.h"
+#include "scenes/study/study_analysis.h"
 
 namespace palpate {
 namespace {

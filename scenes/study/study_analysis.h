@@ -1,7 +1,7 @@
 // Computes results from the answers of all subjects: the JND line, or the discrimination of two strokes.
 //
-// JNDs are estimated per subject and reference force by maximum likelihood (psychometrics.h), then averaged over the
-// subjects. As in Hoever & Harders (2009), section 4.1 and figure 3, a line is fitted to the means by least squares
+// JNDs are estimated per subject and reference force by maximum likelihood (PsychometricFunction), then averaged over
+// the subjects. As in Hoever & Harders (2009), section 4.1 and figure 3, a line is fitted to the means by least squares
 // with equal weights, and then shifted down until no point is below it: the conservative line. Differences and
 // references are the rendered ones, not the planned ones. Excluded are training, rehearsals, and trials in which the
 // mean of a force deviated from the plan by more than half its JND.
@@ -15,6 +15,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,49 @@
 #include "scenes/study/study_file.h"
 
 namespace palpate {
+
+inline constexpr double kJndCriterion = 0.75;
+inline constexpr double kCriterionQuantile = 0.6744897501960817;  // Phi^-1(kJndCriterion)
+
+// Phi.
+double normal_cdf(double z) noexcept;
+
+// With x = (comparison - reference) / reference and o = +1 when the comparison came second, -1 when it came first, the
+// comparison is judged the larger with probability
+//   P(x, o) = lapse + (1 - 2 lapse) Phi(slope x + order_bias o),
+// a cumulative Gaussian with a lapse rate (Wichmann & Hill 2001, Perception & Psychophysics 63(8), 1293-1313). Each
+// reference force has its own slope. The lapse rate and the order bias, which favours the second force, are the same
+// for all reference forces of a subject. There is no other shift, because a subject cannot know which of two forces is
+// the reference. (A shift and a lapse rate for each reference force, fitted to 80 answers each, made the JND 10 % too
+// small and doubled its error.)
+// The JND at a criterion c is half the distance between the comparisons that are judged larger with probability c and
+// 1 - c, without lapses and order bias:
+//   JND = Phi^-1(c) reference / slope.
+// c = 0.75 gives half the interquartile distance; the paper does not state its criterion.
+struct PsychometricFunction {
+  double slope = 1.0;  // 0.25 .. 40, a JND of 2.7 times the reference to one of 1.7 %
+  double order_bias = 0.0;
+  double lapse = 0.0;  // 0 .. 0.06
+  // Whether the answers bound the slope on both sides. They do not when all are correct or all are guesses; the slope
+  // is then at or near an end of its range.
+  bool determined = false;
+
+  double at(double difference, bool comparison_first) const noexcept;
+  // The JND over the reference, at kJndCriterion.
+  double jnd() const noexcept { return kCriterionQuantile / slope; }
+};
+
+// The answers to all trials with the same stimuli. Counts may be fractional, for expected answers.
+struct AnswerCell {
+  std::size_t reference = 0;  // index of the reference force
+  double difference = 0.0;    // x
+  bool comparison_first = false;
+  double judged_larger = 0.0;  // number of trials in which the comparison was judged the larger
+  double trials = 0.0;
+};
+
+// The functions of `references` reference forces by joint maximum likelihood. The lapse rate is a multiple of 0.01.
+std::vector<PsychometricFunction> fit_psychometric(const std::vector<AnswerCell>& cells, std::size_t references);
 
 struct JndPoint {
   double reference_N = 0.0, jnd_N = 0.0;

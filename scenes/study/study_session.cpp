@@ -109,8 +109,7 @@ StudyView StudySession::view() {
   const StudyTrial& now = trials_[std::min(answered(), trials_.size() - 1)];
   view.training = now.training;
   view.answered = now.number - (answered() < trials_.size() ? 1 : 0);
-  view.trials = static_cast<std::size_t>(std::count_if(
-      trials_.begin(), trials_.end(), [&](const StudyTrial& trial) { return trial.training == now.training; }));
+  view.trials = static_cast<std::size_t>(std::ranges::count(trials_, now.training, &StudyTrial::training));
   if (answered() > 0 && file_.records().back().trial.training) {
     const StudyRecord& last = file_.records().back();
     view.was_correct = strokes() != nullptr ? last.found_reference() : last.found_larger();

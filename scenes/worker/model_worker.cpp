@@ -5,11 +5,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <system_error>
 #include <utility>
 
+#include "engine/base/atomic_file.h"
+#include "engine/base/text.h"
+#include "engine/base/whole_file.h"
 #include "engine/live/pacer.h"
 #include "models/linear/lapack.h"
+#include "models/model/file/model_io.h"
 #include "models/samples/recording_faults.h"
 #include "scenes/material/rig.h"
 
@@ -24,6 +29,25 @@ constexpr double kRecorded = 0.2;
 // Additional time of the first fit of a Base.
 constexpr double kPreparation_s = 1.0;
 
+constexpr std::uint64_t kReadySeed = 1;
+constexpr const char* kInputs = "/inputs.txt";
+
+std::string inputs_of(const Scene& scene, std::uint64_t seed) {
+  return "material " + scene.material.value_or("none") + "\nseed " + std::to_string(seed) + "\nfeatures " +
+         describe_features(scene) + "\nJND " + general(scene.jnd.offset_N, 17) + " N + " +
+         general(scene.jnd.weber_fraction, 17) + " F\n";
+}
+
+// Empty if the inputs of the ready models are others.
+std::string ready_folder(const std::string& folder, const Scene& scene, std::uint64_t seed) {
+  const std::string of_scene = folder + "/" + scene.name;
+  return read_whole_file(of_scene + kInputs) == inputs_of(scene, seed) ? of_scene : "";
+}
+
+std::string file_in(const std::string& folder, const ModelPlan& plan) {
+  return folder + "/" + plan_name(plan) + ".json";
+}
+
 }  // namespace
 
 // On Linux, the niceness of one thread is set by its thread id.
@@ -32,22 +56,12 @@ void lower_thread_priority() noexcept { setpriority(PRIO_PROCESS, static_cast<id
 ModelWorker::ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training, const std::string& ready)
     : scene_(std::move(scene)),
       seed_(seed),
-      ready_(training.empty() ? ReadyModels(ready, scene_, seed) : ReadyModels()),
+      ready_(training.empty() && !ready.empty() ? ready_folder(ready, scene_, seed) : ""),
       training_(std::move(training)) {}
-
-ModelWorker::~ModelWorker() {
-  cancel();
-  {
-    const std::lock_guard lock(mutex_);
-    wake_.notify_all();
-  }
-  for (Lane& lane : lanes_)
-    if (lane.thread.joinable()) lane.thread.join();
-}
 
 Status ModelWorker::start() {
   try {
-    for (Lane& lane : lanes_) lane.thread = std::thread([this, &lane] { work(lane); });
+    for (Lane& lane : lanes_) lane.thread = std::jthread([this, &lane] { work(lane); });
   } catch (const std::system_error& error) {
     return Error{std::string("cannot start a thread that fits models: ") + error.what() + "; close other programs"};
   }
@@ -56,7 +70,7 @@ Status ModelWorker::start() {
 
 // Approximate time to make a model; only the order matters. It puts a method after its base, from which it starts.
 double ModelWorker::expected_cost_s(const ModelRequest& request) const {
-  if (request.loaded != nullptr || ready_.has(request.plan)) return 0.0;
+  if (request.loaded != nullptr || !ready_file(request.plan).empty()) return 0.0;
   return expected_seconds(*request.plan.method);
 }
 
@@ -66,6 +80,13 @@ void ModelWorker::add_job(std::size_t job_id, const ModelRequest& request, bool 
   std::erase_if(lane.jobs, [&](const auto& other) { return other.second.job_id == job_id; });
   lane.jobs.emplace(at_once ? -1.0 : expected_cost_s(request), Job{job_id, request});
   wake_.notify_all();
+}
+
+// The name of a plan says nothing of options beside its base, method and size.
+std::string ModelWorker::ready_file(const ModelPlan& plan) const {
+  const auto named = parse_plan(plan_name(plan));
+  const std::string file = file_in(ready_, plan);
+  return !ready_.empty() && named && *named == plan && std::filesystem::exists(file) ? file : "";
 }
 
 std::vector<FinishedModel> ModelWorker::read_finished() {
@@ -103,8 +124,8 @@ void ModelWorker::work(Lane& lane) {
   lower_thread_priority();
   for (std::unique_lock lock(mutex_);;) {
     lane.working_on.reset();
-    wake_.wait(lock, [&] { return !lane.jobs.empty() || cancelled_.load(std::memory_order_relaxed); });
-    if (cancelled_.load(std::memory_order_relaxed)) return;
+    wake_.wait(lock, stop_.get_token(), [&] { return !lane.jobs.empty(); });
+    if (stop_.stop_requested()) return;
     const Job job = std::move(lane.jobs.extract(lane.jobs.begin()).mapped());
     lane.working_on = job.job_id;
     lane.began_s = steady_now_s();
@@ -121,8 +142,8 @@ void ModelWorker::work(Lane& lane) {
 
 Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const ModelRequest& request) {
   if (request.loaded != nullptr) return request.loaded;
-  if (ready_.has(request.plan)) {
-    if (auto model = ready_.read(request.plan)) return model;
+  if (const std::string ready = ready_file(request.plan); !ready.empty()) {
+    if (auto model = load_model(ready)) return model;
   }
   Result<ModelData> data = fit(lane_of(request), request.plan);
   if (!data) return data.error();
@@ -132,7 +153,7 @@ Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const ModelRequest&
 FitControl ModelWorker::control(Lane& lane, double from, double to) {
   return {[this, &lane, from, to](double fraction) {
     lane.share.store(from + (to - from) * fraction, std::memory_order_relaxed);
-    return !cancelled_.load(std::memory_order_relaxed);
+    return !stop_.stop_requested();
   }};
 }
 
@@ -161,6 +182,28 @@ Result<ModelData> ModelWorker::fit(Lane& lane, const ModelPlan& asked) {
   auto fitted = lane.fits->fit(plan, control(lane, done, 1.0));
   if (!fitted) return fitted.error();
   return std::move(fitted->data);
+}
+
+Status make_ready_models(const std::string& folder, const std::string& scene_name) {
+  const auto scene = load_scene(scene_name);
+  if (!scene) return scene.error();
+  const std::string of_scene = folder + "/" + scene_name;
+  std::error_code problem;
+  std::filesystem::remove_all(of_scene, problem);
+  if (!problem) std::filesystem::create_directories(of_scene, problem);
+  if (problem) return Error{of_scene + ": " + problem.message()};
+  ModelWorker worker(*scene, kReadySeed);
+  for (const std::vector<std::string>& names : {line_ups().front().models, exhibit_models()}) {
+    const auto requests = requested_models(*scene, names);
+    if (!requests) return requests.error();
+    for (const ModelRequest& request : *requests) {
+      const auto model = worker.make(request);
+      if (!model) return model.error();
+      if (const Status status = save_model(file_in(of_scene, request.plan), (*model)->data(), true); !status)
+        return status;
+    }
+  }
+  return write_file_atomically(of_scene + kInputs, inputs_of(*scene, kReadySeed), true);
 }
 
 void prepare_to_fit() { prepare_blas(); }

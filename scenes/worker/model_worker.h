@@ -14,6 +14,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -22,7 +24,6 @@
 #include "models/model/fitted_model.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/model_request.h"
-#include "scenes/worker/ready_models.h"
 
 namespace palpate {
 
@@ -37,15 +38,18 @@ void lower_thread_priority() noexcept;
 
 class ModelWorker {
  public:
-  // `training`: recordings; empty: that of the scene's virtual material. `ready`: a folder of models that need no fit
-  // to that material (ready_models.h); may be empty.
+  // `training`: recordings; empty: that of the scene's virtual material. `ready`: the folder of make_ready_models,
+  // whose models of that material need no fit; may be empty.
   ModelWorker(Scene scene, std::uint64_t seed, std::vector<Recording> training = {}, const std::string& ready = "");
   // Interrupts the running fits and waits for the threads.
-  ~ModelWorker();
+  ~ModelWorker() { cancel(); }
 
   // Makes the model of one request in the calling thread; call it before `start`. Errors: those of the fit; the scene
   // has no material to fit to.
   Result<std::shared_ptr<const FittedModel>> make(const ModelRequest& request);
+
+  // The file of a ready model of this plan; empty: there is none for this scene and seed.
+  std::string ready_file(const ModelPlan& plan) const;
 
   // Errors: a thread cannot be started.
   Status start();
@@ -64,7 +68,7 @@ class ModelWorker {
   double left_s() const;
 
   // Interrupts the running fits and starts no other. Does not wait.
-  void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
+  void cancel() noexcept { stop_.request_stop(); }
 
  private:
   struct Job {
@@ -74,7 +78,6 @@ class ModelWorker {
   // The fits of one Base.
   struct Lane {
     std::optional<ModelFits> fits;  // used by its thread only; none before the first fit
-    std::thread thread;
     std::atomic<double> share{0.0};
     // Guarded by mutex_.
     std::multimap<double, Job> jobs;  // by expected time, s; below 0: at once
@@ -82,6 +85,7 @@ class ModelWorker {
     double began_s = 0.0;                        // of the running job; steady clock
     double expected_s = 0.0;                     // its expected duration
     double done_s = 0.0, done_expected_s = 0.0;  // of all jobs before
+    std::jthread thread;                         // last: it ends before what it uses
   };
   Lane& lane_of(const ModelRequest& request) { return lanes_[request.plan.base == Base::force ? 0 : 1]; }
   void work(Lane& lane);  // until cancelled
@@ -92,17 +96,24 @@ class ModelWorker {
 
   Scene scene_;
   std::uint64_t seed_;
-  ReadyModels ready_;
-  std::atomic<bool> cancelled_{false};
+  std::string ready_;  // folder of the ready models of this scene and seed; empty: there are none
+  std::stop_source stop_;
   std::mutex recordings_mutex_;
   // Guarded by recordings_mutex_.
   std::vector<Recording> training_;  // until the first fit
   std::vector<PreparedRecordingPointer> recordings_;
   mutable std::mutex mutex_;
-  std::condition_variable wake_;
+  std::condition_variable_any wake_;
   std::vector<FinishedModel> finished_;  // guarded by mutex_
-  std::array<Lane, 2> lanes_;
+  std::array<Lane, 2> lanes_;            // last, for the same reason
 };
+
+// Fits the models with which a window of this scene may start, with seed 1, when the program is built
+// (ready_models_main.cpp):
+//   FOLDER/SCENE/NAME.json    a model, as `palpate fit` writes it
+//   FOLDER/SCENE/inputs.txt   what the fits depend on, beside the program itself, on which their build depends
+// Errors: those of load_scene, the fits and save_model; the folder cannot be created.
+Status make_ready_models(const std::string& folder, const std::string& scene);
 
 // Calls prepare_blas (models/linear/lapack.h), for programs that may not include models/. Call it first in main.
 void prepare_to_fit();

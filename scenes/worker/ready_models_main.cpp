@@ -2,7 +2,6 @@
 #include <cstdio>
 
 #include "scenes/worker/model_worker.h"
-#include "scenes/worker/ready_models.h"
 
 int main(int count, char** arguments) {
   palpate::prepare_to_fit();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scenes/live/stream_errors.h"
+#include "scenes/live/comparison.h"
 
 namespace palpate {
 namespace {

@@ -1,5 +1,5 @@
 // The dent is at the tool while the model pushes it, and recovers with the model's own relaxation times.
-#include "scenes/live/dent.h"
+#include "scenes/live/comparison.h"
 
 #include <gtest/gtest.h>
 

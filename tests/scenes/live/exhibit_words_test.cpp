@@ -1,4 +1,4 @@
-#include "scenes/live/exhibit_words.h"
+#include "scenes/live/exhibit_game.h"
 
 #include <gtest/gtest.h>
 

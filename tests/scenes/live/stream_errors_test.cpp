@@ -1,4 +1,4 @@
-#include "scenes/live/stream_errors.h"
+#include "scenes/live/comparison.h"
 
 #include <gtest/gtest.h>
 
@@ -9,21 +9,25 @@
 namespace palpate {
 namespace {
 
-TEST(ErrorQuantile, IsTheNinetyNinthPercentile) {
-  ErrorQuantile errors;
-  EXPECT_EQ(errors.p99(), 0.0);
-  for (int i = 1; i <= 1000; ++i) errors.add(2e-3 * i);
-  EXPECT_NEAR(errors.p99(), 1.98, 0.011 * 1.98);
+constexpr JndLine kOneNewton{1.0, 0.0};
+
+double p99(const StreamErrors& errors) { return errors.summary(kOneNewton).p99_error_over_jnd; }
+
+TEST(StreamErrors, HaveTheNinetyNinthPercentile) {
+  StreamErrors errors;
+  EXPECT_EQ(p99(errors), 0.0);
+  for (int i = 1; i <= 1000; ++i) errors.add(2e-3 * i, 0.0, kOneNewton);
+  EXPECT_NEAR(p99(errors), 1.98, 0.011 * 1.98);
 }
 
 // An error of exactly 1 JND counts as within, as in the share within the JND.
-TEST(ErrorQuantile, IsExactBesideOneJnd) {
-  ErrorQuantile errors;
-  for (int i = 0; i < 99; ++i) errors.add(1.0);
-  errors.add(1.0001);
-  EXPECT_EQ(errors.p99(), 1.0);
-  errors.add(1.0001);
-  EXPECT_GT(errors.p99(), 1.0);
+TEST(StreamErrors, AreExactBesideOneJnd) {
+  StreamErrors errors;
+  for (int i = 0; i < 99; ++i) errors.add(1.0, 0.0, kOneNewton);
+  errors.add(1.0001, 0.0, kOneNewton);
+  EXPECT_EQ(p99(errors), 1.0);
+  errors.add(1.0001, 0.0, kOneNewton);
+  EXPECT_GT(p99(errors), 1.0);
 }
 
 TEST(StreamErrors, AreThoseOfAllSamples) {

@@ -1,4 +1,4 @@
-#include "scenes/study/psychometrics.h"
+#include "scenes/study/study_analysis.h"
 
 #include <gtest/gtest.h>
 

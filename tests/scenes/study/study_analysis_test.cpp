@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "scenes/scene/scene.h"
-#include "scenes/study/psychometrics.h"
 #include "scenes/study/simulated_subject.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/study_driving.h"

@@ -1,4 +1,4 @@
-#include "scenes/study/study_plan.h"
+#include "scenes/study/study_file.h"
 
 #include <gtest/gtest.h>
 
