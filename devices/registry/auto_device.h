@@ -13,8 +13,8 @@
 #include <string>
 #include <utility>
 
-#include "devices/link/device_calibration.h"
 #include "devices/link/device_link.h"
+#include "devices/link/device_protocol.h"
 #include "devices/virtual/simulated_devices.h"
 #include "engine/live/pacer.h"
 
