@@ -97,32 +97,6 @@ struct ForceScale {
   }
 };
 
-// Scales the force without a step.
-class ScaledForce {
- public:
-  // Moves the scale towards `wanted`, which is not clamped, with a time constant of 50 ms, and returns the scaled force
-  // in newtons. With the default scale the force stays bit-identical.
-  double apply(double force_N, double velocity_m_per_s, bool in_contact, const ForceScale& wanted,
-               double step_s) noexcept {
-    const double share = std::clamp(step_s / kEasing_s, 0.0, 1.0);
-    ease(now_.stiffness, wanted.stiffness, share);
-    ease(now_.damping_Ns_per_m, wanted.damping_Ns_per_m, share);
-    if (!in_contact || now_ == ForceScale{}) return force_N;
-    const double scaled_N = now_.stiffness * force_N;
-    return std::max(scaled_N + now_.damping_Ns_per_m * velocity_m_per_s, std::min(scaled_N, 0.0));
-  }
-
-  const ForceScale& now() const noexcept { return now_; }
-
- private:
-  static constexpr double kEasing_s = 0.05, kArrived = 1e-3;
-  static void ease(double& value, double wanted, double share) noexcept {
-    value += share * (wanted - value);
-    if (std::abs(wanted - value) < kArrived) value = wanted;
-  }
-  ForceScale now_;
-};
-
 class PassivityController {
  public:
   // `encoder_step_m`: 0 without an encoder.
@@ -189,8 +163,8 @@ class ForceGuard {
 
   explicit ForceGuard(double encoder_step_m) noexcept : stability_(encoder_step_m), passivity_(encoder_step_m) {}
 
-  // The force of a model of this impedance, scaled as `wanted`. `held`: by a person, so that the stability limit
-  // applies.
+  // The force of a model of this impedance, scaled as `wanted`; the scale moves there with a time constant of 50 ms.
+  // `held`: by a person, so that the stability limit applies. With the default scale the force stays bit-identical.
   double scaled(double force_N, const Impedance& model, const ForceScale& wanted, bool held, const Tool& tool,
                 const Timing& timing) noexcept {
     // A force that is written in a tick acts from the next tick on and is held for one.
@@ -199,15 +173,19 @@ class ForceGuard {
     const ForceScale unbounded = wanted.limited(StabilityLimit(), {});
     const ForceScale limited = held ? wanted.limited(stability_, model) : unbounded;
     share_ = limited.stiffness / unbounded.stiffness;
-    return scaled_.apply(force_N, tool.velocity_m_per_s, tool.in_contact, limited, timing.step_s);
+    ease(scale_.stiffness, limited.stiffness, timing.step_s);
+    ease(scale_.damping_Ns_per_m, limited.damping_Ns_per_m, timing.step_s);
+    if (!tool.in_contact || scale_ == ForceScale{}) return force_N;
+    const double scaled_N = scale_.stiffness * force_N;
+    return std::max(scaled_N + scale_.damping_Ns_per_m * tool.velocity_m_per_s, std::min(scaled_N, 0.0));
   }
 
   // After `scaled`. `written_N`: the device's last force.
   double passive(double commanded_N, const Tool& tool, const Timing& timing, double written_N) noexcept {
     const double hold_s = std::max(timing.tick_s, timing.interval_s);
     const PassivityController::Loop loop{std::max(0.0, stability_.lag_s() - 0.5 * hold_s),
-                                         std::max(0.0, stability_.damping_Ns_per_m() - scaled_.now().damping_Ns_per_m),
-                                         hold_s, timing.tick_s};
+                                         std::max(0.0, stability_.damping_Ns_per_m() - scale_.damping_Ns_per_m), hold_s,
+                                         timing.tick_s};
     return passivity_.apply(commanded_N, tool, loop, written_N, timing.step_s);
   }
 
@@ -215,8 +193,14 @@ class ForceGuard {
   double lag_s() const noexcept { return stability_.lag_s(); }
 
  private:
+  static constexpr double kEasing_s = 0.05, kArrived = 1e-3;
+  static void ease(double& value, double wanted, double step_s) noexcept {
+    value += std::clamp(step_s / kEasing_s, 0.0, 1.0) * (wanted - value);
+    if (std::abs(wanted - value) < kArrived) value = wanted;
+  }
+
   StabilityLimit stability_;
-  ScaledForce scaled_;
+  ForceScale scale_;  // of the present force
   PassivityController passivity_;
   double share_ = 1.0;
 };
