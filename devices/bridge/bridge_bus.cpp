@@ -7,8 +7,8 @@
 #include "devices/bridge/byte_stream.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"
+#include "engine/live/device.h"
 #include "engine/live/pacer.h"
-#include "engine/live/sample_rate.h"
 
 namespace palpate {
 namespace {

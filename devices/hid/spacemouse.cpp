@@ -1,14 +1,11 @@
 // 3Dconnexion's SpaceMouse: report 1 begins with three int16 translations. z is used; it is positive when the cap is
 // pushed down. The host writes no reports.
-#include "devices/hid/spacemouse.h"
-
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 
 #include "devices/firmware/wire.h"
 #include "devices/hid/hid_protocols.h"
-#include "engine/live/pacer.h"
 
 namespace palpate {
 namespace {
@@ -19,8 +16,6 @@ constexpr std::array<std::uint16_t, 7> kSpaceMice = {0xC626, 0xC627, 0xC628, 0xC
 constexpr std::uint16_t kDesktopPage = 1, kMultiAxis = 8;
 // Larger values are invalid; every deflection is far below.
 constexpr int kSpaceMouseMost = 1000;
-// Smaller deflections count as 0: the cap does not return to its exact centre.
-constexpr int kDeadCounts = 8;
 
 bool is_space_mouse(const DeviceNode& info) noexcept {
   if (info.usage_page != kDesktopPage || info.usage != kMultiAxis) return false;
@@ -47,25 +42,5 @@ const DeviceProtocol kSpaceMouseProtocol = {
     .matches = is_space_mouse,
     .decode = decode_space_mouse,
 };
-
-Status SpaceMouse::start(MouseDevice& tool) {
-  tool_ = &tool;
-  return link_.start();
-}
-
-void SpaceMouse::report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
-  DeviceReading reading;
-  if (calibration_.protocol->decode(bytes, size, reading) != ReportVerdict::position) return;
-  deflect(std::abs(reading.counts) < kDeadCounts ? 0 : reading.counts, now_s);
-}
-
-void SpaceMouse::unplugged() noexcept { deflect(0, steady_now_s()); }
-
-void SpaceMouse::deflect(int counts, double now_s) noexcept {
-  if (counts == counts_) return;
-  counts_ = counts;
-  tool_->set_target(calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre,
-                    now_s);
-}
 
 }  // namespace palpate

@@ -14,8 +14,8 @@
 #include <string>
 #include <utility>
 
-#include "devices/link/device_calibration.h"
 #include "devices/link/device_link.h"
+#include "devices/link/device_protocol.h"
 #include "devices/link/stream_monitor.h"
 #include "engine/live/device.h"
 #include "engine/live/handover.h"

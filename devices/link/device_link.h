@@ -25,7 +25,7 @@ class DeviceConnection {
   virtual int read(std::uint8_t* bytes, std::size_t capacity) noexcept = 0;
   // Blocking. False: the report was not accepted.
   virtual bool write(const std::uint8_t* bytes, std::size_t size) noexcept = 0;
-  // The file to which the stop report is written when a signal ends the program (device_stop.h); -1: none.
+  // The file to which the stop report is written when a signal ends the program (register_device_stop); -1: none.
   virtual int descriptor() const noexcept { return -1; }
 };
 
@@ -95,11 +95,31 @@ class DeviceLink {
   const DeviceProtocol& protocol_;
   std::mutex mutex_;  // guards connection_; the haptics thread never locks it
   std::shared_ptr<DeviceConnection> connection_;
-  int stop_slot_ = -1;               // of connection_, see device_stop.h
+  int stop_slot_ = -1;               // of connection_, see register_device_stop
   std::atomic<bool> stop_{false};    // ends the writer
   std::atomic<bool> closed_{false};  // ends the reader
   std::thread reader_;
   std::thread writer_;
 };
+
+// Sends the stop report to every open device when a signal ends the program. This does not cover SIGKILL, a power
+// failure or a hung system. When the host is silent, working firmware removes the force:
+//   bridge       50 ms after the last valid frame or change of the heartbeat
+//   OpenFFBoard  50 ms after the host last restarted its effect (devices/hid/openffboard.cpp)
+//   SpaceMouse   renders no force
+// Firmware that hangs while it drives the motor is not covered.
+//
+// Any thread but the haptics thread; installs the handlers of signals.h. When one of its signals ends the program, new
+// writes of forces are refused, running ones get 20 ms to finish, `reports` are written to `descriptor`, which must
+// stay open until `unregister_device_stop`, and the devices get 30 ms to take them. Returns the slot; -1 when all eight
+// are in use.
+int register_device_stop(int descriptor, const OutReports& reports) noexcept;
+// Any thread but the haptics thread. -1 is ignored.
+void unregister_device_stop(int slot) noexcept;
+
+// To be called around every write of a report that may have a force. Any thread, wait-free. False: a signal is ending
+// the program; do not write, and report the write as failed. True: call `end_force_write` after the write.
+bool begin_force_write() noexcept;
+void end_force_write() noexcept;
 
 }  // namespace palpate

@@ -1,31 +1,41 @@
-// This device is the simulated hand until the user moves the mouse or a SpaceMouse, and again once both have been idle
-// for MouseDevice::kIdleTime_s. The tool continues from its last position.
+// The simulated hand until the user moves the mouse or a SpaceMouse, and again once both have been idle for
+// MouseDevice::kIdleTime_s. The tool continues from its last position.
+// Pushing the cap of a 3Dconnexion SpaceMouse down moves the target into the block. It renders no force to the hand;
+// the force acts on the simulated mass of the MouseDevice, whose low-pass filter turns the 60 to 125 reports a second
+// (none at rest) into a motion at every tick.
 // Thread guarantee: as Device and ToolInput.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
-#include <memory>
+#include <cstdlib>
+#include <optional>
 #include <string>
 #include <utility>
 
-#include "devices/hid/spacemouse.h"
-#include "devices/virtual/hand_device.h"
-#include "devices/virtual/mouse_device.h"
+#include "devices/link/device_link.h"
+#include "devices/link/device_protocol.h"
+#include "devices/virtual/simulated_devices.h"
+#include "engine/live/pacer.h"
 
 namespace palpate {
 
-class AutoDevice final : public MouseDevice {
+class AutoDevice final : public MouseDevice, public LinkListener {
  public:
-  // `space_mouse`: null where there is none; `note`: see Device::note.
-  explicit AutoDevice(std::uint64_t seed = 1, const HandSettings& hand = {},
-                      std::unique_ptr<SpaceMouse> space_mouse = nullptr, std::string note = "")
-      : MouseDevice("auto"), note_(std::move(note)), space_mouse_(std::move(space_mouse)), hand_(seed, hand) {}
-  ~AutoDevice() override { close(); }
+  // `note`: see Device::note.
+  explicit AutoDevice(std::uint64_t seed = 1, const HandSettings& hand = {}, std::string note = "")
+      : MouseDevice("auto"), note_(std::move(note)), hand_(seed, hand) {}
+  // With a SpaceMouse, which `opened` is; `bus` outlives this.
+  AutoDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened, std::uint64_t seed = 1,
+             const HandSettings& hand = {}, std::string note = "")
+      : AutoDevice(seed, hand, std::move(note)) {
+    calibration_ = calibration;
+    space_mouse_.emplace(bus, *this, std::move(opened));
+  }
 
-  Status open() override { return space_mouse_ != nullptr ? space_mouse_->start(*this) : Status(); }
+  Status open() override { return space_mouse_ ? space_mouse_->start() : Status(); }
   void close() noexcept override {
-    if (space_mouse_ != nullptr) space_mouse_->stop();
+    if (space_mouse_) space_mouse_->stop();
   }
   std::string note() const override { return note_; }
   bool read(double now_s, DeviceSample& sample) noexcept override {
@@ -46,11 +56,30 @@ class AutoDevice final : public MouseDevice {
   // Any thread, wait-free. A target stops the simulated hand.
   bool hand_is_exploring() const noexcept override { return exploring_.load(std::memory_order_relaxed); }
 
+  // As LinkListener, of the SpaceMouse; wait-free.
+  void connected(double) noexcept override {}
+  void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override {
+    DeviceReading reading;
+    if (calibration_.protocol->decode(bytes, size, reading) == ReportVerdict::position) deflect(reading.counts, now_s);
+  }
+  void unplugged() noexcept override { deflect(0, steady_now_s()); }
+
  private:
+  // Smaller deflections count as 0: the cap does not return to its exact centre.
+  static constexpr int kDeadCounts = 8;
+
+  void deflect(int counts, double now_s) noexcept {
+    if (std::abs(counts) < kDeadCounts) counts = 0;
+    if (counts == std::exchange(counts_, counts)) return;
+    set_target(calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre, now_s);
+  }
+
   std::string note_;
-  std::unique_ptr<SpaceMouse> space_mouse_;
   HandDevice hand_;
   std::atomic<bool> exploring_{true};
+  DeviceCalibration calibration_;
+  int counts_ = 0;  // reader thread of the SpaceMouse: the deflection of its cap
+  std::optional<DeviceLink> space_mouse_;
 };
 
 }  // namespace palpate

@@ -5,34 +5,32 @@
 #include "devices/bridge/bridge_bus.h"
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
-#include "devices/hid/spacemouse.h"
 #include "devices/link/device_endpoint.h"
 #include "devices/registry/auto_device.h"
-#include "devices/virtual/hand_device.h"
-#include "devices/virtual/mouse_device.h"
 #include "devices/virtual/replay_device.h"
+#include "devices/virtual/simulated_devices.h"
 #include "engine/base/text.h"
 
 namespace palpate {
 namespace {
 
-// Opens the first HID device that renders forces, or does not, and makes a `T` of it with its calibration. Null: none
-// is plugged in.
-template <typename T, typename Made = T>
-Result<std::unique_ptr<Made>> make_hid_device(const DeviceRequest& request, bool renders_force) {
+// Opens the first HID device that renders forces, or does not, and makes a `T` of it with its calibration and `further`
+// arguments. Null: none is plugged in.
+template <typename T, typename... Further>
+MadeDevice make_hid_device(const DeviceRequest& request, bool renders_force, const Further&... further) {
   DeviceBus& bus = request.bus != nullptr ? *request.bus : system_hid_bus();
   std::vector<const DeviceProtocol*> protocols(kHidProtocols.begin(), kHidProtocols.end());
   std::erase_if(protocols, [&](const DeviceProtocol* one) { return one->renders_force != renders_force; });
   Result<OpenedDevice> opened = open_first(bus, protocols);
   if (!opened) return opened.error();
-  if (opened->connection == nullptr) return std::unique_ptr<Made>();
+  if (opened->connection == nullptr) return std::unique_ptr<Device>();
   const Result<DeviceCalibration> calibration = read_calibration(request.calibrations, *opened->protocol);
   if (!calibration) return calibration.error();
-  return std::unique_ptr<Made>(std::make_unique<T>(bus, *calibration, std::move(*opened)));
+  return MadeDevice(std::make_unique<T>(bus, *calibration, std::move(*opened), further...));
 }
 
 MadeDevice make_hid(const std::string&, const DeviceRequest& request) {
-  MadeDevice haptic = make_hid_device<LinkedDevice, Device>(request, true);
+  MadeDevice haptic = make_hid_device<LinkedDevice>(request, true);
   if (!haptic || *haptic != nullptr) return haptic;
   return Error{
       "no haptic device is plugged in; plug one in or use --device auto, which a SpaceMouse can move "
@@ -40,15 +38,16 @@ MadeDevice make_hid(const std::string&, const DeviceRequest& request) {
 }
 
 MadeDevice make_auto(const std::string&, const DeviceRequest& request) {
-  MadeDevice haptic = make_hid_device<LinkedDevice, Device>(request, true);
+  MadeDevice haptic = make_hid_device<LinkedDevice>(request, true);
   if (haptic && *haptic != nullptr) return haptic;
   std::string note = haptic ? "no haptic device is plugged in" : haptic.error().message;
-  auto mouse = make_hid_device<SpaceMouse>(request, false);
-  if (!mouse) note += "; " + mouse.error().message;
-  std::unique_ptr<SpaceMouse> space_mouse = mouse ? std::move(*mouse) : nullptr;
-  note += ": a simulated hand moves until the mouse";
-  note += space_mouse != nullptr ? " or the SpaceMouse (no force) takes over" : " takes over";
-  return MadeDevice(std::make_unique<AutoDevice>(request.seed, request.hand, std::move(space_mouse), std::move(note)));
+  MadeDevice with_space_mouse = make_hid_device<AutoDevice>(
+      request, false, request.seed, request.hand,
+      note + ": a simulated hand moves until the mouse or the SpaceMouse (no force) takes over");
+  if (with_space_mouse && *with_space_mouse != nullptr) return with_space_mouse;
+  if (!with_space_mouse) note += "; " + with_space_mouse.error().message;
+  note += ": a simulated hand moves until the mouse takes over";
+  return MadeDevice(std::make_unique<AutoDevice>(request.seed, request.hand, std::move(note)));
 }
 
 MadeDevice make_replay(const std::string& path, const DeviceRequest&) {

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <string>
 
-#include "devices/virtual/hand_device.h"
+#include "devices/virtual/simulated_devices.h"
 #include "engine/live/device.h"
 #include "engine/recording/recording.h"
 

@@ -1,7 +1,7 @@
 // Handles all signals of the process: SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE and those of a crash end the program
 // after the forces were set to zero. While a StopListener exists, the first SIGINT, SIGTERM or SIGHUP only sets a flag,
 // so that the program can end regularly; a second one ends it at once. An ignored signal stays ignored, and an earlier
-// handler is called after the forces are zero. devices/link/device_stop.h describes SIGKILL and a power cut.
+// handler is called after the forces are zero. devices/link/device_link.h describes SIGKILL and a power cut.
 #pragma once
 
 namespace palpate {

@@ -1,5 +1,6 @@
-// The stages between the force of a model and the limiter, for a force that a hand feels: the scale within the
-// stability limit, then the passivity controller. The live loop and the library (models/library) run this code.
+// The stages between the forces of the models and the limiter, for a force that a hand feels: the fade between models,
+// the scale within the stability limit, then the passivity controller. The live loop runs all of them, the library
+// (models/library) those of ForceGuard.
 //
 // Stability limit. A force that lags the motion by T (transport, waiting times, half the time for which it is held) is
 // a spring K with the damping -K T (Colgate & Schenkel 1997; with transport: Diolaiti et al. 2006). K T <= b + c B,
@@ -37,9 +38,67 @@
 #include <array>
 #include <cmath>
 
+#include "engine/tick/haptics_tick.h"
+#include "engine/tick/jnd.h"
 #include "engine/tick/tool_sample.h"
 
 namespace palpate {
+
+// Selects the model whose force is rendered, and fades from one to the next: F = sum_i w_i F_i, sum_i w_i = 1, moves to
+// the selected model s by w <- w + a (e_s - w), so F <- F + a (F_s - F). Each tick takes the largest a <= 1 for which
+// the step stays below a tenth of a JND, that of the smaller of |F| and |F_s|, per millisecond: a switch changes the
+// force by at most one JND in 10 ms, and at once in air. Changes of the models' own forces are not limited.
+class ForceMixer {
+ public:
+  // The force, N, of every model of a set; the last element is that of the model selected in the previous set.
+  static constexpr std::size_t kOutgoing = kMaxModels;
+  using Forces = std::array<double, kMaxModels + 1>;
+
+  explicit ForceMixer(const JndLine& jnd) noexcept : jnd_(jnd) { weights_[0] = 1.0; }
+
+  // Selects at once, without a fade: for the start, and kOutgoing for the fade to a new set.
+  void jump_to(std::size_t selected) noexcept {
+    weights_.fill(0.0);
+    weights_[selected] = 1.0;
+  }
+
+  // Moves the mixture towards `selected` for `step_s`, clamped to 0 to 10 ms, and returns it in newtons.
+  double mix(const Forces& forces_N, std::size_t selected, double step_s) noexcept {
+    // After the fade the force has the bits of the model.
+    if (settled_on(selected)) return forces_N[selected];
+    const double force_N = current(forces_N), difference_N = forces_N[selected] - force_N;
+    const double step = step_s > 0.0 ? std::min(step_s, kJndTime_s) : 0.0;
+    const double jnd_N = jnd_.at(std::min(std::abs(force_N), std::abs(forces_N[selected])));
+    const double most_N = kShareOfJnd * jnd_N * step / kJndTime_s;
+    if (!(std::abs(difference_N) > most_N)) {
+      jump_to(selected);
+      return forces_N[selected];
+    }
+    const double share = most_N / std::abs(difference_N);
+    for (double& weight : weights_) weight *= 1.0 - share;
+    weights_[selected] += share;
+    return force_N + share * difference_N;
+  }
+
+  // The current mixture.
+  double current(const Forces& forces_N) const noexcept {
+    double force_N = 0.0;
+    for (std::size_t i = 0; i < weights_.size(); ++i)
+      if (weights_[i] != 0.0) force_N += weights_[i] * forces_N[i];
+    return force_N;
+  }
+
+  bool settled_on(std::size_t index) const noexcept { return weights_[index] == 1.0; }
+
+ private:
+  static constexpr double kJndTime_s = 0.01;
+  // A rising force increases its own JND by up to 3 % within 10 ms. This share of the JND compensates for that and for
+  // rounding.
+  static constexpr double kShareOfJnd = 0.95;
+
+  JndLine jnd_;
+  Forces weights_{};
+};
 
 // The response to a small cycle about a depth: F' = stiffness x' + damping v'.
 struct Impedance {
@@ -95,32 +154,6 @@ struct ForceScale {
     const double left_Ns_per_m = 0.5 * (limit.damping_Ns_per_m() - scale * model.damping_Ns_per_m);
     return {scale, std::min(std::clamp(damping_Ns_per_m, 0.0, kMostDamping_Ns_per_m), left_Ns_per_m)};
   }
-};
-
-// Scales the force without a step.
-class ScaledForce {
- public:
-  // Moves the scale towards `wanted`, which is not clamped, with a time constant of 50 ms, and returns the scaled force
-  // in newtons. With the default scale the force stays bit-identical.
-  double apply(double force_N, double velocity_m_per_s, bool in_contact, const ForceScale& wanted,
-               double step_s) noexcept {
-    const double share = std::clamp(step_s / kEasing_s, 0.0, 1.0);
-    ease(now_.stiffness, wanted.stiffness, share);
-    ease(now_.damping_Ns_per_m, wanted.damping_Ns_per_m, share);
-    if (!in_contact || now_ == ForceScale{}) return force_N;
-    const double scaled_N = now_.stiffness * force_N;
-    return std::max(scaled_N + now_.damping_Ns_per_m * velocity_m_per_s, std::min(scaled_N, 0.0));
-  }
-
-  const ForceScale& now() const noexcept { return now_; }
-
- private:
-  static constexpr double kEasing_s = 0.05, kArrived = 1e-3;
-  static void ease(double& value, double wanted, double share) noexcept {
-    value += share * (wanted - value);
-    if (std::abs(wanted - value) < kArrived) value = wanted;
-  }
-  ForceScale now_;
 };
 
 class PassivityController {
@@ -189,8 +222,8 @@ class ForceGuard {
 
   explicit ForceGuard(double encoder_step_m) noexcept : stability_(encoder_step_m), passivity_(encoder_step_m) {}
 
-  // The force of a model of this impedance, scaled as `wanted`. `held`: by a person, so that the stability limit
-  // applies.
+  // The force of a model of this impedance, scaled as `wanted`; the scale moves there with a time constant of 50 ms.
+  // `held`: by a person, so that the stability limit applies. With the default scale the force stays bit-identical.
   double scaled(double force_N, const Impedance& model, const ForceScale& wanted, bool held, const Tool& tool,
                 const Timing& timing) noexcept {
     // A force that is written in a tick acts from the next tick on and is held for one.
@@ -199,15 +232,19 @@ class ForceGuard {
     const ForceScale unbounded = wanted.limited(StabilityLimit(), {});
     const ForceScale limited = held ? wanted.limited(stability_, model) : unbounded;
     share_ = limited.stiffness / unbounded.stiffness;
-    return scaled_.apply(force_N, tool.velocity_m_per_s, tool.in_contact, limited, timing.step_s);
+    ease(scale_.stiffness, limited.stiffness, timing.step_s);
+    ease(scale_.damping_Ns_per_m, limited.damping_Ns_per_m, timing.step_s);
+    if (!tool.in_contact || scale_ == ForceScale{}) return force_N;
+    const double scaled_N = scale_.stiffness * force_N;
+    return std::max(scaled_N + scale_.damping_Ns_per_m * tool.velocity_m_per_s, std::min(scaled_N, 0.0));
   }
 
   // After `scaled`. `written_N`: the device's last force.
   double passive(double commanded_N, const Tool& tool, const Timing& timing, double written_N) noexcept {
     const double hold_s = std::max(timing.tick_s, timing.interval_s);
     const PassivityController::Loop loop{std::max(0.0, stability_.lag_s() - 0.5 * hold_s),
-                                         std::max(0.0, stability_.damping_Ns_per_m() - scaled_.now().damping_Ns_per_m),
-                                         hold_s, timing.tick_s};
+                                         std::max(0.0, stability_.damping_Ns_per_m() - scale_.damping_Ns_per_m), hold_s,
+                                         timing.tick_s};
     return passivity_.apply(commanded_N, tool, loop, written_N, timing.step_s);
   }
 
@@ -215,8 +252,14 @@ class ForceGuard {
   double lag_s() const noexcept { return stability_.lag_s(); }
 
  private:
+  static constexpr double kEasing_s = 0.05, kArrived = 1e-3;
+  static void ease(double& value, double wanted, double step_s) noexcept {
+    value += std::clamp(step_s / kEasing_s, 0.0, 1.0) * (wanted - value);
+    if (std::abs(wanted - value) < kArrived) value = wanted;
+  }
+
   StabilityLimit stability_;
-  ScaledForce scaled_;
+  ForceScale scale_;  // of the present force
   PassivityController passivity_;
   double share_ = 1.0;
 };

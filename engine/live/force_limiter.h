@@ -1,15 +1,14 @@
 // Limits every force before the device gets it. In this order:
-//   stop   no force while the sample is stale or impossible, the device has a fault, the dead-man switch is released,
-//   or
-//          the force is not finite
+//   stop   no force while the sample is stale or impossible, the device has a fault, the dead-man switch is released
+//          or the force is not finite
 //   ramp   a factor that grows from 0 to 1 over `ramp_s` from the start, and again after each stop
 //   clamp  |force| <= largest_N, and less as the motor warms up
 //   slew   |change| <= fastest_N_per_s x the time since the last force, so that neither a fault nor a jump is a kick;
-//   only
-//          a stop may be faster, so that it takes at most `stop_s`
+//          only a stop may be faster, so that it takes at most `stop_s`
 // Thermal model: tau dH/dt = F^2 - H. H is the heat in N^2, c = continuous_N the force that the motor can hold
 // permanently. Above kFoldback c^2 the clamp falls, F^2 <= c^2 + (largest^2 - c^2) (1 - H / c^2) / (1 - kFoldback),
-// down to c at H = c^2, so that H never exceeds c^2. Thread guarantee: one thread at a time; wait-free, never throws.
+// down to c at H = c^2, so that H never exceeds c^2.
+// Thread guarantee: one thread at a time; wait-free, never throws.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,4 @@
 // Passes values between two threads; neither waits for the other.
-//
-//   TripleBuffer  the newest value only: settings in, snapshots out. Values that are not read in time are lost.
-//   SpscRing      every value, in order: samples for plots and a recorder. When full, it drops and counts.
-//   ModelSlot     a new set of models to the haptics thread, and the old one back.
 #pragma once
 
 #include <algorithm>
@@ -14,6 +10,7 @@
 
 namespace palpate {
 
+// The newest value only: settings in, snapshots out. Values that are not read in time are lost.
 // Three slots. The writer fills its own and exchanges it with the middle one; the reader exchanges its own with the
 // middle one if that is newer. Values are never torn, and the reader never gets an older value than before.
 template <typename T>
@@ -58,6 +55,7 @@ class TripleBuffer {
   alignas(64) std::uint32_t front_ = 2;  // of the reader
 };
 
+// Every value, in order: samples for plots and a recorder. When full, it drops and counts.
 template <typename T, std::size_t N>
 class SpscRing {
   static_assert(std::is_trivially_copyable_v<T>, "a copy must not allocate, lock or throw");
@@ -104,6 +102,7 @@ class SpscRing {
   alignas(64) std::atomic<std::uint64_t> read_{0};
 };
 
+// A new set of models to the haptics thread, and the old one back.
 // The slow side exchanges a new set into `pending_`; one that was never taken comes back and is deleted there. The tick
 // takes the pending set only if the slow side has deleted the set that was retired before. It may continue to use the
 // old one (to blend the force) and retires it later. The tick thus never deletes a set or waits.

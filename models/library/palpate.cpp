@@ -13,10 +13,10 @@
 
 #include "engine/base/result.h"
 #include "engine/json/json_fields.h"
+#include "engine/live/device.h"
 #include "engine/live/force_guard.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/live_tick.h"
-#include "engine/live/sample_rate.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"

@@ -173,7 +173,7 @@ void end_by_two_signals(int first, int second, LastForce& last) {
 }
 
 TEST_F(HidEmulated, ZeroForceIsTheLastReportInAnyOrderOfTwoSignals) {
-  // A write that takes longer than this is no longer waited for (devices/link/device_stop.cpp). On a USB port it takes
+  // A write that takes longer than this is no longer waited for (devices/link/device_link.cpp). On a USB port it takes
   // a few milliseconds; here another thread answers it, which a busy machine may hold up. Then it is tried again.
   constexpr auto kLongestWrite = std::chrono::milliseconds(20);
   constexpr int kTries = 10;

@@ -31,7 +31,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/virtual/hand_device.h"
+#include "devices/virtual/simulated_devices.h"
 #include "engine/base/random_stream.h"
 #include "engine/live/pacer.h"
 #include "scenes/material/rig.h"

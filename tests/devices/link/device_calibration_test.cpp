@@ -1,6 +1,6 @@
 // Valid and broken calibration files.
-#include "devices/link/device_calibration.h"
 #include "devices/hid/hid_protocols.h"
+#include "devices/link/device_protocol.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The stop command that is sent when a signal ends the program.
-#include "devices/link/device_stop.h"
 #include "devices/bridge/bridge_bus.h"
+#include "devices/link/device_link.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>

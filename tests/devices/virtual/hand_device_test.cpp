@@ -1,5 +1,5 @@
 // The simulated hand as a device: exploration, reaction to forces, repeatability.
-#include "devices/virtual/hand_device.h"
+#include "devices/virtual/simulated_devices.h"
 
 #include <gtest/gtest.h>
 

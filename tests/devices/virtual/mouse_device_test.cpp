@@ -1,5 +1,5 @@
 // The mouse as a tool, which yields to the force.
-#include "devices/virtual/mouse_device.h"
+#include "devices/virtual/simulated_devices.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Switching models without a force step.
-#include "engine/live/force_mixer.h"
+#include "engine/live/force_guard.h"
 
 #include <gtest/gtest.h>
 

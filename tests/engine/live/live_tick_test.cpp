@@ -9,9 +9,8 @@
 #include <limits>
 
 #include "devices/registry/auto_device.h"
-#include "devices/virtual/hand_device.h"
-#include "devices/virtual/mouse_device.h"
 #include "devices/virtual/replay_device.h"
+#include "devices/virtual/simulated_devices.h"
 #include "engine/tick/replay.h"
 #include "tests/support/example_model.h"
 #include "tests/support/live_doubles.h"

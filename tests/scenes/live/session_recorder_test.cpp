@@ -10,8 +10,8 @@
 #include <optional>
 #include <thread>
 
-#include "devices/virtual/hand_device.h"
 #include "devices/virtual/replay_device.h"
+#include "devices/virtual/simulated_devices.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/live_doubles.h"
 #include "tests/support/message_parts.h"

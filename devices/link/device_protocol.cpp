@@ -1,4 +1,4 @@
-#include "devices/link/device_calibration.h"
+#include "devices/link/device_protocol.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

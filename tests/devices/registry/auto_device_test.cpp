@@ -1,13 +1,12 @@
 // The cap of a SpaceMouse as a tool.
-#include "devices/hid/spacemouse.h"
-#include "devices/hid/hid_protocols.h"
+#include "devices/registry/auto_device.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "devices/firmware/wire.h"
-#include "devices/registry/auto_device.h"
+#include "devices/hid/hid_protocols.h"
 #include "tests/support/fake_device_bus.h"
 
 namespace palpate {
@@ -21,21 +20,16 @@ DeviceCalibration calibration() {
   return result;
 }
 
-// A MouseDevice with a SpaceMouse, whose reports the test makes in simulated time.
+// A device with a SpaceMouse, whose reports the test makes in simulated time.
 struct Moved {
-  Moved() {
-    bus.silent = true;
-    EXPECT_TRUE(mouse.start(tool).ok());
-  }
   void report(int counts, double now_s) {
     std::uint8_t bytes[7] = {1};
     wire::write16(bytes + 5, static_cast<std::uint16_t>(counts));
-    mouse.report_arrived(bytes, sizeof bytes, now_s);
+    tool.report_arrived(bytes, sizeof bytes, now_s);
   }
 
   test::FakeDeviceBus bus{test::found_space_mouse()};
-  MouseDevice tool;
-  SpaceMouse mouse{bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol}))};
+  AutoDevice tool{bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol}))};
 };
 
 // A cap that moves evenly, reported every 16 ms: the tool moves at every tick of 1 ms, about equally far.
@@ -47,7 +41,7 @@ TEST(SpaceMouse, MovesAtEveryTickBetweenReports) {
   for (int ms = 0; ms <= 480; ++ms) {
     const double now_s = 1e-3 * ms;
     if (ms % 16 == 0) moved.report(300 * ms / 480, now_s);
-    ASSERT_TRUE(moved.tool.read(now_s, sample));
+    ASSERT_TRUE(moved.tool.MouseDevice::read(now_s, sample));
     if (ms > 150) {
       largest_m = std::max(largest_m, sample.tool.position_m - last_m);
       standing += sample.tool.position_m <= last_m ? 1 : 0;
@@ -75,7 +69,7 @@ TEST(SpaceMouse, KeepsItsTargetWhileSilentAndIsAtZeroNearZero) {
 TEST(SpaceMouse, LetsGoWhenItIsUnplugged) {
   Moved moved;
   moved.report(200, 1.0);
-  moved.mouse.unplugged();
+  moved.tool.unplugged();
   EXPECT_NEAR(moved.tool.target_m(), -0.006, 1e-12);
 }
 
@@ -99,8 +93,7 @@ bool read_until(Device& device, DeviceSample& sample, Done done) {
 TEST(SpaceMouse, TakesOverFromTheHandInAuto) {
   test::FakeDeviceBus bus{test::found_space_mouse()};
   bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};  // the cap is pushed by 300 counts
-  AutoDevice device(
-      1, {}, std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol}))));
+  AutoDevice device(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol})));
   EXPECT_EQ(device.holder(), Holder::simulated);
   DeviceSample sample;
   for (int ms = 0; ms < 5; ++ms) device.read(1e-3 * ms, sample);
