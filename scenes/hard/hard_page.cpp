@@ -2,7 +2,6 @@
 
 #include "engine/base/text.h"
 #include "scenes/hard/hard_table.h"
-#include "scenes/plot/inline_svg.h"
 #include "scenes/report/publish.h"
 
 namespace palpate {

@@ -16,6 +16,14 @@
 
 namespace palpate {
 
+// Replaces & < > " ' by entities.
+std::string escape_html(std::string_view text);
+
+// Converts an SVG drawing of gnuplot for a page. Removes the prologue and the fixed size, prefixes ids with `name`, and
+// replaces the neutral colours of assets/figures/style.gp by the page's CSS variables (--ink, --muted, --grid, --band,
+// --paper), so that the drawing follows the light or dark theme. Returns an empty string where `svg` is no SVG.
+std::string inline_svg(const std::string& svg, const std::string& name, const std::string& title);
+
 // A folder that gets its final name only when it is complete. Files are written into a hidden folder beside `path`,
 // which the first `write` makes and `commit` renames. The destructor removes the hidden folder if it was not committed;
 // that of a killed program is removed when the next one writes beside it.

@@ -11,7 +11,6 @@
 
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
-#include "scenes/plot/inline_svg.h"
 #include "scenes/report/figures.h"
 
 namespace palpate {

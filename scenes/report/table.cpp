@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "engine/base/text.h"
-#include "scenes/plot/inline_svg.h"
+#include "scenes/report/publish.h"
 
 namespace palpate {
 namespace {

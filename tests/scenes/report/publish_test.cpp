@@ -88,5 +88,14 @@ TEST(ReportFolder, NeverTakesTheWayOfSomethingElse) {
   EXPECT_EQ(test::read_text(folder.file("home/thesis.txt")), "mine");
 }
 
+TEST(InlineSvg, FollowsThePageAndKeepsItsIdsApart) {
+  const std::string svg =
+      "<?xml version=\"1.0\"?>\n<svg width=\"9\" viewBox=\"0 0 9 9\">\n<title>x</title><desc>y</desc>\n"
+      "<path id='p' stroke='rgb( 34,  34,  34)' fill=\"#FEFEFE\" stop='#fefefe'/><use xlink:href='#p'/></svg>";
+  EXPECT_EQ(inline_svg(svg, "n", "a < b"),
+            "<svg viewBox=\"0 0 9 9\" role=\"img\" aria-label=\"a &lt; b\">\n\n"
+            "<path id='n-p' stroke='var(--ink)' fill=\"var(--paper)\" stop='var(--paper)'/><use href='#n-p'/></svg>");
+}
+
 }  // namespace
 }  // namespace palpate
