@@ -1,6 +1,7 @@
 #include "scenes/report/paper.h"
 
 #include "engine/base/text.h"
+#include "models/correction/methods.h"
 #include "scenes/report/publish.h"
 
 namespace palpate {

@@ -1,7 +1,9 @@
 #include "scenes/report/publish.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -18,6 +20,48 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kPageWidth_rem = 52.0;
+
+constexpr const char* kNothing = "–";
+
+std::string quoted_if_needed(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted(1, '"');
+  for (const char letter : text) {
+    if (letter == '"') quoted += '"';
+    quoted += letter;
+  }
+  return quoted + '"';
+}
+
+std::string csv_cell(const TableCell& cell) {
+  if (cell.is_string()) return quoted_if_needed(cell.get<std::string>());
+  if (cell.is_number_integer() || cell.is_boolean()) return cell.dump();
+  return std::isfinite(cell.get<double>()) ? shortest(cell.get<double>()) : "";
+}
+
+std::string shown(const TableCell& cell, const TableColumn& column) {
+  if (cell.is_string()) return cell.get<std::string>();
+  if (cell.is_boolean()) return yes_or_no(cell.get<bool>());
+  if (cell.is_number_integer()) return with_thousands(cell.dump());
+  const double value = cell.get<double>() * column.scale;
+  if (!std::isfinite(value)) return kNothing;
+  return column.decimals == TableColumn::kThreeDigits ? three_digits(value)
+                                                      : with_thousands(fixed(value, column.decimals));
+}
+
+// The small text below the cell `first - 1`: the next value, or the next two as an interval.
+std::string under_html(const std::vector<TableCell>& row, std::size_t first, const TableColumn& column) {
+  if (column.under == 0) return {};
+  const std::string low = shown(row[first], column);
+  const std::string high = column.under == 2 ? shown(row[first + 1], column) : "";
+  if (low == kNothing || high == kNothing) return {};
+  return "<small>" + escape_html(low) + (high.empty() ? "" : "–" + escape_html(high)) + "</small>";
+}
+
+bool is_text(const Table& table, std::size_t column) {
+  return !table.rows.empty() &&
+         std::ranges::all_of(table.rows, [&](const auto& row) { return row[column].is_string(); });
+}
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
   std::string result;
@@ -104,6 +148,65 @@ std::string escape_html(std::string_view text) {
     safe = replaced(safe, letter, entity);
   }
   return safe;
+}
+
+std::string table_csv(const Table& table) {
+  std::string text;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (i > 0) text.push_back(',');
+    text += table.columns[i].key;
+  }
+  text.push_back('\n');
+  for (const auto& row : table.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {  // a row without cells is a blank line
+      if (i > 0) text.push_back(',');
+      text += csv_cell(row[i]);
+    }
+    text.push_back('\n');
+  }
+  return text;
+}
+
+nlohmann::ordered_json table_json(const Table& table) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& row : table.rows) {
+    nlohmann::ordered_json object = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < row.size(); ++i) object[table.columns[i].key] = row[i];  // not finite: null
+    list.push_back(std::move(object));
+  }
+  return list;
+}
+
+std::vector<std::vector<std::string>> table_text(const Table& table) {
+  std::vector<std::vector<std::string>> lines(table.rows.size() + 1);
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (table.columns[i].title.empty()) continue;
+    lines[0].push_back(table.columns[i].title);
+    for (std::size_t row = 0; row < table.rows.size(); ++row)
+      lines[row + 1].push_back(shown(table.rows[row][i], table.columns[i]));
+  }
+  return lines;
+}
+
+std::string table_html(const Table& table) {
+  std::string html = "<div class=\"table\"><table>\n<thead><tr>";
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (table.columns[i].title.empty()) continue;
+    html += is_text(table, i) ? "<th class=\"text\">" : "<th>";
+    html += escape_html(table.columns[i].title) + "</th>";
+  }
+  html += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const TableColumn& column = table.columns[i];
+      if (column.title.empty()) continue;
+      html += is_text(table, i) ? "<td class=\"text\">" : "<td>";
+      html += escape_html(shown(row[i], column)) + under_html(row, i + 1, column) + "</td>";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
 }
 
 std::string inline_svg(const std::string& svg, const std::string& name, const std::string& title) {
