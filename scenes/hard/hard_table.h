@@ -2,13 +2,13 @@
 // Thread guarantee: slow side; fits start threads.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "engine/base/parallel.h"
 #include "engine/base/result.h"
 #include "scenes/hard/hard_case.h"
-#include "scenes/report/table.h"
 
 namespace palpate {
 
@@ -27,8 +27,6 @@ struct HardRow {
 
 // What `cell` misses of an expectation; empty: nothing.
 std::string missed_by(const HardCell& cell, const HardExpectation& expected);
-// "at least 99 % within the JND, error at most 0.3 N, ..."
-std::string expectation_text(const HardExpectation& expected);
 
 // Errors: interrupted.
 Result<std::vector<HardRow>> run_hard(const FitControl& control = {});
@@ -38,8 +36,7 @@ std::vector<std::string> missed_cells(const std::vector<HardRow>& rows);
 // One sentence.
 std::string hard_answer(const std::vector<HardRow>& rows);
 
-// One row for each cell, with every figure.
-Table cells_table(const std::vector<HardRow>& rows);
+// One object for each cell, with every figure.
 nlohmann::ordered_json hard_json(const std::vector<HardRow>& rows);
 // "✓ 99.8": whether the cell is as expected, and the percentage within the JND, or "refused".
 std::string cell_text(const HardCell& cell);

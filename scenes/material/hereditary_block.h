@@ -1,6 +1,6 @@
 // Soft rubber under a sphere, with a continuous spectrum of relaxation times: quasi-linear viscoelasticity,
 //   F = E(s) + M,   M(t) = integral K(t - u) dE/du du,   K(t) = c (E1(t / tau2) - E1(t / tau1)),
-// where E is the contact law of sphere_contact.h and K Fung's box spectrum: the same weight c for every ln tau between
+// where E is the contact law of SphereContact and K Fung's box spectrum: the same weight c for every ln tau between
 // tau1 and tau2. There are no discrete relaxation times that a fit could identify, and E ~ d^1.5 at the surface is no
 // polynomial. K is approximated to within 0.1 % by 48 times tau_i evenly spaced in log tau. Each sub-step is exact
 // where E changes at a constant rate:
@@ -8,17 +8,37 @@
 // Derived classes add further forces.
 // Passive for every E that rises with depth: see maxwell_block.h, with g_i = w E.
 // Source: Fung (1993), Biomechanics, section 7.6 (quasi-linear viscoelasticity).
-// Thread guarantee: as Block.
+// Thread guarantee: as Block; SphereContact is immutable and wait-free.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
 #include "scenes/material/block.h"
-#include "scenes/material/sphere_contact.h"
 
 namespace palpate {
+
+// A rigid sphere pressed into a soft half-space at large strain: with the contact radius a = sqrt(R d) of Hertz and
+// the representative stretch lambda = 1 - 0.2 a / R under the sphere,
+//   F(d) = B a^2 (lambda^-2 - lambda),
+// a neo-Hookean solid. For small d it is Hertz's law, F = (16/9) E sqrt(R) d^1.5 with B = (80/27) E. F rises with d
+// everywhere. The stretch is limited to at least 0.5, which is reached at a depth of six radii.
+// Source: Lin, Dimitriadis & Horkay (2009), "Spherical indentation of soft matter beyond the Hertzian regime", the
+// neo-Hookean line; Hertz (1882).
+struct SphereContact {
+  double radius_m = 0.01;   // R > 0
+  double modulus_Pa = 0.0;  // E >= 0, Young's modulus of the incompressible solid at rest
+
+  // F(depth), newtons; depth_m >= 0.
+  double force_N(double depth_m) const noexcept {
+    const double contact_m2 = radius_m * depth_m;
+    const double stretch = std::max(0.5, 1.0 - 0.2 * std::sqrt(contact_m2) / radius_m);
+    const double inverse = 1.0 / stretch;
+    return 80.0 / 27.0 * modulus_Pa * contact_m2 * (inverse * inverse - stretch);
+  }
+};
 
 class HereditaryBlock : public Block {
  public:

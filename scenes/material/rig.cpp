@@ -9,6 +9,16 @@ namespace palpate {
 namespace {
 
 constexpr double kGridRate_Hz = 20000.0;
+constexpr double kRigStep_s = 1.0 / kGridRate_Hz;
+constexpr double kSlowestRate_Hz = 10.0, kFastestRate_Hz = 20000.0;
+// 14 hours at 1 kHz; a recording of this size needs 2 GB of memory.
+constexpr double kMostRows = 5e7;
+constexpr double kEncoderStep_m = 30e-6;
+constexpr double kForceNoise_N = 0.005;
+constexpr double kAccelerationNoise_m_per_s2 = 0.07;
+constexpr double kAccelerationRange_m_per_s2 = 40.0;
+constexpr double kBias_m_per_s2 = 0.1;        // standard deviation of the accelerometer's bias
+constexpr double kBiasTime_s = 20.0;          // its correlation time
 constexpr double kConverterSteps = 4096.0;    // 12 bits
 constexpr std::size_t kRowsPerUpdate = 4096;  // between two reports of progress
 
@@ -36,15 +46,8 @@ double converted(double value, double range) {
 }
 
 // Quantises to whole encoder steps. The result is rounded to nanometres, which have a short decimal text.
-double encoded(double position_m, double step_m) {
-  return std::nearbyint(std::nearbyint(position_m / step_m) * step_m * 1e9) / 1e9 + 0.0;
-}
-
-// Fills the settings that are not given with those of the material.
-RigSettings suited(RigSettings settings, const Material& material) {
-  if (settings.sensors.force_range_N == 0.0) settings.sensors.force_range_N = material.force_range_N;
-  if (!settings.hand) settings.hand = {.strongest_press_N = material.strongest_press_N};
-  return settings;
+double encoded(double position_m) {
+  return std::nearbyint(std::nearbyint(position_m / kEncoderStep_m) * kEncoderStep_m * 1e9) / 1e9 + 0.0;
 }
 
 }  // namespace
@@ -72,8 +75,10 @@ Result<Rig> Rig::create(const RigSettings& settings) {
 }
 
 Rig::Rig(const RigSettings& settings, const Material& material, std::size_t row_count)
-    : settings_(suited(settings, material)),
-      hand_(material, *settings_.hand, settings.seed),
+    : rate_Hz_(settings.rate_Hz),
+      force_range_N_(material.force_range_N),
+      hand_(material, settings.hand.value_or(HandSettings{.strongest_press_N = material.strongest_press_N}),
+            settings.seed),
       block_(material.make_block()),
       force_noise_(settings.seed, kForceStream),
       acceleration_noise_(settings.seed, kAccelerationStream),
@@ -83,7 +88,7 @@ Rig::Rig(const RigSettings& settings, const Material& material, std::size_t row_
   before_ = truth_now();
   advance();
   grid_index_ = 0;
-  bias_m_per_s2_ = settings.sensors.acceleration_bias_m_per_s2 * bias_noise_.normal();
+  bias_m_per_s2_ = kBias_m_per_s2 * bias_noise_.normal();
 }
 
 RigTruth Rig::truth_now() const noexcept {
@@ -108,20 +113,17 @@ RigTruth Rig::truth_at(double grid_time) noexcept {
 
 bool Rig::next(RecordingRow& row, RigTruth& truth) noexcept {
   if (row_ == row_count_) return false;
-  const SensorSettings& sensors = settings_.sensors;
   const double index = static_cast<double>(row_++);
-  truth = truth_at(index * kGridRate_Hz / settings_.rate_Hz);
+  truth = truth_at(index * kGridRate_Hz / rate_Hz_);
   row = {};
-  row.time_s = index / settings_.rate_Hz;
-  row.position_m = encoded(truth.position_m + sensors.surface_offset_m, sensors.encoder_step_m);
-  row.force_N = converted(truth.force_N + sensors.force_zero_N + sensors.force_noise_N * force_noise_.normal(),
-                          sensors.force_range_N);
+  row.time_s = index / rate_Hz_;
+  row.position_m = encoded(truth.position_m);
+  row.force_N = converted(truth.force_N + kForceNoise_N * force_noise_.normal(), force_range_N_);
   row.acceleration_m_per_s2 = converted(
-      truth.acceleration_m_per_s2 + bias_m_per_s2_ + sensors.acceleration_noise_m_per_s2 * acceleration_noise_.normal(),
-      sensors.acceleration_range_m_per_s2);
-  const double share = std::min(1.0, 1.0 / (settings_.rate_Hz * sensors.acceleration_bias_time_s));
-  bias_m_per_s2_ += -share * bias_m_per_s2_ +
-                    sensors.acceleration_bias_m_per_s2 * std::sqrt(share * (2.0 - share)) * bias_noise_.normal();
+      truth.acceleration_m_per_s2 + bias_m_per_s2_ + kAccelerationNoise_m_per_s2 * acceleration_noise_.normal(),
+      kAccelerationRange_m_per_s2);
+  const double share = std::min(1.0, 1.0 / (rate_Hz_ * kBiasTime_s));
+  bias_m_per_s2_ += -share * bias_m_per_s2_ + kBias_m_per_s2 * std::sqrt(share * (2.0 - share)) * bias_noise_.normal();
   return true;
 }
 
@@ -145,16 +147,15 @@ Result<Recording> record_sensors(const RigSettings& settings, const std::functio
 
 std::vector<std::string> describe_recording(const RigSettings& settings, const Material& material,
                                             std::size_t row_count) {
-  const SensorSettings sensors = suited(settings, material).sensors;
   return {
       "virtual recording by palpate synth: material " + settings.material + ", seed " + std::to_string(settings.seed) +
           ", " + std::to_string(row_count) + " rows at " + shortest(settings.rate_Hz) + " Hz",
       "true relaxation times: " + std::string(material.relaxation_times),
-      "encoder step " + shortest(sensors.encoder_step_m) + " m; force noise " + shortest(sensors.force_noise_N) +
-          " N, 12 bits over +-" + shortest(sensors.force_range_N) + " N",
-      "accelerometer noise " + shortest(sensors.acceleration_noise_m_per_s2) + " m/s2, bias wandering by " +
-          shortest(sensors.acceleration_bias_m_per_s2) + " m/s2 within " + shortest(sensors.acceleration_bias_time_s) +
-          " s, 12 bits over +-" + shortest(sensors.acceleration_range_m_per_s2) + " m/s2",
+      "encoder step " + shortest(kEncoderStep_m) + " m; force noise " + shortest(kForceNoise_N) +
+          " N, 12 bits over +-" + shortest(material.force_range_N) + " N",
+      "accelerometer noise " + shortest(kAccelerationNoise_m_per_s2) + " m/s2, bias wandering by " +
+          shortest(kBias_m_per_s2) + " m/s2 within " + shortest(kBiasTime_s) + " s, 12 bits over +-" +
+          shortest(kAccelerationRange_m_per_s2) + " m/s2",
   };
 }
 

@@ -2,11 +2,10 @@
 // sensors record it. Every row comes with the true motion and force. Hand and material are simulated at 20 kHz,
 // whatever the rate of the recording, and each sensor has its own random numbers, so that the same seed gives the same
 // motion and the same true force at every rate.
-// Sensors: the encoder rounds the position to its step; the force sensor adds white noise and has 12 bits over its
-// range; the accelerometer (like the paper's ADXL330: 280 ug/sqrt(Hz) over 0.5 kHz) adds white noise and a bias that
-// drifts slowly (Ornstein-Uhlenbeck process), and has 12 bits over its range.
-// Source: Hoever & Harders (2009), section 2.
-// Thread guarantee: one thread at a time; slow side only.
+// Sensors: the encoder rounds the position to its step; the force sensor adds white noise and has 12 bits over the
+// range that suits the material; the accelerometer (like the paper's ADXL330: 280 ug/sqrt(Hz) over 0.5 kHz) adds white
+// noise and a bias that drifts slowly (Ornstein-Uhlenbeck process), and has 12 bits over its range. Source: Hoever &
+// Harders (2009), section 2. Thread guarantee: one thread at a time; slow side only.
 #pragma once
 
 #include <cstddef>
@@ -38,30 +37,11 @@ class Hand final : public HandMotion {
   std::unique_ptr<const Block> block_;  // for half_relaxed_force_N only
 };
 
-struct SensorSettings {
-  double encoder_step_m = 30e-6;
-  double force_noise_N = 0.005;
-  double force_range_N = 0.0;  // -range .. +range in 4096 steps, clipped beyond; 0: the material's default
-  double acceleration_noise_m_per_s2 = 0.07;
-  double acceleration_range_m_per_s2 = 40.0;  // -range .. +range in 4096 steps, clipped beyond
-  double acceleration_bias_m_per_s2 = 0.1;    // standard deviation
-  double acceleration_bias_time_s = 20.0;     // correlation time of the bias
-  double surface_offset_m = 0.0;              // added to the recorded position
-  double force_zero_N = 0.0;                  // added to the recorded force
-};
-
-inline constexpr double kRigStep_s = 1.0 / 20000.0;
-inline constexpr double kSlowestRate_Hz = 10.0;
-inline constexpr double kFastestRate_Hz = 20000.0;
-// 14 hours at 1 kHz; a recording of this size needs 2 GB of memory.
-inline constexpr double kMostRows = 5e7;
-
 struct RigSettings {
   std::string material = "silicone";
   std::uint64_t seed = 1;
-  double seconds = 0.0;     // 0: the material's default
-  double rate_Hz = 1000.0;  // kSlowestRate_Hz .. kFastestRate_Hz
-  SensorSettings sensors{};
+  double seconds = 0.0;                // 0: the material's default
+  double rate_Hz = 1000.0;             // 10 .. 20,000
   std::optional<HandSettings> hand{};  // empty: the material's default
 };
 
@@ -75,7 +55,7 @@ struct RigTruth {
 class Rig {
  public:
   // Errors: unknown material (lists the known ones), negative or non-finite `seconds`, rate out of range, fewer than
-  // 10 or more than kMostRows rows.
+  // 10 or more than 50 million rows.
   static Result<Rig> create(const RigSettings& settings);
 
   std::size_t row_count() const noexcept { return row_count_; }
@@ -89,7 +69,7 @@ class Rig {
   void advance() noexcept;
   RigTruth truth_at(double grid_time) noexcept;
 
-  RigSettings settings_;
+  double rate_Hz_, force_range_N_;
   Hand hand_;
   std::unique_ptr<Block> block_;
   RandomStream force_noise_, acceleration_noise_, bias_noise_;

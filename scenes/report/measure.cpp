@@ -334,11 +334,9 @@ Ranking choose(const std::vector<ModelResult>& models) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   std::vector<Candidate> candidates;
   for (const ModelResult& one : models) {
-    if (one.model) {
-      candidates.push_back({family_name(*one.plan), one.errors.p99_error_over_jnd, one.time.tick.median_ns});
-    } else {
-      candidates.push_back({"", kNever, kNever});
-    }
+    candidates.push_back(one.model
+                             ? Candidate{family_name(*one.plan), one.errors.p99_error_over_jnd, one.time.tick.median_ns}
+                             : Candidate{"", kNever, kNever});
   }
   return rank(candidates);
 }

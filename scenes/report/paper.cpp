@@ -1,7 +1,7 @@
 #include "scenes/report/paper.h"
 
 #include "engine/base/text.h"
-#include "scenes/plot/inline_svg.h"
+#include "models/correction/methods.h"
 #include "scenes/report/publish.h"
 
 namespace palpate {

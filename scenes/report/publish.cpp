@@ -1,13 +1,17 @@
 #include "scenes/report/publish.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
-#include "scenes/plot/inline_svg.h"
 #include "scenes/scene/folders.h"
 
 namespace palpate {
@@ -16,6 +20,68 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kPageWidth_rem = 52.0;
+
+constexpr const char* kNothing = "–";
+
+std::string quoted_if_needed(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted(1, '"');
+  for (const char letter : text) {
+    if (letter == '"') quoted += '"';
+    quoted += letter;
+  }
+  return quoted + '"';
+}
+
+std::string csv_cell(const TableCell& cell) {
+  if (cell.is_string()) return quoted_if_needed(cell.get<std::string>());
+  if (cell.is_number_integer() || cell.is_boolean()) return cell.dump();
+  return std::isfinite(cell.get<double>()) ? shortest(cell.get<double>()) : "";
+}
+
+std::string shown(const TableCell& cell, const TableColumn& column) {
+  if (cell.is_string()) return cell.get<std::string>();
+  if (cell.is_boolean()) return yes_or_no(cell.get<bool>());
+  if (cell.is_number_integer()) return with_thousands(cell.dump());
+  const double value = cell.get<double>() * column.scale;
+  if (!std::isfinite(value)) return kNothing;
+  return column.decimals == TableColumn::kThreeDigits ? three_digits(value)
+                                                      : with_thousands(fixed(value, column.decimals));
+}
+
+// The small text below the cell `first - 1`: the next value, or the next two as an interval.
+std::string under_html(const std::vector<TableCell>& row, std::size_t first, const TableColumn& column) {
+  if (column.under == 0) return {};
+  const std::string low = shown(row[first], column);
+  const std::string high = column.under == 2 ? shown(row[first + 1], column) : "";
+  if (low == kNothing || high == kNothing) return {};
+  return "<small>" + escape_html(low) + (high.empty() ? "" : "–" + escape_html(high)) + "</small>";
+}
+
+bool is_text(const Table& table, std::size_t column) {
+  return !table.rows.empty() &&
+         std::ranges::all_of(table.rows, [&](const auto& row) { return row[column].is_string(); });
+}
+
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  std::string result;
+  std::size_t at = 0;
+  for (std::size_t next; (next = text.find(from, at)) != std::string::npos; at = next + from.size())
+    result.append(text, at, next - at).append(to);
+  return result.append(text, at, std::string::npos);
+}
+
+// The spellings that gnuplot uses for a colour such as "#d8d8d8".
+std::vector<std::string> spellings(std::string_view colour) {
+  const auto part = [&](std::size_t at) { return std::stoi(std::string(colour.substr(at, 2)), nullptr, 16); };
+  char wide[40];
+  char narrow[40];
+  std::snprintf(wide, sizeof wide, "rgb(%3d, %3d, %3d)", part(1), part(3), part(5));
+  std::snprintf(narrow, sizeof narrow, "rgb(%d,%d,%d)", part(1), part(3), part(5));
+  std::string upper(colour);
+  for (char& letter : upper) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return {std::string(colour), upper, wide, narrow};
+}
 
 Result<std::string> read_template(const std::string& name) {
   const auto assets = find_assets();
@@ -74,6 +140,98 @@ fs::path without_slash(const std::string& path) {
 }
 
 }  // namespace
+
+std::string escape_html(std::string_view text) {
+  std::string safe(text);
+  for (const auto& [letter, entity] :
+       {std::pair{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}, {"'", "&#39;"}}) {
+    safe = replaced(safe, letter, entity);
+  }
+  return safe;
+}
+
+std::string table_csv(const Table& table) {
+  std::string text;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (i > 0) text.push_back(',');
+    text += table.columns[i].key;
+  }
+  text.push_back('\n');
+  for (const auto& row : table.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {  // a row without cells is a blank line
+      if (i > 0) text.push_back(',');
+      text += csv_cell(row[i]);
+    }
+    text.push_back('\n');
+  }
+  return text;
+}
+
+nlohmann::ordered_json table_json(const Table& table) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& row : table.rows) {
+    nlohmann::ordered_json object = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < row.size(); ++i) object[table.columns[i].key] = row[i];  // not finite: null
+    list.push_back(std::move(object));
+  }
+  return list;
+}
+
+std::vector<std::vector<std::string>> table_text(const Table& table) {
+  std::vector<std::vector<std::string>> lines(table.rows.size() + 1);
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (table.columns[i].title.empty()) continue;
+    lines[0].push_back(table.columns[i].title);
+    for (std::size_t row = 0; row < table.rows.size(); ++row)
+      lines[row + 1].push_back(shown(table.rows[row][i], table.columns[i]));
+  }
+  return lines;
+}
+
+std::string table_html(const Table& table) {
+  std::string html = "<div class=\"table\"><table>\n<thead><tr>";
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (table.columns[i].title.empty()) continue;
+    html += is_text(table, i) ? "<th class=\"text\">" : "<th>";
+    html += escape_html(table.columns[i].title) + "</th>";
+  }
+  html += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const TableColumn& column = table.columns[i];
+      if (column.title.empty()) continue;
+      html += is_text(table, i) ? "<td class=\"text\">" : "<td>";
+      html += escape_html(shown(row[i], column)) + under_html(row, i + 1, column) + "</td>";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string inline_svg(const std::string& svg, const std::string& name, const std::string& title) {
+  const std::size_t open = svg.find("<svg");
+  if (open == std::string::npos) return {};
+  const std::size_t box = svg.find("viewBox=\"", open) + 9;
+  const std::string view = svg.substr(box, svg.find('"', box) - box);
+  std::string body = svg.substr(svg.find('>', open) + 1);
+  const std::size_t about = body.find("<title>");
+  const std::size_t after = body.find("</desc>");
+  if (about != std::string::npos && after != std::string::npos) body.erase(about, after + 7 - about);
+  for (const char* reference : {"id=\"", "id='", "xlink:href=\"#", "xlink:href='#"})
+    body = replaced(body, reference, std::string(reference).append(name).append("-"));
+  body = replaced(body, "url(#", std::string("url(#").append(name).append("-"));
+  body = replaced(body, "xlink:href", "href");
+  const std::pair<std::string_view, std::string_view> variables[] = {{"#222222", "var(--ink)"},
+                                                                     {"#6e6e6e", "var(--muted)"},
+                                                                     {"#d8d8d8", "var(--grid)"},
+                                                                     {"#e3e3e3", "var(--band)"},
+                                                                     {"#fefefe", "var(--paper)"}};
+  for (const auto& [colour, variable] : variables)
+    for (const std::string& form : spellings(colour)) body = replaced(body, form, variable);
+  body = replaced(body, "\"black\"", "\"var(--ink)\"");
+  return "<svg viewBox=\"" + view + "\" role=\"img\" aria-label=\"" + escape_html(title) + "\">" + body;
+}
 
 Result<ReportFolder> ReportFolder::create(const std::string& path, bool overwrite) {
   const fs::path clean = without_slash(path);

@@ -11,8 +11,7 @@
 
 #include "engine/base/text.h"
 #include "scenes/evaluation/ranking.h"
-#include "scenes/plot/inline_svg.h"
-#include "scenes/report/figures.h"
+#include "scenes/report/contents.h"
 
 namespace palpate {
 namespace {
@@ -254,7 +253,7 @@ Result<ReportAnswer> make_report(const ReportRequest& request, const FitControl&
   if (!data) return data.error();
   const std::string words = answer(*data);
   const std::vector<Table> tables = make_tables(*data);
-  const std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), force_figure(*data)};
+  const std::vector<Figure> figures = make_figures(*data);
   const std::string machine =
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -6,7 +6,6 @@
 
 #include "engine/base/whole_file.h"
 #include "scenes/plot/draw.h"
-#include "scenes/plot/inline_svg.h"
 #include "scenes/plot/layout.h"
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
@@ -189,15 +188,6 @@ TEST(DrawPlot, WritesOneFileWholeOrNothing) {
   ASSERT_TRUE(draw_plot(errors_up_to(3.0), folder.file("a.svg"), false).ok());
   EXPECT_EQ(folder.entries(), (std::vector<std::string>{"a.svg"}));
   EXPECT_FALSE(draw_plot(errors_up_to(3.0), folder.file("a.svg"), false).ok()) << "it exists";
-}
-
-TEST(InlineSvg, FollowsThePageAndKeepsItsIdsApart) {
-  const std::string svg =
-      "<?xml version=\"1.0\"?>\n<svg width=\"9\" viewBox=\"0 0 9 9\">\n<title>x</title><desc>y</desc>\n"
-      "<path id='p' stroke='rgb( 34,  34,  34)' fill=\"#FEFEFE\" stop='#fefefe'/><use xlink:href='#p'/></svg>";
-  EXPECT_EQ(inline_svg(svg, "n", "a < b"),
-            "<svg viewBox=\"0 0 9 9\" role=\"img\" aria-label=\"a &lt; b\">\n\n"
-            "<path id='n-p' stroke='var(--ink)' fill=\"var(--paper)\" stop='var(--paper)'/><use href='#n-p'/></svg>");
 }
 
 }  // namespace

@@ -1,59 +1,17 @@
-#include "scenes/report/table.h"
+#include "scenes/report/contents.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "engine/base/text.h"
-#include "scenes/plot/inline_svg.h"
+#include "scenes/plot/layout.h"
 
 namespace palpate {
 namespace {
 
 constexpr int kThree = TableColumn::kThreeDigits;
-constexpr const char* kNothing = "–";
-
-const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
-
-std::string quoted_if_needed(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted(1, '"');
-  for (const char letter : text) {
-    if (letter == '"') quoted += '"';
-    quoted += letter;
-  }
-  return quoted + '"';
-}
-
-std::string csv_cell(const TableCell& cell) {
-  if (cell.is_string()) return quoted_if_needed(cell.get<std::string>());
-  if (cell.is_number_integer() || cell.is_boolean()) return cell.dump();
-  return std::isfinite(cell.get<double>()) ? shortest(cell.get<double>()) : "";
-}
-
-std::string shown(const TableCell& cell, const TableColumn& column) {
-  if (cell.is_string()) return cell.get<std::string>();
-  if (cell.is_boolean()) return yes_or_no(cell.get<bool>());
-  if (cell.is_number_integer()) return with_thousands(cell.dump());
-  const double value = cell.get<double>() * column.scale;
-  if (!std::isfinite(value)) return kNothing;
-  return column.decimals == TableColumn::kThreeDigits ? three_digits(value)
-                                                      : with_thousands(fixed(value, column.decimals));
-}
-
-// The small text below the cell `first - 1`: the next value, or the next two as an interval.
-std::string under_html(const std::vector<TableCell>& row, std::size_t first, const TableColumn& column) {
-  if (column.under == 0) return {};
-  const std::string low = shown(row[first], column);
-  const std::string high = column.under == 2 ? shown(row[first + 1], column) : "";
-  if (low == kNothing || high == kNothing) return {};
-  return "<small>" + escape_html(low) + (high.empty() ? "" : "–" + escape_html(high)) + "</small>";
-}
-
-bool is_text(const Table& table, std::size_t column) {
-  return !table.rows.empty() &&
-         std::ranges::all_of(table.rows, [&](const auto& row) { return row[column].is_string(); });
-}
 
 // A figure over the seeds of a method that draws random numbers.
 TableCell of_seeds(const ModelResult& one, double value) { return one.seeds > 1 ? value : kNoNumber; }
@@ -182,66 +140,150 @@ std::string name_with_same(const ModelResult& model) {
   return name;
 }
 
+constexpr double kBudget_s = 1e-3;
+constexpr double kNear = 0.2;  // the budget is drawn if a tick takes more than this share of it
+// The curves omit bins with fewer samples.
+constexpr std::uint64_t kFewSamples = 20;
+
+// The colour of the model's method, which the window uses as well; grey for no force.
+Hue model_colour(const ModelResult& model) { return model.plan ? Hue(colour_of(*model.plan)) : kMutedColour; }
+
+Mark mark_of(const ModelResult& model, Mark on_force, Mark on_trend) {
+  return model.plan && model.plan->base == Base::force ? on_force : on_trend;
+}
+
+using BinFigure = double (*)(const ForceBin&);
+
+// Error against force of the headline models with this base and 100 centres.
+Panel force_panel(const ReportData& data, const std::string& title, Base base, BinFigure figure) {
+  Panel panel;
+  panel.title = title + (base == Base::force ? ", on the force" : ", on the trend");
+  panel.x.title = "Measured force [N]";
+  panel.y = {"Error [JND]", "", true};
+  panel.names_at_ends = true;
+  panel.levels.push_back({1.0, "1 JND"});
+  for (const std::size_t i : headline_models(data)) {
+    const ModelResult& one = data.models[i];
+    if (!one.plan || one.plan->base != base || one.selects_size) continue;
+    Series series{one.name, model_colour(one), mark_of(one, Mark::hollow_curve, Mark::curve), {}};
+    for (const ForceBin& bin : one.errors.bins) {
+      if (bin.force_N.count() >= kFewSamples) series.rows.push_back({bin.force_N.mean(), figure(bin)});
+    }
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+// The bins that the curves omit; all models have the same samples.
+std::string omitted_bins(const ReportData& data) {
+  std::size_t bins = 0, omitted = 0;
+  std::uint64_t samples = 0;
+  for (const ForceBin& bin : data.models.front().errors.bins) {
+    const std::uint64_t count = bin.force_N.count();
+    bins += count > 0 ? 1 : 0;
+    if (count == 0 || count >= kFewSamples) continue;
+    ++omitted;
+    samples += count;
+  }
+  return std::to_string(omitted) + " of " + std::to_string(bins) + " bins have fewer than " +
+         std::to_string(kFewSamples) + " samples, " + std::to_string(samples) + " in all, and are not drawn";
+}
+
+// Gives both panels the same scale, because they are side by side.
+void share_scale(Panel& one, Panel& other) {
+  const AxisRange first = range_of(one, true);
+  const AxisRange second = range_of(other, true);
+  one.y.low = other.y.low = std::min(first.low, second.low);
+  one.y.high = other.y.high = std::max(first.high, second.high);
+}
+
+Figure speed_figure(const ReportData& data) {
+  Figure figure;
+  Panel panel;
+  panel.x = {"Time of a whole tick, log", "s", true};
+  panel.y = {"99 % of the errors are below [JND], log", "", true};
+  panel.names_at_ends = true;
+  double slowest_s = 0.0;
+  double least = 1e300;
+  const std::vector<std::size_t> shown = headline_models(data);
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const ModelResult& one = data.models[shown[k]];
+    if (!one.time.measured) continue;
+    const Interval interval = one.errors.p99_interval();
+    const Timing& tick = one.time.tick;
+    slowest_s = std::max(slowest_s, 1e-9 * tick.high_ns);
+    least = std::min(least, std::max(one.errors.p99_error_over_jnd, 1e-6));
+    const PlotRow point{1e-9 * tick.median_ns, one.errors.p99_error_over_jnd,
+                        interval.low,          interval.high,
+                        1e-9 * tick.low_ns,    1e-9 * tick.high_ns};
+    // The two sizes of a method follow each other.
+    const ModelResult& next = data.models[shown[std::min(k + 1, shown.size() - 1)]];
+    if (next.time.measured && &next != &one && family_name(*next.plan) == family_name(*one.plan)) {
+      panel.series.push_back({"",
+                              model_colour(one),
+                              Mark::line,
+                              {{point.x, point.y}, {1e-9 * next.time.tick.median_ns, next.errors.p99_error_over_jnd}}});
+    }
+    panel.series.push_back({one.name, model_colour(one), mark_of(one, Mark::hollow_bars, Mark::bars), {point}});
+  }
+  panel.levels.push_back({1.0, "1 JND"});
+  if (data.floor.p99_error_over_jnd > 0.3 * least) panel.levels.push_back({data.floor.p99_error_over_jnd, "noise"});
+  if (slowest_s > kNear * kBudget_s) {
+    panel.levels.push_back({kBudget_s, "budget 1 ms", true});
+  } else {
+    panel.x.title += " (the budget, 1 ms, is off to the right)";
+  }
+  figure.plot.name = "speed_error";
+  figure.plot.width = 0.75;
+  figure.plot.height = 1.9;
+  figure.plot.panels = {std::move(panel)};
+  figure.caption =
+      "Lower is more accurate, further left is faster; noise: that of the force sensor. Hollow: methods on the "
+      "measured "
+      "force, as in the paper; filled: the trend and its correction. Bars: six rounds of timing, and the 95 % interval "
+      "of the error where there is one. A line joins two numbers of centres of one method.";
+  return figure;
+}
+
+Figure worst_figure(const ReportData& data) {
+  Figure figure;
+  const WorstStretch& worst = data.worst;
+  std::vector<ComparedModel> models;
+  for (const std::size_t i : worst.models) {
+    const ModelResult& model = data.models[i];
+    models.push_back({{model.name, model_colour(model), mark_of(model, Mark::dashed, Mark::line), {}}, data.scene.jnd});
+  }
+  figure.plot.name = "worst_stretch";
+  figure.plot.panels = compared_forces(worst.recording, models, worst.rows);
+  figure.plot.height = 0.8;
+  figure.caption = "The worst " + three_digits(worst.rows.back().time_s - worst.rows.front().time_s) + " s of " +
+                   data.models[data.choice.recommended].name + " (largest mean squared error over the JND): RMS " +
+                   three_digits(std::sqrt(std::max(0.0, worst.score))) +
+                   " JND. Below: model minus measurement; grey: below the just noticeable difference.";
+  return figure;
+}
+
+Figure force_figure(const ReportData& data) {
+  const std::pair<const char*, BinFigure> rows[] = {
+      {"Mean + deviation", [](const ForceBin& bin) { return bin.over_jnd.mean() + bin.over_jnd.deviation(); }},
+      {"Maximum", [](const ForceBin& bin) { return bin.over_jnd.largest(); }}};
+  Figure figure;
+  for (const auto& [title, value] : rows) {
+    Panel paper = force_panel(data, title, Base::force, value);
+    Panel palpate = force_panel(data, title, Base::trend, value);
+    share_scale(paper, palpate);
+    figure.plot.panels.push_back(std::move(paper));
+    figure.plot.panels.push_back(std::move(palpate));
+  }
+  figure.plot.name = "error_by_force";
+  figure.plot.columns = 2;
+  figure.caption =
+      "Error divided by the JND against force, in bins two JND wide; " + omitted_bins(data) +
+      ". Figures 5 and 7 of Hoever & Harders (2009) show the error divided by the force (drawn by palpate paper).";
+  return figure;
+}
+
 }  // namespace
-
-std::string table_csv(const Table& table) {
-  std::string text;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (i > 0) text.push_back(',');
-    text += table.columns[i].key;
-  }
-  text.push_back('\n');
-  for (const auto& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {  // a row without cells is a blank line
-      if (i > 0) text.push_back(',');
-      text += csv_cell(row[i]);
-    }
-    text.push_back('\n');
-  }
-  return text;
-}
-
-nlohmann::ordered_json table_json(const Table& table) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const auto& row : table.rows) {
-    nlohmann::ordered_json object = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < row.size(); ++i) object[table.columns[i].key] = row[i];  // not finite: null
-    list.push_back(std::move(object));
-  }
-  return list;
-}
-
-std::vector<std::vector<std::string>> table_text(const Table& table) {
-  std::vector<std::vector<std::string>> lines(table.rows.size() + 1);
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (table.columns[i].title.empty()) continue;
-    lines[0].push_back(table.columns[i].title);
-    for (std::size_t row = 0; row < table.rows.size(); ++row)
-      lines[row + 1].push_back(shown(table.rows[row][i], table.columns[i]));
-  }
-  return lines;
-}
-
-std::string table_html(const Table& table) {
-  std::string html = "<div class=\"table\"><table>\n<thead><tr>";
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (table.columns[i].title.empty()) continue;
-    html += is_text(table, i) ? "<th class=\"text\">" : "<th>";
-    html += escape_html(table.columns[i].title) + "</th>";
-  }
-  html += "</tr></thead>\n<tbody>\n";
-  for (const auto& row : table.rows) {
-    html += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const TableColumn& column = table.columns[i];
-      if (column.title.empty()) continue;
-      html += is_text(table, i) ? "<td class=\"text\">" : "<td>";
-      html += escape_html(shown(row[i], column)) + under_html(row, i + 1, column) + "</td>";
-    }
-    html += "</tr>\n";
-  }
-  return html + "</tbody></table></div>\n";
-}
 
 Table headline_table(const ReportData& data) {
   Table table{"headline"};
@@ -272,6 +314,10 @@ Table headline_table(const ReportData& data) {
 
 std::vector<Table> make_tables(const ReportData& data) {
   return {models_table(data), recordings_table(data), bins_table(data), gains_table(data), times_table(data)};
+}
+
+std::vector<Figure> make_figures(const ReportData& data) {
+  return {speed_figure(data), worst_figure(data), force_figure(data)};
 }
 
 }  // namespace palpate
