@@ -11,10 +11,7 @@
 
 #include "engine/base/result.h"
 #include "rendering/picture/camera.h"
-#include "rendering/picture/dent.h"
-#include "rendering/picture/mesh.h"
-#include "rendering/picture/pixels.h"
-#include "rendering/picture/shader.h"
+#include "rendering/picture/gpu.h"
 #include "rendering/ui/colours.h"
 #include "scenes/scene/scene.h"
 
