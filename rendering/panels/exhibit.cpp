@@ -10,7 +10,7 @@
 
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
-#include "rendering/panels/window_command.h"
+#include "rendering/panels/scene_overlay.h"
 #include "scenes/scene/folders.h"
 
 namespace palpate {

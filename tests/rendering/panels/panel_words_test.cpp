@@ -7,7 +7,6 @@
 
 #include "rendering/panels/panel.h"
 #include "rendering/panels/scene_overlay.h"
-#include "rendering/panels/window_command.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {
