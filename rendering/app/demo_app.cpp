@@ -247,7 +247,7 @@ void DemoApp::use_device(const std::string& device) {
 
 void DemoApp::use_recording_roles() {
   const RecordingRoles roles = std::exchange(view_.dialogs.recording_roles, {});
-  const std::string test = roles.test().empty() ? "" : "replay:" + roles.test();
+  const std::string test = roles.tested.empty() ? "" : "replay:" + roles.tested;
   if (!roles.training().empty()) {
     use_material(request_.scene, roles.training(), test.empty() ? "replay:" + roles.training().back() : test);
   } else if (!test.empty()) {
