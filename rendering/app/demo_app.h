@@ -17,6 +17,7 @@
 #include "rendering/panels/scene_overlay.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/picture/block_view.h"
+#include "rendering/ui/ui_context.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 
