@@ -136,14 +136,13 @@ double DemoApp::limited_depth_m(double requested_m) const {
 std::optional<std::size_t> DemoApp::block_at(const ImVec2& point, bool aimed) const {
   const SceneArea& area = layout_.scene;
   const std::size_t count = std::max<std::size_t>(shown_.blocks.size(), 1);
-  const auto half_height = 0.5F * static_cast<float>(blocks_->geometry().height_m);
-  const auto half_width = 0.5F * static_cast<float>(blocks_->geometry().width_m);
+  const glm::vec3 half_m = 0.5F * blocks_->size_m();
   const glm::vec2 size(area.size.x, area.size.y);
   float nearest_px = 1e9F;
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec2 middle = blocks_->on_screen(i, count, {0.0F, -half_height, 0.0F}, size);
-    const glm::vec2 side = blocks_->on_screen(i, count, {half_width, 0.0F, 0.0F}, size);
+    const glm::vec2 middle = blocks_->on_screen(i, count, {0.0F, -half_m.y, 0.0F}, size);
+    const glm::vec2 side = blocks_->on_screen(i, count, {half_m.x, 0.0F, 0.0F}, size);
     const float away = std::hypot(area.at.x + middle.x - point.x, area.at.y + middle.y - point.y);
     if ((aimed && away > 1.25F * glm::length(side - middle)) || away > nearest_px) continue;
     nearest_px = away;

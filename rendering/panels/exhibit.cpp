@@ -20,8 +20,8 @@ using State = ExhibitGame::State;
 
 constexpr double kLifted_m = -0.008;     // position of the tool while it is kept out of the block
 constexpr double kDeviceMoves_m = 5e-4;  // above the noise of a handle at rest
-constexpr double kLeastStroke_s =
-    4.0;                         // from the first contact until the press of the largest difference is shown again
+// From the first contact until the press of the largest difference is shown again.
+constexpr double kLeastStroke_s = 4.0;
 constexpr double kHeld_s = 2.5;  // the moment of the largest difference stands still in attract
 
 std::vector<ExhibitModel> ready_models(const LiveSession& session) {

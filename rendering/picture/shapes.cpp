@@ -123,12 +123,12 @@ Mesh block_sides(const glm::vec2& size_m, float height_m, float top_m, int aroun
   return mesh;
 }
 
-Mesh block_section(float half_m, float block_half_m, float height_m, float top_m, int columns) {
+Mesh block_section(float half_m, float block_half_m, float height_m, int columns) {
   Mesh mesh;
   for (const bool lower : {false, true}) {
     for (int i = 0; i <= columns; ++i) {
       const float x_m = column_m(i, columns, half_m);
-      const float y_m = lower ? -height_m : top_m - edge_depth_m(std::abs(x_m), block_half_m);
+      const float y_m = lower ? -height_m : -edge_depth_m(std::abs(x_m), block_half_m);
       mesh.vertices.push_back({{x_m, y_m, 0.0F}, {0.0F, 0.0F, 1.0F}});
     }
   }

@@ -28,9 +28,9 @@ Mesh block_top(const glm::vec2& size_m, int around, int rings);
 Mesh block_middle(float radius_m, int around, int rings);
 // The rounded edge and the sides, whose upper end is at `top_m`.
 Mesh block_sides(const glm::vec2& size_m, float height_m, float top_m, int around);
-// The cut face from -half_m to half_m, from the surface at `top_m` down to -height_m. The edges are rounded at
-// block_half_m from the middle.
-Mesh block_section(float half_m, float block_half_m, float height_m, float top_m, int columns);
+// The cut face from -half_m to half_m, from the surface down to -height_m. The edges are rounded at block_half_m from
+// the middle.
+Mesh block_section(float half_m, float block_half_m, float height_m, int columns);
 inline constexpr float kEdge_m = 0.004F;  // radius of the rounded edges
 // Pairs of points at the same x, from -half_m to half_m, whose y is -1 and 1.
 Mesh line_mesh(float half_m, int columns);

@@ -40,7 +40,7 @@ glm::vec3 extent(const std::vector<Mesh>& parts) {
 TEST(Mesh, TheBlockHasItsSizeAndFacesOutwards) {
   const glm::vec2 size(0.10F, 0.08F);
   const glm::vec3 all = extent(
-      {block_top(size, 96, 6), block_sides(size, 0.04F, 0.0F, 96), block_section(0.05F, 0.05F, 0.04F, 0.0F, 80)});
+      {block_top(size, 96, 6), block_sides(size, 0.04F, 0.0F, 96), block_section(0.05F, 0.05F, 0.04F, 80)});
   EXPECT_LT(glm::distance(all, glm::vec3(0.10F, 0.04F, 0.04F)), 1e-5F);
 }
 
@@ -54,7 +54,7 @@ TEST(Mesh, TopAndSidesMeetWithoutAGap) {
 
 // What moves is drawn in each frame, and a triangle costs a software renderer as much as a hundred pixels.
 TEST(Mesh, WhatMovesHasFewTriangles) {
-  const Mesh middle = block_middle(0.045F, 12, 9), section = block_section(0.045F, 0.05F, 0.04F, 0.0F, 28);
+  const Mesh middle = block_middle(0.045F, 12, 9), section = block_section(0.045F, 0.05F, 0.04F, 28);
   extent({middle, section});
   EXPECT_LT(middle.triangles.size() + section.triangles.size(), 3u * 280u);
   const Mesh line = line_mesh(0.045F, 28);
