@@ -8,7 +8,6 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "scenes/scene/folders.h"
