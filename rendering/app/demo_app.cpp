@@ -17,12 +17,7 @@ namespace {
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 3;
-
-// If real-time priority was refused, lowers the priority of the picture instead, which needs no privilege.
-void yield_to_haptics(const RtStatus& granted) {
-  constexpr int kPictureNice = 5;
-  if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
-}
+constexpr int kPictureNice = 5;
 
 DemoApp& app_of(GLFWwindow* handle) { return *static_cast<DemoApp*>(glfwGetWindowUserPointer(handle)); }
 
@@ -50,7 +45,8 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!session) return session.error();
   session_ = std::move(*session);
   Window::at_loss_of_display([this] { end(); });
-  yield_to_haptics(session_->loop().scheduling());
+  // If real-time priority was refused, lowers the priority of the picture instead, which needs no privilege.
+  if (!session_->loop().scheduling().realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
   // The window is opened after the haptics thread, because the driver's threads inherit the priority of this one.
   WindowRequest asked = request.window;
   asked.empty = palette(view_.settings.theme).background;

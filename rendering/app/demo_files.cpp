@@ -167,9 +167,9 @@ std::string curve_csv(const WindowView& shown, const CurveTime& time, const std:
   return csv;
 }
 
-std::string DemoFiles::new_path(const char* name) {
+std::string DemoFiles::new_path(const char* name, const char* extension) {
   const auto folder = data_folder();
-  if (folder) return *folder + local_time_text(name) + "-" + std::to_string(++saved_);
+  if (folder) return *folder + local_time_text(name) + "-" + std::to_string(++saved_) + extension;
   notify_(folder.error().message, true);
   return {};
 }
@@ -251,16 +251,15 @@ void DemoFiles::open_recording(const std::string& path) {
 
 void DemoFiles::record(LiveSession& session) {
   if (session.recording().active) return session.stop_recording();
-  std::string path = new_path("/session-%Y%m%d-%H%M%S");
+  const std::string path = new_path("/session-%Y%m%d-%H%M%S", ".csv");
   if (path.empty()) return;
-  path += ".csv";
   const Status status = session.start_recording(path);
   notify_(status ? "recording to " + path : status.error().message, !status);
 }
 
 // Saves the data of the visible curves and a figure of them, in the background.
 void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns) {
-  const std::string path = new_path("/curves-%Y%m%d-%H%M%S");
+  const std::string path = new_path("/curves-%Y%m%d-%H%M%S", "");
   if (path.empty()) return;
   const std::string source = session.scene().title + ", " + session.device_name();
   const auto save = [this, path, table = curve_csv(shown, view_.time, source),
@@ -277,9 +276,8 @@ void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown,
 }
 
 void DemoFiles::save_model(const LiveSession& session) {
-  std::string path = new_path("/model-%Y%m%d-%H%M%S");
+  const std::string path = new_path("/model-%Y%m%d-%H%M%S", ".json");
   if (path.empty()) return;
-  path += ".json";
   const std::size_t slot = session.models().selected();
   const Status status = session.models().save(slot, path);
   notify_(status ? "saved " + session.models().info(slot).name + " to " + path : status.error().message, !status);

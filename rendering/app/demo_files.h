@@ -70,9 +70,9 @@ class DemoFiles {
     bool saves = false;  // it is completed even if the window closes
   };
   void remember(const std::string& path);  // adds it to the recent files
-  // A path in the user's data folder, with a name made of the time and a number and without extension; empty, after a
-  // notice, where there is no folder.
-  std::string new_path(const char* name);
+  // A path in the user's data folder, with a name made of the time and a number; empty, after a notice, where there is
+  // no folder.
+  std::string new_path(const char* name, const char* extension);
 
   ViewState& view_;
   Notify notify_;

@@ -32,14 +32,6 @@ constexpr const char* kFontFiles[] = {
 constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193, 0x2264,
                                0x2265, 0x25A0, 0x25CF, 0x3BC,  0x3C4,  0};
 
-ImFont* add_font(const std::string& path, float size_px) {
-  ImGuiIO& io = ImGui::GetIO();
-  if (!path.empty()) return io.Fonts->AddFontFromFileTTF(path.c_str(), size_px, nullptr, kGlyphs);
-  ImFontConfig plain;
-  plain.SizePixels = size_px;
-  return io.Fonts->AddFontDefault(&plain);
-}
-
 }  // namespace
 
 std::string find_font() {
@@ -76,7 +68,10 @@ void UiStyle::build_fonts() {
   const std::string path = find_font();
   io.Fonts->Clear();
   const auto add = [&](float size_px) {
-    ImFont* font = add_font(path, std::round(size_px * scale_ * pixels_per_unit_));
+    ImFontConfig plain;
+    plain.SizePixels = std::round(size_px * scale_ * pixels_per_unit_);
+    ImFont* font = path.empty() ? io.Fonts->AddFontDefault(&plain)
+                                : io.Fonts->AddFontFromFileTTF(path.c_str(), plain.SizePixels, nullptr, kGlyphs);
     font->Scale = 1.0F / pixels_per_unit_;
     return font;
   };
