@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/base/result.h"
+#include "rendering/panels/time_plot.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/panels/window_view.h"
 #include "scenes/live/live_session.h"

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "rendering/panels/panel_parts.h"
+#include "rendering/panels/time_plot.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/panels/window_view.h"
-#include "rendering/ui/curves.h"
 #include "rendering/ui/plot.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
