@@ -39,8 +39,8 @@ glm::vec3 extent(const std::vector<Mesh>& parts) {
 
 TEST(Mesh, TheBlockHasItsSizeAndFacesOutwards) {
   const glm::vec2 size(0.10F, 0.08F);
-  const glm::vec3 all = extent(
-      {block_top(size, 96, 6), block_sides(size, 0.04F, 0.0F, 96), block_section(0.05F, 0.05F, 0.04F, 80)});
+  const glm::vec3 all =
+      extent({block_top(size, 96, 6), block_sides(size, 0.04F, 0.0F, 96), block_section(0.05F, 0.05F, 0.04F, 80)});
   EXPECT_LT(glm::distance(all, glm::vec3(0.10F, 0.04F, 0.04F)), 1e-5F);
 }
 
