@@ -17,13 +17,7 @@ namespace {
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 3;
-constexpr CameraTurn kCloseUp{0.0F, 0.0F, 0.85F};  // of the reveal of an exhibit
-
-// If real-time priority was refused, lowers the priority of the picture instead, which needs no privilege.
-void yield_to_haptics(const RtStatus& granted) {
-  constexpr int kPictureNice = 5;
-  if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
-}
+constexpr int kPictureNice = 5;
 
 DemoApp& app_of(GLFWwindow* handle) { return *static_cast<DemoApp*>(glfwGetWindowUserPointer(handle)); }
 
@@ -51,7 +45,8 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!session) return session.error();
   session_ = std::move(*session);
   Window::at_loss_of_display([this] { end(); });
-  yield_to_haptics(session_->loop().scheduling());
+  // If real-time priority was refused, lowers the priority of the picture instead, which needs no privilege.
+  if (!session_->loop().scheduling().realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
   // The window is opened after the haptics thread, because the driver's threads inherit the priority of this one.
   WindowRequest asked = request.window;
   asked.empty = palette(view_.settings.theme).background;
@@ -128,56 +123,9 @@ void DemoApp::drop_files(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) files_.open(path, *session_);
 }
 
-void DemoApp::handle_key_event(int key, int action, int modifiers) {
-  if (view_.exhibit.on && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
-  note_input();
-  input_.add_key(key, action, modifiers);
-}
-
 void DemoApp::note_input() {
   constexpr double kLively_s = 0.3;  // a list opens, takes the focus and is laid out within a few frames
   lively_until_s_ = steady_now_s() + kLively_s;
-}
-
-void DemoApp::handle_keys() {
-  const std::vector<KeyPress> keys = input_.take_keys();
-  const auto escape = [](const KeyPress& press) { return press.key == GLFW_KEY_ESCAPE; };
-  key_velocity_m_per_s_ = 0.0;
-  const bool typing = ImGui::GetIO().WantTextInput;
-  if (typing) {
-    if (std::any_of(keys.begin(), keys.end(), escape)) close_windows();
-    input_.let_go();
-  } else {
-    run_commands(keys);
-  }
-  if (view_.exhibit.tool_is_held) key_velocity_m_per_s_ = 0.0;
-  input_.drive_tool(*session_, key_velocity_m_per_s_);
-  // The next visitor starts with the initial view.
-  const bool was_close = view_.exhibit.close_up;
-  if (view_.exhibit.on && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
-  if (view_.exhibit.close_up != was_close) blocks_->camera().turn(view_.exhibit.close_up ? kCloseUp : CameraTurn{});
-}
-
-void DemoApp::run_commands(const std::vector<KeyPress>& keys) {
-  const bool menu = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-  const KeyContext context{session_->replay() != nullptr, menu || view_.dialogs.any()};
-  input_.run_held(keys, commands_, context);
-  for (const KeyPress& press : keys) {
-    if (view_.exhibit.on) {
-      handle_exhibit_key(press);
-    } else {
-      DemoInput::run(press, commands_, context);
-    }
-  }
-}
-
-void DemoApp::handle_exhibit_key(const KeyPress& press) {
-  const bool control = (press.modifiers & GLFW_MOD_CONTROL) != 0;
-  const bool chord = control && (press.modifiers & GLFW_MOD_SHIFT) != 0;
-  if (chord && press.key == GLFW_KEY_Q) close();
-  if (chord && press.key == GLFW_KEY_T) exhibit_.toggle_host();
-  if (press.key == GLFW_KEY_Z && session_->newest().device.zeroing == Zeroing::needed) session_->start_zeroing();
-  if (!control && !press.again) exhibit_.press_key(press.key, *session_);
 }
 
 void DemoApp::frame() {
@@ -247,7 +195,7 @@ void DemoApp::use_device(const std::string& device) {
 
 void DemoApp::use_recording_roles() {
   const RecordingRoles roles = std::exchange(view_.dialogs.recording_roles, {});
-  const std::string test = roles.test().empty() ? "" : "replay:" + roles.test();
+  const std::string test = roles.tested.empty() ? "" : "replay:" + roles.tested;
   if (!roles.training().empty()) {
     use_material(request_.scene, roles.training(), test.empty() ? "replay:" + roles.training().back() : test);
   } else if (!test.empty()) {

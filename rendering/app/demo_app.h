@@ -1,5 +1,5 @@
-// The window program without its command line: a session, a window, and the work of a frame. demo_input.h has keys and
-// mouse, demo_files.h files.
+// The window program without its command line: a session, a window, and the work of a frame. demo_frame.cpp draws,
+// demo_input.cpp has keys and mouse, demo_commands.cpp the table of commands, demo_files.h files.
 // Thread guarantee: main thread only.
 #pragma once
 
@@ -10,13 +10,13 @@
 
 #include "engine/base/result.h"
 #include "rendering/app/demo_files.h"
-#include "rendering/app/demo_input.h"
 #include "rendering/app/window.h"
 #include "rendering/panels/exhibit.h"
 #include "rendering/panels/panel.h"
 #include "rendering/panels/scene_overlay.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/picture/block_view.h"
+#include "rendering/ui/ui_context.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 
@@ -30,6 +30,15 @@ struct DemoRequest {
   std::string settings_file;            // empty: settings are neither read nor saved
   std::vector<std::string> recordings;  // files; the window asks whether to train or to test models on them
 };
+
+struct KeyPress {
+  int key = 0;  // GLFW's
+  int modifiers = 0;
+  bool again = false;  // repeated by the keyboard
+};
+
+// Position in the air near the surface at which the key that moves the tool outwards stops it.
+inline constexpr double kHover_m = -0.002;
 
 class DemoApp {
  public:
@@ -76,7 +85,18 @@ class DemoApp {
   std::vector<WindowCommand> make_commands();
   void handle_keys();
   void run_commands(const std::vector<KeyPress>& keys);
+  void run_held(const std::vector<KeyPress>& pressed, bool in_list) const;
+  void run_pressed(const KeyPress& press, bool in_list) const;
+  bool runs(const WindowCommand& command, int key, bool in_list) const;
   void handle_exhibit_key(const KeyPress& press);
+  bool is_down(int key) const;
+  std::vector<int> tapped() const;
+  void drive_tool();
+  void handle_mouse();
+  bool follow_mouse(const ImVec2& mouse);
+  void move_tool_to(const ImVec2& mouse);
+  double limited_depth_m(double requested_m) const;
+  std::optional<std::size_t> block_at(const ImVec2& point, bool aimed) const;
   void close_windows();
   void select_listed(std::size_t number);
   void use_block_count(std::size_t wanted);
@@ -108,7 +128,12 @@ class DemoApp {
   Exhibit exhibit_;
   ViewState view_;
   WindowView shown_;
-  DemoInput input_;
+  std::vector<KeyPress> keys_;  // since the last frame
+  std::vector<int> down_;       // keys that are held
+  bool drives_ = false;         // a key moved the tool in the frame before
+  bool orbiting_ = false;
+  bool over_scene_ = false;  // the mouse, in the frame before
+  ImVec2 mouse_{-1.0F, -1.0F};
   DemoFiles files_{view_, [this](std::string text, bool problem) { notify(std::move(text), problem); }};
   SessionRequest request_;
   std::string first_device_;            // of the command line

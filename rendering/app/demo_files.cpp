@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <glm/common.hpp>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
+#include "rendering/panels/panel_parts.h"
 #include "scenes/plot/draw.h"
 #include "scenes/scene/folders.h"
 
@@ -40,6 +44,19 @@ Json model_json(const ModelView& slot) {
           {"p99_error_over_jnd", known(slot.errors.p99_error_over_jnd)},
           {"tick_ns", slot.tick_ns() > 0.0 ? slot.tick_ns() : kUnknown},
           {"equals", slot.equals}};
+}
+
+constexpr double kFigure_jnd = 3.0;
+
+std::string number(float value) { return std::isnan(value) ? "" : general(value, 6); }
+
+std::string title_of(const WindowView& shown, const std::string& source) {
+  return source + "; compared with: " + shown.reference_words;
+}
+
+Series curve_of(const ModelsView& models, std::size_t slot) {
+  const glm::uvec3 parts(glm::round(255.0F * slot_colour(models, slot, Theme::light)));
+  return {models.slots[slot].name, parts.r << 16 | parts.g << 8 | parts.b, Mark::line, {}};
 }
 
 }  // namespace
@@ -96,9 +113,63 @@ std::string stats_text(const LiveSession& session, const WindowView& shown, cons
   return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string DemoFiles::new_path(const char* name) {
+Plot curve_plot(const CurveColumns& columns, const WindowView& shown, const CurveTime& time,
+                const std::string& source) {
+  const std::vector<std::size_t> slots = shown.models.drawn();
+  const double to_s = time.end_s(shown.now_s), from_s = to_s - time.shown_s;
+  Panel force, difference;
+  force.title = title_of(shown, source);
+  force.y = {"Force [N]", "", false, 0.0};
+  force.series = {{"within 1 JND", kMutedColour, Mark::area, {}}, {"reference", kMeasuredColour, Mark::line, {}}};
+  difference.x.title = "Time [s]";
+  difference.y = {"Difference [JND]", "", false, -kFigure_jnd, kFigure_jnd};
+  difference.series = {force.series[0]};
+  for (const std::size_t slot : slots)
+    for (Panel* panel : {&force, &difference}) panel->series.push_back(curve_of(shown.models, slot));
+  for (Panel* panel : {&force, &difference}) {
+    panel->x.low = from_s - time.zero_s;
+    panel->x.high = to_s - time.zero_s;
+  }
+  for (const CurveColumn& column : columns.columns()) {
+    const HistoryPoint& tick = column.tick;
+    if (!column.any || tick.loop_time_s < from_s || tick.loop_time_s > to_s) continue;
+    const double time_s = tick.loop_time_s - time.zero_s, reference_N = tick.reference_N, jnd_N = column.jnd_N;
+    force.series[0].rows.push_back({time_s, reference_N, reference_N - jnd_N, reference_N + jnd_N});
+    force.series[1].rows.push_back({time_s, reference_N});
+    difference.series[0].rows.push_back({time_s, 0.0, -1.0, 1.0});
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      force.series[i + 2].rows.push_back({time_s, static_cast<double>(tick.force_N[slots[i]])});
+      difference.series[i + 1].rows.push_back({time_s, tick.difference_over_jnd(slots[i], shown.models.jnd)});
+    }
+  }
+  Plot plot;
+  plot.name = "curves";
+  plot.height = 1.2;  // with room for the legend of many models
+  plot.panels = {std::move(force), std::move(difference)};
+  return plot;
+}
+
+std::string curve_csv(const WindowView& shown, const CurveTime& time, const std::string& source) {
+  const ForceHistory& history = *shown.history;
+  const double to_s = time.end_s(shown.now_s);
+  std::string csv = "# " + title_of(shown, source) + "\ntime_s,depth_m,reference_N,rendered_N";
+  const std::vector<std::size_t> slots = shown.models.drawn();
+  for (const std::size_t slot : slots) csv.append(",").append(shown.models.slots[slot].name).append("_N");
+  csv += "\n";
+  for (std::size_t i = history.first_at(to_s - time.shown_s); i < history.size(); ++i) {
+    const HistoryPoint& point = history[i];
+    if (point.loop_time_s > to_s) break;
+    csv += fixed(point.loop_time_s - time.zero_s, 6) + "," + number(point.depth_m) + "," + number(point.reference_N) +
+           "," + number(point.rendered_N);
+    for (const std::size_t slot : slots) csv.append(",").append(number(point.force_N[slot]));
+    csv += "\n";
+  }
+  return csv;
+}
+
+std::string DemoFiles::new_path(const char* name, const char* extension) {
   const auto folder = data_folder();
-  if (folder) return *folder + local_time_text(name) + "-" + std::to_string(++saved_);
+  if (folder) return *folder + local_time_text(name) + "-" + std::to_string(++saved_) + extension;
   notify_(folder.error().message, true);
   return {};
 }
@@ -180,16 +251,15 @@ void DemoFiles::open_recording(const std::string& path) {
 
 void DemoFiles::record(LiveSession& session) {
   if (session.recording().active) return session.stop_recording();
-  std::string path = new_path("/session-%Y%m%d-%H%M%S");
+  const std::string path = new_path("/session-%Y%m%d-%H%M%S", ".csv");
   if (path.empty()) return;
-  path += ".csv";
   const Status status = session.start_recording(path);
   notify_(status ? "recording to " + path : status.error().message, !status);
 }
 
 // Saves the data of the visible curves and a figure of them, in the background.
 void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns) {
-  const std::string path = new_path("/curves-%Y%m%d-%H%M%S");
+  const std::string path = new_path("/curves-%Y%m%d-%H%M%S", "");
   if (path.empty()) return;
   const std::string source = session.scene().title + ", " + session.device_name();
   const auto save = [this, path, table = curve_csv(shown, view_.time, source),
@@ -206,9 +276,8 @@ void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown,
 }
 
 void DemoFiles::save_model(const LiveSession& session) {
-  std::string path = new_path("/model-%Y%m%d-%H%M%S");
+  const std::string path = new_path("/model-%Y%m%d-%H%M%S", ".json");
   if (path.empty()) return;
-  path += ".json";
   const std::size_t slot = session.models().selected();
   const Status status = session.models().save(slot, path);
   notify_(status ? "saved " + session.models().info(slot).name + " to " + path : status.error().message, !status);

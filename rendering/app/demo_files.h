@@ -8,11 +8,12 @@
 #include <string>
 
 #include "engine/base/result.h"
-#include "rendering/panels/curve_files.h"
+#include "rendering/panels/time_plot.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/panels/window_view.h"
 #include "scenes/live/live_session.h"
 #include "scenes/live/session_recordings.h"
+#include "scenes/plot/plot.h"
 
 namespace palpate {
 
@@ -24,6 +25,14 @@ Status write_settings(const std::string& path, const Settings& settings);
 // The JSON text of --stats: haptics, graphics, start (seconds until the comparison stood), models, verdict, faults,
 // scene, device, reference.
 std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
+
+// The curves of the panel as a figure (gnuplot) and as a table (CSV). `source`: scene and device.
+// Two panels: force with the JND band, and difference in JND. Every point is the tick of a column (CurveColumn::tick).
+Plot curve_plot(const CurveColumns& columns, const WindowView& shown, const CurveTime& time, const std::string& source);
+
+// Every tick that the curves show, with the columns time_s,depth_m,reference_N,rendered_N and "<name>_N" for each
+// model. A missing force is an empty field.
+std::string curve_csv(const WindowView& shown, const CurveTime& time, const std::string& source);
 
 // Does this work and shows its results as notices.
 class DemoFiles {
@@ -62,9 +71,9 @@ class DemoFiles {
     bool saves = false;  // it is completed even if the window closes
   };
   void remember(const std::string& path);  // adds it to the recent files
-  // A path in the user's data folder, with a name made of the time and a number and without extension; empty, after a
-  // notice, where there is no folder.
-  std::string new_path(const char* name);
+  // A path in the user's data folder, with a name made of the time and a number; empty, after a notice, where there is
+  // no folder.
+  std::string new_path(const char* name, const char* extension);
 
   ViewState& view_;
   Notify notify_;

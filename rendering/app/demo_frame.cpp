@@ -38,7 +38,7 @@ bool DemoApp::needs_texts(double now_s) {
   double x = 0.0, y = 0.0;
   glfwGetCursorPos(window_->handle(), &x, &y);
   const ImVec2 mouse(static_cast<float>(x), static_cast<float>(y));
-  if (!input_.follow_mouse(*session_, shown_, *blocks_, view_, layout_.scene, mouse)) note_input();
+  if (!follow_mouse(mouse)) note_input();
   // The screens of an exhibit and lists move.
   const bool lively = now_s < lively_until_s_ || view_.exhibit.on || view_.dialogs.any() || next_;
   const UiSize size = window_->size();
@@ -53,10 +53,9 @@ void DemoApp::draw_texts() {
   const bool exhibit = view_.exhibit.on;
   everything_ |= style_.update(window_->size(), exhibit ? kExhibitText : view_.settings.text_size, view_.settings.theme,
                                exhibit ? kExhibitBody_px : kBody_px);
-  ui_->begin_frame(input_.tapped());
+  ui_->begin_frame(tapped());
   layout_ = lay_out(ImGui::GetIO().DisplaySize);
-  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, layout_.scene) && !exhibit)
-    notify("the mouse has left the picture: the probe is lifted", false);
+  handle_mouse();
   const OverlayActions actions{&commands_,
                                [this] { return choices(); },
                                [this](const std::string& scene) { use_material(scene, {}, first_device_); },

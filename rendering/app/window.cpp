@@ -29,24 +29,17 @@ constexpr std::int64_t kWaited_ns = 5'000'000;
 constexpr int kSmallestWidth = 800;
 constexpr int kSmallestHeight = 480;
 
-std::string& last_problem() {
-  static std::string text;
-  return text;
-}
+std::string last_problem;
+std::function<void()> end_of_program;
 
-void keep_problem(int, const char* text) { last_problem() = text; }
-
-std::function<void()>& end_of_program() {
-  static std::function<void()> end;
-  return end;
-}
+void keep_problem(int, const char* text) { last_problem = text; }
 
 // Called by Xlib, on any thread that draws. Does not return, because Xlib would then call exit().
 [[noreturn]] void end_without_display(const char* why) {
   static std::atomic<bool> ending{false};
   while (ending.exchange(true)) pause();  // another thread ends the program
   try {
-    if (end_of_program()) end_of_program()();
+    if (end_of_program) end_of_program();
   } catch (const std::exception&) {  // the line below says what matters
   }
   std::fprintf(stderr, "error: %s; start the program again\n", why);
@@ -136,12 +129,12 @@ Status Window::find_display() {
   glfwSetErrorCallback(keep_problem);
   set_handler("XSetIOErrorHandler", &on_lost_server);
   if (glfwInit() == GLFW_TRUE) return {};
-  return Error{"no display (" + last_problem() +
+  return Error{"no display (" + last_problem +
                "), expected an X11 or Wayland session; run it on a desktop, under xvfb-run, or use `palpate` "
                "without a window"};
 }
 
-void Window::at_loss_of_display(std::function<void()> end) { end_of_program() = std::move(end); }
+void Window::at_loss_of_display(std::function<void()> end) { end_of_program = std::move(end); }
 
 Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -154,7 +147,7 @@ Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
   GLFWwindow* handle = glfwCreateWindow(mode != nullptr ? mode->width : request.width,
                                         mode != nullptr ? mode->height : request.height, "Palpate", monitor, nullptr);
   if (handle == nullptr) {
-    const Error error{"no window with OpenGL 3.3 (" + last_problem() +
+    const Error error{"no window with OpenGL 3.3 (" + last_problem +
                       "); update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1 to draw without one"};
     glfwTerminate();
     return error;

@@ -11,6 +11,7 @@
 
 #include "engine/base/result.h"
 #include "rendering/ui/ui_style.h"
+#include "rendering/ui/viewport.h"
 
 struct GLFWwindow;
 

@@ -1,3 +1,4 @@
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -22,6 +23,12 @@ constexpr const char* kPictureHelp[] = {
     "arrows are the forces of the model and, narrow, of the truth.",
     "Centres: the points that a radial basis function model is made of. More centres cost time. They mostly bring more "
     "of a press within the JND (the column % in JND), but the largest errors (99 %) may grow."};
+
+constexpr std::pair<int, const char*> kKeyNames[] = {
+    {GLFW_KEY_SPACE, "Space"},        {GLFW_KEY_HOME, "Home"},   {GLFW_KEY_BACKSPACE, "Backspace"},
+    {GLFW_KEY_ESCAPE, "Esc"},         {GLFW_KEY_UP, "Up"},       {GLFW_KEY_DOWN, "Down"},
+    {GLFW_KEY_LEFT, "Left"},          {GLFW_KEY_RIGHT, "Right"}, {GLFW_KEY_PAGE_UP, "Page Up"},
+    {GLFW_KEY_PAGE_DOWN, "Page Down"}};
 
 // The room of a dialog: the width of the picture, so that the panel stays visible beside it.
 ImVec2 dialog_room() { return {lay_out(ImGui::GetIO().DisplaySize).scene.size.x, ImGui::GetIO().DisplaySize.y}; }
@@ -230,6 +237,35 @@ void draw_device_list(ViewState& view, const std::string& in_use, const OverlayA
 }
 
 }  // namespace
+
+std::string key_name(int key) {
+  for (const auto& [known, name] : kKeyNames)
+    if (known == key) return name;
+  // GLFW numbers printable keys by their ASCII characters. The other keys have numbers from 256 on.
+  if (key < GLFW_KEY_SPACE || key > GLFW_KEY_GRAVE_ACCENT) return {};
+  return {static_cast<char>(key)};
+}
+
+std::string shown_keys(const WindowCommand& command) {
+  if (!command.shown.empty()) return command.shown;
+  std::string text;
+  for (const int key : command.keys) text.append(text.empty() ? "" : ", ").append(key_name(key));
+  return command.control ? std::string("Ctrl+").append(text) : text;
+}
+
+const std::string& shown_label(const WindowCommand& command) {
+  const bool other = command.on && !command.label_on.empty() && command.on();
+  return other ? command.label_on : command.label;
+}
+
+bool command_button(const WindowCommand& command) {
+  const bool on = command.on && command.on();
+  if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
+  const bool pressed = ImGui::Button(shown_label(command).c_str());
+  if (on) ImGui::PopStyleColor();
+  tip((command.help + " (" + shown_keys(command) + ")").c_str());
+  return pressed;
+}
 
 std::vector<std::string> pickable_files(const std::string& folder) {
   std::vector<std::string> names;

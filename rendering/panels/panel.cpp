@@ -37,23 +37,17 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
 // Bins with fewer samples have no useful standard deviation.
 constexpr std::uint64_t kFewestSamples = 20;
 
-// The ends of the axes of draw_error_bins.
-struct Limits {
+PlotAxes axes_of_bins(const ModelsView& models) {
   double force_N = 1.0, error_N = 0.1;
-};
-
-Limits limits_of(const ModelsView& models) {
-  Limits limits;
   for (const ModelView& slot : models.slots) {
     for (const ForceBin& bin : slot.errors.bins) {
       if (bin.force_N.count() < kFewestSamples) continue;
-      limits.force_N = std::max(limits.force_N, bin.force_to_N);
-      limits.error_N = std::max(limits.error_N, bin.error_N.mean() + bin.error_N.deviation());
+      force_N = std::max(force_N, bin.force_to_N);
+      error_N = std::max(error_N, bin.error_N.mean() + bin.error_N.deviation());
     }
   }
   // The JND line is visible completely; larger maxima are cut at the top.
-  limits.error_N = round_up(1.6 * std::max(limits.error_N, models.jnd.at(limits.force_N)));
-  return limits;
+  return {{0.0, force_N}, {0.0, round_up(1.6 * std::max(error_N, models.jnd.at(force_N)))}, "N", "N"};
 }
 
 void draw_slot(const LivePlot& plot, const ModelsView& models, std::size_t index, const UiStyle& style) {
@@ -76,12 +70,11 @@ void draw_slot(const LivePlot& plot, const ModelsView& models, std::size_t index
 
 // Draws mean + standard deviation and maximum of the error in each bin of the force, and the JND.
 void draw_error_bins(const ModelsView& models, const UiStyle& style, float height) {
-  const Limits limits = limits_of(models);
+  const PlotAxes axes = axes_of_bins(models);
   {
-    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
-                        {{0.0, limits.force_N}, {0.0, limits.error_N}, "N", "N"});
+    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height}, axes);
     std::vector<ImVec2> line, floor;
-    for (const double force_N : {0.0, limits.force_N}) {
+    for (const double force_N : {0.0, axes.x.to}) {
       line.emplace_back(plot.x_px(force_N), plot.y_px(models.jnd.at(force_N)));
       floor.emplace_back(plot.x_px(force_N), plot.bottom());
     }

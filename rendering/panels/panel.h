@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "rendering/panels/panel_parts.h"
+#include "rendering/panels/time_plot.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/panels/window_view.h"
-#include "rendering/ui/curves.h"
 #include "rendering/ui/plot.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
@@ -43,13 +43,9 @@ std::vector<int> shown_columns(float room, float (*width)(int column));
 
 // The plot of error against time: one dot for each model, with the columns "99 % error / JND" and "ns" of the table.
 void draw_speed(const ModelsView& models, const UiStyle& style, float height);
-// Decimal logarithms of the time of a tick, ns, and of the error over the JND: the ranges that show all dots, their
-// intervals and paths, and the JND. Without a model with errors the ranges are those of usual models.
-struct SpeedRanges {
-  Range time;
-  Range error;
-};
-SpeedRanges speed_ranges(const ModelsView& models);
+// Its axes: decimal logarithms of the time of a tick, ns, and of the error over the JND, with ranges that show all
+// dots, their intervals and paths, and the JND. Without a model with errors the ranges are those of usual models.
+PlotAxes speed_axes(const ModelsView& models);
 
 // The status line of the loop.
 struct HealthWords {

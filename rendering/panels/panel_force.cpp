@@ -3,7 +3,6 @@
 
 #include "engine/base/text.h"
 #include "rendering/panels/panel.h"
-#include "rendering/panels/time_plot.h"
 
 namespace palpate {
 namespace {

@@ -56,7 +56,7 @@ struct SpeedPlot {
   const ModelsView& models;
   const UiStyle& style;
   const LivePlot& plot;
-  const SpeedRanges& ranges;
+  const PlotAxes& axes;
   std::vector<ImVec4> placed{}, lines{};  // rectangles of dots and names; of lines
 
   float line() const { return ImGui::GetFontSize(); }
@@ -71,12 +71,12 @@ struct SpeedPlot {
   // Axes have labels at decades only; draws lines and labels between them. The labels are outside of the frame.
   void draw_grid() const {
     const ImU32 grid = ink(style.colours().grid), quiet = ink(style.colours().quiet);
-    for (const double time : between_decades(ranges.time))
+    for (const double time : between_decades(axes.x))
       list().AddLine({plot.x_px(time), plot.top()}, {plot.x_px(time), plot.bottom()}, grid);
-    for (const double error : between_decades(ranges.error)) plot.level(error, grid, 1.0F);
+    for (const double error : between_decades(axes.y)) plot.level(error, grid, 1.0F);
     list().PushClipRectFullScreen();
     float free_px = plot.left() - line();
-    for (const double time : between_decades(ranges.time)) {
+    for (const double time : between_decades(axes.x)) {
       const std::string text = fixed(std::pow(10.0, time), 0);
       const float width = ImGui::CalcTextSize(text.c_str()).x, x = plot.x_px(time) - 0.5F * width;
       if (x < free_px || x + width > plot.right() - 2.0F * line()) continue;
@@ -84,7 +84,7 @@ struct SpeedPlot {
       free_px = x + width + 0.6F * line();
     }
     float above_px = plot.bottom() + line();
-    for (const double error : between_decades(ranges.error)) {
+    for (const double error : between_decades(axes.y)) {
       const std::string text = general(std::pow(10.0, error), 2);
       const float y = plot.y_px(error);
       if (above_px - y < 1.1F * line() || std::abs(y - plot.y_px(0.0)) < 1.1F * line()) continue;
@@ -192,7 +192,7 @@ void draw_budget(const ModelView& one, const ImU32 colour, const UiStyle& style)
 
 }  // namespace
 
-SpeedRanges speed_ranges(const ModelsView& models) {
+PlotAxes speed_axes(const ModelsView& models) {
   Extent time, error;
   error.add(0.0);  // the JND
   for (const std::size_t slot : models.listed()) {
@@ -209,18 +209,20 @@ SpeedRanges speed_ranges(const ModelsView& models) {
       error.add(log_error(point.second));
     }
   }
-  if (time.from > time.to) return {{2.0, 3.0}, {-1.0, 1.0}};
-  return {time.range(kLeastTime, kNameMargin), error.range(kLeastError, kNameMargin)};
+  PlotAxes axes{{2.0, 3.0}, {-1.0, 1.0}, "ns", "", true};
+  if (time.from > time.to) return axes;
+  axes.x = time.range(kLeastTime, kNameMargin);
+  axes.y = error.range(kLeastError, kNameMargin);
+  return axes;
 }
 
 void draw_speed(const ModelsView& models, const UiStyle& style, float height) {
-  const SpeedRanges ranges = speed_ranges(models);
+  const PlotAxes axes = speed_axes(models);
   const float budget = ImGui::GetTextLineHeightWithSpacing();
   {
-    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height - budget},
-                        {ranges.time, ranges.error, "ns", "", true});
-    plot.jnd_band(ranges.error.from, 0.0);
-    SpeedPlot drawing{models, style, plot, ranges};
+    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height - budget}, axes);
+    plot.jnd_band(axes.y.from, 0.0);
+    SpeedPlot drawing{models, style, plot, axes};
     drawing.draw_grid();
     plot.level(0.0, ink(style.colours().text), 1.5F * style.scale());
     std::vector<std::size_t> dots = models.drawn();

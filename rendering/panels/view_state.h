@@ -2,11 +2,13 @@
 // Thread guarantee: values of the window's thread.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/live/pacer.h"
@@ -38,16 +40,30 @@ struct CurveTime {
 
   // Loop time at the right edge of the curves; `now_s` unless paused.
   double end_s(double now_s) const noexcept { return paused ? paused_at_s - scrolled_back_s : now_s; }
-  void pause(double at_s) noexcept;
+  void pause(double at_s) noexcept {
+    if (paused) return;
+    paused = true;
+    paused_at_s = at_s;
+    scrolled_back_s = 0.0;
+  }
   void run() noexcept {
     paused = false;
     scrolled_back_s = 0.0;
     shown_s = kShown_s;
   }
   // Pauses and shows the range between two times, in either order.
-  void zoom(double one_s, double other_s) noexcept;
+  void zoom(double one_s, double other_s) noexcept {
+    paused = true;
+    scrolled_back_s = 0.0;
+    paused_at_s = std::max(one_s, other_s);
+    shown_s = std::max(kLeastShown_s, paused_at_s - std::min(one_s, other_s));
+  }
   // Scrolls paused curves back by `by_s`, at most to `oldest_s`.
-  void scroll_back(double by_s, double oldest_s) noexcept;
+  void scroll_back(double by_s, double oldest_s) noexcept {
+    if (!paused) return;
+    const double most_s = std::max(0.0, paused_at_s - shown_s - oldest_s);
+    scrolled_back_s = std::clamp(scrolled_back_s + by_s, 0.0, std::max(most_s, scrolled_back_s));
+  }
 };
 
 struct TableState {
@@ -63,9 +79,17 @@ struct RecordingRoles {
   std::string problem;  // why a file could not be read
   bool any() const noexcept { return !recordings.empty() || !problem.empty(); }
   // Adds a recording. If there are several, the last one becomes the test.
-  void add(ConvertedRecording recording);
-  std::vector<std::string> training() const;
-  const std::string& test() const noexcept { return tested; }
+  void add(ConvertedRecording recording) {
+    std::erase_if(recordings, [&](const ConvertedRecording& other) { return other.path == recording.path; });
+    recordings.push_back(std::move(recording));
+    if (recordings.size() > 1) tested = recordings.back().path;
+  }
+  std::vector<std::string> training() const {
+    std::vector<std::string> paths;
+    for (const ConvertedRecording& one : recordings)
+      if (one.path != tested) paths.push_back(one.path);
+    return paths;
+  }
 };
 
 struct FilePicker {

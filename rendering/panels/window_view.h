@@ -11,9 +11,9 @@
 #include "engine/live/haptics_loop.h"
 #include "engine/tick/jnd.h"
 #include "rendering/panels/view_state.h"
-#include "rendering/ui/curves.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
+#include "scenes/live/force_history.h"
 #include "scenes/live/session_models.h"
 #include "scenes/live/verdict.h"
 

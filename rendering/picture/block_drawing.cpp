@@ -37,7 +37,7 @@ void BlockView::begin(const Shader& shader) const {
 void BlockView::begin_block(const Shader& shader) const {
   const Material& material = kMaterials[static_cast<std::size_t>(finish_)];
   begin(shader);
-  shader.set("half_size", glm::vec3(0.5 * geometry_.width_m, geometry_.height_m, 0.5 * geometry_.length_m));
+  shader.set("half_size", glm::vec3(0.5F * size_m_.x, size_m_.y, 0.5F * size_m_.z));
   shader.set("colour", block_colour_);
   shader.set("translucent", material.translucent);
   shader.set("gloss", material.gloss);
@@ -107,13 +107,12 @@ void BlockView::draw_still(std::size_t count, Theme theme) {
 // The static parts of a block, with its surface at rest.
 void BlockView::draw_cell(Theme theme) {
   // The table is behind and below everything else, so it needs no depth test.
-  const auto width = static_cast<float>(geometry_.width_m), length = static_cast<float>(geometry_.length_m);
   begin(shaders_.table);
-  shaders_.table.set("table_y", -static_cast<float>(geometry_.height_m));
-  shaders_.table.set("reach", std::min(0.8F * std::max(width, length), 0.5F * cell_.x / px_per_m_));
+  shaders_.table.set("table_y", -size_m_.y);
+  shaders_.table.set("reach", std::min(0.8F * std::max(size_m_.x, size_m_.z), 0.5F * cell_.x / px_per_m_));
   shaders_.table.set("table_colour", palette(theme).table);
   shaders_.table.set("background", palette(theme).background);
-  shaders_.table.set("half_size", 0.5F * glm::vec2(width, length));
+  shaders_.table.set("half_size", 0.5F * glm::vec2(size_m_.x, size_m_.z));
   square_.draw();
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);

@@ -8,7 +8,6 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "scenes/scene/folders.h"
@@ -52,8 +51,6 @@ std::vector<glm::vec2> handle_profile(float top) {
   }
   return profile;
 }
-
-glm::vec2 size_of(const BlockGeometry& block) { return {block.width_m, block.length_m}; }
 
 Viewport grown(const glm::vec2& low, const glm::vec2& high, const glm::vec2& most) {
   constexpr float kMargin_px = 2.0F;  // of antialiasing
@@ -99,31 +96,29 @@ Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene, float m
 }
 
 BlockView::BlockView(const Scene& scene, float magnified, Shaders shaders)
-    : geometry_(scene.block),
+    : size_m_(scene.block.width_m, scene.block.height_m, scene.block.length_m),
       magnified_(magnified),
       radius_m_(magnified * static_cast<float>(scene.block.tool_radius_m)),
       dome_m_(scene.finish == Finish::dome ? kDomeRise * radius_m_ : 0.0F),
-      rim_m_(0.5F * static_cast<float>(std::min(geometry_.width_m, geometry_.length_m))),
+      rim_m_(0.5F * std::min(size_m_.x, size_m_.z)),
       middle_m_(std::min(kMoves * rim_m_, rim_m_ - kEdge_m)),
-      low_m_(-static_cast<float>(geometry_.height_m) * std::cos(kPitch_rad)),
+      low_m_(-size_m_.y * std::cos(kPitch_rad)),
       high_m_(std::max((kToolLength * radius_m_ + kLift_m) * std::cos(kPitch_rad),
-                       0.5F * size_of(geometry_).y * std::sin(kPitch_rad))),
-      wide_m_(size_of(geometry_).x * std::cos(kYaw_rad) + 0.5F * size_of(geometry_).y * std::sin(kYaw_rad)),
+                       0.5F * size_m_.z * std::sin(kPitch_rad))),
+      wide_m_(size_m_.x * std::cos(kYaw_rad) + 0.5F * size_m_.z * std::sin(kYaw_rad)),
       finish_(scene.finish),
       block_colour_(hex(scene.block_colour)),
       arrow_m_per_N_(kStrongestArrow * kToolLength * radius_m_ / static_cast<float>(scene.strongest_press_N)),
       shaders_(std::move(shaders)),
-      top_(block_top(size_of(geometry_), 96, finish_ == Finish::dome ? 48 : 24)),
-      sides_(block_sides(size_of(geometry_), static_cast<float>(geometry_.height_m), -dome_m_, 96)),
-      section_(block_section(0.5F * size_of(geometry_).x, 0.5F * size_of(geometry_).x,
-                             static_cast<float>(geometry_.height_m), 0.0F, 160)),
+      top_(block_top({size_m_.x, size_m_.z}, 96, finish_ == Finish::dome ? 48 : 24)),
+      sides_(block_sides({size_m_.x, size_m_.z}, size_m_.y, -dome_m_, 96)),
+      section_(block_section(0.5F * size_m_.x, 0.5F * size_m_.x, size_m_.y, 160)),
       square_(square_mesh()),
       ball_(lathe_mesh(ball_profile(), 40)),
       sensor_(lathe_mesh(kSensor, 40)),
       handle_(lathe_mesh(handle_profile(kToolLength), 40)),
       middle_(block_middle(middle_m_, 12, finish_ == Finish::dome ? 14 : 9)),
-      moving_section_(block_section(middle_m_, 0.5F * size_of(geometry_).x,
-                                    0.97F * static_cast<float>(geometry_.height_m), 0.0F, 28)),
+      moving_section_(block_section(middle_m_, 0.5F * size_m_.x, 0.97F * size_m_.y, 28)),
       line_(line_mesh(middle_m_, 28)) {
   show(1, glm::vec2(1.0F), true);
 }
@@ -175,7 +170,7 @@ glm::vec2 BlockView::on_screen(std::size_t index, std::size_t count, const glm::
 }
 
 glm::vec2 BlockView::foot(std::size_t index, std::size_t count, const glm::vec2& size) const {
-  return on_screen(index, count, {0.0F, -static_cast<float>(geometry_.height_m), 0.0F}, size);
+  return on_screen(index, count, {0.0F, -size_m_.y, 0.0F}, size);
 }
 
 float BlockView::width_of_one(std::size_t count, const glm::vec2& size) const { return cells(count, size).size.x; }
@@ -189,7 +184,7 @@ float BlockView::depth_per_pixel(std::size_t index, std::size_t count, const glm
 
 // A depth as drawn. It ends above the bottom of the block.
 float BlockView::drawn_m(float depth_m) const {
-  const float deepest_m = 0.7F * static_cast<float>(geometry_.height_m);
+  const float deepest_m = 0.7F * size_m_.y;
   return depth_m > 0.0F ? std::min(magnified_ * depth_m, std::max(depth_m, deepest_m)) : depth_m;
 }
 
@@ -248,9 +243,8 @@ Viewport BlockView::moving_part(const BlockPose& pose) const {
     low = glm::min(low, ball - halo - line);
     high = glm::max(high, ball + halo + line);
   }
-  return around_both(
-      grown(low, high, cell_),
-      part_around({-middle_m_, -static_cast<float>(geometry_.height_m), -middle_m_}, {middle_m_, 0.0F, 0.0F}));
+  return around_both(grown(low, high, cell_),
+                     part_around({-middle_m_, -size_m_.y, -middle_m_}, {middle_m_, 0.0F, 0.0F}));
 }
 
 // From the picture to the window, whose origin is at the lower left.

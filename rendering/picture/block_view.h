@@ -11,10 +11,7 @@
 
 #include "engine/base/result.h"
 #include "rendering/picture/camera.h"
-#include "rendering/picture/dent.h"
-#include "rendering/picture/mesh.h"
-#include "rendering/picture/pixels.h"
-#include "rendering/picture/shader.h"
+#include "rendering/picture/gpu.h"
 #include "rendering/ui/colours.h"
 #include "scenes/scene/scene.h"
 
@@ -64,7 +61,7 @@ class BlockView {
   float width_of_one(std::size_t count, const glm::vec2& size) const;
   // Motion of the tool inwards per pixel downwards, m.
   float depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const;
-  const BlockGeometry& geometry() const noexcept { return geometry_; }
+  const glm::vec3& size_m() const noexcept { return size_m_; }
 
  private:
   // What the picture of the static parts depends on.
@@ -119,7 +116,7 @@ class BlockView {
   void draw_flat(const Shader& shader, const glm::vec2& origin, const glm::vec2& low, const glm::vec2& high) const;
   Viewport in_window(const Viewport& part) const;
 
-  BlockGeometry geometry_;
+  glm::vec3 size_m_;  // width, height, length
   float magnified_;
   float radius_m_;  // of the tool as drawn
   float dome_m_;    // height of a dome over its block, whose flat top is lower by it

@@ -3,25 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 
 namespace palpate {
 
-double tick_step(double span, int most) noexcept {
-  if (!(span > 0.0) || most < 1) return 1.0;
-  const double rough = span / most;
-  const double decade = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double step : {1.0, 2.0, 5.0})
-    if (step * decade >= rough * (1.0 - 1e-9)) return step * decade;
-  return 10.0 * decade;
-}
+namespace {
 
-double round_up(double value) noexcept {
+// The smallest of these steps, or of 10, times a power of ten that is not below `value`; 1 for values <= 0.
+double next_of(std::initializer_list<double> steps, double value) noexcept {
   if (!(value > 0.0)) return 1.0;
   const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
+  for (const double step : steps)
     if (step * decade >= value * (1.0 - 1e-9)) return step * decade;
   return 10.0 * decade;
 }
+
+}  // namespace
+
+double tick_step(double span, int most) noexcept { return most < 1 ? 1.0 : next_of({1.0, 2.0, 5.0}, span / most); }
+
+double round_up(double value) noexcept { return next_of({1.0, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}, value); }
 
 std::vector<ImVec2> simplified(const std::vector<ImVec2>& points) {
   constexpr float kNear_px = 0.35F;

@@ -1,16 +1,12 @@
 #include "rendering/ui/ui_style.h"
 
-#include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 #include <filesystem>
 #include <glm/common.hpp>
 #include <initializer_list>
-#include <utility>
 
 namespace palpate {
 namespace {
@@ -36,116 +32,7 @@ constexpr const char* kFontFiles[] = {
 constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193, 0x2264,
                                0x2265, 0x25A0, 0x25CF, 0x3BC,  0x3C4,  0};
 
-ImFont* add_font(const std::string& path, float size_px) {
-  ImGuiIO& io = ImGui::GetIO();
-  if (!path.empty()) return io.Fonts->AddFontFromFileTTF(path.c_str(), size_px, nullptr, kGlyphs);
-  ImFontConfig plain;
-  plain.SizePixels = size_px;
-  return io.Fonts->AddFontDefault(&plain);
-}
-
-// Appends the commands of a list that draw in a part of the window, clipped to it, with their triangles there.
-void add_commands_in(const ImDrawList& list, const ImVec4& part, ImVector<ImDrawCmd>& commands,
-                     ImVector<ImDrawIdx>& indices) {
-  for (ImDrawCmd command : list.CmdBuffer) {
-    ImVec4& clip = command.ClipRect;
-    // The whole pixels that ImGui's backend makes of it, so that no line is missing between two parts.
-    const float left = std::floor(clip.x), right = left + std::floor(clip.z - clip.x);
-    const float bottom = std::ceil(clip.w), top = bottom - std::floor(clip.w - clip.y);
-    clip = {std::max(left, part.x), std::max(top, part.y), std::min(right, part.z), std::min(bottom, part.w)};
-    if (clip.x >= clip.z || clip.y >= clip.w) continue;
-    const ImDrawIdx* const first = list.IdxBuffer.Data + command.IdxOffset;
-    command.IdxOffset = static_cast<unsigned>(indices.Size);
-    for (const ImDrawIdx* corner = first; corner < first + command.ElemCount; corner += 3) {
-      const auto at = [&](int k) { return list.VtxBuffer[static_cast<int>(corner[k] + command.VtxOffset)].pos; };
-      const ImVec2 a = at(0), b = at(1), c = at(2);
-      const bool beside = std::min(a.x, std::min(b.x, c.x)) > clip.z || std::max(a.x, std::max(b.x, c.x)) < clip.x;
-      if (beside || std::min(a.y, std::min(b.y, c.y)) > clip.w || std::max(a.y, std::max(b.y, c.y)) < clip.y) continue;
-      for (int k = 0; k < 3; ++k) indices.push_back(corner[k]);
-    }
-    command.ElemCount = static_cast<unsigned>(indices.Size) - command.IdxOffset;
-    if (command.ElemCount > 0) commands.push_back(command);
-  }
-}
-
 }  // namespace
-
-UiContext::UiContext(GLFWwindow* window) : window_(window) {
-  IMGUI_CHECKVERSION();
-  ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // ImGui stores no window positions
-  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-  ImGui_ImplGlfw_InitForOpenGL(window, true);
-  ImGui_ImplOpenGL3_Init("#version 330 core");
-}
-
-UiContext::~UiContext() {
-  ImGui_ImplOpenGL3_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
-}
-
-void UiContext::begin_frame(const std::vector<int>& tapped) {
-  ImGui_ImplOpenGL3_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
-  // When the mouse leaves the window, no element is under it.
-  const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right);
-  if (!held && glfwGetWindowAttrib(window_, GLFW_HOVERED) == 0) ImGui::GetIO().MousePos = {-FLT_MAX, -FLT_MAX};
-  // ImGui samples its keys once a frame and would miss these.
-  const auto report = [&](bool down) {
-    for (const int key : tapped) ImGui::GetIO().KeysDown[key] = down;
-  };
-  report(true);
-  ImGui::NewFrame();
-  report(false);
-}
-
-void UiContext::end_frame() {
-  ImGui::Render();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-}
-
-std::vector<Viewport> UiContext::changed_parts(const std::vector<Viewport>& also) {
-  return changes_.update(*ImGui::GetDrawData(), also);
-}
-
-void UiContext::draw_again(const std::vector<Viewport>& parts) const {
-  ImDrawData& data = *ImGui::GetDrawData();
-  const ImVec2 scale = data.FramebufferScale;
-  std::vector<ImVec4> within;  // the parts in the window's units, with the origin at the upper left
-  for (const Viewport& part : parts) {
-    const auto low = ImVec2(static_cast<float>(part.x) / scale.x, static_cast<float>(part.y) / scale.y);
-    const auto high =
-        ImVec2(low.x + static_cast<float>(part.width) / scale.x, low.y + static_cast<float>(part.height) / scale.y);
-    within.push_back({std::floor(low.x), std::floor(data.DisplaySize.y - high.y), std::ceil(high.x),
-                      std::ceil(data.DisplaySize.y - low.y)});
-  }
-  // The commands and triangles that are in a part take the place of all, for this call only.
-  std::vector<ImDrawList*> lists;
-  std::vector<std::pair<ImVector<ImDrawCmd>, ImVector<ImDrawIdx>>> kept;
-  for (int n = 0; n < data.CmdListsCount; ++n) {
-    ImDrawList& list = *data.CmdLists[n];
-    ImVector<ImDrawCmd> commands;
-    ImVector<ImDrawIdx> indices;
-    for (const ImVec4& part : within) add_commands_in(list, part, commands, indices);
-    if (commands.empty()) continue;
-    lists.push_back(&list);
-    kept.emplace_back();
-    list.CmdBuffer.swap(commands);
-    list.IdxBuffer.swap(indices);
-    kept.back().first.swap(commands);
-    kept.back().second.swap(indices);
-  }
-  if (lists.empty()) return;
-  ImDrawData some = data;
-  some.CmdLists = lists.data();
-  some.CmdListsCount = static_cast<int>(lists.size());
-  ImGui_ImplOpenGL3_RenderDrawData(&some);
-  for (std::size_t i = 0; i < lists.size(); ++i) {
-    lists[i]->CmdBuffer.swap(kept[i].first);
-    lists[i]->IdxBuffer.swap(kept[i].second);
-  }
-}
 
 std::string find_font() {
   for (const char* path : kFontFiles) {
@@ -181,7 +68,10 @@ void UiStyle::build_fonts() {
   const std::string path = find_font();
   io.Fonts->Clear();
   const auto add = [&](float size_px) {
-    ImFont* font = add_font(path, std::round(size_px * scale_ * pixels_per_unit_));
+    ImFontConfig plain;
+    plain.SizePixels = std::round(size_px * scale_ * pixels_per_unit_);
+    ImFont* font = path.empty() ? io.Fonts->AddFontDefault(&plain)
+                                : io.Fonts->AddFontFromFileTTF(path.c_str(), plain.SizePixels, nullptr, kGlyphs);
     font->Scale = 1.0F / pixels_per_unit_;
     return font;
   };

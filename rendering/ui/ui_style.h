@@ -1,17 +1,12 @@
-// Dear ImGui in a window: its context, and fonts, sizes and colours, scaled with the window.
+// Fonts, sizes and colours of Dear ImGui, scaled with the window.
 // Thread guarantee: the window's thread.
 #pragma once
 
 #include <imgui.h>
 
 #include <string>
-#include <vector>
 
 #include "rendering/ui/colours.h"
-#include "rendering/ui/viewport.h"
-#include "rendering/ui/widget_changes.h"
-
-struct GLFWwindow;
 
 namespace palpate {
 
@@ -48,30 +43,6 @@ struct Fonts {
 
 // The font file that is used; empty: none was found, so that the built-in font is used.
 std::string find_font();
-
-// The context of Dear ImGui for a window.
-class UiContext {
- public:
-  // Set the callbacks of the window before: ImGui installs its own, which first call those.
-  explicit UiContext(GLFWwindow* window);
-  UiContext(const UiContext&) = delete;
-  UiContext& operator=(const UiContext&) = delete;
-  ~UiContext();
-
-  // `tapped`: keys of GLFW that were pressed and released since the last frame.
-  void begin_frame(const std::vector<int>& tapped = {});
-  // Draws all widgets since `begin_frame`.
-  void end_frame();
-  // The parts of the window that have to be drawn after ImGui::Render: see WidgetChanges.
-  std::vector<Viewport> changed_parts(const std::vector<Viewport>& also);
-  // Draws the widgets of the last frame again where they are in these parts of the window (pixels, with the origin at
-  // the lower left corner), which were drawn over.
-  void draw_again(const std::vector<Viewport>& parts) const;
-
- private:
-  GLFWwindow* window_;
-  WidgetChanges changes_;
-};
 
 class UiStyle {
  public:

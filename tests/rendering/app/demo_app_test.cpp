@@ -125,7 +125,7 @@ TEST_F(DemoAppTest, TrainsOnOneRecordingAndTestsOnTheOther) {
   drop(train);
   drop(test);
   ASSERT_TRUE(until([&] { return app_->view().dialogs.recording_roles.recordings.size() == 2; }));
-  EXPECT_EQ(app_->view().dialogs.recording_roles.test(), test) << "the last one";
+  EXPECT_EQ(app_->view().dialogs.recording_roles.tested, test) << "the last one";
   press(GLFW_KEY_ENTER);
   ASSERT_TRUE(until([&] { return app_->session().replay() != nullptr; }));
   EXPECT_EQ(app_->session().scene().recordings, std::vector<std::string>{train});

@@ -48,7 +48,7 @@ TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   ASSERT_EQ(view.dialogs.recording_roles.recordings.size(), 2u) << "none is lost";
-  EXPECT_EQ(view.dialogs.recording_roles.test(), "b.csv");
+  EXPECT_EQ(view.dialogs.recording_roles.tested, "b.csv");
 }
 
 // Two saves within a second, and a window that closes while another file is still being read.

@@ -7,7 +7,6 @@
 
 #include "rendering/panels/panel.h"
 #include "rendering/panels/scene_overlay.h"
-#include "rendering/panels/window_command.h"
 #include "tests/support/message_parts.h"
 
 namespace palpate {
@@ -136,8 +135,8 @@ TEST(PanelWords, ARowSaysWhichModelsHaveItsForcesAndWhy) {
 // All dots, their intervals and paths are inside, with the JND.
 TEST(PanelWords, ThePlotOfErrorAgainstTimeShowsAllDots) {
   ModelsView models = view_of({ready_slot("greedy-100"), ready_slot("trend")}, true);
-  const SpeedRanges empty = speed_ranges(models);
-  EXPECT_LT(empty.error.from, 0.0);
+  const PlotAxes empty = speed_axes(models);
+  EXPECT_LT(empty.y.from, 0.0);
   const auto set = [](ModelView& one, double ns, double over_jnd) {
     one.errors.samples = 100;
     one.errors.p99_error_over_jnd = over_jnd;
@@ -147,16 +146,16 @@ TEST(PanelWords, ThePlotOfErrorAgainstTimeShowsAllDots) {
   set(models.slots[1], 240.0, 0.05);
   models.slots[0].p99_interval = {0.02, 0.08};
   models.slots[0].path[3] = {150.0, 7.0};
-  const SpeedRanges ranges = speed_ranges(models);
+  const PlotAxes axes = speed_axes(models);
   for (const double ns : {150.0, 240.0, 429.0}) {
-    EXPECT_LT(ranges.time.from, std::log10(ns));
-    EXPECT_GT(ranges.time.to, std::log10(ns));
+    EXPECT_LT(axes.x.from, std::log10(ns));
+    EXPECT_GT(axes.x.to, std::log10(ns));
   }
   for (const double over_jnd : {0.02, 0.08, 1.0, 7.0}) {
-    EXPECT_LT(ranges.error.from, std::log10(over_jnd));
-    EXPECT_GT(ranges.error.to, std::log10(over_jnd));
+    EXPECT_LT(axes.y.from, std::log10(over_jnd));
+    EXPECT_GT(axes.y.to, std::log10(over_jnd));
   }
-  EXPECT_LT(ranges.time.to, 3.0) << "the budget of 1 ms is not in the plot";
+  EXPECT_LT(axes.x.to, 3.0) << "the budget of 1 ms is not in the plot";
 }
 
 // GLFW numbers them from 256 on, and 256 + 'V' is not V.

@@ -1,4 +1,4 @@
-#include "rendering/ui/curves.h"
+#include "rendering/panels/time_plot.h"
 
 #include <gtest/gtest.h>
 

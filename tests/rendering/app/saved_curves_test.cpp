@@ -1,5 +1,5 @@
 // The saved figure and the saved table contain the same samples.
-#include "rendering/panels/curve_files.h"
+#include "rendering/app/demo_files.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ WindowView view_of(const ForceHistory& history) {
 
 const CurveTime kTime{.zero_s = 100.0, .shown_s = 2.0, .paused = true, .paused_at_s = 102.0};
 
-TEST(CurveFiles, WhatIsEqualInTheTableIsEqualInTheFigure) {
+TEST(SavedCurves, WhatIsEqualInTheTableIsEqualInTheFigure) {
   const ForceHistory history = example();
   CurveColumns columns;
   columns.gather(history, {}, 1, 100.0, 102.0, 100);
@@ -50,7 +50,7 @@ TEST(CurveFiles, WhatIsEqualInTheTableIsEqualInTheFigure) {
   }
 }
 
-TEST(CurveFiles, SaysWhatTheReferenceIs) {
+TEST(SavedCurves, SaysWhatTheReferenceIs) {
   const ForceHistory history = example();
   std::istringstream csv(curve_csv(view_of(history), kTime, "scene, hand"));
   std::string line;

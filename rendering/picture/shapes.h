@@ -1,5 +1,5 @@
-// Triangle meshes in memory and on the graphics card.
-// Thread guarantee: functions are pure; GpuMesh belongs to the thread of the OpenGL context.
+// Shapes of block and tool: triangle meshes, and the dent that the shaders press into them.
+// Thread guarantee: pure functions.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +28,9 @@ Mesh block_top(const glm::vec2& size_m, int around, int rings);
 Mesh block_middle(float radius_m, int around, int rings);
 // The rounded edge and the sides, whose upper end is at `top_m`.
 Mesh block_sides(const glm::vec2& size_m, float height_m, float top_m, int around);
-// The cut face from -half_m to half_m, from the surface at `top_m` down to -height_m. The edges are rounded at
-// block_half_m from the middle.
-Mesh block_section(float half_m, float block_half_m, float height_m, float top_m, int columns);
+// The cut face from -half_m to half_m, from the surface down to -height_m. The edges are rounded at block_half_m from
+// the middle.
+Mesh block_section(float half_m, float block_half_m, float height_m, int columns);
 inline constexpr float kEdge_m = 0.004F;  // radius of the rounded edges
 // Pairs of points at the same x, from -half_m to half_m, whose y is -1 and 1.
 Mesh line_mesh(float half_m, int columns);
@@ -41,18 +41,20 @@ Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides);
 // A square of half side 1 at y = 0.
 Mesh square_mesh();
 
-class GpuMesh {
- public:
-  explicit GpuMesh(const Mesh& mesh);
-  GpuMesh(const GpuMesh&) = delete;
-  GpuMesh& operator=(const GpuMesh&) = delete;
-  ~GpuMesh();
-  void draw() const;
-
- private:
-  unsigned array_ = 0;
-  unsigned buffers_[2] = {0, 0};
-  int index_count_ = 0;
+// The surface of a soft half-space under a rigid ball.
+// The depth u of the surface at the distance r from the middle. Inside the contact it follows the ball of radius R,
+// u = d - R + sqrt(R^2 - r^2). Outside it has the shape beside a Hertzian contact,
+// u = u_a (2 / pi) ((2 - x^2) asin(1 / x) + sqrt(x^2 - 1)) with x = r / a (Johnson 1985, eq. 3.42a).
+// An incompressible material moves along the normal only.
+struct DentShape {
+  float depth_m = 0.0F;     // d, in the middle
+  float contact_m = 1e-6F;  // a, radius of the contact
+  float edge_m = 0.0F;      // u_a, depth at the edge of the contact
 };
+
+// At the edge of the contact both shapes have the same slope: with q = sqrt(R^2 - a^2), 3 q^2 + 2 (d - R) q - R^2 = 0.
+// A shallow dent has Hertz's a^2 = R d, a deep one nearly Sneddon's (1965).
+// `depth_m`: any; there is no dent at 0 or below. `radius_m`: R > 0.
+DentShape dent_under_ball(float depth_m, float radius_m) noexcept;
 
 }  // namespace palpate

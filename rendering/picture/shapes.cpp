@@ -1,10 +1,7 @@
-#include "rendering/picture/mesh.h"
-
-#include <epoxy/gl.h>
+#include "rendering/picture/shapes.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -126,12 +123,12 @@ Mesh block_sides(const glm::vec2& size_m, float height_m, float top_m, int aroun
   return mesh;
 }
 
-Mesh block_section(float half_m, float block_half_m, float height_m, float top_m, int columns) {
+Mesh block_section(float half_m, float block_half_m, float height_m, int columns) {
   Mesh mesh;
   for (const bool lower : {false, true}) {
     for (int i = 0; i <= columns; ++i) {
       const float x_m = column_m(i, columns, half_m);
-      const float y_m = lower ? -height_m : top_m - edge_depth_m(std::abs(x_m), block_half_m);
+      const float y_m = lower ? -height_m : -edge_depth_m(std::abs(x_m), block_half_m);
       mesh.vertices.push_back({{x_m, y_m, 0.0F}, {0.0F, 0.0F, 1.0F}});
     }
   }
@@ -172,32 +169,15 @@ Mesh square_mesh() {
   return {{{{-1, 0, -1}, up}, {{-1, 0, 1}, up}, {{1, 0, 1}, up}, {{1, 0, -1}, up}}, {0, 1, 2, 0, 2, 3}};
 }
 
-GpuMesh::GpuMesh(const Mesh& mesh) : index_count_(static_cast<int>(mesh.triangles.size())) {
-  glGenVertexArrays(1, &array_);
-  glBindVertexArray(array_);
-  glGenBuffers(2, buffers_);
-  glBindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)), mesh.vertices.data(),
-               GL_STATIC_DRAW);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[1]);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
-               mesh.triangles.data(), GL_STATIC_DRAW);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                        reinterpret_cast<const void*>(offsetof(Vertex, normal)));
-  glBindVertexArray(0);
-}
-
-GpuMesh::~GpuMesh() {
-  glDeleteBuffers(2, buffers_);
-  glDeleteVertexArrays(1, &array_);
-}
-
-void GpuMesh::draw() const {
-  glBindVertexArray(array_);
-  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+DentShape dent_under_ball(float depth_m, float radius_m) noexcept {
+  DentShape dent;
+  if (!(depth_m > 0.0F)) return dent;
+  const float below = depth_m - radius_m;
+  const float q = (std::sqrt(below * below + 3.0F * radius_m * radius_m) - below) / 3.0F;
+  dent.depth_m = depth_m;
+  dent.contact_m = std::max(dent.contact_m, std::sqrt(std::max(0.0F, radius_m * radius_m - q * q)));
+  dent.edge_m = below + q;
+  return dent;
 }
 
 }  // namespace palpate
