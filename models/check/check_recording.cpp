@@ -337,13 +337,13 @@ class Checker {
                             static_cast<double>(std::max(1, measures_.strokes));
     if (hold_s < kHoldOfStroke * stroke_s) {
       add("no_hold", Severity::note, hold_s,
-          words("the longest hold in contact is %.2g s, and a stroke lasts %.2g s on average", hold_s, stroke_s),
+          words("the longest hold in contact is %.3g s, and a stroke lasts %.3g s on average", hold_s, stroke_s),
           "hold still at two or three depths until the force stays the same");
     } else if (std::abs(measures_.hold_change_N) > request_.jnd.at(measures_.hold_end_N)) {
       add("short_hold", Severity::note, hold_s,
-          words("the force still changes by %+.2g N in the second half of the longest hold, which lasts %.2g s",
+          words("the force still changes by %+.3g N in the second half of the longest hold, which lasts %.3g s",
                 measures_.hold_change_N, hold_s),
-          words("hold still for %.2g s at two or three depths", 4.0 * hold_s));
+          words("hold still for %.3g s at two or three depths", 4.0 * hold_s));
     }
   }
 

@@ -95,7 +95,7 @@ void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
       if (!found_N) continue;
       add_finding(files[i],
                   {"contradiction", Severity::warning, *found_N,
-                   "its forces differ by " + general(std::abs(*found_N), 2) + " N from those of " + files[j].path +
+                   "its forces differ by " + three_digits(std::abs(*found_N)) + " N from those of " + files[j].path +
                        " at the same depth: the cause may be another specimen, a preload, a moved surface, a force "
                        "zero or another speed",
                    "one model cannot render both: fit them separately, or correct the difference first"});

@@ -183,7 +183,7 @@ void add_import(CLI::App& app, Verbs& verbs) {
   verb->add_option("--flip", options->flips, "Reverse the sign of position, force or both")
       ->delimiter(',')
       ->check(CLI::IsMember({"position", "force", "both"}));
-  verb->add_option("--origin", options->origin,
+  verb->add_option("--origin,--zero", options->origin,
                    "Position that becomes 0: contact (where the force begins), first (the first row), or a value in m "
                    "[unchanged]")
       ->check(CLI::Validator(check_origin, "contact|first|M"));

@@ -373,6 +373,7 @@ Status run(const Options& options) {
       if (!status) return status;
     }
     if (plots[i].empty()) continue;
+    if (plots[i] == forces[i]) return Error{"--plot: found " + plots[i] + ", the file of --out, expected another file"};
     if (const Status status = check_plot_path(plots[i], options.force); !status) return status;
   }
   const auto models = load_models(options.models, options.names);

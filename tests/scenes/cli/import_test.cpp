@@ -45,6 +45,15 @@ TEST(ImportVerb, FlipsPositionForceOrBoth) {
   EXPECT_NE(both.force_N, 0.0);
 }
 
+TEST(ImportVerb, MovesTheOriginUnderBothNames) {
+  const test::TemporaryFolder folder;
+  for (const std::string option : {"--origin", "--zero"}) {
+    const std::string out = folder.file(option.substr(2) + ".csv");
+    test::must_run({"import", kFiles + "02_matlab.csv", "--out", out, option, "first"});
+    EXPECT_EQ(read_recording(out)->rows.front().position_m, 0.0) << option;
+  }
+}
+
 TEST(ImportVerb, WrongUsageEndsWithTwo) {
   const test::TemporaryFolder folder;
   const std::string file = kFiles + "02_matlab.csv";

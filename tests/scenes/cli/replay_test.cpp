@@ -254,6 +254,9 @@ TEST_F(ReplayVerb, NothingIsLostWithoutForceOrAfterAnError) {
   const std::string out = folder_.with_file("forces.csv", "mine");
   EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--out", out}), 1, {out, "--force"}));
   EXPECT_EQ(test::read_text(out), "mine");
+  const std::string both = folder_.file("both.svg");
+  EXPECT_TRUE(
+      test::is_refused(run({models_[0]}, {"--out", both, "--plot", both}), 1, {"--plot", both, "another file"}));
 
   const std::string whole = test::read_text(recording_);
   const std::string good = recording_;
