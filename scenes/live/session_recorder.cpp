@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cmath>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include "engine/base/text.h"
@@ -73,7 +72,7 @@ Status SessionRecorder::start(const RecorderRequest& request) {
 Notice SessionRecorder::work() {
   int rounds = 0;
   for (bool last = false; !last && !writer_->failed();) {
-    std::this_thread::sleep_for(kPause);
+    static_cast<void>(wake_.try_acquire_for(kPause));
     last = stop_;
     drain();
     // A write error is persistent: this loop ends, and `finish` reports it.

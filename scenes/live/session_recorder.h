@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <future>
 #include <optional>
+#include <semaphore>
 #include <string>
 #include <vector>
 
@@ -69,7 +70,10 @@ class SessionRecorder {
   std::uint32_t number() const noexcept { return status().active ? number_ : 0; }
 
   // Ends the recording with the samples that the loop has published so far; does not wait.
-  void stop() { stop_ = true; }
+  void stop() {
+    stop_ = true;
+    wake_.release();
+  }
   // Blocks until a recording that was stopped or has failed is finished.
   void wait() {
     if (running_.valid()) running_.wait();
@@ -96,6 +100,7 @@ class SessionRecorder {
   std::vector<RecordedSample> buffer_;
   std::future<Notice> running_;
   std::atomic<bool> stop_{false};
+  std::counting_semaphore<> wake_{0};  // so that `stop` ends a pause; a release that is left over only shortens one
   std::atomic<std::uint64_t> rows_{0};
   std::atomic<double> seconds_{0.0};
 };
