@@ -303,8 +303,8 @@ class Checker {
     if (!(pressed_m > 0.0)) return;
     int empty = 0;
     std::string where;
-    const std::string low = general(1e3 * kSpeedEdges_per_s[0] * pressed_m, 2);
-    const std::string high = general(1e3 * kSpeedEdges_per_s[1] * pressed_m, 2);
+    const std::string low = at_most_three_decimals(1e3 * kSpeedEdges_per_s[0] * pressed_m);
+    const std::string high = at_most_three_decimals(1e3 * kSpeedEdges_per_s[1] * pressed_m);
     const std::string bands[kSpeedBands] = {"below " + low + " mm/s", low + " to " + high + " mm/s",
                                             "above " + high + " mm/s"};
     for (std::size_t band = 0; band < kSpeedBands; ++band) {

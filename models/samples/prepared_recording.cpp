@@ -317,6 +317,7 @@ PreparedRecordingPointer prepare_recording(Recording recording) {
   prepared->sensor = identify_sensor(given.rows.data(), given.rows.size(), given.columns);
   prepared->force_noise_N = identify_force_noise_N(given.rows.data(), given.rows.size());
   MotionEstimator estimator(prepared->sensor);
+  // A long recording is thinned as far as the onset allows, and then cut.
   const std::size_t count = given.rows.size();
   const double step_s = (given.rows.back().time_s - given.rows.front().time_s) / static_cast<double>(count);
   const std::size_t stride =

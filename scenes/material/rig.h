@@ -4,8 +4,9 @@
 // motion and the same true force at every rate.
 // Sensors: the encoder rounds the position to its step; the force sensor adds white noise and has 12 bits over the
 // range that suits the material; the accelerometer (like the paper's ADXL330: 280 ug/sqrt(Hz) over 0.5 kHz) adds white
-// noise and a bias that drifts slowly (Ornstein-Uhlenbeck process), and has 12 bits over its range. Source: Hoever &
-// Harders (2009), section 2. Thread guarantee: one thread at a time; slow side only.
+// noise and a bias that drifts slowly (Ornstein-Uhlenbeck process), and has 12 bits over its range.
+// Source: Hoever & Harders (2009), section 2.
+// Thread guarantee: one thread at a time; slow side only.
 #pragma once
 
 #include <cstddef>
