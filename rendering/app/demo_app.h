@@ -128,9 +128,10 @@ class DemoApp {
   Exhibit exhibit_;
   ViewState view_;
   WindowView shown_;
-  std::vector<KeyPress> keys_;  // since the last frame
-  std::vector<int> down_;       // keys that are held
-  bool drives_ = false;         // a key moved the tool in the frame before
+  std::vector<KeyPress> keys_;   // since the last frame
+  std::vector<int> down_;        // keys that are held
+  bool drives_ = false;          // a key moved the tool in the frame before
+  double driven_until_s_ = 0.0;  // at least, by a tap of a key; steady clock
   bool orbiting_ = false;
   bool over_scene_ = false;  // the mouse, in the frame before
   ImVec2 mouse_{-1.0F, -1.0F};
