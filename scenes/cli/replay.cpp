@@ -31,11 +31,6 @@ struct Options {
 // The output has a note if moving the surface changes the share within the JND by more.
 constexpr double kShareThatMatters = 0.005;
 
-struct LoadedModel {
-  std::string name;  // unique among the models of one run
-  std::shared_ptr<const FittedModel> model;
-};
-
 struct ReplayedModel {
   LoadedModel loaded;
   ErrorSummary as_recorded;
@@ -65,45 +60,6 @@ constexpr ErrorColumn kFigures[] = {{"rms_error_N", "RMS mN", &ErrorSummary::rms
                                     {"within_jnd", "WITHIN JND %", &ErrorSummary::within_jnd, 1e2, 2, true},
                                     {"p99_error_over_jnd", "P99 JND", &ErrorSummary::p99_error_over_jnd, 1.0, 2, true},
                                     {"max_error_over_jnd", "MAX JND", &ErrorSummary::max_error_over_jnd, 1.0, 2, true}};
-
-// `names` with suffixes -2, -3 ... for repeated names.
-std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
-  std::vector<std::string> distinct;
-  for (const std::string& name : names) {
-    std::string candidate = name;
-    for (int i = 2; std::ranges::count(distinct, candidate) > 0; ++i) candidate = name + "-" + std::to_string(i);
-    distinct.push_back(candidate);
-  }
-  return distinct;
-}
-
-// `given`: a name for each file. Empty: the names in the files, or the file names where those are equal.
-Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
-                                             const std::vector<std::string>& given) {
-  if (paths.size() > kMaxModels) {
-    return Error{"found " + std::to_string(paths.size()) + " models, expected at most " + std::to_string(kMaxModels) +
-                 "; replay them in several runs"};
-  }
-  if (!given.empty() && given.size() != paths.size()) {
-    return Error{"found " + std::to_string(given.size()) + " names for " + std::to_string(paths.size()) +
-                 " models, expected one each; give --name once for every --model"};
-  }
-  std::vector<std::shared_ptr<const FittedModel>> models;
-  for (const std::string& path : paths) {
-    auto model = load_model_file(path, "give it with --recording");
-    if (!model) return model.error();
-    models.push_back(*model);
-  }
-  std::vector<std::string> names = given;
-  for (std::size_t i = 0; given.empty() && i < models.size(); ++i) {
-    const bool unique = std::ranges::count(models, models[i]->name(), &FittedModel::name) == 1;
-    names.push_back(unique ? models[i]->name() : fs::path(paths[i]).stem().string());
-  }
-  names = distinct_names(names);
-  std::vector<LoadedModel> loaded;
-  for (std::size_t i = 0; i < models.size(); ++i) loaded.push_back({names[i], models[i]});
-  return loaded;
-}
 
 // The output file of each recording: `path` for one, NAME_RECORDING.csv for several; empty if `path` is empty.
 std::vector<std::string> outputs(const std::string& path, const std::vector<std::string>& recordings) {

@@ -6,6 +6,7 @@
 
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
+#include "engine/tick/haptics_tick.h"
 #include "models/model/file/model_io.h"
 
 namespace palpate::cli {
@@ -34,8 +35,7 @@ void print_check_text(const CheckedFile& file) {
   }
   std::printf(
       "  the noise of the force sensor alone leaves %s %% of the contact samples within the JND; this says nothing "
-      "about "
-      "a model\n",
+      "about a model\n",
       fixed(100.0 * file.check.noise_floor_within_jnd, 1).c_str());
 }
 
@@ -77,6 +77,48 @@ Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& pa
   auto model = load_model(path);
   if (model || !read_recording(path, 0)) return model;
   return Error{path + " is a recording, expected a model file (JSON, made by palpate fit); " + advice};
+}
+
+std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
+  std::vector<std::string> distinct;
+  for (const std::string& name : names) {
+    std::string candidate = name;
+    for (int i = 2; std::ranges::count(distinct, candidate) > 0; ++i) candidate = name + "-" + std::to_string(i);
+    distinct.push_back(candidate);
+  }
+  return distinct;
+}
+
+Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
+                                             const std::vector<std::string>& given) {
+  if (paths.size() > kMaxModels) {
+    return Error{"found " + std::to_string(paths.size()) + " models, expected at most " + std::to_string(kMaxModels) +
+                 "; replay them in several runs"};
+  }
+  if (!given.empty() && given.size() != paths.size()) {
+    return Error{"found " + std::to_string(given.size()) + " names for " + std::to_string(paths.size()) +
+                 " models, expected one each; give --name once for every --model"};
+  }
+  std::vector<std::shared_ptr<const FittedModel>> models;
+  for (const std::string& path : paths) {
+    auto model = load_model_file(path, "give it with --recording");
+    if (!model) return model.error();
+    models.push_back(*model);
+  }
+  std::vector<std::string> names = given;
+  for (std::size_t i = 0; given.empty() && i < models.size(); ++i) {
+    const bool unique = std::ranges::count(models, models[i]->name(), &FittedModel::name) == 1;
+    names.push_back(unique ? models[i]->name() : std::filesystem::path(paths[i]).stem().string());
+  }
+  for (const std::string& name : names) {
+    if (name.find_first_of(",\"\r\n") == std::string::npos) continue;
+    return Error{"found the model name " + printable(name) + ", expected one without comma, quote and line break, " +
+                 "because it becomes the header of a column; give another with --name"};
+  }
+  names = distinct_names(names);
+  std::vector<LoadedModel> loaded;
+  for (std::size_t i = 0; i < models.size(); ++i) loaded.push_back({names[i], models[i]});
+  return loaded;
 }
 
 Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,

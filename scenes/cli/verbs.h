@@ -55,6 +55,18 @@ std::string plugged_in_text(DeviceBus& bus, const std::string& assets);
 // Loads a model file. Errors: as load_model; for a recording, that it is one, and `advice`.
 Result<std::shared_ptr<const FittedModel>> load_model_file(const std::string& path, const std::string& advice);
 
+// `names` with suffixes -2, -3 ... for repeated names.
+std::vector<std::string> distinct_names(const std::vector<std::string>& names);
+
+struct LoadedModel {
+  std::string name;  // unique among the models of one run
+  std::shared_ptr<const FittedModel> model;
+};
+// `names`: one for each file. Empty: the names in the files, or the file names where those are equal. Errors: more than
+// kMaxModels models; another number of names; a name that is no header of a column; a file that is no model.
+Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
+                                             const std::vector<std::string>& names);
+
 // Errors: `out` is one of the files that are read. `option`: the option that named it, for the message.
 Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,
                               const std::string& option);

@@ -50,7 +50,9 @@ TEST(ImportVerb, MovesTheOriginUnderBothNames) {
   for (const std::string option : {"--origin", "--zero"}) {
     const std::string out = folder.file(option.substr(2) + ".csv");
     test::must_run({"import", kFiles + "02_matlab.csv", "--out", out, option, "first"});
-    EXPECT_EQ(read_recording(out)->rows.front().position_m, 0.0) << option;
+    const Recording recording = *read_recording(out);
+    EXPECT_EQ(recording.rows[0].position_m, 0.0) << option << ": -1 mm in the file";
+    EXPECT_NEAR(recording.rows[1].position_m, 0.522e-3, 1e-6) << option;
   }
 }
 

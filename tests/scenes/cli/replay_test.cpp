@@ -232,6 +232,7 @@ TEST_F(ReplayVerb, FailuresAreOneErrorLine) {
   EXPECT_TRUE(test::is_refused(run({none}), 1, {none, "no such file", "palpate fit"}));
   EXPECT_TRUE(test::is_refused(run({recording_}), 1, {recording_, "JSON", "palpate fit", "--recording"}));
   EXPECT_TRUE(test::is_refused(run(std::vector<std::string>(17, models_[0])), 1, {"17 models", "16", "; "}));
+  EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--name", "a,b"}), 1, {"a,b", "comma", "--name"}));
   const std::string before = test::read_text(recording_);
   EXPECT_TRUE(test::is_refused(run({models_[0]}, {"--out", recording_, "--force"}), 1, {recording_, "--out", "; "}));
   EXPECT_EQ(test::read_text(recording_), before);
