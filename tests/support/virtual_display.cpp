@@ -1,6 +1,8 @@
 #include "tests/support/virtual_display.h"
 
+#include <GLFW/glfw3.h>
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -52,6 +54,18 @@ const std::string& virtual_display() {
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
   }
   return name;
+}
+
+GLFWwindow* open_gl_window(int width, int height) {
+  EXPECT_FALSE(virtual_display().empty()) << "Xvfb does not start; apt-get install xvfb";
+  EXPECT_EQ(glfwInit(), GLFW_TRUE);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  GLFWwindow* window = glfwCreateWindow(width, height, "test", nullptr, nullptr);
+  EXPECT_NE(window, nullptr);
+  if (window != nullptr) glfwMakeContextCurrent(window);
+  return window;
 }
 
 OwnDisplay::OwnDisplay() { name_ = start_server(process_); }

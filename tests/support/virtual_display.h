@@ -4,11 +4,17 @@
 
 #include <string>
 
+struct GLFWwindow;
+
 namespace palpate::test {
 
 // The first call starts a display for this process and sets DISPLAY; it ends with
 // the process. Returns its name, or an empty string if Xvfb does not start.
 const std::string& virtual_display();
+
+// A window with a current context of OpenGL 3.3 on that display; null, after a failure of the test, where there is
+// none. End it with glfwDestroyWindow and glfwTerminate.
+GLFWwindow* open_gl_window(int width, int height);
 
 // A display of its own, for a program that loses it.
 class OwnDisplay {

@@ -22,14 +22,8 @@ using Picture = std::vector<unsigned char>;  // RGB
 class BlockViewTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_FALSE(test::virtual_display().empty()) << "Xvfb does not start; apt-get install xvfb";
-    ASSERT_EQ(glfwInit(), GLFW_TRUE);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    window_ = glfwCreateWindow(kWholeWidth, kWholeHeight, "picture", nullptr, nullptr);
+    window_ = test::open_gl_window(kWholeWidth, kWholeHeight);
     ASSERT_NE(window_, nullptr);
-    glfwMakeContextCurrent(window_);
     const auto scene = load_scene("silicone_block");
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     scene_ = *scene;

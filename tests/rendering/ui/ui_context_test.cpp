@@ -35,14 +35,8 @@ void clear(const Viewport& part) {
 class UiContextTest : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_FALSE(test::virtual_display().empty()) << "Xvfb does not start; apt-get install xvfb";
-    ASSERT_EQ(glfwInit(), GLFW_TRUE);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    window_ = glfwCreateWindow(kWidth, kHeight, "widgets", nullptr, nullptr);
+    window_ = test::open_gl_window(kWidth, kHeight);
     ASSERT_NE(window_, nullptr);
-    glfwMakeContextCurrent(window_);
     ui_ = std::make_unique<UiContext>(window_);
   }
   void TearDown() override {
