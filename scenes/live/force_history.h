@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <limits>
+#include <vector>
 
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
@@ -59,32 +59,47 @@ struct HistoryPoint {
   }
 };
 
-// Oldest first; a session of hours does not grow.
 class ForceHistory {
  public:
-  std::size_t size() const noexcept { return points_.size(); }
-  const HistoryPoint& operator[](std::size_t index) const noexcept { return points_[index]; }
+  // Capacity: one point per millisecond, allocated once: a session of hours does not grow.
+  ForceHistory() : points_(static_cast<std::size_t>(kHistory_s * 1000.0)) {}
+
+  std::size_t size() const noexcept { return size_; }
+  // 0 is the oldest.
+  const HistoryPoint& operator[](std::size_t index) const noexcept {
+    const std::size_t at = first_ + index;
+    return points_[at < points_.size() ? at : at - points_.size()];
+  }
   // Index of the first point at `loop_time_s` or later; size() if there is none. O(log size).
   std::size_t first_at(double loop_time_s) const noexcept {
-    const auto first = std::ranges::lower_bound(points_, loop_time_s, {}, &HistoryPoint::loop_time_s);
-    return static_cast<std::size_t>(first - points_.begin());
+    std::size_t from = 0;
+    for (std::size_t to = size_; from < to;) {
+      const std::size_t middle = from + (to - from) / 2;
+      const bool before = (*this)[middle].loop_time_s < loop_time_s;
+      (before ? from : to) = before ? middle + 1 : middle;
+    }
+    return from;
   }
   // The last point up to `loop_time_s`; null: there is none.
   const HistoryPoint* last_until(double loop_time_s) const noexcept {
     const std::size_t next = first_at(std::nextafter(loop_time_s, std::numeric_limits<double>::infinity()));
-    return next > 0 ? &points_[next - 1] : nullptr;
+    return next > 0 ? &(*this)[next - 1] : nullptr;
   }
   void forget(std::size_t slot) noexcept {
     for (HistoryPoint& point : points_) point.force_N[slot] = point.sustained_over_jnd[slot] = kMissing;
   }
   void append(const HistoryPoint& point) {
-    if (points_.size() == kMost) points_.pop_front();
-    points_.push_back(point);
+    if (size_ < points_.size()) {
+      points_[size_++] = point;
+    } else {
+      points_[first_] = point;
+      first_ = (first_ + 1) % points_.size();
+    }
   }
 
  private:
-  static constexpr auto kMost = static_cast<std::size_t>(kHistory_s * 1000.0);  // one point per millisecond
-  std::deque<HistoryPoint> points_;
+  std::vector<HistoryPoint> points_;
+  std::size_t first_ = 0, size_ = 0;
 };
 
 }  // namespace palpate
