@@ -212,7 +212,9 @@ class Checker {
         std::isfinite(surface_.air.zero_error_N)) {
       add("force_zero_drift", Severity::warning, surface_.air.drift_N,
           words("the force in free air drifts by %.3g N over the %s", surface_.air.drift_N,
-                recording_.rows.size() > kOnsetRows ? "beginning of the recording" : "recording"),
+                recording_.rows.back().time_s - prepared_.rows.back().tool.time_s > kCoarsestOnset_s
+                    ? "beginning of the recording"
+                    : "recording"),
           "let the sensor warm up, tare it again, and record in shorter parts");
     }
   }

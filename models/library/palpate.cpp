@@ -206,7 +206,7 @@ int palpate_in_contact(const palpate_recording* given, unsigned char* in_contact
   if (given == nullptr || in_contact == nullptr || given->position_m == nullptr || given->force_N == nullptr) return -1;
   return made<int>(-1, nullptr, 0, [&]() -> Result<int> {
     const Recording recording = recording_of(*given);
-    // As in a replay, which reads long recordings in chunks, from the first rows.
+    // As in a replay, from the first rows.
     const std::size_t first_rows = std::min(recording.rows.size(), kSensorIdentificationRows);
     const double least_N = least_contact_N(recording.rows.data(), first_rows, 0.0);
     std::ranges::transform(recording.rows, in_contact, [&](const RecordingRow& row) {

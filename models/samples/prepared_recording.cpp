@@ -320,8 +320,8 @@ PreparedRecordingPointer prepare_recording(Recording recording) {
   // A long recording is thinned as far as the onset allows, and then cut.
   const std::size_t count = given.rows.size();
   const double step_s = (given.rows.back().time_s - given.rows.front().time_s) / static_cast<double>(count);
-  const std::size_t stride =
-      std::min(count / (kOnsetRows + 1), static_cast<std::size_t>(kCoarsestOnset_s / std::max(step_s, 1e-6))) + 1;
+  const auto coarsest = static_cast<std::size_t>(kCoarsestOnset_s / std::max(step_s, 1e-6));
+  const std::size_t stride = std::max<std::size_t>(1, std::min((count + kOnsetRows - 1) / kOnsetRows, coarsest));
   prepared->rows.reserve(std::min(count / stride + 1, kOnsetRows));
   for (std::size_t i = 0; i < count && prepared->rows.size() < kOnsetRows; ++i) {
     const ToolSample sample = tool_sample(given.rows[i]);

@@ -117,10 +117,11 @@ void DemoApp::drive_tool() {
   ToolInput* tool = session_->tool_input();
   // Without a key, the simulated hand and the mouse are left alone.
   if (tool == nullptr || (key_velocity_m_per_s_ == 0.0 && !drives_)) return;
-  // After a late frame the next one follows at once: a tap of a key drives for the time of a frame all the same.
+  // After a late frame the next one follows at once: a tap of a key drives for most of the time of a frame all the same
+  // (not for all of it: it would then last one frame or two).
   const double now_s = steady_now_s();
   if (key_velocity_m_per_s_ == 0.0 && now_s < driven_until_s_) return;
-  if (!drives_) driven_until_s_ = now_s + 1.0 / 60.0;
+  if (!drives_) driven_until_s_ = now_s + 0.75 / 60.0;
   drives_ = key_velocity_m_per_s_ != 0.0;
   constexpr double kFar_m = 1.0;
   const double limit_m = key_velocity_m_per_s_ > 0.0 ? limited_depth_m(kFar_m) : kHover_m;

@@ -29,17 +29,18 @@ ErrorSummary StreamErrors::summary(const JndLine& jnd) const {
   return summary;
 }
 
-double SustainedError::add(double time_s, double difference_over_jnd) {
-  if (!samples_.empty() && (time_s < samples_.back().time_s || time_s - samples_.back().time_s > kSpan_s))
-    samples_.clear();
-  if (samples_.empty()) sum_ = 0.0;  // discards accumulated rounding errors
-  while (!samples_.empty() && samples_.front().time_s <= time_s - kSpan_s) {
-    sum_ -= samples_.front().difference;
-    samples_.pop_front();
+double SustainedError::add(double time_s, double difference_over_jnd) noexcept {
+  const double last_s = samples_[(first_ + count_ + samples_.size() - 1) % samples_.size()].time_s;
+  if (time_s < last_s || time_s - last_s > kSpan_s) count_ = 0;
+  while (count_ == samples_.size() || (count_ > 0 && samples_[first_].time_s <= time_s - kSpan_s)) {
+    sum_ -= samples_[first_].difference;
+    first_ = (first_ + 1) % samples_.size();
+    --count_;
   }
-  samples_.push_back({time_s, difference_over_jnd});
+  if (count_ == 0) sum_ = 0.0;  // discards accumulated rounding errors
+  samples_[(first_ + count_++) % samples_.size()] = {time_s, difference_over_jnd};
   sum_ += difference_over_jnd;
-  return sum_ / static_cast<double>(samples_.size());
+  return sum_ / static_cast<double>(count_);
 }
 
 Dent::Dent(const std::vector<FeatureSpec>& features) {

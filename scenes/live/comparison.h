@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <limits>
 #include <map>
 #include <utility>
@@ -49,13 +48,14 @@ class SustainedError {
 
   // `difference_over_jnd`: signed, finite. The window restarts where `time_s` decreases or has a gap longer than
   // the span. Returns the mean, signed.
-  double add(double time_s, double difference_over_jnd);
+  double add(double time_s, double difference_over_jnd) noexcept;
 
  private:
   struct Sample {
     double time_s = 0.0, difference = 0.0;
   };
-  std::deque<Sample> samples_;
+  std::array<Sample, 1000> samples_{};  // a ring: 50 ms at 20 kHz, the fastest recording
+  std::size_t first_ = 0, count_ = 0;
   double sum_ = 0.0;
 };
 

@@ -84,9 +84,10 @@ void ModelWorker::add_job(std::size_t job_id, const ModelRequest& request, bool 
 
 // The name of a plan says nothing of options beside its base, method and size.
 std::string ModelWorker::ready_file(const ModelPlan& plan) const {
+  if (ready_.empty()) return "";  // asked once a frame for each waiting model
   const auto named = parse_plan(plan_name(plan));
   const std::string file = file_in(ready_, plan);
-  return !ready_.empty() && named && *named == plan && std::filesystem::exists(file) ? file : "";
+  return named && *named == plan && std::filesystem::exists(file) ? file : "";
 }
 
 std::vector<FinishedModel> ModelWorker::read_finished() {

@@ -57,6 +57,8 @@ TEST(SustainedError, IsTheSignedMeanOfTheLast50Milliseconds) {
   EXPECT_LT(std::abs(last), 0.1) << "changing signs do not last";
   EXPECT_NEAR(error.add(3.0, 0.5), 0.5, 1e-12) << "a gap restarts the window";
   EXPECT_NEAR(error.add(1.0, 0.25), 0.25, 1e-12) << "so does a time that starts over";
+  for (int i = 0; i < 5000; ++i) last = error.add(1.0, i < 4000 ? 1.0 : 0.0);
+  EXPECT_NEAR(last, 0.0, 1e-12) << "a time that stands still: the newest thousand samples";
 }
 
 }  // namespace
