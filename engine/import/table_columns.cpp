@@ -76,8 +76,12 @@ class ColumnFinder {
       if (given.quantity == quantity) unit = given;
     const bool fits = unit && unit->quantity == quantity;
     const double volts = role == 2 ? volts_of(parts.foreign_unit) : 0.0;
-    if (role == 2 && request_.gain_N_per_V && (fits || !unit))
+    if (role == 2 && request_.gain_N_per_V && (fits || !unit)) {
+      if (parts.unit)
+        messages_.note("warning: the force" + found_.quoted_name(index) +
+                       " is read in V as --gain says, although its header says " + in_header);
       return use_unit(role, {"V", quantity, (volts > 0.0 ? volts : 1.0) * *request_.gain_N_per_V});
+    }
     if (volts > 0.0) {
       return messages_.fail("found volts in the column" + header +
                             ", expected a force; say how many newtons a volt is: --gain N_PER_V");

@@ -289,7 +289,7 @@ class Checker {
       add("no_contact", Severity::fatal, measures_.highest_position_m,
           words("the highest position is %.3g mm, so the tool never touches the surface at 0",
                 1e3 * measures_.highest_position_m),
-          "set position_m to 0 where force begins (palpate import FILE --origin contact), and check its sign");
+          "set position_m to 0 where force begins (palpate import FILE --zero contact), and check its sign");
     }
   }
 

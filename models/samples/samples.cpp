@@ -179,7 +179,7 @@ Result<Samples> make_samples(std::vector<PreparedRecordingPointer> recordings, c
   if (samples.contact.empty()) {
     return Error{
         "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; record a press, "
-        "check the sign of position_m, or set its origin (palpate import FILE --origin contact)"};
+        "check the sign of position_m, or set its origin (palpate import FILE --zero contact)"};
   }
   const bool clear = std::ranges::any_of(recordings, [](const auto& one) { return one->surface.identified(); });
   if (const double out_m = clear ? 0.0 : preload_surface_m(samples, jnd); out_m != 0.0) {

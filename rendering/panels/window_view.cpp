@@ -123,7 +123,7 @@ BigNumber big_number(const ModelsView& models) {
     big.number = jnd_text(big.error_over_jnd);
     big.what = "of what a hand can notice: the error of " + chosen.name;
     if (active != nullptr && active->press_samples > 0 && models.selected != models.reference)
-      big.below = "your press: " + jnd_text(active->press_p99_over_jnd) + " with " + active->name;
+      big.below = "this press: " + jnd_text(active->press_p99_over_jnd) + " with " + active->name;
   } else if (active != nullptr && !models.compared) {
     big.error_over_jnd = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
     big.number = std::isnan(big.error_over_jnd) ? "–" : jnd_text(big.error_over_jnd);

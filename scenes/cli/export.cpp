@@ -54,7 +54,7 @@ void add_export(CLI::App& app, Verbs& verbs) {
   command
       ->add_option("--encoder-step", arguments->encoder_step_m,
                    "Step of the positions in metres; 0: the step of the model's recordings")
-      ->check(CLI::Range(0.0, 0.1))
+      ->check(number_from(0.0, 0.1))
       ->capture_default_str();
   command->add_flag("--force", arguments->force, "Replace an existing file");
   verbs.emplace_back(command, [arguments] { return run_export(*arguments); });

@@ -19,8 +19,7 @@ struct ImportOptions {
   std::string file, out;
   std::vector<std::string> columns, units, flips;
   std::string decimal;
-  double gain_N_per_V = 0.0;
-  ImportRequest request;  // its rate and the number of bad rows
+  ImportRequest request;  // its rate, gain and number of bad rows
   std::string origin;
   bool json = false, force = false;
 };
@@ -56,7 +55,6 @@ ImportRequest import_request(const ImportOptions& options) {
   ImportRequest request = options.request;
   for (const std::string& column : options.columns) read_column(column, request.columns);
   for (const std::string& unit : options.units) read_unit(unit, request.units);
-  if (options.gain_N_per_V != 0.0) request.gain_N_per_V = options.gain_N_per_V;
   for (const std::string& flip : options.flips) {
     request.flip_position = request.flip_position || flip != "force";
     request.flip_force = request.flip_force || flip != "position";
@@ -65,7 +63,7 @@ ImportRequest import_request(const ImportOptions& options) {
   return request;
 }
 
-// Applies --origin: "contact", "first" or a position in metres.
+// Applies --zero: "contact", "first" or a position in metres.
 Status move_origin(const std::string& origin, Recording& recording) {
   double at_m = recording.rows.front().position_m;
   if (origin == "contact") {
@@ -73,7 +71,7 @@ Status move_origin(const std::string& origin, Recording& recording) {
     if (!surface.identified()) {
       return Error{std::string("the position where the force begins cannot be identified") +
                    (surface.air.found ? "" : ", because there is no free air") +
-                   "; give --origin first or a position in metres"};
+                   "; give --zero first or a position in metres"};
     }
     at_m = surface.raw_offset_m;
   } else if (origin != "first") {
@@ -83,13 +81,22 @@ Status move_origin(const std::string& origin, Recording& recording) {
   return {};
 }
 
-std::string check_origin(const std::string& origin) {
+std::optional<double> finite_number(const std::string& text) {
   char* end = nullptr;
-  const double value = std::strtod(origin.c_str(), &end);
-  const bool number = !origin.empty() && *end == '\0' && std::isfinite(value);
-  return origin == "contact" || origin == "first" || number
+  const double value = std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == '\0' && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::string check_origin(const std::string& origin) {
+  return origin == "contact" || origin == "first" || finite_number(origin)
              ? ""
              : "found \"" + origin + "\", expected contact, first or metres";
+}
+
+std::string check_gain(const std::string& gain) {
+  return finite_number(gain).value_or(0.0) != 0.0
+             ? ""
+             : "found \"" + gain + "\", expected newtons per volt, a number other than 0";
 }
 
 double seconds_of(const ImportedTable& table) {
@@ -178,19 +185,21 @@ void add_import(CLI::App& app, Verbs& verbs) {
       ->type_name("UNIT,...");
   verb->add_option("--rate", options->request.rate_Hz,
                    "Rate of evenly spaced rows in Hz; the times in the file are ignored")
-      ->check(CLI::Range(10.0, 20000.0))
+      ->check(number_from(10.0, 20000.0))
       ->type_name("HZ");
   verb->add_option("--flip", options->flips, "Reverse the sign of position, force or both")
       ->delimiter(',')
       ->check(CLI::IsMember({"position", "force", "both"}));
-  verb->add_option("--origin,--zero", options->origin,
+  verb->add_option("--zero,--origin", options->origin,
                    "Position that becomes 0: contact (where the force begins), first (the first row), or a value in m "
                    "[unchanged]")
       ->check(CLI::Validator(check_origin, "contact|first|M"));
-  verb->add_option("--gain", options->gain_N_per_V, "Newtons per volt, for a force recorded in volts")
+  verb->add_option("--gain", options->request.gain_N_per_V, "Newtons per volt, for a force recorded in volts")
+      ->check(CLI::Validator(check_gain, ""))
       ->type_name("N_PER_V");
   verb->add_option("--skip-bad-rows", options->request.skip_bad_rows,
                    "Largest number of unreadable rows to leave out [0]")
+      ->check(number_from(0.0, 1e9))
       ->type_name("N");
   verb->add_option("--decimal", options->decimal, "Decimal mark: point or comma [guessed]")
       ->check(CLI::IsMember({"point", "comma"}));

@@ -33,7 +33,7 @@ struct Verb {
 // In the order of --help.
 constexpr Verb kVerbs[] = {
     {add_synth, "palpate synth --material silicone --seed 1 --seconds 60 --out rec.csv"},
-    {add_import, "palpate import rig.csv --units mm,N --origin contact --out rec.csv"},
+    {add_import, "palpate import rig.csv --units mm,N --zero contact --out rec.csv"},
     {add_check, "palpate check rec.csv"},
     {add_fit, "palpate fit --recording rec.csv --out model.json"},
     {add_replay, "palpate replay --recording test.csv --model model.json --plot errors.svg"},

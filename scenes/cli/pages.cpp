@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "engine/base/whole_file.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/hard/hard_table.h"
 #include "scenes/report/paper.h"
+#include "scenes/report/publish.h"
 #include "scenes/report/report.h"
 
 namespace palpate::cli {
@@ -27,7 +29,7 @@ std::string command_line(const Arguments& arguments) {
   std::string text = "palpate report";
   const auto add = [&](const char* option, const std::vector<std::string>& values) {
     if (!values.empty()) text += std::string(" ") + option;
-    for (const std::string& value : values) text += " " + value;
+    for (const std::string& value : values) text += " " + shell_word(value);
   };
   add("--train", arguments.train);
   add("--test", arguments.test);
@@ -47,7 +49,7 @@ Status print_file(const std::string& path) {
 
 Status run_report(Arguments arguments) {
   if (arguments.train.empty() && !arguments.test.empty())
-    return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
+    throw CLI::ValidationError("--test", "found no --train, expected recordings to train on as well; give them");
   const auto scene = load_scene(arguments.scene);
   if (!scene) return scene.error();
   std::vector<std::string> paths = arguments.train;
@@ -71,8 +73,8 @@ Status run_report(Arguments arguments) {
 }
 
 Status run_paper(PaperRequest request, bool json) {
-  request.origin =
-      "palpate paper --out " + request.out + (request.quick ? " --quick" : "") + " · palpate " PALPATE_VERSION;
+  request.origin = "palpate paper --out " + shell_word(request.out) + (request.quick ? " --quick" : "") +
+                   " · palpate " PALPATE_VERSION;
   const auto answer =
       with_progress("measuring", [&](const FitControl& control) { return make_paper(request, control); });
   if (!answer) return answer.error();
@@ -101,6 +103,9 @@ void print_marks(const std::vector<HardRow>& rows) {
 }
 
 Status run_hard_cases(const HardOptions& options) {
+  if (!options.page.out.empty()) {  // tried before the cases run, which takes half a minute
+    if (const auto trial = ReportFolder::create(options.page.out, options.page.force); !trial) return trial.error();
+  }
   const auto rows = with_progress("testing", [](const FitControl& control) { return run_hard(control); });
   if (!rows) return rows.error();
   if (options.json) {
@@ -126,8 +131,9 @@ void add_report(CLI::App& app, Verbs& verbs) {
       app.add_subcommand("report", "Fit every method, measure speed and error, and write a page of results");
   const auto arguments = std::make_shared<Arguments>();
   verb->add_option("--train", arguments->train, "Training recordings (CSV) [virtual silicone]")->type_name("CSV");
-  verb->add_option("--test", arguments->test,
-                   "Test recordings (CSV) [k-fold cross-validation of the training recordings]")
+  verb->add_option(
+          "--test", arguments->test,
+          "Test recordings (CSV) [cross-validation over the training recordings; the last 40 % of a single one]")
       ->type_name("CSV");
   verb->add_option("--scene", arguments->scene, "Scene that gives the features and the JND line")
       ->capture_default_str();
@@ -156,7 +162,7 @@ void add_hard(CLI::App& app, Verbs& verbs) {
   verb->add_flag("--json", options->json, "Print one JSON object");
   verb->add_flag("--force", options->page.force, "Replace an earlier page");
   verbs.emplace_back(verb, [options] {
-    options->page.origin = "palpate hard --out " + options->page.out + " · palpate " PALPATE_VERSION;
+    options->page.origin = "palpate hard --out " + shell_word(options->page.out) + " · palpate " PALPATE_VERSION;
     return run_hard_cases(*options);
   });
 }

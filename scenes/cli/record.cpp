@@ -167,7 +167,7 @@ void add_record(CLI::App& app, Verbs& verbs) {
       ->type_name("NAME");
   verb->add_option("--out", options->out, "Recording to write (CSV)")->required()->type_name("REC.csv");
   verb->add_option("--seconds", options->seconds, "Length of the recording in s [until Ctrl-C]")
-      ->check(CLI::Range(0.1, 1e6));
+      ->check(number_from(0.1, 1e6));
   verb->add_flag("--guide", options->guide, "Say what to press next, and show which depths and speeds are missing");
   verb->add_option("--scene", options->scene, "Scene that gives the JND line, and whether the force has a memory")
       ->capture_default_str();

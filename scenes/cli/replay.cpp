@@ -329,11 +329,19 @@ Status run(const Options& options) {
       if (!status) return status;
     }
     if (plots[i].empty()) continue;
-    if (plots[i] == forces[i]) return Error{"--plot: found " + plots[i] + ", the file of --out, expected another file"};
+    const auto place = [](const std::string& path) { return fs::absolute(path).lexically_normal(); };
+    if (!forces[i].empty() && place(plots[i]) == place(forces[i]))
+      throw CLI::ValidationError("--plot", "found " + plots[i] + ", the file of --out, expected another file");
     if (const Status status = check_plot_path(plots[i], options.force); !status) return status;
   }
   const auto models = load_models(options.models, options.names);
   if (!models) return models.error();
+  for (const LoadedModel& one : *models) {
+    if (options.out.empty() || one.name.find_first_of(",\"\r\n") == std::string::npos) continue;
+    return Error{"found the model name " + printable(one.name) +
+                 ", expected one without comma, quote and line break, " +
+                 "because it becomes the header of a column; give another with --name"};
+  }
   CheckRequest request;
   request.jnd = models->front().model->data().jnd;
   const auto checked = check_before_use(options.recordings, request);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/atomic_file.h"
+#include "models/fit/model_plan.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/study/prepare_strokes.h"
@@ -135,10 +136,10 @@ Status run_simulate(const StudyOptions& options) {
     if (!strokes) return strokes.error();
     header.strokes = std::move(*strokes);
   }
-  ProgressLine line("simulating");
+  std::optional<ProgressLine> line("simulating");
   std::vector<StudyData> files;
   for (int i = 1; i <= options.subjects; ++i) {
-    if (!line.update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
+    if (!line->update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
     RandomStream random(options.seed, kPopulationStream + static_cast<std::uint64_t>(i));
     header.subject = (i < 10 ? "S0" : "S") + std::to_string(i);
     files.push_back({header, simulated_answers(header, options.traits, random.next())});
@@ -146,6 +147,7 @@ Status run_simulate(const StudyOptions& options) {
     for (const StudyRecord& record : files.back().records) text += study_row(record, header.strokes != nullptr);
     if (Status written = write_result(header.subject + ".csv", text, options); !written) return written;
   }
+  line.reset();  // Ctrl-C ends the program again
   return analyse(files, options);
 }
 
@@ -175,13 +177,15 @@ void add_stroke_options(CLI::App* verb, StudyOptions& options) {
 
 void add_simulate_options(CLI::App* verb, StudyOptions& options) {
   const auto add = [&](const char* name, auto& value, const char* help, double low, double high) {
-    verb->add_option(name, value, help)->check(CLI::Range(low, high))->capture_default_str();
+    verb->add_option(name, value, help)->check(number_from(low, high))->capture_default_str();
   };
   verb->add_option("--subjects", options.subjects, "Number of subjects")
       ->check(CLI::Range(1, 99))
       ->capture_default_str();
   add_stroke_options(verb, options);
-  verb->add_option("--seed", options.seed, "Seed of the subjects")->capture_default_str();
+  verb->add_option("--seed", options.seed, "Seed of the subjects")
+      ->check(CLI::Validator([](const std::string& text) { return option_error("seed", text); }, ""))
+      ->capture_default_str();
   add("--offset", options.traits.jnd.offset_N, "Their JND at 0 N, N", 0.001, 1.0);
   add("--weber", options.traits.jnd.weber_fraction, "Increase of their JND with the force", 0.0, 1.0);
   add("--bias", options.traits.order_bias_jnd, "Bias added to the second force, in multiples of the JND", -2.0, 2.0);

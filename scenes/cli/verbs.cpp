@@ -30,7 +30,7 @@ void print_check_text(const CheckedFile& file) {
               : verdict == "unusable" ? "not usable"
                                       : "usable");
   for (const Finding& finding : file.check.findings) {
-    std::printf("  %-8s %-16s %s%s%s\n", severity_name(finding.severity), finding.code.c_str(), finding.text.c_str(),
+    std::printf("  %-8s %-17s %s%s%s\n", severity_name(finding.severity), finding.code.c_str(), finding.text.c_str(),
                 finding.advice.empty() ? "" : "; ", finding.advice.c_str());
   }
   std::printf(
@@ -110,11 +110,6 @@ Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& pat
     const bool unique = std::ranges::count(models, models[i]->name(), &FittedModel::name) == 1;
     names.push_back(unique ? models[i]->name() : std::filesystem::path(paths[i]).stem().string());
   }
-  for (const std::string& name : names) {
-    if (name.find_first_of(",\"\r\n") == std::string::npos) continue;
-    return Error{"found the model name " + printable(name) + ", expected one without comma, quote and line break, " +
-                 "because it becomes the header of a column; give another with --name"};
-  }
   names = distinct_names(names);
   std::vector<LoadedModel> loaded;
   for (std::size_t i = 0; i < models.size(); ++i) loaded.push_back({names[i], models[i]});
@@ -129,6 +124,17 @@ Status refuse_input_as_output(const std::string& out, const std::vector<std::str
     return Error{out + " is the file to read from, expected another one for " + option + "; name a new file"};
   }
   return {};
+}
+
+CLI::Validator number_from(double low, double high) {
+  const std::string range = general(low, 12) + " to " + general(high, 12);
+  return {[=](const std::string& text) {
+            double value = 0.0;
+            const char* const end = text.data() + text.size();
+            if (parse_number(text.data(), end, value) == end && low <= value && value <= high) return std::string();
+            return "found \"" + text + "\", expected a number from " + range;
+          },
+          range};
 }
 
 void print_json(const nlohmann::ordered_json& json) {

@@ -63,13 +63,16 @@ struct LoadedModel {
   std::shared_ptr<const FittedModel> model;
 };
 // `names`: one for each file. Empty: the names in the files, or the file names where those are equal. Errors: more than
-// kMaxModels models; another number of names; a name that is no header of a column; a file that is no model.
+// kMaxModels models; another number of names; a file that is no model.
 Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
                                              const std::vector<std::string>& names);
 
 // Errors: `out` is one of the files that are read. `option`: the option that named it, for the message.
 Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,
                               const std::string& option);
+
+// Checks that an option is a finite number from `low` to `high`; CLI::Range accepts NaN.
+CLI::Validator number_from(double low, double high);
 
 // Prints to stdout. Bytes that are not UTF-8, as in paths, are replaced.
 void print_json(const nlohmann::ordered_json& json);

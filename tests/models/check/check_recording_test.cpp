@@ -198,6 +198,16 @@ TEST(CheckRecording, NamesTheRowsThatWereLeftOut) {
   EXPECT_STREQ(check.verdict(), "care");
 }
 
+TEST(CheckRecording, TellsTheMassThatTheForceSensorCarries) {
+  Recording heavy = silicone();
+  each(heavy, [](RecordingRow& row) { row.force_N += 0.06 * row.acceleration_m_per_s2; });
+  const RecordingCheck check = checked(heavy, kSilicone);
+  const Finding* const finding = find(check, "tool_mass");
+  ASSERT_NE(finding, nullptr) << all_of(check);
+  EXPECT_NEAR(finding->value, 0.06, 0.01);
+  EXPECT_EQ(find(check, "adhesion"), nullptr) << "inertia pulls, the material does not";
+}
+
 // Adhesion: on retreat an additional pull of 0.3 N over the last millimetre.
 TEST(CheckRecording, TellsThatTheMaterialPulls) {
   Recording sticky = silicone();

@@ -196,7 +196,7 @@ TEST(Fit, EveryKernelAndThinning) {
 TEST(Fit, EachRefusalSaysWhy) {
   const Recording recording = test::example_recording(1000, 1000.0);
   EXPECT_TRUE(test::has_parts(prepare({constant(50, -1e-3, 0.0)}, asked_for(test::paper_features())).error().message,
-                              {"in contact (position_m > 0)", "; ", "palpate import FILE --origin contact"}));
+                              {"in contact (position_m > 0)", "; ", "palpate import FILE --zero contact"}));
   Asked voxel = asked_for(test::paper_features());
   auto prepared = prepare({recording}, voxel);
   ASSERT_TRUE(prepared.ok());

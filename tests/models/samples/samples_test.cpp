@@ -274,7 +274,7 @@ TEST(Samples, WithoutContactThereAreNone) {
   EXPECT_EQ(
       test::message_of(make_samples({prepare_recording(recording)}, JndLine{})),
       "no sample of the training recordings is in contact (position_m > 0): there is nothing to fit; record a press, "
-      "check the sign of position_m, or set its origin (palpate import FILE --origin contact)");
+      "check the sign of position_m, or set its origin (palpate import FILE --zero contact)");
 }
 
 TEST(Thinned, KeepsRowsThatAreFarEnoughApart) {

@@ -121,8 +121,8 @@ TEST(SurfaceEstimate, MeasuresADriftingForceZero) {
   EXPECT_NEAR(estimate_surface(recording).air.drift_N, 0.02, 0.005);
 }
 
-// A press after 22 s. At 20 kHz the first kOnsetRows rows are 20 s of air; at 1 kHz there are too many rows to keep, but
-// none may be left out.
+// A press after 22 s. At 20 kHz the first kOnsetRows rows are 20 s of air; at 1 kHz there are too many rows to keep,
+// but none may be left out.
 TEST(SurfaceEstimate, IsFoundLateInALongRecordingOfManyRows) {
   for (const double rate_Hz : {20000.0, 1000.0}) {
     Recording recording;
@@ -146,6 +146,7 @@ TEST(SurfaceEstimate, TellsInertiaFromContact) {
   const SurfaceEstimate estimate = estimate_surface(recording);
   EXPECT_NEAR(estimate.air.tool_mass_kg, 0.06, 0.01);
   EXPECT_NEAR(estimate.raw_offset_m, 0.0, 0.1e-3);
+  EXPECT_EQ(estimate.offset_m, 0.0);
   EXPECT_EQ(estimate.force_zero_N, 0.0);
 }
 

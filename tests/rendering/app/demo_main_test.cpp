@@ -91,6 +91,7 @@ TEST_F(DemoMain, WhenTheDisplayGoesAwayTheProgramSavesItsResultsAndSaysSo) {
 TEST_F(DemoMain, WrongUsageIsExitCode2) {
   EXPECT_EQ(demo({"--sceen", "skin"}).exit_code, 2);
   EXPECT_EQ(demo({"--seconds", "soon"}).exit_code, 2);
+  EXPECT_EQ(demo({"--seconds", "nan"}).exit_code, 2);
   EXPECT_EQ(demo({"--help"}).exit_code, 0);
 }
 

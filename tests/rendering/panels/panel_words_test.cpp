@@ -99,7 +99,7 @@ TEST(PanelWords, TheBigNumberIsThatOfTheHeadline) {
   EXPECT_EQ(big_number(models).below, "") << "nothing was pressed";
   models.slots[0].press_samples = 100;
   models.slots[0].press_p99_over_jnd = 0.42;
-  EXPECT_EQ(big_number(models).below, "your press: 0.42 with greedy-100");
+  EXPECT_EQ(big_number(models).below, "this press: 0.42 with greedy-100");
   models.in_contact = false;
   EXPECT_EQ(big_number(models).number, "3.8") << "in the air it says the same";
   models.reference = 0;

@@ -122,6 +122,13 @@ TEST_F(ExportVerb, TheEncoderStepIsThatOfTheOption) {
   EXPECT_TRUE(test::has_parts(printed_, {"steps of 1 um"}));
 }
 
+TEST_F(ExportVerb, AnEncoderStepIsANumber) {
+  for (const char* step : {"nan", "inf", "-1e-6", "1"}) {
+    const std::vector<std::string> arguments = {"export", "m.json", "--c", "m.c", "--encoder-step", step};
+    EXPECT_TRUE(test::fails(2, arguments, {"--encoder-step", "expected a number from 0 to 0.1"})) << step;
+  }
+}
+
 TEST_F(ExportVerb, SaysThatARecordingIsNoModel) {
   ASSERT_TRUE(write_recording(folder_.file("rec.csv"), recording("maxwell", 1.0, 1), {}, false).ok());
   EXPECT_TRUE(test::fails(1, {"export", folder_.file("rec.csv"), "--c", folder_.file("m.c")},

@@ -21,6 +21,13 @@ TEST(ImportVerb, WritesARecordingAndPrintsTheGuesses) {
   EXPECT_EQ(test::must(read_recording(folder.file("rec.csv"))).rows.size(), 24u);
 }
 
+TEST(ImportVerb, AGainOfAForceInNewtonsIsAWarning) {
+  const test::TemporaryFolder folder;
+  const auto run =
+      test::must_run({"import", kFiles + "08_excel_de.csv", "--gain", "2", "--out", folder.file("rec.csv")});
+  EXPECT_TRUE(test::has_parts(run.out, {"warning: the force", "in V as --gain says", "its header says mN"}));
+}
+
 TEST(ImportVerb, WritesOverNothingWithoutForceAndLeavesNothingAfterAnError) {
   const test::TemporaryFolder folder;
   const std::string kept = folder.with_file("kept.csv", "mine\n");
@@ -60,8 +67,15 @@ TEST(ImportVerb, WrongUsageEndsWithTwo) {
   const test::TemporaryFolder folder;
   const std::string file = kFiles + "02_matlab.csv";
   const std::string out = folder.file("x.csv");
-  for (const std::vector<std::string>& extra : std::vector<std::vector<std::string>>{
-           {"--columns", "weg=2"}, {"--units", "furlong"}, {"--units", "mm,cm"}, {"--flip", "time"}, {"--rate", "0"}}) {
+  for (const std::vector<std::string>& extra : std::vector<std::vector<std::string>>{{"--columns", "weg=2"},
+                                                                                     {"--units", "furlong"},
+                                                                                     {"--units", "mm,cm"},
+                                                                                     {"--flip", "time"},
+                                                                                     {"--rate", "0"},
+                                                                                     {"--rate", "nan"},
+                                                                                     {"--gain", "0"},
+                                                                                     {"--gain", "nan"},
+                                                                                     {"--skip-bad-rows", "-1"}}) {
     std::vector<std::string> arguments = {"import", file, "--out", out};
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     EXPECT_EQ(run_palpate(arguments).exit_code, 2) << extra.back();

@@ -3,6 +3,7 @@
 
 #include "tests/support/message_parts.h"
 #include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -49,6 +50,11 @@ TEST(Main, EveryVerbHasAnExampleAndTheVersionSaysWhatComputes) {
     EXPECT_TRUE(test::has_parts(test::must_run({"study", verb, "--help"}).out, {"Example:\n  palpate study " + verb}));
   }
   EXPECT_TRUE(test::has_parts(run_palpate({"--version"}).out, {"palpate ", "commit ", "BLAS", "vectors "}));
+}
+
+TEST(Main, HardRefusesAFolderThatExistsBeforeItRuns) {
+  const test::TemporaryFolder folder;
+  EXPECT_TRUE(test::fails(1, {"hard", "--out", folder.path()}, {folder.path() + " exists", "--force"}));
 }
 
 TEST(Main, ScenesListsEveryScene) {

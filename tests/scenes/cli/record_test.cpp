@@ -74,6 +74,7 @@ TEST(Record, RefusesDevicesWithAReason) {
                           {"error: ", "exit code", "1", "; "}));
   EXPECT_EQ(run_palpate({"record", "--device", "hand"}).exit_code, 2) << "no --out";
   EXPECT_EQ(run_palpate({"record", "--device", "hand", "--seconds", "0", "--out", "a.csv"}).exit_code, 2);
+  EXPECT_EQ(run_palpate({"record", "--device", "hand", "--seconds", "nan", "--out", "a.csv"}).exit_code, 2);
 }
 
 TEST(DevicesTest, ADeviceShowsThatItsWatchdogStopsIt) {

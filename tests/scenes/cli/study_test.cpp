@@ -79,6 +79,10 @@ TEST(Study, RefusesWrongUsage) {
   EXPECT_EQ(run_palpate({"study", "simulate"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "recovery"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "analyse", "--out", "x"}).exit_code, 2);
+  for (const char* option : {"--offset", "--weber", "--bias", "--lapse", "--seed"}) {
+    EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", option, "nan"}).exit_code, 2) << option;
+  }
+  EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--seed", "-1"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--model", "greedy"}).exit_code, 2)
       << "needs --discriminate";
   EXPECT_TRUE(test::fails(1, {"study", "analyse", "/none/S01.csv", "--out", "/none/out"}, {"/none/S01.csv"}));
