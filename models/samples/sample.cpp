@@ -7,23 +7,6 @@
 
 namespace palpate {
 
-void GrowingStride::add(const Sample& row) {
-  if (seen_++ % stride_ != 0) return;
-  rows_.push_back(row);
-  if (rows_.size() < most_) return;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < rows_.size(); i += 2) rows_[kept++] = rows_[i];
-  rows_.resize(kept);
-  stride_ *= 2;
-}
-
-std::vector<Sample> thinned_rows(const std::vector<Sample>& rows, std::size_t most) {
-  const std::size_t stride = rows.size() / most + 1;
-  std::vector<Sample> kept;
-  for (std::size_t i = 0; i < rows.size(); i += stride) kept.push_back(rows[i]);
-  return kept;
-}
-
 std::vector<Sample> thinned_rows(const Recording& recording, std::size_t most) {
   std::vector<Sample> rows;
   MotionEstimator estimator(identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns));

@@ -20,24 +20,8 @@ struct Sample {
   double force_N = 0.0;
 };
 
-// Keeps rows in bounded memory. Whenever there are `most`, it drops every other one and keeps later rows at half the
-// rate.
-class GrowingStride {
- public:
-  explicit GrowingStride(std::size_t most) : most_(most) {}
-
-  void add(const Sample& row);
-  const std::vector<Sample>& rows() const { return rows_; }
-
- private:
-  std::size_t most_;
-  std::size_t stride_ = 1, seen_ = 0;
-  std::vector<Sample> rows_;
-};
-
-// Every n-th row, n = rows / most + 1 (integer division), so that at most `most` are left.
-std::vector<Sample> thinned_rows(const std::vector<Sample>& rows, std::size_t most);
-// The same of a recording, with the motion estimates.
+// Every n-th row, n = rows / most + 1 (integer division), so that at most `most` are left, with the motion estimated
+// from all.
 std::vector<Sample> thinned_rows(const Recording& recording, std::size_t most);
 // The smallest and the largest position of at least one row.
 std::pair<double, double> position_range_m(const std::vector<Sample>& rows);

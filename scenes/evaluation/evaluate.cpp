@@ -8,15 +8,6 @@
 namespace palpate {
 namespace {
 
-// The rows by which the surface is searched.
-std::vector<Sample> searched_rows(const Recording& recording) {
-  GrowingStride rows(2 * kSearchRows);
-  replay(recording, {}, [&](const RecordingRow& row, const TickSnapshot&, const HapticsTick& tick) {
-    rows.add({tool_sample(row), tick.motion(), row.force_N});
-  });
-  return thinned_rows(rows.rows(), kSearchRows);
-}
-
 class Evaluator {
  public:
   Evaluator(const Recording& recording, const std::vector<EvaluatedModel>& models, const EvaluationRequest& request,
@@ -55,7 +46,8 @@ class Evaluator {
   using Places = std::vector<std::size_t>;  // of one model in `models_`
 
   void find_surfaces() {
-    const std::vector<Sample> rows = request_.move_surface ? searched_rows(recording_) : std::vector<Sample>{};
+    std::vector<Sample> rows;
+    if (request_.move_surface) rows = thinned_rows(recording_, kSearchRows);
     const std::vector<ModelPointer>& common = request_.surface_models;
     const OffsetEstimate of_all = locate_surface(rows, common, models_.front().jnd);
     for (const Places& places : different_) {

@@ -2,25 +2,24 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "tests/support/example_model.h"
+
 namespace palpate {
 namespace {
 
-std::vector<Sample> kept_of(GrowingStride rows, int count, double period_s) {
-  for (int i = 0; i < count; ++i) {
-    Sample row;
-    row.tool.time_s = i * period_s;
-    rows.add(row);
+TEST(ThinnedRows, AreEvenlySpacedOverTheWholeWithTheMotionOfAllRows) {
+  const Recording recording = test::example_recording(1000, 1000.0);
+  const std::vector<Sample> all = thinned_rows(recording, kAllRows), few = thinned_rows(recording, 99);
+  ASSERT_EQ(all.size(), 1000u);
+  EXPECT_LE(few.size(), 99u);
+  EXPECT_GT(few.back().tool.time_s, 0.98 * all.back().tool.time_s);
+  for (const Sample& row : few) {
+    const auto same = std::ranges::find(all, row.tool.time_s, [](const Sample& one) { return one.tool.time_s; });
+    ASSERT_NE(same, all.end());
+    EXPECT_EQ(row.motion.velocity_m_per_s, same->motion.velocity_m_per_s);
   }
-  return rows.rows();
-}
-
-TEST(GrowingStride, KeepsEveryRowThatItHasRoomFor) { EXPECT_EQ(kept_of(GrowingStride(100), 99, 1e-3).size(), 99u); }
-
-TEST(GrowingStride, GoesOverTheWholeInLongerSteps) {
-  const auto kept = kept_of(GrowingStride(100), 1000, 1e-3);
-  EXPECT_GE(kept.size(), 50u);
-  EXPECT_LT(kept.size(), 100u);
-  EXPECT_GT(kept.back().tool.time_s, 0.9);
 }
 
 }  // namespace
