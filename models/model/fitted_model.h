@@ -92,7 +92,7 @@ struct ModelData : Normalisation {
   DomainCover cover;
   std::optional<ErrorBound> error_bound;  // none of a fit to the measured force
   // The position sensor of the training recordings, the coarsest of them: the default sensor of streams and exported
-  // files; no effect on the force of a feature vector. None in earlier files.
+  // files; no effect on the force of a feature vector. None: not known.
   std::optional<SensorSpec> sensor;
   JndLine jnd;
   CorrectionPtr correction;  // h; shared by copies; null: none

@@ -84,7 +84,7 @@ void describe_surface(auto& file, RecordingOffset& surface) {
 void describe_provenance(auto& file, Provenance& from) {
   file.object("provenance", "an object", [&] {
     file.value("recordings", from.recordings);
-    // Models fitted to positions as recorded have no such list.
+    // A model that was not made from recordings has no such list.
     if (file.has("surfaces", !from.offsets.empty()))
       describe_each(file, "surfaces", from.offsets, 0,
                     [&](RecordingOffset& surface) { describe_surface(file, surface); });
