@@ -136,7 +136,7 @@ double ResidualRows::predicted_N(const ModelData& common, std::size_t i, double 
 Sites ResidualRows::sites_without(int without, double smoothing) const {
   const std::vector<Eigen::Index> others = outside(without);
   return even_subset({points(Eigen::all, others), residual_N(without)(others), row_scale(others), kernel, smoothing},
-                     1000);  // with 1500 the bound covers the same shares
+                     1000);  // with 1500 the coverage of the bound differs by at most 0.6 points
 }
 
 void ResidualRows::find_distances() {

@@ -4,7 +4,7 @@
 // the logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below the
 // JND irrelevant. The correction and what the paper leaves open have the lowest score. The shape of the trend is the
 // simplest whose mean score exceeds the lowest by at most two standard errors of the paired difference; with the lowest
-// score, 0.8 points of the share within the JND are lost on the recorded sets (tests/bench/README.md).
+// score for its smoothness, the share within the JND of the recorded sets falls by 0.8 points (tests/bench/README.md).
 // Source: Breiman et al. (1984), section 3.4.3; Hastie, Tibshirani & Friedman (2009), section 7.10.
 // Thread guarantee: value types and pure functions, slow side.
 #pragma once

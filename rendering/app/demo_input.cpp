@@ -117,8 +117,8 @@ void DemoApp::drive_tool() {
   ToolInput* tool = session_->tool_input();
   // Without a key, the simulated hand and the mouse are left alone.
   if (tool == nullptr || (key_velocity_m_per_s_ == 0.0 && !drives_)) return;
-  // After a late frame the next one follows at once: a tap of a key drives for most of the time of a frame all the same
-  // (not for all of it: it would then last one frame or two).
+  // After a late frame the next one follows at once, so a tap of a key drives for at least three quarters of a frame.
+  // With a whole frame, the jitter of the frames would make it last one frame or two.
   const double now_s = steady_now_s();
   if (key_velocity_m_per_s_ == 0.0 && now_s < driven_until_s_) return;
   if (!drives_) driven_until_s_ = now_s + 0.75 / 60.0;

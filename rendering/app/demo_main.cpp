@@ -72,7 +72,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->expected(0, 1);
   app.add_option("--seconds", arguments.seconds, "Exit after this many seconds")
       ->check(CLI::Range(0.1, 1e6))
-      ->check([](const std::string& text) { return std::isnan(std::atof(text.c_str())) ? "must be a number" : ""; });
+      ->check([](const std::string& text) {
+        return std::isnan(std::atof(text.c_str())) ? "found nan, expected a number" : "";
+      });
   app.add_option("--screenshot", arguments.screenshot, "Save the window as it is at the end [after 12 s], then end")
       ->type_name("PNG");
   app.add_option("--stats", arguments.stats,
