@@ -1,6 +1,4 @@
 // palpate import: converts a table of another program to a recording.
-#include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -64,6 +62,12 @@ ImportRequest import_request(const ImportOptions& options) {
   return request;
 }
 
+std::optional<double> finite_number(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  return parse_number(text.data(), end, value) == end ? std::optional(value) : std::nullopt;
+}
+
 // Applies --zero: "contact", "first" or a position in metres.
 Status move_origin(const std::string& origin, Recording& recording) {
   double at_m = recording.rows.front().position_m;
@@ -76,16 +80,10 @@ Status move_origin(const std::string& origin, Recording& recording) {
     }
     at_m = surface.raw_offset_m;
   } else if (origin != "first") {
-    at_m = std::stod(origin);
+    at_m = finite_number(origin).value_or(0.0);  // checked by check_origin
   }
   for (RecordingRow& row : recording.rows) row.position_m -= at_m;
   return {};
-}
-
-std::optional<double> finite_number(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == '\0' && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 std::string check_origin(const std::string& origin) {
