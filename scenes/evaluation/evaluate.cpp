@@ -1,12 +1,16 @@
 #include "scenes/evaluation/evaluate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "engine/base/text.h"
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {
 namespace {
+
+constexpr double kStill_m_per_s = 0.002;  // the slowest speed that is a movement
 
 class Evaluator {
  public:
@@ -119,6 +123,41 @@ Result<Evaluation> evaluate(const Recording& recording, const std::vector<Evalua
                             const EvaluationRequest& request, Evaluation pooled) {
   if (const Status status = Evaluator(recording, models, request, pooled).run(); !status) return status.error();
   return pooled;
+}
+
+Motion motion_at(std::size_t at, std::size_t count,
+                 const std::function<std::pair<double, double>(std::size_t)>& time_and_position) {
+  constexpr double kSpan_s = 0.02;
+  const auto velocity = [&](std::size_t i) {
+    std::size_t from = i, to = i;
+    const double time_s = time_and_position(i).first;
+    while (from > 0 && time_s - time_and_position(from).first < 0.5 * kSpan_s) --from;
+    while (to + 1 < count && time_and_position(to).first - time_s < 0.5 * kSpan_s) ++to;
+    const auto [first_s, first_m] = time_and_position(from);
+    const auto [last_s, last_m] = time_and_position(to);
+    return last_s > first_s ? (last_m - first_m) / (last_s - first_s) : 0.0;
+  };
+  const auto still = [&](std::size_t i) { return std::abs(velocity(i)) < kStill_m_per_s; };
+  Motion motion{time_and_position(at).second, velocity(at), 0.0};
+  std::size_t begin = at;
+  if (!still(at))
+    while (begin > 0 && !still(begin)) --begin;
+  const double end_s = time_and_position(begin).first;
+  while (begin > 0 && still(begin)) --begin;
+  motion.hold_s = end_s - time_and_position(begin).first;
+  return motion;
+}
+
+std::string motion_words(const Motion& motion) {
+  constexpr double kSlow_m_per_s = 0.008, kFast_m_per_s = 0.03, kLeastHold_s = 0.5;
+  const double speed = std::abs(motion.velocity_m_per_s);
+  const std::string depth = general(1e3 * motion.position_m, 2) + " mm", hold = general(motion.hold_s, 2) + " s";
+  const bool held = motion.hold_s >= kLeastHold_s;
+  if (speed < kStill_m_per_s) return "hold, " + depth + (held ? ", for " + hold : "");
+  return std::string(speed < kSlow_m_per_s   ? "slow "
+                     : speed > kFast_m_per_s ? "fast "
+                                             : "") +
+         (motion.velocity_m_per_s > 0.0 ? "press, " : "release, ") + depth + (held ? ", after a hold of " + hold : "");
 }
 
 }  // namespace palpate

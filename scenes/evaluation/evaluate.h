@@ -5,8 +5,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/parallel.h"
@@ -53,5 +56,16 @@ struct Evaluation {
 // the evaluation of as many models on earlier recordings, to which this one is added. Errors: interrupted.
 Result<Evaluation> evaluate(const Recording& recording, const std::vector<EvaluatedModel>& models,
                             const EvaluationRequest& request = {}, Evaluation pooled = {});
+
+// The motion of a tool at one moment, and how long it stood still before the movement that it belongs to.
+struct Motion {
+  double position_m = 0.0, velocity_m_per_s = 0.0, hold_s = 0.0;
+};
+// The motion at point `at` of `count` points. `time_and_position(i)`: s and m, in the order of time. The velocity is a
+// difference over 20 ms, so that the steps of an encoder do not matter.
+Motion motion_at(std::size_t at, std::size_t count,
+                 const std::function<std::pair<double, double>(std::size_t)>& time_and_position);
+// "fast release, 4 mm, after a hold of 2 s"; the hold is left out below half a second.
+std::string motion_words(const Motion& motion);
 
 }  // namespace palpate

@@ -122,6 +122,19 @@ TEST(Evaluate, NoForceErrsByTheWholeForce) {
   EXPECT_EQ(result.no_force.summary().max_error_N, largest_N);
 }
 
+// In to 4 mm, held there for 2 s, and out at 50 mm/s.
+TEST(Evaluate, AMomentIsSaidInThreeWords) {
+  const auto at = [](std::size_t i) {
+    const double time_s = 1e-3 * static_cast<double>(i);
+    const double depth_m = std::min({4e-3, 0.02 * time_s, 4e-3 - 0.05 * (time_s - 2.2)});
+    return std::pair(time_s, depth_m);
+  };
+  const auto words = [&](std::size_t i) { return motion_words(motion_at(i, 2300, at)); };
+  EXPECT_EQ(words(100), "press, 2 mm");
+  EXPECT_EQ(words(1700), "hold, 4 mm, for 1.5 s");
+  EXPECT_EQ(words(2240), "fast release, 2 mm, after a hold of 2 s");
+}
+
 TEST(ModelErrors, CountErrorsWithinTheBoundAndKnowWhenItSaysNothing) {
   const JndLine jnd{0.1, 0.0};
   ModelErrors errors(jnd);
