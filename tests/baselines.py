@@ -1,21 +1,27 @@
-"""Two trivial force models, the baselines of labs.py. Both use depths and forces only.
+"""Standard models of scikit-learn, the baselines of labs.py: what one would fit without Palpate.
 
-bins   the median force of 60 depths and two directions of motion, linear between them
-ridge  a ridge regression on a polynomial of the depth, low-passed depths, play operators with thresholds up to
-       half of the depth, and the greatest depth so far; rows weighted by 1/JND
+GP      a Gaussian process: Matern 3/2 kernel, mean of a cubic polynomial of the depth, at most 1500 rows
+forest  100 regression trees (as Cha, Bhardwaj, Park & Choi, AsiaHaptics 2018), at most 3000 rows
+ridge   a linear regression on powers of the depth, the memories below, and their products with the depth
+
+All have the same columns: depth, velocity, seven low-passes of the depth, three play operators, and the greatest depth
+so far; rows count by 1/JND; and cross-validation over the folds of Palpate's fit, with 600 of the rows, sets what a
+manual leaves open. Needs python3-sklearn.
 """
 import csv
 
 import numpy
+from sklearn.ensemble import RandomForestRegressor
+from sklearn.gaussian_process import GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import Matern
+from sklearn.linear_model import LinearRegression, Ridge
+from sklearn.preprocessing import StandardScaler
 
-DEPTHS = 60
-DEGREE = 6
-TIMES_S = numpy.array([0.03, 0.1, 0.3, 1.0, 3.0, 10.0])
-THRESHOLDS = 0.5 / 2.0 ** numpy.arange(6)  # relative to the greatest depth
-RIDGE = 1e-4  # relative to the sum of squares of a column
-MOST_ROWS = 20000  # for training; longer recordings are thinned evenly
-DIRECTION = 0.005  # a reversal by this share of the greatest depth changes the direction of motion
-SHIFTS = numpy.linspace(-1.0, 1.0, 41)
+TIMES_S = 0.01 * 10 ** (numpy.arange(7) / 2)
+THRESHOLDS = numpy.array([0.05, 0.15, 0.4])  # of the play operators, relative to the greatest depth
+SPEED_S = 0.02  # of the low-pass before the velocity
+TUNED_ROWS = 600
+UNNOTICED = 0.25  # of the score of a fold, as in models/METHOD.md
 
 
 def jnd(force):
@@ -23,112 +29,120 @@ def jnd(force):
 
 
 class Recording:
-    """Time, position and force of one file, and which samples are in contact (models/METHOD.md)."""
+    """Time, position and force of one file, and which samples count, those that `palpate replay` counts."""
 
     def __init__(self, path):
         with open(path, newline="") as file:
             rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
         self.time, self.position, self.force = (
             numpy.array([float(row[name]) for row in rows]) for name in ("time_s", "position_m", "force_N"))
+        self.known = {}  # columns by greatest depth
 
-    def contact(self, surface=0.0):
-        return (self.position > surface) | (numpy.abs(self.force) > 0.065)
+    def contact(self):
+        return self.position > 0.0
 
+    def columns(self, greatest_m):
+        """One row a sample; lengths relative to the greatest depth of the training."""
+        if greatest_m not in self.known:
+            self.known[greatest_m] = self.columns_at(greatest_m)
+        return self.known[greatest_m]
 
-def play(values, state, threshold):
-    return numpy.minimum(numpy.maximum(state, values - threshold), values + threshold)
+    def columns_at(self, greatest_m):
+        depths = numpy.maximum(0.0, self.position) / greatest_m
+        steps_s = numpy.diff(self.time, prepend=self.time[0] - 1e-3)
+        shares = 1.0 - numpy.exp(-steps_s[:, None] / numpy.append(TIMES_S, SPEED_S))
+        slow, plays, most = numpy.full(len(TIMES_S) + 1, depths[0]), numpy.zeros(len(THRESHOLDS)), depths[0]
+        rows = numpy.empty((len(depths), 2 + len(TIMES_S) + len(THRESHOLDS) + 1))
+        for row, depth, share, step_s in zip(rows, depths, shares, steps_s):
+            change = share * (depth - slow)
+            slow = slow + change
+            plays = numpy.minimum(numpy.maximum(plays, depth - THRESHOLDS), depth + THRESHOLDS)
+            most = max(most, depth)
+            row[:] = [depth, change[-1] / step_s, *slow[:-1], *plays, most]
+        return rows
 
-
-class Bins:
-    def __init__(self, recordings):
-        self.greatest = max(one.position.max() for one in recordings)
-        kept = [one.contact() for one in recordings]
-        position = numpy.concatenate([one.position[rows] for one, rows in zip(recordings, kept)])
-        force = numpy.concatenate([one.force[rows] for one, rows in zip(recordings, kept)])
-        inward = numpy.concatenate([self.inward(one)[rows] for one, rows in zip(recordings, kept)])
-        edges = numpy.linspace(position.min(), position.max(), DEPTHS + 1)
-        found = numpy.clip(numpy.searchsorted(edges, position) - 1, 0, DEPTHS - 1)
-        self.lines = {}
-        for way in (False, True):
-            filled = [bin for bin in range(DEPTHS) if numpy.any((found == bin) & (inward == way))]
-            medians = [numpy.median(force[(found == bin) & (inward == way)]) for bin in filled]
-            self.lines[way] = ((edges[filled] + edges[numpy.add(filled, 1)]) / 2, medians) if filled else ([0.0], [0.0])
-
-    def inward(self, recording):
-        """For each sample, whether the last motion was inward."""
-        state, way, ways = recording.position[0], True, []
-        for value in recording.position:
-            moved = play(value, state, DIRECTION * self.greatest)
-            way = moved > state if moved != state else way
-            state = moved
-            ways.append(way)
-        return numpy.array(ways)
-
-    def forces(self, recording, shifts):
-        """Samples x shifts."""
-        inward = self.inward(recording)[:, None]
-        depth = recording.position[:, None] - shifts
-        return numpy.where(inward, numpy.interp(depth, *self.lines[True]), numpy.interp(depth, *self.lines[False]))
+    def strokes(self):
+        """The rows of each contact."""
+        rows = numpy.flatnonzero(self.contact())
+        return numpy.split(rows, numpy.flatnonzero(numpy.diff(rows) > 1) + 1) if len(rows) else []
 
 
-class Ridge:
-    def __init__(self, recordings):
-        self.greatest = max(one.position.max() for one in recordings)
-        columns, force = [], []
-        for one in recordings:
-            chosen = numpy.flatnonzero(one.contact())
-            chosen = chosen[::max(1, len(recordings) * len(chosen) // MOST_ROWS)]
-            columns.append(numpy.concatenate(list(self.columns(one, numpy.zeros(1))))[chosen, :, 0])
-            force.append(one.force[chosen])
-        columns, force = numpy.concatenate(columns), numpy.concatenate(force)
-        weighted = columns / jnd(force)[:, None]
-        scale = numpy.sqrt((weighted ** 2).sum(axis=0)) + 1e-12
-        weighted = numpy.vstack([weighted / scale, numpy.sqrt(RIDGE) * numpy.eye(len(scale))])
-        target = numpy.concatenate([force / jnd(force), numpy.zeros(len(scale))])
-        self.weights = numpy.linalg.lstsq(weighted, target, rcond=None)[0] / scale
-
-    def columns(self, recording, shifts):
-        """Blocks of samples x columns x shifts."""
-        depths = numpy.maximum(0.0, recording.position[:, None] - shifts) / self.greatest
-        shares = 1.0 - numpy.exp(-numpy.diff(recording.time, prepend=recording.time[0])[:, None] / TIMES_S)
-        slow, plays, greatest = numpy.tile(depths[0], (len(TIMES_S), 1)), numpy.zeros((len(THRESHOLDS), len(shifts))), depths[0]
-        for begin in range(0, len(depths), 1000):
-            block = depths[begin:begin + 1000]
-            states = []
-            for depth, share in zip(block, shares[begin:begin + 1000]):
-                slow = slow + share[:, None] * (depth - slow)
-                plays = play(depth, plays, THRESHOLDS[:, None])
-                greatest = numpy.maximum(greatest, depth)
-                states.append(numpy.vstack([slow, plays, greatest]))
-            states = numpy.array(states)
-            powers = block[:, None, :] ** numpy.arange(DEGREE + 1)[:, None]
-            yield numpy.concatenate([powers, states, states * block[:, None, :]], axis=1)
-
-    def forces(self, recording, shifts):
-        return numpy.concatenate([numpy.einsum("rcs,c->rs", block, self.weights)
-                                  for block in self.columns(recording, shifts)])
+def folds_of(recordings):
+    """A fold for each row in contact: recordings, or pieces of at most a tenth of them."""
+    if len(recordings) >= 3:
+        return numpy.concatenate([numpy.full(one.contact().sum(), i % 6) for i, one in enumerate(recordings)])
+    longest = sum(one.contact().sum() for one in recordings) // 10 + 1
+    pieces = [len(stroke[at:at + longest]) for one in recordings for stroke in one.strokes()
+              for at in range(0, len(stroke), longest)]
+    return numpy.repeat(numpy.arange(len(pieces)) % 5, pieces)
 
 
-KINDS = {"bins": Bins, "ridge": Ridge}
+class GaussianProcess:
+    ROWS = 1500
+    CANDIDATES = [(length, noise) for length in (2.0, 5.0, 12.0) for noise in (0.1, 0.5)]
+
+    def __init__(self, x, y, length, noise):
+        self.mean = LinearRegression().fit(self.cubic(x), y, 1.0 / jnd(y) ** 2)
+        rest = y - self.mean.predict(self.cubic(x))
+        self.scaler = StandardScaler().fit(x)
+        kernel = max(rest.std(), 1e-3) ** 2 * Matern(length, "fixed", 1.5)
+        self.process = GaussianProcessRegressor(kernel, alpha=(noise * jnd(y)) ** 2, optimizer=None)
+        self.process.fit(self.scaler.transform(x), rest)
+
+    def cubic(self, x):
+        return x[:, :1] ** [1, 2, 3]
+
+    def predict(self, x):
+        return self.mean.predict(self.cubic(x)) + self.process.predict(self.scaler.transform(x))
 
 
-def figures(model, recording):
-    """Errors as recorded, and with the surface of the test moved to the minimum of the mean error over the JND.
-    The moved figures are fitted to the forces of the test, as those of `palpate replay` are."""
-    def errors(shift, forces):
-        rows = recording.contact(shift)
-        return (numpy.abs(forces - recording.force) / jnd(recording.force))[rows]
+class Forest:
+    ROWS = 3000
+    CANDIDATES = [(2,), (8,)]
 
-    def best(shifts):
-        forces = model.forces(recording, shifts)
-        costs = [errors(shift, column).mean() for shift, column in zip(shifts, forces.T)]
-        at = int(numpy.argmin(costs))
-        return shifts[at], errors(shifts[at], forces[:, at])
+    def __init__(self, x, y, leaf):
+        self.trees = RandomForestRegressor(100, min_samples_leaf=leaf, random_state=1)
+        self.trees.fit(x, y, 1.0 / jnd(y) ** 2)
 
-    recorded = errors(0.0, model.forces(recording, numpy.zeros(1))[:, 0])
-    coarse = 0.25 * model.greatest * SHIFTS
-    shift, _ = best(coarse)
-    shift, moved = best(shift + (coarse[1] - coarse[0]) * SHIFTS)
-    within = lambda some: 100 * float((some <= 1.0).mean())
-    return {"share": within(recorded), "moved": within(moved), "p99": float(numpy.quantile(recorded, 0.99)),
-            "worst": float(recorded.max()), "held": None, "offset_m": float(shift)}
+    def predict(self, x):
+        return self.trees.predict(x)
+
+
+class LinearRidge:
+    ROWS = 20000
+    CANDIDATES = [(10.0 ** decade,) for decade in range(-4, 3)]
+
+    def __init__(self, x, y, penalty):
+        self.scaler = StandardScaler().fit(self.terms(x))
+        weights = 1.0 / jnd(y) ** 2
+        self.line = Ridge(penalty).fit(self.scaler.transform(self.terms(x)), y, weights / weights.mean())
+
+    def terms(self, x):
+        return numpy.hstack([x[:, :1] ** numpy.arange(1, 7), x[:, 1:], x[:, :1] * x[:, 1:]])
+
+    def predict(self, x):
+        return self.line.predict(self.scaler.transform(self.terms(x)))
+
+
+KINDS = {"GP": GaussianProcess, "forest": Forest, "ridge": LinearRidge}
+
+
+class Baseline:
+    def __init__(self, kind, recordings, greatest_m):
+        self.greatest_m = greatest_m
+        x = numpy.concatenate([one.columns(greatest_m)[one.contact()] for one in recordings])
+        y = numpy.concatenate([one.force[one.contact()] for one in recordings])
+        kept = slice(None, None, -(-len(y) // kind.ROWS))
+        x, y, fold = x[kept], y[kept], folds_of(recordings)[kept]
+
+        few = slice(None, None, -(-len(y) // TUNED_ROWS))
+        parts = [(few_x[few_fold != k], few_y[few_fold != k], few_x[few_fold == k], few_y[few_fold == k])
+                 for few_x, few_y, few_fold in [(x[few], y[few], fold[few])] for k in numpy.unique(few_fold)]
+
+        def score(candidate):
+            errors = [(kind(*train, *candidate).predict(left_x) - left_y) / jnd(left_y) for *train, left_x, left_y in parts]
+            return sum(numpy.log((one ** 2).mean() + UNNOTICED ** 2) for one in errors)
+        self.model = kind(x, y, *min(kind.CANDIDATES, key=score))
+
+    def forces(self, recording):
+        return self.model.predict(recording.columns(self.greatest_m))
