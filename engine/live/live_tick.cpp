@@ -11,59 +11,11 @@
 namespace palpate {
 namespace {
 
-// Strokes for warming up, in and out of contact.
-constexpr int kWarmUpSamples = 500;
+constexpr std::size_t kWarmUpSamples = 500;
 
 static_assert(static_cast<std::uint32_t>(TickFault::bad_sample) == loop_fault::kBadSample &&
               static_cast<std::uint32_t>(TickFault::time_not_later) == loop_fault::kTimeNotLater &&
               static_cast<std::uint32_t>(TickFault::force_not_finite) == loop_fault::kModelNotFinite);
-
-// At each depth the tool comes to rest, then makes one cycle. The relaxation of the force is subtracted as a straight
-// line; the first harmonic of the rest gives the impedance.
-constexpr double kProbedDepths_m[] = {0.5e-3, 1e-3, 2e-3, 3e-3, 4.5e-3, 6e-3, 8e-3, 10e-3};
-constexpr double kProbe_m = 0.1e-3;
-constexpr int kCycleSamples = 20, kRestSamples = 10;
-constexpr double kProbeStep_s = 2e-3;
-constexpr double kProbedForce_N = 10.0;
-using CycleForces = std::array<double, kCycleSamples + 1>;
-
-Impedance impedance_of(const CycleForces& force_N) noexcept {
-  std::complex<double> harmonic_N;  // the imaginary part is in phase with the position
-  for (std::size_t i = 0; i < kCycleSamples; ++i) {
-    const double share = static_cast<double>(i) / kCycleSamples;
-    const double rest_N = force_N[i] - force_N.front() - share * (force_N.back() - force_N.front());
-    harmonic_N += 2.0 / kCycleSamples * rest_N * std::polar(1.0, 2.0 * std::numbers::pi * share);
-  }
-  constexpr double kSpeed_m_per_s = 2.0 * std::numbers::pi / (kCycleSamples * kProbeStep_s) * kProbe_m;
-  return {harmonic_N.imag() / kProbe_m, harmonic_N.real() / kSpeed_m_per_s};
-}
-
-void measure_impedance(const ForceModels& models, LiveModels& set) {
-  HapticsTick tick({}, models);
-  std::vector<CycleForces> forces_N(models.size());
-  ToolSample sample;
-  for (const double depth_m : kProbedDepths_m) {
-    const double from_m = sample.position_m;
-    for (int i = 1; i <= kRestSamples; ++i) {
-      sample.time_s += kProbeStep_s;
-      sample.position_m = from_m + std::min(1.0, 2.0 * i / kRestSamples) * (depth_m - from_m);
-      tick.step(sample);
-    }
-    for (std::size_t i = 0; i <= kCycleSamples; ++i) {
-      const double phase = 2.0 * std::numbers::pi * static_cast<double>(i) / kCycleSamples;
-      sample.time_s += kProbeStep_s;
-      sample.position_m = depth_m + kProbe_m * std::sin(phase);
-      const TickSnapshot& snapshot = tick.step(sample);
-      for (std::size_t model = 0; model < models.size(); ++model) forces_N[model][i] = snapshot.force_N[model];
-    }
-    for (std::size_t model = 0; model < models.size(); ++model) {
-      if (std::abs(forces_N[model].front()) > kProbedForce_N) continue;
-      const Impedance here = impedance_of(forces_N[model]);
-      set.stiffness_N_per_m[model] = std::max(set.stiffness_N_per_m[model], here.stiffness_N_per_m);
-      set.damping_Ns_per_m[model] = std::max(set.damping_Ns_per_m[model], here.damping_Ns_per_m);
-    }
-  }
-}
 
 std::uint32_t limiter_faults(std::uint32_t flags) noexcept {
   constexpr std::pair<std::uint32_t, std::uint32_t> kFaultOfFlag[] = {
@@ -79,10 +31,36 @@ std::uint32_t limiter_faults(std::uint32_t flags) noexcept {
 
 }  // namespace
 
+// At each depth of the strokes, the relaxation of the force is subtracted as a straight line; the first harmonic of the
+// rest gives the impedance.
+Impedance impedance_of(const std::shared_ptr<const ForceModel>& model) {
+  constexpr std::size_t kCycle = ProbingStrokes::kCycleSamples;
+  const std::vector<double> forces_N = probed_forces(model).forces_N;
+  const double cycle_m = ProbingStrokes(*model).cycle_m();
+  const double speed_m_per_s = 2.0 * std::numbers::pi / (kCycle * ProbingStrokes::kStep_s) * cycle_m;
+  Impedance largest;
+  for (std::size_t place = 0; place < ProbingStrokes::kPlaces; ++place) {
+    const double* force_N = &forces_N[place * ProbingStrokes::kPlaceSamples + ProbingStrokes::kRestSamples];
+    std::complex<double> harmonic_N;  // the imaginary part is in phase with the position
+    for (std::size_t i = 0; i < kCycle; ++i) {
+      const double share = static_cast<double>(i) / kCycle;
+      const double rest_N = force_N[i] - force_N[0] - share * (force_N[kCycle] - force_N[0]);
+      harmonic_N += 2.0 / kCycle * rest_N * std::polar(1.0, 2.0 * std::numbers::pi * share);
+    }
+    largest.stiffness_N_per_m = std::max(largest.stiffness_N_per_m, harmonic_N.imag() / cycle_m);
+    largest.damping_Ns_per_m = std::max(largest.damping_Ns_per_m, harmonic_N.real() / speed_m_per_s);
+  }
+  return largest;
+}
+
 LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor, const ForceModels& models,
                        std::shared_ptr<ReferenceForce> true_force)
     : id(set_id), tick(sensor, models), reference(std::move(true_force)) {
-  measure_impedance(models, *this);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const Impedance impedance = impedance_of(models[i]);
+    stiffness_N_per_m[i] = impedance.stiffness_N_per_m;
+    damping_Ns_per_m[i] = impedance.damping_Ns_per_m;
+  }
   tick.time_evaluations(true);
 }
 
@@ -103,9 +81,11 @@ void LiveTick::warm_up() noexcept {
   update_models();
   HapticsTick& tick = models_->tick;
   tick.reset();
-  for (int i = 0; i < kWarmUpSamples; ++i) {
-    const double time_s = kHapticTick_s * i;
-    tick.step({time_s, 2e-3 * std::sin(25.0 * time_s), 0.0, 0.0});
+  for (std::size_t i = 0; i < kWarmUpSamples && tick.model_count() > 0; ++i) {
+    const ProbingStrokes strokes(tick.model(i * tick.model_count() / kWarmUpSamples));  // each of the models in turn
+    ToolSample sample = strokes.at(i * ProbingStrokes::kSamples / kWarmUpSamples);
+    sample.time_s = kHapticTick_s * static_cast<double>(i);
+    tick.step(sample);
   }
   tick.reset();
 }

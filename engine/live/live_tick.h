@@ -38,6 +38,10 @@ class ForceSource {
   virtual double next_force_N(double rendered_N) noexcept = 0;
 };
 
+// Slow side. The impedance of a model for a cycle of 0.1 mm (or 1 % of its greatest depth, if that is less) at 25 Hz:
+// the largest over all its depths, stiffness and damping each.
+Impedance impedance_of(const std::shared_ptr<const ForceModel>& model);
+
 // The data that are exchanged at once when the models change.
 struct LiveModels {
   // Slow side: sizes all workspaces and measures every model's impedance. `id` > 0 identifies this set in snapshots and
@@ -48,8 +52,7 @@ struct LiveModels {
   std::uint32_t id;
   HapticsTick tick;
   std::shared_ptr<ReferenceForce> reference;
-  // The impedance of each model for a cycle of 0.1 mm at 25 Hz: the largest over depths up to 10 mm where the force is
-  // at most 10 N.
+  // The impedance_of each model.
   ForceMixer::Forces stiffness_N_per_m{}, damping_Ns_per_m{};
   std::uint32_t selected = 0;  // until the controls refer to this set
   // The model whose force is RecordedSample::model_N, for recordings with neither a force sensor nor a ReferenceForce;

@@ -1,6 +1,8 @@
-// The interface of a force model to the tick: a feature vector in, a force out.
+// The interface of a force model to the tick: a feature vector in, a force out. And the motion that examines a model
+// over its whole range, without a recording.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <string>
@@ -31,6 +33,8 @@ class ForceModel {
   virtual ForceEstimate evaluate(const double* features) const noexcept = 0;
 
   virtual const std::vector<FeatureSpec>& features() const noexcept = 0;
+  // The position of its surface, m; all depths count from there.
+  double surface_m() const noexcept { return surface_position_m(features()); }
   // The greatest depth that enters the memory of the features, m: that of the training domain.
   virtual double deepest_m() const noexcept { return std::numeric_limits<double>::infinity(); }
   // At a smaller depth, and in air, the model is out of its domain, m: above 0 if the training never left the material.
@@ -41,5 +45,33 @@ class ForceModel {
 };
 
 using ForceModels = std::vector<std::shared_ptr<const ForceModel>>;
+
+// The motion of an exact tool from the surface of a model to its greatest depth. In equal steps of depth the tool comes
+// to rest and makes one small cycle; then it makes two fast strokes over the whole range. Every judgement of a model
+// without a recording uses it: impedance, equality, time, warm-up. Value type; wait-free.
+class ProbingStrokes {
+ public:
+  static constexpr double kStep_s = 2e-3;
+  static constexpr std::size_t kPlaces = 48, kRestSamples = 10, kCycleSamples = 20, kFastSamples = 512;
+  static constexpr std::size_t kPlaceSamples = kRestSamples + kCycleSamples + 1;  // the cycle with both ends
+  static constexpr std::size_t kSamples = kPlaces * kPlaceSamples + kFastSamples;
+
+  explicit ProbingStrokes(const ForceModel& model) noexcept;
+
+  // Sample `index` < kSamples.
+  ToolSample at(std::size_t index) const noexcept;
+  double cycle_m() const noexcept { return cycle_m_; }  // amplitude of the cycles
+
+ private:
+  double surface_m_, depth_m_, cycle_m_;
+};
+
+// The forces of a model over its ProbingStrokes. Two models are the same if these are equal.
+struct ProbedForces {
+  double surface_m = 0.0, deepest_m = 0.0;
+  std::vector<double> forces_N;  // of each sample
+  bool operator==(const ProbedForces&) const = default;
+};
+ProbedForces probed_forces(const std::shared_ptr<const ForceModel>& model);
 
 }  // namespace palpate

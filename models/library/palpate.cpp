@@ -25,10 +25,7 @@
 
 struct palpate_stream {
   palpate_stream(const palpate::SensorSpec& spec, std::shared_ptr<const palpate::ForceModel> model)
-      : sensor(spec), tick(spec, {model}) {
-    const palpate::LiveModels measured(1, spec, {model});
-    impedance = {measured.stiffness_N_per_m[0], measured.damping_Ns_per_m[0]};
-  }
+      : sensor(spec), tick(spec, {model}), impedance(palpate::impedance_of(model)) {}
 
   palpate::SensorSpec sensor;
   palpate::HapticsTick tick;

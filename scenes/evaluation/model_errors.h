@@ -102,8 +102,6 @@ class ModelErrors {
   ErrorSummary summary() const;
   UnitErrors unit_errors() const;
   BoundFigures bounds() const;
-  // Whether error / JND is the same at every sample.
-  bool equals(const ModelErrors& other) const { return ratios_ == other.ratios_; }
 
  private:
   JndLine jnd_;

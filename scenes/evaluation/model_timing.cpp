@@ -44,7 +44,7 @@ Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& str
     // A long time before, in air: a stream that begins in contact costs more (engine/tick/haptics_tick.h).
     ToolSample before = stretch.samples.front();
     before.time_s -= 1000.0;
-    before.position_m = -1.0;
+    before.position_m = model->surface_m() - 1.0;
     // The first pass computes the features, and warms up caches and the processor's clock.
     std::vector<std::array<double, kMaxFeatures>> features;
     HapticsTick first(stretch.sensor, {model});
@@ -71,6 +71,13 @@ Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& str
   return round;
 }
 
+std::vector<TimedSamples> own_strokes(const ForceModel& model) {
+  const ProbingStrokes strokes(model);
+  TimedSamples all;
+  for (std::size_t i = 0; i < ProbingStrokes::kSamples; ++i) all.samples.push_back(strokes.at(i));
+  return {all};
+}
+
 Timing timing_of(const std::vector<Round>& rounds, std::vector<double> Round::*times) {
   std::vector<double> medians;
   std::vector<double> p99s;
@@ -90,10 +97,11 @@ std::vector<ModelTiming> time_models(const std::vector<ModelPointer>& models,
   std::vector<ModelTiming> timings(models.size());
   const bool anything =
       std::any_of(stretches.begin(), stretches.end(), [](const TimedSamples& one) { return !one.samples.empty(); });
-  if (!anything) return timings;
+  if (!anything && !stretches.empty()) return timings;
   std::vector<std::vector<Round>> rounds(models.size());
   for (int round = 0; round < kTimingRounds; ++round) {
-    for (std::size_t i = 0; i < models.size(); ++i) rounds[i].push_back(time_round(models[i], stretches));
+    for (std::size_t i = 0; i < models.size(); ++i)
+      rounds[i].push_back(time_round(models[i], stretches.empty() ? own_strokes(*models[i]) : stretches));
   }
   for (std::size_t i = 0; i < models.size(); ++i)
     timings[i] = {timing_of(rounds[i], &Round::tick_ns), timing_of(rounds[i], &Round::evaluation_ns), true};

@@ -1,4 +1,4 @@
-// Computation time of models, measured on recorded samples in contact.
+// Computation time of models, measured on samples in contact.
 //   tick         motion estimate, features and force of this one model
 //   evaluation   the force alone, from features that are computed before
 // There are kTimingRounds rounds, and each round times every model once, so that a slow phase of the machine
@@ -41,7 +41,8 @@ struct TimedSamples {
   std::vector<ToolSample> samples;
 };
 
-// Returns one result per model. Each evaluation depends on the last force, so that the processor cannot overlap them.
+// Returns one result per model, over these samples; without any stretch, over its own ProbingStrokes. Each evaluation
+// depends on the last force, so that the processor cannot overlap them.
 std::vector<ModelTiming> time_models(const std::vector<std::shared_ptr<const ForceModel>>& models,
                                      const std::vector<TimedSamples>& stretches);
 

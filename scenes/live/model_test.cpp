@@ -29,18 +29,17 @@ bool ModelTest::update(const SessionModels& models) {
   complete_ = false;
   ready_ = ready;
   try {
-    running_ = std::async(std::launch::async,
-                          [this, untested, timed = settled ? ready : untested, depth_m = models.trained_depth_m()] {
-                            lower_thread_priority();
-                            return run(untested, timed, depth_m);
-                          });
+    running_ = std::async(std::launch::async, [this, untested, timed = settled ? ready : untested] {
+      lower_thread_priority();
+      return run(untested, timed);
+    });
   } catch (const std::system_error&) {
     // Without a thread there are no results; the errors are those of the ticks.
   }
   return false;
 }
 
-ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed, double depth_m) {
+ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed) {
   const auto progress = [this](double) { return !cancelled_.load(std::memory_order_relaxed); };
   Outcome outcome;
   if (replay_ == nullptr && make_ != nullptr && !made_) {
@@ -51,7 +50,6 @@ ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed, d
   const Recording* recording = replay_ != nullptr ? &replay_->recording() : made_ ? &*made_ : nullptr;
   if (recording == nullptr) {
     for (const auto& model : untested) outcome.tested.push_back({model, {}, {}, {}});
-    samples_ = test_strokes(depth_m);
   } else if (!untested.empty()) {
     std::vector<EvaluatedModel> evaluated;
     for (const auto& model : untested) evaluated.push_back({model, jnd_});
@@ -68,11 +66,11 @@ ModelTest::Outcome ModelTest::run(const Models& untested, const Models& timed, d
       const auto& one = result->models[i];
       outcome.tested.push_back({untested[i], errors_of(one.as_recorded), errors_of(one.surface_moved), {}});
     }
-    samples_ = std::move(result->timing.front());
+    samples_ = std::move(result->timing);
   }
   if (replay_ != nullptr) outcome.surface = locate_surface(thinned_rows(*recording, kSearchRows), timed, jnd_);
   outcome.timed = timed;
-  for (const ModelTiming& timing : time_models(timed, {samples_})) outcome.ticks.push_back(timing.tick);
+  for (const ModelTiming& timing : time_models(timed, samples_)) outcome.ticks.push_back(timing.tick);
   return outcome;
 }
 

@@ -73,7 +73,7 @@ class ModelTest {
     std::vector<Timing> ticks;  // of `timed`
     OffsetEstimate surface;
   };
-  Outcome run(const Models& untested, const Models& timed, double depth_m);
+  Outcome run(const Models& untested, const Models& timed);
   void take(Outcome outcome);
 
   ReplayControl* replay_;
@@ -86,7 +86,7 @@ class ModelTest {
   OffsetEstimate surface_;
   // The thread of the test only.
   std::optional<Recording> made_;
-  TimedSamples samples_;  // to time models on
+  std::vector<TimedSamples> samples_;  // to time models on; none without a recording
   std::atomic<bool> cancelled_{false};
   std::future<Outcome> running_;
 };

@@ -5,38 +5,10 @@
 #include <limits>
 
 #include "engine/base/text.h"
-#include "engine/tick/haptics_tick.h"
 #include "models/model/file/model_io.h"
 #include "models/trend/trend_columns.h"
 
 namespace palpate {
-namespace {
-
-std::vector<double> forces_over_strokes(const std::shared_ptr<const FittedModel>& model) {
-  const TimedSamples strokes = test_strokes(model->deepest_m());
-  HapticsTick tick(strokes.sensor, {model});
-  std::vector<double> forces_N;
-  for (const ToolSample& sample : strokes.samples) forces_N.push_back(tick.step(sample).force_N[0]);
-  return forces_N;
-}
-
-}  // namespace
-
-TimedSamples test_strokes(double depth_m) {
-  constexpr double kInside = 0.8, kDeepest_m = 0.01;
-  const double middle_m = 0.5 * std::min(kInside * depth_m, kDeepest_m);
-  TimedSamples strokes;
-  strokes.sensor.has_velocity = true;
-  for (int i = 0; i < 1024; ++i) {
-    const double phase = 0.01 * i;
-    ToolSample tool;
-    tool.time_s = 1e-3 * i;
-    tool.position_m = middle_m * (1.02 - std::cos(phase));
-    tool.velocity_m_per_s = 10.0 * middle_m * std::sin(phase);
-    strokes.samples.push_back(tool);
-  }
-  return strokes;
-}
 
 SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices, std::vector<Recording> training,
                              const std::string& ready)
@@ -110,7 +82,7 @@ void SessionModels::unite_equal() {
   for (std::size_t k = 0; k < order.size(); ++k) {
     Slot& slot = slots_[order[k]];
     const auto same = std::ranges::find_if(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(k),
-                                           [&](std::size_t i) { return slots_[i].forces_N == slot.forces_N; });
+                                           [&](std::size_t i) { return slots_[i].probed == slot.probed; });
     Slot& listed = slots_[*same];
     if (*same != order[k]) slot.info.state = SlotState::equal;
     const std::string asked = request_name(slot.request);
@@ -188,7 +160,7 @@ bool SessionModels::join(std::size_t index, const FinishedModel& finished) {
   slot.info.progress = 1.0;
   slot.info.centres = slot.model->centre_count();
   if (slot.info.centres == 0) slot.info.takes_centres = false;  // no correction was taken
-  slot.forces_N = forces_over_strokes(slot.model);
+  slot.probed = probed_forces(slot.model);
   slot.info.other_material = is_of_other_material(slot);
   slot.info.method = slot.model->method();
   const auto plan = parse_plan(slot.info.method);

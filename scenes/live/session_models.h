@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "engine/live/live_tick.h"
-#include "scenes/evaluation/model_timing.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/model_request.h"
@@ -45,9 +44,6 @@ struct ModelInfo {
   bool takes_centres = false;   // the number of centres can be changed
   bool paper = false;           // a method on the measured force, as in the paper (2009)
 };
-
-// One second of strokes up to a depth.
-TimedSamples test_strokes(double depth_m);
 
 // A published set of models. Snapshots of a set may still arrive after the next set was published.
 struct PublishedSet {
@@ -146,7 +142,7 @@ class SessionModels {
     std::size_t job = 0;                       // id of the worker's job
     int asked_centres = 0;                     // of the plan, before the user changed the number
     std::shared_ptr<const FittedModel> model;  // null until ready
-    std::vector<double> forces_N;              // of the model, over its test_strokes
+    ProbedForces probed;                       // of the model
     bool removed = false, renamed = false;
 
     bool hidden() const { return info.state == SlotState::hidden; }

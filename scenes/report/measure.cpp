@@ -236,10 +236,14 @@ class Measurement {
   // with fewer sites than centres two sizes are equal.
   void merge_equal() {
     std::vector<ModelResult> kept;
+    std::map<ModelPointer, ProbedForces> probed;
+    for (const ModelResult& one : models_)
+      for (const ModelPointer& fit : one.fits)
+        if (!probed.contains(fit)) probed.emplace(fit, probed_forces(fit));
+    const auto same = [&](const ModelPointer& a, const ModelPointer& b) { return probed.at(a) == probed.at(b); };
     for (ModelResult& one : models_) {
       const auto first = std::ranges::find_if(kept, [&](const ModelResult& other) {
-        return one.model && other.model &&
-               evaluation_.models[other.place].as_recorded.equals(evaluation_.models[one.place].as_recorded);
+        return one.model && other.model && std::ranges::equal(one.fits, other.fits, same);
       });
       if (first == kept.end()) {
         kept.push_back(std::move(one));

@@ -292,6 +292,65 @@ TEST(LiveTick, HandsOverEverySampleWhileRecording) {
   }
 }
 
+// F = 4 N (d / 0.4 mm)^2.5 of a specimen 0.46 mm thick, up to 1.2 x the largest training force.
+class ThinModel final : public test::NamedModel {
+ public:
+  ThinModel() : NamedModel("thin") {}
+  ForceEstimate evaluate(const double* features) const noexcept override {
+    return {std::min(4.0 * std::pow(features[0] / 0.4e-3, 2.5), kLargest_N), false};
+  }
+  double deepest_m() const noexcept override { return 0.53e-3; }
+
+ private:
+  static constexpr double kLargest_N = 6.8;
+};
+
+TEST(LiveTick, TheImpedanceOfAThinSpecimenIsThatOfItsSteepestPlace) {
+  const auto thin = std::make_shared<const ThinModel>();
+  double steepest_N_per_m = 0.0;
+  for (double depth_m = 0.0; depth_m < thin->deepest_m(); depth_m += 1e-6) {
+    const double deeper_m = depth_m + 1e-6;
+    steepest_N_per_m =
+        std::max(steepest_N_per_m, (thin->evaluate(&deeper_m).force_N - thin->evaluate(&depth_m).force_N) / 1e-6);
+  }
+  const LiveModels set(1, {}, {thin, spring(300.0)});
+  EXPECT_NEAR(set.stiffness_N_per_m[0], steepest_N_per_m, 0.05 * steepest_N_per_m);
+  EXPECT_NEAR(set.stiffness_N_per_m[1], 300.0, 1e-6);
+}
+
+TEST(LiveTick, ASurfaceAtAnotherPositionChangesNoFigure) {
+  static constexpr double kShift_m = 12e-3;
+  PathDevice device(test::strokes), shifted_device([](double time_s) { return kShift_m + test::strokes(time_s); });
+  LiveRig rig(device), shifted_rig(shifted_device);
+  ForceModels models, shifted;
+  for (ModelData data : test::example_models()) {
+    models.push_back(std::make_shared<const FittedModel>(data));
+    for (FeatureSpec& spec : data.features)
+      if (spec.kind == FeatureKind::depth) spec.surface_position_m += kShift_m;
+    shifted.push_back(std::make_shared<const FittedModel>(data));
+    EXPECT_GT(impedance_of(models.back()).stiffness_N_per_m, 0.0) << data.name;
+    EXPECT_FALSE(probed_forces(models.back()) == probed_forces(shifted.back())) << "another surface is another model";
+  }
+  rig.publish(1, models);
+  shifted_rig.publish(1, shifted);
+  const LiveModels set(1, {}, models), shifted_set(1, {}, shifted);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    EXPECT_NEAR(set.stiffness_N_per_m[i], shifted_set.stiffness_N_per_m[i], 1e-6 * set.stiffness_N_per_m[i]);
+    EXPECT_NEAR(set.damping_Ns_per_m[i], shifted_set.damping_Ns_per_m[i], 1e-6);
+  }
+  device.state.lag_s = shifted_device.state.lag_s = 5e-3;
+  for (LiveRig* one : {&rig, &shifted_rig}) one->live().warm_up();
+  double least_share = 1.0;
+  for (int i = 0; i < 1500; ++i) {
+    const LoopSnapshot one = rig.run(), other = shifted_rig.run();
+    for (std::size_t k = 0; k < models.size(); ++k) ASSERT_NEAR(one.tick.force_N[k], other.tick.force_N[k], 1e-6) << k;
+    ASSERT_NEAR(one.stiffness_share, other.stiffness_share, 1e-5);
+    ASSERT_NEAR(one.rendered_N, other.rendered_N, 1e-5);
+    least_share = std::min<double>(least_share, one.stiffness_share);
+  }
+  EXPECT_LT(least_share, 1.0) << "the limit acts";
+}
+
 // The force of a study replaces that of the models, with the same limiter.
 TEST(LiveTick, AForceSourceTakesThePlaceOfTheModels) {
   class Source final : public ForceSource {

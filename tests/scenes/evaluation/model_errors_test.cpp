@@ -207,10 +207,5 @@ TEST(PairedDifference, SeparatesOverlappingSamples) {
   EXPECT_NEAR(difference.interval.high, 0.03, 1e-6);
 }
 
-TEST(ModelErrors, EqualErrorsAreOneModel) {
-  EXPECT_TRUE(strokes_with({1, 2}).equals(strokes_with({1, 2})));
-  EXPECT_FALSE(strokes_with({1, 2}).equals(strokes_with({2, 1})));
-}
-
 }  // namespace
 }  // namespace palpate
