@@ -228,6 +228,11 @@ void write_trust(CText& out, const DomainCover& cover) {
 // The type `real` and its functions.
 void write_precision(CText& out) {
   const std::string type = out.single() ? "float" : "double";
+  if (!out.single())
+    out.add(
+        "#include <float.h>\n#if DBL_MANT_DIG < 53\n"
+        "#error \"double has less than 8 bytes here; palpate export --float writes a file in single precision\"\n"
+        "#endif\n");
   out.add("typedef " + type + " real;\n");
   for (const auto& [macro, name] : {std::pair{"SQRT", "sqrt"}, {"EXP", "exp"}, {"LOG", "log"}}) {
     const std::string function = std::string(name).append(out.single() ? "f" : "");

@@ -2,6 +2,7 @@
 #include "models/library/palpate/palpate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/base/text.h"
 #include "engine/json/json_fields.h"
 #include "engine/live/device.h"
 #include "engine/live/force_guard.h"
@@ -23,16 +25,67 @@
 #include "models/library/c_interface.h"
 #include "models/model/file/model_io.h"
 
+namespace palpate::library {
+
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+// A longer interval counts as this, because a pause is no rate.
+inline constexpr double kPause_s = 0.1;
+
+// Compares the steps that a caller names with the times of the samples, over some fifty of them.
+class StepCheck {
+ public:
+  // The step of this call: `given_s`, longer where the samples show that it is. `sample_s`: between the last two
+  // samples; 0 without a new one.
+  double measured_s(double given_s, double sample_s) noexcept {
+    since_sample_s_ += given_s;
+    if (sample_s > 0.0) {
+      const double counted_s = std::exchange(since_sample_s_, 0.0);
+      // A few samples far ahead are wrong samples; many are a clock of another unit.
+      ahead_ = sample_s > kPause_s && counted_s < kPause_s ? ahead_ + 1.0 : 0.0;
+      if (ahead_ == 0.0 || ahead_ > kFewest) {
+        given_s_ = kKeeps * given_s_ + std::min(counted_s, kPause_s);
+        by_samples_s_ = kKeeps * by_samples_s_ + std::min(sample_s, kPause_s);
+        ++count_;
+      }
+    }
+    return contradict() ? std::clamp(by_samples_s_ / given_s_, 1.0, kLargest) * given_s : given_s;
+  }
+  bool contradict() const noexcept {
+    return count_ >= kFewest && !(by_samples_s_ < kMost * given_s_ && given_s_ < kMost * by_samples_s_);
+  }
+
+ private:
+  static constexpr double kFewest = 8.0, kKeeps = 0.98, kMost = 1.25, kLargest = 1e6;
+  double since_sample_s_ = 0.0, given_s_ = 0.0, by_samples_s_ = 0.0, count_ = 0.0, ahead_ = 0.0;
+};
+
+}  // namespace palpate::library
+
 struct palpate_stream {
-  palpate_stream(const palpate::SensorSpec& spec, std::shared_ptr<const palpate::ForceModel> model)
-      : sensor(spec), tick(spec, {model}), impedance(palpate::impedance_of(model)) {}
+  palpate_stream(const palpate::SensorSpec& spec, const std::shared_ptr<const palpate::ForceModel>& model)
+      : sensor(spec), ticks{{{spec, {model}}, {spec, {model}}}}, impedance(palpate::impedance_of(model)) {}
+
+  palpate::HapticsTick& tick() noexcept { return ticks[current]; }
+  const palpate::HapticsTick& tick() const noexcept { return ticks[current]; }
+  void reset() noexcept;
+  void take(const palpate::ToolSample& sample) noexcept;
 
   palpate::SensorSpec sensor;
-  palpate::HapticsTick tick;
+  std::array<palpate::HapticsTick, 2> ticks;  // the current one, and the state before the last jump of the times
+  std::size_t current = 0;
   palpate::Impedance impedance;
-  bool accepted = false;                                                // the last sample
-  bool restarted = true;                                                // before the first sample
-  double predicted_error_N = std::numeric_limits<double>::quiet_NaN();  // at the last accepted sample
+  bool accepted = false;  // the last sample
+  bool restarted = true;  // no sample yet
+  double step_s = 0.0;    // to the last accepted sample; 0: it is the first, or the times jumped
+  double predicted_error_N = palpate::library::kNone;  // at the last accepted sample
+
+ private:
+  void look_for_jump(double time_s) noexcept;
+
+  double last_s_ = palpate::library::kNone;         // time of the last accepted sample
+  double before_jump_s_ = palpate::library::kNone;  // the same of the state before the last jump
+  double jumped_s_ = palpate::library::kNone;       // time after the last jump
+  double refused_s_ = palpate::library::kNone;      // of the last sample, if it was refused for its time
 };
 
 struct palpate_limiter {
@@ -46,7 +99,49 @@ struct palpate_limiter {
   double lag_s = 0.0;
   palpate::SampleRate calls, samples;
   double sample_age_s = std::numeric_limits<double>::infinity();
+  palpate::library::StepCheck steps;
+  unsigned flags = 0;  // beside those of `limiter`
 };
+
+void palpate_stream::reset() noexcept {
+  for (palpate::HapticsTick& tick : ticks) tick.reset();
+  accepted = false;
+  restarted = true;
+  step_s = 0.0;
+  predicted_error_N = last_s_ = before_jump_s_ = jumped_s_ = refused_s_ = palpate::library::kNone;
+}
+
+// A jump of the times may be an error of some stamps, so that the state before it is kept. Where the old times continue
+// soon, so does that state. Times that go back are a new stream once two samples agree.
+void palpate_stream::look_for_jump(double time_s) noexcept {
+  constexpr double kJump_s = 0.1;
+  const auto follows = [&](double before_s) { return time_s > before_s && time_s <= before_s + kJump_s; };
+  const bool forward = time_s > last_s_ + kJump_s;
+  if (!forward && !(time_s < last_s_)) return;
+  if (follows(before_jump_s_) && last_s_ <= jumped_s_ + kJump_s) {
+    current = 1 - current;
+    last_s_ = std::exchange(before_jump_s_, palpate::library::kNone);
+  } else if (forward || (time_s < last_s_ - kJump_s && follows(refused_s_))) {
+    ticks[1 - current].continue_from(tick());
+    before_jump_s_ = last_s_;
+    jumped_s_ = time_s;
+    if (forward) return;
+    tick().reset();
+    last_s_ = palpate::library::kNone;
+    restarted = true;
+  }
+}
+
+void palpate_stream::take(const palpate::ToolSample& sample) noexcept {
+  if (std::isfinite(sample.time_s) && std::isfinite(sample.position_m)) look_for_jump(sample.time_s);
+  const palpate::TickSnapshot& after = tick().step(sample);
+  accepted = after.fault != palpate::TickFault::bad_sample && after.fault != palpate::TickFault::time_not_later;
+  refused_s_ = after.fault == palpate::TickFault::time_not_later ? sample.time_s : palpate::library::kNone;
+  if (!accepted) return;
+  step_s = sample.time_s > last_s_ ? sample.time_s - last_s_ : 0.0;
+  last_s_ = sample.time_s;
+  predicted_error_N = after.predicted_error_N[0];
+}
 
 namespace palpate::library {
 namespace {
@@ -79,7 +174,7 @@ constexpr NumberRange kAbove0{0.0, kLargestNumber, true};
 Status check_numbers(std::initializer_list<std::tuple<const char*, double, NumberRange>> numbers) {
   for (const auto& [name, value, range] : numbers) {
     if (!range.holds(value))
-      return Error{std::string(name) + ": found " + std::to_string(value) + ", expected " + range.words()};
+      return Error{std::string(name) + ": found " + shortest(value) + ", expected " + range.words()};
   }
   return {};
 }
@@ -118,12 +213,10 @@ Result<ForceLimits> force_limits(const palpate_limits& limits) {
                      limits.thermal_time_s, limits.stale_after_s,   limits.stop_s};
 }
 
-// A longer interval counts as this, because a pause is no rate.
-constexpr double kPause_s = 0.1;
-
-// The last force of the stream after the stages of LiveTick. `step_s` >= 0.
-double render(palpate_limiter& limiter, palpate_stream& stream, double step_s) noexcept {
-  const TickSnapshot& tick = stream.tick.snapshot();
+// The last force of the stream after the stages of LiveTick. `given_s` >= 0: the step that the caller names.
+double render(palpate_limiter& limiter, palpate_stream& stream, double given_s) noexcept {
+  const TickSnapshot& tick = stream.tick().snapshot();
+  const double step_s = limiter.steps.measured_s(given_s, stream.accepted ? stream.step_s : 0.0);
   if (limiter.encoder_step_m != stream.sensor.encoder_step_m) {
     limiter.encoder_step_m = stream.sensor.encoder_step_m;
     limiter.guard = ForceGuard(limiter.encoder_step_m);
@@ -138,13 +231,16 @@ double render(palpate_limiter& limiter, palpate_stream& stream, double step_s) n
   const double interval_s = std::max(limiter.calls.interval_s(), limiter.samples.interval_s());
   const double tick_s = limiter.calls.interval_s() > 0.0 ? limiter.calls.interval_s() : kHapticTick_s;
   const ForceGuard::Timing timing{std::max(limiter.lag_s, 1.5 * interval_s), interval_s, step_s, tick_s};
-  const bool in_contact = stream.tick.features_of(0).in_contact && !std::exchange(stream.restarted, false);
+  const bool in_contact = stream.tick().features_of(0).in_contact && !std::exchange(stream.restarted, false);
   const ForceGuard::Tool tool{tick.position_m, tick.velocity_m_per_s, in_contact, false, stream.accepted};
   const double scaled_N = limiter.guard.scaled(tick.force_N[0], stream.impedance, {}, true, tool, timing);
   const double passive_N = limiter.guard.passive(scaled_N, tool, timing, limiter.limiter.force_N());
-  const bool stopped = std::exchange(limiter.stop, false) || limiter.calls.too_slow() || limiter.samples.too_slow();
-  return limiter.limiter.limit(passive_N, step_s,
-                               {limiter.sample_age_s, stopped, false, tick.fault == TickFault::bad_sample});
+  const bool stopped = std::exchange(limiter.stop, false) || limiter.calls.too_slow() || limiter.samples.too_slow() ||
+                       tick.fault == TickFault::bad_sample;
+  limiter.flags = 0;
+  if (limiter.guard.stiffness_share() < 0.95) limiter.flags |= PALPATE_LIMIT_REDUCED;
+  if (limiter.steps.contradict()) limiter.flags |= PALPATE_LIMIT_WRONG_STEP;
+  return limiter.limiter.limit(passive_N, step_s, {limiter.sample_age_s, stopped});
 }
 
 }  // namespace
@@ -154,6 +250,8 @@ using namespace palpate;
 using namespace palpate::library;
 
 int palpate_abi_version(void) { return PALPATE_ABI_VERSION; }
+
+const char* palpate_version(void) { return PALPATE_VERSION; }
 
 palpate_model* palpate_model_load(const char* path, char* error, size_t error_size) {
   return made<palpate_model*>(nullptr, error, error_size, [&]() -> Result<palpate_model*> {
@@ -242,11 +340,7 @@ int palpate_sensor_of(const palpate_recording* given, palpate_sensor* sensor) {
 void palpate_stream_free(palpate_stream* stream) { delete stream; }
 
 void palpate_stream_reset(palpate_stream* stream) {
-  if (stream == nullptr) return;
-  stream->tick.reset();
-  stream->accepted = false;
-  stream->restarted = true;
-  stream->predicted_error_N = std::numeric_limits<double>::quiet_NaN();
+  if (stream != nullptr) stream->reset();
 }
 
 double palpate_stream_force(palpate_stream* stream, double time_s, double position_m) {
@@ -256,13 +350,9 @@ double palpate_stream_force(palpate_stream* stream, double time_s, double positi
 double palpate_stream_force_with_motion(palpate_stream* stream, double time_s, double position_m,
                                         double velocity_m_per_s, double acceleration_m_per_s2) {
   if (stream == nullptr) return 0.0;
-  const TickSnapshot& tick =
-      stream->tick.step({time_s, position_m, stream->sensor.has_velocity ? velocity_m_per_s : 0.0,
-                         stream->sensor.has_acceleration ? acceleration_m_per_s2 : 0.0});
-  stream->accepted = tick.fault != TickFault::bad_sample && tick.fault != TickFault::time_not_later;
-  if (!stream->accepted) return 0.0;
-  stream->predicted_error_N = tick.predicted_error_N[0];
-  return tick.force_N[0];
+  stream->take({time_s, position_m, stream->sensor.has_velocity ? velocity_m_per_s : 0.0,
+                stream->sensor.has_acceleration ? acceleration_m_per_s2 : 0.0});
+  return stream->accepted ? stream->tick().snapshot().force_N[0] : 0.0;
 }
 
 int palpate_stream_forces(palpate_stream* stream, size_t n, const double* time_s, const double* position_m,
@@ -274,7 +364,7 @@ int palpate_stream_forces(palpate_stream* stream, size_t n, const double* time_s
 int palpate_stream_replay(palpate_stream* stream, const palpate_recording* motion, double* force_N, double* bound_N,
                           double* features) {
   if (stream == nullptr || motion == nullptr || motion->time_s == nullptr || motion->position_m == nullptr) return -1;
-  const size_t width = stream->tick.model(0).features().size();
+  const size_t width = stream->tick().model(0).features().size();
   const auto at = [](const double* column, size_t i) { return column == nullptr ? 0.0 : column[i]; };
   for (size_t i = 0; i < motion->size; ++i) {
     const double force =
@@ -282,7 +372,7 @@ int palpate_stream_replay(palpate_stream* stream, const palpate_recording* motio
                                          at(motion->velocity_m_per_s, i), at(motion->acceleration_m_per_s2, i));
     if (force_N != nullptr) force_N[i] = force;
     if (bound_N != nullptr) bound_N[i] = stream->predicted_error_N;
-    if (features != nullptr) std::copy_n(stream->tick.features_of(0).values.data(), width, features + i * width);
+    if (features != nullptr) std::copy_n(stream->tick().features_of(0).values.data(), width, features + i * width);
   }
   return 0;
 }
@@ -290,7 +380,7 @@ int palpate_stream_replay(palpate_stream* stream, const palpate_recording* motio
 int palpate_stream_accepted(const palpate_stream* stream) { return stream != nullptr && stream->accepted ? 1 : 0; }
 
 int palpate_stream_out_of_domain(const palpate_stream* stream) {
-  return stream != nullptr && (stream->tick.snapshot().out_of_domain_mask & 1U) != 0 ? 1 : 0;
+  return stream != nullptr && (stream->tick().snapshot().out_of_domain_mask & 1U) != 0 ? 1 : 0;
 }
 
 double palpate_stream_predicted_error(const palpate_stream* stream) {
@@ -319,6 +409,7 @@ void palpate_limiter_free(palpate_limiter* limiter) { delete limiter; }
 
 double palpate_limiter_force(palpate_limiter* limiter, double commanded_N, double step_s, double sample_age_s) {
   if (limiter == nullptr) return 0.0;
+  limiter->flags = 0;
   return limiter->limiter.limit(commanded_N, step_s, {sample_age_s, std::exchange(limiter->stop, false)});
 }
 
@@ -329,8 +420,10 @@ double palpate_limiter_render(palpate_limiter* limiter, palpate_stream* stream, 
   return render(*limiter, *stream, std::isfinite(step_s) ? std::max(0.0, step_s) : 0.0);
 }
 
-void palpate_limiter_set_lag(palpate_limiter* limiter, double lag_s) {
-  if (limiter != nullptr && std::isfinite(lag_s) && lag_s >= 0.0) limiter->lag_s = lag_s;
+int palpate_limiter_set_lag(palpate_limiter* limiter, double lag_s) {
+  if (limiter == nullptr || !std::isfinite(lag_s) || lag_s < 0.0) return -1;
+  limiter->lag_s = lag_s;
+  return 0;
 }
 
 void palpate_limiter_stop(palpate_limiter* limiter) {
@@ -338,7 +431,11 @@ void palpate_limiter_stop(palpate_limiter* limiter) {
 }
 
 unsigned palpate_limiter_flags(const palpate_limiter* limiter) {
-  return limiter == nullptr ? 0U : limiter->limiter.flags();
+  return limiter == nullptr ? 0U : limiter->limiter.flags() | limiter->flags;
+}
+
+double palpate_limiter_stiffness_share(const palpate_limiter* limiter) {
+  return limiter == nullptr ? 1.0 : limiter->guard.stiffness_share();
 }
 
 static_assert(PALPATE_LIMIT_NOT_FINITE == force_limit::kNotFinite && PALPATE_LIMIT_CLAMPED == force_limit::kClamped &&

@@ -7,7 +7,7 @@
 
 int main(int, char** argument) {
   const palpate::Model model(argument[1]);
-  const auto sensor = palpate::Sensor(palpate::Recording(argument[2]));  // or palpate::Sensor(30e-6), its step
+  const auto sensor = palpate::Sensor(palpate::Recording(argument[2]));  // or its step: stream(model, 30e-6)
   palpate::Stream stream(model, sensor);
   palpate::Limiter limiter;
   double time_s = 0.0;

@@ -38,6 +38,8 @@ extern "C" {
 
 /* The version of the linked library; a program compares it with PALPATE_ABI_VERSION. */
 PALPATE_API int palpate_abi_version(void);
+/* The version of palpate, "MAJOR.MINOR.PATCH"; MAJOR is PALPATE_ABI_VERSION. */
+PALPATE_API const char* palpate_version(void);
 
 typedef struct palpate_model palpate_model;     /* immutable, shareable between threads */
 typedef struct palpate_stream palpate_stream;   /* one tool; one thread at a time */
@@ -87,7 +89,7 @@ PALPATE_API int palpate_in_contact(const palpate_recording*, unsigned char* in_c
 
 /* The sensor of the tool. */
 typedef struct palpate_sensor {
-  double encoder_step_m;              /* 0: not quantised */
+  double encoder_step_m;              /* 0: exact */
   double position_noise_m;            /* standard deviation in addition to the quantisation */
   double velocity_noise_m_per_s;      /* standard deviation of measured velocities; 0: none are measured */
   double acceleration_noise_m_per_s2; /* standard deviation of measured accelerations; 0: none are measured */
@@ -112,7 +114,9 @@ PALPATE_API void palpate_stream_reset(palpate_stream*);
 
 /* Takes the next sample and returns the force in N: at most 1.2 times the largest training force, and negative only for
  * a material that pulls, at most as strongly as it did in the training. Values that are not finite, and a time that is
- * not later than the last one, return 0 N and leave the state as it is. Wait-free: no allocation, lock, system call. */
+ * not later than the last one, return 0 N and leave the state as it is. Times that go back by more than 0.1 s are a new
+ * stream from the second sample on. Where a few samples, within 0.1 s, had wrong times, the stream continues from its
+ * state before them. Wait-free: no allocation, lock, system call. */
 PALPATE_API double palpate_stream_force(palpate_stream*, double time_s, double position_m);
 /* The same with measured velocity and acceleration; a channel that the sensor does not have is ignored. */
 PALPATE_API double palpate_stream_force_with_motion(palpate_stream*, double time_s, double position_m,
@@ -158,7 +162,9 @@ enum { /* bits of palpate_limiter_flags: what the limiter did to the last force 
        PALPATE_LIMIT_RAMPING = 8,
        PALPATE_LIMIT_THERMAL = 16,
        PALPATE_LIMIT_STALE = 32,
-       PALPATE_LIMIT_STOPPED = 64
+       PALPATE_LIMIT_STOPPED = 64,
+       PALPATE_LIMIT_REDUCED = 128,   /* palpate_limiter_stiffness_share is below 0.95 */
+       PALPATE_LIMIT_WRONG_STEP = 256 /* step_s and time_s differ by more than a quarter */
 };
 
 /* 10 N, 2000 N/s, ramp 0.3 s, no thermal limit, stale after 10 ms, stop within 10 ms. */
@@ -168,15 +174,19 @@ PALPATE_API palpate_limiter* palpate_limiter_new(const palpate_limits*, char* er
 PALPATE_API void palpate_limiter_free(palpate_limiter*);
 /* The force on a hand: takes the next sample into the stream and returns what to render, always finite. The model's
  * force passes the stages of the program's own loop: the stiffness that a hand can hold stably with the lag of the
- * loop, the passivity controller, the limiter. `step_s`: since the last call. A sample that is not later than the last
- * one holds the force, until it is stale_after_s old; one that is not finite stops it. A loop with fewer than 100 calls
- * or samples a second has no force (PALPATE_LIMIT_STOPPED). One limiter belongs to one stream. Wait-free. */
+ * loop, the passivity controller, the limiter. `step_s`: since the last call, measured; where time_s shows longer
+ * steps, those count. A sample that is not later than the last one holds the force, until it is stale_after_s old. One
+ * that is not finite, and fewer than 95 calls or samples a second (100, less the error of a clock), stop it:
+ * PALPATE_LIMIT_STOPPED. One limiter belongs to one stream. Wait-free. */
 PALPATE_API double palpate_limiter_render(palpate_limiter*, palpate_stream*, double time_s, double position_m,
                                           double step_s);
 /* The lag of the force behind the motion for palpate_limiter_render: transport there and back, waits, and half the time
- * for which a force is held. The default, and the least, is 1.5 times the interval between calls or samples. Values
- * below 0 or not finite are ignored. Wait-free. */
-PALPATE_API void palpate_limiter_set_lag(palpate_limiter*, double lag_s);
+ * for which a force is held. It cannot be measured from here. The default, and the least, is 1.5 times the interval
+ * between calls or samples. Returns 0, or -1 for a value below 0 or not finite, which is ignored. Wait-free. */
+PALPATE_API int palpate_limiter_set_lag(palpate_limiter*, double lag_s);
+/* The part of the model's force that the stability limit leaves with this lag: 1 is all. Below 0.95 the rendered
+ * material is noticeably softer than the model (PALPATE_LIMIT_REDUCED). For palpate_limiter_render. Wait-free. */
+PALPATE_API double palpate_limiter_stiffness_share(const palpate_limiter*);
 /* The limiter alone: the force to render instead of `commanded_N`, always finite. `step_s`: since the last call;
  * `sample_age_s`: age of the sample that the force was computed from, 0 for a new one. Wait-free. */
 PALPATE_API double palpate_limiter_force(palpate_limiter*, double commanded_N, double step_s, double sample_age_s);

@@ -37,6 +37,12 @@ namespace detail {
 inline bool failed(const void* handle) { return handle == nullptr; }
 inline bool failed(int status) { return status != 0; }
 
+// `text` for C, which ends a text at its first zero.
+inline const char* c_text(const std::string& text) {
+  if (text.find('\0') != std::string::npos) throw Failure("found a zero byte in a name, expected none");
+  return text.c_str();
+}
+
 // Calls a function of palpate.h that can fail and returns its result; if it failed, throws its error.
 template <typename Function, typename... Arguments>
 auto checked(Function function, Arguments... arguments) {
@@ -65,7 +71,7 @@ class Model {
                     " of the palpate library, expected " + std::to_string(PALPATE_ABI_VERSION) +
                     "; build the program again");
     }
-    model_.reset(detail::checked(palpate_model_load, path.c_str()), detail::Free{});
+    model_.reset(detail::checked(palpate_model_load, detail::c_text(path)), detail::Free{});
   }
   // Takes over a handle.
   explicit Model(palpate_model* model) : model_(model, detail::Free{}) {}
@@ -74,7 +80,7 @@ class Model {
   std::string name() const { return palpate_model_name(model_.get()); }
   // Writes the model file atomically. Throws: the file exists and is not to be replaced; it cannot be written.
   void save(const std::string& path, bool overwrite = false) const {
-    detail::checked(palpate_model_save, model_.get(), path.c_str(), overwrite);
+    detail::checked(palpate_model_save, model_.get(), detail::c_text(path), overwrite);
   }
   const palpate_model* handle() const noexcept { return model_.get(); }
 
@@ -87,7 +93,7 @@ class Recording {
  public:
   // Throws: not a recording; with file, line and column.
   explicit Recording(const std::string& path)
-      : recording_(detail::checked(palpate_recording_load, path.c_str()), detail::Free{}) {}
+      : recording_(detail::checked(palpate_recording_load, detail::c_text(path)), detail::Free{}) {}
 
   // Size and columns.
   const palpate_recording& operator*() const noexcept { return *recording_; }
@@ -97,10 +103,9 @@ class Recording {
   std::shared_ptr<palpate_recording> recording_;
 };
 
-// The sensor of the tool; fields as in palpate.h, initially 0.
+// The sensor of the tool; fields as in palpate.h, initially 0: exact positions.
 struct Sensor : palpate_sensor {
-  // Positions in steps of this many metres; 0: exact.
-  Sensor(double step_m = 0.0) noexcept : palpate_sensor{} { encoder_step_m = step_m; }
+  Sensor() noexcept : palpate_sensor{} {}
   // The sensor that `palpate replay` identifies.
   explicit Sensor(const Recording& recording) noexcept : palpate_sensor{} { palpate_sensor_of(&*recording, this); }
 };
@@ -108,8 +113,9 @@ struct Sensor : palpate_sensor {
 // One tool in one material. Movable; may outlive the model.
 class Stream {
  public:
-  // The sensor is that of the training recordings.
-  explicit Stream(const Model& model) : stream_(detail::checked(palpate_stream_new, model.handle(), 0.0)) {}
+  // Positions in steps of so many metres; 0: the sensor of the training recordings. Throws: below 0 or not finite.
+  explicit Stream(const Model& model, double encoder_step_m = 0.0)
+      : stream_(detail::checked(palpate_stream_new, model.handle(), encoder_step_m)) {}
   // Throws: a number of the sensor is out of its range or not finite.
   Stream(const Model& model, const Sensor& sensor)
       : stream_(detail::checked(palpate_stream_new_with_sensor, model.handle(), &sensor)) {}
@@ -144,7 +150,9 @@ class Limiter {
   double render(Stream& stream, double time_s, double position_m, double step_s) noexcept {
     return palpate_limiter_render(limiter_.get(), stream.handle(), time_s, position_m, step_s);
   }
-  void set_lag(double lag_s) noexcept { palpate_limiter_set_lag(limiter_.get(), lag_s); }
+  // False, and no change: below 0 or not finite.
+  bool set_lag(double lag_s) noexcept { return palpate_limiter_set_lag(limiter_.get(), lag_s) == 0; }
+  double stiffness_share() const noexcept { return palpate_limiter_stiffness_share(limiter_.get()); }
   double force(double commanded_N, double step_s, double sample_age_s = 0.0) noexcept {
     return palpate_limiter_force(limiter_.get(), commanded_N, step_s, sample_age_s);
   }
@@ -168,7 +176,7 @@ inline std::vector<double> replay(const Model& model, const Recording& recording
 inline Model fit(const std::vector<Recording>& recordings, const std::string& options = "") {
   std::vector<palpate_recording> plain;
   for (const Recording& recording : recordings) plain.push_back(*recording);
-  return Model(detail::checked(palpate_fit, plain.data(), plain.size(), options.c_str(), nullptr, nullptr));
+  return Model(detail::checked(palpate_fit, plain.data(), plain.size(), detail::c_text(options), nullptr, nullptr));
 }
 
 }  // namespace api

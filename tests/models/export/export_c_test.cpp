@@ -213,6 +213,19 @@ TEST(ExportC, TheSameModelGivesTheSameBytes) {
   for (const ModelData& data : test::example_models()) EXPECT_EQ(export_c(data, {}), export_c(data, {}));
 }
 
+TEST(ExportC, IsRefusedWhereItWouldComputeOtherForces) {
+  const test::TemporaryFolder folder;
+  const std::string source = folder.with_file("model.c", export_c(test::example_models().front(), {}));
+  for (const std::vector<std::string>& options : {std::vector<std::string>{"-ffast-math"},
+                                                  {"-ffinite-math-only"},
+                                                  {"-U__DBL_MANT_DIG__", "-D__DBL_MANT_DIG__=24"}}) {
+    std::vector<std::string> command{PALPATE_C_COMPILER, "-std=c99", "-w", "-fsyntax-only", source};
+    EXPECT_EQ(test::run_program(command).exit_code, 0);
+    command.insert(command.end() - 1, options.begin(), options.end());
+    EXPECT_NE(test::run_program(command).err.find("#error"), std::string::npos) << options.front();
+  }
+}
+
 TEST(ExportC, ANameCannotLeaveItsComment) {
   ModelData data = test::example_models().front();
   data.name = "a*/ int x; /* \\";

@@ -33,7 +33,8 @@ int run(const std::string& path, const std::string& folder) {
       fails([&] { palpate::fit({recording}, "method=nothing"); }, "method: found \"nothing\", expected one of") && good;
   good = fails([&] { palpate::fit({}); }, "found no recording") && good;
   good = fails([&] { palpate::Recording none(folder + "/none.csv"); }, "none.csv") && good;
-  good = fails([&] { palpate::Stream none(model, palpate::Sensor(-1.0)); }, "encoder_step_m") && good;
+  good = fails([&] { palpate::Stream none(model, -1.0); }, "encoder_step_m") && good;
+  good = fails([&] { palpate::Model none(file + '\0'); }, "zero byte") && good;
   palpate::Limits limits;
   limits.largest_N = 0.0;
   good = fails([&] { palpate::Limiter none(limits); }, "largest_N") && good;

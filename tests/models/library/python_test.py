@@ -112,9 +112,14 @@ class Loop(Case):
         self.assertFalse(stream.accepted)
         stream.reset()
         self.assertEqual([stream.force(t[i], x[i]) for i in range(100)], force_N[:100].tolist())
-        palpate.Stream(self.model).force(0, 0)
-        self.refused("model: found str", palpate.Stream, "model.json")
-        self.refused("sensor: found str", palpate.Stream, self.model, "30e-6")
+        theirs = palpate.Stream(self.model)
+        for sensor in (0, 0.0, None):  # the encoder of the recordings, as in C
+            same = palpate.Stream(self.model, sensor)
+            self.assertEqual([same.force(t[i], x[i]) for i in range(500)], [theirs.force(t[i], x[i]) for i in range(500)])
+            theirs.reset()
+        exact = palpate.Stream(self.model, palpate.Sensor())
+        self.assertNotEqual([exact.force(t[i], x[i]) for i in range(500)],
+                            [theirs.force(t[i], x[i]) for i in range(500)])
 
     def test_a_loop_holds_a_repeated_sample_and_changes_by_2_N_per_ms(self):
         stream, limiter = palpate.Stream(self.model, 30e-6), palpate.Limiter(largest_N=5, ramp_s=0.1)
@@ -129,10 +134,17 @@ class Loop(Case):
         limiter.stop()
         limiter.render(stream, 2.0, 0.002, 1e-3)
         self.assertEqual(limiter.flags & 64, 64)
+        slow = palpate.Limiter(lag_s=0.02)
+        for i in range(200):
+            slow.render(stream, 3.0 + 0.001 * i, 0.002, 1e-3)
+        self.assertLess(slow.stiffness_share, min(0.95, limiter.stiffness_share))
+        self.assertEqual(slow.flags & 128, 128)
         alone = palpate.Limiter(ramp_s=0)
         self.assertEqual([alone.force(9.0, 1e-3) for _ in range(3)], [0.0, 2.0, 4.0])
         self.refused("fastest_N_per_s", palpate.Limiter, fastest_N_per_s=-1)
         self.refused("found the limit 'peak_N', expected lag_s, largest_N", palpate.Limiter, peak_N=5)
+        for lag_s in (float("nan"), -1):
+            self.refused("lag_s: found", palpate.Limiter, lag_s=lag_s)
 
 
 class WrongArguments(Case):
@@ -149,6 +161,23 @@ class WrongArguments(Case):
         self.refused("with a name of method, centres", palpate.fit, [rec], scene="nowhere")
         self.refused("expected a path or columns", palpate.fit, [np.zeros((9, 3))])
         self.refused("in_contact of dtype float64", palpate.within_jnd, [1.0], [1.0], [1.0])
+
+    def test_a_wrong_type_is_a_type_error_of_this_package(self):
+        stream, limiter = palpate.Stream(self.model), palpate.Limiter()
+        for function, *arguments in ((palpate.Stream, "model.json"), (palpate.Stream, self.model, "30e-6"),
+                                     (palpate.Stream, self.model, [30e-6]), (limiter.render, self.model, 0, 0, 1e-3),
+                                     (limiter.render, stream, "0", 0, 1e-3), (limiter.force, None, 1e-3),
+                                     (limiter.set_lag, "5 ms"), (stream.force, 0, [0]), (palpate.load, 7),
+                                     (lambda: palpate.Limiter(largest_N="5"),), (palpate.fit, [3.0]),
+                                     (self.model.render, ["a"], ["b"])):
+            with self.assertRaises(TypeError) as caught:
+                function(*arguments)
+            self.assertIsInstance(caught.exception, palpate.Error)
+            self.assertIn("found", str(caught.exception))
+        for path in ("a\0b", b"a\0b"):
+            self.refused("zero byte", palpate.load, path)
+            self.refused("zero byte", palpate.read_recording, path)
+        self.refused("zero byte", palpate.fit, [self.rec], method="trend\0")
 
     def test_arrays_of_any_type_and_stride(self):
         time_s, position_m = np.arange(400) / 1000.0, np.linspace(0.0, 0.004, 400)
@@ -208,6 +237,7 @@ class WrongArguments(Case):
     def test_the_manual_has_every_name(self):
         manual = pydoc.render_doc(palpate, renderer=pydoc.plaintext)
         self.assertLess(len(manual.splitlines()), 900)
+        self.assertRegex(palpate.__version__, r"^\d+\.\d+\.\d+$")
         for name in palpate.__all__:
             self.assertIn(name, manual)
             self.assertTrue(getattr(palpate, name).__doc__, name)

@@ -19,12 +19,12 @@ or table with these columns, or the path of a file.
 Units are SI. Positions run along the inward surface normal, 0 at the undisturbed surface; forces are
 positive when the material pushes the tool out. A just noticeable difference (JND) is the smallest
 error that a hand can notice. An invalid file, array or option raises `Error`. Arrays may be of any
-numeric type and need not be contiguous.
+numeric type and need not be contiguous. An argument of a wrong type is a `TypeError`, too.
 
 The package loads ``libpalpate_fit``: the one named by the environment variable PALPATE_LIBRARY, else the one that pip
 put beside it, else that of the source tree's ``build`` when it is imported from there, else the installed one.
 """
-from ._library import Error, Sensor
+from ._library import Error, Sensor, library
 from ._models import Model, fit, load
 from ._recordings import Recording, in_contact, jnd_N, make_recording, read_recording, within_jnd
 from ._streams import Limiter, Stream
@@ -32,3 +32,9 @@ from ._streams import Limiter, Stream
 # Without Recording, whose help would be that of all numpy arrays.
 __all__ = ["Error", "Limiter", "Model", "Sensor", "Stream", "fit", "in_contact", "jnd_N", "load", "make_recording",
            "read_recording", "within_jnd"]
+
+
+def __getattr__(name):
+    if name == "__version__":  # that of the library, which is loaded only when it is needed
+        return library().palpate_version().decode()
+    raise AttributeError("module %r has no attribute %r" % (__name__, name))

@@ -21,6 +21,10 @@ class Error(Exception):
     """
 
 
+class WrongType(Error, TypeError):
+    """An argument has a wrong type."""
+
+
 class Handle:
     """An object of the library, freed with its owner."""
 
@@ -41,7 +45,7 @@ class Sensor(ctypes.Structure):
     Attributes
     ----------
     encoder_step_m : float
-        Step of the positions, 0: not quantised.
+        Step of the positions, 0: exact.
     position_noise_m : float
         Standard deviation of the positions in addition to the quantisation.
     velocity_noise_m_per_s, acceleration_noise_m_per_s2 : float
@@ -55,13 +59,26 @@ class Sensor(ctypes.Structure):
         return "Sensor(%s)" % ", ".join("%s=%r" % (name, getattr(self, name)) for name, _ in self._fields_)
 
 
-def as_sensor(given):
-    """A `Sensor` from one, or from the step of an encoder in metres."""
-    if isinstance(given, Sensor):
-        return given
-    if isinstance(given, (int, float, np.number)) and not isinstance(given, bool):
-        return Sensor(encoder_step_m=float(given))
-    raise Error("sensor: found %s, expected a palpate.Sensor or the encoder's step in metres" % type(given).__name__)
+def expect(name, given, kind):
+    """`given`, an object of this class of the package."""
+    if not isinstance(given, kind):
+        raise WrongType("%s: found %s, expected a palpate.%s" % (name, type(given).__name__, kind.__name__))
+    return given
+
+
+def number(name, given, expected="a number"):
+    """`given` as a float."""
+    if isinstance(given, float) or (isinstance(given, (int, np.number)) and not isinstance(given, bool)):
+        return float(given)
+    raise WrongType("%s: found %s, expected %s" % (name, type(given).__name__, expected))
+
+
+def new_stream(model_handle, sensor):
+    """A handle. `sensor`: a `Sensor`, or the step of an encoder in metres; None or 0: that of the recordings."""
+    if isinstance(sensor, Sensor):
+        return call("palpate_stream_new_with_sensor", model_handle, sensor)
+    step_m = number("sensor", 0 if sensor is None else sensor, "a palpate.Sensor or the encoder's step in metres")
+    return call("palpate_stream_new", model_handle, step_m)
 
 
 class RecordingStruct(ctypes.Structure):
@@ -79,7 +96,7 @@ class RecordingStruct(ctypes.Structure):
         for column, array in arrays.items():
             if len(array) != size:
                 raise Error("%s: found %d values, expected %d as of position_m" % (column, len(array), size))
-        struct = cls(name.encode(errors="surrogateescape"), size)
+        struct = cls(as_bytes("name", name), size)
         for column, array in arrays.items():
             setattr(struct, column, array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)))
         struct.arrays = arrays
@@ -103,6 +120,7 @@ class Limits(ctypes.Structure):
 
 _SIGNATURES = {
     "palpate_abi_version": (_INT, []),
+    "palpate_version": (_TEXT, []),
     "palpate_model_load": (_HANDLE, [_TEXT, *_MESSAGE]),
     "palpate_model_free": (None, [_HANDLE]),
     "palpate_model_name": (_TEXT, [_HANDLE]),
@@ -127,7 +145,8 @@ _SIGNATURES = {
     "palpate_limiter_new": (_HANDLE, [ctypes.POINTER(Limits), *_MESSAGE]),
     "palpate_limiter_free": (None, [_HANDLE]),
     "palpate_limiter_render": (_DOUBLE, [_HANDLE, _HANDLE, _DOUBLE, _DOUBLE, _DOUBLE]),
-    "palpate_limiter_set_lag": (None, [_HANDLE, _DOUBLE]),
+    "palpate_limiter_set_lag": (_INT, [_HANDLE, _DOUBLE]),
+    "palpate_limiter_stiffness_share": (_DOUBLE, [_HANDLE]),
     "palpate_limiter_force": (_DOUBLE, [_HANDLE, _DOUBLE, _DOUBLE, _DOUBLE]),
     "palpate_limiter_stop": (None, [_HANDLE]),
     "palpate_limiter_flags": (ctypes.c_uint, [_HANDLE]),
@@ -169,12 +188,15 @@ def call(name, *arguments):
     return result
 
 
-def path_bytes(path):
-    """The bytes of a file's name."""
+def as_bytes(name, text):
+    """The bytes of a text or a path, for C, which ends a text at its first zero."""
     try:
-        return os.fsencode(path)
+        given = os.fsencode(text)
     except TypeError:
-        raise Error("path: found %s, expected the name of a file" % type(path).__name__) from None
+        raise WrongType("%s: found %s, expected a text" % (name, type(text).__name__)) from None
+    if b"\0" in given:
+        raise Error("%s: found a zero byte in %r, expected none" % (name, text))
+    return given
 
 
 def doubles(name, values):
@@ -184,5 +206,5 @@ def doubles(name, values):
              "dtype %s" % array.dtype if array.dtype.kind not in "fiu" else
              "shape %s" % (array.shape,) if array.ndim != 1 else None)
     if found:
-        raise Error("%s: found %s, expected numbers in one dimension, without a mask" % (name, found))
+        raise WrongType("%s: found %s, expected numbers in one dimension, without a mask" % (name, found))
     return np.ascontiguousarray(array, dtype=np.float64)

@@ -8,7 +8,7 @@ from typing import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import Error, Handle, Progress, RecordingStruct, Sensor, as_sensor, call, library, path_bytes
+from ._library import Error, Handle, Progress, RecordingStruct, Sensor, as_bytes, call, library, new_stream
 from ._recordings import as_recording
 
 
@@ -49,7 +49,8 @@ class Model(Handle):
         velocity_m_per_s, acceleration_m_per_s2 : array_like, shape (n,), optional
             Measured velocity and acceleration.
         sensor : Sensor or float, optional
-            A number is the step of an encoder [m]. By default identified as ``palpate replay`` does.
+            A number is the step of an encoder [m], 0: that of the recordings. By default identified as ``palpate
+            replay`` does.
 
         Returns
         -------
@@ -77,21 +78,20 @@ class Model(Handle):
         if sensor is None:
             sensor = Sensor()
             library().palpate_sensor_of(motion, sensor)
-        else:  # a channel without a column is not measured
-            sensor = as_sensor(sensor)
+        elif isinstance(sensor, Sensor):  # a channel without a column is not measured
             sensor = Sensor(sensor.encoder_step_m, sensor.position_noise_m,
                             sensor.velocity_noise_m_per_s if columns[2] is not None else 0.0,
                             sensor.acceleration_noise_m_per_s2 if columns[3] is not None else 0.0)
         force_N, bound_N = np.empty(motion.size), np.empty(motion.size)
         features = np.empty((motion.size, library().palpate_model_feature_count(self._handle)))
-        stream = call("palpate_stream_new_with_sensor", self._handle, sensor)
+        stream = new_stream(self._handle, sensor)
         library().palpate_stream_replay(stream, motion, *(a.ctypes.data for a in (force_N, bound_N, features)))
         library().palpate_stream_free(stream)
         return force_N, bound_N, features
 
     def save(self, path: str | os.PathLike, overwrite: bool = False) -> None:
         """Writes the model file. Raises `Error` if it exists, unless `overwrite`, or cannot be written."""
-        call("palpate_model_save", self._handle, path_bytes(path), int(overwrite))
+        call("palpate_model_save", self._handle, as_bytes("path", path), int(overwrite))
 
 
 def _check_times(time_s, dtype):
@@ -106,7 +106,7 @@ def _check_times(time_s, dtype):
 
 def load(path: str | os.PathLike) -> Model:
     """Reads a model file. Raises `Error`: no such file, not a model, damaged."""
-    return Model(call("palpate_model_load", path_bytes(path)))
+    return Model(call("palpate_model_load", as_bytes("path", path)))
 
 
 def fit(recordings: object, method: str = "trend+greedy", centres: int | None = None, *,
@@ -166,6 +166,6 @@ def fit(recordings: object, method: str = "trend+greedy", centres: int | None = 
 
     try:
         return Model(call("palpate_fit", (RecordingStruct * len(structs))(*structs), len(structs),
-                          " ".join(words).encode(), Progress(report), None))
+                          as_bytes("options", " ".join(words)), Progress(report), None))
     except Error as error:
         raise (failure or [error])[0] from None

@@ -6,7 +6,7 @@ import os
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, call, doubles, library, path_bytes
+from ._library import COLUMNS, REQUIRED, Error, RecordingStruct, WrongType, as_bytes, call, doubles, library
 
 # Hoever & Harders (2009).
 _JND_OFFSET_N, _JND_WEBER_FRACTION = 0.065, 0.0633
@@ -48,7 +48,7 @@ def read_recording(path: str | os.PathLike) -> Recording:
 
     Raises `Error` with file, line and column, what was found and what was expected.
     """
-    loaded = call("palpate_recording_load", path_bytes(path))
+    loaded = call("palpate_recording_load", as_bytes("path", path))
     try:
         return _recording(loaded.contents)
     finally:
@@ -77,7 +77,7 @@ def as_recording(given: object) -> Recording:
             columns[name] = given[name]
         except (IndexError, KeyError, TypeError, ValueError):
             if name in REQUIRED:
-                raise Error("recording: found %s without %s, expected a path or columns %s"
+                raise WrongType("recording: found %s without %s, expected a path or columns %s"
                             % (type(given).__name__, name, ", ".join(REQUIRED))) from None
     return make_recording(**columns)
 
